@@ -1,0 +1,3 @@
+"""robolang: an industrial robot controller in a package."""
+
+__version__ = "0.1.0"

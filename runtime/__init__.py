@@ -1,0 +1,1 @@
+"""The controller: robot models, interpolation, background dynamics, servo and plant. SI units throughout."""

@@ -1,0 +1,1 @@
+"""Inertia and gravity of each axis, and the task that keeps them fresh."""

@@ -1,0 +1,156 @@
+"""Codes, faults and alarms: how anything that goes wrong is named.
+
+One registry serves diagnostics of a program, errors of robot and cell files, refusals of the planner and
+alarms of the running controller, so that a code means one thing everywhere. Each layer registers the codes it
+raises: the runtime its own below, the language front end its own in ``robolang.codes``.
+
+A *fault* (``Fault``) is raised where a request cannot be carried out; nothing has moved when it is raised. An
+*alarm* (``Alarm``) is a latched event of the running robot, kept in the report. Neither knows of source files:
+the session adds file, line and column.
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Code:
+    """One thing that can go wrong: ``RBL412``, its kebab-case name, what it means and what to do."""
+
+    code: str
+    name: str
+    meaning: str
+    remedy: str
+
+
+_registry: dict[str, Code] = {}
+
+
+def register(*codes: Code) -> None:
+    """Add codes to the registry; ``ValueError`` when a code or a name is taken."""
+    for code in codes:
+        taken = {c.name for c in _registry.values()}
+        if code.code in _registry or code.name in taken:
+            raise ValueError(f"{code.code} {code.name} is registered twice")
+        _registry[code.code] = code
+
+
+def lookup(code: str) -> Code:
+    """Return the entry of a code such as ``RBL412``; ``KeyError`` when there is none."""
+    return _registry[code]
+
+
+def all_codes() -> list[Code]:
+    """Return every registered code in numeric order."""
+    return [_registry[key] for key in sorted(_registry)]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Alarm:
+    """A latched event of the running controller.
+
+    ``tick`` is the servo tick at which it was raised, ``axis`` is 0-based (None: no single axis), ``line`` the
+    program line that ran (None: none did).
+    """
+
+    code: str
+    message: str
+    tick: int
+    axis: int | None = None
+    line: int | None = None
+    hint: str = ""
+
+
+class Fault(Exception):
+    """A request that cannot be carried out, refused before anything moves.
+
+    ``code`` is registered, ``message`` says what is wrong with numbers and units, ``hint`` what would help.
+    """
+
+    def __init__(self, code: str, message: str, hint: str = "") -> None:
+        super().__init__(f"{code}: {message}")
+        self.code = lookup(code).code
+        self.message = message
+        self.hint = hint or lookup(code).remedy
+
+
+register(
+    Code(
+        code="RBL401",
+        name="payload-not-a-mass",
+        meaning="The payload given to LOAD is negative or not a finite number.",
+        remedy="Give the mass of everything beyond the flange in kg, zero or more.",
+    ),
+    Code(
+        code="RBL402",
+        name="payload-over-rated",
+        meaning="The declared payload is heavier than the robot is rated for.",
+        remedy="Check the mass (kg, not g); use a lighter hand or a larger robot.",
+    ),
+    Code(
+        code="RBL403",
+        name="payload-not-physical",
+        meaning="The centre of gravity or the inertia of the payload is one that no body on this arm can have.",
+        remedy="Give the centre of gravity in mm in the flange frame; inertias must obey the triangle inequality.",
+    ),
+    Code(
+        code="RBL404",
+        name="speed-out-of-range",
+        meaning="A speed, acceleration or duration is not a positive number in the robot's range.",
+        remedy="Give SPEED in mm/s, ACCEL in % (1 to 100), TIME in s.",
+    ),
+    Code(
+        code="RBL405",
+        name="dwell-out-of-range",
+        meaning="A waiting time is negative, not finite or longer than an hour.",
+        remedy="Give the time in s, between 0 and 3600.",
+    ),
+    Code(
+        code="RBL410",
+        name="out-of-reach",
+        meaning="No joint angles of this robot put the tool at the pose.",
+        remedy="Move the point closer to the robot, or check the tool and the frame it was taught in.",
+    ),
+    Code(
+        code="RBL411",
+        name="joint-limit",
+        meaning="The motion passes the range of a joint.",
+        remedy="Teach a via point, choose another arm configuration, or move the work piece.",
+    ),
+    Code(
+        code="RBL412",
+        name="wrist-singularity",
+        meaning="A straight move passes a configuration where the joints would have to turn infinitely fast, "
+        "or reaches its end only with another arm or wrist configuration.",
+        remedy="Teach a via point away from J5 = 0, or move with the joints interpolated.",
+    ),
+    Code(
+        code="RBL510",
+        name="non-finite-state",
+        meaning="A position, speed or torque became NaN or infinite: the simulation is no longer valid.",
+        remedy="The last finite state is in the log. Look at masses, contacts and gains near that moment.",
+    ),
+    Code(
+        code="RBL511",
+        name="physics-unstable",
+        meaning="The physics engine reported that its state is no longer physical.",
+        remedy="The last valid state is in the log. Look at contacts and at what the arm ran into.",
+    ),
+    Code(
+        code="RBL520",
+        name="tick-overrun",
+        meaning="The work of an interpolation cycle took longer than the cycle.",
+        remedy="Lower the declared costs in the controller profile, or lengthen the cycle.",
+    ),
+    Code(
+        code="RBL523",
+        name="not-in-position",
+        meaning="The arm did not come within the in-position window of the end of a move in time.",
+        remedy="Check the declared payload against the real one, and the torque limits in the report.",
+    ),
+    Code(
+        code="RBL530",
+        name="stopped-by-user",
+        meaning="The run was stopped from outside (Ctrl-C or SIGTERM).",
+        remedy="The log and the report are complete up to the stop.",
+    ),
+)

@@ -1,0 +1,112 @@
+"""Poses, rotations and the rotation-principal-axis method.
+
+A pose ``X_a_b`` is a 4x4 homogeneous matrix that takes coordinates in frame b to frame a; names match like
+dominoes (``X_world_base @ X_base_tool``). Orientation at the surface is RX RY RZ about the fixed X, Y, Z axes in
+that order: ``R = Rz @ Ry @ Rx`` (language.md). All functions broadcast over leading dimensions unless they say
+otherwise. Source of the principal axis: spec/controller.md 1.5, steps 200-208.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+_NO_ROTATION = 1e-12
+
+
+def frozen(values: ArrayLike) -> Array:
+    """Return a read-only float64 copy, for arrays inside frozen data."""
+    array = np.array(values, dtype=np.float64)
+    array.setflags(write=False)
+    return array
+
+
+def skew(v: ArrayLike) -> Array:
+    """Return the matrix ``[v]x`` with ``[v]x @ u = v x u``; v (..., 3) -> (..., 3, 3)."""
+    x, y, z = np.moveaxis(np.asarray(v, dtype=np.float64), -1, 0)
+    zero = np.zeros_like(x)
+    rows = [np.stack(row, axis=-1) for row in ((zero, -z, y), (z, zero, -x), (-y, x, zero))]
+    return np.stack(rows, axis=-2)
+
+
+def rotation_about(k: ArrayLike, angle: ArrayLike) -> Array:
+    """Rodrigues: ``Rot(k, d) = I + sin(d) [k]x + (1 - cos(d)) [k]x^2``; k unit (..., 3), angle (...,) rad."""
+    K = skew(k)
+    d = np.asarray(angle, dtype=np.float64)[..., None, None]
+    # 2 sin^2(d/2) is 1 - cos(d) without the cancellation at small angles
+    return np.asarray(np.eye(3) + np.sin(d) * K + 2.0 * np.sin(d / 2.0) ** 2 * (K @ K))
+
+
+def principal_axis(R_from: Array, R_to: Array) -> tuple[Array, float]:
+    """Return unit axis k (3,) in world and angle Theta in [0, pi] with ``Rot(k, Theta) @ R_from = R_to``.
+
+    ``w`` is the axis times sin(Theta). Where cos(Theta) is negative w loses its digits (at Theta = pi it is
+    zero), so there the axis comes from the symmetric part, ``k k' = (sym(M) - cos I) / (1 - cos)``, and w gives
+    only its sign. Source: spec/controller.md 1.5, steps 200 and 202. Single poses, 3x3.
+    """
+    M = R_to @ R_from.T
+    w = 0.5 * np.array([M[2, 1] - M[1, 2], M[0, 2] - M[2, 0], M[1, 0] - M[0, 1]])
+    sine = float(np.linalg.norm(w))
+    cosine = 0.5 * (float(np.trace(M)) - 1.0)
+    theta = math.atan2(sine, cosine)
+    if cosine >= 0.0:
+        return (w / sine if sine > _NO_ROTATION else np.array([0.0, 0.0, 1.0])), theta
+    kk = (0.5 * (M + M.T) - cosine * np.eye(3)) / (1.0 - cosine)
+    column = kk[:, int(np.argmax(np.diag(kk)))]
+    k = column / np.linalg.norm(column)
+    return (-k if float(k @ w) < 0.0 else k), theta
+
+
+def rotation_angle(R_a: Array, R_b: Array) -> float:
+    """Return the angle between two orientations in rad, in [0, pi]."""
+    return principal_axis(R_a, R_b)[1]
+
+
+def rotation_from_rpy(rpy: ArrayLike) -> Array:
+    """Return ``Rz(rz) @ Ry(ry) @ Rx(rx)``; rpy (..., 3) rad -> (..., 3, 3)."""
+    rx, ry, rz = np.moveaxis(np.asarray(rpy, dtype=np.float64), -1, 0)
+    x, y, z = np.eye(3)
+    return np.asarray(rotation_about(z, rz) @ rotation_about(y, ry) @ rotation_about(x, rx))
+
+
+def rpy_from_rotation(R: Array) -> Array:
+    """Return (rx, ry, rz) in rad with ry in [-pi/2, pi/2]; at ry = +-pi/2, where only a sum is defined, rx = 0."""
+    cy = np.hypot(R[..., 0, 0], R[..., 1, 0])
+    regular = cy > 1e-9
+    rx = np.where(regular, np.arctan2(R[..., 2, 1], R[..., 2, 2]), 0.0)
+    ry = np.arctan2(-R[..., 2, 0], cy)
+    rz = np.where(
+        regular, np.arctan2(R[..., 1, 0], R[..., 0, 0]), np.arctan2(-R[..., 0, 1], R[..., 1, 1])
+    )
+    return np.stack([rx, ry, rz], axis=-1)
+
+
+def pose(position: ArrayLike = (0.0, 0.0, 0.0), rotation: ArrayLike | None = None) -> Array:
+    """Return the homogeneous matrix (..., 4, 4) of a position (..., 3) in m and a rotation (..., 3, 3)."""
+    p = np.asarray(position, dtype=np.float64)
+    R = np.eye(3) if rotation is None else np.asarray(rotation, dtype=np.float64)
+    shape = np.broadcast_shapes(p.shape[:-1], R.shape[:-2])
+    X = np.zeros((*shape, 4, 4))
+    X[..., :3, :3] = R
+    X[..., :3, 3] = p
+    X[..., 3, 3] = 1.0
+    return X
+
+
+def pose_from_xyzrpy(values: Sequence[float]) -> Array:
+    """Return the pose of (x, y, z, rx, ry, rz) in m and rad."""
+    return pose(values[:3], rotation_from_rpy(values[3:]))
+
+
+def xyzrpy_from_pose(X: Array) -> Array:
+    """Return (x, y, z, rx, ry, rz) in m and rad, (..., 6)."""
+    return np.concatenate([X[..., :3, 3], rpy_from_rotation(X[..., :3, :3])], axis=-1)
+
+
+def inverse(X: Array) -> Array:
+    """Return the inverse of poses (..., 4, 4)."""
+    Rt = np.swapaxes(X[..., :3, :3], -1, -2)
+    return pose(-(Rt @ X[..., :3, 3:])[..., 0], Rt)

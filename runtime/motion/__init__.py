@@ -1,0 +1,1 @@
+"""From a motion command to joint set-points every 8 ms."""

@@ -1,0 +1,1 @@
+"""What the drives act on: the simulated arm, hand and parts."""

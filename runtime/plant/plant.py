@@ -1,0 +1,51 @@
+"""The seam between controller and robot: what a plant must offer, whoever plays it.
+
+The controller writes joint torques and a hand command, advances the plant by one servo tick, and reads joint
+angles. Everything else here is for reports. Two plants exist: ``MujocoPlant``, the robot with friction, contacts,
+hand and parts, and ``RigidPlant``, an ideal rigid arm without any of them, for tests and ``--no-physics``.
+"""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from runtime.frames import Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HandState:
+    """What the hand does: ``opening`` m between the fingers, ``holding`` the part between them (None: nothing)."""
+
+    closed: bool
+    opening: float
+    holding: str | None
+
+
+class Plant(Protocol):
+    """A robot with n axes, a hand and parts, advanced one servo tick at a time."""
+
+    @property
+    def tick_s(self) -> float:
+        """Duration of one step, s."""
+
+    @property
+    def q(self) -> Array:
+        """True joint angles (n,) rad: one live read-only array, the same object for the plant's whole life."""
+
+    @property
+    def dq(self) -> Array:
+        """True joint speeds (n,) rad/s: live as ``q``."""
+
+    def step(self, tau: Array) -> bool:
+        """Apply joint torques (n,) N m for one tick and advance.
+
+        Returns False when the state is no longer finite or valid; ``q`` then holds the last valid one.
+        """
+
+    def close_hand(self, closed: bool) -> None:
+        """Start closing or opening the hand."""
+
+    def hand(self) -> HandState:
+        """Return what the hand does now."""
+
+    def parts(self) -> dict[str, Array]:
+        """Return the pose X_world_part (4, 4) of every part by name."""

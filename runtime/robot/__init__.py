@@ -1,0 +1,1 @@
+"""Robot descriptions, models and kinematics."""

@@ -1,0 +1,1 @@
+"""Built-in robots, one TOML file each."""

@@ -1,0 +1,1 @@
+"""From joint set-points to drive torque at every servo tick."""

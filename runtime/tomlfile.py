@@ -1,0 +1,374 @@
+"""TOML files with located errors: the one way in for robot, cell, points and profile files.
+
+A ``Table`` hands out its keys by type and remembers which were asked for; ``Table.done`` rejects the rest, so a
+misspelt key never passes silently. Every error is a ``FileFault`` with file, line, column, code and hint.
+Reading is bounded: only regular files up to 1 MB are opened. Imports the standard library only.
+"""
+
+import difflib
+import math
+import os
+import re
+import stat
+import tomllib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NoReturn
+
+from runtime.faults import Code, Fault, register
+
+MAX_BYTES = 1_000_000
+MAX_ABS = 1e9
+
+register(
+    Code(
+        code="RBL311",
+        name="points-not-a-file",
+        meaning="The file of taught points is not a regular file that can be read.",
+        remedy="Name an ordinary file inside the project.",
+    ),
+    Code(
+        code="RBL600",
+        name="file-not-readable",
+        meaning="A robot or cell file is missing, is not a regular file, is too large or is not UTF-8 text.",
+        remedy="Name an ordinary TOML file of at most 1 MB.",
+    ),
+    Code(
+        code="RBL601",
+        name="file-syntax",
+        meaning="A robot or cell file is not valid TOML.",
+        remedy="Correct the line that is named.",
+    ),
+    Code(
+        code="RBL602",
+        name="path-outside-folder",
+        meaning="A file refers to another file outside its own folder.",
+        remedy="Put the file beside the one that names it and use a relative path without '..'.",
+    ),
+    Code(
+        code="RBL604",
+        name="value-not-finite",
+        meaning="A number in a robot or cell file is NaN, infinite or beyond any physical size.",
+        remedy="Give an ordinary number in the unit that ends the key's name.",
+    ),
+    Code(
+        code="RBL605",
+        name="value-out-of-range",
+        meaning="A number in a robot or cell file is outside the range that makes sense for it.",
+        remedy="Give a value in the range named in the message.",
+    ),
+    Code(
+        code="RBL606",
+        name="inertia-not-physical",
+        meaning="An inertia is one that no body can have: not positive, or breaking the triangle inequality.",
+        remedy="Each principal moment must be positive and at most the sum of the other two.",
+    ),
+    Code(
+        code="RBL607",
+        name="limits-inverted",
+        meaning="The lower limit of a joint is not below its upper limit.",
+        remedy="Write the range as [lower, upper].",
+    ),
+    Code(
+        code="RBL608",
+        name="key-missing",
+        meaning="A key that a robot or cell file must have is missing; limits are never guessed.",
+        remedy="Add the key that is named.",
+    ),
+    Code(
+        code="RBL609",
+        name="key-unknown",
+        meaning="A robot or cell file has a key that nothing reads.",
+        remedy="Correct the spelling or remove the key.",
+    ),
+    Code(
+        code="RBL610",
+        name="name-taken-or-unknown",
+        meaning="A name in a robot or cell file is used twice, or names something that does not exist.",
+        remedy="Use one of the names in the message.",
+    ),
+    Code(
+        code="RBL613",
+        name="value-wrong-type",
+        meaning="A value in a robot or cell file has the wrong type or the wrong number of entries.",
+        remedy="Give the type named in the message.",
+    ),
+    Code(
+        code="RBL615",
+        name="geometry-inconsistent",
+        meaning="The closed-form geometry of a robot file does not describe the same arm as its axes.",
+        remedy="Check the OPW parameters, offsets and signs against the axis table.",
+    ),
+    Code(
+        code="RBL616",
+        name="gains-unstable",
+        meaning="The controller profile gives gains with which a servo loop cannot be stable.",
+        remedy="Lower the velocity bandwidth or shorten the servo period, as the message says.",
+    ),
+)
+
+
+class FileFault(Fault):
+    """A fault at a place in a file. ``line`` and ``column`` are 1-based; ``excerpt`` is the line's text."""
+
+    def __init__(self, code: str, message: str, hint: str, *, path: str, line: int, column: int,
+                 excerpt: str) -> None:  # fmt: skip
+        super().__init__(code, message, hint)
+        self.path = path
+        self.line = line
+        self.column = column
+        self.excerpt = excerpt
+
+    def __str__(self) -> str:
+        return f"{self.path}:{self.line}:{self.column}: {self.code} {self.message}"
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """The text of a file and its name as the user gave it."""
+
+    path: str
+    text: str
+
+    def fail(self, code: str, message: str, hint: str = "", keys: Sequence[str | int] = ()) -> NoReturn:
+        """Raise ``FileFault`` at the place of the key path ``keys`` (best match)."""
+        line, column = locate(self.text, keys)
+        lines = self.text.splitlines()
+        excerpt = lines[line - 1] if 0 < line <= len(lines) else ""
+        raise FileFault(code, message, hint, path=self.path, line=line, column=column, excerpt=excerpt)
+
+
+def read_source(path: Path, code: str = "RBL600") -> Source:
+    """Read a small regular UTF-8 file; ``FileFault`` with ``code`` otherwise (never blocks on a FIFO)."""
+    where = Source(str(path), "")
+    try:
+        handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    except OSError as error:
+        where.fail(code, f"cannot open {path}: {error.strerror}")
+    try:
+        info = os.fstat(handle)
+        if not stat.S_ISREG(info.st_mode):
+            where.fail(code, f"{path} is not a regular file")
+        if info.st_size > MAX_BYTES:
+            where.fail(code, f"{path} has {info.st_size} bytes, more than {MAX_BYTES}")
+        with os.fdopen(handle, "rb", closefd=False) as stream:
+            raw = stream.read(MAX_BYTES + 1)
+    finally:
+        os.close(handle)
+    try:
+        return Source(str(path), raw.decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        where.fail(code, f"{path} is not UTF-8 text (byte {error.start})")
+
+
+def load_table(source: Source, code: str = "RBL601") -> "Table":
+    """Parse TOML; ``FileFault`` with ``code`` at the line of a syntax error."""
+    try:
+        return Table(source, tomllib.loads(source.text), ())
+    except tomllib.TOMLDecodeError as error:
+        text = str(error)
+        found = re.search(r"at line (\d+), column (\d+)", text)
+        line, column = (int(found[1]), int(found[2])) if found else (max(1, source.text.count("\n")), 1)
+        lines = source.text.splitlines()
+        excerpt = lines[line - 1] if line <= len(lines) else ""
+        raise FileFault(
+            code, re.sub(r" \(at .*\)", "", text), "", path=source.path, line=line, column=column, excerpt=excerpt
+        ) from None
+    except RecursionError:
+        source.fail(code, "the file is nested too deeply")
+
+
+class Table:
+    """One TOML table being read: typed getters, each key at most once, unknown keys rejected by ``done``."""
+
+    def __init__(self, source: Source, data: dict[str, Any], keys: tuple[str | int, ...]) -> None:
+        self.source = source
+        self.keys = keys
+        self._data = data
+        self._asked: set[str] = set()
+
+    def __contains__(self, key: str) -> bool:
+        return key in self._data
+
+    def names(self) -> list[str]:
+        """Return the keys present, in file order."""
+        return list(self._data)
+
+    def fail(self, code: str, message: str, hint: str = "", key: str | None = None) -> NoReturn:
+        """Raise ``FileFault`` at ``key`` of this table."""
+        keys = (*self.keys, key) if key is not None else self.keys
+        self.source.fail(code, message, hint, keys)
+
+    def name(self, key: str = "") -> str:
+        """Return the dotted name of ``key`` as people write it, axes counted from 1."""
+        parts = [str(k + 1) if isinstance(k, int) else k for k in self.keys]
+        return ".".join([*parts, key] if key else parts)
+
+    def _take(self, key: str) -> Any:
+        self._asked.add(key)
+        if key not in self._data:
+            near = difflib.get_close_matches(key, set(self._data) - self._asked, n=1)
+            hint = f"'{near[0]}' looks like it" if near else ""
+            self.fail("RBL608", f"'{self.name(key)}' is missing", hint)
+        return self._data[key]
+
+    def number(self, key: str, default: float | None = None, *, low: float = -MAX_ABS, high: float = MAX_ABS,
+               positive: bool = False) -> float:  # fmt: skip
+        """Return a finite float in ``[low, high]`` (``positive``: above zero)."""
+        if key not in self._data and default is not None:
+            self._asked.add(key)
+            return default
+        return self._checked(key, self._take(key), low, high, positive)
+
+    def _checked(self, key: str, value: Any, low: float, high: float, positive: bool) -> float:
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            self.fail("RBL613", f"'{self.name(key)}' must be a number, not {_kind(value)}", key=key)
+        number = float(value) if abs(value) <= MAX_ABS else math.inf
+        if not math.isfinite(number):
+            self.fail("RBL604", f"'{self.name(key)}' is {value}, not a finite number", key=key)
+        if not (low <= number <= high) or (positive and not number > 0.0):
+            wanted = "above 0" if positive and number <= 0.0 else f"between {low:g} and {high:g}"
+            self.fail("RBL605", f"'{self.name(key)}' is {number:g} and must be {wanted}", key=key)
+        return number
+
+    def numbers(self, key: str, count: int | None, default: Sequence[float] | None = None, *,
+                low: float = -MAX_ABS, high: float = MAX_ABS, positive: bool = False) -> tuple[float, ...]:  # fmt: skip
+        """Return a list of ``count`` finite floats (None: any number)."""
+        if key not in self._data and default is not None:
+            self._asked.add(key)
+            return tuple(default)
+        value = self._take(key)
+        if not isinstance(value, list) or (count is not None and len(value) != count):
+            got = f"{len(value)} entries" if isinstance(value, list) else _kind(value)
+            wanted = "a list of numbers" if count is None else f"a list of {count} numbers"
+            self.fail("RBL613", f"'{self.name(key)}' must be {wanted}, not {got}", key=key)
+        return tuple(self._checked(key, item, low, high, positive) for item in value)
+
+    def raw_list(self, key: str) -> list[Any]:
+        """Return an optional list as it stands (empty when missing)."""
+        self._asked.add(key)
+        value = self._data.get(key, [])
+        if not isinstance(value, list):
+            self.fail("RBL613", f"'{self.name(key)}' must be a list, not {_kind(value)}", key=key)
+        return value
+
+    def integer(self, key: str, default: int | None = None, *, low: int, high: int) -> int:
+        """Return an integer in ``[low, high]``."""
+        value = self.number(key, None if default is None else float(default), low=low, high=high)
+        if value != int(value):
+            self.fail("RBL613", f"'{self.name(key)}' must be a whole number", key=key)
+        return int(value)
+
+    def text(self, key: str, default: str | None = None, *, choices: Sequence[str] = ()) -> str:
+        """Return a string, one of ``choices`` when given."""
+        if key not in self._data and default is not None:
+            self._asked.add(key)
+            return default
+        value = self._take(key)
+        if not isinstance(value, str):
+            self.fail("RBL613", f"'{self.name(key)}' must be a text, not {_kind(value)}", key=key)
+        if choices and value not in choices:
+            near = difflib.get_close_matches(value, choices, n=1)
+            hint = f"did you mean '{near[0]}'?" if near else ""
+            self.fail("RBL610", f"'{self.name(key)}' is '{value}'; known: {', '.join(choices)}", hint, key=key)
+        return value
+
+    def flag(self, key: str, default: bool) -> bool:
+        """Return a boolean."""
+        self._asked.add(key)
+        value = self._data.get(key, default)
+        if not isinstance(value, bool):
+            self.fail("RBL613", f"'{self.name(key)}' must be true or false, not {_kind(value)}", key=key)
+        return value
+
+    def table(self, key: str, *, required: bool = True) -> "Table":
+        """Return a sub-table (empty when it is optional and missing)."""
+        if not required and key not in self._data:
+            self._asked.add(key)
+            return Table(self.source, {}, (*self.keys, key))
+        value = self._take(key)
+        if not isinstance(value, dict):
+            self.fail("RBL613", f"'{self.name(key)}' must be a table, not {_kind(value)}", key=key)
+        return Table(self.source, value, (*self.keys, key))
+
+    def tables(self, key: str, *, required: bool = True) -> list["Table"]:
+        """Return the entries of an array of tables ``[[key]]``."""
+        if not required and key not in self._data:
+            self._asked.add(key)
+            return []
+        value = self._take(key)
+        if not isinstance(value, list) or not all(isinstance(item, dict) for item in value):
+            self.fail("RBL613", f"'{self.name(key)}' must be written as [[{key}]] tables", key=key)
+        return [Table(self.source, item, (*self.keys, key, index)) for index, item in enumerate(value)]
+
+    def named_tables(self, key: str) -> dict[str, "Table"]:
+        """Return the sub-tables ``[key.NAME]`` by name (empty when there are none)."""
+        outer = self.table(key, required=False)
+        return {name: outer.table(name) for name in outer.names()}
+
+    def attempt(self, key: str, make: Callable[[], Any], code: str) -> Any:
+        """Call ``make`` and turn its ``ValueError`` into a located fault at ``key``."""
+        try:
+            return make()
+        except ValueError as error:
+            self.fail(code, str(error), key=key)
+
+    def done(self) -> None:
+        """Reject every key that was not asked for."""
+        for key in self._data:
+            if key not in self._asked:
+                near = difflib.get_close_matches(key, self._asked - set(self._data), n=1) or difflib.get_close_matches(
+                    key, self._asked, n=1
+                )
+                hint = f"did you mean '{near[0]}'?" if near else f"known here: {', '.join(sorted(self._asked))}"
+                self.fail("RBL609", f"'{self.name(key)}' is not a key of this file", hint, key=key)
+
+
+def _kind(value: object) -> str:
+    names = {bool: "a boolean", str: "a text", int: "a number", float: "a number", list: "a list", dict: "a table"}
+    return names.get(type(value), type(value).__name__)
+
+
+_HEADER = re.compile(r"^\s*(\[\[?)\s*([^\]]+?)\s*\]\]?")
+_KEY = re.compile(r"^(\s*)([A-Za-z0-9_.\"'-]+)\s*=")
+
+
+def locate(text: str, keys: Sequence[str | int]) -> tuple[int, int]:
+    """Return the 1-based line and column where a key path stands; the nearest enclosing header otherwise.
+
+    A scan of lines, not a parser: tomllib keeps no positions. Inline tables are located at their own key.
+    """
+    best, place = -1, (1, 1)
+    here: list[str | int] = []
+    counts: dict[tuple[str | int, ...], int] = {}
+    for number, line in enumerate(text.splitlines(), start=1):
+        if header := _HEADER.match(line):
+            here = _header_path(header[2], header[1] == "[[", counts)
+            candidate, column = list(here), line.index("[") + 1
+        elif key := _KEY.match(line):
+            candidate, column = [*here, *_split(key[2])], len(key[1]) + 1
+        else:
+            continue
+        depth = len(candidate)
+        if depth > best and depth <= len(keys) and list(keys[:depth]) == candidate:
+            best, place = depth, (number, column)
+    return place
+
+
+def _split(dotted: str) -> list[str]:
+    return [part.strip().strip("\"'") for part in dotted.split(".")]
+
+
+def _header_path(dotted: str, is_array: bool, counts: dict[tuple[str | int, ...], int]) -> list[str | int]:
+    path: list[str | int] = []
+    parts = _split(dotted)
+    for position, part in enumerate(parts):
+        path.append(part)
+        key = tuple(path)
+        if is_array and position == len(parts) - 1:
+            counts[key] = counts.get(key, -1) + 1
+            path.append(counts[key])
+        elif key in counts:
+            path.append(counts[key])
+    return path

@@ -1,0 +1,18 @@
+"""Conversions between the surface's units and SI. Inside the packages everything is SI and radians."""
+
+import math
+
+MM = 1e-3
+"""Metres in a millimetre."""
+
+DEG = math.pi / 180.0
+"""Radians in a degree."""
+
+PERCENT = 1e-2
+"""Unit fraction in a per cent."""
+
+US = 1e-6
+"""Seconds in a microsecond."""
+
+GRAVITY = 9.81
+"""Standard gravity used by every model here, m/s2 (spec/controller.md 1.7, acceptance figures use this value)."""
