@@ -1,3 +1,22 @@
-"""robolang: an industrial robot controller in a package."""
+"""robolang: an industrial robot controller in a package.
+
+``robolang.run("prog.rbl")`` executes a program on the controller and the physics and returns its ``RunResult``.
+"""
+
+from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
+
+if TYPE_CHECKING:
+    from robolang.session import ProgramError, RunResult, run
+
+__all__ = ["ProgramError", "RunResult", "__version__", "run"]
+
+
+def __getattr__(name: str) -> Any:
+    # parsing and checking must not pay for numpy, pinocchio and mujoco: the run is imported when it is asked for
+    if name in ("run", "RunResult", "ProgramError"):
+        from robolang import session
+
+        return getattr(session, name)
+    raise AttributeError(f"module 'robolang' has no attribute '{name}'")

@@ -60,7 +60,7 @@ class Alarm:
     hint: str = ""
 
 
-class Fault(Exception):
+class Fault(Exception):  # noqa: N818 - the field calls it a fault
     """A request that cannot be carried out, refused before anything moves.
 
     ``code`` is registered, ``message`` says what is wrong with numbers and units, ``hint`` what would help.

@@ -96,7 +96,7 @@ def pose(position: ArrayLike = (0.0, 0.0, 0.0), rotation: ArrayLike | None = Non
     return X
 
 
-def pose_from_xyzrpy(values: Sequence[float]) -> Array:
+def pose_from_xyzrpy(values: Sequence[float] | Array) -> Array:
     """Return the pose of (x, y, z, rx, ry, rz) in m and rad."""
     return pose(values[:3], rotation_from_rpy(values[3:]))
 

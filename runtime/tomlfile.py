@@ -134,7 +134,7 @@ class Source:
     def fail(self, code: str, message: str, hint: str = "", keys: Sequence[str | int] = ()) -> NoReturn:
         """Raise ``FileFault`` at the place of the key path ``keys`` (best match)."""
         line, column = locate(self.text, keys)
-        lines = self.text.splitlines()
+        lines = lines_of(self.text)
         excerpt = lines[line - 1] if 0 < line <= len(lines) else ""
         raise FileFault(code, message, hint, path=self.path, line=line, column=column, excerpt=excerpt)
 
@@ -169,14 +169,22 @@ def load_table(source: Source, code: str = "RBL601") -> "Table":
     except tomllib.TOMLDecodeError as error:
         text = str(error)
         found = re.search(r"at line (\d+), column (\d+)", text)
-        line, column = (int(found[1]), int(found[2])) if found else (max(1, source.text.count("\n")), 1)
-        lines = source.text.splitlines()
+        lines = lines_of(source.text)
+        line, column = (int(found[1]), int(found[2])) if found else (len(lines), 1)
         excerpt = lines[line - 1] if line <= len(lines) else ""
         raise FileFault(
             code, re.sub(r" \(at .*\)", "", text), "", path=source.path, line=line, column=column, excerpt=excerpt
         ) from None
     except RecursionError:
         source.fail(code, "the file is nested too deeply")
+    except ValueError as error:  # int() refuses a literal of thousands of digits
+        source.fail(code, f"a value cannot be read: {error}")
+
+
+def lines_of(text: str) -> list[str]:
+    """Return the lines of a TOML text, split only where TOML and editors do (LF, CRLF); at least one."""
+    lines = [line.removesuffix("\r") for line in text.split("\n")]
+    return lines[:-1] if len(lines) > 1 and not lines[-1] else lines
 
 
 class Table:
@@ -342,7 +350,7 @@ def locate(text: str, keys: Sequence[str | int]) -> tuple[int, int]:
     best, place = -1, (1, 1)
     here: list[str | int] = []
     counts: dict[tuple[str | int, ...], int] = {}
-    for number, line in enumerate(text.splitlines(), start=1):
+    for number, line in enumerate(lines_of(text), start=1):
         if header := _HEADER.match(line):
             here = _header_path(header[2], header[1] == "[[", counts)
             candidate, column = list(here), line.index("[") + 1

@@ -69,7 +69,7 @@ def parse_robot(source: Source) -> RobotSpec:
     axis_tables = table.tables("axes")
     if not 1 <= len(axis_tables) <= 7:
         table.fail("RBL605", f"a robot has 1 to 7 axes, not {len(axis_tables)}", key="axes")
-    axes, corrections, X_last_flange = _chain(axis_tables)
+    axes, published, corrections, X_last_flange = _chain(axis_tables)
     spec = RobotSpec(
         name=name,
         title=title,
@@ -81,6 +81,7 @@ def parse_robot(source: Source) -> RobotSpec:
         path=path,
         opw=opw,
         corrections=corrections,
+        published=published,
     )
     table.done()
     _check_opw(spec, table)
@@ -120,9 +121,12 @@ def _path_limits(table: Table) -> PathLimits:
     return limits
 
 
-def _chain(tables: list[Table]) -> tuple[tuple[AxisSpec, ...], tuple[Correction, ...], Array]:
-    """Walk the DH rows: returns the axes, the corrections made to their bodies and the flange placement."""
+def _chain(
+    tables: list[Table],
+) -> tuple[tuple[AxisSpec, ...], tuple[Body, ...], tuple[Correction, ...], Array]:
+    """Walk the DH rows: returns the axes, their bodies as published, the corrections and the flange placement."""
     axes: list[AxisSpec] = []
+    published: list[Body] = []
     corrections: list[Correction] = []
     names: set[str] = set()
     placement = np.eye(4)
@@ -144,11 +148,12 @@ def _chain(tables: list[Table]) -> tuple[tuple[AxisSpec, ...], tuple[Correction,
         correction = table.table("correction") if "correction" in table else None
         table.done()
         axes.append(axis)
+        published.append(axis.body)
         if correction is not None:
             corrections.append(_correct(correction, axes, index))
         placement = X_joint_dh
     _check_bodies(tables, axes)
-    return tuple(axes), tuple(corrections), placement
+    return tuple(axes), tuple(published), tuple(corrections), placement
 
 
 def _turn(angle: float) -> Array:
@@ -246,7 +251,7 @@ def _correct(table: Table, axes: list[AxisSpec], index: int) -> Correction:
         axes[index - 1] = _with_body(
             axes[index - 1], Body(mass=other.mass, cog=other.cog, inertia=frozen(other.inertia))
         )
-    return Correction(axis=index, inertia_shift=shift, added_mass=mass, reason=reason, published=published)
+    return Correction(axis=index, inertia_shift=shift, added_mass=mass, reason=reason)
 
 
 def _with_body(axis: AxisSpec, body: Body) -> AxisSpec:

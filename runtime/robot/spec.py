@@ -118,8 +118,7 @@ class PathLimits:
 class OpwParameters:
     """Geometry of an ortho-parallel arm with a spherical wrist (Brandstoetter, Angerer, Hofbaur 2014).
 
-    Lengths m. The joint angle of the OPW model is ``sign * q + offset``. ``R_opw_flange`` (3, 3) turns the OPW
-    end frame into the robot's flange frame.
+    Lengths m. The joint angle of the OPW model is ``sign * q + offset``.
     """
 
     a1: float
@@ -141,12 +140,14 @@ class Correction:
     inertia_shift: float
     added_mass: float
     reason: str
-    published: Body
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotSpec:
-    """A robot of ``n`` axes. ``X_last_flange`` (4, 4) is the flange in the frame of the last axis."""
+    """A robot of ``n`` axes. ``X_last_flange`` (4, 4) is the flange in the frame of the last axis.
+
+    ``published`` holds the bodies as the source prints them, before ``corrections``.
+    """
 
     name: str
     title: str
@@ -157,6 +158,7 @@ class RobotSpec:
     path: PathLimits
     opw: OpwParameters | None
     corrections: tuple[Correction, ...]
+    published: tuple[Body, ...]
     notes: tuple[str, ...]
 
     @property

@@ -1,0 +1,34 @@
+# make demo   the main job: install into .venv and run the 1992 program
+# make test   the tests
+# make gates  style, types, import floors
+# make bench  ratios and start-up times, printed
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+
+.PHONY: demo test gates bench clean
+
+demo: $(READY)
+	$(BIN)/robolang run programs/pick_and_place.rbl
+
+test: $(READY)
+	$(BIN)/python -m pytest -n 2
+
+gates: $(READY)
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: $(READY)
+	$(BIN)/python -m tests.bench.run
+
+$(READY): pyproject.toml constraints.txt
+	$(PYTHON) -c 'import sys; assert sys.version_info >= (3, 11), "Python 3.11 or newer is needed"'
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
+	touch $@
+
+clean:
+	rm -rf $(VENV) out

@@ -1,0 +1,177 @@
+"""``robolang kin``: forward and inverse kinematics of a robot, on the command line, in mm and degrees.
+
+``fk`` prints the pose of joint angles, ``ik`` every solution of a pose with its branch and its margin to the joint
+limits, best first. The pose is X_base_tool, ``x,y,z,rx,ry,rz`` with the rotations about the fixed X, Y and Z axes in
+that order; without ``--tool`` the tool is the flange. ``--json`` gives full double precision, one object a call:
+
+    fk  {"pose_mm_deg": [x, y, z, rx, ry, rz]}
+    ik  {"solutions": [{"joints_deg": [...], "branch": "RIGHTY ABOVE NOFLIP", "limit_margin_deg": number}, ...]}
+
+Exit codes: 0; 1 out of reach (RBL410 on stderr); 2 a value, a robot name or a robot file that cannot be used.
+numpy, rich and the runtime are imported inside the commands, so that ``robolang --help`` stays quick.
+"""
+
+import json
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from robolang.cli.values import OptionValueError, numbers
+
+if TYPE_CHECKING:
+    from runtime.frames import Array
+    from runtime.robot.kinematics import Kinematics
+
+app = typer.Typer(no_args_is_help=True, help="Forward and inverse kinematics of a robot (mm, deg).")
+
+POSE = ("x", "y", "z", "rx", "ry", "rz")
+POSE_UNITS = ("mm", "mm", "mm", "deg", "deg", "deg")
+
+RobotOption = Annotated[str, typer.Option("--robot", help="Built-in robot, or a path to a .toml robot file.")]
+ToolOption = Annotated[
+    str | None, typer.Option("--tool", metavar="X,Y,Z,RX,RY,RZ", help="Tool in the flange frame, mm and deg.")
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object in full precision.")]
+
+
+@app.command()
+def fk(
+    robot: RobotOption,
+    joints: Annotated[str, typer.Option("--joints", metavar="J1,J2,...", help="Joint angles, deg.")],
+    tool: ToolOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Print the pose of the tool for given joint angles."""
+    import numpy as np
+
+    from runtime.frames import xyzrpy_from_pose
+
+    kinematics = _kinematics(robot)
+    q_deg = numbers(joints, option="--joints", names=_joint_names(kinematics.n))
+    X_base_tool = kinematics.forward(np.deg2rad(q_deg)) @ _pose(tool, "--tool")
+    pose_mm_deg = _plain(xyzrpy_from_pose(X_base_tool) / _pose_scale())
+    if as_json:
+        typer.echo(json.dumps({"pose_mm_deg": pose_mm_deg}))
+        return
+    headings = [f"{name}\n{unit}" for name, unit in zip(POSE, POSE_UNITS, strict=True)]
+    _print_table(
+        f"Pose of the tool, {kinematics.spec.title}", headings, [[f"{round(v, 3) + 0.0:.3f}" for v in pose_mm_deg]]
+    )
+
+
+@app.command()
+def ik(
+    robot: RobotOption,
+    pose: Annotated[str, typer.Option("--pose", metavar="X,Y,Z,RX,RY,RZ", help="Pose of the tool, mm and deg.")],
+    tool: ToolOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Print every set of joint angles that puts the tool at a pose, the one farthest from the limits first."""
+    from runtime.frames import inverse
+
+    kinematics = _kinematics(robot)
+    X_base_flange = _pose(pose, "--pose") @ inverse(_pose(tool, "--tool"))
+    solutions = _solutions_deg(kinematics, X_base_flange)
+    if as_json:
+        typer.echo(json.dumps({"solutions": solutions}))
+    if not solutions:
+        _say_out_of_reach(kinematics.spec.title)
+        raise typer.Exit(1)
+    if not as_json:
+        _print_table(
+            f"Joint angles, {kinematics.spec.title}",
+            ["branch", *(f"{name}\ndeg" for name in _joint_names(kinematics.n)), "margin\ndeg"],
+            [_solution_row(solution) for solution in solutions],
+            caption="margin: from the joint nearest to a limit; negative: outside its range",
+        )
+
+
+def _kinematics(robot: str) -> "Kinematics":
+    """Return the kinematics of a built-in robot or a robot file; ``typer.Exit(2)`` or a usage error otherwise."""
+    from pathlib import Path
+
+    from runtime.robot.kinematics import Kinematics
+    from runtime.robot.loader import library, load_builtin, load_robot
+    from runtime.tomlfile import FileFault
+
+    try:
+        if robot.endswith(".toml"):
+            return Kinematics(load_robot(Path(robot)))
+        return Kinematics(load_builtin(robot))
+    except KeyError:
+        known = ", ".join(library())
+        raise OptionValueError("--robot", f"{robot!r} is not a robot; known: {known}, or a .toml file") from None
+    except FileFault as fault:
+        typer.echo(f"{fault}\n  help: {fault.hint}", err=True)
+        raise typer.Exit(2) from None
+    except ValueError as error:
+        raise OptionValueError("--robot", str(error)) from None
+
+
+def _pose(text: str | None, option: str) -> "Array":
+    """Return the pose (4, 4) in m of ``x,y,z,rx,ry,rz`` in mm and deg; the identity for None."""
+    import numpy as np
+
+    from runtime.frames import pose_from_xyzrpy
+
+    if text is None:
+        return np.eye(4)
+    values = numbers(text, option=option, names=POSE)
+    return pose_from_xyzrpy([value * scale for value, scale in zip(values, _pose_scale(), strict=True)])
+
+
+def _pose_scale() -> list[float]:
+    """Return metres per mm and radians per degree for the six numbers of a pose."""
+    from runtime.units import DEG, MM
+
+    return [{"mm": MM, "deg": DEG}[unit] for unit in POSE_UNITS]
+
+
+def _solutions_deg(kinematics: "Kinematics", X_base_flange: "Array") -> list[dict[str, Any]]:
+    import numpy as np
+
+    found = sorted(kinematics.solutions(X_base_flange), key=lambda s: -s.limit_margin)
+    return [
+        {
+            "joints_deg": _plain(np.rad2deg(s.q)),
+            "branch": str(s.branch),
+            "limit_margin_deg": float(np.rad2deg(s.limit_margin)),
+        }
+        for s in found
+    ]
+
+
+def _plain(values: "Array") -> list[float]:
+    """Return floats without negative zeros."""
+    return [float(value) + 0.0 for value in values]
+
+
+def _joint_names(n: int) -> tuple[str, ...]:
+    return tuple(f"J{i}" for i in range(1, n + 1))
+
+
+def _solution_row(solution: dict[str, Any]) -> list[str]:
+    shown = [*solution["joints_deg"], solution["limit_margin_deg"]]
+    return [solution["branch"], *(f"{round(value, 2) + 0.0:.2f}" for value in shown)]
+
+
+def _say_out_of_reach(robot: str) -> None:
+    from runtime.faults import lookup
+
+    code = lookup("RBL410")
+    typer.echo(f"error {code.code} {code.name} --pose: {code.meaning} ({robot})\n  help: {code.remedy}", err=True)
+
+
+def _print_table(title: str, headings: list[str], rows: list[list[str]], caption: str | None = None) -> None:
+    from rich.box import SIMPLE_HEAD
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    # narrow enough that eight columns fit 80 characters uncut; Text, because a title is a robot file's own words
+    table = Table(title=Text(title), caption=caption, box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+    for heading in headings:
+        table.add_column(heading, justify="left" if heading == "branch" else "right", no_wrap=True)
+    for row in rows:
+        table.add_row(*row)
+    Console().print(table)

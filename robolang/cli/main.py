@@ -1,0 +1,37 @@
+"""The ``robolang`` command: its sub-commands are put together here.
+
+Nothing heavy is imported: numpy, pinocchio and mujoco come in inside the commands that need them.
+"""
+
+from typing import Annotated
+
+import typer
+
+from robolang.cli import check, explain, kin, robot, run
+
+app = typer.Typer(
+    name="robolang",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    help="A robot controller in a package: run a program in an industrial robot language on a true controller.",
+)
+app.command("run")(run.run)
+app.command("check")(check.check)
+app.command("explain")(explain.explain)
+app.add_typer(kin.app, name="kin")
+app.add_typer(robot.app, name="robot")
+
+
+@app.callback()
+def options(
+    version: Annotated[bool, typer.Option("--version", help="Print the version and leave.")] = False,
+) -> None:
+    """Take the options that stand before a command."""
+    if version:  # pragma: no cover - ``__main__`` answers before this module is imported
+        raise typer.Exit
+
+
+def run_app() -> None:
+    """Run the command line and leave the process."""
+    app()

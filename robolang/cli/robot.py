@@ -1,0 +1,124 @@
+"""``robolang robot list`` and ``robolang robot show R``: the robots, their data and where the data come from."""
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from robolang.cli.errors import reported
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from runtime.robot.spec import Body, RobotSpec
+
+app = typer.Typer(no_args_is_help=True, help="The robot library.")
+
+
+@app.command("list")
+def list_robots() -> None:
+    """List the built-in robots."""
+    from runtime.robot.loader import library, load_builtin
+
+    with reported():
+        for name in library():
+            spec = load_builtin(name)
+            typer.echo(f"{name}  {spec.title}, {spec.n} axes, {spec.rated_payload:g} kg")
+
+
+@app.command()
+def show(robot: Annotated[str, typer.Argument(help="Built-in robot, or a path to a .toml robot file.")]) -> None:
+    """Show a robot: limits, drives, bodies, corrections of published data, sources."""
+    with reported():
+        from rich.console import Console
+
+        from robolang.project import load_any_robot
+
+        spec = load_any_robot(robot)
+        console = Console()
+        console.print(f"{spec.name}: {spec.title}, {spec.n} axes, rated payload {spec.rated_payload:g} kg\n")
+        for table in (_limits(spec), _drives(spec), _bodies(spec)):
+            console.print(table)
+        for title, lines in (
+            ("Corrections of published data", _corrections(spec)),
+            ("Sources", list(spec.sources)),
+            ("Notes", list(spec.notes)),
+        ):
+            if lines:
+                console.print(f"{title}", style="bold")
+                for line in lines:
+                    console.print(f"  - {line}", highlight=False, markup=False)
+
+
+def _table(title: str, *headings: str) -> "Table":
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD, title=title, title_justify="left", padding=(0, 1, 0, 0))
+    table.add_column("axis", no_wrap=True)
+    for heading in headings:
+        table.add_column(heading, justify="right", no_wrap=True)
+    return table
+
+
+def _limits(spec: "RobotSpec") -> "Table":
+    from runtime.units import DEG
+
+    table = _table("Limits", "range\ndeg", "speed\ndeg/s", "accel\ndeg/s2", "torque\nN m")
+    for index, axis in enumerate(spec.axes, start=1):
+        limits = axis.limits
+        table.add_row(
+            f"J{index} {axis.name}",
+            f"{limits.lower / DEG:g} .. {limits.upper / DEG:g}",
+            f"{limits.speed / DEG:g}",
+            f"{limits.acceleration / DEG:g}",
+            f"{limits.torque:g}",
+        )
+    return table
+
+
+def _drives(spec: "RobotSpec") -> "Table":
+    table = _table(
+        "Drives (motor side; N^2 J at the joint)", "gear", "rotor\nkg m2", "N^2 J\nkg m2", "Kt\nN m/A", "limit\nA",
+        "Coulomb\nN m", "viscous\nN m s", "Kp Kv\n1/s",
+    )  # fmt: skip
+    for index, axis in enumerate(spec.axes, start=1):
+        motor = axis.motor
+        table.add_row(
+            f"J{index}",
+            f"{motor.gear_ratio:g}",
+            f"{motor.rotor_inertia:g}",
+            f"{motor.reflected_inertia:.4f}",
+            f"{motor.torque_constant:g}",
+            f"{motor.max_current:g}",
+            "{:g}/{:g}".format(*motor.coulomb_friction),
+            f"{motor.viscous_friction:g}",
+            f"{axis.bandwidths.position:g} {axis.bandwidths.velocity:g}",
+        )
+    return table
+
+
+def _bodies(spec: "RobotSpec") -> "Table":
+    table = _table("Bodies in their axis frames (inertia xx yy zz about the centre of gravity)", "mass\nkg",
+                   "cog\nmm", "inertia published\nkg m2", "inertia used\nkg m2")  # fmt: skip
+    for index, (axis, published) in enumerate(zip(spec.axes, spec.published, strict=True), start=1):
+        used, printed = _moments(axis.body), _moments(published)
+        cog = " ".join(f"{round(1000 * x, 3) + 0.0:g}" for x in axis.body.cog)
+        table.add_row(f"J{index}", f"{axis.body.mass:g}", cog, printed, used if used != printed else "the same")
+    return table
+
+
+def _moments(body: "Body") -> str:
+    import numpy as np
+
+    return " ".join(f"{x:.6g}" for x in np.diag(body.inertia))
+
+
+def _corrections(spec: "RobotSpec") -> list[str]:
+    lines = []
+    for correction in spec.corrections:
+        axis = correction.axis + 1
+        giver = f"link {axis - 1}" if axis > 1 else "the base"
+        what = f"J{axis}: {correction.inertia_shift:g} kg m2 across the joint, from {giver} to link {axis}"
+        mass = f"; {correction.added_mass:g} kg added on the axis" if correction.added_mass else ""
+        lines.append(f"{what}{mass}. {correction.reason}")
+    return lines

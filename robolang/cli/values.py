@@ -1,0 +1,56 @@
+"""Numbers given on the command line: lists such as ``--pose 600,0,400,0,180,0``, checked and located.
+
+A value that an option cannot take is a usage error: exit code 2 and a message with RBL703, the option and, in a
+list, which number it is (counted from 1). NaN and infinity are refused, and so is anything no robot can have.
+Imports the standard library and typer only, so that ``robolang --help`` stays quick.
+"""
+
+import math
+from typing import NoReturn
+
+import typer
+
+OPTION_VALUE = "RBL703"
+MAX_ABS = 1e9
+
+
+class OptionValueError(typer.BadParameter):
+    """A usage error that carries a code; ``position`` is the number in a list, from 1, or None for all of it."""
+
+    def __init__(self, option: str, message: str, position: int | None = None) -> None:
+        self.code = OPTION_VALUE
+        self.option = option
+        self.position = position
+        where = option if position is None else f"{option}, number {position}"
+        super().__init__(f"{self.code} {where}: {message}")
+
+    def format_message(self) -> str:
+        """Return the message as it stands; it names its option already."""
+        return self.message
+
+
+def numbers(text: str, *, option: str, names: tuple[str, ...]) -> tuple[float, ...]:
+    """Return the comma-separated finite numbers of ``text``, one for each of ``names``; ``OptionValueError``."""
+    parts = text.split(",")
+    if len(parts) != len(names):
+        given = "1 number is" if len(parts) == 1 else f"{len(parts)} numbers are"
+        raise OptionValueError(option, f"{len(names)} are needed ({','.join(names)}) but {given} given")
+    return tuple(
+        _number(part.strip(), option, name, i) for i, (part, name) in enumerate(zip(parts, names, strict=True), start=1)
+    )
+
+
+def _number(text: str, option: str, name: str, position: int) -> float:
+    def refuse(message: str) -> NoReturn:
+        raise OptionValueError(option, f"{name} {message}", position)
+
+    shown = text if len(text) <= 40 else f"{text[:37]}..."
+    try:
+        value = float(text)
+    except ValueError:
+        refuse(f"is {shown!r}, not a number")
+    if not math.isfinite(value):
+        refuse(f"is {shown!r}, not a finite number")
+    if not abs(value) <= MAX_ABS:
+        refuse(f"is {value:g}, beyond anything a robot has ({MAX_ABS:g})")
+    return value

@@ -1,0 +1,197 @@
+"""Codes of the language: text (1xx), meaning (2xx), points (3xx), command line (7xx), internal (9xx).
+
+Importing this module fills the registry of ``runtime.faults`` completely, the runtime's own codes included,
+so ``robolang explain`` and the documentation generator need only this import. A code keeps its number and its
+meaning for ever; a message may be reworded. Called once, at import.
+"""
+
+import runtime.faults
+import runtime.tomlfile  # registers RBL311 and RBL6xx
+from runtime.faults import Code
+
+_TEXT = (
+    (
+        "RBL103",
+        "suspicious-character",
+        "A character that hides or reorders text, or that is not plain ASCII outside a comment.",
+        "Retype it with the plain Latin letter or sign; remove invisible and direction-changing characters.",
+    ),
+    ("RBL104", "not-text", "The program is not UTF-8 text.", "Save the file as UTF-8."),
+    ("RBL105", "line-too-long", "A line has more than 10,000 characters.", "Split the line."),
+    ("RBL106", "source-too-large", "The program is larger than 1 MB.", "Split the program."),
+    (
+        "RBL107",
+        "too-many-problems",
+        "More problems were found than are listed.",
+        "Correct the first ones first.",
+    ),
+    (
+        "RBL108",
+        "nested-too-deeply",
+        "Parentheses or signs are nested more than 100 deep.",
+        "Write the expression in several steps.",
+    ),
+    (
+        "RBL109",
+        "expression-too-long",
+        "A line has more than 1,000 operators.",
+        "Write the expression in several steps.",
+    ),
+    (
+        "RBL110",
+        "mixed-line-ends",
+        "The file mixes LF, CR and CR LF line ends.",
+        "Save it with one kind of line end.",
+    ),
+    (
+        "RBL111",
+        "unexpected-token",
+        "Something else was expected at this place of the statement.",
+        "Write what the message names.",
+    ),
+    (
+        "RBL112",
+        "unknown-instruction",
+        "The line does not start with an instruction of the language.",
+        "The instructions are MOVE, LOAD, HAND ON and HAND OFF.",
+    ),
+    ("RBL113", "line-number-duplicated", "Two lines have the same line number.", "Renumber one of them."),
+    (
+        "RBL114",
+        "number-out-of-range",
+        "A number is too large to be represented.",
+        "Give a number of ordinary size; a line number has at most nine digits.",
+    ),
+    (
+        "RBL115",
+        "number-malformed",
+        "A number is not written as a number.",
+        "Write digits with at most one decimal point, as in 1000 or 0.25, and no unit.",
+    ),
+    (
+        "RBL116",
+        "line-number-order",
+        "A line number is smaller than the one before it.",
+        "Renumber the lines; they run in the order in which they are written.",
+    ),
+    (
+        "RBL117",
+        "not-in-this-edition",
+        "The word belongs to the language but this edition does not run it yet.",
+        "This edition runs MOVE, LOAD, HAND ON and HAND OFF.",
+    ),
+    ("RBL118", "option-given-twice", "A statement has the same option twice.", "Remove one of them."),
+    (
+        "RBL119",
+        "options-contradict",
+        "SPEED and TIME are both given for one move.",
+        "Give one: TIME fixes the duration, SPEED the speed along the path.",
+    ),
+)
+
+_MEANING = (
+    (
+        "RBL201",
+        "empty-program",
+        "The program has no statement; nothing will move.",
+        "Write at least one instruction.",
+    ),
+)
+
+_POINTS = (
+    (
+        "RBL301",
+        "point-undefined",
+        "A point is used that has not been taught.",
+        "Correct the name, or add the point to the file of taught points.",
+    ),
+    (
+        "RBL302",
+        "points-missing",
+        "The file of taught points does not exist.",
+        "Teach the points, or put NAME.points.toml beside the program.",
+    ),
+    (
+        "RBL303",
+        "points-damaged",
+        "The file of taught points is empty, cut off or not what such a file contains.",
+        "Correct the line that is named, or restore the file from a copy.",
+    ),
+    (
+        "RBL304",
+        "points-newer-schema",
+        "The file of taught points was written by a newer version.",
+        "Update robolang; the file was not changed.",
+    ),
+    (
+        "RBL305",
+        "point-frame-or-tool-unknown",
+        "A point was taught in a frame or with a tool that the cell does not have.",
+        "Add the frame or the tool to the cell file, or correct the name in the file of points.",
+    ),
+    (
+        "RBL307",
+        "points-wrong-count",
+        "A point has the wrong number of values.",
+        "A pose has six values [x, y, z, rx, ry, rz]; joints has one angle for each axis.",
+    ),
+    (
+        "RBL308",
+        "points-unknown-key",
+        "A point has a key or a configuration word that nothing reads.",
+        "Correct the spelling or remove it.",
+    ),
+    (
+        "RBL309",
+        "points-value-out-of-range",
+        "A value of a point is not finite or beyond any robot.",
+        "Positions are in mm, angles in degrees.",
+    ),
+    (
+        "RBL310",
+        "points-other-robot",
+        "The points were taught on another robot.",
+        "Run the program on that robot, or teach the points again.",
+    ),
+)
+
+_COMMAND = (
+    ("RBL701", "file-missing", "The program file does not exist.", "Check the name and the folder."),
+    (
+        "RBL702",
+        "not-a-file",
+        "The program is a folder, a device or a file that cannot be read.",
+        "Name an ordinary file that you may read.",
+    ),
+    (
+        "RBL703",
+        "option-value",
+        "An option of the command line has a value that it cannot take.",
+        "See the help of the command.",
+    ),
+    (
+        "RBL706",
+        "output-not-writable",
+        "The log or the report cannot be written.",
+        "Check the folder, its permissions and the free space.",
+    ),
+    (
+        "RBL707",
+        "configuration-key",
+        "A key of the configuration is unknown or given twice.",
+        "Correct the spelling or remove the key.",
+    ),
+    (
+        "RBL900",
+        "internal-error",
+        "robolang itself failed; the program is not the cause.",
+        "Report it with the program and the message.",
+    ),
+)
+
+runtime.faults.register(
+    *(
+        Code(code=code, name=name, meaning=meaning, remedy=remedy)
+        for code, name, meaning, remedy in (*_TEXT, *_MEANING, *_POINTS, *_COMMAND)
+    )
+)

@@ -1,0 +1,197 @@
+"""Diagnostics: what is wrong with a program, as values.
+
+Finding one never stops the search for the next. A diagnostic has three views with the same place: the text
+below, the object of ``to_json`` and, later, the editor's. Colour is left to the command line.
+::
+
+    pick.rbl:3:4: error RBL112 unknown instruction 'MOV'
+       3 | 30 MOV P1
+         |    ^^^
+      help: did you mean MOVE?
+
+Excerpts are safe to print: tabs become spaces, control and direction-changing characters become U+FFFD, wide
+characters count two columns, and a long line is cut around the place.
+"""
+
+import re
+import unicodedata
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import Enum
+
+import robolang.codes  # noqa: F401 - every code a diagnostic may carry
+from robolang.source import Source, Span
+from runtime.faults import lookup
+from runtime.tomlfile import FileFault
+
+MAX_DIAGNOSTICS = 1000
+_TAB = 4
+_WINDOW = 96
+
+HIDDEN = re.compile(
+    r"[\x00-\x08\x0a-\x1f\x7f-\x9f\ud800-\udfff\u2028\u2029"  # controls but tab, surrogates, line separators
+    r"\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]"  # marks, overrides and isolates of Unicode annex 9
+)
+"""Characters that steer a terminal or reorder the text around them (CVE-2021-42574)."""
+
+
+class Severity(Enum):
+    """How bad a diagnostic is; only an error keeps a program from running."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    INFO = "info"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Related:
+    """Another place that explains a diagnostic."""
+
+    span: Span
+    message: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Diagnostic:
+    """One problem of a program: registered code, severity, one-line message, place, what would help.
+
+    Without a hint the remedy of the code is given.
+    """
+
+    code: str
+    severity: Severity = Severity.ERROR
+    message: str
+    span: Span
+    hint: str = ""
+    related: tuple[Related, ...] = ()
+
+    def __post_init__(self) -> None:
+        remedy = lookup(self.code).remedy  # KeyError: the code is not registered
+        object.__setattr__(self, "hint", self.hint or remedy)
+
+
+def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
+    """Return whether any diagnostic is an error."""
+    return any(item.severity is Severity.ERROR for item in diagnostics)
+
+
+def in_order(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Return the diagnostics by place, at most ``MAX_DIAGNOSTICS`` of them and then RBL107."""
+    found = sorted(diagnostics, key=lambda item: (item.span, item.code))
+    if len(found) <= MAX_DIAGNOSTICS:
+        return tuple(found)
+    message = f"more than {MAX_DIAGNOSTICS} problems; the rest is not listed"
+    return (
+        *found[:MAX_DIAGNOSTICS],
+        Diagnostic(code="RBL107", message=message, span=found[MAX_DIAGNOSTICS].span),
+    )
+
+
+def render(diagnostic: Diagnostic, source: Source) -> str:
+    """Return the diagnostic as text with an excerpt of the program, without a final line end."""
+    head = f"{diagnostic.severity.value} {diagnostic.code} {diagnostic.message}"
+    lines = _block(head, source, diagnostic.span)
+    for other in diagnostic.related:
+        lines += [f"  {line}" for line in _block(f"note: {other.message}", source, other.span)]
+    lines.append(f"  help: {safe(diagnostic.hint)}")
+    return "\n".join(lines)
+
+
+def render_fault(fault: FileFault) -> str:
+    """Return a fault of a file in the same form as ``render``."""
+    head = f"{fault.path}:{fault.line}:{fault.column}: error {fault.code} {fault.message}"
+    lines = [safe(head)]
+    if fault.excerpt:
+        lines += _excerpt(fault.line, fault.excerpt, fault.column - 1, fault.column)
+    lines.append(f"  help: {safe(fault.hint)}")
+    return "\n".join(lines)
+
+
+def to_json(diagnostic: Diagnostic, source: Source) -> dict[str, object]:
+    """Return the diagnostic as an object of plain JSON types; the end place is exclusive."""
+    return {
+        "code": diagnostic.code,
+        "name": lookup(diagnostic.code).name,
+        "severity": diagnostic.severity.value,
+        "message": diagnostic.message,
+        "hint": diagnostic.hint,
+        **_json_span(diagnostic.span, source),
+        "related": [{"message": item.message, **_json_span(item.span, source)} for item in diagnostic.related],
+    }
+
+
+def fault_to_json(fault: FileFault) -> dict[str, object]:
+    """Return a fault of a file with the keys of ``to_json``."""
+    return {
+        "code": fault.code,
+        "name": lookup(fault.code).name,
+        "severity": Severity.ERROR.value,
+        "message": fault.message,
+        "hint": fault.hint,
+        "file": fault.path,
+        "line": fault.line,
+        "column": fault.column,
+        "end_line": fault.line,
+        "end_column": fault.column,
+        "related": [],
+    }
+
+
+def safe(text: str) -> str:
+    """Return text that is safe in a terminal: hidden characters replaced, tabs as one space."""
+    return HIDDEN.sub("\ufffd", text).replace("\t", " ")
+
+
+def _json_span(span: Span, source: Source) -> dict[str, object]:
+    start, end = source.place(span.start), source.place(span.end)
+    return {
+        "file": source.path,
+        "line": start.line,
+        "column": start.column,
+        "end_line": end.line,
+        "end_column": end.column,
+    }
+
+
+def _block(head: str, source: Source, span: Span) -> list[str]:
+    place = source.place(span.start)
+    text = source.line_text(place.line)
+    first = place.column - 1
+    lines = [safe(f"{source.path}:{place.line}:{place.column}: {head}")]
+    return lines + (_excerpt(place.line, text, first, first + span.end - span.start) if text.strip() else [])
+
+
+def _excerpt(line: int, text: str, first: int, last: int) -> list[str]:
+    """Return the line and the line of carets under characters ``[first, last)``, at least one caret."""
+    begin = max(0, first - _WINDOW // 2) if len(text) > _WINDOW else 0
+    end = min(len(text), begin + _WINDOW)
+    shown, columns = _columns(text[begin:end])
+    left = columns[min(max(first - begin, 0), end - begin)]
+    right = columns[min(max(last - begin, 0), end - begin)]
+    dots = "…" if begin else ""
+    gutter = max(4, len(str(line)))
+    return [
+        f"{line:>{gutter}} | {dots}{shown}{'…' if end < len(text) else ''}".rstrip(),
+        f"{'':>{gutter}} | {' ' * (left + len(dots))}{'^' * max(1, right - left)}",
+    ]
+
+
+def _columns(text: str) -> tuple[str, list[int]]:
+    """Return the text as shown and the screen column of each character and of the end."""
+    shown, columns, column = [], [], 0
+    for character in text:
+        columns.append(column)
+        if character == "\t":
+            width = _TAB - column % _TAB
+            shown.append(" " * width)
+        else:
+            shown.append(HIDDEN.sub("\ufffd", character))
+            width = _width(shown[-1])
+        column += width
+    return "".join(shown), [*columns, column]
+
+
+def _width(character: str) -> int:
+    if unicodedata.combining(character) or unicodedata.category(character) in ("Mn", "Me", "Cf"):
+        return 0
+    return 2 if unicodedata.east_asian_width(character) in "WF" else 1

@@ -1,0 +1,156 @@
+"""From a token that no rule accepts to a diagnostic in the user's words.
+
+The parser stops a line at the first token that cannot follow; what could have followed (``accepts``) comes
+from the LALR table and is put into words here, never as names of terminals. Exactly one diagnostic for a
+line. Called by the parser for lines with an error only.
+"""
+
+import re
+from collections.abc import Set
+from dataclasses import dataclass
+
+from robolang.diagnostics import Diagnostic
+from robolang.source import Span
+from robolang.words import INSTRUCTIONS, KEYWORDS, code_point, form_of, instruction_hint, look_alike, near
+from runtime.faults import lookup
+
+_END = frozenset({"$END", "COMMENT"})
+_OPTIONS = frozenset({"SPEED", "ACCEL", "TIME"})
+_SIGNS = {"LPAR": "'('", "RPAR": "')'", "_COMMA": "','", "$END": "the end of the line"}
+_LAST_WORD = re.compile(r"(?:[\w.$]+|[^\s\w])[ \t]*\Z")
+_QUOTE = 30
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Unexpected:
+    """A token where none of its kind can stand.
+
+    ``kind`` and ``accepts`` are terminals of ``grammar.lark``; ``before`` and ``after`` are the statement's
+    text around the token.
+    """
+
+    kind: str
+    text: str
+    span: Span
+    accepts: Set[str]
+    before: str
+    after: str
+
+    @property
+    def is_first(self) -> bool:
+        """Whether the statement starts with the token."""
+        return not self.before.strip()
+
+
+def explain(found: Unexpected) -> Diagnostic:
+    """Return the one diagnostic for an unexpected token."""
+    if found.kind in ("SUSPICIOUS", "OTHER") and not found.text.isascii():
+        return suspicious(found.text, found.span.start)
+    if found.kind == "HUGE":
+        message = f"the number {quote(found.text)} is too large"
+        return Diagnostic(code="RBL114", message=message, span=found.span)
+    if found.kind == "MALFORMED":
+        return _malformed(found)
+    return _not_yet(found) or _unknown(found) or _unexpected(found)
+
+
+def suspicious(text: str, start: int) -> Diagnostic:
+    """Return RBL103 for the first character that is not printable ASCII; ``text`` stands at ``start``."""
+    index = next(i for i, character in enumerate(text) if not (character.isascii() and character.isprintable()))
+    character = text[index]
+    twin = look_alike(character)
+    hint = f"it looks like {'a space' if twin == ' ' else repr(twin)}; retype it" if twin else ""
+    span = Span(start + index, start + index + 1)
+    return Diagnostic(code="RBL103", message=f"suspicious character {code_point(character)}", span=span, hint=hint)
+
+
+def quote(text: str) -> str:
+    """Return text for a message, cut when it is long."""
+    return text if len(text) <= _QUOTE else f"{text[:_QUOTE]}… ({len(text)} characters)"
+
+
+def _malformed(found: Unexpected) -> Diagnostic:
+    text, hint = found.text, ""
+    if found.is_first and re.fullmatch(r"[0-9]+[A-Za-z]+", text):
+        hint = "leave a space between the line number and the instruction"
+    elif re.fullmatch(r"[0-9.]*[0-9][0-9_.]*", text) and "_" in text:
+        hint = f"write {quote(text.replace('_', ''))}"
+    elif unit := re.fullmatch(r"([0-9]*\.?[0-9]+)(mm|deg|kg|g|s|ms|m)", text, re.IGNORECASE):
+        hint = f"a number carries no unit: lengths are in mm, masses in kg, times in s (here: {unit[2]})"
+    return Diagnostic(code="RBL115", message=f"'{quote(text)}' is not a number", span=found.span, hint=hint)
+
+
+def _not_yet(found: Unexpected) -> Diagnostic | None:
+    """Return RBL117 for what the language has and this edition does not run."""
+    word = found.text.upper()
+    what = ""
+    if found.kind == "LATER" and (found.is_first or "NAME" in found.accepts or found.accepts & _OPTIONS):
+        what = word
+    elif found.is_first and found.kind == "NAME" and found.after.lstrip().startswith("="):
+        what = f"assignment to {quote(found.text)}"
+    elif found.is_first and found.text == "*":
+        what = "a label"
+    elif found.is_first and word in ("SPEED", "ACCEL", "ON"):
+        what = f"{word} at the start of a line"
+    return Diagnostic(code="RBL117", message=f"{what} is not in this edition yet", span=found.span) if what else None
+
+
+def _unknown(found: Unexpected) -> Diagnostic | None:
+    if not (found.is_first and found.kind == "NAME"):
+        return None
+    message = f"unknown instruction '{quote(found.text)}'"
+    return Diagnostic(code="RBL112", message=message, span=found.span, hint=instruction_hint(found.text))
+
+
+def _unexpected(found: Unexpected) -> Diagnostic:
+    message = f"expected {_expected(found.accepts)}{_after(found.before)}"
+    if found.kind in _END:
+        end = found.span.start
+        return Diagnostic(code="RBL111", message=message, span=Span(end, end), hint=_hint(found))
+    shown = quote(found.text) if re.match(r"\w", found.text) else f"'{found.text}'"
+    return Diagnostic(code="RBL111", message=f"{message}, not {shown}", span=found.span, hint=_hint(found))
+
+
+def _expected(accepts: Set[str]) -> str:
+    """Return accepted terminals in words, as in ``',' or the end of the line``."""
+    words = []
+    if accepts & INSTRUCTIONS:
+        words.append("an instruction")
+    if "NUMBER" in accepts:
+        words.append("a number")
+    elif "NAME" in accepts:
+        words.append("a point name")
+    words += [word for word in ("ON", "OFF", "SPEED", "ACCEL", "TIME") if word in accepts]
+    if not accepts & INSTRUCTIONS:
+        words += [sign for kind, sign in _SIGNS.items() if kind in accepts]
+    return " or ".join([*([", ".join(words[:-1])] if words[:-1] else []), words[-1]])
+
+
+def _after(before: str) -> str:
+    last = _LAST_WORD.search(before[-200:])
+    if last is None:
+        return ""
+    word = last[0].rstrip()
+    if not re.match(r"[\w.]", word):
+        return f" after '{word}'"
+    return f" after {word.upper() if word.upper() in KEYWORDS else quote(word)}"
+
+
+def _hint(found: Unexpected) -> str:
+    """Return the likeliest correction, or ``""``."""
+    word = found.text.upper()
+    if found.is_first:
+        whole = found.kind == "NUMBER"
+        return "a line number is a whole number" if whole else lookup("RBL112").remedy
+    if found.kind == "NAME" and {"ON", "OFF"} <= found.accepts:
+        return instruction_hint(word) if word in ("OPEN", "CLOSE", "GRASP", "GRIP", "RELEASE") else ""
+    if found.kind == "NAME" and found.accepts & _OPTIONS:
+        guess = near(word, _OPTIONS)
+        return f"did you mean {guess}?" if guess else ""
+    if "_COMMA" in found.accepts and word in _OPTIONS:
+        return f"write a comma before {word}"
+    if "$END" in found.accepts and (word in INSTRUCTIONS or found.kind == "NAME"):
+        return "write one instruction on each line"
+    if "NAME" in found.accepts and word in KEYWORDS:
+        return f"{word} is a word of the language and cannot be a name"
+    return form_of(found.before.split(maxsplit=1)[0])

@@ -1,0 +1,247 @@
+"""Parser: program text to syntax tree and diagnostics, in time linear in the text.
+
+Grammar: ``grammar.lark`` (LALR(1)) for what follows the line number of a line,
+``line = [digits] [statement] [comment]``. Lines are parsed one by one, so an error costs exactly its own line,
+and every line is looked at first for what would make parsing it unsafe: hidden characters, nesting, length. The
+tree is built while the parser reduces, without a visitor, so its depth is bounded by ``MAX_DEPTH`` and
+nothing recurses.
+
+Building the LALR table takes some 40 ms and happens once per process, at the first statement. It is not
+cached on disk: that cache would be unpickled from a place others may write to.
+"""
+
+import math
+import re
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from lark import Lark, Token, Transformer, UnexpectedToken, v_args
+
+from robolang import nodes
+from robolang.diagnostics import HIDDEN, MAX_DIAGNOSTICS, Diagnostic, Severity, in_order
+from robolang.mistakes import Unexpected, explain, quote, suspicious
+from robolang.source import MAX_BYTES, Source, Span
+from robolang.words import kind_of
+
+MAX_LINE = 10_000
+MAX_DEPTH = 100
+MAX_OPERATORS = 1000
+MAX_NUMBER_DIGITS = 9
+
+_HEAD = re.compile(r"[ \t]*+(?:([0-9]++)(?![\w.]))?[ \t]*+")
+_COMMENT = re.compile(r"'|(?<!\w)REM(?!\w)", re.IGNORECASE)
+_LINE_END = re.compile(r"\r\n?|\n")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ParseResult:
+    """The tree of what could be parsed, and the diagnostics by place.
+
+    Lines with an error are in the tree as ``Unparsed``. After ``MAX_DIAGNOSTICS`` errors the rest of the text
+    is not read and not in the tree.
+    """
+
+    program: nodes.Program
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def parse(source: Source) -> ParseResult:
+    """Parse a program; any text gives a result, nothing is raised."""
+    if len(source.text) > MAX_BYTES:
+        message = f"the program has {len(source.text)} characters, more than {MAX_BYTES}"
+        problem = Diagnostic(code="RBL106", message=message, span=Span(0, 0))
+        return ParseResult(program=nodes.Program(source_path=source.path, lines=()), diagnostics=(problem,))
+    lines: list[nodes.Line] = []
+    problems = _mixed_line_ends(source)
+    for row, span in enumerate(source.line_spans, start=1):
+        text = source.slice(span)
+        if not text.strip(" \t"):
+            continue
+        line, found = _parse_line(text, span, row)
+        lines.append(line)
+        if found is not None:
+            problems.append(found)
+            if len(problems) > MAX_DIAGNOSTICS:
+                break
+    program = nodes.Program(source_path=source.path, lines=tuple(lines))
+    return ParseResult(program=program, diagnostics=in_order(problems))
+
+
+def _mixed_line_ends(source: Source) -> list[Diagnostic]:
+    first = _LINE_END.search(source.text)
+    if first is None or "\r" not in source.text:
+        return []
+    other = next((end for end in _LINE_END.finditer(source.text) if end[0] != first[0]), None)
+    if other is None:
+        return []
+    message = "this line ends in another way than the first one"
+    return [Diagnostic(code="RBL110", severity=Severity.INFO, message=message, span=Span(other.start(), other.start()))]
+
+
+def _parse_line(text: str, span: Span, row: int) -> tuple[nodes.Line, Diagnostic | None]:
+    """Parse one line that is not blank; ``text`` is the text of ``span``."""
+    head = _HEAD.match(text)
+    assert head is not None
+    digits = head[1]
+    number = int(digits) if digits and len(digits) <= MAX_NUMBER_DIGITS else None
+    code, base = text[head.end() :], span.start + head.end()
+    parsed: _Parsed | Diagnostic | None = _refusal(text, span.start)
+    number_span = Span(span.start + head.start(1), span.start + head.end(1)) if digits else nodes.NOWHERE
+    if parsed is None and digits and number is None:
+        message = f"the line number {quote(digits)} has more than {MAX_NUMBER_DIGITS} digits"
+        parsed = Diagnostic(code="RBL114", message=message, span=number_span)
+    if parsed is None:
+        parsed = _parse_statement(code, base)
+    problem = parsed if isinstance(parsed, Diagnostic) else None
+    if isinstance(parsed, Diagnostic):
+        parsed = nodes.Unparsed(text=code, span=Span(base, span.end)), None
+    line = nodes.Line(number=number, statement=parsed[0], comment=parsed[1], source_line=row, span=span,
+                      number_span=number_span)  # fmt: skip
+    return line, problem
+
+
+_Parsed = tuple[nodes.Statement | None, nodes.Comment | None]
+
+
+def _refusal(text: str, base: int) -> Diagnostic | None:
+    """Return why a line is not parsed at all; None when it may be."""
+    if not (text.isascii() and text.isprintable()) and (hidden := HIDDEN.search(text)):
+        return suspicious(hidden[0], base + hidden.start())
+    comment = _COMMENT.search(text) if len(text) > MAX_DEPTH else None
+    code = text[: comment.start()] if comment else text
+    if (at := _too_deep(code)) is not None:
+        message = f"more than {MAX_DEPTH} parentheses or signs inside one another"
+        return Diagnostic(code="RBL108", message=message, span=Span(base + at, base + at + 1))
+    if (operators := sum(map(code.count, "+-*/^"))) > MAX_OPERATORS:
+        message = f"{operators} operators in one line, more than {MAX_OPERATORS}"
+        return Diagnostic(code="RBL109", message=message, span=Span(base, base + len(code)))
+    if len(text) > MAX_LINE:
+        message = f"the line has {len(text)} characters, more than {MAX_LINE}"
+        return Diagnostic(code="RBL105", message=message, span=Span(base + MAX_LINE, base + len(text)))
+    return None
+
+
+def _too_deep(code: str) -> int | None:
+    """Return the offset of the parenthesis or sign that is nested too deeply."""
+    if code.count("(") + code.count("-") + code.count("+") <= MAX_DEPTH:
+        return None
+    depth = signs = 0
+    for offset, character in enumerate(code):
+        if character in "+-":
+            signs += 1
+        elif character not in " \t":
+            signs = 0
+            depth = max(0, depth + (character == "(") - (character == ")"))
+        if depth + signs > MAX_DEPTH:
+            return offset
+    return None
+
+
+def _parse_statement(code: str, base: int) -> _Parsed | Diagnostic:
+    """Parse what follows the line number; ``base`` is its offset in the source."""
+    if not code:
+        return None, None
+    if code[0] == "'":
+        return None, nodes.Comment(text=code.rstrip(), span=Span(base, base + len(code.rstrip())))
+    session = _parser().parse_interactive(code, start="start")
+    token = None
+    try:
+        # The lexer sees one line; shifting its tokens here makes every place one of the source.
+        for token in session.iter_parse():
+            token.start_pos = base + (token.start_pos or 0)
+            token.end_pos = base + (token.end_pos or 0)
+        result: _Parsed = session.feed_eof(token)  # type: ignore[no-untyped-call]
+    except UnexpectedToken as error:
+        accepts: set[str] = session.accepts()  # type: ignore[no-untyped-call]
+        return explain(_unexpected(error.token, accepts, code, base))
+    return result
+
+
+def _unexpected(token: Token, accepts: set[str], code: str, base: int) -> Unexpected:
+    if token.type in ("$END", "COMMENT"):
+        start = len(code if token.type == "$END" else code[: _span(token).start - base])
+        end = start = len(code[:start].rstrip(" \t"))
+    else:
+        start, end = _span(token).start - base, _span(token).end - base
+    span = Span(base + start, base + end)
+    return Unexpected(
+        kind=token.type, text=str(token), span=span, accepts=accepts, before=code[:start], after=code[end:]
+    )
+
+
+def _span(token: Token) -> Span:
+    assert token.start_pos is not None and token.end_pos is not None
+    return Span(token.start_pos, token.end_pos)
+
+
+def _classify(token: Token) -> Token:
+    """Give a word, a number or a stray character its final kind (callback of the lexer)."""
+    kind: str | None = None
+    if not token.isascii():
+        kind = "SUSPICIOUS"
+    elif token.type == "NAME":
+        kind = kind_of(token)
+    elif token.type == "NUMBER" and not math.isfinite(float(token)):
+        kind = "HUGE"
+    if kind is not None:
+        token.type = kind
+    return token
+
+
+@cache
+def _parser() -> Lark:
+    grammar = Path(__file__).with_name("grammar.lark").read_text(encoding="utf-8")
+    callbacks = dict.fromkeys(("NAME", "NUMBER", "MALFORMED", "OTHER"), _classify)
+    return Lark(
+        grammar,
+        parser="lalr",
+        lexer="basic",
+        start=["start", "refused"],
+        transformer=_Builder(),
+        lexer_callbacks=callbacks,
+    )
+
+
+@v_args(inline=True)
+class _Builder(Transformer[Token, nodes.Node]):
+    """One method for each rule of the grammar, called when the rule is reduced."""
+
+    def start(self, statement: nodes.Statement | None, comment: Token | None) -> _Parsed:
+        if comment is None:
+            return statement, None
+        text, at = comment.rstrip(), _span(comment).start
+        return statement, nodes.Comment(text=text, span=Span(at, at + len(text)))
+
+    def move(self, word: Token, target: nodes.Name, *options: nodes.Option) -> nodes.Move:
+        end = options[-1].span.end if options else target.span.end
+        return nodes.Move(target=target, options=options, span=Span(_span(word).start, end))
+
+    def load(self, word: Token, cog: nodes.Vector, mass: nodes.Expression) -> nodes.Load:
+        return nodes.Load(cog=cog, mass=mass, span=Span(_span(word).start, mass.span.end))
+
+    def hand(self, word: Token, state: Token, dwell: nodes.Expression | None) -> nodes.Hand:
+        end = _span(state).end if dwell is None else dwell.span.end
+        return nodes.Hand(state=nodes.HandState[state.type], dwell=dwell, span=Span(_span(word).start, end))
+
+    def speed(self, word: Token, value: nodes.Expression) -> nodes.Speed:
+        return nodes.Speed(value=value, span=Span(_span(word).start, value.span.end))
+
+    def accel(self, word: Token, value: nodes.Expression) -> nodes.Accel:
+        return nodes.Accel(value=value, span=Span(_span(word).start, value.span.end))
+
+    def time(self, word: Token, value: nodes.Expression) -> nodes.Time:
+        return nodes.Time(value=value, span=Span(_span(word).start, value.span.end))
+
+    def vector(self, left: Token, x: nodes.Expression, y: nodes.Expression, z: nodes.Expression,
+               right: Token) -> nodes.Vector:  # fmt: skip
+        return nodes.Vector(x=x, y=y, z=z, span=Span(_span(left).start, _span(right).end))
+
+    def negate(self, sign: Token, operand: nodes.Expression) -> nodes.Negate:
+        return nodes.Negate(operand=operand, span=Span(_span(sign).start, operand.span.end))
+
+    def number(self, token: Token) -> nodes.Number:
+        return nodes.Number(value=float(token), text=str(token), span=_span(token))
+
+    def name(self, token: Token) -> nodes.Name:
+        return nodes.Name(text=str(token), span=_span(token))

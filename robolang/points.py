@@ -1,0 +1,214 @@
+"""Taught points: the file ``NAME.points.toml`` beside a program, read as a whole and never half.
+
+::
+
+    schema = 1
+    robot = "puma560"                       # optional: the robot they were taught on
+    [points.P1]
+    pose = [450, -150, 200, 180, 0, 90]     # mm and deg, or: joints = [...] in deg
+    frame = "TABLE"                         # optional, as are tool and comment
+    configuration = "LEFTY ABOVE NOFLIP"    # optional
+    turns = [0, 0, 0]                       # optional
+
+Orientation is RX RY RZ about the fixed axes. Names ignore case. Every error is a ``FileFault`` with its place and a
+code RBL30x or RBL311; the codes of the TOML reader are translated, since they speak of robot and cell files.
+Teaching, which writes this file, is not here.
+"""
+
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+
+import robolang.codes  # noqa: F401 - the codes raised here must be registered
+from robolang.words import RESERVED, near
+from runtime.tomlfile import FileFault, Source, Table, load_table, read_source
+
+SCHEMA = 1
+MAX_MM = 1e5
+MAX_DEG = 1e4
+MAX_TURNS = 100
+
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_CHOICES = (("LEFTY", "RIGHTY"), ("ABOVE", "BELOW"), ("FLIP", "NOFLIP"))
+_TRANSLATED = {
+    "RBL600": "RBL311",
+    "RBL601": "RBL303",
+    "RBL604": "RBL309",
+    "RBL605": "RBL309",
+    "RBL608": "RBL303",
+    "RBL609": "RBL308",
+    "RBL613": "RBL303",
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Point:
+    """A taught point: exactly one of ``pose`` (mm, mm, mm, deg, deg, deg) and ``joints`` (deg) is given."""
+
+    name: str
+    pose: tuple[float, float, float, float, float, float] | None = None
+    joints: tuple[float, ...] | None = None
+    frame: str = ""
+    tool: str = ""
+    configuration: tuple[str, ...] = ()
+    turns: tuple[int, ...] = ()
+    comment: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PointStore:
+    """The points of one file by upper-case name, in file order."""
+
+    path: str
+    robot: str = ""
+    points: Mapping[str, Point] = field(default_factory=lambda: MappingProxyType({}))
+
+    @property
+    def names(self) -> frozenset[str]:
+        """The names in capitals, as ``checker.check`` takes them."""
+        return frozenset(self.points)
+
+    def get(self, name: str) -> Point | None:
+        """Return a point by its name in any case; None when it is not taught."""
+        return self.points.get(name.upper())
+
+
+def load_points(path: Path | str, *, robot: str | None = None, axes: int | None = None) -> PointStore:
+    """Read a file of taught points.
+
+    Args:
+        path: the file.
+        robot: name of the robot that will run; a file taught on another is refused. None: not checked.
+        axes: number of its axes, which ``joints`` must match. None: any number from 2 to 7.
+
+    Raises ``FileFault``: RBL302 missing, RBL303 damaged, RBL304 newer schema, RBL307 wrong count, RBL308 unknown
+    key or word, RBL309 value out of range, RBL310 other robot, RBL311 not a regular file of this folder.
+    """
+    where = Path(path)
+    with _translated(where):
+        table = load_table(_source(where))
+        _schema(table)
+        store = _store(table, robot, axes)
+        table.done()
+    return store
+
+
+def _source(path: Path) -> Source:
+    nowhere = Source(str(path), "")
+    try:
+        inside = path.resolve(strict=True).is_relative_to(path.parent.resolve(strict=True))
+    except (FileNotFoundError, NotADirectoryError):
+        nowhere.fail("RBL302", f"there is no file {path}")
+    except (OSError, RuntimeError, ValueError) as error:  # RuntimeError: a ring of links, before Python 3.13
+        nowhere.fail("RBL311", f"cannot open {path}: {getattr(error, 'strerror', None) or error}")
+    if not inside:
+        nowhere.fail("RBL311", f"{path} is a link to a file outside its folder")
+    source = read_source(path, "RBL311")
+    if not source.text.strip():
+        source.fail("RBL303", f"{path} is empty")
+    return source
+
+
+@contextmanager
+def _translated(path: Path) -> Iterator[None]:
+    """Give the faults of the TOML reader the codes of a points file, at the same place."""
+    try:
+        yield
+    except FileFault as fault:
+        code = _TRANSLATED.get(fault.code, fault.code)
+        copy = path.with_name(f"{path.name}.bak")
+        hint = f"{copy.name} may hold an intact copy" if code == "RBL303" and copy.is_file() else ""
+        if code == fault.code and not hint:
+            raise
+        kept = fault.hint if fault.code in ("RBL609", "RBL608") else ""
+        raise FileFault(
+            code,
+            fault.message,
+            hint or kept,
+            path=fault.path,
+            line=fault.line,
+            column=fault.column,
+            excerpt=fault.excerpt,
+        ) from None
+    except ValueError as error:  # tomllib lets int() refuse a literal of thousands of digits
+        Source(str(path), "").fail("RBL303", f"{path} is not a file of points: {error}")
+
+
+def _schema(table: Table) -> None:
+    schema = table.integer("schema", low=1, high=10**6)
+    if schema > SCHEMA:
+        table.fail("RBL304", f"the file has schema {schema}; this version reads {SCHEMA}", key="schema")
+
+
+def _store(table: Table, robot: str | None, axes: int | None) -> PointStore:
+    taught_on = table.text("robot", "")
+    if robot is not None and taught_on and taught_on.casefold() != robot.casefold():
+        table.fail("RBL310", f"the points were taught on '{taught_on}', the robot is '{robot}'", key="robot")
+    points: dict[str, Point] = {}
+    for name, entry in table.named_tables("points").items():
+        if not _NAME.fullmatch(name) or name.upper() in RESERVED:
+            entry.fail("RBL303", f"'{name}' cannot be the name of a point")
+        if name.upper() in points:
+            entry.fail("RBL303", f"point '{name}' is there twice: names ignore case")
+        points[name.upper()] = _point(name, entry, axes)
+    return PointStore(path=table.source.path, robot=taught_on, points=MappingProxyType(points))
+
+
+def _point(name: str, entry: Table, axes: int | None) -> Point:
+    if ("pose" in entry) == ("joints" in entry):
+        entry.fail("RBL303", f"point '{name}' must have either 'pose' or 'joints'")
+    point = Point(
+        name=name,
+        pose=_pose(entry) if "pose" in entry else None,
+        joints=_joints(entry, axes) if "joints" in entry else None,
+        frame=entry.text("frame", ""),
+        tool=entry.text("tool", ""),
+        configuration=_configuration(entry),
+        turns=_turns(entry),
+        comment=entry.text("comment", ""),
+    )
+    entry.done()
+    return point
+
+
+def _pose(entry: Table) -> tuple[float, float, float, float, float, float]:
+    values = entry.numbers("pose", None, low=-MAX_MM, high=MAX_MM)
+    if len(values) != 6:
+        entry.fail("RBL307", f"'pose' has {len(values)} values; it needs 6: x, y, z, rx, ry, rz", key="pose")
+    if not all(abs(angle) <= MAX_DEG for angle in values[3:]):
+        entry.fail("RBL309", f"an angle of 'pose' is beyond {MAX_DEG:g} deg", key="pose")
+    x, y, z, rx, ry, rz = values
+    return x, y, z, rx, ry, rz
+
+
+def _joints(entry: Table, axes: int | None) -> tuple[float, ...]:
+    values = entry.numbers("joints", None, low=-MAX_DEG, high=MAX_DEG)
+    fits = 2 <= len(values) <= 7 if axes is None else len(values) == axes
+    if not fits:
+        wanted = "2 to 7" if axes is None else str(axes)
+        entry.fail("RBL307", f"'joints' has {len(values)} values; it needs {wanted}", key="joints")
+    return values
+
+
+def _configuration(entry: Table) -> tuple[str, ...]:
+    words = entry.text("configuration", "").upper().split()
+    for word in words:
+        pair = next((pair for pair in _CHOICES if word in pair), None)
+        if pair is None:
+            guess = near(word, [choice for pair in _CHOICES for choice in pair])
+            hint = f"did you mean {guess}?" if guess else ""
+            entry.fail("RBL308", f"'{word}' is not a configuration", hint, key="configuration")
+        if sum(words.count(choice) for choice in pair) > 1:
+            message = f"'configuration' may have only one of {pair[0]} and {pair[1]}, once"
+            entry.fail("RBL303", message, key="configuration")
+    return tuple(words)
+
+
+def _turns(entry: Table) -> tuple[int, ...]:
+    values = entry.numbers("turns", None, (), low=-MAX_TURNS, high=MAX_TURNS)
+    if len(values) > 7 or any(value != int(value) for value in values):
+        entry.fail("RBL307", "'turns' must be at most 7 whole numbers", key="turns")
+    return tuple(int(value) for value in values)

@@ -1,0 +1,132 @@
+"""A program with the files beside it: cell, taught points and controller profile, read and checked together.
+
+``NAME.rbl`` takes ``NAME.cell.toml``, else ``cell.toml`` of its folder, and ``NAME.points.toml``. With none of them
+it runs on the built-in cell: the default robot, a hand, a table and a part, with P1 to P5 taught (language.md).
+"""
+
+from dataclasses import dataclass, replace
+from importlib import resources
+from pathlib import Path
+
+import numpy as np
+
+from robolang.checker import check
+from robolang.diagnostics import Diagnostic, has_errors, in_order
+from robolang.nodes import Program
+from robolang.parser import parse
+from robolang.points import PointStore, load_points
+from robolang.source import Source, read_program
+from runtime.faults import Code, Fault, register
+from runtime.plant.cell import CellSpec, load_cell, parse_cell
+from runtime.profile import Profile, ServoMode, parse_profile
+from runtime.robot import loader
+from runtime.robot.spec import RobotSpec
+from runtime.tomlfile import Source as TomlSource
+
+register(
+    Code(
+        code="RBL708",
+        name="robot-unknown",
+        meaning="No built-in robot and no robot file has the given name.",
+        remedy="Name a built-in robot or the path of a robot file ending in .toml.",
+    ),
+    Code(
+        code="RBL709",
+        name="robot-does-not-fit-cell",
+        meaning="The robot given on the command line has another number of axes than the cell's home position.",
+        remedy="Give a cell file made for that robot with --cell.",
+    ),
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Project:
+    """Everything a run needs. ``diagnostics`` may hold errors: then the program must not run."""
+
+    source: Source
+    program: Program
+    diagnostics: tuple[Diagnostic, ...]
+    cell: CellSpec
+    points: PointStore
+    profile: Profile
+
+    @property
+    def ok(self) -> bool:
+        """Whether the program may run."""
+        return not has_errors(self.diagnostics)
+
+
+def load_project(path: Path | str, cell: Path | str | None = None, robot: str | None = None,
+                 servo: ServoMode | None = None) -> Project:  # fmt: skip
+    """Read a program and the files beside it.
+
+    ``cell`` names a cell file, ``robot`` a built-in robot or a robot file that replaces the cell's, ``servo`` the
+    servo mode that replaces the profile's. Raises ``FileFault`` or ``Fault`` for a file that cannot be used; what is
+    wrong with the program itself is in ``diagnostics``.
+    """
+    source = read_program(path)
+    where = Path(path)
+    cell_path = _cell_path(where, cell)
+    cell_spec = load_cell(cell_path) if cell_path is not None else builtin_cell()
+    if robot is not None:
+        cell_spec = _with_robot(cell_spec, load_any_robot(robot))
+    points = _points(where, cell_path is None, cell_spec.robot)
+    profile = parse_profile(cell_spec.controller)
+    if servo is not None:
+        profile = replace(profile, servo=replace(profile.servo, mode=servo))
+    parsed = parse(source)
+    found = check(parsed.program, points=points.names, rated_payload_kg=cell_spec.robot.rated_payload)
+    return Project(
+        source=source,
+        program=parsed.program,
+        diagnostics=in_order((*parsed.diagnostics, *found)),
+        cell=cell_spec,
+        points=points,
+        profile=profile,
+    )
+
+
+def load_any_robot(name: str) -> RobotSpec:
+    """Return a built-in robot by name or the robot of a ``.toml`` file; ``Fault`` RBL708, ``FileFault`` RBL6xx."""
+    if name in loader.library():
+        return loader.load_builtin(name)
+    if name.endswith(".toml"):
+        return loader.load_robot(Path(name))
+    raise Fault("RBL708", f"there is no robot '{name}'", f"built in: {', '.join(loader.library())}")
+
+
+def builtin_cell() -> CellSpec:
+    """Return the built-in cell."""
+    return parse_cell(TomlSource("cell.toml", _builtin("cell.toml")))
+
+
+def _builtin(name: str) -> str:
+    return resources.files("robolang.builtin").joinpath(name).read_text("utf-8")
+
+
+def _cell_path(program: Path, given: Path | str | None) -> Path | None:
+    if given is not None:
+        return Path(given)
+    for candidate in (program.with_suffix(".cell.toml"), program.with_name("cell.toml")):
+        if candidate.exists() or candidate.is_symlink():
+            return candidate
+    return None
+
+
+def _points(program: Path, builtin: bool, robot: RobotSpec) -> PointStore:
+    beside = program.with_suffix(".points.toml")
+    if beside.exists() or beside.is_symlink():
+        return load_points(beside, robot=robot.name, axes=robot.n)
+    if not builtin:
+        return PointStore(path=str(beside))
+    with resources.as_file(resources.files("robolang.builtin").joinpath("points.toml")) as path:
+        return load_points(path, axes=robot.n)
+
+
+def _with_robot(cell: CellSpec, robot: RobotSpec) -> CellSpec:
+    if robot.n != len(cell.home):
+        raise Fault("RBL709", f"{robot.name} has {robot.n} axes, the cell's home position {len(cell.home)}")
+    if not ((robot.lower <= cell.home) & (cell.home <= robot.upper)).all():
+        axis = int(np.argmax(np.maximum(robot.lower - cell.home, cell.home - robot.upper)))
+        raise Fault("RBL709", f"the cell's home position is outside the range of J{axis + 1} of {robot.name}")
+    return replace(cell, robot=robot)

@@ -1,0 +1,102 @@
+"""The report of a run: what each statement did and how well, in the units people read. Plain JSON types only.
+
+Errors compare the command that the servo received with the detected joint angles, at the same tick. ``tool error`` is
+the distance between the commanded and the actual tool point; ``path deviation`` is the distance of the actual tool
+point from the straight segment of a MOVE, however far along it is. Everything but the wall times repeats exactly.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from robolang.result import RunRecord, StatementRun
+from runtime.frames import Array, xyzrpy_from_pose
+from runtime.servo.motor import torque_limit
+from runtime.units import DEG, MM, PERCENT
+
+
+def build_report(record: RunRecord, log: dict[str, Array], wall_s: float) -> dict[str, object]:
+    """Return the report of a finished run (docs/signals.md explains every key)."""
+    controller = record.controller
+    sim_s = controller.time_us / 1_000_000
+    measures = _Measures(log, controller.tool_poses(log["q_cmd"]), torque_limit(controller.spec))
+    return {
+        "program": record.project.source.path,
+        "robot": controller.spec.name,
+        "ok": not controller.alarms,
+        "physics": record.physics,
+        "servo": record.project.profile.servo.mode,
+        "sim_time_s": sim_s,
+        "wall_time_s": wall_s,
+        "realtime_factor": sim_s / wall_s if wall_s > 0.0 else 0.0,
+        "cycles": controller.recorder.cycle,
+        "overruns": controller.overruns,
+        "statements": [_statement(run, measures, controller.profile.tick_us) for run in record.statements],
+        "dynamics": _dynamics(record),
+        "payload_history": record.payloads,
+        "objects": {
+            name: {"pose_mm_deg": pose_mm_deg(X)} for name, X in sorted(controller.plant.parts().items())
+        },
+        "alarms": [
+            {
+                "code": alarm.code,
+                "message": alarm.message,
+                "line": alarm.line,
+                "axis": None if alarm.axis is None else alarm.axis + 1,
+                "time_s": alarm.tick * controller.profile.tick_us / 1_000_000,
+                "hint": alarm.hint,
+            }
+            for alarm in controller.alarms
+        ],
+    }
+
+
+def pose_mm_deg(X: Array) -> list[float]:
+    """Return [x, y, z, rx, ry, rz] in mm and deg of a pose (4, 4)."""
+    values = xyzrpy_from_pose(X) / ([MM] * 3 + [DEG] * 3)
+    return [float(value) + 0.0 for value in values]
+
+
+class _Measures:
+    """Error measures of every tick, computed once for the whole run."""
+
+    def __init__(self, log: dict[str, Array], X_cmd: Array, torque: Array) -> None:
+        self.p_fb = log["X_world_tool_fb"][:, :3, 3]
+        self.joint_deg = np.abs(log["q_cmd"] - log["q_fb"]).max(axis=1) / DEG
+        self.tool_mm = np.linalg.norm(X_cmd[:, :3, 3] - self.p_fb, axis=1) / MM
+        self.torque_pct = np.abs(log["tau_sat"] / torque).max(axis=1) / PERCENT
+
+
+def _statement(run: StatementRun, measures: _Measures, tick_us: int) -> dict[str, Any]:
+    span = slice(run.first_tick, run.end_tick)
+    deviation = None
+    if run.path is not None and run.end_tick > run.first_tick:
+        deviation = float(run.path.deviation(measures.p_fb[span]).max()) / MM
+    return {
+        "line": run.line,
+        "number": run.number,
+        "text": run.text,
+        "start_s": run.first_tick * tick_us / 1_000_000,
+        "duration_s": (run.end_tick - run.first_tick) * tick_us / 1_000_000,
+        "planned_s": run.planned_s,
+        "joint_error_deg": _largest(measures.joint_deg[span]),
+        "tool_error_mm": _largest(measures.tool_mm[span]),
+        "path_deviation_mm": deviation,
+        "peak_torque_pct": _largest(measures.torque_pct[span]),
+        "notes": list(run.notes),
+    }
+
+
+def _largest(values: Array) -> float | None:
+    return float(values.max()) if len(values) else None
+
+
+def _dynamics(record: RunRecord) -> dict[str, object]:
+    areas, profile = record.controller.areas, record.project.profile
+    return {
+        "interpolation_cost_ms": profile.interpolation_cost_us * 1e-3,
+        "axis_cost_ms": profile.axis_cost_us * 1e-3,
+        "refresh_mean_ms": areas.mean_refresh_us * 1e-3,
+        "refresh_max_ms": areas.longest_refresh_us * 1e-3,
+        "refreshes": list(areas.refreshes),
+    }

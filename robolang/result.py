@@ -1,0 +1,42 @@
+"""What a run leaves behind: its statements, payloads and controller while it goes on, its result when it ends."""
+
+from dataclasses import dataclass, field
+
+from robolang.project import Project
+from runtime.controller import Controller
+from runtime.frames import Array
+from runtime.motion.path import LinePath
+
+
+@dataclass(slots=True, kw_only=True)
+class StatementRun:
+    """What became of one statement: its place, its first and last tick, the path it moved on."""
+
+    line: int
+    number: int | None
+    text: str
+    first_tick: int
+    end_tick: int = 0
+    path: LinePath | None = None
+    planned_s: float | None = None
+    notes: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunResult:
+    """Outcome of a run: ``report`` of plain JSON types, ``log`` arrays by signal name, first dimension ticks."""
+
+    ok: bool
+    report: dict[str, object]
+    log: dict[str, Array]
+
+
+@dataclass(slots=True, kw_only=True)
+class RunRecord:
+    """A run as it goes on; ``payloads`` are the rows of ``payload_history`` in the report."""
+
+    project: Project
+    controller: Controller
+    physics: bool
+    statements: list[StatementRun] = field(default_factory=list)
+    payloads: list[dict[str, object]] = field(default_factory=list)

@@ -1,0 +1,153 @@
+"""Program text and places in it.
+
+A ``Span`` is a half-open range of character offsets into the text after the byte order mark is removed. Lines
+end at LF, CR or CR LF and at nothing else (as editors of the Language Server Protocol count them;
+``str.splitlines`` would also split at form feeds and U+2028). Lines and columns are 1-based, columns in
+characters.
+
+Reading is bounded: only a regular file of at most 1 MB is read, opened without blocking, so that a FIFO or a
+device is refused and never waited for.
+"""
+
+import errno
+import os
+import re
+import stat
+from bisect import bisect_right
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import NoReturn
+
+import robolang.codes  # noqa: F401 - the codes raised here must be registered
+from runtime.tomlfile import FileFault
+
+MAX_BYTES = 1_000_000
+_LINE_END = re.compile(r"\r\n?|\n")
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Span:
+    """A range of offsets ``[start, end)``; empty (``start == end``) where something is missing."""
+
+    start: int
+    end: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Place:
+    """A 1-based line and column."""
+
+    line: int
+    column: int
+
+
+@dataclass(frozen=True)
+class Source:
+    """The text of a program and its path as the user gave it."""
+
+    path: str
+    text: str
+
+    @cached_property
+    def line_spans(self) -> tuple[Span, ...]:
+        """The spans of all lines without their line ends; at least one, which may be empty."""
+        spans, start = [], 0
+        for end in _LINE_END.finditer(self.text):
+            spans.append(Span(start, end.start()))
+            start = end.end()
+        spans.append(Span(start, len(self.text)))
+        return tuple(spans)
+
+    @cached_property
+    def _starts(self) -> tuple[int, ...]:
+        return tuple(span.start for span in self.line_spans)
+
+    def place(self, offset: int) -> Place:
+        """Return the line and column of an offset in ``[0, len(text)]``."""
+        line = bisect_right(self._starts, offset)
+        return Place(line=line, column=offset - self._starts[line - 1] + 1)
+
+    def line_text(self, line: int) -> str:
+        """Return the text of a 1-based line without its line end."""
+        span = self.line_spans[line - 1]
+        return self.text[span.start : span.end]
+
+    def slice(self, span: Span) -> str:
+        """Return the text of a span."""
+        return self.text[span.start : span.end]
+
+
+def read_program(path: str | os.PathLike[str]) -> Source:
+    """Read a program file.
+
+    Raises ``FileFault``: RBL701 missing, RBL702 not a readable regular file, RBL106 over 1 MB (found before
+    all of it is read), RBL104 not UTF-8 text (placed at the first bad byte).
+    """
+    name = os.fspath(path)
+    return Source(name, _decode(name, _read_bytes(name)))
+
+
+def _read_bytes(name: str) -> bytes:
+    try:
+        handle = os.open(name, os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC)
+    except FileNotFoundError:
+        _fail("RBL701", f"there is no file {name}", _neighbour(name), path=name)
+    except (OSError, ValueError) as error:
+        missing = isinstance(error, ValueError) or error.errno in (errno.ENOTDIR, errno.ENAMETOOLONG)
+        reason = error.strerror if isinstance(error, OSError) else "the name contains a NUL character"
+        _fail("RBL701" if missing else "RBL702", f"cannot open {name}: {reason}", path=name)
+    try:
+        info = os.fstat(handle)
+        if not stat.S_ISREG(info.st_mode):
+            _fail("RBL702", f"{name} is {_kind(info.st_mode)}, not a file", path=name)
+        with os.fdopen(handle, "rb", closefd=False) as stream:
+            raw = b"" if info.st_size > MAX_BYTES else stream.read(MAX_BYTES + 1)
+        if info.st_size > MAX_BYTES or len(raw) > MAX_BYTES:
+            _fail("RBL106", f"{name} has {max(info.st_size, len(raw))} bytes, more than {MAX_BYTES}", path=name)
+        return raw
+    except OSError as error:
+        _fail("RBL702", f"cannot read {name}: {error.strerror}", path=name)
+    finally:
+        os.close(handle)
+
+
+def _decode(name: str, raw: bytes) -> str:
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        # With utf-8-sig the reported offset is relative to the text behind the mark.
+        skipped = 3 if raw.startswith(b"\xef\xbb\xbf") else 0
+        before = raw[skipped : skipped + error.start].decode("utf-8", "replace")
+        _not_text(name, raw, before, f"byte {raw[skipped + error.start]:#04x} is not UTF-8 text")
+    if "\0" in text:
+        _not_text(name, raw, text[: text.index("\0")], "a NUL character: this is not a text file")
+    return text
+
+
+def _not_text(name: str, raw: bytes, before: str, message: str) -> NoReturn:
+    utf16 = raw[:2] in (b"\xff\xfe", b"\xfe\xff")
+    hint = "the file looks like UTF-16; save it as UTF-8" if utf16 else ""
+    place = Source(name, before).place(len(before))
+    _fail("RBL104", message, hint, path=name, place=place)
+
+
+def _fail(code: str, message: str, hint: str = "", *, path: str, place: Place | None = None) -> NoReturn:
+    line, column = (place.line, place.column) if place else (1, 1)
+    raise FileFault(code, message, hint, path=path, line=line, column=column, excerpt="")
+
+
+def _neighbour(name: str) -> str:
+    """Return a hint when the name only lacks its suffix."""
+    candidate = Path(f"{name}.rbl")
+    return f"did you mean {candidate}?" if "\0" not in name and candidate.is_file() else ""
+
+
+def _kind(mode: int) -> str:
+    kinds = {
+        stat.S_IFDIR: "a folder",
+        stat.S_IFIFO: "a pipe",
+        stat.S_IFCHR: "a device",
+        stat.S_IFBLK: "a device",
+    }
+    return kinds.get(stat.S_IFMT(mode), "a special file")

@@ -1,0 +1,78 @@
+"""The memory areas through which tasks hand data to each other (spec/controller.md 1.2).
+
+=====  ==========================================  =======================  ============================
+area   contents                                    written by               read by
+=====  ==========================================  =======================  ============================
+PA     the program                                 loader                   session (``Program``)
+PDA    taught points                               teaching                 session (``PointStore``)
+SDA    payload declared by LOAD                    LOAD, step 106           dynamics task
+ITA    inertia and gravity torque of every axis    dynamics task, step 308  8 ms interrupt, step 220
+INA    joint set-points                            interpolator, step 210   8 ms interrupt, step 218
+ANG    angles of the axis being computed           dynamics task, step 302  dynamics task
+=====  ==========================================  =======================  ============================
+
+PA and PDA belong to the language and live in the session; the other four are here. What one task hands to another
+is one frozen object swapped by one assignment, so a reader sees the old one or the new one, never a mixture.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from runtime.frames import Array
+from runtime.robot.payload import NO_PAYLOAD, Payload
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AxisLoad:
+    """One cell of ITA: ``D`` kg m2 and ``T`` N m of one axis, and what they were computed from.
+
+    ``read_us`` is the time of the encoder reading (ANG), ``version`` counts refreshes of this axis (0: never),
+    ``payload_version`` says which LOAD was in SDA.
+    """
+
+    D: float
+    T: float
+    read_us: int
+    version: int
+    payload_version: int
+
+
+class Areas:
+    """SDA, ITA, INA and ANG of one controller with n axes."""
+
+    def __init__(self, n: int, q: Array) -> None:
+        self.sda: Payload = NO_PAYLOAD
+        self.sda_version = 0
+        self.ita: list[AxisLoad] = [AxisLoad(D=0.0, T=0.0, read_us=0, version=0, payload_version=0)] * n
+        self.ina: Array = np.array(q)
+        self.ang: Array = np.array(q)
+
+        self.refreshes = [0] * n
+        """How often each axis was refreshed."""
+        self.longest_refresh_us = 0
+        """Longest time between two refreshes of one axis, us."""
+        self._first_us = [0] * n
+        self._last_us = [0] * n
+
+    def publish(self, axis: int, load: AxisLoad, now_us: int) -> None:
+        """Store a new cell of ITA (step 308) and keep count."""
+        self.ita[axis] = load
+        if self.refreshes[axis]:
+            self.longest_refresh_us = max(self.longest_refresh_us, now_us - self._last_us[axis])
+        else:
+            self._first_us[axis] = now_us
+        self.refreshes[axis] += 1
+        self._last_us[axis] = now_us
+
+    @property
+    def mean_refresh_us(self) -> float:
+        """Mean time between two refreshes of one axis, us; 0 when no axis was refreshed twice."""
+        spans = [(last - first, count - 1) for first, last, count in
+                 zip(self._first_us, self._last_us, self.refreshes, strict=True) if count > 1]  # fmt: skip
+        return sum(span for span, _ in spans) / sum(count for _, count in spans) if spans else 0.0
+
+    def declare(self, payload: Payload) -> None:
+        """Store the payload of a LOAD in SDA (step 106)."""
+        self.sda = payload
+        self.sda_version += 1

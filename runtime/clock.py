@@ -1,0 +1,46 @@
+"""Clocks: virtual time runs as fast as it can, paced time waits for the wall. The only place that knows the wall."""
+
+import time
+from typing import Protocol
+
+
+class Clock(Protocol):
+    """Told of every cycle's start; may wait."""
+
+    def wait_until(self, t_us: int) -> bool:
+        """Wait until simulated time ``t_us`` is due; True when it was already late by more than a cycle."""
+
+
+class VirtualClock:
+    """Never waits: simulated time is whatever the controller says."""
+
+    def wait_until(self, t_us: int) -> bool:
+        """Return at once."""
+        return False
+
+
+class PacedClock:
+    """Keeps simulated time at wall time (``--realtime``); a cycle that starts late by a period is an overrun."""
+
+    def __init__(self, period_us: int) -> None:
+        self._late_s = period_us * 1e-6
+        self._origin: float | None = None
+
+    def wait_until(self, t_us: int) -> bool:
+        """Sleep until ``t_us`` of wall time have passed since the first call; True when late by a period."""
+        now = time.monotonic()
+        if self._origin is None:
+            self._origin = now - t_us * 1e-6
+        ahead = self._origin + t_us * 1e-6 - now
+        if ahead > 0.0:
+            time.sleep(ahead)
+            return False
+        if -ahead <= self._late_s:
+            return False
+        self._origin -= ahead  # count a late start once, then go on from here
+        return True
+
+
+def wall_s() -> float:
+    """Return seconds of a monotonic wall clock, for reports of the real-time factor."""
+    return time.monotonic()

@@ -1,0 +1,39 @@
+"""Inertia about an axis and gravity torque on it (document 000, eqs 1-5; spec/controller.md 1.7).
+
+``D_i``, the inertia that the drive of axis i feels, is element (i, i) of the mass matrix; it is taken from one
+unit-acceleration pass (axis i accelerated by 1 rad/s2 at rest, without gravity), which the document's Lagrangian
+eq (4) equals to rounding. ``T_i`` is the torque that holds axis i against gravity. Velocity terms are left out, as
+in the document. Called by the dynamics task, one axis at a time.
+"""
+
+import numpy as np
+
+from runtime.frames import Array
+from runtime.robot.model import ArmModel
+from runtime.robot.payload import NO_PAYLOAD, Payload
+from runtime.robot.spec import RobotSpec
+
+
+def axis_inertia(model: ArmModel, q: Array, axis: int) -> float:
+    """Return D_i, kg m2, of axis ``axis`` (0-based) at posture q (n,) rad, without the rotor."""
+    return float(model.inertia_column(q, axis)[axis])
+
+
+def axis_gravity(model: ArmModel, q: Array, axis: int) -> float:
+    """Return T_i, N m, of axis ``axis`` (0-based) at posture q (n,) rad."""
+    return float(model.gravity(q)[axis])
+
+
+def inertia_range(spec: RobotSpec, payload: Payload = NO_PAYLOAD, postures: int = 2000) -> tuple[Array, Array]:
+    """Return the smallest and largest D_i (n,) over the joint ranges, bare and with ``payload``, kg m2.
+
+    Sampled at ``postures`` fixed pseudo-random postures, so the same robot always gives the same numbers.
+    """
+    model = ArmModel(spec)
+    samples = np.random.default_rng(560).uniform(spec.lower, spec.upper, (postures, spec.n))
+    found = []
+    for carried in (NO_PAYLOAD, payload):
+        model.set_payload(carried)
+        found.append([np.diag(model.mass_matrix(q)) for q in samples])
+    D = np.array(found)
+    return D.min(axis=(0, 1)), D.max(axis=(0, 1))

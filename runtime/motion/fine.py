@@ -1,0 +1,103 @@
+"""Fine interpolation: a set-point at every servo tick from one every 8 ms.
+
+Between two set-points the servo follows the quintic whose speed and acceleration at both ends are the central
+differences ``v_k = (q_{k+1} - q_{k-1}) / 2h`` and ``a_k = (q_{k+1} - 2 q_k + q_{k-1}) / h^2``. It passes through
+every set-point, is continuous to the acceleration, and stops exactly when the set-points stop. A segment needs the
+set-point after its end, so it is played one cycle after its end arrived (docs/timing.md). Everything is linear in
+the four set-points around the segment, so one constant matrix holds positions, speeds and accelerations of all
+ticks.
+"""
+
+import numpy as np
+
+from runtime.frames import Array
+
+
+def _quintic(u: Array) -> Array:
+    """Return rows that map (q0, v0, a0, q1, v1, a1), in units of the segment, to the position at u in [0, 1]."""
+    u2, u3, u4, u5 = u**2, u**3, u**4, u**5
+    return np.stack(
+        [
+            1 - 10 * u3 + 15 * u4 - 6 * u5,
+            u - 6 * u3 + 8 * u4 - 3 * u5,
+            0.5 * u2 - 1.5 * u3 + 1.5 * u4 - 0.5 * u5,
+            10 * u3 - 15 * u4 + 6 * u5,
+            -4 * u3 + 7 * u4 - 3 * u5,
+            0.5 * u3 - u4 + 0.5 * u5,
+        ],
+        axis=-1,
+    )
+
+
+def _quintic_speed(u: Array) -> Array:
+    u2, u3, u4 = u**2, u**3, u**4
+    return np.stack(
+        [
+            -30 * u2 + 60 * u3 - 30 * u4,
+            1 - 18 * u2 + 32 * u3 - 15 * u4,
+            u - 4.5 * u2 + 6 * u3 - 2.5 * u4,
+            30 * u2 - 60 * u3 + 30 * u4,
+            -12 * u2 + 28 * u3 - 15 * u4,
+            1.5 * u2 - 4 * u3 + 2.5 * u4,
+        ],
+        axis=-1,
+    )
+
+
+def _quintic_acceleration(u: Array) -> Array:
+    u2, u3 = u**2, u**3
+    return np.stack(
+        [
+            -60 * u + 180 * u2 - 120 * u3,
+            -36 * u + 96 * u2 - 60 * u3,
+            1 - 9 * u + 18 * u2 - 10 * u3,
+            60 * u - 180 * u2 + 120 * u3,
+            -24 * u + 84 * u2 - 60 * u3,
+            3 * u - 12 * u2 + 10 * u3,
+        ],
+        axis=-1,
+    )
+
+
+# (q0, v0, a0, q1, v1, a1) from the set-points (q_{-1}, q_0, q_1, q_2), in units of the segment
+_DIFFERENCES = np.array(
+    [[0, 1, 0, 0], [-0.5, 0, 0.5, 0], [1, -2, 1, 0], [0, 0, 1, 0], [0, -0.5, 0, 0.5], [0, 1, -2, 1]], dtype=float
+)
+
+
+class FineInterpolator:
+    """Plays the segments between set-points tick by tick."""
+
+    def __init__(self, ticks: int, period_s: float, q: Array) -> None:
+        u = np.arange(1, ticks + 1) / ticks
+        self.ticks = ticks
+        self._weights = np.concatenate(
+            [
+                _quintic(u) @ _DIFFERENCES,
+                _quintic_speed(u) @ _DIFFERENCES / period_s,
+                _quintic_acceleration(u) @ _DIFFERENCES / period_s**2,
+            ]
+        )
+        self._points = np.tile(np.asarray(q, dtype=np.float64), (4, 1))
+
+    def push(self, setpoint: Array) -> Array:
+        """Take the set-point (n,) of this cycle; return (3, ticks, n): positions, speeds, accelerations."""
+        points = self._points
+        points[:3] = points[1:]
+        points[3] = setpoint
+        return (self._weights @ points).reshape(3, self.ticks, -1)
+
+    @property
+    def settled(self) -> bool:
+        """Whether the output stands still at the last set-point."""
+        return bool((self._points[1:] == self._points[0]).all())
+
+    def expand(self, setpoints: Array) -> Array:
+        """Return (3, N * ticks, n) for a whole sequence (N + 1, n) that starts and ends at rest.
+
+        The same numbers as pushing them one by one; used by the planner to check limits between set-points.
+        """
+        padded = np.concatenate([setpoints[:1], setpoints, setpoints[-1:]])
+        windows = np.stack([padded[k : k + len(setpoints) - 1] for k in range(4)], axis=1)
+        out = (self._weights @ windows).reshape(len(windows), 3, self.ticks, -1)
+        return np.asarray(np.moveaxis(out, 1, 0).reshape(3, len(windows) * self.ticks, -1))

@@ -1,0 +1,74 @@
+"""Speed along a path: jerk-limited or trapezoidal, from rest to rest, in whole interpolation cycles.
+
+The path parameter s runs from 0 to 1. Limits of the tool point (m/s, m/s2, m/s3) over the length and limits of
+its turning over the angle both bound ds/dt; the smaller one rules. Ruckig finds the time-optimal profile, and its
+``minimum_duration`` stretches it to a whole number of 8 ms cycles (or to TIME), so that the last set-point stands
+exactly at the end.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import ruckig
+
+from runtime.frames import Array
+from runtime.profile import SpeedShape
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpeedLimits:
+    """Bounds of ds/dt (1/s), its derivative (1/s2) and second derivative (1/s3; infinite: trapezoid)."""
+
+    speed: float
+    acceleration: float
+    jerk: float
+
+    def slowed(self, factor: float) -> "SpeedLimits":
+        """Return the limits of the same motion played ``factor`` times slower."""
+        return SpeedLimits(
+            speed=self.speed / factor, acceleration=self.acceleration / factor**2, jerk=self.jerk / factor**3
+        )
+
+
+def bound(extents: list[tuple[float, float, float, float]], shape: SpeedShape) -> SpeedLimits:
+    """Return the limits of s from (extent, speed, acceleration, jerk) of position and of orientation.
+
+    An extent of zero bounds nothing; at least one must be above zero (``ValueError``).
+    """
+    moving = [limits for limits in extents if limits[0] > 0.0]
+    if not moving:
+        raise ValueError("a path without extent has no speed")
+    speed, acceleration, jerk = (min(item[k] / item[0] for item in moving) for k in (1, 2, 3))
+    return SpeedLimits(
+        speed=speed, acceleration=acceleration, jerk=math.inf if shape == "trapezoid" else jerk
+    )
+
+
+def profile(limits: SpeedLimits, period_s: float, duration: float | None = None) -> Array:
+    """Return s (N + 1,) at whole cycles, from exactly 0 to exactly 1, rest to rest.
+
+    ``duration`` s asks for a longer time; the move never gets faster than the limits.
+    """
+    fastest = _trajectory(limits, None).duration
+    wanted = max(fastest, duration or 0.0)
+    cycles = max(1, math.ceil(wanted / period_s - 1e-9))
+    trajectory = _trajectory(limits, cycles * period_s)
+    s = np.array([trajectory.at_time(k * period_s)[0][0] for k in range(cycles + 1)])
+    s[0], s[-1] = 0.0, 1.0
+    return np.asarray(np.clip(s, 0.0, 1.0))
+
+
+def _trajectory(limits: SpeedLimits, duration: float | None) -> "ruckig.Trajectory":
+    request = ruckig.InputParameter(1)
+    request.current_position, request.target_position = [0.0], [1.0]
+    request.max_velocity = [limits.speed]
+    request.max_acceleration = [limits.acceleration]
+    request.max_jerk = [limits.jerk]
+    if duration is not None:
+        request.minimum_duration = duration
+    trajectory = ruckig.Trajectory(1)
+    result = ruckig.Ruckig(1).calculate(request, trajectory)
+    if result not in (ruckig.Result.Working, ruckig.Result.Finished):
+        raise ValueError(f"no speed profile for {limits}: {result}")
+    return trajectory

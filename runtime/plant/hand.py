@@ -1,0 +1,74 @@
+"""The hand as bodies: how the mass a cell file states is shared out between palm and fingers.
+
+Each finger takes an eighth of the mass, at the middle of its box, and the palm the rest, at the place that makes
+the whole what the file says. The fingers move symmetrically, so mass and centre of gravity are exact at every
+opening; only the moments of inertia change with it, by ``2 m_f y^2``. Moments are those of uniform boxes: an
+estimate, since no hand of this kind is published with its inertia. Frames: flange and tool, as in ``HandSpec``.
+"""
+
+import numpy as np
+
+from runtime.frames import Array, pose
+from runtime.plant.cell import HandSpec
+from runtime.robot.spec import Body
+
+FINGERS = ("left", "right")
+FINGER_SHARE = 0.125
+PALM_THICKNESS = 0.02
+
+
+def finger_sign(side: str) -> float:
+    """Return the direction along the tool's y axis in which a finger opens."""
+    return 1.0 if side == "left" else -1.0
+
+
+def box_inertia(mass: float, size: Array) -> Array:
+    """Return the inertia (3, 3) kg m2 of a uniform box of ``size`` (3,) m about its centre."""
+    squares = np.asarray(size, dtype=np.float64) ** 2
+    return np.diag(mass / 12.0 * (squares.sum() - squares))
+
+
+def palm_box(hand: HandSpec) -> tuple[Array, Array]:
+    """Return the size (3,) m of the palm and its place X_tool_palm (4, 4): its face is a finger's length back."""
+    width, thickness, _ = hand.pad
+    size = np.array([2.0 * width, hand.stroke + 2.0 * thickness, PALM_THICKNESS])
+    return size, pose([0.0, 0.0, -hand.finger_length - PALM_THICKNESS / 2.0])
+
+
+def finger_body(hand: HandSpec, side: str) -> Body:
+    """Return a finger as a body in its own frame, which is the tool frame when the fingers touch."""
+    width, thickness, length = hand.pad
+    size = np.array([width, thickness, hand.finger_length + length / 2.0])
+    cog = np.array([0.0, finger_sign(side) * thickness / 2.0, length / 2.0 - size[2] / 2.0])
+    mass = FINGER_SHARE * hand.mass
+    return Body(mass=mass, cog=cog, inertia=box_inertia(mass, size))
+
+
+def palm_body(hand: HandSpec) -> Body:
+    """Return the palm as a body in the flange frame: what is left of the hand's mass and first moment."""
+    fingers = [_in_flange(hand, side, 0.0) for side in FINGERS]
+    mass = hand.mass - sum(body.mass for body in fingers)
+    cog = (hand.mass * hand.cog - sum(body.mass * body.cog for body in fingers)) / mass
+    R = hand.X_flange_tool[:3, :3]
+    return Body(mass=mass, cog=cog, inertia=R @ box_inertia(mass, palm_box(hand)[0]) @ R.T)
+
+
+def hand_body(hand: HandSpec, opening: float | None = None) -> Body:
+    """Return the whole hand as one body in the flange frame, at ``opening`` m (None: half open)."""
+    y = (hand.stroke / 2.0 if opening is None else opening) / 2.0
+    bodies = [palm_body(hand), *(_in_flange(hand, side, y) for side in FINGERS)]
+    inertia = sum((_about(body, hand.cog) for body in bodies), np.zeros((3, 3)))
+    return Body(mass=hand.mass, cog=hand.cog, inertia=inertia)
+
+
+def _in_flange(hand: HandSpec, side: str, y: float) -> Body:
+    own = finger_body(hand, side)
+    R, p = hand.X_flange_tool[:3, :3], hand.X_flange_tool[:3, 3]
+    cog = p + R @ (own.cog + [0.0, finger_sign(side) * y, 0.0])
+    return Body(mass=own.mass, cog=cog, inertia=R @ own.inertia @ R.T)
+
+
+def _about(body: Body, point: Array) -> Array:
+    """Return the inertia (3, 3) of a body about ``point`` (parallel axes)."""
+    r = body.cog - point
+    return np.asarray(body.inertia + body.mass * (float(r @ r) * np.eye(3) - np.outer(r, r)))

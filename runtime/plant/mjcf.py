@@ -1,0 +1,346 @@
+"""The MuJoCo model of a robot in its cell, written as MJCF text from ``RobotSpec`` and ``CellSpec``.
+
+Everything the controller's Pinocchio model has must come out the same here to 1e-9 (tests/sim/test_plant_model.py):
+the same placements, the same bodies, rotor inertia as ``armature`` N^2 J. The plant has in addition what the
+controller does not know: viscous friction N^2 B (``damping``), Coulomb friction, the true hand, parts, contacts.
+
+Coulomb friction that differs by direction: ``frictionloss`` is symmetric, so it takes the mean m = (Tf + Tb) / 2
+and the rest is a constant torque c = (Tb - Tf) / 2 that the plant applies (``friction_bias``). Turning forward
+the joint feels c - m = -Tf, backward c + m = +Tb, and at rest it holds any torque in [-Tf, Tb] as it should.
+
+A grasp is friction between pads and part and nothing else. Two errors of the simulation let a held part wander:
+
+* Regularisation. What sticks creeps at v = R f / b; R = A (1 - d) / d for the impedance d and the inverse inertia
+  A that the row sees, divided by ``impratio`` for friction (MuJoCo documentation, Computation, "Constraint
+  model"). With the values below that is under 1e-6 m/s for a part and 2e-7 rad/s for joint 2 under 10 N m.
+* Curvature, which is far larger. The rows ask for J a = -b J v and leave out J' v, the difference of the
+  accelerations that pad and part have at zero ``qacc``: a pad on a turning arm moves on an arc, a free part along
+  a tangent. The relative speed u = J v then settles at J' v / b; the integrator, which steps with the new speed,
+  adds (h / 2 - h) J' v to it. So the part drifts by J' v (1 / b - h / 2): 1.5 mm/s for each m/s2 with the contact
+  time constant of 4 h, whatever ``impratio`` or ``noslip`` (both were tried: they change nothing). The drift
+  vanishes at b h = 2, where u alternates undamped (its factor per step is 1 - b h); ``GRIP_DAMPING`` = 1.75
+  leaves an eighth of the drift of the stiffest ordinary contact and a factor of -0.75. tests/sim/test_plant_grasp.py
+  measures it. Substeps would have bought the same for 12 times the cost, a weld would have been no grasp.
+
+The text is built here and never read from a user's file, so none of MJCF's own ways in (includes, plugins,
+meshes) exists (R22). Pure Python: MuJoCo is imported by ``mujoco_plant`` only. Read at start, no rate.
+"""
+
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable
+
+import numpy as np
+
+from runtime.frames import Array, pose
+from runtime.plant.cell import CellSpec, HandSpec, ObstacleSpec, PartSpec
+from runtime.plant.hand import FINGERS, box_inertia, finger_body, finger_sign, palm_body, palm_box
+from runtime.robot.spec import AxisSpec, Body, RobotSpec
+from runtime.units import GRAVITY
+
+# who meets whom: a geom collides where its contype meets the other's conaffinity, either way round
+ENVIRONMENT, ARM, HAND, PART = 1, 2, 4, 8
+NOTHING: tuple[int, int] = (0, 0)
+COLLIDES = {
+    "environment": (ENVIRONMENT, ARM | HAND | PART),
+    "arm": (ARM, ENVIRONMENT | PART),
+    "hand": (HAND, ENVIRONMENT | PART),
+    "shank": (HAND, ENVIRONMENT),  # stands back from the pad, so it need not be tested against the part
+    "part": (PART, ENVIRONMENT | ARM | HAND | PART),
+}
+
+CONTACT_TIME = 4.0
+"""Time constant of contacts in physics steps; MuJoCo's floor is 2, below about 3 a box on a table chatters."""
+
+GRIP_DAMPING = 1.75
+"""b h of the friction between pad and part: damping of slip per physics step; 2 has no drift but no decay."""
+
+FINGER_ARMATURE = 2.0
+"""Moving mass of the finger drive (spindle, motor) seen by one finger, kg: not part of the hand's weight."""
+
+FINGER_SPEED = 0.25
+"""Speed at which a finger closes under its full force, m/s: force / speed is the damping of the drive."""
+
+_STIFF = "0.9999 0.9999 0.001 0.5 2"
+"""Impedance of what should not give: dry joint friction, finger stops and the gearing between the fingers."""
+
+_CONTACT = "0.99 0.99 0.001 0.5 2"
+"""Impedance of contacts: the part sinks 0.4 um into the table."""
+
+_LINK_RADIUS = (0.06, 0.04)
+"""Radius of the link capsules of the first three axes and of the wrist, m: looks, and a coarse collision body."""
+
+
+def build_mjcf(
+    spec: RobotSpec, cell: CellSpec | None = None, *, timestep: float = 1e-3, payload: Body | None = None
+) -> str:
+    """Return the MJCF text of a robot, alone or in its cell.
+
+    Args: ``timestep`` of the physics in s; ``payload`` a body fixed to the flange, given in the flange frame (to
+    compare with the controller's model). Joints come in the order of the axes, then the two fingers, then the
+    parts; so do the actuators, whose controls are joint torques N m and finger forces N (positive opens).
+    """
+    root = ET.Element("mujoco", model=spec.name)
+    _options(root, timestep)
+    world = ET.SubElement(root, "worldbody")
+    _surroundings(world, cell.obstacles if cell else ())
+    last = _arm(world, spec, timestep)
+    flange = _body(last, "hand" if cell else "flange", spec.X_last_flange)
+    if cell is not None:
+        _hand(flange, cell.hand, timestep)
+    else:
+        ET.SubElement(flange, "site", name="tool", size="0.005")
+    if payload is not None:
+        _inertial(_body(flange, "payload", np.eye(4)), payload)
+    for part in cell.parts if cell else ():
+        _part(world, part)
+    if cell is not None:
+        _grip(root, cell, timestep)
+        _coupling(root, timestep)
+    _actuators(root, spec, cell is not None)
+    ET.indent(root)
+    return ET.tostring(root, encoding="unicode")
+
+
+def friction_bias(spec: RobotSpec) -> Array:
+    """Return the constant joint torques (n,) N m that make symmetric dry friction the published asymmetric one."""
+    return np.array([(tb - tf) / 2.0 for tf, tb in (axis.motor.joint_coulomb_friction for axis in spec.axes)])
+
+
+def _options(root: ET.Element, timestep: float) -> None:
+    ET.SubElement(
+        root,
+        "compiler",
+        angle="radian",
+        autolimits="true",
+        inertiafromgeom="false",
+        balanceinertia="false",
+        boundmass="0",
+        boundinertia="0",
+        fusestatic="false",
+    )
+    option = ET.SubElement(
+        root,
+        "option",
+        timestep=repr(timestep),
+        gravity=f"0 0 {-GRAVITY!r}",
+        integrator="implicitfast",
+        solver="Newton",
+        cone="elliptic",
+        impratio="20",
+        iterations="50",
+        tolerance="1e-10",
+    )
+    # a reset would teleport the arm: the plant stops at the last valid state instead (promise R04)
+    ET.SubElement(option, "flag", autoreset="disable")
+    default = ET.SubElement(root, "default")
+    ET.SubElement(
+        default,
+        "geom",
+        condim="3",
+        friction="0.5 0.005 0.0001",
+        solref=f"{CONTACT_TIME * timestep!r} 1",
+        solimp=_CONTACT,
+    )
+
+
+def _surroundings(world: ET.Element, obstacles: Iterable[ObstacleSpec]) -> None:
+    ET.SubElement(world, "light", pos="0 -1 3", dir="0 0.3 -1", diffuse="0.7 0.7 0.7")
+    _geom(world, "floor", "environment", type="plane", size="3 3 0.1", rgba="0.85 0.86 0.88 1")
+    for box in obstacles:
+        _geom(
+            world,
+            f"obstacle:{box.name}",
+            "environment",
+            box.X_world_obstacle,
+            type="box",
+            size=_row(box.size / 2.0),
+            rgba="0.55 0.47 0.38 1",
+        )
+
+
+def _arm(world: ET.Element, spec: RobotSpec, timestep: float) -> ET.Element:
+    """Nest the links; returns the body of the last one."""
+    parent = world
+    for index, axis in enumerate(spec.axes):
+        parent = _body(parent, f"link{index + 1}", axis.placement)
+        _inertial(parent, axis.body)
+        _hinge(parent, index, axis, timestep)
+        end = spec.axes[index + 1].placement if index + 1 < spec.n else spec.X_last_flange
+        _link_geom(parent, index, end[:3, 3])
+    return parent
+
+
+def _hinge(body: ET.Element, index: int, axis: AxisSpec, timestep: float) -> None:
+    forward, backward = axis.motor.joint_coulomb_friction
+    ET.SubElement(
+        body,
+        "joint",
+        name=f"j{index + 1}",
+        type="hinge",
+        axis="0 0 1",
+        range=_row([axis.limits.lower, axis.limits.upper]),
+        armature=repr(axis.motor.reflected_inertia),
+        damping=repr(axis.motor.joint_viscous_friction),
+        frictionloss=repr((forward + backward) / 2.0),
+        solreffriction=f"{2.0 * timestep!r} 1",
+        solimpfriction=_STIFF,
+        solreflimit=f"{CONTACT_TIME * timestep!r} 1",
+    )
+
+
+def _link_geom(body: ET.Element, index: int, end: Array) -> None:
+    """Draw a link as a capsule to the next joint; only links beyond the first can run into something."""
+    radius = _LINK_RADIUS[0] if index < 3 else _LINK_RADIUS[1]
+    group, name = ("arm" if index else "", f"link{index + 1}")
+    if float(np.linalg.norm(end)) < 1e-3:
+        _geom(body, name, group, type="sphere", size=repr(radius), rgba="0.95 0.75 0.2 1")
+        return
+    fromto = _row([0.0, 0.0, 0.0, *end])
+    _geom(body, name, group, type="capsule", fromto=fromto, size=repr(radius), rgba="0.95 0.75 0.2 1")
+
+
+def _hand(flange: ET.Element, hand: HandSpec, timestep: float) -> None:
+    _inertial(flange, palm_body(hand))
+    size, X_tool_palm = palm_box(hand)
+    X_flange_palm = hand.X_flange_tool @ X_tool_palm
+    _geom(flange, "palm", "hand", X_flange_palm, type="box", size=_row(size / 2.0), rgba="0.3 0.32 0.35 1")
+    ET.SubElement(flange, "site", name="tool", size="0.003", **_place(hand.X_flange_tool))
+    for side in FINGERS:
+        _finger(flange, hand, side, timestep)
+
+
+def _finger(flange: ET.Element, hand: HandSpec, side: str, timestep: float) -> None:
+    """A finger slides along the tool's y axis; its coordinate is the distance of the pad from the tool point."""
+    sign = finger_sign(side)
+    width, thickness, length = (float(value) for value in hand.pad)
+    finger = _body(flange, f"finger_{side}", hand.X_flange_tool)
+    _inertial(finger, finger_body(hand, side))
+    ET.SubElement(
+        finger,
+        "joint",
+        name=f"finger_{side}",
+        type="slide",
+        axis=f"0 {sign!r} 0",
+        range=_row([0.0, hand.stroke / 2.0]),
+        armature=repr(FINGER_ARMATURE),
+        damping=repr(hand.grip_force / FINGER_SPEED),
+        solreflimit=f"{2.0 * timestep!r} 1",
+        solimplimit=_STIFF,
+    )
+    y_pad, y_shank = sign * thickness / 2.0, sign * thickness * 0.625
+    top, tip = -hand.finger_length, length / 2.0
+    pad, shank = pose([0.0, y_pad, 0.0]), pose([0.0, y_shank, (top + tip) / 2.0])
+    shank_size = np.array([width, thickness * 0.75, tip - top])
+    _geom(finger, f"pad_{side}", "hand", pad, type="box", size=_row(hand.pad / 2.0), rgba="0.1 0.1 0.1 1")
+    _geom(finger, f"shank_{side}", "shank", shank, type="box", size=_row(shank_size / 2.0), rgba="0.4 0.42 0.45 1")
+
+
+def _grip(root: ET.Element, cell: CellSpec, timestep: float) -> None:
+    """State the contacts of pads and parts, whose slip must be damped faster than MuJoCo's time constants allow."""
+    contact = ET.SubElement(root, "contact")
+    for part in cell.parts:
+        for side in FINGERS:
+            ET.SubElement(
+                contact,
+                "pair",
+                geom1=f"pad_{side}",
+                geom2=f"part:{part.name}",
+                condim="3",
+                friction=f"{part.friction!r} {part.friction!r} 0.005 0.0001 0.0001",
+                solref=f"{CONTACT_TIME * timestep!r} 1",
+                # negative: stiffness and damping themselves; friction rows have no position, so no stiffness
+                solreffriction=f"-1 {-GRIP_DAMPING / timestep!r}",
+                solimp=_CONTACT,
+            )
+
+
+def _coupling(root: ET.Element, timestep: float) -> None:
+    """Gear the fingers together: they move by the same amount, as a parallel gripper's do."""
+    equality = ET.SubElement(root, "equality")
+    left, right = (f"finger_{side}" for side in FINGERS)
+    ET.SubElement(
+        equality,
+        "joint",
+        joint1=left,
+        joint2=right,
+        polycoef="0 1 0 0 0",
+        solref=f"{2.0 * timestep!r} 1",
+        solimp=_STIFF,
+    )
+
+
+def _part(world: ET.Element, part: PartSpec) -> None:
+    body = _body(world, f"part:{part.name}", part.X_world_part)
+    ET.SubElement(body, "freejoint", name=f"part:{part.name}")
+    _inertial(body, Body(mass=part.mass, cog=np.zeros(3), inertia=box_inertia(part.mass, part.size)))
+    # priority: the friction of a contact is that of the part, not the larger of the two
+    _geom(
+        body,
+        f"part:{part.name}",
+        "part",
+        type="box",
+        size=_row(part.size / 2.0),
+        priority="1",
+        friction=f"{part.friction!r} 0.005 0.0001",
+        rgba="0.45 0.55 0.7 1",
+    )
+
+
+def _actuators(root: ET.Element, spec: RobotSpec, with_hand: bool) -> None:
+    actuator = ET.SubElement(root, "actuator")
+    names = [f"j{index + 1}" for index in range(spec.n)]
+    for name in [*names, *(f"finger_{side}" for side in FINGERS)] if with_hand else names:
+        ET.SubElement(actuator, "motor", name=name, joint=name, gear="1")
+
+
+def _geom(parent: ET.Element, name: str, group: str, X: Array | None = None, **attributes: str) -> None:
+    contype, conaffinity = COLLIDES.get(group, NOTHING)
+    place = {} if X is None else _place(X)
+    ET.SubElement(
+        parent, "geom", name=name, contype=str(contype), conaffinity=str(conaffinity), **place, **attributes
+    )
+
+
+def _body(parent: ET.Element, name: str, X: Array) -> ET.Element:
+    return ET.SubElement(parent, "body", name=name, **_place(X))
+
+
+def _inertial(parent: ET.Element, body: Body) -> None:
+    """State a body by its principal moments: MuJoCo's own diagonalisation stops at fewer digits."""
+    moments, axes = np.linalg.eigh(body.inertia)
+    if np.linalg.det(axes) < 0.0:
+        axes[:, 0] = -axes[:, 0]
+    # a body on the edge of the triangle inequality (a rod, a corrected link) may miss it by rounding
+    moments[2] = min(moments[2], moments[0] + moments[1])
+    ET.SubElement(
+        parent,
+        "inertial",
+        pos=_row(body.cog),
+        quat=_row(quaternion(axes)),
+        mass=repr(float(body.mass)),
+        diaginertia=_row(moments),
+    )
+
+
+def _place(X: Array) -> dict[str, str]:
+    return {"pos": _row(X[:3, 3]), "quat": _row(quaternion(X[:3, :3]))}
+
+
+def quaternion(R: Array) -> Array:
+    """Return (w, x, y, z) of a rotation (3, 3), w or the largest part positive; Shepperd's choice of the pivot."""
+    trace = float(np.trace(R))
+    squares = np.array([trace, *np.diag(R)])
+    pivot = int(np.argmax(squares))
+    q = np.empty(4)
+    if pivot == 0:
+        q[0] = 1.0 + trace
+        q[1:] = R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]
+        return q / float(np.linalg.norm(q))
+    i, j, k = ((0, 1, 2), (1, 2, 0), (2, 0, 1))[pivot - 1]
+    q[1 + i] = 1.0 + R[i, i] - R[j, j] - R[k, k]
+    q[0], q[1 + j], q[1 + k] = R[k, j] - R[j, k], R[j, i] + R[i, j], R[k, i] + R[i, k]
+    return q / float(np.linalg.norm(q))
+
+
+def _row(values: Iterable[float]) -> str:
+    return " ".join(repr(float(value)) for value in values)

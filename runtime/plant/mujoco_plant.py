@@ -1,0 +1,193 @@
+"""The robot as MuJoCo simulates it: friction, rotor inertia, contacts, hand and parts; the only importer of mujoco.
+
+``step`` is the inner loop of every run (one call per servo tick). It writes the torques, lets MuJoCo advance by one
+or more physics steps of at most 1 ms, and copies the joint state out. How a broken state is noticed in the same
+tick (promise R04): MuJoCo checks positions and speeds at the start of every physics step, controls before they act
+and accelerations before they are integrated, and counts each number that is NaN, infinite or above 1e10. A step
+whose counters stay at zero therefore starts, and by ``v + h a`` also ends, with a finite state; so comparing the
+counters (28 bytes, 0.1 us) is the finiteness check of the whole state. Adding up the state each tick was rejected:
+it costs ten times that and says less. MuJoCo's own answers, zeroed controls and a reset to the start, are
+overruled: the plant latches, puts back the last valid state and never steps again.
+
+A physics warning that is no such number (contact buffer full, singular inertia) invalidates the state as well: the
+forces of that tick were wrong. Dry friction differs by direction through a constant bias torque (see ``mjcf``).
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any, cast
+
+import mujoco
+import numpy as np
+
+from runtime.frames import Array, pose
+from runtime.plant.cell import CellSpec
+from runtime.plant.hand import FINGERS
+from runtime.plant.mjcf import build_mjcf, friction_bias
+from runtime.plant.plant import HandState
+from runtime.robot.spec import RobotSpec
+
+MAX_PHYSICS_STEP = 1e-3
+"""Longest physics step, s: contacts have a time constant of four of them (``mjcf.CONTACT_TIME``)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Touch:
+    """A contact: the names of the two geoms in sorted order and the normal force between them, N."""
+
+    names: tuple[str, str]
+    force: float
+
+
+class MujocoPlant:
+    """A robot in its cell, at the cell's home posture with the hand open, advanced by ``tick_s`` per step."""
+
+    def __init__(self, spec: RobotSpec, cell: CellSpec, tick_s: float = 1e-3) -> None:
+        if not 1e-5 <= tick_s <= 0.1:
+            raise ValueError(f"a tick of {tick_s} s")
+        _keep_off_the_disk()
+        self._n = n = spec.n
+        self._tick_s = tick_s
+        self._substeps = max(1, math.ceil(tick_s / MAX_PHYSICS_STEP - 1e-9))
+        self._model: Any = mujoco.MjModel.from_xml_string(build_mjcf(spec, cell, timestep=tick_s / self._substeps))
+        self._data: Any = mujoco.MjData(self._model)
+        self._qpos, self._qvel = cast(Array, self._data.qpos), cast(Array, self._data.qvel)
+        self._tau, self._finger_force = self._data.ctrl[:n], self._data.ctrl[n:]
+        self._grip_force = cell.hand.grip_force
+        self._part_address = {part.name: n + len(FINGERS) + 7 * k for k, part in enumerate(cell.parts)}
+        self._warnings = self._data.warning.number.tobytes
+        self._no_warning = self._warnings()
+        self._valid = True
+        self._qpos[:n] = cell.home
+        self._qpos[n : n + len(FINGERS)] = cell.hand.stroke / 2.0
+        self._data.qfrc_applied[:n] = friction_bias(spec)
+        self._last_qpos, self._last_qvel = self._qpos.copy(), self._qvel.copy()
+        self._q, self._dq = _read_only(self._last_qpos[:n]), _read_only(self._last_qvel[:n])
+        self.close_hand(False)
+
+    @property
+    def tick_s(self) -> float:
+        """Duration of one step, s."""
+        return self._tick_s
+
+    @property
+    def substeps(self) -> int:
+        """MuJoCo steps in one tick."""
+        return self._substeps
+
+    @property
+    def q(self) -> Array:
+        """True joint angles (n,) rad: one live read-only array."""
+        return self._q
+
+    @property
+    def dq(self) -> Array:
+        """True joint speeds (n,) rad/s: one live read-only array."""
+        return self._dq
+
+    @property
+    def valid(self) -> bool:
+        """False for good once the state was no longer finite or physical."""
+        return self._valid
+
+    def step(self, tau: Array) -> bool:
+        """Apply joint torques (n,) N m for one tick and advance; False when the state is not valid (latched).
+
+        The state is then the last valid one, of the tick before. Called once per servo tick.
+        """
+        if not self._valid:
+            return False
+        self._tau[:] = tau
+        _mj_step(self._model, self._data, self._substeps)
+        if self._warnings() != self._no_warning:
+            return self._stop()
+        self._last_qpos[:] = self._qpos
+        self._last_qvel[:] = self._qvel
+        return True
+
+    def _stop(self) -> bool:
+        self._valid = False
+        self._qpos[:] = self._last_qpos
+        self._qvel[:] = self._last_qvel
+        return False
+
+    def why_invalid(self) -> str:
+        """Return MuJoCo's reason in a few words, empty while the state is valid."""
+        counts = self._data.warning.number
+        kinds = [kind for kind in range(len(counts)) if counts[kind]]
+        return "; ".join(_text(kind, int(self._data.warning.lastinfo[kind])) for kind in kinds)
+
+    def close_hand(self, closed: bool) -> None:
+        """Start closing or opening the hand: both fingers push with the grip force."""
+        self._closed = closed
+        self._finger_force[:] = -self._grip_force if closed else self._grip_force
+
+    def hand(self) -> HandState:
+        """Return what the hand does now; ``holding`` is the part that presses on both pads of the closed hand."""
+        opening = float(self._last_qpos[self._n : self._n + len(FINGERS)].sum())
+        return HandState(closed=self._closed, opening=opening, holding=self._held() if self._closed else None)
+
+    def _held(self) -> str | None:
+        pads = {f"pad_{side}" for side in FINGERS}
+        touched: dict[str, set[str]] = {}
+        for touch in self.contacts():
+            for pad, other in (touch.names, touch.names[::-1]):
+                if pad in pads and other.startswith("part:"):
+                    touched.setdefault(other.removeprefix("part:"), set()).add(pad)
+        return next((name for name in self._part_address if touched.get(name) == pads), None)
+
+    def contacts(self) -> list[Touch]:
+        """Return every contact that carries a force, in MuJoCo's order: names such as ``link4``, ``pad_left``,
+        ``palm``, ``floor``, ``obstacle:table``, ``part:part``. For reports and collision supervision.
+        """  # fmt: skip
+        touches: list[Touch] = []
+        wrench = np.zeros(6)
+        for index in range(self._data.ncon):
+            contact = self._data.contact[index]
+            if contact.efc_address < 0:
+                continue
+            mujoco.mj_contactForce(self._model, self._data, index, wrench)
+            if wrench[0] > 0.0:
+                first, second = sorted(str(self._model.geom(geom).name) for geom in contact.geom)
+                touches.append(Touch(names=(first, second), force=float(wrench[0])))
+        return touches
+
+    def parts(self) -> dict[str, Array]:
+        """Return the pose X_world_part (4, 4) of every part by name."""
+        return {name: _pose(self._last_qpos[at : at + 7]) for name, at in self._part_address.items()}
+
+    def X_world_tool(self) -> Array:
+        """Return the true pose (4, 4) of the tool point, of the same instant as ``q``."""
+        # after mj_step the poses in mjData are those from before the last integration
+        mujoco.mj_kinematics(self._model, self._data)
+        site = self._data.site("tool")
+        return pose(site.xpos, np.reshape(site.xmat, (3, 3)))
+
+
+_mj_step = mujoco.mj_step
+
+
+def _keep_off_the_disk() -> None:
+    """Stop MuJoCo from writing MUJOCO_LOG.TXT to the working folder and warnings to the console.
+
+    The setting holds for the process: MuJoCo has one log. What it would say is in ``why_invalid``.
+    """
+    config = mujoco.MjLogConfig.get()
+    config.logto_file = False
+    config.logto_console = False
+    mujoco.MjLogConfig.set(config)
+
+
+def _text(kind: int, info: int) -> str:
+    return str(mujoco.mju_warningText(kind, info)).strip()
+
+
+def _read_only(view: Array) -> Array:
+    view.setflags(write=False)
+    return view
+
+
+def _pose(values: Array) -> Array:
+    R = np.empty(9)
+    mujoco.mju_quat2Mat(R, values[3:] / float(np.linalg.norm(values[3:])))
+    return pose(values[:3], R.reshape(3, 3))

@@ -1,0 +1,90 @@
+"""The ideal arm: rigid links and rotors, no friction, no contacts, nothing between torque and motion.
+
+    (M(q) + N^2 J) ddq = tau - h(q, dq)            integrated by semi-implicit Euler, one tick at a time
+
+It runs where MuJoCo is not wanted (``--no-physics``) and in tests of the control loop. Its hand is exact: closing
+it takes the part whose centre is within ``REACH`` of the tool point, and the arm then carries that part's true mass;
+opening it leaves the part where it is.
+"""
+
+import numpy as np
+
+from runtime.frames import Array, inverse
+from runtime.plant.cell import CellSpec
+from runtime.plant.plant import HandState
+from runtime.robot.model import ArmModel
+from runtime.robot.payload import Payload
+from runtime.robot.spec import RobotSpec
+
+REACH = 0.01
+"""Largest distance of a part's centre from the tool point at which the hand takes it, m."""
+
+
+class RigidPlant:
+    """Plant without physics engine; see ``Plant`` for the meaning of each method."""
+
+    def __init__(self, spec: RobotSpec, cell: CellSpec, tick_s: float = 1e-3) -> None:
+        self.tick_s = tick_s
+        self.q = np.array(cell.home, dtype=np.float64)
+        self.dq = np.zeros(spec.n)
+        self._spec = spec
+        self._cell = cell
+        self._model = ArmModel(spec, rotors=True)
+        self._parts = {part.name: np.array(part.X_world_part) for part in cell.parts}
+        self._closed = False
+        self._holding: str | None = None
+        self._X_tool_part = np.eye(4)
+        self._carry()
+
+    def step(self, tau: Array) -> bool:
+        """Advance one tick under joint torques tau (n,)."""
+        ddq = self._model.acceleration(self.q, self.dq, tau)
+        dq = self.dq + self.tick_s * ddq
+        if not np.isfinite(dq).all():
+            return False
+        self.dq[:] = dq
+        self.q += self.tick_s * dq
+        return True
+
+    def close_hand(self, closed: bool) -> None:
+        """Take or leave a part at once."""
+        if closed and not self._closed:
+            self._take()
+        if not closed and self._holding is not None:
+            self._parts[self._holding] = self._X_world_tool() @ self._X_tool_part
+            self._holding = None
+        self._closed = closed
+        self._carry()
+
+    def hand(self) -> HandState:
+        """Return the state of the hand."""
+        return HandState(closed=self._closed, opening=0.0 if self._closed else self._cell.hand.stroke,
+                         holding=self._holding)  # fmt: skip
+
+    def parts(self) -> dict[str, Array]:
+        """Return the pose X_world_part (4, 4) of every part."""
+        poses = dict(self._parts)
+        if self._holding is not None:
+            poses[self._holding] = self._X_world_tool() @ self._X_tool_part
+        return poses
+
+    def _X_world_tool(self) -> Array:
+        return np.asarray(self._model.flange(self.q) @ self._cell.hand.X_flange_tool)
+
+    def _take(self) -> None:
+        X_tool_world = inverse(self._X_world_tool())
+        for name, X_world_part in self._parts.items():
+            X_tool_part = X_tool_world @ X_world_part
+            if float(np.linalg.norm(X_tool_part[:3, 3])) <= REACH:
+                self._holding, self._X_tool_part = name, X_tool_part
+                return
+
+    def _carry(self) -> None:
+        """Give the arm the true mass of the hand and of what it holds."""
+        hand = self._cell.hand
+        mass, moment = hand.mass, hand.mass * np.asarray(hand.cog)
+        for part in self._cell.parts:
+            if part.name == self._holding:
+                centre = (hand.X_flange_tool @ self._X_tool_part)[:3, 3]
+                mass, moment = mass + part.mass, moment + part.mass * centre
+        self._model.set_payload(Payload(mass=mass, cog=moment / mass if mass else np.zeros(3)))

@@ -1,0 +1,96 @@
+"""The recorder: every named signal of a run, as one array each whose first dimension is the servo tick.
+
+========================  ======  ==========================================================================
+signal                    unit    meaning
+========================  ======  ==========================================================================
+``t``                     s       start of the tick
+``q_plan``                rad     set-point in force, sent every 8 ms
+``q_cmd`` ``dq_cmd``      rad     command of the tick after fine interpolation, and its speed (rad/s)
+``tau_cmd``               N m     torque that the servo law asks for, at the joint
+``tau_sat``               N m     torque that the motor gives, after current limit and current loop
+``q_fb`` ``dq_fb``        rad     detected angle, and speed from its differences (rad/s)
+``X_world_tool_fb``       m       pose of the tool from the detected angles, (4, 4)
+``D`` ``T``               kg m2   inertia and gravity torque (N m) in use, without the rotor
+``D_age`` ``T_age``       ms      time since the angles were read from which they were computed
+``payload_mass``          kg      mass declared by LOAD
+``line``                  -       line of the program that runs (0: none)
+``wrist_mode``            -       0: wrist follows the path
+========================  ======  ==========================================================================
+
+The hot path copies one row of four vectors per tick and one row per cycle into arrays that grow by doubling; what
+follows from them is computed once, at the end. Two runs of the same program give the same bytes.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from runtime.frames import Array
+
+_FIRST_ROWS = 8192
+
+
+class Recorder:
+    """Collects the signals of one run of a robot with n axes."""
+
+    def __init__(self, n: int, ticks_per_cycle: int, tick_us: int) -> None:
+        self.n = n
+        self._ticks_per_cycle = ticks_per_cycle
+        self._tick_us = tick_us
+        self._ticks = np.zeros((_FIRST_ROWS, 4 * n))
+        self._commands = np.zeros((_FIRST_ROWS, 2 * n))
+        self._cycles = np.zeros((_FIRST_ROWS // ticks_per_cycle + 1, 4 * n + 2))
+        self.tick = 0
+        """Ticks recorded so far."""
+        self.cycle = 0
+        """Cycles begun so far."""
+
+    def begin_cycle(self, q_plan: Array, D: Array, T: Array, read_us: Array, motion: Array, payload_mass: float,
+                    line: int) -> None:  # fmt: skip
+        """Record what is constant in a cycle and the commanded motion (3, ticks, n) of its ticks."""
+        if self.cycle == len(self._cycles):
+            self._cycles = np.concatenate([self._cycles, np.zeros_like(self._cycles)])
+        row = self._cycles[self.cycle]
+        np.concatenate((q_plan, D, T, read_us), out=row[:-2])
+        row[-2] = payload_mass
+        row[-1] = line
+        self.cycle += 1
+        end = self.tick + self._ticks_per_cycle
+        if end > len(self._ticks):
+            self._ticks = np.concatenate([self._ticks, np.zeros_like(self._ticks)])
+            self._commands = np.concatenate([self._commands, np.zeros_like(self._commands)])
+        self._commands[self.tick : end, : self.n] = motion[0]
+        self._commands[self.tick : end, self.n :] = motion[1]
+
+    def record(self, parts: tuple[Array, Array, Array, Array]) -> None:
+        """Record one tick: (tau_cmd, tau_sat, q_fb, dq_fb), each (n,)."""
+        np.concatenate(parts, out=self._ticks[self.tick])
+        self.tick += 1
+
+    def signals(self, tool_poses: Callable[[Array], Array]) -> dict[str, Array]:
+        """Return every signal by name; ``tool_poses`` maps joint angles (N, n) to poses (N, 4, 4)."""
+        n, ticks = self.n, self.tick
+        cycles = np.repeat(self._cycles[: self.cycle], self._ticks_per_cycle, axis=0)[:ticks]
+        t_us = np.arange(ticks, dtype=np.int64) * self._tick_us
+        age_ms = (t_us[:, None] - cycles[:, 3 * n : 4 * n]) * 1e-3
+        tick = self._ticks[:ticks]
+        q_fb = tick[:, 2 * n : 3 * n]
+        signals = {
+            "t": t_us * 1e-6,
+            "q_plan": cycles[:, :n],
+            "q_cmd": self._commands[:ticks, :n],
+            "dq_cmd": self._commands[:ticks, n:],
+            "tau_cmd": tick[:, :n],
+            "tau_sat": tick[:, n : 2 * n],
+            "q_fb": q_fb,
+            "dq_fb": tick[:, 3 * n :],
+            "X_world_tool_fb": tool_poses(q_fb),
+            "D": cycles[:, n : 2 * n],
+            "T": cycles[:, 2 * n : 3 * n],
+            "D_age": age_ms,
+            "T_age": age_ms.copy(),
+            "payload_mass": cycles[:, -2],
+            "line": cycles[:, -1].astype(np.int32),
+            "wrist_mode": np.zeros(ticks, dtype=np.int8),
+        }
+        return {name: np.ascontiguousarray(values) for name, values in signals.items()}

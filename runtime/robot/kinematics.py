@@ -1,0 +1,135 @@
+"""Kinematics of a robot: where the flange is, which joint angles put it there, how it moves with the joints.
+
+``Kinematics`` is the one noun that planner, session, cell and command line use. Forward kinematics and the Jacobian
+come from the chain of axes of the ``RobotSpec`` (the same data that Pinocchio and MuJoCo are built from), inverse
+kinematics from the closed form (``opw``), which a robot file must match to 1e-9 m. All arrays are in the base frame, m
+and rad, and broadcast over leading dimensions.
+
+    X_base_flange = prod_i (placement_i Rz(q_i)) X_last_flange
+    column i of the Jacobian = [ z_i x (p_flange - p_i) ; z_i ],   z_i and p_i: direction of and a point on axis i
+
+Turns. The closed form gives each angle up to whole turns of 2 pi, and a joint with a range above one turn has several
+of them in it. Of those inside the range the one nearest to a reference is taken: the present joint angles, or the
+middle of the range. Where none is inside, the one nearest to the middle is returned, and the margin is negative.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from runtime.frames import Array, frozen
+from runtime.robot import opw
+from runtime.robot.opw import BRANCHES, TURN, Branch
+from runtime.robot.spec import RobotSpec
+
+LIMIT_ROUNDING = 1e-9
+"""A joint this far outside its range, rad, is not turned by a whole turn to bring it in."""
+
+SAME_ANGLES = 1e-9
+"""Two branches whose joints differ by less, rad, are one solution (they merge at a singularity)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Solution:
+    """Joint angles that meet a pose: q (6,) rad, its branch, and its smallest distance to a limit, rad.
+
+    A negative ``limit_margin`` says how far the worst joint is outside its range.
+    """
+
+    q: Array
+    branch: Branch
+    limit_margin: float
+
+
+class Kinematics:
+    """Kinematics of one robot. Holds no state; ``ValueError`` for a robot without a closed form."""
+
+    def __init__(self, spec: RobotSpec) -> None:
+        if spec.opw is None:
+            raise ValueError(f"{spec.name} has no closed-form inverse kinematics (no [kinematics.opw] in its file)")
+        self.spec = spec
+        self.n = spec.n
+        self._opw = spec.opw
+        self._lower, self._upper = frozen(spec.lower), frozen(spec.upper)
+        self._middle = frozen(0.5 * (spec.lower + spec.upper))
+
+    def forward(self, q: ArrayLike) -> Array:
+        """Return X_base_flange (..., 4, 4) of joint angles (..., n) rad."""
+        X = np.eye(4)
+        for X in self._axis_frames(np.asarray(q, dtype=np.float64)):  # noqa: B007 - the last one is wanted
+            pass
+        return np.asarray(X @ self.spec.X_last_flange)
+
+    def jacobian(self, q: ArrayLike) -> Array:
+        """Return the Jacobian (..., 6, n): rows 0-2 velocity of the flange origin m/s per rad/s, 3-5 angular."""
+        frames = list(self._axis_frames(np.asarray(q, dtype=np.float64)))
+        p_flange = (frames[-1] @ self.spec.X_last_flange)[..., :3, 3]
+        columns = [_twist(X, p_flange) for X in frames]
+        return np.stack(columns, axis=-1)
+
+    def inverse_branch(self, X_base_flange: Array, branch: Branch, near: ArrayLike | None = None) -> Array:
+        """Return the joint angles (..., 6) rad of one branch for poses (..., 4, 4); NaN where it does not exist.
+
+        With ``near`` (..., 6) each joint is the whole turn nearest to it, in range or not, and J1 and J4 follow it
+        where a singularity leaves them free; without, each is turned into its range. Samples of a path (N, 4, 4):
+        pass the start as ``near`` and unwrap the result along the path (``np.unwrap(q, axis=0)``).
+        Timing: called by the path planner on all samples of a move at once; no loop over poses.
+        """
+        q = opw.inverse_branch(self._opw, X_base_flange, branch, near)
+        return self._into_range(q, None) if near is None else self.nearest_turns(q, near)
+
+    def solutions(self, X_base_flange: Array, near: ArrayLike | None = None) -> list[Solution]:
+        """Return every solution of one pose (4, 4), in the order of ``BRANCHES``; empty when out of reach.
+
+        Each joint is turned into its range where it can be, as close to ``near`` (6,) or mid-range as the range
+        allows. Branches that merge at a singularity are listed once, under the first of their names.
+        """
+        found: list[Solution] = []
+        rows = self._into_range(opw.inverse(self._opw, X_base_flange, near), near)
+        for branch, q in zip(BRANCHES, rows, strict=True):
+            if np.isnan(q).any() or any(np.max(np.abs(opw.wrapped(q - s.q))) < SAME_ANGLES for s in found):
+                continue
+            found.append(Solution(q=frozen(q), branch=branch, limit_margin=float(self.limit_margin(q))))
+        return found
+
+    def branch_of(self, q: ArrayLike) -> Branch:
+        """Return the branch of one joint vector (6,) rad."""
+        return opw.branch_of(self._opw, q)
+
+    def limit_margin(self, q: ArrayLike) -> Array:
+        """Return the smallest distance to a joint limit (...,) rad of joint angles (..., n), negative outside."""
+        angles = np.asarray(q, dtype=np.float64)
+        return np.asarray(np.minimum(angles - self._lower, self._upper - angles).min(axis=-1))
+
+    @staticmethod
+    def nearest_turns(q: ArrayLike, near: ArrayLike) -> Array:
+        """Return q (..., n) rad turned by whole turns to within half a turn of ``near`` (..., n), limits or not."""
+        angles = np.asarray(q, dtype=np.float64)
+        return np.asarray(angles + TURN * np.round((np.asarray(near, dtype=np.float64) - angles) / TURN))
+
+    def _into_range(self, q: Array, near: ArrayLike | None) -> Array:
+        wanted = self.nearest_turns(q, self._middle if near is None else near)
+        # whole turns from the wanted angle that still end inside the range
+        fewest = np.ceil((self._lower - LIMIT_ROUNDING - wanted) / TURN)
+        most = np.floor((self._upper + LIMIT_ROUNDING - wanted) / TURN)
+        inside = wanted + TURN * np.clip(0.0, fewest, most)
+        return np.where(fewest <= most, inside, self.nearest_turns(q, self._middle))
+
+    def _axis_frames(self, q: Array) -> Iterator[Array]:
+        """Yield the frame of each axis, turned, in the base frame (..., 4, 4)."""
+        X = np.eye(4)
+        for i, axis in enumerate(self.spec.axes):
+            X = X @ axis.placement
+            c, s = np.cos(q[..., i])[..., None], np.sin(q[..., i])[..., None]
+            x, y = X[..., :, 0], X[..., :, 1]
+            turned = np.empty((*q.shape[:-1], 4, 4))
+            turned[..., 0], turned[..., 1], turned[..., 2:] = c * x + s * y, c * y - s * x, X[..., :, 2:]
+            X = turned
+            yield X
+
+
+def _twist(X_base_axis: Array, p_flange: Array) -> Array:
+    z, p = X_base_axis[..., :3, 2], X_base_axis[..., :3, 3]
+    return np.concatenate([np.cross(z, p_flange - p), z], axis=-1)

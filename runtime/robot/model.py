@@ -1,0 +1,89 @@
+"""The controller's own model of the arm, on Pinocchio, with the payload that the program declared.
+
+``ArmModel`` is the typed adapter around Pinocchio (which has no type stubs): mass matrix, one column of it,
+gravity torque and forward dynamics, in SI, for one posture at a time. Rotor inertia is not in it: the servo adds
+N^2 J itself (spec/controller.md 1.8). ``with_rotors`` builds a model that has it, for the ideal plant.
+"""
+
+from typing import Any, Literal
+
+import numpy as np
+import pinocchio as pin
+
+from runtime.frames import Array
+from runtime.robot.payload import NO_PAYLOAD, Payload
+from runtime.robot.spec import Body, RobotSpec
+from runtime.units import GRAVITY
+
+LoadMode = Literal["add", "replace"]
+
+
+class ArmModel:
+    """Rigid-body model of a robot that carries one payload at a time."""
+
+    def __init__(self, spec: RobotSpec, *, rotors: bool = False) -> None:
+        self.n = spec.n
+        self._X_last_flange = pin.SE3(spec.X_last_flange)
+        self._model = _build(spec)
+        if rotors:
+            self._model.armature = spec_rotors(spec)
+        self._weightless = self._model.copy()
+        self._weightless.gravity = pin.Motion.Zero()
+        self._data = self._model.createData()
+        self._weightless_data = self._weightless.createData()
+        self._bare_last = self._model.inertias[self.n].copy()
+        self._zero = np.zeros(self.n)
+        self._units = np.eye(self.n)
+
+    def set_payload(self, payload: Payload = NO_PAYLOAD, mode: LoadMode = "add") -> None:
+        """Carry ``payload`` from now on: added to the last link, or in its place (``replace``)."""
+        load = self._X_last_flange.act(pin.Inertia(payload.mass, np.array(payload.cog), np.array(payload.inertia)))
+        total = load if mode == "replace" else self._bare_last + load
+        self._model.inertias[self.n] = total
+        self._weightless.inertias[self.n] = total
+
+    def mass_matrix(self, q: Array) -> Array:
+        """Return M (n, n), kg m2, symmetric."""
+        M = pin.crba(self._model, self._data, q)
+        upper = np.triu(M)
+        return np.asarray(upper + np.triu(M, 1).T)
+
+    def inertia_column(self, q: Array, axis: int) -> Array:
+        """Return column ``axis`` of M (n,): the torques that accelerate that axis alone by 1 rad/s2, no gravity."""
+        return np.asarray(pin.rnea(self._weightless, self._weightless_data, q, self._zero, self._units[axis]))
+
+    def gravity(self, q: Array) -> Array:
+        """Return the torques (n,) N m that hold the arm at rest."""
+        return np.asarray(pin.computeGeneralizedGravity(self._model, self._data, q))
+
+    def acceleration(self, q: Array, dq: Array, tau: Array) -> Array:
+        """Return ddq (n,) rad/s2 under joint torques tau (n,) N m (forward dynamics)."""
+        return np.asarray(pin.aba(self._model, self._data, q, dq, tau))
+
+    def torque(self, q: Array, dq: Array, ddq: Array) -> Array:
+        """Return the joint torques (n,) N m of a motion (inverse dynamics, with gravity)."""
+        return np.asarray(pin.rnea(self._model, self._data, q, dq, ddq))
+
+    def flange(self, q: Array) -> Array:
+        """Return X_base_flange (4, 4)."""
+        pin.forwardKinematics(self._model, self._data, q)
+        return np.asarray((self._data.oMi[self.n] * self._X_last_flange).homogeneous)
+
+
+def spec_rotors(spec: RobotSpec) -> Array:
+    """Return N^2 J of every axis (n,), kg m2."""
+    return np.array([axis.motor.reflected_inertia for axis in spec.axes])
+
+
+def _build(spec: RobotSpec) -> Any:
+    model = pin.Model()
+    model.gravity = pin.Motion(np.array([0.0, 0.0, -GRAVITY]), np.zeros(3))
+    parent = 0
+    for axis in spec.axes:
+        parent = model.addJoint(parent, pin.JointModelRZ(), pin.SE3(axis.placement), axis.name)
+        model.appendBodyToJoint(parent, _inertia(axis.body), pin.SE3.Identity())
+    return model
+
+
+def _inertia(body: Body) -> Any:
+    return pin.Inertia(body.mass, np.array(body.cog), np.array(body.inertia))

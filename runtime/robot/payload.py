@@ -1,0 +1,49 @@
+"""The payload that a program declares with LOAD: everything beyond the flange.
+
+LOAD gives a centre of gravity in the flange frame and a mass (SDA, spec/controller.md 1.7). The body is then a
+point mass there, ``I(origin) = m (|r|^2 E - r r')``, unless an own inertia is given. By default it is added to the
+structure of the last link; ``replace`` is the literal reading of the document, where it takes the link's place.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from runtime.faults import Fault
+from runtime.frames import Array, frozen
+from runtime.robot.spec import inertia_defect
+
+MAX_COG_DISTANCE = 2.0
+"""Farthest centre of gravity from the flange that is believed, m."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Payload:
+    """Mass kg, centre of gravity (3,) m in the flange frame, own inertia (3, 3) about it, kg m2."""
+
+    mass: float
+    cog: Array
+    inertia: Array = field(default_factory=lambda: frozen(np.zeros((3, 3))))
+
+
+NO_PAYLOAD = Payload(mass=0.0, cog=frozen(np.zeros(3)))
+
+
+def declared(mass: float, cog: Sequence[float] | Array, rated: float, inertia: Array | None = None) -> Payload:
+    """Return the payload of a LOAD; ``Fault`` RBL401, RBL402 or RBL403 when no such body can be carried.
+
+    mass kg, cog (3,) m in the flange frame, rated kg of the robot, inertia (3, 3) about the cog in kg m2.
+    """
+    if not (math.isfinite(mass) and mass >= 0.0):
+        raise Fault("RBL401", f"a payload of {mass:g} kg is not a mass")
+    if not mass <= rated:
+        raise Fault("RBL402", f"the payload of {mass:g} kg is over the rated {rated:g} kg")
+    r = np.asarray(cog, dtype=np.float64)
+    if not float(np.linalg.norm(r)) <= MAX_COG_DISTANCE:
+        raise Fault("RBL403", f"the centre of gravity {tuple(r * 1000.0)} mm is not on this arm")
+    own = np.zeros((3, 3)) if inertia is None else np.asarray(inertia, dtype=np.float64)
+    if not np.isfinite(own).all() or inertia_defect(own) > 1e-9:
+        raise Fault("RBL403", "the inertia of the payload is not a body's")
+    return Payload(mass=float(mass), cog=frozen(r), inertia=frozen(own))

@@ -1,0 +1,40 @@
+"""Two priorities on one virtual processor: the 8 ms cycle, and a background task in the time that is left.
+
+Time is counted in whole microseconds. A cycle starts with its interrupt; the foreground (interpolation) then takes
+its declared cost Ci, and the background task gets what is left of the period, a slice at a time between servo
+ticks. A step of the background whose cost exceeds the slice is suspended and goes on, with what was already paid,
+in the next one. So the cycle keeps its period whatever the background costs, and one axis is refreshed every
+``n Cd P / (P - Ci)`` on average (spec/controller.md 1.6).
+"""
+
+from collections.abc import Callable, Iterator
+
+
+class IdleProcessor:
+    """Runs one background task of priority 2 in the idle time of the cycles."""
+
+    def __init__(self, start: Callable[["IdleProcessor"], Iterator[int]]) -> None:
+        self.now_us = 0
+        """Virtual time up to which the processor has worked."""
+        self.overruns = 0
+        """Cycles whose foreground had not finished when the next one started."""
+        self._busy_until_us = 0
+        self._task = start(self)
+        self._owed_us = next(self._task)
+
+    def begin_cycle(self, foreground_us: int) -> None:
+        """Take the processor for the foreground, at the interrupt that starts a cycle."""
+        if self._busy_until_us > self.now_us:
+            self.overruns += 1
+        self._busy_until_us = max(self._busy_until_us, self.now_us) + foreground_us
+
+    def advance(self, until_us: int) -> None:
+        """Let the background run in the idle time from now until ``until_us``."""
+        start = max(self.now_us, self._busy_until_us)
+        while start + self._owed_us <= until_us:
+            start += self._owed_us
+            self.now_us = start
+            self._owed_us = next(self._task)
+        if start < until_us:
+            self._owed_us -= until_us - start
+        self.now_us = until_us

@@ -1,0 +1,85 @@
+"""The servo of all axes: encoder, law, friction term and motor wired together, tick by tick.
+
+Once per cycle it takes the loads of ITA (step 220) and the commanded motion of the cycle's ticks (step 218, after
+fine interpolation); at every tick it turns the true joint angles into joint torques. ``n`` axes, joint side.
+
+The friction term is not in the document. Eqs (6) to (11) have no integrator, so published Coulomb friction alone
+would leave an axis of the Puma up to 0.3 deg from its command; it is therefore added to the current from the robot
+file, smoothed over ``SMOOTH`` rad/s: ``(N^2 B dq + |N| Tc tanh(dq / SMOOTH)) / Ktn`` (docs/decisions/0003).
+"""
+
+import numpy as np
+from numpy import add, multiply
+
+from runtime.frames import Array
+from runtime.profile import ServoOptions
+from runtime.robot.model import spec_rotors
+from runtime.robot.spec import RobotSpec
+from runtime.servo.law import Gains, ServoLaw
+from runtime.servo.motor import Encoders, Motors, current_limit, encoder_resolution
+
+SMOOTH = 0.01
+"""Speed over which the sign of the commanded speed is smoothed, rad/s."""
+
+
+class ServoAxes:
+    """All axes of one robot. Buffers ``alpha``, ``beta``, ``tau_cmd`` and ``tau`` (n,) are live, for the recorder."""
+
+    def __init__(self, spec: RobotSpec, options: ServoOptions, tick_s: float, q: Array, D_fixed: Array) -> None:
+        self.options = options
+        self._spec = spec
+        self._D_fixed = D_fixed if options.mode == "fixed" else None
+        self.encoders = Encoders(encoder_resolution(spec))
+        self.alpha = np.zeros(spec.n)
+        self.encoders.read(q, self.alpha)
+        self.law = ServoLaw(gains(spec, options), self.alpha, tick_s)
+        self.beta = self.law.beta
+        self._Ktn = spec_torque_constants(spec)
+        self.motors = Motors(self._Ktn, current_limit(spec), spec.per_axis("motor", "current_bandwidth"), tick_s)
+        self.tau_cmd = np.zeros(spec.n)
+        self.tau = np.zeros(spec.n)
+        friction = np.array([axis.motor.joint_coulomb_friction for axis in spec.axes])
+        self._forward, self._backward = friction[:, 0], friction[:, 1]
+        self._viscous = spec.per_axis("motor", "joint_viscous_friction")
+        self._play: list[tuple[Array, Array, Array, Array]] = []
+
+    def take(self, D: Array, T: Array, motion: Array) -> None:
+        """Take the loads D kg m2, T N m (n,) and the motion (3, ticks, n) of the cycle that begins."""
+        self.law.update(D, T, self._D_fixed)
+        theta, beta, gamma = motion
+        self._play = list(zip(theta, beta, gamma, self.friction_current(beta), strict=True))
+
+    def friction_current(self, dq: Array) -> Array:
+        """Return the current (..., n) A that overcomes the published friction at speed dq (..., n) rad/s."""
+        coulomb = np.where(dq > 0.0, self._forward, self._backward) * np.tanh(dq / SMOOTH)
+        return np.asarray((coulomb + self._viscous * dq) * (self.options.friction_compensation / self._Ktn))
+
+    def tick(self, k: int, q: Array) -> Array:
+        """Return the joint torques (n,) N m of tick k of the cycle, at true joint angles q (n,) rad: a live buffer."""
+        theta, beta, gamma, friction = self._play[k]
+        self.encoders.read(q, self.alpha)
+        current = self.law.current(theta, beta, gamma, self.alpha)
+        add(current, friction, current)
+        multiply(current, self._Ktn, self.tau_cmd)
+        self.motors.torque(current, self.tau)
+        return self.tau
+
+
+def spec_torque_constants(spec: RobotSpec) -> Array:
+    """Return Ktn of every axis (n,), N m/A."""
+    return np.array([axis.motor.joint_torque_constant for axis in spec.axes])
+
+
+def gains(spec: RobotSpec, options: ServoOptions) -> Gains:
+    """Derive the constants of the law from the bandwidths of the robot file and the profile's options."""
+    return Gains(
+        Kp=spec.per_axis("bandwidths", "position"),
+        Kv=spec.per_axis("bandwidths", "velocity"),
+        Ktn=spec_torque_constants(spec),
+        rotor=spec_rotors(spec),
+        Kf=options.velocity_feedforward,
+        Ka=options.acceleration_feedforward,
+        K2=options.spring_compensation,
+        KT_scale=options.gravity_compensation,
+        source=options.source,
+    )

@@ -1,0 +1,162 @@
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from robolang.cli.kin import app
+from robolang.cli.values import OptionValueError, numbers
+from runtime.frames import pose_from_xyzrpy, xyzrpy_from_pose
+from runtime.robot.kinematics import Kinematics
+from runtime.robot.loader import load_builtin
+from runtime.units import DEG, MM
+
+LIBRARY = Path(__file__).parents[3] / "runtime" / "robot" / "library"
+JOINTS = "10,60,150,-20,40,30"
+
+
+def run(*words, exit_code=0):
+    result = CliRunner().invoke(app, [str(word) for word in words])
+    assert result.exit_code == exit_code, result.output + result.stderr
+    return result
+
+
+def fk(joints=JOINTS, *words):
+    return json.loads(run("fk", "--robot", "puma560", "--joints", joints, "--json", *words).stdout)["pose_mm_deg"]
+
+
+def ik(values, *words):
+    pose = ",".join(map(repr, values))
+    return json.loads(run("ik", "--robot", "puma560", "--pose", pose, "--json", *words).stdout)["solutions"]
+
+
+def test_fk_prints_the_pose_in_full_precision():
+    X = Kinematics(load_builtin("puma560")).forward(np.array([float(v) for v in JOINTS.split(",")]) * DEG)
+    expected = xyzrpy_from_pose(X) / [MM, MM, MM, DEG, DEG, DEG]
+    assert fk() == pytest.approx(list(expected), abs=1e-12)
+
+
+def test_fk_of_qn_is_the_published_pose():
+    assert fk("0,45,180,0,45,0")[:3] == pytest.approx([596.3, -150.05, 657.65], abs=0.05)
+
+
+def test_fk_has_no_negative_zeros():
+    result = run("fk", "--robot", "puma560", "--joints", "0,0,0,0,0,0", "--json")
+    assert "-0.0" not in result.stdout
+    assert json.loads(result.stdout)["pose_mm_deg"] == pytest.approx([452.1, -150.05, 1103.8, 0, 0, 0], abs=1e-9)
+
+
+@pytest.mark.parametrize("words", [("--joints", "-10,20,30,0,40,50"), ("--joints=-10,20,30,0,40,50",)])
+def test_a_negative_first_number_is_a_value(words):
+    result = run("fk", "--robot", "puma560", "--json", *words)
+    assert json.loads(result.stdout)["pose_mm_deg"] == fk("-10, 20, 30, 0, 40, 50")
+
+
+def test_a_tool_is_beyond_the_flange_in_fk_and_ik():
+    bare, tool = fk(), "10,-20,150,0,90,0"
+    with_tool = fk(JOINTS, "--tool", tool)
+    X_flange_tool = pose_from_xyzrpy([0.01, -0.02, 0.15, 0.0, np.pi / 2, 0.0])
+    X_base_tool = pose_from_xyzrpy(np.array(bare) * [MM, MM, MM, DEG, DEG, DEG]) @ X_flange_tool
+    assert np.array(with_tool[:3]) * MM == pytest.approx(X_base_tool[:3, 3], abs=1e-12)
+    assert np.linalg.norm(np.subtract(with_tool[:3], bare[:3])) == pytest.approx(np.linalg.norm([10, 20, 150]))
+    for a, b in zip(ik(with_tool, "--tool", tool), ik(bare), strict=True):
+        assert a["joints_deg"] == pytest.approx(b["joints_deg"], abs=1e-9)
+
+
+def test_ik_lists_every_branch_by_margin_and_each_leads_back():
+    target = fk()
+    solutions = ik(target)
+    assert len(solutions) == len({s["branch"] for s in solutions}) == 8
+    margins = [s["limit_margin_deg"] for s in solutions]
+    assert margins == sorted(margins, reverse=True)
+    assert margins[0] > 0.0 > margins[-1]
+    for solution in solutions:
+        assert fk(",".join(map(repr, solution["joints_deg"]))) == pytest.approx(target, abs=1e-9)
+    # J3 at 150 deg is outside -225..45, but -210 is the same posture and 15 deg inside
+    own = next(s for s in solutions if s["branch"] == "RIGHTY ABOVE NOFLIP")
+    assert own["joints_deg"] == pytest.approx([10, 60, -210, -20, 40, 30], abs=1e-9)
+    assert own["limit_margin_deg"] == pytest.approx(15.0, abs=1e-9)
+
+
+def test_out_of_reach_is_exit_code_1_with_an_empty_list():
+    result = run("ik", "--robot", "puma560", "--pose", "2000,0,500,0,0,0", "--json", exit_code=1)
+    assert json.loads(result.stdout) == {"solutions": []}
+    assert "RBL410 out-of-reach" in result.stderr
+    result = run("ik", "--robot", "puma560", "--pose", "2000,0,500,0,0,0", exit_code=1)
+    assert result.stdout == ""
+    assert "RBL410" in result.stderr
+
+
+def test_the_tables_fit_80_columns_uncut_and_name_their_units():
+    table = run("ik", "--robot", "puma560", "--pose", "-300,200,900,10,170,20").stdout
+    assert all(word in table for word in ("LEFTY ABOVE NOFLIP", "-212.26", "J6", "deg", "margin", "-61.92"))
+    assert "…" not in table
+    assert max(map(len, table.splitlines())) <= 80
+    table = run("fk", "--robot", "puma560", "--joints", "0,45,180,0,45,0").stdout
+    assert all(word in table for word in ("596.303", "-150.050", "mm", "deg"))
+
+
+def test_a_robot_file_is_a_robot(tmp_path):
+    path = LIBRARY / "puma560.toml"
+    assert json.loads(run("fk", "--robot", path, "--joints", JOINTS, "--json").stdout)["pose_mm_deg"] == fk()
+    broken = tmp_path / "broken.toml"
+    broken.write_text(path.read_text().replace("b_m = -0.15005", "b_m = 0.15005"))
+    assert "RBL615" in run("fk", "--robot", broken, "--joints", JOINTS, exit_code=2).stderr
+    assert "RBL600" in run("ik", "--robot", tmp_path / "none.toml", "--pose", JOINTS, exit_code=2).stderr
+
+
+def test_a_robot_without_a_closed_form_is_a_usage_error(tmp_path):
+    text = (LIBRARY / "puma560.toml").read_text()
+    start, end = text.index("[kinematics.opw]"), text.index("[path]")
+    (tmp_path / "open.toml").write_text(text[:start] + text[end:])
+    assert "closed-form" in run("fk", "--robot", tmp_path / "open.toml", "--joints", JOINTS, exit_code=2).stderr
+
+
+def test_an_unknown_robot_is_answered_with_the_known_ones():
+    message = run("fk", "--robot", "puma", "--joints", JOINTS, exit_code=2).stderr
+    assert "'puma' is not a robot" in message
+    assert "puma560" in message
+
+
+@pytest.mark.parametrize(
+    ("text", "where"),
+    [
+        ("1,2,nan,4,5,6", "number 3"),
+        ("1,2,3,inf,5,6", "number 4"),
+        ("1,2,3,4,5,1e999", "number 6"),
+        ("-1e10,2,3,4,5,6", "number 1"),
+        ("1,x,3,4,5,6", "number 2"),
+        ("1,,3,4,5,6", "number 2"),
+        ("1,2,3", "3 numbers are given"),
+        ("1,2,3,4,5,6,7", "7 numbers are given"),
+        ("", "1 number is given"),
+    ],
+)
+@pytest.mark.parametrize("option", ["--joints", "--pose", "--tool"])
+def test_a_value_that_cannot_be_used_is_located(option, text, where):
+    command = "ik" if option == "--pose" else "fk"
+    words = ["--joints", JOINTS] if option == "--tool" else []
+    message = run(command, "--robot", "puma560", *words, f"{option}={text}", exit_code=2).stderr
+    assert "RBL703" in message
+    assert option in message
+    assert where in message
+
+
+def test_numbers_carry_their_code_and_place():
+    assert numbers("1, -2.5e1", option="--x", names=("a", "b")) == (1.0, -25.0)
+    with pytest.raises(OptionValueError) as caught:
+        numbers("1," + "9" * 400, option="--x", names=("a", "b"))
+    assert (caught.value.code, caught.value.option, caught.value.position) == ("RBL703", "--x", 2)
+    assert len(caught.value.message) < 100
+    for text in ("nan", "-inf"):
+        with pytest.raises(OptionValueError, match="not a finite number"):
+            numbers(text, option="--x", names=("a",))
+
+
+def test_importing_the_commands_loads_no_numerics():
+    heavy = ("numpy", "pinocchio", "mujoco", "runtime")
+    code = f"import sys, robolang.cli.kin; print([m for m in {heavy} if m in sys.modules])"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "[]\n"

@@ -1,0 +1,44 @@
+"""Short ways to parse a text and to say what was found where."""
+
+from robolang.checker import check
+from robolang.diagnostics import Diagnostic
+from robolang.nodes import Program
+from robolang.parser import parse
+from robolang.source import Source
+
+Found = list[tuple[str, int, int, int]]
+
+
+def source(text: str) -> Source:
+    return Source("pick.rbl", text)
+
+
+def places(text: str, diagnostics: tuple[Diagnostic, ...]) -> Found:
+    """Code, line, column and length of each diagnostic."""
+    where = source(text)
+    found = []
+    for item in diagnostics:
+        place = where.place(item.span.start)
+        found.append((item.code, place.line, place.column, item.span.end - item.span.start))
+    return found
+
+
+def parsed(text: str) -> Program:
+    """The tree of a text that has no diagnostic."""
+    result = parse(source(text))
+    assert result.diagnostics == ()
+    return result.program
+
+
+def parse_found(text: str) -> Found:
+    return places(text, parse(source(text)).diagnostics)
+
+
+def only(text: str) -> Diagnostic:
+    """The one diagnostic of a text."""
+    (diagnostic,) = parse(source(text)).diagnostics
+    return diagnostic
+
+
+def checked(text: str, points: tuple[str, ...] | None = None, rated: float | None = None) -> Found:
+    return places(text, check(parsed(text), points=points, rated_payload_kg=rated))

@@ -1,0 +1,138 @@
+import pytest
+
+from robolang.checker import check
+from robolang.diagnostics import MAX_DIAGNOSTICS, Severity
+from robolang.parser import parse
+from tests.lang.helpers import checked, parsed, source
+
+
+def first(text, **facts):
+    (diagnostic,) = check(parsed(text), **facts)
+    return diagnostic
+
+
+def test_a_good_program_has_nothing():
+    text = "10 LOAD (0, 0, 60), 0.8\n20 MOVE p1, SPEED 200, ACCEL 100\n30 HAND ON, 0\n40 MOVE P2, TIME 3600"
+    assert checked(text, points=("P1", "p2"), rated=2.5) == []
+
+
+@pytest.mark.parametrize("text", ["", "' nothing\n\n", "10\n"])
+def test_an_empty_program_is_a_warning(text):
+    diagnostic = first(text)
+    assert (diagnostic.code, diagnostic.severity) == ("RBL201", Severity.WARNING)
+
+
+def test_a_program_with_a_bad_line_is_not_empty():
+    assert check(parse(source("MOV P1")).program) == ()
+
+
+def test_points():
+    assert checked("MOVE P9", points=("P1",)) == [("RBL301", 1, 6, 2)]
+    assert checked("MOVE P9", points=()) == [("RBL301", 1, 6, 2)]
+    assert checked("MOVE P9") == []
+
+
+@pytest.mark.parametrize(
+    ("points", "hint"),
+    [(("PICK_1", "A"), "did you mean PICK_1?"), (("A", "B"), "taught: A, B"), ((), "no point is taught")],
+)
+def test_near_points_are_suggested(points, hint):
+    assert first("MOVE PICK1", points=points).hint == hint
+
+
+@pytest.mark.parametrize("mass", ["-1", "NAN", "inf", "-INF", "--NAN"])
+def test_mass_must_be_a_mass(mass):
+    assert checked(f"LOAD (0, 0, 0), {mass}", rated=5.0) == [("RBL401", 1, 17, len(mass))]
+
+
+def test_rated_payload():
+    assert checked("LOAD (0, 0, 60), 2.5", rated=2.5) == []
+    assert checked("LOAD (0, 0, 60), 9999") == []
+    diagnostic = first("LOAD (0, 0, 60), 2.6", rated_payload_kg=2.5)
+    assert diagnostic.code == "RBL402"
+    assert "2.6 kg" in diagnostic.message
+    assert "2.5 kg" in diagnostic.message
+    assert first("LOAD (0, 0, 60), 800", rated_payload_kg=2.5).hint == "LOAD takes kg: 800 g is 0.8 kg"
+
+
+@pytest.mark.parametrize("cog", ["(0, 0, 2001)", "(0, NAN, 0)", "(INF, 0, 0)", "(1E308, 1E308, 0)", "(-1500, 1500, 0)"])
+def test_centre_of_gravity(cog):
+    assert checked(f"LOAD {cog}, 1") == [("RBL403", 1, 6, len(cog))]
+
+
+def test_centre_of_gravity_at_the_limit():
+    assert checked("LOAD (0, 0, 2000), 1") == []
+    assert checked("LOAD (0, 0, 9000), 0") == []
+    assert checked("LOAD (0, 0, NAN), 0") == [("RBL403", 1, 6, 11)]
+
+
+@pytest.mark.parametrize(
+    "option",
+    ["SPEED 0", "SPEED -5", "SPEED NAN", "SPEED INF", "SPEED 10000.1", "ACCEL 0", "ACCEL 100.1", "ACCEL NAN",
+     "TIME 0", "TIME -1", "TIME 3600.1", "TIME NAN"],
+)  # fmt: skip
+def test_option_out_of_range(option):
+    value = option.split()[1]
+    assert checked(f"MOVE P1, {option}") == [("RBL404", 1, 16 - (option[0] == "T"), len(value))]
+
+
+@pytest.mark.parametrize("option", ["SPEED 10000", "SPEED 0.001", "ACCEL 100", "TIME 3600"])
+def test_option_at_the_limit(option):
+    assert checked(f"MOVE P1, {option}") == []
+
+
+@pytest.mark.parametrize("dwell", ["-1", "3600.1", "1E12", "NAN", "INF"])
+def test_dwell_out_of_range(dwell):
+    assert checked(f"HAND OFF, {dwell}") == [("RBL405", 1, 11, len(dwell))]
+
+
+def test_dwell_at_the_limit():
+    assert checked("HAND OFF, 0\nHAND ON, 3600") == []
+
+
+def test_options_twice_and_against_each_other():
+    assert checked("MOVE P1, SPEED 1, SPEED 2") == [("RBL118", 1, 19, 7)]
+    assert checked("MOVE P1, TIME 1, SPEED 2") == [("RBL119", 1, 18, 7)]
+    (diagnostic,) = check(parsed("MOVE P1, SPEED 1, speed 2"))
+    assert diagnostic.message == "SPEED is given twice"
+    assert diagnostic.related[0].span.start == 9
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("LOAD (0, 0, 0), -w", ("RBL117", 1, 18, 1)),
+        ("LOAD (0, d, 0), 1", ("RBL117", 1, 10, 1)),
+        ("MOVE P1, SPEED v", ("RBL117", 1, 16, 1)),
+        ("HAND ON, t", ("RBL117", 1, 10, 1)),
+    ],
+)
+def test_variables_are_not_there_yet(text, place):
+    assert checked(text) == [place]
+
+
+def test_line_numbers():
+    text = "10 MOVE P1\n30 MOVE P1\n20 MOVE P1\n25 MOVE P1\n30 MOVE P1\n"
+    assert checked(text) == [("RBL116", 3, 1, 2), ("RBL113", 5, 1, 2)]
+    order, twice = check(parsed(text))
+    assert order.severity is Severity.WARNING
+    assert twice.severity is Severity.ERROR
+    assert source(text).place(twice.related[0].span.start).line == 2
+
+
+def test_the_number_of_a_bad_line_counts():
+    program = parse(source("10 MOV\n10 MOVE P1")).program
+    assert [item.code for item in check(program)] == ["RBL113"]
+
+
+def test_everything_is_found_at_once_and_in_order():
+    text = "MOVE X, SPEED 0\nLOAD (0, 0, 9999), -1\nHAND ON, -1"
+    assert [item[:2] for item in checked(text, points=())] == [
+        ("RBL301", 1), ("RBL404", 1), ("RBL403", 2), ("RBL401", 2), ("RBL405", 3),
+    ]  # fmt: skip
+
+
+def test_the_list_is_bounded():
+    found = check(parsed("1\n" * 5000 + "MOVE P1"))
+    assert len(found) == MAX_DIAGNOSTICS + 1
+    assert found[-1].code == "RBL107"

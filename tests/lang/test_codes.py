@@ -1,0 +1,30 @@
+import re
+import subprocess
+import sys
+
+import pytest
+
+import robolang.codes  # noqa: F401
+from runtime.faults import all_codes, lookup
+
+
+def test_every_code_is_complete():
+    for code in all_codes():
+        assert re.fullmatch(r"RBL[1-9]\d\d", code.code)
+        assert re.fullmatch(r"[a-z]+(-[a-z]+)*", code.name)
+        assert code.meaning.endswith(".")
+        assert code.remedy.endswith(".")
+
+
+@pytest.mark.parametrize("code", ["RBL103", "RBL201", "RBL301", "RBL311", "RBL401", "RBL601", "RBL701", "RBL900"])
+def test_one_import_fills_the_registry(code):
+    assert lookup(code).code == code
+
+
+def test_the_front_end_imports_nothing_heavy():
+    program = (
+        "import sys, robolang.parser, robolang.checker, robolang.interpreter, robolang.points, robolang.printer\n"
+        "heavy = {'numpy', 'pinocchio', 'mujoco', 'rich', 'typer', 'ruckig'} & set(sys.modules)\n"
+        "assert not heavy, heavy"
+    )
+    assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0

@@ -1,0 +1,255 @@
+from pathlib import Path
+
+import pytest
+
+import robolang.parser as parser_module
+from robolang.diagnostics import MAX_DIAGNOSTICS, Severity
+from robolang.nodes import Accel, Hand, HandState, Load, Move, Name, Negate, Number, Speed, Time, Unparsed, Vector
+from robolang.parser import MAX_DEPTH, MAX_LINE, parse
+from robolang.source import Span
+from tests.lang.helpers import only, parse_found, parsed, source
+
+
+def statement(text):
+    (line,) = parsed(text).lines
+    return line.statement
+
+
+def number(text):
+    return Number(value=float(text), text=text)
+
+
+def test_the_four_instructions():
+    cog = Vector(x=number("0"), y=Negate(operand=number("1.5")), z=number("60"))
+    assert statement("LOAD (0, -1.5, +60), .8") == Load(cog=cog, mass=number(".8"))
+    assert statement("MOVE P1") == Move(target=Name(text="P1"))
+    assert statement("HAND ON") == Hand(state=HandState.ON)
+    assert statement("HAND OFF, 2E-1") == Hand(state=HandState.OFF, dwell=number("0.2"))
+
+
+def test_move_options():
+    options = (Speed(value=number("200")), Accel(value=number("50")), Time(value=number("3")))
+    assert statement("MOVE P1, SPEED 200, ACCEL 50, TIME 3") == Move(target=Name(text="P1"), options=options)
+
+
+def test_case_and_space_do_not_matter():
+    assert parsed("\t10   move\tp1 ,speed  5").lines == parsed("10 MOVE P1, SPEED 5").lines
+
+
+def test_names_keep_their_spelling():
+    target = statement("MOVE Pick_1").target
+    assert (target.text, target.key) == ("Pick_1", "PICK_1")
+
+
+@pytest.mark.parametrize("text", ["' MOVE P1", "REM MOVE P1", "rem", "  REM\tx", "'" * 5, "20 ' x", "20 REM x"])
+def test_comments_alone(text):
+    (line,) = parsed(text).lines
+    assert line.statement is None
+    assert line.comment.text == text.removeprefix("20").strip()
+    assert line.number == (20 if text.startswith("20") else None)
+
+
+def test_comment_behind_a_statement():
+    program = parsed("MOVE P1 ' it's (here\nHAND ON REM x  ")
+    assert [comment.text for comment in program.comments] == ["' it's (here", "REM x"]
+    assert len(program.statements) == 2
+
+
+def test_blank_lines_are_gaps_in_the_source_lines():
+    program = parsed("\n  \nMOVE P1\n\t\n\n10\nMOVE P2\n")
+    assert [line.source_line for line in program.lines] == [3, 6, 7]
+    assert [line.number for line in program.lines] == [None, 10, None]
+
+
+@pytest.mark.parametrize("text", ["", "\n", " \t\n\n", "\r\n\t"])
+def test_empty_text(text):
+    assert parsed(text).lines == ()
+
+
+def test_spans_are_offsets_of_the_source():
+    text = "\r\n10 MOVE P1, SPEED -200 ' x\r\nLOAD (1, 2, 3), 4\r\n"
+    where = source(text)
+    move, load = parsed(text).lines
+    assert where.slice(move.span) == "10 MOVE P1, SPEED -200 ' x"
+    assert where.slice(move.number_span) == "10"
+    assert where.slice(move.statement.span) == "MOVE P1, SPEED -200"
+    assert where.slice(move.statement.target.span) == "P1"
+    assert where.slice(move.statement.options[0].span) == "SPEED -200"
+    assert where.slice(move.statement.options[0].value.span) == "-200"
+    assert where.slice(move.comment.span) == "' x"
+    assert where.slice(load.statement.span) == "LOAD (1, 2, 3), 4"
+    assert where.slice(load.statement.cog.span) == "(1, 2, 3)"
+
+
+@pytest.mark.parametrize("end", ["\n", "\r", "\r\n"])
+def test_line_ends(end):
+    program = parsed(end.join(["MOVE P1", "MOVE P2", ""]))
+    assert [line.source_line for line in program.lines] == [1, 2]
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("MOVE", ("RBL111", 1, 5, 0)),
+        ("MOVE  ' go", ("RBL111", 1, 5, 0)),
+        ("MOVE P1 P2", ("RBL111", 1, 9, 2)),
+        ("MOVE 5", ("RBL111", 1, 6, 1)),
+        ("MOVE P1,", ("RBL111", 1, 9, 0)),
+        ("MOVE P1, SPED 3", ("RBL111", 1, 10, 4)),
+        ("MOVE P1, SPEED", ("RBL111", 1, 15, 0)),
+        ("MOVE P1 SPEED 3", ("RBL111", 1, 9, 5)),
+        ("MOVE LOAD", ("RBL111", 1, 6, 4)),
+        ("HAND", ("RBL111", 1, 5, 0)),
+        ("HAND ON 3", ("RBL111", 1, 9, 1)),
+        ("LOAD 1", ("RBL111", 1, 6, 1)),
+        ("LOAD (0, 0), 1", ("RBL111", 1, 11, 1)),
+        ("LOAD (0, 0, 60)", ("RBL111", 1, 16, 0)),
+        ("LOAD (0, 0, 60), ", ("RBL111", 1, 17, 0)),
+        ("10.5 MOVE P1", ("RBL111", 1, 1, 4)),
+        ("OFF", ("RBL111", 1, 1, 3)),
+        ("/", ("RBL111", 1, 1, 1)),
+        ("30 MOV P1", ("RBL112", 1, 4, 3)),
+        ("MOVEP1", ("RBL112", 1, 1, 6)),
+        ("__import__", ("RBL112", 1, 1, 10)),
+        ("MOVE P1, SPEED 1E999", ("RBL114", 1, 16, 5)),
+        ("HAND ON, " + "9" * 5000, ("RBL114", 1, 10, 5000)),
+        ("1234567890 MOVE P1", ("RBL114", 1, 1, 10)),
+        ("9" * 5000 + " MOVE P1", ("RBL114", 1, 1, 5000)),
+        ("HAND ON, 1_000", ("RBL115", 1, 10, 5)),
+        ("HAND ON, 1.2.3", ("RBL115", 1, 10, 5)),
+        ("HAND ON, 1E", ("RBL115", 1, 10, 2)),
+        ("HAND ON, 0x1F", ("RBL115", 1, 10, 4)),
+        ("LOAD (0, 0, 60), 800g", ("RBL115", 1, 18, 4)),
+        ("10MOVE P1", ("RBL115", 1, 1, 6)),
+        ("MOVEJ P1", ("RBL117", 1, 1, 5)),
+        ("10 delay 3", ("RBL117", 1, 4, 5)),
+        ("MOVE P1, ZONE 5", ("RBL117", 1, 10, 4)),
+        ("MOVE HERE", ("RBL117", 1, 6, 4)),
+        ("X = 5", ("RBL117", 1, 1, 1)),
+        ("*LOOP", ("RBL117", 1, 1, 1)),
+        ("SPEED 200", ("RBL117", 1, 1, 5)),
+        ("МOVE P1", ("RBL103", 1, 1, 1)),
+        ("MOVЕ P1", ("RBL103", 1, 4, 1)),
+        ("MOVE Р1", ("RBL103", 1, 6, 1)),
+        ("MOVE\u00a0P1", ("RBL103", 1, 5, 1)),
+        ("MOVE P1 ’ x", ("RBL103", 1, 9, 1)),
+        ("HAND ON, １", ("RBL103", 1, 10, 1)),
+        ("HAND ON, 1é", ("RBL103", 1, 11, 1)),
+        ("MOVE P1 ' a\u202eb", ("RBL103", 1, 12, 1)),
+        ("' \x1b[2J", ("RBL103", 1, 3, 1)),
+        ("\x0c", ("RBL103", 1, 1, 1)),
+    ],
+)
+def test_bad_lines(text, found):
+    assert parse_found(text) == [found]
+    (line,) = parse(source(text)).program.lines
+    assert isinstance(line.statement, Unparsed)
+
+
+@pytest.mark.parametrize(
+    ("text", "message", "hint"),
+    [
+        ("MOVE", "expected a point name after MOVE", "the form is MOVE"),
+        ("MOVE P1 P2", "expected ',' or the end of the line after P1, not P2", "one instruction on each line"),
+        ("MOVE P1 SPEED 3", "expected ',' or the end of the line after P1, not SPEED", "a comma before SPEED"),
+        ("MOVE P1, SPED 3", "expected SPEED, ACCEL or TIME after ',', not SPED", "did you mean SPEED?"),
+        ("MOVE P1, SPEED", "expected a number after SPEED", "the form is MOVE"),
+        ("MOVE LOAD", "expected a point name after MOVE, not LOAD", "cannot be a name"),
+        ("hand", "expected ON or OFF after HAND", "the form is HAND"),
+        ("HAND OPEN", "expected ON or OFF after HAND, not OPEN", "HAND OFF opens the hand"),
+        ("LOAD 1", "expected '(' after LOAD, not 1", "the form is LOAD (x, y, z), mass"),
+        ("10.5 MOVE P1", "expected an instruction, not 10.5", "whole number"),
+        ("MOV P1", "unknown instruction 'MOV'", "did you mean MOVE?"),
+        ("HANDON", "unknown instruction 'HANDON'", "did you mean HAND ON?"),
+        ("movep1", "unknown instruction 'movep1'", "leave a space: MOVE P1"),
+        ("OPEN", "unknown instruction 'OPEN'", "HAND OFF opens the hand"),
+        ("QQQQ", "unknown instruction 'QQQQ'", "The instructions are MOVE, LOAD"),
+        ("MOVEJ P1", "MOVEJ is not in this edition yet", "MOVE, LOAD"),
+        ("X = 5", "assignment to X is not in this edition yet", "MOVE, LOAD"),
+        ("HAND ON, 1_000", "'1_000' is not a number", "write 1000"),
+        ("LOAD (0, 0, 60), 800g", "'800g' is not a number", "masses in kg"),
+        ("10MOVE P1", "'10MOVE' is not a number", "leave a space"),
+        ("МOVE P1", "suspicious character U+041C CYRILLIC CAPITAL LETTER EM", "looks like 'M'"),
+        ("' \u202e", "suspicious character U+202E RIGHT-TO-LEFT OVERRIDE", "direction"),
+    ],
+)
+def test_messages_speak_of_the_language(text, message, hint):
+    diagnostic = only(text)
+    assert diagnostic.message == message
+    assert hint in diagnostic.hint
+
+
+def test_a_long_word_is_cut_in_the_message():
+    assert len(only("M" * 9000).message) < 100
+
+
+def test_comments_may_hold_any_script():
+    parsed("MOVE P1 ' 点へ移動 é Привет 👩‍🏭\nREM ’ × −")
+
+
+def test_several_errors_in_one_pass():
+    text = "10 MOV P1\n20 MOVE P1\n30 MOVE\n40 HAND ON\n50 LOAD (1, 2), 3\n"
+    assert parse_found(text) == [("RBL112", 1, 4, 3), ("RBL111", 3, 8, 0), ("RBL111", 5, 14, 1)]
+    program = parse(source(text)).program
+    assert [line.number for line in program.lines] == [10, 20, 30, 40, 50]
+    assert isinstance(program.lines[1].statement, Move)
+    assert program.lines[0].statement == Unparsed(text="MOV P1")
+
+
+def test_mixed_line_ends_are_an_information_at_the_first_other_one():
+    result = parse(source("MOVE P1\nMOVE P2\r\nMOVE P3\r"))
+    (item,) = result.diagnostics
+    assert (item.code, item.severity, item.span) == ("RBL110", Severity.INFO, Span(15, 15))
+    assert len(result.program.statements) == 3
+
+
+def nested(depth):
+    return "LOAD " + "(" * depth
+
+
+def test_nesting_is_bounded_before_parsing():
+    assert parse_found(nested(MAX_DEPTH))[0][0] == "RBL111"
+    assert parse_found(nested(MAX_DEPTH + 1)) == [("RBL108", 1, 6 + MAX_DEPTH, 1)]
+    assert parse_found(nested(100_000)) == [("RBL108", 1, 6 + MAX_DEPTH, 1)]
+
+
+def test_signs_are_nesting():
+    parsed("HAND ON, " + "-" * MAX_DEPTH + "1")
+    assert parse_found("HAND ON, " + "- " * 100_000 + "1") == [("RBL108", 1, 10 + 2 * MAX_DEPTH, 1)]
+
+
+def test_nesting_in_a_comment_does_not_count():
+    parsed("MOVE P1 ' " + "(-" * 1000 + "\nREM " + "-" * 5000)
+
+
+def test_long_expression():
+    text = "HAND ON, " + "1+" * 100_000 + "1"
+    assert [item[:3] for item in parse_found(text)] == [("RBL109", 1, 1)]
+
+
+def test_line_length_limit_is_exact():
+    parsed("'" * MAX_LINE)
+    assert parse_found("'" * (MAX_LINE + 3)) == [("RBL105", 1, MAX_LINE + 1, 3)]
+
+
+def test_source_size_limit_is_exact():
+    parsed("\n" * 1_000_000)
+    assert parse_found("\n" * 1_000_001) == [("RBL106", 1, 1, 0)]
+
+
+def test_the_list_of_problems_is_bounded():
+    result = parse(source("MOV\n" * 5000))
+    assert len(result.diagnostics) == MAX_DIAGNOSTICS + 1
+    assert result.diagnostics[-1].code == "RBL107"
+
+
+def test_one_parser_for_the_process():
+    assert parser_module._parser() is parser_module._parser()
+
+
+def test_the_listing_of_1992():
+    path = Path(__file__).parents[2] / "programs" / "pick_and_place.rbl"
+    program = parsed(path.read_text(encoding="utf-8"))
+    kinds = [type(line.statement) for line in program.statements]
+    assert kinds == [Load, Hand, Move, Hand, Load, Move, Move, Hand, Load, Move, Move]
+    assert [line.number for line in program.statements] == list(range(10, 111, 10))

@@ -1,0 +1,99 @@
+"""Experiment A3 of spec/controller.md: what the background costs is paid by the background alone."""
+
+import numpy as np
+import pytest
+
+from runtime.areas import Areas
+from runtime.dynamics.task import StepCosts, dynamics_task
+from runtime.robot.loader import load_builtin
+from runtime.robot.model import ArmModel
+from runtime.robot.payload import Payload
+from runtime.scheduler import IdleProcessor
+
+PERIOD_US = 8000
+TICK_US = 1000
+
+
+class Bench:
+    """The dynamics task alone on a processor whose encoders turn a little at every servo tick."""
+
+    def __init__(self, Ci_us: int, Cd_us: int) -> None:
+        self.Ci_us = Ci_us
+        self.q = np.array([0.1, 0.8, -1.2, 0.3, 0.5, 0.2])
+        self.model = ArmModel(load_builtin("puma560"))
+        self.areas = Areas(6, self.q)
+        self.refreshes: list[tuple[int, int, int]] = []
+        self.readings: list[float] = []
+        self.interrupts: list[int] = []
+        self.cpu = IdleProcessor(
+            lambda cpu: dynamics_task(
+                self.areas, self.model, StepCosts.of_axis(Cd_us), self.read, lambda: cpu.now_us
+            )
+        )
+
+    def read(self) -> np.ndarray:
+        self.readings.append(float(self.q[0]))
+        return self.q
+
+    def run(self, cycles: int) -> None:
+        seen = [cell.version for cell in self.areas.ita]
+        for cycle in range(cycles):
+            self.interrupts.append(self.cpu.now_us)
+            self.cpu.begin_cycle(self.Ci_us)
+            for tick in range(PERIOD_US // TICK_US):
+                self.q = self.q + 1e-4
+                self.cpu.advance(cycle * PERIOD_US + (tick + 1) * TICK_US)
+                for axis, cell in enumerate(self.areas.ita):
+                    if cell.version != seen[axis]:
+                        seen[axis] = cell.version
+                        self.refreshes.append((axis, self.cpu.now_us, cell.read_us))
+
+
+@pytest.mark.parametrize(
+    ("Ci_ms", "Cd_ms", "refresh_ms", "monolithic_ms"),
+    [(5, 2.5, 40.0, 20.0), (5, 4, 64.0, 29.0), (3, 1, 9.6, 9.0), (7, 3, 144.0, 25.0)],
+)
+def test_refresh_time_follows_the_formula_and_the_period_stays(Ci_ms, Cd_ms, refresh_ms, monolithic_ms):
+    bench = Bench(int(Ci_ms * 1000), int(Cd_ms * 1000))
+    bench.run(cycles=1800)
+    of_axis_2 = [t for axis, t, _ in bench.refreshes if axis == 2]
+    assert np.mean(np.diff(of_axis_2)) / 1000.0 == pytest.approx(refresh_ms, rel=0.01)
+    assert set(np.diff(bench.interrupts)) == {PERIOD_US}
+    assert bench.cpu.overruns == 0
+    assert Ci_ms + 6 * Cd_ms == monolithic_ms > 8.0
+
+
+def test_every_axis_reads_its_own_angles():
+    bench = Bench(5000, 2500)
+    bench.run(cycles=30)
+    assert [axis for axis, _, _ in bench.refreshes[:6]] == [0, 1, 2, 3, 4, 5]
+    assert (np.diff([read_us for _, _, read_us in bench.refreshes[:6]]) >= 2500).all()
+    assert (np.diff(bench.readings[:6]) > 0.0).all()
+
+
+def test_a_step_longer_than_the_idle_time_goes_on_in_the_next_cycle():
+    bench = Bench(7000, 24_000)  # one axis takes 24 cycles of 1 ms idle time each
+    bench.run(cycles=25)
+    assert [(axis, t) for axis, t, _ in bench.refreshes] == [(0, 24 * PERIOD_US)]
+
+
+def test_a_load_reaches_the_axes_one_by_one_within_one_refresh():
+    bench = Bench(3000, 1000)
+    bench.run(cycles=3)
+    before = [cell.D for cell in bench.areas.ita]
+    bench.areas.declare(Payload(mass=2.3, cog=np.array([0.0, 0.0, 0.095])))
+    versions = []
+    for _ in range(3):
+        bench.cpu.begin_cycle(3000)
+        bench.cpu.advance(bench.cpu.now_us + PERIOD_US)
+        versions.append(sum(cell.payload_version == 1 for cell in bench.areas.ita))
+    assert versions[0] not in (0, 6)
+    assert versions[1] == 6
+    assert all(cell.D > old for cell, old in list(zip(bench.areas.ita, before, strict=True))[:5])
+
+
+def test_a_foreground_longer_than_the_period_is_counted_and_starves_the_background():
+    bench = Bench(9000, 1000)
+    bench.run(cycles=10)
+    assert bench.cpu.overruns == 9
+    assert bench.refreshes == []

@@ -1,0 +1,125 @@
+"""Experiments A4 and A5 of spec/controller.md on one rigid axis with an ideal current loop."""
+
+import math
+
+import numpy as np
+import pytest
+
+from runtime.servo.law import Gains, ServoLaw
+
+SMALLEST, LARGEST = 2.341, 9.680
+MIDDLE = 0.5 * (SMALLEST + LARGEST)
+KP, KV, KTN = 20.0, 80.0, 14.0
+
+
+def step_response(D_model, D_true, *, tick_s=5e-4, Kf=0.0, Ka=0.0, source="command", T_model=0.0, T_true=0.0,
+                  size=0.1, seconds=1.5):  # fmt: skip
+    """Return alpha at every tick of a step; the arm between ticks is integrated exactly (constant torque)."""
+    one = np.ones(1)
+    gains = Gains(Kp=KP * one, Kv=KV * one, Ktn=KTN * one, rotor=0.0 * one, Kf=Kf, Ka=Ka, source=source)
+    law = ServoLaw(gains, np.zeros(1), tick_s)
+    law.update(np.array([D_model]), np.array([T_model]))
+    theta, zero = np.array([size]), np.zeros(1)
+    q, dq, out = 0.0, 0.0, []
+    for _ in range(round(seconds / tick_s)):
+        current = float(law.current(theta, zero, zero, np.array([q]))[0])
+        ddq = (KTN * current - T_true) / D_true
+        q, dq = q + dq * tick_s + 0.5 * ddq * tick_s**2, dq + ddq * tick_s
+        out.append(q)
+        if not abs(q) < 1e3:
+            break
+    return np.array(out)
+
+
+def overshoot(alpha, size=0.1):
+    return max(0.0, float(alpha.max()) / size - 1.0)
+
+
+def settling(alpha, tick_s=5e-4, size=0.1):
+    outside = np.flatnonzero(np.abs(alpha - size) > 0.02 * size)
+    return (outside[-1] + 1) * tick_s
+
+
+@pytest.mark.parametrize("D", [SMALLEST, MIDDLE, LARGEST])
+def test_scheduled_gain_answers_alike_at_every_inertia(D):
+    alpha = step_response(D, D)
+    assert overshoot(alpha) < 0.001
+    assert settling(alpha) == pytest.approx(0.147, abs=0.0015)
+
+
+def test_gain_fixed_for_the_smallest_inertia_swings_at_the_largest():
+    alpha = step_response(SMALLEST, LARGEST)
+    assert overshoot(alpha) == pytest.approx(0.17, abs=0.005)
+    assert settling(alpha) == pytest.approx(0.41, abs=0.01)
+    assert 0.5 * math.sqrt(KV / KP * SMALLEST / LARGEST) == pytest.approx(0.49, abs=0.005)
+
+
+def test_gain_fixed_for_the_middle_inertia_still_swings():
+    assert overshoot(step_response(MIDDLE, LARGEST)) == pytest.approx(0.017, abs=0.003)
+
+
+def test_gain_fixed_for_the_largest_inertia_is_slow_at_the_smallest():
+    alpha = step_response(LARGEST, SMALLEST)
+    assert overshoot(alpha) < 0.001
+    assert settling(alpha) == pytest.approx(0.186, abs=0.002)
+
+
+def test_gain_fixed_for_the_largest_inertia_diverges_at_an_8_ms_servo():
+    assert KV * LARGEST / SMALLEST * 8e-3 == pytest.approx(2.65, abs=0.01)
+    assert np.abs(step_response(LARGEST, SMALLEST, tick_s=8e-3)).max() > 100.0
+    scheduled = step_response(SMALLEST, SMALLEST, tick_s=8e-3)
+    assert settling(scheduled, tick_s=8e-3) == pytest.approx(0.160, abs=0.008)
+
+
+@pytest.mark.parametrize(("Kf", "expected"), [(0.3, 0.044), (0.6, 0.255), (0.9, 0.74)])
+def test_measured_velocity_feed_forward_takes_damping_away(Kf, expected):
+    alpha = step_response(SMALLEST, SMALLEST, Kf=Kf, source="measured")
+    assert overshoot(alpha) == pytest.approx(expected, abs=0.02)
+
+
+def test_measured_velocity_feed_forward_of_one_never_settles():
+    alpha = step_response(SMALLEST, SMALLEST, Kf=1.0, source="measured", seconds=4.0)
+    assert np.ptp(alpha[-1000:]) > 0.19
+
+
+def test_measured_acceleration_feed_forward_of_one_is_unstable():
+    assert np.abs(step_response(SMALLEST, SMALLEST, Ka=1.05, source="measured")).max() > 10.0
+
+
+@pytest.mark.parametrize("miss", [7.0, -3.0])
+def test_gravity_droop_follows_the_formula(miss):
+    alpha = step_response(SMALLEST, SMALLEST, T_model=30.0, T_true=30.0 + miss, seconds=3.0)
+    assert 0.1 - alpha[-1] == pytest.approx(miss / (KV * KP * SMALLEST), rel=0.01)
+
+
+def test_a_command_in_motion_is_followed_without_lag_by_commanded_feed_forward():
+    """With Kf = Ka = 1, exact D and rest at the start, only the half-tick of the speed estimate is left."""
+    one, tick_s = np.ones(1), 5e-4
+    law = ServoLaw(Gains(Kp=KP * one, Kv=KV * one, Ktn=KTN * one, rotor=0.0 * one), np.zeros(1), tick_s)
+    law.update(np.array([LARGEST]), np.zeros(1))
+    q, dq, worst = 0.0, 0.0, 0.0
+    for k in range(4000):
+        t = k * tick_s
+        theta, beta, gamma = 0.1 * (1 - math.cos(3 * t)), 0.3 * math.sin(3 * t), 0.9 * math.cos(3 * t)
+        worst = max(worst, abs(theta - q))
+        current = float(law.current(theta * one, beta * one, gamma * one, np.array([q]))[0])
+        ddq = KTN * current / LARGEST
+        q, dq = q + dq * tick_s + 0.5 * ddq * tick_s**2, dq + ddq * tick_s
+    assert worst < 2e-5
+
+
+def test_the_law_broadcasts_over_leading_dimensions():
+    n, runs = 6, 5
+    rng = np.random.default_rng(3)
+    gains = Gains(Kp=np.full(n, KP), Kv=np.full(n, KV), Ktn=np.full(n, KTN), rotor=rng.uniform(0, 1, n))
+    alpha0, alpha1, D, T = (rng.normal(size=(runs, n)) for _ in range(4))
+    theta, beta, gamma = (rng.normal(size=(runs, n)) for _ in range(3))
+    together = ServoLaw(gains, alpha0, 1e-3)
+    together.update(D, T)
+    all_at_once = together.current(theta, beta, gamma, alpha1).copy()
+    for run in range(runs):
+        alone = ServoLaw(gains, alpha0[run], 1e-3)
+        alone.update(D[run], T[run])
+        np.testing.assert_array_equal(
+            all_at_once[run], alone.current(theta[run], beta[run], gamma[run], alpha1[run])
+        )
