@@ -6,6 +6,7 @@ the whole program is planned once (``motion_check``), so a plannable fault is fo
 """
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -54,6 +55,8 @@ class Session:
         self._progress = progress or (lambda statement, time_us: None)
         self._stop_requested = False
         cell, profile = project.cell, project.profile
+        if not physics:  # the ideal arm has no friction, so there is none to compensate
+            profile = replace(profile, servo=replace(profile.servo, friction_compensation=0.0))
         self._kinematics = Kinematics(cell.robot)
         clock = PacedClock(profile.period_us) if realtime else VirtualClock()
         self.controller = Controller(

@@ -93,11 +93,13 @@ class FineInterpolator:
         return bool((self._points[1:] == self._points[0]).all())
 
     def expand(self, setpoints: Array) -> Array:
-        """Return (3, N * ticks, n) for a whole sequence (N + 1, n) that starts and ends at rest.
+        """Return (3, (N + 2) * ticks, n) for a whole sequence (N + 1, n) that starts and ends at rest.
 
-        The same numbers as pushing them one by one; used by the planner to check limits between set-points.
+        The same numbers as pushing the set-points after the first one by one and then the last one twice more: what
+        the servo sees of a move, with the segments in which it leaves and enters rest. Used by the planner.
         """
-        padded = np.concatenate([setpoints[:1], setpoints, setpoints[-1:]])
-        windows = np.stack([padded[k : k + len(setpoints) - 1] for k in range(4)], axis=1)
-        out = (self._weights @ windows).reshape(len(windows), 3, self.ticks, -1)
-        return np.asarray(np.moveaxis(out, 1, 0).reshape(3, len(windows) * self.ticks, -1))
+        padded = np.concatenate([setpoints[:1], setpoints[:1], setpoints, setpoints[-1:], setpoints[-1:]])
+        segments = len(padded) - 3
+        windows = np.stack([padded[k : k + segments] for k in range(4)], axis=1)
+        out = (self._weights @ windows).reshape(segments, 3, self.ticks, -1)
+        return np.asarray(np.moveaxis(out, 1, 0).reshape(3, segments * self.ticks, -1))

@@ -33,6 +33,8 @@ MOST_SLOWDOWN = 20.0
 _NOTHING_TO_DO = 1e-9
 _MARGIN = 1.0 + 1e-6
 _ROUNDS = 12
+_WELL_USED = 0.99
+"""A slowed move is slow enough; when it also uses this much of the ruling limit it is not too slow either."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,23 +89,31 @@ class LinePlanner:
     def _within_limits(
         self, solver: "_LineSolver", limits: SpeedLimits, duration: float | None
     ) -> tuple[Array, Array, Slowdown | None]:
-        s = profile(limits, self._profile.period_s, duration)
-        asked = fastest = len(s) - 1
-        if duration is not None:
-            fastest = len(profile(limits, self._profile.period_s)) - 1
-        worst: tuple[int, str] = (0, "")
+        period_s = self._profile.period_s
+        s = profile(limits, period_s, duration)
+        asked = len(s) - 1
+        fastest = len(profile(limits, period_s)) - 1 if duration is not None else asked
+        too_fast, found, worst = 0, None, (0, "")  # most cycles that were too few; the plan that holds
         for _ in range(_ROUNDS):
             q = solver.joints(s)
             ratio, axis, quantity = self._excess(q)
-            stretch = (len(s) - 1) / asked
+            cycles = len(s) - 1
             if ratio <= 1.0:
-                return s, q, Slowdown(factor=stretch, axis=worst[0], quantity=worst[1]) if stretch > 1.0 else None
-            worst = (axis, quantity)
-            if stretch * ratio > MOST_SLOWDOWN:
+                found = s, q
+                if cycles == asked or ratio > _WELL_USED:
+                    break
+            else:
+                too_fast, worst = cycles, (axis, quantity)
+                if cycles * ratio > MOST_SLOWDOWN * asked:
+                    solver.refuse_singular(s, q, axis)
+            wanted = max(cycles * ratio * _MARGIN, too_fast + 1)
+            if found is not None and wanted >= len(found[0]) - 1:
                 break
-            factor = (len(s) - 1) / fastest * ratio * _MARGIN
-            s = profile(limits.slowed(factor), self._profile.period_s, duration)
-        solver.refuse_singular(s, solver.joints(s), worst[0])
+            s = profile(limits.slowed(wanted / fastest), period_s, duration)
+        if found is None:
+            solver.refuse_singular(s, solver.joints(s), worst[0])
+        factor = (len(found[0]) - 1) / asked
+        return *found, Slowdown(factor=factor, axis=worst[0], quantity=worst[1]) if factor > 1.0 else None
 
     def _excess(self, q: Array) -> tuple[float, int, str]:
         """Return (time factor needed, axis, quantity) of the worst violation at the servo ticks; <= 1 is none."""

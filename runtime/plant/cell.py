@@ -112,7 +112,7 @@ def parse_cell(source: Source, folder: Path | None = None) -> CellSpec:
     home = _home(table.table("home"), robot)
     hand = _hand(table.table("hand"))
     part_tables, obstacle_tables = (table.tables(key, required=False) for key in ("parts", "obstacles"))
-    _unique([*part_tables, *obstacle_tables])
+    _unique([*obstacle_tables, *part_tables])
     cell = CellSpec(
         robot=robot,
         home=home,

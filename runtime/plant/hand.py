@@ -64,7 +64,7 @@ def hand_body(hand: HandSpec, opening: float | None = None) -> Body:
 def _in_flange(hand: HandSpec, side: str, y: float) -> Body:
     own = finger_body(hand, side)
     R, p = hand.X_flange_tool[:3, :3], hand.X_flange_tool[:3, 3]
-    cog = p + R @ (own.cog + [0.0, finger_sign(side) * y, 0.0])
+    cog = p + R @ (own.cog + np.array([0.0, finger_sign(side) * y, 0.0]))
     return Body(mass=own.mass, cog=cog, inertia=R @ own.inertia @ R.T)
 
 

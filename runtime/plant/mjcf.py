@@ -12,15 +12,15 @@ A grasp is friction between pads and part and nothing else. Two errors of the si
 
 * Regularisation. What sticks creeps at v = R f / b; R = A (1 - d) / d for the impedance d and the inverse inertia
   A that the row sees, divided by ``impratio`` for friction (MuJoCo documentation, Computation, "Constraint
-  model"). With the values below that is under 1e-6 m/s for a part and 2e-7 rad/s for joint 2 under 10 N m.
+  model"). With the values below that is under 1e-6 m/s for a held part and 1e-6 rad/s for a joint at rest.
 * Curvature, which is far larger. The rows ask for J a = -b J v and leave out J' v, the difference of the
   accelerations that pad and part have at zero ``qacc``: a pad on a turning arm moves on an arc, a free part along
   a tangent. The relative speed u = J v then settles at J' v / b; the integrator, which steps with the new speed,
   adds (h / 2 - h) J' v to it. So the part drifts by J' v (1 / b - h / 2): 1.5 mm/s for each m/s2 with the contact
   time constant of 4 h, whatever ``impratio`` or ``noslip`` (both were tried: they change nothing). The drift
   vanishes at b h = 2, where u alternates undamped (its factor per step is 1 - b h); ``GRIP_DAMPING`` = 1.75
-  leaves an eighth of the drift of the stiffest ordinary contact and a factor of -0.75. tests/sim/test_plant_grasp.py
-  measures it. Substeps would have bought the same for 12 times the cost, a weld would have been no grasp.
+  leaves a seventh of the drift of the stiffest ordinary contact and a factor of -0.75. tests/sim/test_plant_grasp.py
+  measures it. Shorter steps would have bought the same for 20 times the cost; a weld would have been no grasp.
 
 The text is built here and never read from a user's file, so none of MJCF's own ways in (includes, plugins,
 meshes) exists (R22). Pure Python: MuJoCo is imported by ``mujoco_plant`` only. Read at start, no rate.
@@ -204,7 +204,7 @@ def _hand(flange: ET.Element, hand: HandSpec, timestep: float) -> None:
     size, X_tool_palm = palm_box(hand)
     X_flange_palm = hand.X_flange_tool @ X_tool_palm
     _geom(flange, "palm", "hand", X_flange_palm, type="box", size=_row(size / 2.0), rgba="0.3 0.32 0.35 1")
-    ET.SubElement(flange, "site", name="tool", size="0.003", **_place(hand.X_flange_tool))
+    ET.SubElement(flange, "site", {"name": "tool", "size": "0.003", **_place(hand.X_flange_tool)})
     for side in FINGERS:
         _finger(flange, hand, side, timestep)
 
@@ -295,14 +295,12 @@ def _actuators(root: ET.Element, spec: RobotSpec, with_hand: bool) -> None:
 
 def _geom(parent: ET.Element, name: str, group: str, X: Array | None = None, **attributes: str) -> None:
     contype, conaffinity = COLLIDES.get(group, NOTHING)
-    place = {} if X is None else _place(X)
-    ET.SubElement(
-        parent, "geom", name=name, contype=str(contype), conaffinity=str(conaffinity), **place, **attributes
-    )
+    given = {"name": name, "contype": str(contype), "conaffinity": str(conaffinity), **attributes}
+    ET.SubElement(parent, "geom", given if X is None else given | _place(X))
 
 
 def _body(parent: ET.Element, name: str, X: Array) -> ET.Element:
-    return ET.SubElement(parent, "body", name=name, **_place(X))
+    return ET.SubElement(parent, "body", {"name": name, **_place(X)})
 
 
 def _inertial(parent: ET.Element, body: Body) -> None:

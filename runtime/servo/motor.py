@@ -46,8 +46,8 @@ class Motors:
     def torque(self, command: Array, out: Array) -> None:
         """Follow a current command (..., n) A for one tick and write the joint torque, N m, to ``out``."""
         limited = self._limited
-        minimum(command, self.max_current, limited)
-        maximum(limited, self._min_current, limited)
+        minimum(command, self.max_current, out=limited)
+        maximum(limited, self._min_current, out=limited)
         subtract(limited, self.i, limited)
         multiply(limited, self._share, limited)
         add(self.i, limited, self.i)

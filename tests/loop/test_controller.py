@@ -1,0 +1,226 @@
+"""The controller on the ideal arm: pipeline, idle budget, gains and what happens when a hand-over goes bad."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from robolang.project import builtin_cell
+from runtime.controller import Controller
+from runtime.faults import Fault
+from runtime.frames import Array
+from runtime.motion.commands import MoveLinear
+from runtime.plant.rigid_plant import RigidPlant
+from runtime.profile import Profile, ServoOptions
+from runtime.robot.payload import Payload
+
+CELL = builtin_cell()
+IDEAL = ServoOptions(friction_compensation=0.0)
+"""The ideal arm has no friction to compensate."""
+
+
+def controller(profile: Profile | None = None, plant=None, clock=None, servo: ServoOptions = IDEAL) -> Controller:
+    profile = dataclasses.replace(profile or Profile(), servo=dataclasses.replace(servo, friction_compensation=0.0))
+    plant = plant or RigidPlant(CELL.robot, CELL, profile.tick_s)
+    return Controller(CELL.robot, plant, profile, CELL.hand.X_flange_tool, clock)
+
+
+def down(robot: Controller, dz: float = -0.1) -> MoveLinear:
+    X = robot.tool_poses(np.array(robot.areas.ina))
+    X[2, 3] += dz
+    return MoveLinear(X_world_tool=X)
+
+
+def signals(robot: Controller) -> dict[str, Array]:
+    return robot.recorder.signals(robot.tool_poses)
+
+
+def carried_payload() -> Payload:
+    return Payload(mass=CELL.hand.mass, cog=CELL.hand.cog)
+
+
+def test_a_set_point_is_sent_one_cycle_after_it_was_computed_and_played_one_cycle_later():
+    robot = controller()
+    plan = robot.move(down(robot))
+    for _ in range(5):
+        robot.cycle()
+    log = signals(robot)
+    np.testing.assert_array_equal(log["q_plan"][0], plan.q[0])
+    np.testing.assert_array_equal(log["q_plan"][8], plan.q[1])
+    np.testing.assert_array_equal(log["q_plan"][16], plan.q[2])
+    np.testing.assert_allclose(log["q_cmd"][23], plan.q[1], atol=1e-15)  # end of cycle 2
+
+
+def test_the_command_ends_at_rest_exactly_at_the_end_of_the_plan():
+    robot = controller()
+    plan = robot.move(down(robot))
+    while robot.moving:
+        robot.cycle()
+    log = signals(robot)
+    np.testing.assert_array_equal(robot.areas.ina, plan.q[-1])
+    np.testing.assert_allclose(log["q_cmd"][-1], plan.q[-1], atol=1e-15)
+    assert np.abs(log["dq_cmd"][-1]).max() < 1e-12
+    assert robot.recorder.cycle == len(plan.q) - 1 + 4
+
+
+def test_interpolation_takes_its_time_from_the_dynamics_task():
+    robot = controller(Profile(interpolation_cost_us=5000, axis_cost_us=2500))
+    robot.load(carried_payload())
+    robot.move(down(robot, -0.18))
+    while robot.moving:
+        robot.cycle()
+    moving_ms = robot.areas.mean_refresh_us / 1000.0
+    assert moving_ms == pytest.approx(40.0, rel=0.15)  # 6 * 2.5 * 8 / 3
+    idle = controller(Profile(interpolation_cost_us=5000, axis_cost_us=2500))
+    for _ in range(50):
+        idle.cycle()
+    assert idle.areas.mean_refresh_us == pytest.approx(15_000)  # nothing to interpolate: 6 * 2.5
+
+
+def test_a_starved_task_leaves_old_loads_in_use_and_their_age_shows_it():
+    robot = controller(Profile(interpolation_cost_us=8000))
+    robot.move(down(robot))
+    while robot.moving:
+        robot.cycle()
+    age = signals(robot)["D_age"]
+    assert age.max() > 100.0
+    assert np.array_equal(age, signals(robot)["T_age"])
+
+
+def test_a_right_load_holds_the_arm_still_and_a_missing_one_lets_it_sag():
+    still, sagging = controller(), controller()
+    still.load(carried_payload())
+    for robot in (still, sagging):
+        for _ in range(125):
+            robot.cycle()
+    assert np.degrees(still.position_error) < 0.0005
+    kp_kv = CELL.robot.axes[1].bandwidths.position * CELL.robot.axes[1].bandwidths.velocity
+    cell = sagging.areas.ita[1]
+    missing = still.areas.ita[1].T - cell.T
+    inertia = cell.D + CELL.robot.axes[1].motor.reflected_inertia
+    droop = (sagging.recorder.signals(sagging.tool_poses)["q_cmd"] - signals(sagging)["q_fb"])[-1, 1]
+    assert droop == pytest.approx(missing / (kp_kv * inertia), rel=0.01)  # spec/controller.md 1.8
+    assert abs(np.degrees(droop)) > 0.01
+
+
+@pytest.mark.parametrize("tick_us", [250, 500, 1000])
+def test_every_servo_period_follows_the_same_path(tick_us):
+    robot = controller(Profile(tick_us=tick_us))
+    robot.load(carried_payload())
+    robot.move(down(robot))
+    worst = 0.0
+    while robot.moving:
+        robot.cycle()
+        worst = max(worst, robot.position_error)
+    assert np.degrees(worst) < 0.02
+
+
+def test_fixed_gains_take_the_middle_of_the_inertia_range():
+    robot = controller(servo=ServoOptions(mode="fixed"))
+    lows, highs = 1.55, 5.6
+    assert lows < robot.servo._D_fixed[0] < highs
+    for _ in range(5):
+        assert robot.cycle()
+
+
+def test_a_refused_move_changes_nothing_and_the_next_one_runs():
+    robot = controller()
+    before = np.array(robot.areas.ina)
+    with pytest.raises(Fault, match="RBL410"):
+        robot.move(down(robot, -3.0))
+    assert not robot.moving
+    np.testing.assert_array_equal(robot.areas.ina, before)
+    robot.move(down(robot))
+    assert robot.moving
+    with pytest.raises(RuntimeError):
+        robot.move(down(robot))
+
+
+class BrokenPlant(RigidPlant):
+    """An ideal arm whose encoder reading, or whose own state, becomes NaN at a given tick."""
+
+    def __init__(self, at_tick: int, what: str) -> None:
+        super().__init__(CELL.robot, CELL)
+        self.at_tick, self.what, self.count = at_tick, what, 0
+
+    def step(self, tau: Array) -> bool:
+        self.count += 1
+        if self.count == self.at_tick and self.what == "state":
+            self.dq[2] = np.nan
+        ok = super().step(tau)
+        if self.count == self.at_tick and self.what == "angle":
+            self.q[1] = np.nan
+        return ok
+
+
+@pytest.mark.parametrize(
+    ("what", "named", "axis"), [("state", "state of the physics", None), ("angle", "detected angle q_fb of J2", 1)]
+)
+def test_a_state_that_is_not_finite_is_caught_in_its_tick_named_and_latched(what, named, axis):
+    robot = controller(plant=BrokenPlant(at_tick=21, what=what))
+    robot.line = 70
+    robot.move(down(robot))
+    while robot.cycle():
+        pass
+    (alarm,) = robot.alarms
+    assert (alarm.code, alarm.line, alarm.axis) == ("RBL510", 70, axis)
+    assert named in alarm.message
+    assert alarm.tick == (20 if what == "state" else 21)
+    log = signals(robot)
+    assert len(log["t"]) == alarm.tick
+    assert all(np.isfinite(values).all() for values in log.values())
+    assert not robot.cycle()
+    assert len(robot.alarms) == 1
+
+
+@pytest.mark.parametrize(("where", "named"), [("ita", "torque tau_cmd of J4"), ("ina", "command q_cmd of J4")])
+def test_a_hand_over_that_is_not_finite_is_named(where, named):
+    robot = controller()
+    robot.cycle()
+    if where == "ita":
+        robot.processor.advance = lambda until_us: None  # keep the task from mending the cell
+        robot.areas.ita[3] = dataclasses.replace(robot.areas.ita[3], T=np.nan)
+    else:
+        robot.areas.ina = np.array(robot.areas.ina)
+        robot.areas.ina[3] = np.nan
+    assert not robot.cycle()
+    assert robot.alarms[0].code == "RBL510"
+    assert named in robot.alarms[0].message
+
+
+class LateClock:
+    """A wall clock that says every third cycle started late."""
+
+    def __init__(self) -> None:
+        self.calls = 0
+
+    def wait_until(self, t_us: int) -> bool:
+        self.calls += 1
+        assert t_us == (self.calls - 1) * 8000
+        return self.calls % 3 == 0
+
+
+def test_late_cycles_are_counted_as_overruns():
+    robot = controller(clock=LateClock())
+    for _ in range(9):
+        robot.cycle()
+    assert robot.overruns == 3
+
+
+def test_torque_never_passes_its_limit():
+    weak = dataclasses.replace(
+        CELL.robot,
+        axes=tuple(
+            dataclasses.replace(axis, limits=dataclasses.replace(axis.limits, torque=axis.limits.torque * 0.2))
+            for axis in CELL.robot.axes
+        ),
+    )
+    plant = RigidPlant(weak, CELL)
+    robot = Controller(weak, plant, Profile(servo=IDEAL), CELL.hand.X_flange_tool)
+    robot.move(down(robot))
+    while robot.moving:
+        robot.cycle()
+    tau = np.abs(signals(robot)["tau_sat"])
+    limit = weak.per_axis("limits", "torque")
+    assert (tau <= limit * (1 + 1e-12)).all()
+    assert np.isclose(tau.max(axis=0), limit).any()

@@ -1,0 +1,185 @@
+"""Experiment A1 of spec/controller.md and the figures of the main job, on MuJoCo.
+
+The 1992 listing runs once for the whole module; every figure that docs/measured.md quotes for it is asserted here.
+"""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from robolang.lowering import pose_si
+from robolang.project import builtin_cell, load_project
+from robolang.runlog import write_log
+from robolang.session import RunResult, Session
+from runtime.frames import Array, inverse, rotation_angle
+from runtime.recorder import Recorder
+from runtime.robot.kinematics import Kinematics
+
+ROOT = Path(__file__).parents[2]
+PROGRAM = ROOT / "programs" / "pick_and_place.rbl"
+HAND, HAND_AND_PART = 0.8, 2.3
+
+
+@pytest.fixture(scope="module")
+def session() -> Session:
+    return Session(load_project(PROGRAM))
+
+
+@pytest.fixture(scope="module")
+def result(session: Session) -> RunResult:
+    return session.run()
+
+
+def statement(result: RunResult, number: int) -> dict:
+    return next(entry for entry in result.report["statements"] if entry["number"] == number)
+
+
+def ticks(result: RunResult, number: int) -> np.ndarray:
+    return np.flatnonzero(result.log["line"] == number)
+
+
+def test_the_statements_run_in_the_order_of_the_listing(result):
+    words = [entry["text"].replace("HAND ", "").split(",")[0].split(" (")[0] for entry in result.report["statements"]]
+    assert words == ["LOAD", "OFF", "MOVE P1", "ON", "LOAD", "MOVE P2", "MOVE P3", "OFF", "LOAD", "MOVE P4", "MOVE P5"]
+    assert result.ok
+    starts = [entry["start_s"] for entry in result.report["statements"]]
+    assert starts == sorted(starts)
+
+
+def test_the_payload_area_holds_what_load_declared_line_by_line(result):
+    """SDA: the hand from line 10, hand and part from line 50, after the grasp and before the next move."""
+    log = result.log
+    for number, mass in {20: HAND, 30: HAND, 40: HAND, 60: HAND_AND_PART, 70: HAND_AND_PART, 80: HAND_AND_PART,
+                         100: HAND, 110: HAND}.items():  # fmt: skip
+        assert set(log["payload_mass"][ticks(result, number)]) == {mass}, number
+    history = [(entry["line"], entry["mass_kg"], entry["cog_mm"]) for entry in result.report["payload_history"]]
+    assert history == [(10, 0.8, [0, 0, 60]), (50, 2.3, [0, 0, 95]), (90, 0.8, [0, 0, 60])]
+
+
+def test_a_load_reaches_all_six_axes_within_one_refresh(result):
+    """From LOAD at line 50: the inertia in use of every axis is that of 2.3 kg one refresh and two cycles later."""
+    first = ticks(result, 60)[0]
+    refresh = result.report["dynamics"]["refresh_max_ms"]
+    assert refresh <= 12.0
+    before, after = result.log["D"][first], result.log["D"][first + int(refresh) + 16]
+    assert (after[:5] > before[:5] * 1.02).all()
+    assert after[5] == pytest.approx(before[5])  # on the axis of J6 the declared point mass has no inertia
+
+
+def test_refreshed_inertia_is_never_older_than_a_refresh_and_two_cycles(result):
+    refresh = result.report["dynamics"]["refresh_max_ms"]
+    assert result.log["D_age"][100:].max() <= refresh + 16.0
+    assert result.log["D_age"].min() >= 0.0
+
+
+def test_the_part_stands_where_p3_put_it(session, result):
+    """Within 1 mm and 0.5 deg of the pose that P3 gives to a part taken at P1."""
+    points = session.project.points
+    X_p1, X_p3 = (pose_si(points.get(name).pose) for name in ("P1", "P3"))
+    X_part = session.project.cell.parts[0].X_world_part
+    X_expected = X_p3 @ inverse(X_p1) @ X_part
+    X_actual = session.controller.plant.parts()["part"]
+    assert np.linalg.norm(X_actual[:3, 3] - X_expected[:3, 3]) < 1e-3
+    assert np.degrees(rotation_angle(X_actual[:3, :3], X_expected[:3, :3])) < 0.5
+    assert np.linalg.norm(X_actual[:3, 3] - X_part[:3, 3]) > 0.4
+
+
+def test_the_hand_held_the_part_and_let_it_go(session, result):
+    assert statement(result, 40)["notes"] == ["holds 'part'"]
+    assert session.controller.plant.hand().holding is None
+
+
+def planned_tool_points(result: RunResult, number: int) -> Array:
+    kinematics = Kinematics(builtin_cell().robot)
+    q = np.unique(result.log["q_plan"][ticks(result, number)], axis=0)
+    return (kinematics.forward(q) @ builtin_cell().hand.X_flange_tool)[:, :3, 3]
+
+
+@pytest.mark.parametrize("number", [30, 60, 70, 100, 110])
+def test_the_planned_path_of_every_move_is_the_straight_line(session, result, number):
+    run = next(run for run in session.record.statements if run.number == number)
+    deviation = run.path.deviation(planned_tool_points(result, number))
+    assert len(deviation) > 50
+    assert deviation.max() < 1e-9  # 1e-6 mm
+
+
+def test_the_command_never_passes_a_joint_limit(session, result):
+    spec = session.project.cell.robot
+    q, dq = result.log["q_cmd"], result.log["dq_cmd"]
+    ddq = np.diff(dq, axis=0) / 1e-3
+    assert ((spec.lower <= q) & (q <= spec.upper)).all()
+    assert (np.abs(dq) <= spec.per_axis("limits", "speed")).all()
+    assert (np.abs(ddq) <= spec.per_axis("limits", "acceleration")).all()
+
+
+def test_tracking_is_as_documented(result):
+    """The actual tool stays within the figures of docs/measured.md."""
+    for number in (30, 60, 70, 100, 110):
+        entry = statement(result, number)
+        assert entry["path_deviation_mm"] < 0.35
+        assert entry["tool_error_mm"] < 0.35
+        assert entry["joint_error_deg"] < 0.05
+        assert entry["peak_torque_pct"] < 60.0
+
+
+def test_every_documented_signal_is_in_the_log_with_ticks_first(result):
+    documented = re.findall(r"^``(.*?)  ", Recorder.__module__ and __import__("runtime.recorder").recorder.__doc__, re.M)
+    names = set(re.findall(r"``(\w+)``", "\n".join(f"``{line}" for line in documented)))
+    assert names == set(result.log)
+    assert {len(values) for values in result.log.values()} == {round(result.report["sim_time_s"] * 1000)}
+    assert all(np.isfinite(values).all() for values in result.log.values())
+
+
+def test_the_built_in_cell_is_the_cell_beside_the_program():
+    """The listing runs alike with its own files and, copied to an empty folder, on the built-in cell."""
+    for own, builtin in (("pick_and_place.cell.toml", "cell.toml"), ("pick_and_place.points.toml", "points.toml")):
+        texts = [(ROOT / "programs" / own).read_text(), (ROOT / "robolang" / "builtin" / builtin).read_text()]
+        assert texts[0].splitlines()[1:] == texts[1].splitlines()[1:]
+
+
+def run_in(folder: Path, name: str, **environment: str) -> tuple[bytes, bytes, dict]:
+    npz, report = folder / f"{name}.npz", folder / f"{name}.json"
+    subprocess.run(
+        [sys.executable, "-m", "robolang", "run", "pick.rbl", "--quiet", "--log", str(npz), "--report", str(report)],
+        cwd=folder, check=True, env={**os.environ, **environment},
+    )  # fmt: skip
+    values = json.loads(report.read_text())
+    for wall in ("wall_time_s", "realtime_factor"):
+        assert values.pop(wall) > 0.0
+    return npz.read_bytes(), report.read_bytes(), values
+
+
+def test_two_runs_give_the_same_bytes(tmp_path, result):
+    (tmp_path / "pick.rbl").write_text(PROGRAM.read_text())
+    one = run_in(tmp_path, "one", PYTHONHASHSEED="1", TZ="Asia/Tokyo", LC_ALL="C", OMP_NUM_THREADS="1")
+    two = run_in(tmp_path, "two", PYTHONHASHSEED="2", TZ="America/Lima", LC_ALL="C.UTF-8", OMP_NUM_THREADS="2")
+    assert one[0] == two[0]
+    assert one[2] == two[2]
+    write_log(tmp_path / "here.npz", result.log)
+    assert (tmp_path / "here.npz").read_bytes() == one[0]
+
+
+def test_a_forgotten_load_droops_and_a_right_one_does_not(tmp_path, result):
+    """A7: LOAD omitted, the command is the same and the arm hangs lower."""
+    text = PROGRAM.read_text()
+    forgotten = tmp_path / "forgotten.rbl"
+    forgotten.write_text(re.sub(r"(?m)^50 LOAD.*$", "", text))
+    other = Session(load_project(forgotten)).run()
+    carried = ticks(other, 70)
+    same = ticks(result, 70)[: len(carried)]
+    np.testing.assert_array_equal(other.log["q_plan"][carried[:100]], result.log["q_plan"][same[:100]])
+    assert statement(other, 70)["tool_error_mm"] > 3.0 * statement(result, 70)["tool_error_mm"]
+
+
+def test_without_physics_the_same_program_runs_on_the_ideal_arm(result):
+    ideal = Session(load_project(PROGRAM), physics=False).run()
+    assert ideal.ok
+    assert ideal.report["cycles"] == pytest.approx(result.report["cycles"], abs=5)
+    x, y, z = ideal.report["objects"]["part"]["pose_mm_deg"][:3]
+    assert (x, y, z) == pytest.approx((480.0, 220.0, 640.0), abs=0.2)

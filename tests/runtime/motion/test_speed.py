@@ -1,0 +1,53 @@
+"""Speed profiles: rest to rest, within the limits, in whole cycles, as fast as the limits allow."""
+
+import math
+
+import numpy as np
+import pytest
+
+from runtime.motion.speed import bound, profile
+
+PERIOD = 0.008
+
+
+@pytest.mark.parametrize("length", [0.0005, 0.02, 0.4, 2.0])
+def test_limits_hold_and_the_ends_are_exact(length):
+    limits = bound([(length, 0.5, 3.0, 30.0)], "jerk")
+    s = profile(limits, PERIOD)
+    v, a, j = (np.abs(np.diff(s, order)).max() / PERIOD**order for order in (1, 2, 3))
+    assert (s[0], s[-1]) == (0.0, 1.0)
+    assert v <= limits.speed * (1 + 1e-9)
+    assert a <= limits.acceleration * (1 + 1e-6)
+    assert j <= limits.jerk * (1 + 1e-3)
+
+
+@pytest.mark.parametrize(("length", "speed", "acceleration"), [(0.4, 0.5, 3.0), (0.05, 0.5, 3.0)])
+def test_trapezoid_takes_the_textbook_time(length, speed, acceleration):
+    """T = L/v + v/a with a plateau, 2 sqrt(L/a) without; then up to the next whole cycle."""
+    reached = length > speed**2 / acceleration
+    textbook = length / speed + speed / acceleration if reached else 2 * math.sqrt(length / acceleration)
+    s = profile(bound([(length, speed, acceleration, 1.0)], "trapezoid"), PERIOD)
+    assert len(s) - 1 == math.ceil(textbook / PERIOD)
+
+
+def test_jerk_limited_takes_the_textbook_time():
+    """T = L/v + v/a + a/j where speed and acceleration are both reached."""
+    s = profile(bound([(0.4, 0.5, 3.0, 30.0)], "jerk"), PERIOD)
+    assert len(s) - 1 == math.ceil((0.4 / 0.5 + 0.5 / 3.0 + 3.0 / 30.0) / PERIOD)
+
+
+def test_the_slower_of_position_and_orientation_rules():
+    limits = bound([(0.1, 0.5, 3.0, 30.0), (math.pi, 1.0, 4.0, 40.0)], "jerk")
+    assert limits.speed == pytest.approx(1.0 / math.pi)
+    assert bound([(0.0, 0.5, 3.0, 30.0), (math.pi, 1.0, 4.0, 40.0)], "jerk") == limits
+
+
+def test_a_path_without_extent_has_no_speed():
+    with pytest.raises(ValueError, match="extent"):
+        bound([(0.0, 1.0, 1.0, 1.0)], "jerk")
+
+
+def test_a_duration_stretches_but_never_shortens():
+    limits = bound([(0.4, 0.5, 3.0, 30.0)], "jerk")
+    assert len(profile(limits, PERIOD, 2.0)) - 1 == 250
+    assert len(profile(limits, PERIOD, 0.1)) == len(profile(limits, PERIOD))
