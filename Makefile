@@ -2,13 +2,14 @@
 # make test   the tests
 # make gates  style, types, import floors
 # make bench  ratios and start-up times, printed
+# make measured   every other figure of docs/measured.md, printed
 
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test gates bench clean
+.PHONY: demo test gates bench measured clean
 
 demo: $(READY)
 	$(BIN)/robolang run programs/pick_and_place.rbl
@@ -29,6 +30,9 @@ $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
 	touch $@
+
+measured: $(READY)
+	$(BIN)/python -m tests.bench.measure
 
 clean:
 	rm -rf $(VENV) out

@@ -1,20 +1,22 @@
 """A program with the files beside it: cell, taught points and controller profile, read and checked together.
 
-``NAME.rbl`` takes ``NAME.cell.toml``, else ``cell.toml`` of its folder, and ``NAME.points.toml``. With none of them
-it runs on the built-in cell: the default robot, a hand, a table and a part, with P1 to P5 taught (language.md).
+Which files those are is in ``beside``. With none of them a program runs on the built-in cell: the default robot, a
+hand, a table and a part, with P1 to P5 taught (docs/language.md).
 """
 
+import difflib
 from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
 
 import numpy as np
 
+from robolang.beside import cell_beside, taught_points
 from robolang.checker import check
 from robolang.diagnostics import Diagnostic, has_errors, in_order
 from robolang.nodes import Program
 from robolang.parser import parse
-from robolang.points import PointStore, load_points
+from robolang.points import PointStore
 from robolang.source import Source, read_program
 from runtime.faults import Code, Fault, register
 from runtime.plant.cell import CellSpec, load_cell, parse_cell
@@ -66,16 +68,18 @@ def load_project(path: Path | str, cell: Path | str | None = None, robot: str | 
     """
     source = read_program(path)
     where = Path(path)
-    cell_path = _cell_path(where, cell)
+    cell_path = Path(cell) if cell is not None else cell_beside(where)
     cell_spec = load_cell(cell_path) if cell_path is not None else builtin_cell()
     if robot is not None:
         cell_spec = _with_robot(cell_spec, load_any_robot(robot))
-    points = _points(where, cell_path is None, cell_spec.robot)
+    used = cell_spec.robot
+    points = taught_points(where, builtin=cell_path is None, robot=used.name, axes=used.n)
     profile = parse_profile(cell_spec.controller)
     if servo is not None:
         profile = replace(profile, servo=replace(profile.servo, mode=servo))
+    _check_gains(used, profile)
     parsed = parse(source)
-    found = check(parsed.program, points=points.names, rated_payload_kg=cell_spec.robot.rated_payload)
+    found = check(parsed.program, points=points.names, rated_payload_kg=used.rated_payload)
     return Project(
         source=source,
         program=parsed.program,
@@ -92,7 +96,13 @@ def load_any_robot(name: str) -> RobotSpec:
         return loader.load_builtin(name)
     if name.endswith(".toml"):
         return loader.load_robot(Path(name))
-    raise Fault("RBL708", f"there is no robot '{name}'", f"built in: {', '.join(loader.library())}")
+    near = difflib.get_close_matches(name, loader.library(), n=1)
+    guess = f"did you mean {near[0]}? " if near else ""
+    raise Fault(
+        "RBL708",
+        f"there is no robot '{name}'",
+        f"{guess}built in: {', '.join(loader.library())}; a robot file is named by its path, which ends in .toml",
+    )
 
 
 def builtin_cell() -> CellSpec:
@@ -104,23 +114,21 @@ def _builtin(name: str) -> str:
     return resources.files("robolang.builtin").joinpath(name).read_text("utf-8")
 
 
-def _cell_path(program: Path, given: Path | str | None) -> Path | None:
-    if given is not None:
-        return Path(given)
-    for candidate in (program.with_suffix(".cell.toml"), program.with_name("cell.toml")):
-        if candidate.exists() or candidate.is_symlink():
-            return candidate
-    return None
+def _check_gains(robot: RobotSpec, profile: Profile) -> None:
+    """Refuse bandwidths at which no sampled loop is stable: with period Ts its pole is 1 - K Ts, so K Ts < 2 (RBL616).
 
-
-def _points(program: Path, builtin: bool, robot: RobotSpec) -> PointStore:
-    beside = program.with_suffix(".points.toml")
-    if beside.exists() or beside.is_symlink():
-        return load_points(beside, robot=robot.name, axes=robot.n)
-    if not builtin:
-        return PointStore(path=str(beside))
-    with resources.as_file(resources.files("robolang.builtin").joinpath("points.toml")) as path:
-        return load_points(path, axes=robot.n)
+    Necessary, not sufficient: the current loop and the sampling of the speed take their share of it.
+    """
+    most = 2.0 / profile.tick_s
+    for index, axis in enumerate(robot.axes, start=1):
+        for name in ("position", "velocity"):
+            value = getattr(axis.bandwidths, name)
+            if not value < most:
+                raise Fault(
+                    "RBL616",
+                    f"{name}_bandwidth_rad_s = {value:g} of J{index} of {robot.name} cannot be stable at a servo "
+                    f"period of {profile.tick_s * 1e3:g} ms; it must be below {most:g}",
+                )
 
 
 def _with_robot(cell: CellSpec, robot: RobotSpec) -> CellSpec:

@@ -2,10 +2,12 @@
 
 ``.npz`` holds one array per signal of ``runtime.recorder``, first dimension the servo ticks. ``.mcap`` holds one
 protobuf message ``robolang.Sample`` per tick on the channel ``/controller``, with the schema inside, so a viewer
-that reads MCAP shows the fields by name. Both repeat byte for byte.
+that reads MCAP shows the fields by name; times are simulated, in ns from power-up. A run without a tick gives a valid
+file without a message. Both repeat byte for byte: neither carries the time of day.
 """
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import IO, Any
 
@@ -15,6 +17,7 @@ from robolang.storage import write_atomic
 from runtime.frames import Array
 
 SUFFIXES = (".npz", ".mcap")
+CHANNEL = "/controller"
 
 
 def write_log(path: Path, signals: Mapping[str, Array]) -> None:
@@ -30,18 +33,28 @@ def _write_npz(stream: IO[bytes], signals: Mapping[str, Array]) -> None:
 
 
 def _write_mcap(stream: IO[bytes], signals: Mapping[str, Array]) -> None:
-    from mcap_protobuf.writer import Writer
+    from mcap.writer import Writer
+    from mcap_protobuf.schema import register_schema
 
     message_class = _message_class(signals)
-    columns = {name: values.reshape(len(values), -1).tolist() for name, values in signals.items()}
-    scalars = {name for name, values in signals.items() if values.ndim == 1}
+    writer: Any = Writer(stream)  # the writer of mcap_protobuf would name the schema only with the first message
+    writer.start()
+    channel = writer.register_channel(CHANNEL, "protobuf", register_schema(writer, message_class))
     times_ns = np.rint(signals["t"] * 1e9).astype(np.int64).tolist()
-    with Writer(stream) as writer:
-        for row, time_ns in enumerate(times_ns):
-            fields: dict[str, Any] = {
-                name: column[row][0] if name in scalars else column[row] for name, column in columns.items()
-            }
-            writer.write_message("/controller", message_class(**fields), log_time=time_ns, publish_time=time_ns)
+    for time_ns, fields in zip(times_ns, _rows(signals), strict=True):
+        data = message_class(**fields).SerializeToString(deterministic=True)
+        writer.add_message(channel, log_time=time_ns, publish_time=time_ns, data=data)
+    writer.finish()
+
+
+def _rows(signals: Mapping[str, Array]) -> Iterator[dict[str, Any]]:
+    """Yield the fields of each tick: a number per scalar signal, a flat list per vector or matrix."""
+    columns = [
+        values.tolist() if values.ndim == 1 else values.reshape(len(values), math.prod(values.shape[1:])).tolist()
+        for values in signals.values()
+    ]
+    for row in zip(*columns, strict=True):
+        yield dict(zip(signals, row, strict=True))
 
 
 def _message_class(signals: Mapping[str, Array]) -> Any:

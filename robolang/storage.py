@@ -1,50 +1,89 @@
 """Writing results: a file is there whole or not at all.
 
 Data go to a temporary file in the same folder, are flushed to the disk and take the final name in one step. What
-cannot be written is a ``Fault`` RBL706, and the folder is tried before a run starts (promise R24).
+cannot be written is a ``Fault`` RBL706, and the folder is tried before a run starts. Only an ordinary
+file is ever replaced: not a device, a pipe or a folder, and of a link the file it leads to.
 """
 
 import json
+import math
 import os
+import stat
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import IO
+from typing import IO, NoReturn
 
 import robolang.codes  # noqa: F401 - RBL706 must be registered
 from runtime.faults import Fault
 
+_PROBE = bytes(4096)
+_PREFIX = ".robolang-"  # short: with the file's own name in it, a name of 255 characters could be checked, not written
+
 
 def check_writable(path: Path) -> None:
-    """Raise ``Fault`` RBL706 when a file of that name could not be written now."""
-    if path.is_dir():
-        raise Fault("RBL706", f"{path} is a folder")
+    """Raise ``Fault`` RBL706 when a file of that name could not be written now; leaves nothing behind."""
+    target = _target(path)
     try:
-        with tempfile.TemporaryFile(dir=path.parent or Path()):
-            pass
+        with tempfile.TemporaryFile(dir=target.parent, prefix=_PREFIX) as probe:
+            probe.write(_PROBE)  # a full disk lets a file be made and nothing be written to it
     except OSError as error:
-        raise Fault("RBL706", f"cannot write {path}: {error.strerror}") from None
+        _refuse(path, error)
 
 
 def write_atomic(path: Path, write: Callable[[IO[bytes]], object]) -> None:
     """Write a file with ``write(stream)``, then give it its name; ``Fault`` RBL706, with the old file untouched."""
+    target = _target(path)
     try:
-        handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent or Path())
+        handle, temporary = tempfile.mkstemp(prefix=_PREFIX, dir=target.parent)
     except OSError as error:
-        raise Fault("RBL706", f"cannot write {path}: {error.strerror}") from None
+        _refuse(path, error)
     try:
         with os.fdopen(handle, "wb") as stream:
             write(stream)
             stream.flush()
             os.fsync(stream.fileno())
         os.chmod(temporary, 0o666 & ~_umask())  # noqa: PTH101 - a Path would add nothing
-        Path(temporary).replace(path)
+        Path(temporary).replace(target)
     except OSError as error:
         Path(temporary).unlink(missing_ok=True)
-        raise Fault("RBL706", f"cannot write {path}: {error.strerror}") from None
+        _refuse(path, error)
     except BaseException:
         Path(temporary).unlink(missing_ok=True)
         raise
+
+
+def write_json(path: Path, value: object) -> None:
+    """Write strict JSON, indented, keys in their order, numbers in full; one that is not finite becomes null.
+
+    A file name that is not UTF-8 is kept as escapes, so that the report of a run is never lost for its name.
+    """
+    text = json.dumps(_strict(value), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    write_atomic(path, lambda stream: stream.write(text.encode("utf-8", "backslashreplace")))
+
+
+def _target(path: Path) -> Path:
+    """Return the file that ``path`` leads to, there or not; ``Fault`` RBL706 when it is not an ordinary one."""
+    try:
+        target = path.resolve()
+        mode = target.lstat().st_mode
+    except FileNotFoundError:
+        return target
+    except (OSError, RuntimeError) as error:  # RuntimeError: a ring of links, before Python 3.13
+        _refuse(path, error)
+    if stat.S_ISDIR(mode):
+        raise Fault("RBL706", f"{path} is a folder", "Give the name of a file in it.")
+    if not stat.S_ISREG(mode):
+        raise Fault("RBL706", f"{path} is not an ordinary file", "Give the name of an ordinary file.")
+    if not os.access(target, os.W_OK, effective_ids=os.access in os.supports_effective_ids):
+        raise Fault("RBL706", f"{path} is read-only", "Give another name, or permit writing to the file.")
+    return target
+
+
+def _refuse(path: Path, error: Exception) -> NoReturn:
+    missing = isinstance(error, FileNotFoundError) and not path.parent.is_dir()
+    hint = f"Make the folder {path.parent} first." if missing else ""
+    raise Fault("RBL706", f"cannot write {path}: {getattr(error, 'strerror', None) or error}", hint) from None
 
 
 def _umask() -> int:
@@ -53,7 +92,9 @@ def _umask() -> int:
     return mask
 
 
-def write_json(path: Path, value: object) -> None:
-    """Write plain JSON, indented, keys in their order, numbers in full."""
-    text = json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
-    write_atomic(path, lambda stream: stream.write(text.encode("utf-8")))
+def _strict(value: object) -> object:
+    if isinstance(value, dict):
+        return {key: _strict(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_strict(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

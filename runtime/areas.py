@@ -1,4 +1,4 @@
-"""The memory areas through which tasks hand data to each other (spec/controller.md 1.2).
+"""The memory areas through which tasks hand data to each other (docs/architecture.md).
 
 =====  ==========================================  =======================  ============================
 area   contents                                    written by               read by

@@ -1,6 +1,6 @@
 """The controller: memory areas, 8 ms cycle, background task, servo and plant wired together.
 
-One call of ``cycle`` is one interpolation period (spec/controller.md 1.5 and 1.6):
+One call of ``cycle`` is one interpolation period (docs/timing.md):
 
     216 the interrupt suspends the dynamics task
     218 INA goes to the servos (through fine interpolation), 220 so does ITA
@@ -194,7 +194,8 @@ class Controller:
                 axis = int(np.argmax(bad))
                 self.alarm("RBL510", f"the {name} of J{axis + 1} is {values[axis]}", axis)
                 return
-        self.alarm("RBL510", "the state of the physics is no longer valid after this tick")
+        why = self.plant.why_invalid()
+        self.alarm("RBL510", f"the state of the plant is no longer valid{': ' + why if why else ''}")
 
     def alarm(self, code: str, message: str, axis: int | None = None) -> None:
         """Latch an alarm at the running line and the current tick."""

@@ -4,7 +4,7 @@ One registry serves diagnostics of a program, errors of robot and cell files, re
 alarms of the running controller, so that a code means one thing everywhere. Each layer registers the codes it
 raises: the runtime its own below, the language front end its own in ``robolang.codes``.
 
-A *fault* (``Fault``) is raised where a request cannot be carried out; nothing has moved when it is raised. An
+A *fault* (``Fault``) is raised where a request cannot be carried out; the request itself has moved nothing. An
 *alarm* (``Alarm``) is a latched event of the running robot, kept in the report. Neither knows of source files:
 the session adds file, line and column.
 """
@@ -61,7 +61,7 @@ class Alarm:
 
 
 class Fault(Exception):  # noqa: N818 - the field calls it a fault
-    """A request that cannot be carried out, refused before anything moves.
+    """A request that cannot be carried out; it has changed nothing.
 
     ``code`` is registered, ``message`` says what is wrong with numbers and units, ``hint`` what would help.
     """
@@ -121,19 +121,13 @@ register(
         name="wrist-singularity",
         meaning="A straight move passes a configuration where the joints would have to turn infinitely fast, "
         "or reaches its end only with another arm or wrist configuration.",
-        remedy="Teach a via point away from J5 = 0, or move with the joints interpolated.",
+        remedy="Teach a via point away from J5 = 0, or teach the end in the wrist configuration of the start.",
     ),
     Code(
         code="RBL510",
         name="non-finite-state",
         meaning="A position, speed or torque became NaN or infinite: the simulation is no longer valid.",
         remedy="The last finite state is in the log. Look at masses, contacts and gains near that moment.",
-    ),
-    Code(
-        code="RBL511",
-        name="physics-unstable",
-        meaning="The physics engine reported that its state is no longer physical.",
-        remedy="The last valid state is in the log. Look at contacts and at what the arm ran into.",
     ),
     Code(
         code="RBL520",

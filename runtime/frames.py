@@ -2,8 +2,8 @@
 
 A pose ``X_a_b`` is a 4x4 homogeneous matrix that takes coordinates in frame b to frame a; names match like
 dominoes (``X_world_base @ X_base_tool``). Orientation at the surface is RX RY RZ about the fixed X, Y, Z axes in
-that order: ``R = Rz @ Ry @ Rx`` (language.md). All functions broadcast over leading dimensions unless they say
-otherwise. Source of the principal axis: spec/controller.md 1.5, steps 200-208.
+that order: ``R = Rz @ Ry @ Rx`` (docs/language.md). All functions broadcast over leading dimensions unless they say
+otherwise. Source of the principal axis: JPH06190750A Fig 6, steps 200-208.
 """
 
 import math
@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
-_NO_ROTATION = 1e-12
+_NO_ROTATION = 1e-200
+"""Below this the sine of an angle has no direction; the angle is then zero to the last bit."""
 
 
 def frozen(values: ArrayLike) -> Array:
@@ -45,7 +46,7 @@ def principal_axis(R_from: Array, R_to: Array) -> tuple[Array, float]:
 
     ``w`` is the axis times sin(Theta). Where cos(Theta) is negative w loses its digits (at Theta = pi it is
     zero), so there the axis comes from the symmetric part, ``k k' = (sym(M) - cos I) / (1 - cos)``, and w gives
-    only its sign. Source: spec/controller.md 1.5, steps 200 and 202. Single poses, 3x3.
+    only its sign. Source: JPH06190750A Fig 6, steps 200 and 202. Single poses, 3x3.
     """
     M = R_to @ R_from.T
     w = 0.5 * np.array([M[2, 1] - M[1, 2], M[0, 2] - M[2, 0], M[1, 0] - M[0, 1]])

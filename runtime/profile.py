@@ -1,7 +1,7 @@
 """The controller profile: cycle, declared costs and servo options, with the defaults and their reasons.
 
-Read from ``[controller]`` of a cell file. Times in whole microseconds. Sources: spec/controller.md 1.6 (costs), 1.8
-(Kf, Ka, K2, feed-forward source), spec/README.md decisions 2 and 3.
+Read from ``[controller]`` of a cell file. Times in whole microseconds. Sources: docs/timing.md (costs) and
+docs/servo.md (Kf, Ka, K2, feed-forward source).
 """
 
 from dataclasses import dataclass
@@ -103,6 +103,11 @@ def _parse_servo(table: Table) -> ServoOptions:
     )
     for key in ("velocity_feedforward", "acceleration_feedforward"):
         if source == "measured" and not getattr(options, key) < 1.0:
-            table.fail("RBL616", f"'{table.name(key)}' must be below 1 when the feed-forward is measured", key=key)
+            table.fail(
+                "RBL616",
+                f"'{table.name(key)}' must be below 1 when the feed-forward is measured",
+                "give a value such as 0.9, or write feedforward = \"command\"",
+                key=key,
+            )
     table.done()
     return options

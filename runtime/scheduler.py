@@ -4,7 +4,7 @@ Time is counted in whole microseconds. A cycle starts with its interrupt; the fo
 its declared cost Ci, and the background task gets what is left of the period, a slice at a time between servo
 ticks. A step of the background whose cost exceeds the slice is suspended and goes on, with what was already paid,
 in the next one. So the cycle keeps its period whatever the background costs, and one axis is refreshed every
-``n Cd P / (P - Ci)`` on average (spec/controller.md 1.6).
+``n Cd P / (P - Ci)`` on average (docs/timing.md).
 """
 
 from collections.abc import Callable, Iterator

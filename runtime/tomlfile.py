@@ -143,9 +143,9 @@ def read_source(path: Path, code: str = "RBL600") -> Source:
     """Read a small regular UTF-8 file; ``FileFault`` with ``code`` otherwise (never blocks on a FIFO)."""
     where = Source(str(path), "")
     try:
-        handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
-    except OSError as error:
-        where.fail(code, f"cannot open {path}: {error.strerror}")
+        handle = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
+    except (OSError, ValueError) as error:  # ValueError: a NUL character in the name
+        where.fail(code, f"cannot open {path}: {getattr(error, 'strerror', None) or error}")
     try:
         info = os.fstat(handle)
         if not stat.S_ISREG(info.st_mode):
@@ -154,6 +154,8 @@ def read_source(path: Path, code: str = "RBL600") -> Source:
             where.fail(code, f"{path} has {info.st_size} bytes, more than {MAX_BYTES}")
         with os.fdopen(handle, "rb", closefd=False) as stream:
             raw = stream.read(MAX_BYTES + 1)
+    except OSError as error:
+        where.fail(code, f"cannot read {path}: {error.strerror}")
     finally:
         os.close(handle)
     try:
@@ -170,11 +172,10 @@ def load_table(source: Source, code: str = "RBL601") -> "Table":
         text = str(error)
         found = re.search(r"at line (\d+), column (\d+)", text)
         lines = lines_of(source.text)
-        line, column = (int(found[1]), int(found[2])) if found else (len(lines), 1)
+        line, column = (int(found[1]), int(found[2])) if found else (len(lines), len(lines[-1]) + 1)
         excerpt = lines[line - 1] if line <= len(lines) else ""
-        raise FileFault(
-            code, re.sub(r" \(at .*\)", "", text), "", path=source.path, line=line, column=column, excerpt=excerpt
-        ) from None
+        message = re.sub(r" \(at .*\)", "" if found else " at the end of the file", text)
+        raise FileFault(code, message, "", path=source.path, line=line, column=column, excerpt=excerpt) from None
     except RecursionError:
         source.fail(code, "the file is nested too deeply")
     except ValueError as error:  # int() refuses a literal of thousands of digits
@@ -234,7 +235,7 @@ class Table:
             self.fail("RBL613", f"'{self.name(key)}' must be a number, not {_kind(value)}", key=key)
         number = float(value) if abs(value) <= MAX_ABS else math.inf
         if not math.isfinite(number):
-            self.fail("RBL604", f"'{self.name(key)}' is {value}, not a finite number", key=key)
+            self.fail("RBL604", f"'{self.name(key)}' is {_shown(value)}, not a finite number", key=key)
         if not (low <= number <= high) or (positive and not number > 0.0):
             wanted = "above 0" if positive and number <= 0.0 else f"between {low:g} and {high:g}"
             self.fail("RBL605", f"'{self.name(key)}' is {number:g} and must be {wanted}", key=key)
@@ -338,7 +339,14 @@ def _kind(value: object) -> str:
     return names.get(type(value), type(value).__name__)
 
 
-_HEADER = re.compile(r"^\s*(\[\[?)\s*([^\]]+?)\s*\]\]?")
+def _shown(value: float) -> str:
+    """Return a number for a message; an integer may have more digits than Python is willing to print."""
+    if isinstance(value, int) and abs(value) >= 10**20:
+        return f"a whole number of {value.bit_length()} bits"
+    return str(value)
+
+
+_HEADER = re.compile(r"^\s*(\[\[?)\s*([A-Za-z0-9_.\"' -]+?)\s*\]\]?\s*(?:#.*)?$")
 _KEY = re.compile(r"^(\s*)([A-Za-z0-9_.\"'-]+)\s*=")
 
 

@@ -15,4 +15,4 @@ US = 1e-6
 """Seconds in a microsecond."""
 
 GRAVITY = 9.81
-"""Standard gravity used by every model here, m/s2 (spec/controller.md 1.7, acceptance figures use this value)."""
+"""Standard gravity used by every model here, m/s2 (docs/dynamics.md, acceptance figures use this value)."""

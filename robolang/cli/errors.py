@@ -1,32 +1,56 @@
 """What a user sees when something goes wrong, and the exit code that goes with it. No traceback gets past here.
 
 Exit codes: 0 clean, 1 diagnostics found, 2 usage or configuration, 3 motion fault, 4 storage, 70 internal,
-130 and 143 stopped by a signal (docs/decisions/0005).
+130 and 143 stopped by a signal (docs/decisions/0005). A reader that closes the pipe early (``| head``) changes none of
+them: what was meant for it is dropped.
 """
 
+import errno
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 import typer
 
-from robolang.diagnostics import has_errors, render, render_fault, safe
+from robolang.diagnostics import render_fault, safe
 from runtime.faults import Fault
 from runtime.tomlfile import FileFault
 
 DIAGNOSTICS, USAGE, MOTION, STORAGE, INTERNAL = 1, 2, 3, 4, 70
 INTERRUPTED = 130
 
+_OF_CODE = {"RBL301": DIAGNOSTICS, "RBL706": STORAGE}
+_OF_GROUP = {"1": DIAGNOSTICS, "2": DIAGNOSTICS, "40": DIAGNOSTICS, "4": MOTION, "5": MOTION, "9": INTERNAL}
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 
-def exit_code(code: str, *, in_program: bool = False) -> int:
-    """Return the exit code of a fault; ``in_program``: it was found in the program's text."""
-    if in_program:
-        return DIAGNOSTICS
-    group = code[3:4]
-    if code == "RBL706":
-        return STORAGE
-    return {"1": DIAGNOSTICS, "2": DIAGNOSTICS, "4": MOTION, "5": MOTION, "9": INTERNAL}.get(group, USAGE)
+
+def exit_code(code: str) -> int:
+    """Return the exit code of a registered code, whoever found it.
+
+    What the text of a program says is 1: RBL1xx, RBL2xx, an undefined point (RBL301), a LOAD, SPEED or HAND that no
+    robot can follow (RBL40x). A move that this robot cannot make, and every alarm, is 3.
+    """
+    number = code.removeprefix("RBL")
+    return _OF_CODE.get(code) or _OF_GROUP.get(number[:2]) or _OF_GROUP.get(number[:1]) or USAGE
+
+
+def say(fault: Fault) -> int:
+    """Print a fault to stderr, with its place when it has one, and return its exit code."""
+    if isinstance(fault, FileFault):
+        typer.echo(render_fault(fault), err=True)
+    else:
+        typer.echo(f"error {fault.code} {safe(fault.message)}\n  help: {safe(fault.hint)}", err=True)
+    return exit_code(fault.code)
+
+
+@contextmanager
+def reader_may_leave() -> Iterator[None]:
+    """Go on when nobody reads the standard output any more; what is printed from then on is dropped."""
+    try:
+        yield
+    except BrokenPipeError:
+        _drop_output()
 
 
 @contextmanager
@@ -34,30 +58,34 @@ def reported() -> Iterator[None]:
     """Print faults to stderr and leave with their exit code."""
     try:
         yield
-    except FileFault as fault:
-        typer.echo(render_fault(fault), err=True)
-        raise typer.Exit(exit_code(fault.code)) from None
     except Fault as fault:
-        typer.echo(f"error {fault.code} {safe(fault.message)}\n  help: {safe(fault.hint)}", err=True)
-        raise typer.Exit(exit_code(fault.code)) from None
+        raise typer.Exit(say(fault)) from None
     except KeyboardInterrupt:
         raise typer.Exit(INTERRUPTED) from None
     except BrokenPipeError:
-        # the reader has gone: nothing can be said, and the interpreter must not try at exit
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        raise typer.Exit(STORAGE) from None
+        _drop_output()
+        raise typer.Exit(0) from None  # a command whose exit code says more goes on with reader_may_leave
     except (typer.Exit, typer.Abort, typer.BadParameter):
         raise
+    except OSError as error:
+        if error.errno not in _FULL:
+            raise typer.Exit(_internal(error)) from None
+        _drop_output()
+        message = f"cannot write the standard output: {error.strerror}"
+        raise typer.Exit(say(Fault("RBL706", message))) from None
     except Exception as error:
-        if os.environ.get("ROBOLANG_DEBUG"):
-            raise
-        kind = type(error).__name__
-        typer.echo(
-            f"error RBL900 internal error: {kind}: {safe(str(error))}\n"
-            "  help: this is a defect of robolang; ROBOLANG_DEBUG=1 shows where it happened",
-            err=True,
-        )
-        raise typer.Exit(INTERNAL) from None
+        raise typer.Exit(_internal(error)) from None
 
 
-__all__ = ["exit_code", "has_errors", "render", "reported"]
+def _internal(error: Exception) -> int:
+    if os.environ.get("ROBOLANG_DEBUG"):
+        raise error
+    kind = type(error).__name__
+    hint = "this is a defect of robolang; ROBOLANG_DEBUG=1 shows where it happened"
+    return say(Fault("RBL900", f"internal error: {kind}: {error}", hint))
+
+
+def _drop_output() -> None:
+    """Lead the standard output nowhere, so that the interpreter does not fail at exit on what is left in it."""
+    with suppress(OSError, ValueError, AttributeError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -1,30 +1,75 @@
 """``robolang explain CODE``: what a code means and what to do about it."""
 
-from typing import Annotated
+import difflib
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from robolang.cli.errors import reported
 from robolang.cli.values import OptionValueError
+
+if TYPE_CHECKING:
+    from runtime.faults import Code
 
 
 def explain(
-    code: Annotated[str | None, typer.Argument(help="A code such as RBL412; without one, all are listed.")] = None,
+    code: Annotated[
+        str | None,
+        typer.Argument(metavar="CODE", help="A code such as RBL412, or its name; without one, all are listed."),
+    ] = None,
 ) -> None:
     """Explain a code of a diagnostic, a fault or an alarm."""
-    import difflib
-
     import robolang.codes
     import robolang.project  # noqa: F401 - and those of the files, with the runtime's
     from runtime.faults import all_codes
 
-    codes = {entry.code: entry for entry in all_codes()}
-    if code is None:
-        for entry in codes.values():
-            typer.echo(f"{entry.code}  {entry.name}")
-        return
-    wanted = code.upper()
-    if wanted not in codes:
-        near = difflib.get_close_matches(wanted, codes, n=1)
-        raise OptionValueError("CODE", f"there is no code '{code}'" + (f"; did you mean {near[0]}?" if near else ""))
-    entry = codes[wanted]
-    typer.echo(f"{entry.code} {entry.name}\n\n{entry.meaning}\n\nWhat to do: {entry.remedy}")
+    with reported():
+        entries = all_codes()
+        if code is None:
+            _print_all(entries)
+        else:
+            _print(_find(code, entries))
+
+
+def _find(wanted: str, entries: "list[Code]") -> "Code":
+    """Return the entry of a code, its number or its name, in any case; a usage error with the nearest otherwise."""
+    word = wanted.strip().upper()
+    word = f"RBL{word}" if word.isdecimal() else word
+    for entry in entries:
+        if word in (entry.code, entry.name.upper()):
+            return entry
+    near = _near(word, entries)
+    raise OptionValueError("CODE", f"there is no code '{wanted}'" + (f"; did you mean {near}?" if near else ""))
+
+
+def _near(word: str, entries: "list[Code]") -> str:
+    """Return the code with the nearest number, for a code, or the nearest name, for a word; empty without one."""
+    digits = word.removeprefix("RBL")
+    if digits.isascii() and digits.isdecimal() and len(digits) == 3:
+        return min(entries, key=lambda entry: abs(int(entry.code[3:]) - int(digits))).code
+    known = [form for entry in entries for form in (entry.code, entry.name.upper())]
+    found = difflib.get_close_matches(word, known, n=1, cutoff=0.7)
+    return found[0] if found and found[0].startswith("RBL") else "".join(found).lower()
+
+
+def _print(entry: "Code") -> None:
+    from robolang.cli.console import Console
+
+    console = Console()
+    for text in (f"{entry.code} {entry.name}", "", entry.meaning, "", f"What to do: {entry.remedy}"):
+        console.print(text)
+
+
+def _print_all(entries: "list[Code]") -> None:
+    from rich import box
+    from rich.table import Table
+
+    from robolang.cli.console import Console
+
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 2, 0, 0), pad_edge=False)
+    table.add_column("code", no_wrap=True)
+    table.add_column("name", no_wrap=True)
+    table.add_column("meaning", overflow="fold")
+    for entry in entries:
+        table.add_row(entry.code, entry.name, entry.meaning)
+    Console().print(table)

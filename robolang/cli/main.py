@@ -3,6 +3,8 @@
 Nothing heavy is imported: numpy, pinocchio and mujoco come in inside the commands that need them.
 """
 
+import io
+import sys
 from typing import Annotated
 
 import typer
@@ -34,4 +36,7 @@ def options(
 
 def run_app() -> None:
     """Run the command line and leave the process."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # an excerpt of a program may hold letters that the terminal's encoding lacks: escape them, as stderr does
+        sys.stdout.reconfigure(errors="backslashreplace")
     app()

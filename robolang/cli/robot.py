@@ -1,10 +1,12 @@
 """``robolang robot list`` and ``robolang robot show R``: the robots, their data and where the data come from."""
 
+import math
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from robolang.cli.errors import reported
+from robolang.diagnostics import safe
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -29,14 +31,13 @@ def list_robots() -> None:
 def show(robot: Annotated[str, typer.Argument(help="Built-in robot, or a path to a .toml robot file.")]) -> None:
     """Show a robot: limits, drives, bodies, corrections of published data, sources."""
     with reported():
-        from rich.console import Console
-
+        from robolang.cli.console import Console
         from robolang.project import load_any_robot
 
         spec = load_any_robot(robot)
         console = Console()
-        console.print(f"{spec.name}: {spec.title}, {spec.n} axes, rated payload {spec.rated_payload:g} kg\n")
-        for table in (_limits(spec), _drives(spec), _bodies(spec)):
+        console.print(safe(f"{spec.name}: {spec.title}, {spec.n} axes, rated payload {spec.rated_payload:g} kg"), "\n")
+        for table in (_limits(spec), _drives(spec), _loops(spec), _bodies(spec)):
             console.print(table)
         for title, lines in (
             ("Corrections of published data", _corrections(spec)),
@@ -44,9 +45,17 @@ def show(robot: Annotated[str, typer.Argument(help="Built-in robot, or a path to
             ("Notes", list(spec.notes)),
         ):
             if lines:
-                console.print(f"{title}", style="bold")
-                for line in lines:
-                    console.print(f"  - {line}", highlight=False, markup=False)
+                console.print(title, style="bold")
+                console.print(_bullets(lines))
+
+
+def _bullets(lines: list[str]) -> "Table":
+    from rich.table import Table
+
+    grid = Table.grid(padding=(0, 1, 0, 0))
+    for line in lines:
+        grid.add_row("  -", safe(line))
+    return grid
 
 
 def _table(title: str, *headings: str) -> "Table":
@@ -54,9 +63,9 @@ def _table(title: str, *headings: str) -> "Table":
     from rich.table import Table
 
     table = Table(box=box.SIMPLE_HEAD, title=title, title_justify="left", padding=(0, 1, 0, 0))
-    table.add_column("axis", no_wrap=True)
+    table.add_column("axis", overflow="fold")
     for heading in headings:
-        table.add_column(heading, justify="right", no_wrap=True)
+        table.add_column(heading, justify="right", overflow="fold")  # fold: a number is never cut
     return table
 
 
@@ -67,7 +76,7 @@ def _limits(spec: "RobotSpec") -> "Table":
     for index, axis in enumerate(spec.axes, start=1):
         limits = axis.limits
         table.add_row(
-            f"J{index} {axis.name}",
+            safe(f"J{index} {axis.name}"),
             f"{limits.lower / DEG:g} .. {limits.upper / DEG:g}",
             f"{limits.speed / DEG:g}",
             f"{limits.acceleration / DEG:g}",
@@ -78,8 +87,8 @@ def _limits(spec: "RobotSpec") -> "Table":
 
 def _drives(spec: "RobotSpec") -> "Table":
     table = _table(
-        "Drives (motor side; N^2 J at the joint)", "gear", "rotor\nkg m2", "N^2 J\nkg m2", "Kt\nN m/A", "limit\nA",
-        "Coulomb\nN m", "viscous\nN m s", "Kp Kv\n1/s",
+        "Drives (motor side; N^2 J at the joint)", "gear\nN", "rotor J\nkg m2", "N^2 J\nkg m2", "Kt\nN m/A", "limit\nA",
+        "Coulomb +/-\nN m", "viscous\nN m s",
     )  # fmt: skip
     for index, axis in enumerate(spec.axes, start=1):
         motor = axis.motor
@@ -92,13 +101,25 @@ def _drives(spec: "RobotSpec") -> "Table":
             f"{motor.max_current:g}",
             "{:g}/{:g}".format(*motor.coulomb_friction),
             f"{motor.viscous_friction:g}",
-            f"{axis.bandwidths.position:g} {axis.bandwidths.velocity:g}",
+        )
+    return table
+
+
+def _loops(spec: "RobotSpec") -> "Table":
+    table = _table("Servo loops", "position Kp\n1/s", "velocity Kv\n1/s", "current loop\nHz", "encoder\ncounts/turn")
+    for index, axis in enumerate(spec.axes, start=1):
+        table.add_row(
+            f"J{index}",
+            f"{axis.bandwidths.position:g}",
+            f"{axis.bandwidths.velocity:g}",
+            f"{axis.motor.current_bandwidth / (2.0 * math.pi):g}",
+            f"{axis.motor.encoder_counts}",
         )
     return table
 
 
 def _bodies(spec: "RobotSpec") -> "Table":
-    table = _table("Bodies in their axis frames (inertia xx yy zz about the centre of gravity)", "mass\nkg",
+    table = _table("Bodies in their axis frames (inertia xx yy zz about the centre)", "mass\nkg",
                    "cog\nmm", "inertia published\nkg m2", "inertia used\nkg m2")  # fmt: skip
     for index, (axis, published) in enumerate(zip(spec.axes, spec.published, strict=True), start=1):
         used, printed = _moments(axis.body), _moments(published)

@@ -3,21 +3,23 @@
 Progress and errors go to stderr, the table to stdout. Output files are tried before the run and written whole.
 """
 
+import os
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal, cast
 
 import typer
 
-from robolang.cli.errors import DIAGNOSTICS, MOTION, exit_code, render, reported
+from robolang.cli.errors import DIAGNOSTICS, MOTION, exit_code, reader_may_leave, reported, say
 from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
     from robolang.project import Project
     from robolang.session import Progress, RunResult, Session, StatementRun
+    from robolang.source import Span
 
 
 def run(
@@ -36,37 +38,55 @@ def run(
     """Run a program on the controller and the physics."""
     if servo not in (None, "scheduled", "fixed"):
         raise OptionValueError("--servo", f"'{servo}' is not one of scheduled, fixed")
-    if log is not None and log.suffix not in (".npz", ".mcap"):
-        raise OptionValueError("--log", f"'{log}' must end in .npz or .mcap")
     with reported():
+        _check_outputs(program, report, log)
         from robolang.project import load_project
-        from robolang.storage import check_writable
 
-        for path in (report, log):
-            if path is not None:
-                check_writable(path)
-        project = load_project(program, cell, robot, servo)  # type: ignore[arg-type]
+        project = load_project(program, cell, robot, cast("Literal['scheduled', 'fixed'] | None", servo))
         _refuse(project)
         from robolang.session import Session
 
         with _progress(quiet) as progress:
             session = Session(project, physics=not no_physics, realtime=realtime, progress=progress)
-            with _signals(session) as stopped:
+            with _signals(session) as stopped:  # until the files are written: a signal must not cut them off
                 result = session.run()
-        _write(result, report, log)
+                code = _write(result, report, log)
         if not quiet:
             from robolang.cli.run_table import print_result
 
-            print_result(result.report)
+            with reader_may_leave():
+                print_result(result.report)
         _print_alarms(project, result)
-    if stopped:
-        raise typer.Exit(128 + stopped[0])
-    if not result.ok:
-        raise typer.Exit(MOTION)
+    if stopped and not code:
+        code = 128 + stopped[0]
+    if code or not result.ok:
+        raise typer.Exit(code or MOTION)
+
+
+def _check_outputs(program: str, report: Path | None, log: Path | None) -> None:
+    """Refuse outputs of a wrong kind or that would overwrite an input or each other, and try to write them."""
+    if log is not None and log.suffix not in (".npz", ".mcap"):
+        raise OptionValueError("--log", f"'{log}' must end in .npz or .mcap")
+    if report is not None and report.suffix in (".rbl", ".toml"):
+        raise OptionValueError("--report", f"'{report}' would be a program or a cell file; name a .json file")
+    taken = {os.path.realpath(program)}
+    for option, path in (("--report", report), ("--log", log)):
+        if path is None:
+            continue
+        if os.path.realpath(path) in taken:
+            raise OptionValueError(option, f"'{path}' is the program or another output of this run")
+        taken.add(os.path.realpath(path))
+    from robolang.storage import check_writable
+
+    for path in (report, log):
+        if path is not None:
+            check_writable(path)
 
 
 def _refuse(project: "Project") -> None:
-    """Print the diagnostics; leave with 1 when the text has errors, with 3 when a motion cannot be planned."""
+    """Print the diagnostics; leave when the text has errors or a motion cannot be planned."""
+    from robolang.diagnostics import render
+
     for item in project.diagnostics:
         typer.echo(render(item, project.source), err=True)
     if not project.ok:
@@ -80,25 +100,45 @@ def _refuse(project: "Project") -> None:
         raise typer.Exit(exit_code(refused[0].code))
 
 
-def _write(result: "RunResult", report: Path | None, log: Path | None) -> None:
+def _write(result: "RunResult", report: Path | None, log: Path | None) -> int:
+    """Write the files that were asked for; what cannot be written is said and does not keep the other from it."""
     from robolang.runlog import write_log
     from robolang.storage import write_json
+    from runtime.faults import Fault
 
-    if report is not None:
-        write_json(report, result.report)
-    if log is not None:
-        write_log(log, result.log)
+    writers: list[tuple[Path | None, Callable[[Path], None]]] = [
+        (report, lambda path: write_json(path, result.report)),
+        (log, lambda path: write_log(path, result.log)),
+    ]
+    code = 0
+    for path, write in writers:
+        if path is not None:
+            try:
+                write(path)
+            except Fault as fault:
+                code = say(fault)
+    return code
 
 
 def _print_alarms(project: "Project", result: "RunResult") -> None:
+    from robolang.diagnostics import Diagnostic, render
+
     alarms: Any = result.report["alarms"]
-    statements: Any = result.report["statements"]
     for alarm in alarms:
-        where = f"{project.source.path}:{statements[-1]['line']}:1" if statements else project.source.path
-        typer.echo(
-            f"{where}: error {alarm['code']} at {alarm['time_s']:.3f} s: {alarm['message']}\n  help: {alarm['hint']}",
-            err=True,
-        )
+        message = f"at {alarm['time_s']:.3f} s: {alarm['message']}"
+        found = Diagnostic(code=alarm["code"], message=message, span=_last_span(project, result), hint=alarm["hint"])
+        typer.echo(render(found, project.source), err=True)
+
+
+def _last_span(project: "Project", result: "RunResult") -> "Span":
+    """Return the place of the statement that ran last; the start of the program when none did."""
+    from robolang.source import Span
+
+    statements: Any = result.report["statements"]
+    places = {
+        line.source_line: line.statement.span for line in project.program.statements if line.statement is not None
+    }
+    return places.get(statements[-1]["line"], Span(0, 0)) if statements else Span(0, 0)
 
 
 @contextmanager
@@ -125,21 +165,34 @@ def _progress(quiet: bool) -> Iterator["Progress"]:
     """Yield the progress function: a live line on a terminal, one line per statement elsewhere."""
     if quiet:
         yield lambda statement, time_us: None
-        return
-    if not sys.stderr.isatty():
-        shown: list[StatementRun] = []
+    elif sys.stderr is not None and sys.stderr.isatty():
+        with _live_line() as show:
+            yield show
+    else:
+        yield _line_printer()
 
-        def print_line(statement: "StatementRun", time_us: int) -> None:
-            if not shown or shown[-1] is not statement:
-                shown.append(statement)
-                typer.echo(_status(statement, time_us), err=True)
 
-        yield print_line
-        return
-    from rich.console import Console
+@contextmanager
+def _live_line() -> Iterator["Progress"]:
+    from rich.text import Text
+
+    from robolang.cli.console import Console
 
     with Console(stderr=True).status("starting") as status:
-        yield lambda statement, time_us: status.update(_status(statement, time_us))
+        yield lambda statement, time_us: status.update(
+            Text(_status(statement, time_us), no_wrap=True, overflow="ellipsis")
+        )
+
+
+def _line_printer() -> "Progress":
+    shown: list[StatementRun] = []
+
+    def show(statement: "StatementRun", time_us: int) -> None:
+        if not shown or shown[-1] is not statement:
+            shown[:] = [statement]
+            typer.echo(_status(statement, time_us), err=True)
+
+    return show
 
 
 def _status(statement: "StatementRun", time_us: int) -> str:

@@ -1,10 +1,16 @@
-"""The tables that ``robolang run`` prints: one row per statement, one line per fact of the run."""
+"""The tables that ``robolang run`` prints: one row per statement, one line per fact of the run.
+
+The columns of numbers are as wide as their widest number; the statements get what is left of the line and are the
+only thing that is ever cut.
+"""
 
 from typing import Any
 
 from rich import box
-from rich.console import Console
 from rich.table import Table
+
+from robolang.cli.console import Console
+from robolang.diagnostics import safe
 
 _COLUMNS = (
     ("start\n\ns", "start_s", "{:.3f}"),
@@ -14,36 +20,49 @@ _COLUMNS = (
     ("off\npath\nmm", "path_deviation_mm", "{:.3f}"),
     ("peak\ntorque\n%", "peak_torque_pct", "{:.0f}"),
 )
+_NARROWEST, _WIDEST = 12, 40
 
 
 def print_result(report: dict[str, Any]) -> None:
     """Print the report of a run."""
     console = Console()
-    console.print(_statements(report))
+    console.print(safe(f"{report['program']} on {report['robot']}"), style="italic", soft_wrap=True)
+    console.print(_statements(report, console.width))
     for statement in report["statements"]:
         for note in statement["notes"]:
-            console.print(f"  line {_number(statement)}: {note}", highlight=False, markup=False)
+            console.print(f"  line {_number(statement)}: {note}")
     for line in _facts(report):
-        console.print(line, highlight=False, markup=False)
+        console.print(line)
 
 
 def _number(statement: dict[str, Any]) -> int:
     return int(statement["line"] if statement["number"] is None else statement["number"])
 
 
-def _statements(report: dict[str, Any]) -> Table:
-    title = f"{report['program']} on {report['robot']}"
-    table = Table(box=box.SIMPLE_HEAD, title=title, title_justify="left", padding=(0, 1, 0, 0))
-    table.add_column("line", justify="right", no_wrap=True, min_width=4)
-    table.add_column("statement", overflow="ellipsis", no_wrap=True, min_width=20, max_width=28)
+def _statements(report: dict[str, Any], width: int) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    table.add_column("line", justify="right", no_wrap=True)
+    table.add_column("statement", no_wrap=True)
     for heading, _, _ in _COLUMNS:
         table.add_column(heading, justify="right", no_wrap=True)
-    for statement in report["statements"]:
-        cells = [
-            "" if statement[key] is None else form.format(statement[key]) for _, key, form in _COLUMNS
-        ]
-        table.add_row(str(_number(statement)), statement["text"], *cells)
+    rows = [_cells(statement) for statement in report["statements"]]
+    room = _room(rows, width)
+    for number, text, *cells in rows:
+        table.add_row(number, text if len(text) <= room else f"{text[: room - 1]}…", *cells)
     return table
+
+
+def _cells(statement: dict[str, Any]) -> list[str]:
+    numbers = ["" if statement[key] is None else form.format(statement[key]) for _, key, form in _COLUMNS]
+    return [str(_number(statement)), safe(statement["text"]), *numbers]
+
+
+def _room(rows: list[list[str]], width: int) -> int:
+    """Return how wide a statement may be so that the table is not wider than the console."""
+    headings = ["line", "", *(max(heading.split("\n"), key=len) for heading, _, _ in _COLUMNS)]
+    widths = [max(map(len, column)) for column in zip(headings, *rows, strict=True)]
+    taken = sum(widths) - widths[1] + 2 * len(widths) + 1  # two spaces between columns, and those at the edges
+    return min(max(width - taken, _NARROWEST), _WIDEST)
 
 
 def _facts(report: dict[str, Any]) -> list[str]:
@@ -51,10 +70,13 @@ def _facts(report: dict[str, Any]) -> list[str]:
     lines = [
         f"{report['sim_time_s']:.3f} s simulated in {report['wall_time_s']:.2f} s "
         f"({report['realtime_factor']:.1f} x real time), {report['cycles']} cycles of 8 ms, "
-        f"{report['overruns']} overruns",
-        f"dynamics task: each axis refreshed every {dynamics['refresh_mean_ms']:.1f} ms, "
-        f"at most {dynamics['refresh_max_ms']:.1f} ms",
+        f"{report['overruns']} overruns"
     ]
+    if report["cycles"]:
+        lines.append(
+            f"dynamics task: each axis refreshed every {dynamics['refresh_mean_ms']:.1f} ms, "
+            f"at most {dynamics['refresh_max_ms']:.1f} ms"
+        )
     for name, entry in report["objects"].items():
         x, y, z, rx, ry, rz = (round(value, 3) + 0.0 for value in entry["pose_mm_deg"])
         lines.append(f"{name}: at ({x:.3f}, {y:.3f}, {z:.3f}) mm, turned ({rx:.3f}, {ry:.3f}, {rz:.3f}) deg")

@@ -1,4 +1,4 @@
-"""Inertia about an axis and gravity torque on it (document 000, eqs 1-5; spec/controller.md 1.7).
+"""Inertia about an axis and gravity torque on it (JPH06190750A eqs 1-5; docs/dynamics.md).
 
 ``D_i``, the inertia that the drive of axis i feels, is element (i, i) of the mass matrix; it is taken from one
 unit-acceleration pass (axis i accelerated by 1 rad/s2 at rest, without gravity), which the document's Lagrangian

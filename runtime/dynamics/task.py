@@ -4,7 +4,7 @@
 
 It is a generator and yields, *before* each step, that step's cost in microseconds; the scheduler resumes it once
 the idle time has paid for the step. The next interrupt may come in the middle of a step: what was paid stays paid.
-The angles are read anew for every axis, so the cells of ITA are of different ages (spec/controller.md 1.6).
+The angles are read anew for every axis, so the cells of ITA are of different ages (docs/timing.md).
 """
 
 from collections.abc import Callable, Iterator

@@ -7,7 +7,7 @@ from runtime.frames import Array
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MoveLinear:
-    """Move the tool point straight to ``X_world_tool`` (4, 4), orientation about one axis (document 000, Fig 6).
+    """Move the tool point straight to ``X_world_tool`` (4, 4), orientation about one axis (JPH06190750A Fig 6).
 
     ``speed`` m/s of the tool point (None: the robot's default), ``acceleration`` fraction of the robot's in (0, 1],
     ``duration`` s from start to stop (None: as fast as speed and limits allow).

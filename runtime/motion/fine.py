@@ -2,8 +2,9 @@
 
 Between two set-points the servo follows the quintic whose speed and acceleration at both ends are the central
 differences ``v_k = (q_{k+1} - q_{k-1}) / 2h`` and ``a_k = (q_{k+1} - 2 q_k + q_{k-1}) / h^2``. It passes through
-every set-point, is continuous to the acceleration, and stops exactly when the set-points stop. A segment needs the
-set-point after its end, so it is played one cycle after its end arrived (docs/timing.md). Everything is linear in
+every set-point and is continuous to the acceleration. A segment needs the set-point after its end, so it is played
+one cycle after its end arrived (docs/timing.md); one more segment leaves rest and one enters it. A tick plays the
+value of its own start, so commands and readings of a tick belong to the same instant. Everything is linear in
 the four set-points around the segment, so one constant matrix holds positions, speeds and accelerations of all
 ticks.
 """
@@ -69,7 +70,7 @@ class FineInterpolator:
     """Plays the segments between set-points tick by tick."""
 
     def __init__(self, ticks: int, period_s: float, q: Array) -> None:
-        u = np.arange(1, ticks + 1) / ticks
+        u = np.arange(ticks) / ticks
         self.ticks = ticks
         self._weights = np.concatenate(
             [

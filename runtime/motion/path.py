@@ -2,7 +2,7 @@
 
     T(s) = [ Rot(k, s Theta) R_start , p_start + s (p_end - p_start) ; 0 1 ],   s in [0, 1]
 
-Source: spec/controller.md 1.5, steps 200 to 208.
+Source: JPH06190750A Fig 6, steps 200 to 208.
 """
 
 from dataclasses import dataclass

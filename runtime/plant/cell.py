@@ -3,8 +3,8 @@
 Masses here are the *true* ones: the plant is built from them. What the controller believes comes from ``LOAD`` in
 the program, and the difference between the two is what payload supervision has to notice. Lengths are mm and
 angles degrees in the file, SI in ``CellSpec``; a pose is ``[x, y, z, rx, ry, rz]`` with ``R = Rz @ Ry @ Rx``
-(language.md). The robot is a built-in name or a TOML file inside the cell file's own folder: nothing outside that
-folder is ever opened, whatever the file says (promise R22, case C7). Read once, before anything moves.
+(docs/language.md). The robot is a built-in name or a TOML file inside the cell file's own folder: nothing outside that
+folder is ever opened, whatever the file says. Read once, before anything moves.
 """
 
 import re

@@ -130,7 +130,7 @@ def _options(root: ET.Element, timestep: float) -> None:
         iterations="50",
         tolerance="1e-10",
     )
-    # a reset would teleport the arm: the plant stops at the last valid state instead (promise R04)
+    # a reset would teleport the arm: the plant stops at the last valid state instead
     ET.SubElement(option, "flag", autoreset="disable")
     default = ET.SubElement(root, "default")
     ET.SubElement(

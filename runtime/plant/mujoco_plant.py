@@ -2,7 +2,7 @@
 
 ``step`` is the inner loop of every run (one call per servo tick). It writes the torques, lets MuJoCo advance by one
 or more physics steps of at most 1 ms, and copies the joint state out. How a broken state is noticed in the same
-tick (promise R04): MuJoCo checks positions and speeds at the start of every physics step, controls before they act
+tick: MuJoCo checks positions and speeds at the start of every physics step, controls before they act
 and accelerations before they are integrated, and counts each number that is NaN, infinite or above 1e10. A step
 whose counters stay at zero therefore starts, and by ``v + h a`` also ends, with a finite state; so comparing the
 counters (28 bytes, 0.1 us) is the finiteness check of the whole state. Adding up the state each tick was rejected:

@@ -41,6 +41,9 @@ class Plant(Protocol):
         Returns False when the state is no longer finite or valid; ``q`` then holds the last valid one.
         """
 
+    def why_invalid(self) -> str:
+        """Return in a few words why the state is no longer valid; empty while it is."""
+
     def close_hand(self, closed: bool) -> None:
         """Start closing or opening the hand."""
 

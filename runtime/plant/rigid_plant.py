@@ -46,6 +46,10 @@ class RigidPlant:
         self.q += self.tick_s * dq
         return True
 
+    def why_invalid(self) -> str:
+        """Return why the last step was refused."""
+        return "" if np.isfinite(self.dq).all() and np.isfinite(self.q).all() else "a joint speed is not finite"
+
     def close_hand(self, closed: bool) -> None:
         """Take or leave a part at once."""
         if closed and not self._closed:

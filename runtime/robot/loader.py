@@ -33,7 +33,13 @@ from runtime.units import DEG, MM
 
 SCHEMA = 1
 SLACK = 1e-9
-"""A correction may exceed the smallest possible one by this much, kg m2 or kg times 1000."""
+"""A correction may exceed the smallest possible one by this much, kg m2."""
+
+TOKEN_MASS = 1e-6
+"""The mass that a correction may give to a body published without one, kg: a milligram moves nothing."""
+
+FASTEST_LOOP = 8000.0
+"""No loop is stable beyond this at the shortest servo period: bandwidth times 0.25 ms is 2, 1/s (see ``project``)."""
 
 
 def library() -> list[str]:
@@ -222,8 +228,8 @@ def _limits(table: Table) -> Limits:
 
 def _bandwidths(table: Table) -> Bandwidths:
     bandwidths = Bandwidths(
-        position=table.number("position_bandwidth_rad_s", positive=True),
-        velocity=table.number("velocity_bandwidth_rad_s", positive=True),
+        position=table.number("position_bandwidth_rad_s", positive=True, high=FASTEST_LOOP),
+        velocity=table.number("velocity_bandwidth_rad_s", positive=True, high=FASTEST_LOOP),
     )
     table.done()
     return bandwidths
@@ -237,12 +243,17 @@ def _correct(table: Table, axes: list[AxisSpec], index: int) -> Correction:
     table.done()
     axis = axes[index]
     published = axis.body
-    needed = inertia_defect(published.inertia) / 2.0
+    needed = _smallest_shift(published.inertia) or 0.0
     if shift > needed + SLACK:
-        table.fail("RBL606", f"the shift of {shift:g} kg m2 is larger than the {needed:g} that J{index + 1} needs",
-                   key="inertia_shift_kg_m2")  # fmt: skip
+        table.fail("RBL606", f"the shift of {shift:g} kg m2 is larger than the {needed:.12g} that J{index + 1} needs",
+                   f"write inertia_shift_kg_m2 = {needed:.12g}", key="inertia_shift_kg_m2")  # fmt: skip
     if mass > 0.0 and published.mass > 0.0:
-        table.fail("RBL606", f"J{index + 1} has a mass already", key="added_mass_kg")
+        table.fail("RBL606", f"J{index + 1} has a mass already", "write added_mass_kg = 0", key="added_mass_kg")
+    if mass > TOKEN_MASS:
+        table.fail("RBL606", f"an added mass of {mass:g} kg is more than the {TOKEN_MASS:g} that a body needs",
+                   "if the mass is known, write it as mass_kg with its source", key="added_mass_kg")  # fmt: skip
+    if shift == 0.0 and mass == 0.0:
+        table.fail("RBL606", f"J{index + 1} needs no correction, or not this one", "remove [axes.correction]")
     before = axes[index - 1].body if index else published
     own, other = shift_between_links(axis, before, shift)
     own = Body(mass=own.mass + mass, cog=own.cog, inertia=frozen(own.inertia))
@@ -265,6 +276,27 @@ def _with_body(axis: AxisSpec, body: Body) -> AxisSpec:
     )
 
 
+def _smallest_shift(inertia: Array) -> float | None:
+    """Return the least shift (kg m2) across the joint that makes an inertia a body's; None when none does.
+
+    The defect never grows with the shift s, which is added about two of the three axes: it is the larger of
+    ``2 max - trace``, and max grows by at most s while the trace grows by 2 s, and of ``-min``. So bisection finds it.
+    """
+
+    def mended(shift: float) -> bool:
+        return inertia_defect(inertia + shift * np.diag([1.0, 1.0, 0.0])) <= 1e-3 * SLACK
+
+    low, high = 0.0, 4.0 * float(np.abs(inertia).sum())
+    if mended(low):
+        return 0.0
+    if not mended(high):
+        return None
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if mended(middle) else (middle, high)
+    return round(high, 10)  # a number that people copy; the slack covers the rest
+
+
 def _check_bodies(tables: list[Table], axes: list[AxisSpec]) -> None:
     for index, (table, axis) in enumerate(zip(tables, axes, strict=True)):
         defect = inertia_defect(axis.body.inertia)
@@ -272,11 +304,19 @@ def _check_bodies(tables: list[Table], axes: list[AxisSpec]) -> None:
             table.fail(
                 "RBL606",
                 f"the inertia of J{index + 1} is not a body's: {defect:g} kg m2 are missing",
-                f"state a correction: [axes.correction] inertia_shift_kg_m2 = {defect / 2.0:g}",
+                _inertia_hint(axis.body.inertia),
                 key="inertia_kg_m2",
             )
         if not axis.body.mass > 0.0:
-            table.fail("RBL606", f"J{index + 1} has no mass", "state a correction: added_mass_kg", key="mass_kg")
+            hint = f"state [axes.correction] with added_mass_kg = {TOKEN_MASS:g}, inertia_shift_kg_m2 = 0 and a reason"
+            table.fail("RBL606", f"J{index + 1} has no mass", hint, key="mass_kg")
+
+
+def _inertia_hint(inertia: Array) -> str:
+    shift = _smallest_shift(inertia)
+    if shift is None:
+        return "no shift of inertia across the joint can mend that; check the order xx, yy, zz and the signs"
+    return f"state [axes.correction] with inertia_shift_kg_m2 = {shift:.12g}, added_mass_kg = 0 and a reason"
 
 
 def _check_opw(spec: RobotSpec, table: Table) -> None:

@@ -2,7 +2,8 @@
 
 ``ArmModel`` is the typed adapter around Pinocchio (which has no type stubs): mass matrix, one column of it,
 gravity torque and forward dynamics, in SI, for one posture at a time. Rotor inertia is not in it: the servo adds
-N^2 J itself (spec/controller.md 1.8). ``with_rotors`` builds a model that has it, for the ideal plant.
+N^2 J itself (docs/servo.md). With ``rotors=True`` it is in the model, for the
+ideal plant.
 """
 
 from typing import Any, Literal

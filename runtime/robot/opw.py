@@ -3,7 +3,7 @@
 Source of the parameters: M. Brandstoetter, A. Angerer, M. Hofbaur, "An analytical solution of the inverse
 kinematics problem of industrial serial manipulators with an ortho-parallel basis and a spherical wrist", 2014. The
 solution is derived here from the geometry, in a form that keeps its digits at the borders. Lengths in m, angles in
-rad, ``theta = sign q + offset``; sh, t1 and so on are as in spec/wrist.md 2.5, with the wrist centre as the point.
+rad, ``theta = sign q + offset``; sh, t1 and so on are explained in docs/kinematics.md.
 
 Forward: the flange is the end of one product of elementary motions, from the base outwards,
 

@@ -1,6 +1,6 @@
 """The payload that a program declares with LOAD: everything beyond the flange.
 
-LOAD gives a centre of gravity in the flange frame and a mass (SDA, spec/controller.md 1.7). The body is then a
+LOAD gives a centre of gravity in the flange frame and a mass (SDA, docs/dynamics.md). The body is then a
 point mass there, ``I(origin) = m (|r|^2 E - r r')``, unless an own inertia is given. By default it is added to the
 structure of the last link; ``replace`` is the literal reading of the document, where it takes the link's place.
 """

@@ -5,7 +5,7 @@ plant, the closed-form inverse kinematics, the servo gains and the planner's lim
 
 Each axis is a revolute joint about the z axis of its own frame. ``placement`` is the pose of that frame, at joint
 angle zero, in the frame of the joint before it; body data are in the axis' own frame, which turns with the joint.
-Robot files give standard Denavit-Hartenberg rows (``form = "dh"``; robots.md 8.2); DH frame i is the joint frame i
+Robot files give standard Denavit-Hartenberg rows (``form = "dh"``); DH frame i is the joint frame i
 followed by ``Tz(d) Tx(a) Rx(alpha)``, so that product places the next joint and carries the body data over.
 """
 
@@ -48,7 +48,7 @@ class Motor:
 
     @property
     def reflected_inertia(self) -> float:
-        """Rotor inertia at the joint, N^2 J, kg m2 (spec/controller.md 1.8: the document omits N)."""
+        """Rotor inertia at the joint, N^2 J, kg m2 (docs/servo.md: the document omits N)."""
         return self.gear_ratio**2 * self.rotor_inertia
 
     @property

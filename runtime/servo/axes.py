@@ -4,12 +4,12 @@ Once per cycle it takes the loads of ITA (step 220) and the commanded motion of 
 fine interpolation); at every tick it turns the true joint angles into joint torques. ``n`` axes, joint side.
 
 The friction term is not in the document. Eqs (6) to (11) have no integrator, so published Coulomb friction alone
-would leave an axis of the Puma up to 0.3 deg from its command; it is therefore added to the current from the robot
+would leave an axis of the Puma up to 0.2 deg from its command; it is therefore added to the current from the robot
 file, smoothed over ``SMOOTH`` rad/s: ``(N^2 B dq + |N| Tc tanh(dq / SMOOTH)) / Ktn`` (docs/decisions/0003).
 """
 
 import numpy as np
-from numpy import add, multiply
+from numpy import multiply
 
 from runtime.frames import Array
 from runtime.profile import ServoOptions
@@ -27,7 +27,6 @@ class ServoAxes:
 
     def __init__(self, spec: RobotSpec, options: ServoOptions, tick_s: float, q: Array, D_fixed: Array) -> None:
         self.options = options
-        self._spec = spec
         self._D_fixed = D_fixed if options.mode == "fixed" else None
         self.encoders = Encoders(encoder_resolution(spec))
         self.alpha = np.zeros(spec.n)
@@ -41,13 +40,12 @@ class ServoAxes:
         friction = np.array([axis.motor.joint_coulomb_friction for axis in spec.axes])
         self._forward, self._backward = friction[:, 0], friction[:, 1]
         self._viscous = spec.per_axis("motor", "joint_viscous_friction")
-        self._play: list[tuple[Array, Array, Array, Array]] = []
 
     def take(self, D: Array, T: Array, motion: Array) -> None:
         """Take the loads D kg m2, T N m (n,) and the motion (3, ticks, n) of the cycle that begins."""
         self.law.update(D, T, self._D_fixed)
         theta, beta, gamma = motion
-        self._play = list(zip(theta, beta, gamma, self.friction_current(beta), strict=True))
+        self.law.command(theta, beta, gamma, self.friction_current(beta))
 
     def friction_current(self, dq: Array) -> Array:
         """Return the current (..., n) A that overcomes the published friction at speed dq (..., n) rad/s."""
@@ -56,10 +54,8 @@ class ServoAxes:
 
     def tick(self, k: int, q: Array) -> Array:
         """Return the joint torques (n,) N m of tick k of the cycle, at true joint angles q (n,) rad: a live buffer."""
-        theta, beta, gamma, friction = self._play[k]
         self.encoders.read(q, self.alpha)
-        current = self.law.current(theta, beta, gamma, self.alpha)
-        add(current, friction, current)
+        current = self.law.current(k, self.alpha)
         multiply(current, self._Ktn, self.tau_cmd)
         self.motors.torque(current, self.tau)
         return self.tau

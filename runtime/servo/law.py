@@ -11,12 +11,16 @@ r"""The servo law of Fig 8, eqs (6) to (11), for all axes at once.
     (11) I_nnew    = I_new + T KT                               second correction: gravity
 
 Units (joint side): theta, alpha rad; omega, beta rad/s; gamma rad/s2; D, D' kg m2; Kc N m/rad; Kp 1/s; Ktn N m/A;
-K A s/(kg m2 rad), from the velocity bandwidth Kv = K Ktn in 1/s; KT = 1/Ktn. ``D' = D + N^2 J`` (spec/controller.md
-1.8). With ``source = "command"`` the beta and gamma of (6), (8) and (10) are those of the command; with
-``"measured"`` they are the detected ones, as printed. Step 416 always takes the detected speed.
+K A s/(kg m2 rad), from the velocity bandwidth Kv = K Ktn in 1/s; KT = 1/Ktn. ``D' = D + N^2 J`` (docs/servo.md).
+With ``source = "command"`` the beta and gamma of (6), (8) and (10) are those of the command; with ``"measured"`` they
+are the detected ones, as printed. Step 416 always takes the detected speed.
 
 Because I is proportional to D', the closed loop ``gamma = Kv (Kp (theta - alpha) - beta)`` is the same at every
 posture and payload: ``wn = sqrt(Kv Kp)``, ``zeta = sqrt(Kv / Kp) / 2``.
+
+Everything in the law that does not depend on the detected angle is known when a cycle begins, for all of its ticks.
+``command`` therefore gathers it once per cycle into ``omega_ff = Kp theta_new + Kf beta`` and ``I_ff = gamma Ka D' /
+Ktn + T KT``, and the tick evaluates ``I = K D' (omega_ff - Kp alpha - beta) + I_ff``: the same sums in another order.
 
 Shapes: everything broadcasts over leading dimensions ``(..., n)``. The tick works in place, without allocation.
 """
@@ -24,7 +28,7 @@ Shapes: everything broadcasts over leading dimensions ``(..., n)``. The tick wor
 from dataclasses import dataclass
 
 import numpy as np
-from numpy import add, multiply, subtract
+from numpy import add, copyto, multiply, subtract
 
 from runtime.frames import Array
 from runtime.profile import FeedforwardSource
@@ -55,22 +59,21 @@ class ServoLaw:
         self._Kp = np.broadcast_to(gains.Kp, shape).copy()
         self._per_tick = 1.0 / tick_s
         self._measured = gains.source == "measured"
-        self._springs = gains.K2 != 0.0
-        self._alpha = np.array(alpha, dtype=np.float64)
         self.beta = np.zeros(shape)
         """Detected speed of the last tick, rad/s."""
+        self._alpha = np.array(alpha, dtype=np.float64)
         self._beta_before = np.zeros(shape)
         self._gamma = np.zeros(shape)
         self._work = np.zeros(shape)
-        self._current = np.zeros(shape)
         self._extra = np.zeros(shape)
         self._velocity_gain = np.zeros(shape)
         self._acceleration_gain = np.zeros(shape)
         self._windup = np.zeros(shape)
         self._gravity = np.zeros(shape)
+        self._plan: list[tuple[Array, Array]] = []
 
     def update(self, D: Array, T: Array, D_control: Array | None = None) -> None:
-        """Take new loads (step 404): D kg m2 and T N m, (..., n). Once per 8 ms, when ITA is sent.
+        """Take new loads (step 404): D kg m2 and T N m, (..., n). Once per cycle, when ITA is sent.
 
         ``D_control`` replaces D where gains are held fixed; the spring term keeps the true D.
         """
@@ -78,35 +81,51 @@ class ServoLaw:
         D_total = (D if D_control is None else D_control) + g.rotor
         self._velocity_gain[...] = g.Kv / g.Ktn * D_total
         self._acceleration_gain[...] = g.Ka / g.Ktn * D_total
-        self._windup[...] = D * g.K2 / g.Kc
+        self._windup[...] = D * (g.K2 / g.Kc)
         self._gravity[...] = T * g.KT_scale / g.Ktn
 
-    def current(self, theta: Array, beta_cmd: Array, gamma_cmd: Array, alpha: Array) -> Array:
-        """Return the current command I_nnew (..., n) A of this tick: a live buffer, overwritten by the next.
+    def command(self, theta: Array, beta: Array, gamma: Array, current: Array | float = 0.0) -> None:
+        """Take the commanded motion of the ticks to come, after ``update``; each (ticks, ..., n).
 
-        theta (..., n) rad commanded, beta_cmd rad/s and gamma_cmd rad/s2 its derivatives, alpha rad detected.
+        theta rad, beta rad/s, gamma rad/s2, ``current`` A added to every command (friction).
         """
-        beta, work, current, extra = self.beta, self._work, self._current, self._extra
+        omega_ff = self._Kp * theta
+        current_ff = self._gravity + np.asarray(current) + np.zeros_like(theta)
+        if not self._measured:
+            omega_ff += self._Kp * self._windup * gamma + self.gains.Kf * beta
+            current_ff += self._acceleration_gain * gamma
+        self._plan = list(zip(omega_ff, current_ff, strict=True))
+
+    def current(self, k: int, alpha: Array) -> Array:
+        """Return the current command I_nnew (..., n) A of tick k: a live buffer, overwritten by the next.
+
+        alpha (..., n) rad is the detected angle.
+        """
+        omega_ff, current_ff = self._plan[k]
+        beta, work = self.beta, self._work
         subtract(alpha, self._alpha, beta)
         multiply(beta, self._per_tick, beta)
-        self._alpha[...] = alpha
+        copyto(self._alpha, alpha)
+        multiply(alpha, self._Kp, work)
+        subtract(omega_ff, work, work)
+        subtract(work, beta, work)
         if self._measured:
-            gamma = self._gamma
-            subtract(beta, self._beta_before, gamma)
-            multiply(gamma, self._per_tick, gamma)
-            self._beta_before[...] = beta
-            beta_ff = beta
-        else:
-            gamma, beta_ff = gamma_cmd, beta_cmd
-        subtract(theta, alpha, work)  # 410, with the wind-up of (6) added where there is a spring
-        if self._springs:
-            multiply(gamma, self._windup, extra)
-            add(work, extra, work)
-        multiply(work, self._Kp, work)  # (7)
-        multiply(beta_ff, self.gains.Kf, extra)  # (8)
+            return self._current_measured(current_ff)
+        multiply(work, self._velocity_gain, work)
+        return add(work, current_ff, work)
+
+    def _current_measured(self, current_ff: Array) -> Array:
+        """Finish the tick with the detected derivatives in (6), (8) and (10), as the document prints them."""
+        beta, gamma, work, extra = self.beta, self._gamma, self._work, self._extra
+        subtract(beta, self._beta_before, gamma)
+        multiply(gamma, self._per_tick, gamma)
+        copyto(self._beta_before, beta)
+        multiply(beta, self.gains.Kf, extra)
         add(work, extra, work)
-        subtract(work, beta, work)  # 416
-        multiply(work, self._velocity_gain, current)  # (9)
-        multiply(gamma, self._acceleration_gain, extra)  # (10)
-        add(current, extra, current)
-        return add(current, self._gravity, current)  # (11)
+        multiply(gamma, self._windup, extra)
+        multiply(extra, self._Kp, extra)
+        add(work, extra, work)
+        multiply(work, self._velocity_gain, work)
+        multiply(gamma, self._acceleration_gain, extra)
+        add(work, extra, work)
+        return add(work, current_ff, work)

@@ -22,7 +22,6 @@ class Encoders:
     def __init__(self, resolution: Array) -> None:
         self.resolution = resolution
         self._per_step = 1.0 / resolution
-        self._counts = np.zeros(np.shape(resolution))
 
     def read(self, q: Array, out: Array) -> None:
         """Write the detected angles of q (..., n) rad to ``out``."""

@@ -48,7 +48,7 @@ def test_a_set_point_is_sent_one_cycle_after_it_was_computed_and_played_one_cycl
     np.testing.assert_array_equal(log["q_plan"][0], plan.q[0])
     np.testing.assert_array_equal(log["q_plan"][8], plan.q[1])
     np.testing.assert_array_equal(log["q_plan"][16], plan.q[2])
-    np.testing.assert_allclose(log["q_cmd"][23], plan.q[1], atol=1e-15)  # end of cycle 2
+    np.testing.assert_allclose(log["q_cmd"][24], plan.q[1], atol=1e-15)  # cycle 2 plays plan.q[0] to plan.q[1]
 
 
 def test_the_command_ends_at_rest_exactly_at_the_end_of_the_plan():
@@ -99,7 +99,7 @@ def test_a_right_load_holds_the_arm_still_and_a_missing_one_lets_it_sag():
     missing = still.areas.ita[1].T - cell.T
     inertia = cell.D + CELL.robot.axes[1].motor.reflected_inertia
     droop = (sagging.recorder.signals(sagging.tool_poses)["q_cmd"] - signals(sagging)["q_fb"])[-1, 1]
-    assert droop == pytest.approx(missing / (kp_kv * inertia), rel=0.01)  # spec/controller.md 1.8
+    assert droop == pytest.approx(missing / (kp_kv * inertia), rel=0.01)  # docs/servo.md
     assert abs(np.degrees(droop)) > 0.01
 
 
@@ -154,7 +154,11 @@ class BrokenPlant(RigidPlant):
 
 
 @pytest.mark.parametrize(
-    ("what", "named", "axis"), [("state", "state of the physics", None), ("angle", "detected angle q_fb of J2", 1)]
+    ("what", "named", "axis"),
+    [
+        ("state", "state of the plant is no longer valid: a joint speed", None),
+        ("angle", "detected angle q_fb of J2", 1),
+    ],
 )
 def test_a_state_that_is_not_finite_is_caught_in_its_tick_named_and_latched(what, named, axis):
     robot = controller(plant=BrokenPlant(at_tick=21, what=what))

@@ -1,4 +1,4 @@
-"""Experiment A3 of spec/controller.md: what the background costs is paid by the background alone."""
+"""Experiment A3 of docs/measured.md: what the background costs is paid by the background alone."""
 
 import numpy as np
 import pytest

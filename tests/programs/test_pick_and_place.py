@@ -1,4 +1,4 @@
-"""Experiment A1 of spec/controller.md and the figures of the main job, on MuJoCo.
+"""Experiment A1 of docs/measured.md and the figures of the main job, on MuJoCo.
 
 The 1992 listing runs once for the whole module; every figure that docs/measured.md quotes for it is asserted here.
 """
@@ -17,8 +17,8 @@ from robolang.lowering import pose_si
 from robolang.project import builtin_cell, load_project
 from robolang.runlog import write_log
 from robolang.session import RunResult, Session
+from runtime import recorder
 from runtime.frames import Array, inverse, rotation_angle
-from runtime.recorder import Recorder
 from runtime.robot.kinematics import Kinematics
 
 ROOT = Path(__file__).parents[2]
@@ -129,8 +129,8 @@ def test_tracking_is_as_documented(result):
 
 
 def test_every_documented_signal_is_in_the_log_with_ticks_first(result):
-    documented = re.findall(r"^``(.*?)  ", Recorder.__module__ and __import__("runtime.recorder").recorder.__doc__, re.M)
-    names = set(re.findall(r"``(\w+)``", "\n".join(f"``{line}" for line in documented)))
+    rows = re.findall(r"^``.*?  ", recorder.__doc__ or "", re.M)
+    names = set(re.findall(r"``(\w+)``", " ".join(rows)))
     assert names == set(result.log)
     assert {len(values) for values in result.log.values()} == {round(result.report["sim_time_s"] * 1000)}
     assert all(np.isfinite(values).all() for values in result.log.values())

@@ -1,4 +1,4 @@
-"""What is not a number is noticed in its own tick, and nothing jumps (promise R04)."""
+"""What is not a number is noticed in its own tick, and nothing jumps."""
 
 from pathlib import Path
 

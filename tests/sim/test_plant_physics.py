@@ -83,7 +83,7 @@ def friction_at_constant_speed(direction: float) -> Array:
 
 @pytest.mark.parametrize(("direction", "side"), [(1.0, 0), (-1.0, 1)], ids=["forward", "backward"])
 def test_dry_friction_is_the_published_one_in_each_direction(direction: float, side: int) -> None:
-    """Motor figures of robots.md times |G|; where G is negative, the joint's forward is the motor's backward."""
+    """Published motor figures times |G|; where G is negative, the joint's forward is the motor's backward."""
     ratios = [-62.6111, 107.815, -53.7063, 76.0364, 71.923, 76.686]
     motor = [(0.395, 0.435), (0.126, 0.071), (0.132, 0.105), (11.2e-3, 16.9e-3), (9.26e-3, 14.5e-3), (3.96e-3, 10.5e-3)]
     joint = [abs(g) * pair[side if g > 0.0 else 1 - side] for g, pair in zip(ratios, motor, strict=True)]

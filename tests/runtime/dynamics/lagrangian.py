@@ -1,6 +1,6 @@
 """The document's Lagrangian, eqs (1) to (5), written out: slow, explicit, and independent of Pinocchio.
 
-Source: spec/controller.md 1.7. Works from the published DH rows and body data of the robot file itself, so that it
+Source: docs/dynamics.md. Works from the published DH rows and body data of the robot file itself, so that it
 shares nothing with the models under test but the numbers. 4x4 matrices, SI.
 """
 
@@ -77,7 +77,7 @@ def gravity(rows: list[dict], q: np.ndarray, payload=None, mode: str = "add") ->
 
 
 def geometric(rows: list[dict], q: np.ndarray, payload=None, mode: str = "add") -> tuple[np.ndarray, np.ndarray]:
-    """Return (D_i, T_i) by the cheap geometric forms of spec/controller.md 1.7, about each joint axis in world."""
+    """Return (D_i, T_i) by the cheap geometric forms of docs/dynamics.md, about each joint axis in world."""
     n, J = len(rows), bodies(rows, payload, mode)
     frames = [np.eye(4)]
     for row, angle in zip(rows, q, strict=True):

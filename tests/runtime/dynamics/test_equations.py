@@ -1,4 +1,4 @@
-"""Experiment A2 of spec/controller.md: inertia and gravity of the Puma 560 against published and derived numbers."""
+"""Experiment A2 of docs/measured.md: inertia and gravity of the Puma 560 against published and derived numbers."""
 
 import numpy as np
 import pytest

@@ -41,7 +41,7 @@ def irb2400(puma) -> RobotSpec:
 
 @pytest.fixture(scope="session", params=["puma560", "irb2400", "kr6", "tx2_60"])
 def params(request, puma, irb2400) -> OpwParameters:
-    """Arms that differ in what matters: b < 0, = 0, > 0; a1, a2 zero or not; signs; offsets (spec/robots.md 8.3)."""
+    """Arms that differ in what matters: b < 0, = 0, > 0; a1, a2 zero or not; signs; offsets."""
     return {
         "puma560": puma.opw,
         "irb2400": irb2400.opw,

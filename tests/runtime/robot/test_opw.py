@@ -15,7 +15,7 @@ TOOLBOX = {
     "qs": (0, 0, -90, 0, 0, 0),
     "qn": (0, 45, 180, 0, 45, 0),
 }
-PUMA_DH = (  # d, a, alpha (spec/robots.md 8.2)
+PUMA_DH = (  # d, a, alpha (Robotics Toolbox, Puma560.py)
     (0.672, 0.0, 90.0),
     (0.0, 0.4318, 0.0),
     (0.15005, 0.0203, -90.0),

@@ -1,4 +1,4 @@
-"""Experiments A4 and A5 of spec/controller.md on one rigid axis with an ideal current loop."""
+"""Experiments A4 and A5 of docs/measured.md on one rigid axis with an ideal current loop."""
 
 import math
 
@@ -19,10 +19,11 @@ def step_response(D_model, D_true, *, tick_s=5e-4, Kf=0.0, Ka=0.0, source="comma
     gains = Gains(Kp=KP * one, Kv=KV * one, Ktn=KTN * one, rotor=0.0 * one, Kf=Kf, Ka=Ka, source=source)
     law = ServoLaw(gains, np.zeros(1), tick_s)
     law.update(np.array([D_model]), np.array([T_model]))
-    theta, zero = np.array([size]), np.zeros(1)
+    theta, zero = np.array([[size]]), np.zeros((1, 1))
+    law.command(theta, zero, zero)
     q, dq, out = 0.0, 0.0, []
     for _ in range(round(seconds / tick_s)):
-        current = float(law.current(theta, zero, zero, np.array([q]))[0])
+        current = float(law.current(0, np.array([q]))[0])
         ddq = (KTN * current - T_true) / D_true
         q, dq = q + dq * tick_s + 0.5 * ddq * tick_s**2, dq + ddq * tick_s
         out.append(q)
@@ -102,24 +103,36 @@ def test_a_command_in_motion_is_followed_without_lag_by_commanded_feed_forward()
         t = k * tick_s
         theta, beta, gamma = 0.1 * (1 - math.cos(3 * t)), 0.3 * math.sin(3 * t), 0.9 * math.cos(3 * t)
         worst = max(worst, abs(theta - q))
-        current = float(law.current(theta * one, beta * one, gamma * one, np.array([q]))[0])
+        law.command(np.array([[theta]]), np.array([[beta]]), np.array([[gamma]]))
+        current = float(law.current(0, np.array([q]))[0])
         ddq = KTN * current / LARGEST
         q, dq = q + dq * tick_s + 0.5 * ddq * tick_s**2, dq + ddq * tick_s
     assert worst < 2e-5
 
 
-def test_the_law_broadcasts_over_leading_dimensions():
-    n, runs = 6, 5
+@pytest.mark.parametrize("source", ["command", "measured"])
+def test_the_law_broadcasts_over_leading_dimensions_and_equals_the_printed_equations(source):
+    n, runs, tick_s = 6, 5, 1e-3
     rng = np.random.default_rng(3)
-    gains = Gains(Kp=np.full(n, KP), Kv=np.full(n, KV), Ktn=np.full(n, KTN), rotor=rng.uniform(0, 1, n))
+    g = Gains(Kp=np.full(n, KP), Kv=np.full(n, KV), Ktn=np.full(n, KTN), rotor=rng.uniform(0, 1, n), Kf=0.4, Ka=0.3,
+              K2=0.9, Kc=5000.0, KT_scale=1.1, source=source)  # fmt: skip
     alpha0, alpha1, D, T = (rng.normal(size=(runs, n)) for _ in range(4))
-    theta, beta, gamma = (rng.normal(size=(runs, n)) for _ in range(3))
-    together = ServoLaw(gains, alpha0, 1e-3)
-    together.update(D, T)
-    all_at_once = together.current(theta, beta, gamma, alpha1).copy()
-    for run in range(runs):
-        alone = ServoLaw(gains, alpha0[run], 1e-3)
-        alone.update(D[run], T[run])
-        np.testing.assert_array_equal(
-            all_at_once[run], alone.current(theta[run], beta[run], gamma[run], alpha1[run])
-        )
+    theta, beta_cmd, gamma_cmd = (rng.normal(size=(runs, n)) for _ in range(3))
+    law = ServoLaw(g, alpha0, tick_s)
+    law.update(D, T)
+    law.command(theta[None], beta_cmd[None], gamma_cmd[None])
+    beta = (alpha1 - alpha0) / tick_s
+    beta_ff, gamma = (beta, beta / tick_s) if source == "measured" else (beta_cmd, gamma_cmd)
+    omega = KP * (theta + gamma * D * g.K2 / g.Kc - alpha1)  # (6), 410, (7)
+    domega = omega + beta_ff * g.Kf - beta  # (8), 416
+    D_total = D + g.rotor
+    expected = KV / KTN * D_total * domega + gamma * g.Ka * D_total / KTN + T * 1.1 / KTN  # (9), (10), (11)
+    np.testing.assert_allclose(law.current(0, alpha1), expected, rtol=1e-12)
+
+
+def test_gains_held_fixed_replace_the_inertia_in_the_loop_only():
+    one = np.ones(1)
+    law = ServoLaw(Gains(Kp=KP * one, Kv=KV * one, Ktn=KTN * one, rotor=0.5 * one), np.zeros(1), 1e-3)
+    law.update(np.array([3.0]), np.array([14.0]), D_control=np.array([2.0]))
+    law.command(np.full((1, 1), 0.1), np.zeros((1, 1)), np.zeros((1, 1)))
+    assert float(law.current(0, np.zeros(1))[0]) == pytest.approx(KV / KTN * 2.5 * KP * 0.1 + 14.0 / KTN)

@@ -1,0 +1,347 @@
+"""What the documentation says of names, files, commands, keys and output is true of the code beside it.
+
+``python -m tests.arch.test_docs`` writes docs/codes.md anew.
+"""
+
+import importlib
+import inspect
+import io
+import pkgutil
+import re
+import shlex
+import tomllib
+from contextlib import redirect_stdout
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.main import get_command
+
+import robolang
+import runtime
+from robolang.checker import check
+from robolang.cli.main import app
+from robolang.diagnostics import has_errors
+from robolang.parser import parse
+from robolang.source import Source
+from runtime.faults import all_codes
+from runtime.recorder import Recorder
+
+ROOT = Path(__file__).parents[2]
+CODES = ROOT / "docs" / "codes.md"
+PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
+CODE = [path for folder in ("robolang", "runtime", "tests") for path in sorted((ROOT / folder).rglob("*.py"))]
+PREAMBLE = """\
+# Codes
+
+Every diagnostic, fault and alarm has a code. `robolang explain RBL412` prints one, `robolang explain` lists them. 1xx
+text, 2xx meaning, 3xx points, 4xx payload and motion, 5xx run, 6xx robot and cell files, 7xx command line and
+configuration, 9xx internal. A code keeps its number and its meaning; what a message says may change. Some codes are
+registered and not raised yet.
+
+This page is generated: `python -m tests.arch.test_docs`.
+
+| code | name | meaning | what to do |
+|---|---|---|---|
+"""
+
+FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
+DOTTED = re.compile(r"`((?:runtime|robolang)(?:\.\w+)+)`")
+FILE = re.compile(
+    r"(?<![\w/.-])((?:runtime|robolang|tests|programs|docs)/[\w./-]*\.(?:py|toml|rbl|md|lark))(?:::(\w+))?"
+)
+TEST = re.compile(r"`(test_\w+)`")
+COMMAND = re.compile(r"`(robolang(?: [^`]*)?)`")
+OPTION = re.compile(r"`(--[a-z-]+)")
+MAKE = re.compile(r"`(make \w+)`")
+CITED = re.compile(r"docs/[\w/-]*\w(?:\.md)?")
+
+
+def name(page: Path) -> str:
+    return page.relative_to(ROOT).as_posix()
+
+
+def fenced(page: Path, language: str) -> list[str]:
+    return [text for kind, text in FENCE.findall(page.read_text("utf-8")) if kind == language]
+
+
+def prose(page: Path) -> str:
+    return FENCE.sub("", page.read_text("utf-8"))
+
+
+@cache
+def names_of_tests() -> frozenset[str]:
+    found = (re.findall(r"^\s*def (test_\w+)", path.read_text("utf-8"), re.MULTILINE) for path in CODE)
+    return frozenset(word for words in found for word in words)
+
+
+def load_everything() -> None:
+    """Import every module of both packages, so that every code is registered."""
+    for package in (robolang, runtime):
+        for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            if not module.name.endswith("__main__"):
+                importlib.import_module(module.name)
+
+
+def codes_page() -> str:
+    load_everything()
+    rows = [f"| {code.code} | {code.name} | {code.meaning} | {code.remedy} |" for code in all_codes()]
+    return PREAMBLE + "\n".join(rows) + "\n"
+
+
+def resolve(dotted: str) -> object:
+    """Return what a dotted name means: a module, or something inside one."""
+    parts = dotted.split(".")
+    for count in range(len(parts), 0, -1):
+        try:
+            found: object = importlib.import_module(".".join(parts[:count]))
+        except ModuleNotFoundError:
+            continue
+        for part in parts[count:]:
+            found = getattr(found, part)
+        return found
+    raise ModuleNotFoundError(dotted)
+
+
+# --- links, names, files ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name)
+def test_links_lead_to_something(page):
+    missing = []
+    for target in LINK.findall(prose(page)):
+        if re.match(r"[a-z]+:", target):
+            continue
+        path = page.parent / target.partition("#")[0] if not target.startswith("#") else page
+        if not path.exists():
+            missing.append(target)
+    assert missing == []
+
+
+def test_every_page_is_reached_from_the_readme():
+    reached, todo = set(), [ROOT / "README.md"]
+    while todo:
+        page = todo.pop()
+        if page in reached:
+            continue
+        reached.add(page)
+        for target in LINK.findall(prose(page)):
+            path = (page.parent / target.partition("#")[0]).resolve()
+            todo += sorted(path.glob("*.md")) if path.is_dir() else [path] if path.suffix == ".md" else []
+    assert [name(page) for page in PAGES if page not in reached] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name)
+def test_names_of_the_code_exist(page):
+    wrong = []
+    for dotted in DOTTED.findall(prose(page)):
+        try:
+            resolve(dotted)
+        except (ModuleNotFoundError, AttributeError) as error:
+            wrong.append(f"{dotted}: {error}")
+    assert wrong == []
+
+
+def test_a_name_that_does_not_exist_is_noticed():
+    assert inspect.isfunction(resolve("runtime.motion.planner.LinePlanner.plan"))
+    for wrong in ("runtime.motion.plan", "runtime.motion.planner.LinePlanner.plans", "robolang.nothing"):
+        with pytest.raises((ModuleNotFoundError, AttributeError)):
+            resolve(wrong)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name)
+def test_files_and_tests_exist(page):
+    text = page.read_text("utf-8")
+    missing = []
+    for path, test in FILE.findall(text):
+        there = (ROOT / path).is_file()
+        if not there or (test and f"def {test}(" not in (ROOT / path).read_text("utf-8")):
+            missing.append(f"{path}::{test}" if test else path)
+    missing += [test for test in TEST.findall(text) if test not in names_of_tests()]
+    assert missing == []
+
+
+def test_pages_and_tests_cited_in_the_code_exist():
+    missing = []
+    for path in CODE:
+        if path == Path(__file__):
+            continue
+        text = path.read_text("utf-8")
+        cited = [target for target in CITED.findall(text) if not any(ROOT.glob(f"{target}*"))]
+        files = [target for target, _ in FILE.findall(text) if target.startswith("tests")]
+        cited += [target for target in files if not (ROOT / target).is_file()]
+        missing += [f"{name(path)}: {target}" for target in cited]
+    assert missing == []
+
+
+def test_decisions_are_numbered_and_short():
+    records = sorted((ROOT / "docs" / "decisions").glob("*.md"))
+    assert [path.name[:4] for path in records] == [f"{number:04}" for number in range(1, len(records) + 1)]
+    for path in records:
+        lines = path.read_text("utf-8").splitlines()
+        assert lines[0].startswith(f"# {path.name[:4]} "), path.name
+        assert [line for line in lines if line.startswith("## ")] == ["## Context", "## Decision", "## Consequences"]
+        assert len(lines) <= 40, path.name
+
+
+# --- generated and mirrored ------------------------------------------------------------------------------------------
+
+
+def test_the_table_of_codes_is_current():
+    assert CODES.read_text("utf-8") == codes_page(), "run: python -m tests.arch.test_docs"
+
+
+def test_codes_in_prose_are_registered():
+    load_everything()
+    known = {code.code for code in all_codes()}
+    found = {code for page in PAGES for code in re.findall(r"RBL\d{3}", page.read_text("utf-8"))}
+    assert found - known == set()
+
+
+def test_the_layers_are_those_that_are_checked():
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]["contracts"]
+    layers = {item["containers"][0]: item["layers"] for item in contracts if item["type"] == "layers"}
+    (drawn,) = [text for text in fenced(ROOT / "docs/architecture.md", "text") if "never imports" in text]
+    columns = [re.split(r"\s{3,}", line.strip()) for line in drawn.splitlines()[2:]]
+    assert [cells[0] for cells in columns] == layers["robolang"]
+    assert [cells[1] for cells in columns if len(cells) == 2] == layers["runtime"]
+
+
+def test_every_signal_is_in_the_table_with_its_shape():
+    recorder = Recorder(6, 8, 1000)
+    zeros = np.zeros(6)
+    recorder.begin_cycle(zeros, zeros, zeros, zeros, np.zeros((3, 8, 6)), 0.0, 0)
+    recorder.record((zeros, zeros, zeros, zeros))
+    signals = recorder.signals(lambda q: np.zeros((len(q), 4, 4)))
+    shapes = {key: "(N, " + ", ".join("n" if k == 6 else str(k) for k in values.shape[1:]) + ")"
+              for key, values in signals.items()}  # fmt: skip
+    rows = re.findall(r"^\| `(\w+)` \| (\(N[^|]*\)) \|", (ROOT / "docs/signals.md").read_text("utf-8"), re.MULTILINE)
+    assert dict(rows) == {key: shape.replace("(N, )", "(N,)") for key, shape in shapes.items()}
+
+
+def test_every_key_of_the_report_is_explained(run_result):
+    explained = set(re.findall(r"`(\w+)", (ROOT / "docs/signals.md").read_text("utf-8")))
+    alarm = {"code", "message", "line", "axis", "time_s", "hint"}
+    assert keys_of({key: value for key, value in run_result.report.items() if key != "objects"}) | alarm <= explained
+
+
+def keys_of(value: object) -> set[str]:
+    if isinstance(value, dict):
+        return set(value) | {key for item in value.values() for key in keys_of(item)}
+    return {key for item in value for key in keys_of(item)} if isinstance(value, list) else set()
+
+
+@pytest.mark.parametrize("module", ["runtime/plant/cell.py", "runtime/profile.py", "robolang/points.py"])
+def test_every_key_of_the_files_is_explained(module):
+    getters = r"(?:numbers?|integer|text|flag|tables?|named_tables|raw_list|_pose|_point|_size|_named)"
+    source = (ROOT / module).read_text("utf-8")
+    keys = set(re.findall(getters + r'\((?:\w+, )?"(\w+)"', source)) - {"schema", "points"}
+    assert len(keys) >= 7
+    explained = set(re.findall(r"[`\[.](\w+)", (ROOT / "docs/language.md").read_text("utf-8")))
+    assert keys - explained == set()
+
+
+# --- what can be run -------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def run_result():
+    return robolang.run(ROOT / "programs" / "pick_and_place.rbl")
+
+
+def test_programs_in_the_pages_have_no_errors():
+    programs = [(page, text) for page in PAGES for text in fenced(page, "rbl")]
+    assert len(programs) >= 2
+    for page, text in programs:
+        parsed = parse(Source(name(page), text))
+        found = (*parsed.diagnostics, *check(parsed.program, points=["P1", "P2", "P3", "P5"], rated_payload_kg=2.5))
+        assert not has_errors(found), (name(page), [item.message for item in found])
+
+
+def test_the_python_of_the_readme_runs(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    (block,) = fenced(ROOT / "README.md", "python")
+    printed = io.StringIO()
+    with redirect_stdout(printed):
+        exec(compile(block, "README.md", "exec"), {})
+    assert "s simulated" in printed.getvalue()
+
+
+def test_the_transcript_of_the_readme_is_what_a_run_gives(run_result):
+    """Times exactly; errors roughly, since another processor may round otherwise."""
+    transcript = next(text for text in fenced(ROOT / "README.md", "text") if "pick_and_place" in text)
+    rows = [line for line in transcript.splitlines() if re.match(r" +\d+  \w", line)]
+    statements = run_result.report["statements"]
+    assert len(rows) == len(statements)
+    for row, statement in zip(rows, statements, strict=True):
+        number, text, rest = re.fullmatch(r" +(\d+)  (.*?)  +(\d+\.\d{3} .*)", row).groups()
+        start, time, *shown = (float(value) for value in rest.split())
+        assert (int(number), text) == (statement["number"], statement["text"])
+        assert (start, time) == pytest.approx((statement["start_s"], statement["duration_s"]), abs=5e-4)
+        keys = {"joint_error_deg": 2e-3, "tool_error_mm": 0.02, "path_deviation_mm": 0.02, "peak_torque_pct": 0.6}
+        keys = {key: tolerance for key, tolerance in keys.items() if statement[key] is not None}
+        assert len(shown) == len(keys), text
+        for value, (key, tolerance) in zip(shown, keys.items(), strict=True):
+            assert value == pytest.approx(statement[key], rel=0.05, abs=tolerance), (text, key)
+
+
+def test_commands_exist():
+    lines = [(page, line) for page in PAGES for block in fenced(page, "sh") for line in block.splitlines() if line]
+    assert len(lines) > 10
+    for page, line in lines:
+        words = shlex.split(line)
+        command = words[0].removeprefix(".venv/bin/")
+        if command == "robolang":
+            parse_command(words[1:])
+        elif command == "make":
+            assert set(words[1:]) <= make_targets(), line
+        elif words[1:3] == ["-m", "pytest"]:
+            assert all((ROOT / target).exists() for target in words[3:]), line
+        elif words[1:2] == ["-m"]:
+            importlib.import_module(words[2])
+        elif words[1:2] == ["-c"]:
+            compile(words[2], line, "exec")
+        else:
+            assert command == "mkdir", (name(page), line)
+
+
+def test_commands_named_in_prose_exist():
+    names = {word for page in PAGES for word in COMMAND.findall(prose(page))}
+    assert len(names) > 5
+    for words in map(str.split, names):
+        command = get_command(app)
+        for word in words[1:]:
+            if not hasattr(command, "commands") or not word.islower() or word.startswith("-"):
+                break
+            assert word in command.commands, words
+            command = command.commands[word]
+        options = {name for parameter in command.params for name in parameter.opts}
+        assert {word for word in words if word.startswith("--")} <= options | {"--help"}, words
+    options = {name for command in commands(get_command(app)) for item in command.params for name in item.opts}
+    assert {word for page in PAGES for word in OPTION.findall(prose(page))} <= options | {"--help"}
+    targets = {word.split()[1] for page in PAGES for word in MAKE.findall(prose(page))}
+    assert targets
+    assert targets <= make_targets()
+
+
+def commands(command: object) -> list:
+    return [command, *(found for inner in getattr(command, "commands", {}).values() for found in commands(inner))]
+
+
+def parse_command(words: list[str]) -> None:
+    """Let the command line parse its arguments without doing anything; raises a usage error for wrong ones."""
+    command = get_command(app)
+    while words and words[0] in getattr(command, "commands", {}):
+        command, words = command.commands[words[0]], words[1:]
+    assert not hasattr(command, "commands"), words
+    command.make_context("robolang", list(words))
+
+
+def make_targets() -> set[str]:
+    return set(re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE))
+
+
+if __name__ == "__main__":
+    CODES.write_text(codes_page(), "utf-8")

@@ -1,0 +1,86 @@
+import errno
+
+import pytest
+import typer
+
+import robolang.project  # noqa: F401 - registers its codes
+from robolang.cli.errors import exit_code, reader_may_leave, reported, say
+from runtime.faults import Fault, all_codes
+from runtime.tomlfile import Source
+
+
+def left_with(error):
+    with pytest.raises(typer.Exit) as caught, reported():
+        raise error
+    return caught.value.exit_code
+
+
+EXPECTED = {"1": 1, "2": 1, "3": 2, "40": 1, "4": 3, "5": 3, "6": 2, "7": 2, "8": 2, "9": 70}
+
+
+@pytest.mark.parametrize("code", [entry.code for entry in all_codes()])
+def test_every_registered_code_has_the_exit_code_of_its_group(code):
+    special = {"RBL301": 1, "RBL706": 4}
+    assert exit_code(code) == special.get(code, EXPECTED.get(code[3:5], EXPECTED[code[3]]))
+
+
+@pytest.mark.parametrize(
+    ("code", "expected"),
+    [("RBL112", 1), ("RBL201", 1), ("RBL301", 1), ("RBL303", 2), ("RBL401", 1), ("RBL404", 1), ("RBL410", 3),
+     ("RBL412", 3), ("RBL510", 3), ("RBL606", 2), ("RBL701", 2), ("RBL706", 4), ("RBL708", 2), ("RBL900", 70)],
+)  # fmt: skip
+def test_exit_codes_by_name(code, expected, capsys):
+    assert exit_code(code) == expected
+    assert left_with(Fault(code, "what is wrong")) == expected
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.startswith(f"error {code} what is wrong\n  help: ")
+
+
+def test_a_fault_of_a_file_is_said_with_its_place_and_its_line(capsys):
+    with pytest.raises(Fault) as caught:
+        Source("a.toml", "x = 1\ny = \x1b2\n").fail("RBL605", "too large", "make it smaller", ["y"])
+    assert say(caught.value) == 2
+    assert capsys.readouterr().err == (
+        "a.toml:2:1: error RBL605 too large\n   2 | y = \ufffd2\n     | ^\n  help: make it smaller\n"
+    )
+
+
+@pytest.mark.parametrize("error", [ValueError("x"), RecursionError("deep"), OSError(errno.EPERM, "no"), MemoryError()])
+def test_anything_else_is_an_internal_error_without_a_trace(error, capsys, monkeypatch):
+    monkeypatch.delenv("ROBOLANG_DEBUG", raising=False)
+    assert left_with(error) == 70
+    said = capsys.readouterr().err
+    assert said.startswith(f"error RBL900 internal error: {type(error).__name__}")
+    assert "ROBOLANG_DEBUG=1" in said
+    assert "Traceback" not in said
+
+
+def test_robolang_debug_shows_where_it_happened(monkeypatch):
+    monkeypatch.setenv("ROBOLANG_DEBUG", "1")
+    with pytest.raises(ValueError, match="here"), reported():
+        raise ValueError("here")
+
+
+def test_a_keyboard_interrupt_is_exit_code_130(capsys):
+    assert left_with(KeyboardInterrupt()) == 130
+    assert capsys.readouterr().err == ""
+
+
+def test_a_full_output_is_a_storage_fault(capsys):
+    assert left_with(OSError(errno.ENOSPC, "No space left on device")) == 4
+    assert "RBL706 cannot write the standard output: No space left on device" in capsys.readouterr().err
+
+
+def test_a_reader_that_leaves_is_no_error(capsys):
+    assert left_with(BrokenPipeError(errno.EPIPE, "Broken pipe")) == 0
+    with reader_may_leave():
+        raise BrokenPipeError
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize("error", [typer.Exit(7), typer.BadParameter("no"), typer.Abort()])
+def test_what_typer_itself_raises_passes(error):
+    with pytest.raises(type(error)) as caught, reported():
+        raise error
+    assert caught.value is error

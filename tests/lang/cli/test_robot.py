@@ -1,0 +1,81 @@
+import os
+
+import pytest
+
+from runtime.robot.loader import load_builtin
+from tests.lang.cli.commands import PUMA, robolang
+
+
+def test_the_library_is_listed():
+    assert robolang("robot", "list").stdout == "puma560  Unimation Puma 560, 6 axes, 2.5 kg\n"
+
+
+def test_every_column_fits_80_characters_uncut():
+    text = robolang("robot", "show", "puma560").stdout
+    assert "…" not in text
+    assert max(map(len, text.splitlines())) <= 80
+    spec = load_builtin("puma560")
+    for axis in spec.axes:
+        motor = axis.motor
+        for number in (motor.gear_ratio, motor.rotor_inertia, motor.viscous_friction, axis.limits.torque):
+            assert f" {number:g} " in text
+        assert " {:g}/{:g} ".format(*motor.coulomb_friction) in text
+        assert f"{axis.name} " in text
+    loops = next(
+        line for line in text.splitlines()[text.splitlines().index("Servo loops ".ljust(60)) :] if " J1 " in line
+    )
+    assert loops.split() == ["J1", "30", "120", "300", "131072"]
+    bodies = [line.split() for line in text.splitlines() if line.startswith(" J3 ")][-1]
+    assert bodies == ["J3", "4.8", "0", "70", "164.15", "0.066", "0.0125", "0.086", "0.06975", "0.01625", "0.086"]
+
+
+def test_corrections_sources_and_notes_are_given_in_full():
+    words = " ".join(robolang("robot", "show", "puma560").stdout.split())
+    spec = load_builtin("puma560")
+    for text in (*spec.sources, *spec.notes, *(correction.reason for correction in spec.corrections)):
+        assert text in words
+    assert "J3: 0.00375 kg m2 across the joint, from link 2 to link 3" in words
+    assert "J1: 0.175 kg m2 across the joint, from the base to link 1; 1e-06 kg added" in words
+
+
+def test_a_robot_file_is_shown_like_a_built_in_one():
+    assert robolang("robot", "show", PUMA).stdout == robolang("robot", "show", "puma560").stdout
+
+
+def test_words_of_a_robot_file_are_printed_and_not_obeyed(tmp_path):
+    path = tmp_path / "r.toml"
+    text = (
+        PUMA.read_text().replace('"waist"', '"[/red] :smile:"').replace('"Unimation', '"\\u001b[2J[bold]Unimation', 1)
+    )
+    path.write_text(text)
+    shown = robolang("robot", "show", path).stdout
+    assert "[/red] :smile:" in shown
+    assert "puma560: \ufffd[2J[bold]Unimation" in shown
+    path.write_text(text.replace('"shoulder"', f'"{"long " * 40}"'))
+    assert "…" not in robolang("robot", "show", path).stdout
+
+
+@pytest.mark.parametrize(
+    ("name", "code", "said"),
+    [
+        ("puma56", "RBL708", "did you mean puma560?"),
+        ("nothing", "RBL708", "built in: puma560"),
+        ("", "RBL708", "built in: puma560"),
+        ("none.toml", "RBL600", "none.toml:1:1: error"),
+        ("folder.toml", "RBL600", "is not a regular file"),
+        ("pipe.toml", "RBL600", "is not a regular file"),
+        ("empty.toml", "RBL608", "'schema' is missing"),
+        ("short.toml", "RBL601", "short.toml:"),
+    ],
+)
+def test_a_robot_that_cannot_be_shown(tmp_path, monkeypatch, name, code, said):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder.toml").mkdir()
+    os.mkfifo(tmp_path / "pipe.toml")
+    (tmp_path / "empty.toml").touch()
+    (tmp_path / "short.toml").write_bytes(PUMA.read_bytes()[:3000])
+    result = robolang("robot", "show", name, code=2)
+    assert code in result.stderr
+    assert said in result.stderr
+    assert "help: " in result.stderr
+    assert result.stdout == ""

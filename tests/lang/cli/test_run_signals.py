@@ -1,0 +1,95 @@
+"""Ctrl-C and SIGTERM in a paced run: exit code 130 or 143, report and log complete, soon."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+from mcap.reader import make_reader
+
+from robolang import runlog
+from tests.lang.cli.commands import ROOT, robolang
+
+
+def start(folder, *words):
+    """Start a paced run of 60 s and return it once its move has been announced, a few cycles into the run."""
+    (folder / "p.rbl").write_text("10 HAND OFF, 0.1\n20 MOVE P1, TIME 60\n")
+    process = subprocess.Popen(
+        [sys.executable, "-m", "robolang", "run", "--no-physics", "--realtime", "p.rbl", *words],
+        cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT)}, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    )  # fmt: skip
+    while "MOVE P1" not in (line := process.stderr.readline()):
+        assert line, "the run ended too soon"
+    return process
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_the_first_signal_ends_the_run_with_complete_files(tmp_path, number, code):
+    log = "l.npz" if number == signal.SIGINT else "l.mcap"
+    process = start(tmp_path, "--report", "r.json", "--log", log)
+    sent = time.monotonic()
+    process.send_signal(number)
+    _, stderr = process.communicate(timeout=10)
+    assert time.monotonic() - sent < 2.0
+    assert process.returncode == code
+    assert "p.rbl:2:4: error RBL530" in stderr
+    report = json.loads((tmp_path / "r.json").read_text())
+    assert [(alarm["code"], alarm["line"]) for alarm in report["alarms"]] == [("RBL530", 20)]
+    assert report["ok"] is False
+    assert 0.1 <= report["sim_time_s"] < 10.0
+    assert report["alarms"][0]["time_s"] == report["sim_time_s"]  # nothing was recorded after it
+    if log == "l.npz":
+        ticks = len(np.load(tmp_path / log)["t"])
+    else:
+        with (tmp_path / log).open("rb") as stream:
+            reader = make_reader(stream, validate_crcs=True)
+            ticks = sum(1 for _ in reader.iter_messages())
+            assert reader.get_summary().statistics.message_count == ticks
+    assert ticks == report["cycles"] * 8
+    assert sorted(path.name for path in tmp_path.iterdir()) == [log, "p.rbl", "r.json"]
+
+
+def test_a_signal_while_the_files_are_written_does_not_cut_them_off(tmp_path, monkeypatch):
+    """In this process: SIGINT and SIGTERM arrive while the bytes of the log go out."""
+    (tmp_path / "p.rbl").write_text("MOVE P1\n")
+    write_npz = runlog._write_npz
+    for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
+
+        def interrupted(stream, signals, number=number):
+            os.kill(os.getpid(), number)
+            write_npz(stream, signals)
+
+        monkeypatch.setattr(runlog, "_write_npz", interrupted)
+        words = ["--report", tmp_path / "r.json", "--log", tmp_path / "l.npz"]
+        robolang("run", "--no-physics", tmp_path / "p.rbl", *words, code=code)
+        assert len(np.load(tmp_path / "l.npz")["t"]) > 700
+        assert json.loads((tmp_path / "r.json").read_text())["ok"] is True
+        assert sorted(path.name for path in tmp_path.iterdir()) == ["l.npz", "p.rbl", "r.json"]
+
+
+def test_the_second_signal_leaves_at_once_and_leaves_no_half_file(tmp_path, monkeypatch):
+    (tmp_path / "p.rbl").write_text("MOVE P1\n")
+    (tmp_path / "l.npz").write_text("old")
+
+    def interrupted(stream, signals):
+        stream.write(b"half")
+        os.kill(os.getpid(), signal.SIGTERM)
+        os.kill(os.getpid(), signal.SIGTERM)
+        raise AssertionError("not reached")
+
+    monkeypatch.setattr(runlog, "_write_npz", interrupted)
+    robolang("run", "--no-physics", tmp_path / "p.rbl", "--log", tmp_path / "l.npz", code=143)
+    assert (tmp_path / "l.npz").read_text() == "old"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["l.npz", "p.rbl"]
+
+
+def test_the_handlers_of_the_caller_are_put_back(tmp_path):
+    (tmp_path / "p.rbl").write_text("MOVE P1\n")
+    before = [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)]
+    robolang("run", "--no-physics", "--quiet", tmp_path / "p.rbl")
+    assert [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)] == before

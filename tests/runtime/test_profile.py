@@ -1,0 +1,81 @@
+import pytest
+
+from runtime.profile import Profile, parse_profile
+from runtime.tomlfile import FileFault, Source, load_table
+from runtime.units import DEG
+
+
+def profile(text):
+    return parse_profile(load_table(Source("cell.toml", f"[controller]\n{text}\n")).table("controller"))
+
+
+def test_no_table_and_an_empty_one_give_the_defaults():
+    assert parse_profile(None) == profile("") == Profile()
+    assert (Profile().ticks_per_cycle, Profile().tick_s, Profile().period_s) == (8, 0.001, 0.008)
+
+
+@pytest.mark.parametrize(("period_ms", "ticks"), [("1", 8), ("0.5", 16), ("0.25", 32), ("1.0", 8)])
+def test_the_servo_period_divides_the_cycle(period_ms, ticks):
+    read = profile(f"servo_period_ms = {period_ms}")
+    assert read.ticks_per_cycle == ticks
+    assert read.tick_us * ticks == read.period_us == 8000
+
+
+def test_every_key_is_read_in_the_unit_of_its_name():
+    read = profile(
+        "interpolation_cost_ms = 2.5\ndynamics_cost_per_axis_ms = 0.5\nload_mode = 'replace'\n"
+        "speed_shape = 'trapezoid'\n"
+        "in_position_deg = 0.1\nsettle_timeout_s = 1.5\n[controller.servo]\nmode = 'fixed'\nfeedforward = 'measured'\n"
+        "velocity_feedforward = 0.9\nacceleration_feedforward = 0.8\nspring_compensation = 0.1\n"
+        "gravity_compensation = 0.5\nfriction_compensation = 0"
+    )
+    assert (read.interpolation_cost_us, read.axis_cost_us) == (2500, 500)
+    assert (read.load_mode, read.speed_shape) == ("replace", "trapezoid")
+    assert (read.in_position, read.settle_timeout_us) == (0.1 * DEG, 1_500_000)
+    servo = read.servo
+    assert (servo.mode, servo.source) == ("fixed", "measured")
+    assert (servo.velocity_feedforward, servo.acceleration_feedforward, servo.spring_compensation) == (0.9, 0.8, 0.1)
+    assert (servo.gravity_compensation, servo.friction_compensation) == (0.5, 0.0)
+
+
+def test_measured_feedforward_is_off_until_it_is_asked_for():
+    servo = profile("[controller.servo]\nfeedforward = 'measured'").servo
+    assert (servo.velocity_feedforward, servo.acceleration_feedforward) == (0.0, 0.0)
+
+
+BAD = [
+    ("servo_period_ms = 2", "RBL605", "must be 0.25, 0.5 or 1"),
+    ("servo_period_ms = 0", "RBL605", "must be above 0"),
+    ("servo_period_ms = nan", "RBL604", "not a finite number"),
+    ("servo_period_ms = '1'", "RBL613", "not a text"),
+    ("interpolation_cost_ms = -1", "RBL605", "between 0 and 80"),
+    ("dynamics_cost_per_axis_ms = 0", "RBL605", "between 0.001 and 1000"),
+    ("in_position_deg = inf", "RBL604", "not a finite number"),
+    ("settle_timeout_s = 61", "RBL605", "between 0 and 60"),
+    ("load_mode = 'ad'", "RBL610", "known: add, replace"),
+    ("speed_shape = 'cubic'", "RBL610", "known: jerk, trapezoid"),
+    ("servo = 1", "RBL613", "must be a table"),
+    ("servo_period = 1", "RBL609", "not a key"),
+    ("[controller.servo]\nmode = 'schedule'", "RBL610", "known: scheduled, fixed"),
+    ("[controller.servo]\ngain = 1", "RBL609", "'controller.servo.gain'"),
+    ("[controller.servo]\nvelocity_feedforward = 1.1", "RBL605", "between 0 and 1"),
+    ("[controller.servo]\nfeedforward = 'measured'\nvelocity_feedforward = 1", "RBL616", "must be below 1"),
+    ("[controller.servo]\nfeedforward = 'measured'\nacceleration_feedforward = 1.0", "RBL616", "must be below 1"),
+]
+
+
+@pytest.mark.parametrize(("text", "code", "said"), BAD, ids=[case[0].split("\n")[-1] for case in BAD])
+def test_a_bad_profile_is_refused_at_its_line(text, code, said):
+    with pytest.raises(FileFault) as caught:
+        profile(text)
+    found = caught.value
+    assert (found.code, found.line, found.column) == (code, 2 + text.count("\n"), 1)
+    assert said in found.message
+    assert found.hint
+
+
+def test_the_help_for_unstable_feedforward_mends_it():
+    with pytest.raises(FileFault) as caught:
+        profile("[controller.servo]\nfeedforward = 'measured'\nvelocity_feedforward = 1")
+    assert "such as 0.9" in caught.value.hint
+    profile("[controller.servo]\nfeedforward = 'measured'\nvelocity_feedforward = 0.9")

@@ -1,0 +1,242 @@
+import os
+
+import pytest
+
+from runtime.tomlfile import MAX_BYTES, FileFault, Source, Table, load_table, locate, read_source
+
+TEXT = """\
+# a comment, as robot = "x" would be one
+title = "x"
+
+[hand]
+mass_kg = 0.8
+tcp = [0, 0,
+       113.7]
+[[parts]]
+name = "a"
+[parts.inner]
+deep = 1
+[[parts]]
+name = "b"
+"quoted key" = 3
+"""
+
+
+def fault(call, *args, **options):
+    with pytest.raises(FileFault) as caught:
+        call(*args, **options)
+    return caught.value
+
+
+def table(text, path="f.toml"):
+    return load_table(Source(path, text))
+
+
+def place(found):
+    return found.code, found.line, found.column
+
+
+# reading ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda path: None, "No such file or directory"),
+        (lambda path: path.mkdir(), "is not a regular file"),
+        (os.mkfifo, "is not a regular file"),
+        (lambda path: path.symlink_to("/dev/zero"), "is not a regular file"),
+        (lambda path: path.symlink_to(path), "symbolic links"),
+        (lambda path: path.write_bytes(b" " * (MAX_BYTES + 1)), f"has {MAX_BYTES + 1} bytes, more than {MAX_BYTES}"),
+        (lambda path: path.write_bytes(b"a = 1\nb = \xff"), "is not UTF-8 text (byte 10)"),
+        (lambda path: path.write_bytes("a = 1".encode("utf-16")), "is not UTF-8 text (byte 0)"),
+    ],
+    ids=["missing", "folder", "pipe", "device", "ring", "huge", "binary", "UTF-16"],
+)
+def test_what_is_no_small_text_file_is_refused_without_waiting(tmp_path, make, said):
+    path = tmp_path / "f.toml"
+    make(path)
+    found = fault(read_source, path)
+    assert place(found) == ("RBL600", 1, 1)
+    assert found.path == str(path)
+    assert said in found.message
+    assert fault(read_source, path, "RBL311").code == "RBL311"
+
+
+def test_a_name_with_a_nul_is_refused(tmp_path):
+    assert "null" in fault(read_source, tmp_path / "a\0b.toml").message
+
+
+def test_a_file_of_the_largest_size_and_one_with_a_byte_order_mark_are_read(tmp_path):
+    (tmp_path / "f.toml").write_bytes(b"#" * MAX_BYTES)
+    assert load_table(read_source(tmp_path / "f.toml")).names() == []
+    (tmp_path / "f.toml").write_bytes(b"\xef\xbb\xbfa = 1\r\n")
+    assert load_table(read_source(tmp_path / "f.toml")).number("a") == 1.0
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "column"),
+    [("a = 1\nb = \n", 2, 5), ("a = 1\na = 2\n", 2, 6), ("a = 1\nb = 'x", 2, 7), ("[a\n", 1, 3), ("a = [1, 2", 1, 10)],
+)
+def test_a_syntax_error_is_at_its_line(text, line, column):
+    found = fault(table, text)
+    assert place(found) == ("RBL601", line, column)
+    assert found.excerpt == text.splitlines()[line - 1]
+    assert "(at " not in found.message
+
+
+def test_what_python_cannot_read_is_a_syntax_error_and_no_trace():
+    assert "nested too deeply" in fault(table, "a = " + "[" * 100_000).message
+    assert fault(table, "a = " + "9" * 5000).code == "RBL601"
+
+
+# values -------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("value", "code", "said"),
+    [
+        ("nan", "RBL604", "'a' is nan, not a finite number"),
+        ("inf", "RBL604", "'a' is inf"),
+        ("-inf", "RBL604", "'a' is -inf"),
+        ("1e400", "RBL604", "'a' is inf"),
+        ("2e9", "RBL604", "'a' is 2000000000.0"),
+        ("9" * 4000, "RBL604", "'a' is a whole number of 13288 bits"),
+        ("0x" + "F" * 5000, "RBL604", "'a' is a whole number of 20000 bits"),
+        ("11", "RBL605", "'a' is 11 and must be between 0 and 10"),
+        ("-1", "RBL605", "'a' is -1 and must be"),
+        ("true", "RBL613", "must be a number, not a boolean"),
+        ("'1'", "RBL613", "must be a number, not a text"),
+        ("[1]", "RBL613", "must be a number, not a list"),
+        ("{b = 1}", "RBL613", "must be a number, not a table"),
+        ("1979-05-27", "RBL613", "must be a number, not date"),
+    ],
+)
+@pytest.mark.parametrize("positive", [False, True])
+def test_a_number_that_is_none(value, code, said, positive):
+    text = f"# first\na = {value}\n"
+    found = fault(table(text).number, "a", low=0.0, high=10.0, positive=positive)
+    assert place(found) == (code, 2, 1)
+    assert said in found.message
+    assert len(found.message) < 100
+    found = fault(table(f"# first\na = [1, {value}]\n").numbers, "a", 2, low=0.0, high=10.0, positive=positive)
+    assert place(found) == (code, 2, 1)
+
+
+def test_zero_is_not_positive():
+    assert "must be above 0" in fault(table("a = 0").number, "a", positive=True).message
+    assert table("a = 0").number("a") == 0.0
+
+
+def test_a_missing_key_names_itself_and_a_near_one():
+    found = fault(table(TEXT).table("hand").number, "mas_kg")
+    assert place(found) == ("RBL608", 4, 1)
+    assert found.message == "'hand.mas_kg' is missing"
+    assert found.hint == "'mass_kg' looks like it"
+    assert "axes.2" not in found.message
+
+
+def test_a_default_is_taken_only_when_the_key_is_missing():
+    t = table("a = 1\nb = 'x'\nc = [1]\nd = true")
+    assert (t.number("a", 5.0), t.number("z", 5.0)) == (1.0, 5.0)
+    assert (t.text("b", "y"), t.text("y", "y")) == ("x", "y")
+    assert (t.numbers("c", 1, [2]), t.numbers("x", 1, [2])) == ((1.0,), (2,))
+    assert (t.flag("d", False), t.flag("w", False)) == (True, False)
+    t.done()
+
+
+@pytest.mark.parametrize(
+    ("call", "text", "code", "said"),
+    [
+        (lambda t: t.numbers("a", 3), "a = [1, 2]", "RBL613", "a list of 3 numbers, not 2 entries"),
+        (lambda t: t.numbers("a", None), "a = 1", "RBL613", "a list of numbers, not a number"),
+        (lambda t: t.integer("a", low=0, high=9), "a = 1.5", "RBL613", "must be a whole number"),
+        (lambda t: t.integer("a", low=0, high=9), "a = 10", "RBL605", "between 0 and 9"),
+        (lambda t: t.text("a"), "a = 1", "RBL613", "must be a text, not a number"),
+        (lambda t: t.text("a", choices=("one", "two")), "a = 'onn'", "RBL610", "'a' is 'onn'; known: one, two"),
+        (lambda t: t.flag("a", True), "a = 1", "RBL613", "must be true or false"),
+        (lambda t: t.table("a"), "a = 1", "RBL613", "must be a table, not a number"),
+        (lambda t: t.tables("a"), "a = [1]", "RBL613", "must be written as [[a]] tables"),
+        (lambda t: t.tables("a"), "[a]\nb = 1", "RBL613", "must be written as [[a]] tables"),
+        (lambda t: t.named_tables("a"), "[a]\nb = 1", "RBL613", "'a.b' must be a table"),
+        (lambda t: t.raw_list("a"), "a = 1", "RBL613", "must be a list"),
+    ],
+)
+def test_a_value_of_the_wrong_kind(call, text, code, said):
+    found = fault(call, table(text))
+    assert found.code == code
+    assert said in found.message
+    assert found.hint
+
+
+def test_a_choice_that_is_nearly_right_is_suggested():
+    assert fault(table("a = 'schduled'").text, "a", choices=("scheduled", "fixed")).hint == "did you mean 'scheduled'?"
+
+
+# unknown keys -------------------------------------------------------------------------------------------------------
+
+
+def test_a_key_that_nobody_read_is_refused_at_its_place():
+    t = table(TEXT).table("hand")
+    t.number("mass_kg")
+    found = fault(t.done)
+    assert place(found) == ("RBL609", 6, 1)
+    assert found.hint == "known here: mass_kg"
+    t.numbers("tcp", 3)
+    t.done()
+
+
+def test_a_misspelt_key_is_told_the_one_that_is_missing():
+    t = table("mas_kg = 1\nmass_g = 2")
+    t.number("mass_kg", 1.0)
+    t.number("mass_g")
+    assert fault(t.done).hint == "did you mean 'mass_kg'?"
+
+
+# places -------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("keys", "line", "column"),
+    [
+        (["title"], 2, 1),
+        (["hand"], 4, 1),
+        (["hand", "mass_kg"], 5, 1),
+        (["hand", "none"], 4, 1),
+        (["parts", 0], 8, 1),
+        (["parts", 0, "name"], 9, 1),
+        (["parts", 0, "inner", "deep"], 11, 1),
+        (["parts", 1, "name"], 13, 1),
+        (["parts", 1, "missing"], 12, 1),
+        (["robot"], 1, 1),
+        (["none"], 1, 1),
+    ],
+)
+def test_keys_are_found_where_they_stand(keys, line, column):
+    assert locate(TEXT, keys) == (line, column)
+
+
+def test_the_rows_of_an_array_are_no_headers():
+    text = "[hand]\na = [\n  [1, 2],\n  [3, 4]\n]\nb = 1\n[other] # comment\n  c = 2\n"
+    assert locate(text, ["hand", "b"]) == (6, 1)
+    assert locate(text, ["other", "c"]) == (8, 3)
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_lines_are_counted_as_editors_do(end):
+    text = end.join(["# \u2028 \x85", "a = 1", "[b]", "c = nan"])
+    assert fault(table(text).table("b").number, "c").line == 4
+
+
+def test_a_fault_says_where_it_is():
+    found = fault(table("a = nan").number, "a")
+    assert str(found) == "f.toml:1:1: RBL604 'a' is nan, not a finite number"
+    assert found.excerpt == "a = nan"
+
+
+def test_an_empty_table_belongs_to_a_missing_optional_one():
+    t = table("")
+    assert t.table("servo", required=False).names() == []
+    assert t.tables("parts", required=False) == []
+    assert isinstance(t, Table)
+    assert fault(t.table, "servo").code == "RBL608"
