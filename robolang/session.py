@@ -88,14 +88,14 @@ class Session:
         self._progress(run, controller.time_us)
         try:
             for _ in self._carry_out(effect, run):
-                if self._stop_requested:
-                    controller.alarm("RBL530", "the run was stopped from outside")
-                if not controller.cycle():
+                if self._stop_requested or not controller.cycle():
                     break
                 if controller.recorder.cycle % _PROGRESS_CYCLES == 0:
                     self._progress(run, controller.time_us)
         except Fault as fault:
             controller.alarm(fault.code, fault.message)
+        if self._stop_requested and not controller.alarms:
+            controller.alarm("RBL530", "the run was stopped from outside")
         run.end_tick = controller.recorder.tick
         return not controller.alarms
 

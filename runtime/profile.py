@@ -106,7 +106,7 @@ def _parse_servo(table: Table) -> ServoOptions:
             table.fail(
                 "RBL616",
                 f"'{table.name(key)}' must be below 1 when the feed-forward is measured",
-                "give a value such as 0.9, or write feedforward = \"command\"",
+                'give a value such as 0.9, or write feedforward = "command"',
                 key=key,
             )
     table.done()

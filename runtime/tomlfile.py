@@ -143,7 +143,7 @@ def read_source(path: Path, code: str = "RBL600") -> Source:
     """Read a small regular UTF-8 file; ``FileFault`` with ``code`` otherwise (never blocks on a FIFO)."""
     where = Source(str(path), "")
     try:
-        handle = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
+        handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     except (OSError, ValueError) as error:  # ValueError: a NUL character in the name
         where.fail(code, f"cannot open {path}: {getattr(error, 'strerror', None) or error}")
     try:

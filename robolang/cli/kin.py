@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from robolang.cli.errors import reported
 from robolang.cli.values import OptionValueError, numbers
 
 if TYPE_CHECKING:
@@ -42,6 +43,11 @@ def fk(
     as_json: JsonOption = False,
 ) -> None:
     """Print the pose of the tool for given joint angles."""
+    with reported():
+        _fk(robot, joints, tool, as_json)
+
+
+def _fk(robot: str, joints: str, tool: str | None, as_json: bool) -> None:
     import numpy as np
 
     from runtime.frames import xyzrpy_from_pose
@@ -67,6 +73,11 @@ def ik(
     as_json: JsonOption = False,
 ) -> None:
     """Print every set of joint angles that puts the tool at a pose, the one farthest from the limits first."""
+    with reported():
+        _ik(robot, pose, tool, as_json)
+
+
+def _ik(robot: str, pose: str, tool: str | None, as_json: bool) -> None:
     from runtime.frames import inverse
 
     kinematics = _kinematics(robot)
@@ -92,7 +103,6 @@ def _kinematics(robot: str) -> "Kinematics":
 
     from runtime.robot.kinematics import Kinematics
     from runtime.robot.loader import library, load_builtin, load_robot
-    from runtime.tomlfile import FileFault
 
     try:
         if robot.endswith(".toml"):
@@ -101,9 +111,6 @@ def _kinematics(robot: str) -> "Kinematics":
     except KeyError:
         known = ", ".join(library())
         raise OptionValueError("--robot", f"{robot!r} is not a robot; known: {known}, or a .toml file") from None
-    except FileFault as fault:
-        typer.echo(f"{fault}\n  help: {fault.hint}", err=True)
-        raise typer.Exit(2) from None
     except ValueError as error:
         raise OptionValueError("--robot", str(error)) from None
 
@@ -164,9 +171,10 @@ def _say_out_of_reach(robot: str) -> None:
 
 def _print_table(title: str, headings: list[str], rows: list[list[str]], caption: str | None = None) -> None:
     from rich.box import SIMPLE_HEAD
-    from rich.console import Console
     from rich.table import Table
     from rich.text import Text
+
+    from robolang.cli.console import Console
 
     # narrow enough that eight columns fit 80 characters uncut; Text, because a title is a robot file's own words
     table = Table(title=Text(title), caption=caption, box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)

@@ -157,6 +157,6 @@ def test_numbers_carry_their_code_and_place():
 
 
 def test_importing_the_commands_loads_no_numerics():
-    heavy = ("numpy", "pinocchio", "mujoco", "runtime")
+    heavy = ("numpy", "pinocchio", "mujoco", "ruckig")
     code = f"import sys, robolang.cli.kin; print([m for m in {heavy} if m in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "[]\n"

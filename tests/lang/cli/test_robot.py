@@ -44,15 +44,30 @@ def test_a_robot_file_is_shown_like_a_built_in_one():
 
 def test_words_of_a_robot_file_are_printed_and_not_obeyed(tmp_path):
     path = tmp_path / "r.toml"
-    text = (
-        PUMA.read_text().replace('"waist"', '"[/red] :smile:"').replace('"Unimation', '"\\u001b[2J[bold]Unimation', 1)
-    )
+    text = PUMA.read_text().replace('"waist"', '"[/red] :smile: \\u001b[2J"')
+    path.write_text(text.replace('"Unimation', '"\\u001b[2J[bold]Unimation', 1))
+    shown = robolang("robot", "show", path).stdout
+    assert "[/red] :smile: \ufffd[2J" in shown
+    assert "puma560: \ufffd[2J[bold]Unimation" in shown
+    assert "\x1b" not in shown
+
+
+def test_long_names_and_numbers_are_folded_and_never_cut(tmp_path):
+    path = tmp_path / "r.toml"
+    text = PUMA.read_text().replace('"shoulder"', f'"{"long " * 20}"')
+    for old, new in (
+        ("coulomb_friction_nm = [0.395, 0.435]", "coulomb_friction_nm = [0.00395678, 0.00435678]"),
+        ("gear_ratio = -62.6111", "gear_ratio = -1234.56"),
+        ("viscous_friction_nm_s = 1.48e-3", "viscous_friction_nm_s = 1.48765e-5"),
+        ("rotor_inertia_kg_m2 = 200e-6", "rotor_inertia_kg_m2 = 1.23456e-5"),
+    ):
+        text = text.replace(old, new, 1)
     path.write_text(text)
     shown = robolang("robot", "show", path).stdout
-    assert "[/red] :smile:" in shown
-    assert "puma560: \ufffd[2J[bold]Unimation" in shown
-    path.write_text(text.replace('"shoulder"', f'"{"long " * 40}"'))
-    assert "…" not in robolang("robot", "show", path).stdout
+    assert "…" not in shown
+    assert max(map(len, shown.splitlines())) <= 80
+    assert shown.count("long ") + shown.count("long\n") >= 20
+    assert all(part in shown for part in ("-1234.56", "1.48765e-05", "1.23456e-05"))
 
 
 @pytest.mark.parametrize(

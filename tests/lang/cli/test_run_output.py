@@ -103,7 +103,7 @@ def test_an_alarm_is_located_at_its_statement(program, monkeypatch):
 
     monkeypatch.setattr(Session, "run", stopped)
     result = dry("p.rbl", "--report", "r.json", code=3)
-    assert "p.rbl:2:4: error RBL530 at 0.000 s: the run was stopped from outside\n   2 | 20 HAND ON\n" in result.stderr
+    assert "p.rbl:1:4: error RBL530 at 0.000 s: the run was stopped from outside\n   1 | 10 LOAD" in result.stderr
     assert '"code": "RBL530"' in (program.parent / "r.json").read_text()
 
 

@@ -161,6 +161,7 @@ def test_an_empty_program_is_a_warning_and_runs(tmp_path, name):
     result = dry(tmp_path / "p.rbl")
     assert "p.rbl:1:1: warning RBL201" in result.stderr
     assert "0 cycles of 8 ms" in result.stdout
+    assert "dynamics task" not in result.stdout  # it had no time to refresh anything
 
 
 @pytest.mark.parametrize(
