@@ -199,6 +199,7 @@ def _motor(table: Table) -> Motor:
     if not abs(ratio) >= 1e-3:
         table.fail("RBL605", f"'{table.name('gear_ratio')}' is {ratio:g} and must not be zero", key="gear_ratio")
     forward, backward = table.numbers("coulomb_friction_nm", 2, low=0.0)
+    elastic = "joint_stiffness_nm_rad" in table or "joint_damping_nm_s_rad" in table
     motor = Motor(
         gear_ratio=ratio,
         rotor_inertia=table.number("rotor_inertia_kg_m2", low=0.0),
@@ -208,6 +209,8 @@ def _motor(table: Table) -> Motor:
         coulomb_friction=(forward, backward),
         encoder_counts=table.integer("encoder_counts", low=4, high=2**30),
         current_bandwidth=table.number("current_bandwidth_hz", positive=True) * 2.0 * math.pi,
+        stiffness=table.number("joint_stiffness_nm_rad", positive=True) if elastic else math.inf,
+        damping=table.number("joint_damping_nm_s_rad", low=0.0) if elastic else 0.0,
     )
     table.done()
     return motor

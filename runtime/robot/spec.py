@@ -34,7 +34,8 @@ class Motor:
 
     ``gear_ratio`` N is signed (motor turns per joint turn), ``rotor_inertia`` kg m2, ``torque_constant`` N m/A,
     ``max_current`` A, ``viscous_friction`` N m s/rad, ``coulomb_friction`` N m (turning forward, backward, both
-    positive), ``encoder_counts`` per motor turn, ``current_bandwidth`` rad/s.
+    positive), ``encoder_counts`` per motor turn, ``current_bandwidth`` rad/s. ``stiffness`` N m/rad and ``damping``
+    N m s/rad are those of the gear between motor and link, at the joint; infinite stiffness is a rigid gear.
     """
 
     gear_ratio: float
@@ -45,6 +46,8 @@ class Motor:
     coulomb_friction: tuple[float, float]
     encoder_counts: int
     current_bandwidth: float
+    stiffness: float = math.inf
+    damping: float = 0.0
 
     @property
     def reflected_inertia(self) -> float:

@@ -76,6 +76,7 @@ def gains(spec: RobotSpec, options: ServoOptions) -> Gains:
         Kf=options.velocity_feedforward,
         Ka=options.acceleration_feedforward,
         K2=options.spring_compensation,
+        Kc=spec.per_axis("motor", "stiffness"),
         KT_scale=options.gravity_compensation,
         source=options.source,
     )

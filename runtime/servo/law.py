@@ -45,7 +45,7 @@ class Gains:
     Kf: float = 1.0
     Ka: float = 1.0
     K2: float = 0.0
-    Kc: float = np.inf
+    Kc: Array | float = np.inf
     KT_scale: float = 1.0
     source: FeedforwardSource = "command"
 
