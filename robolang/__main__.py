@@ -13,9 +13,12 @@ def main() -> None:
 
         sys.stdout.write(f"robolang {__version__}\n")
         return
-    from robolang.cli.main import run_app
+    try:
+        from robolang.cli.main import run_app
 
-    run_app()
+        run_app()
+    except KeyboardInterrupt:
+        sys.exit(130)
 
 
 if __name__ == "__main__":

@@ -33,7 +33,7 @@ from robolang.words import near
 MAX_COG_MM = 2000.0
 MAX_SPEED_MM_S = 10_000.0
 MAX_ACCEL_PCT = 100.0
-MAX_SECONDS = 3600.0
+MAX_SECONDS = 600.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

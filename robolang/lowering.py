@@ -13,6 +13,7 @@ from robolang.points import Point, PointStore
 from runtime.faults import Fault
 from runtime.frames import Array, inverse, pose_from_xyzrpy
 from runtime.motion.commands import MoveLinear
+from runtime.motion.speed import MAX_DURATION
 from runtime.plant.cell import CellSpec
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.payload import Payload, declared
@@ -73,6 +74,6 @@ def _named(table: Mapping[str, Array], name: str, what: str) -> Array:
 def dwell_s(effect: SetHand, cell: CellSpec) -> float:
     """Return the waiting time of a HAND statement, s; ``Fault`` RBL405."""
     seconds = cell.hand.dwell if effect.dwell_s is None else effect.dwell_s
-    if not 0.0 <= seconds <= 3600.0:
-        raise Fault("RBL405", f"a dwell of {seconds:g} s is not between 0 and 3600 s")
+    if not 0.0 <= seconds <= MAX_DURATION:
+        raise Fault("RBL405", f"a dwell of {seconds:g} s is not between 0 and {MAX_DURATION:g} s")
     return seconds

@@ -43,6 +43,9 @@ Progress = Callable[[StatementRun, int], None]
 
 _PROGRESS_CYCLES = 25
 
+MAX_RUN_US = 1_800_000_000
+"""Longest run, us of simulated time: about a kilobyte of log is kept for every tick."""
+
 
 class Session:
     """One run of one project."""
@@ -90,6 +93,8 @@ class Session:
             for _ in self._carry_out(effect, run):
                 if self._stop_requested or not controller.cycle():
                     break
+                if controller.time_us >= MAX_RUN_US:
+                    controller.alarm("RBL509", f"the run has lasted {MAX_RUN_US / 1e6:g} s of simulated time")
                 if controller.recorder.cycle % _PROGRESS_CYCLES == 0:
                     self._progress(run, controller.time_us)
         except Fault as fault:

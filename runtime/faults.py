@@ -101,8 +101,8 @@ register(
     Code(
         code="RBL405",
         name="dwell-out-of-range",
-        meaning="A waiting time is negative, not finite or longer than an hour.",
-        remedy="Give the time in s, between 0 and 3600.",
+        meaning="A waiting time is negative, not finite or longer than ten minutes.",
+        remedy="Give the time in s, between 0 and 600.",
     ),
     Code(
         code="RBL410",
@@ -122,6 +122,12 @@ register(
         meaning="A straight move passes a configuration where the joints would have to turn infinitely fast, "
         "or reaches its end only with another arm or wrist configuration.",
         remedy="Teach a via point away from J5 = 0, or teach the end in the wrist configuration of the start.",
+    ),
+    Code(
+        code="RBL509",
+        name="run-too-long",
+        meaning="The run has reached the longest simulated time that is recorded.",
+        remedy="Split the program; the log and the report hold everything up to here.",
     ),
     Code(
         code="RBL510",

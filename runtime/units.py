@@ -11,8 +11,5 @@ DEG = math.pi / 180.0
 PERCENT = 1e-2
 """Unit fraction in a per cent."""
 
-US = 1e-6
-"""Seconds in a microsecond."""
-
 GRAVITY = 9.81
 """Standard gravity used by every model here, m/s2 (docs/dynamics.md, acceptance figures use this value)."""

@@ -46,7 +46,7 @@ def _number(text: str, option: str, name: str, position: int) -> float:
 
     shown = text if len(text) <= 40 else f"{text[:37]}..."
     try:
-        value = float(text)
+        value = float(text.replace("_", "x"))  # Python reads 1_0 as 10, the language does not
     except ValueError:
         refuse(f"is {shown!r}, not a number")
     if not math.isfinite(value):

@@ -20,7 +20,7 @@ from runtime.frames import Array, frozen, inverse
 from runtime.motion.commands import MoveLinear
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.path import LinePath
-from runtime.motion.speed import SpeedLimits, bound, profile
+from runtime.motion.speed import MAX_DURATION, SpeedLimits, bound, profile
 from runtime.profile import Profile
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.opw import Branch
@@ -29,6 +29,9 @@ from runtime.units import DEG, MM
 
 MOST_SLOWDOWN = 20.0
 """A move that would have to be slowed more than this runs too close to a singularity to be meant."""
+
+RANGE_TOLERANCE = 1e-9
+"""How far past its range a joint may be commanded, rad: rounding, nothing more."""
 
 _NOTHING_TO_DO = 1e-9
 _MARGIN = 1.0 + 1e-6
@@ -80,7 +83,7 @@ class LinePlanner:
         path = LinePath.between(X_start, command.X_world_tool)
         if path.length < _NOTHING_TO_DO and path.angle < _NOTHING_TO_DO:
             return LinePlan(path=path, s=np.ones(1), q=frozen([q_start]), slowdown=None, notes=("already there",))
-        solver = _LineSolver(self._spec, self._kinematics, path, X_flange_tool, q_start)
+        solver = _LineSolver(self._spec, self._kinematics, self._fine, path, X_flange_tool, q_start)
         limits = speed_limits(path, command, self._spec.path, self._profile)
         s, q, slowdown = self._within_limits(solver, limits, command.duration)
         notes = self._notes(s, slowdown, command)
@@ -145,7 +148,7 @@ def speed_limits(path: LinePath, command: MoveLinear, robot: PathLimits, profile
     for name, value, most in (
         ("SPEED in mm/s", speed / MM, robot.max_speed / MM),
         ("ACCEL in %", command.acceleration * 100.0, 100.0),
-        ("TIME in s", command.duration if command.duration is not None else 1.0, 3600.0),
+        ("TIME in s", command.duration if command.duration is not None else 1.0, MAX_DURATION),
     ):
         if not (0.0 < value <= most * (1.0 + 1e-12)):
             raise Fault("RBL404", f"{name} is {value:g} and must be above 0 and at most {most:g}")
@@ -159,10 +162,17 @@ class _LineSolver:
     """Joint angles along one path, in one arm configuration, refused where there are none."""
 
     def __init__(
-        self, spec: RobotSpec, kinematics: Kinematics, path: LinePath, X_flange_tool: Array, q_start: Array
+        self,
+        spec: RobotSpec,
+        kinematics: Kinematics,
+        fine: FineInterpolator,
+        path: LinePath,
+        X_flange_tool: Array,
+        q_start: Array,
     ) -> None:
         self._spec = spec
         self._kinematics = kinematics
+        self._fine = fine
         self._path = path
         self._X_tool_flange = inverse(X_flange_tool)
         self._q_start = q_start
@@ -175,8 +185,8 @@ class _LineSolver:
         q = np.unwrap(q, axis=0) + 0.0
         q += 2.0 * math.pi * np.round((self._q_start - q[0]) / (2.0 * math.pi))
         self._check_continuity(s, q)
-        self._check_range(s, q)
         q[0] = self._q_start
+        self._check_range(s, q)
         return q
 
     def _check_reach(self, s: Array, q: Array) -> None:
@@ -200,18 +210,20 @@ class _LineSolver:
             self.refuse_singular(s[step : step + 1], q, int(axis))
 
     def _check_range(self, s: Array, q: Array) -> None:
-        excess = np.maximum(self._spec.lower - q, q - self._spec.upper)
-        bad = (excess > 1e-9).any(axis=1)
-        if not bad.any():
-            return
-        first = int(np.argmax(bad))
+        """Refuse a path that leaves a joint's range at any servo tick: between set-points the command may pass them."""
+        positions = self._fine.expand(q)[0]
+        excess = np.maximum(self._spec.lower - positions, positions - self._spec.upper)
         axis = int(np.argmax(excess.max(axis=0)))
+        worst = int(np.argmax(excess[:, axis]))
+        if excess[worst, axis] <= RANGE_TOLERANCE:
+            return
+        first = int(np.argmax(excess[:, axis] > RANGE_TOLERANCE)) // self._fine.ticks
         limits = self._spec.axes[axis].limits
-        limit = limits.lower if q[int(np.argmax(excess[:, axis])), axis] < limits.lower else limits.upper
+        limit = limits.lower if positions[worst, axis] < limits.lower else limits.upper
         raise Fault(
             "RBL411",
-            f"J{axis + 1} would pass its limit of {limit / DEG:g} deg by {excess[:, axis].max() / DEG:.2f} deg, "
-            f"first at {100 * s[first]:.1f} % of the path",
+            f"J{axis + 1} would pass its limit of {limit / DEG:g} deg by {excess[worst, axis] / DEG:.4g} deg, "
+            f"first at {100 * s[min(first, len(s) - 1)]:.1f} % of the path",
         )
 
     def refuse_singular(self, s: Array, q: Array, axis: int) -> NoReturn:

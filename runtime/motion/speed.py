@@ -12,8 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 import ruckig
 
+from runtime.faults import Fault
 from runtime.frames import Array
 from runtime.profile import SpeedShape
+
+MAX_DURATION = 600.0
+"""Longest move that is planned, s: its set-points are held in memory as a whole."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,15 +52,24 @@ def bound(extents: list[tuple[float, float, float, float]], shape: SpeedShape) -
 def profile(limits: SpeedLimits, period_s: float, duration: float | None = None) -> Array:
     """Return s (N + 1,) at whole cycles, from exactly 0 to exactly 1, rest to rest.
 
-    ``duration`` s asks for a longer time; the move never gets faster than the limits.
+    ``duration`` s asks for a longer time; the move never gets faster than the limits. ``Fault`` RBL404 when it would
+    take more than ``MAX_DURATION``.
     """
-    fastest = _trajectory(limits, None).duration
-    wanted = max(fastest, duration or 0.0)
+    wanted = max(_shortest(limits), duration or 0.0)
+    if wanted <= MAX_DURATION:
+        wanted = max(_trajectory(limits, None).duration, wanted)
+    if not wanted <= MAX_DURATION:
+        raise Fault("RBL404", f"the move would take {wanted:.4g} s and may take at most {MAX_DURATION:g} s")
     cycles = max(1, math.ceil(wanted / period_s - 1e-9))
     trajectory = _trajectory(limits, cycles * period_s)
     s = np.array([trajectory.at_time(k * period_s)[0][0] for k in range(cycles + 1)])
     s[0], s[-1] = 0.0, 1.0
     return np.asarray(np.clip(s, 0.0, 1.0))
+
+
+def _shortest(limits: SpeedLimits) -> float:
+    """Return a time that no profile within the limits can beat, s."""
+    return max(1.0 / limits.speed, 2.0 * math.sqrt(1.0 / limits.acceleration), math.cbrt(32.0 / limits.jerk))
 
 
 def _trajectory(limits: SpeedLimits, duration: float | None) -> "ruckig.Trajectory":
@@ -68,7 +81,11 @@ def _trajectory(limits: SpeedLimits, duration: float | None) -> "ruckig.Trajecto
     if duration is not None:
         request.minimum_duration = duration
     trajectory = ruckig.Trajectory(1)
-    result = ruckig.Ruckig(1).calculate(request, trajectory)
+    try:
+        result = ruckig.Ruckig(1).calculate(request, trajectory)
+    except (ruckig.RuckigError, ValueError):  # an unlisted result code reaches Python as a ValueError
+        result = None
     if result not in (ruckig.Result.Working, ruckig.Result.Finished):
-        raise ValueError(f"no speed profile for {limits}: {result}")
+        slowest = f"{limits.speed:.3g} 1/s, {limits.acceleration:.3g} 1/s2, {limits.jerk:.3g} 1/s3"
+        raise Fault("RBL404", f"no speed profile over the path keeps to {slowest}")
     return trajectory

@@ -77,6 +77,27 @@ def test_interpolation_takes_its_time_from_the_dynamics_task():
     assert idle.areas.mean_refresh_us == pytest.approx(15_000)  # nothing to interpolate: 6 * 2.5
 
 
+@pytest.mark.parametrize("axis_cost_us", [1000, 24_000])
+def test_a_set_point_leaves_every_8_ms_whatever_the_background_costs(axis_cost_us):
+    robot = controller(Profile(axis_cost_us=axis_cost_us))
+    plan = robot.move(down(robot))
+    while robot.moving:
+        robot.cycle()
+    sent = signals(robot)["q_plan"][::8]
+    np.testing.assert_array_equal(sent[: len(plan.q)], plan.q)
+    assert robot.recorder.tick == 8 * robot.recorder.cycle
+    assert robot.overruns == 0
+
+
+def test_the_brakes_open_onto_the_torque_that_holds_the_arm():
+    robot = controller()
+    robot.load(carried_payload())
+    robot.cycle()
+    first = signals(robot)["tau_sat"][0]
+    bare = np.array([cell.T for cell in controller().areas.ita])
+    np.testing.assert_allclose(first, bare, atol=0.02 * np.abs(bare).max())
+
+
 def test_a_starved_task_leaves_old_loads_in_use_and_their_age_shows_it():
     robot = controller(Profile(interpolation_cost_us=8000))
     robot.move(down(robot))

@@ -197,3 +197,21 @@ def test_a_line_past_the_wrist_singularity_is_slowed_far_from_it_and_refused_clo
 )  # fmt: skip
 def test_impossible_options_are_refused(options):
     assert refusal(0.48, -0.22, 0.64, **options).code == "RBL404"
+
+
+@pytest.mark.parametrize("beyond_deg", [0.01, 1.0])
+def test_the_range_is_kept_to_a_hair_at_the_servo(beyond_deg):
+    """J1 turned to just inside its range is planned, to just outside is refused, whatever lies between set-points."""
+
+    def end(angle: float) -> np.ndarray:
+        q = HOME.copy()
+        q[0] = angle
+        return KINEMATICS.forward(q) @ TOOL
+
+    start = HOME.copy()
+    start[0] = SPEC.upper[0] - 0.3
+    planner = LinePlanner(SPEC, KINEMATICS, Profile(speed_shape="trapezoid"))
+    inside = planner.plan(start, MoveLinear(X_world_tool=end(SPEC.upper[0] - math.radians(0.05))), TOOL)
+    assert at_the_servo(inside)[0][:, 0].max() <= SPEC.upper[0]
+    with pytest.raises(Fault, match="RBL411: J1"):
+        planner.plan(start, MoveLinear(X_world_tool=end(SPEC.upper[0] + math.radians(beyond_deg))), TOOL)

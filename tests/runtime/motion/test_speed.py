@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from runtime.faults import Fault
 from runtime.motion.speed import bound, profile
 
 PERIOD = 0.008
@@ -51,3 +52,23 @@ def test_a_duration_stretches_but_never_shortens():
     limits = bound([(0.4, 0.5, 3.0, 30.0)], "jerk")
     assert len(profile(limits, PERIOD, 2.0)) - 1 == 250
     assert len(profile(limits, PERIOD, 0.1)) == len(profile(limits, PERIOD))
+
+
+@pytest.mark.parametrize("speed", [1e-300, 1e-9, 5e-6, 2e-5])
+def test_a_move_that_would_take_too_long_is_refused_by_name(speed):
+    with pytest.raises(Fault) as caught:
+        profile(bound([(0.2, speed, 3.0, 30.0)], "jerk"), PERIOD)
+    assert caught.value.code == "RBL404"
+
+
+def test_the_longest_move_is_planned_and_a_longer_one_refused():
+    assert len(profile(bound([(0.2, 0.5, 3.0, 30.0)], "jerk"), PERIOD, 600.0)) == 75_001
+    with pytest.raises(Fault, match="RBL404"):
+        profile(bound([(0.2, 0.5, 3.0, 30.0)], "jerk"), PERIOD, 600.1)
+
+
+@pytest.mark.parametrize("speed", [4e-4, 1e-3, 1e-2])
+@pytest.mark.parametrize("shape", ["jerk", "trapezoid"])
+def test_very_slow_moves_are_planned(speed, shape):
+    s = profile(bound([(0.2, speed, 3.0, 30.0)], shape), PERIOD)
+    assert np.diff(s).max() / PERIOD * 0.2 == pytest.approx(speed, rel=1e-3)
