@@ -58,8 +58,9 @@ class Session:
         self._progress = progress or (lambda statement, time_us: None)
         self._stop_requested = False
         cell, profile = project.cell, project.profile
-        if not physics:  # the ideal arm has no friction, so there is none to compensate
-            profile = replace(profile, servo=replace(profile.servo, friction_compensation=0.0))
+        if not physics:  # the ideal arm has no friction and no gear springs, so there is nothing to compensate
+            servo = replace(profile.servo, friction_compensation=0.0, spring_compensation=0.0)
+            profile = replace(profile, servo=servo)
         self._kinematics = Kinematics(cell.robot)
         clock = PacedClock(profile.period_us) if realtime else VirtualClock()
         self.controller = Controller(

@@ -11,7 +11,7 @@ from robolang.diagnostics import safe
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from runtime.robot.spec import Body, RobotSpec
+    from runtime.robot.spec import Body, Correction, RobotSpec
 
 app = typer.Typer(no_args_is_help=True, help="The robot library.")
 
@@ -22,14 +22,15 @@ def list_robots() -> None:
     from runtime.robot.loader import library, load_builtin
 
     with reported():
-        for name in library():
+        names = library()
+        for name in names:
             spec = load_builtin(name)
-            typer.echo(f"{name}  {spec.title}, {spec.n} axes, {spec.rated_payload:g} kg")
+            typer.echo(f"{name.ljust(max(map(len, names)))}  {spec.title}, {spec.n} axes, {spec.rated_payload:g} kg")
 
 
 @app.command()
 def show(robot: Annotated[str, typer.Argument(help="Built-in robot, or a path to a .toml robot file.")]) -> None:
-    """Show a robot: limits, drives, bodies, corrections of published data, sources."""
+    """Show a robot: limits, drives, gear springs, bodies, corrections of published data, sources."""
     with reported():
         from robolang.cli.console import Console
         from robolang.project import load_any_robot
@@ -37,7 +38,7 @@ def show(robot: Annotated[str, typer.Argument(help="Built-in robot, or a path to
         spec = load_any_robot(robot)
         console = Console()
         console.print(safe(f"{spec.name}: {spec.title}, {spec.n} axes, rated payload {spec.rated_payload:g} kg"), "\n")
-        for table in (_limits(spec), _drives(spec), _loops(spec), _bodies(spec)):
+        for table in (_limits(spec), _drives(spec), *_springs(spec), _loops(spec), _bodies(spec)):
             console.print(table)
         for title, lines in (
             ("Corrections of published data", _corrections(spec)),
@@ -105,6 +106,21 @@ def _drives(spec: "RobotSpec") -> "Table":
     return table
 
 
+def _springs(spec: "RobotSpec") -> "list[Table]":
+    """Return one table of the gear springs, or none when every gear is rigid."""
+    if not any(axis.motor.elastic for axis in spec.axes):
+        return []
+    table = _table(
+        "Gear springs (at the joint)", "stiffness\nN m/rad", "damping\nN m s/rad", "wind-up at\ntorque limit\ndeg"
+    )
+    for index, axis in enumerate(spec.axes, start=1):
+        motor = axis.motor
+        windup = math.degrees(axis.limits.torque / motor.stiffness)
+        values = (f"{motor.stiffness:g}", f"{motor.damping:g}", f"{windup:.3f}") if motor.elastic else ("rigid", "", "")
+        table.add_row(f"J{index}", *values)
+    return [table]
+
+
 def _loops(spec: "RobotSpec") -> "Table":
     table = _table("Servo loops", "position Kp\n1/s", "velocity Kv\n1/s", "current loop\nHz", "encoder\ncounts/turn")
     for index, axis in enumerate(spec.axes, start=1):
@@ -135,11 +151,16 @@ def _moments(body: "Body") -> str:
 
 
 def _corrections(spec: "RobotSpec") -> list[str]:
-    lines = []
-    for correction in spec.corrections:
-        axis = correction.axis + 1
+    return [f"J{item.axis + 1}: {'; '.join(_changes(item))}. {item.reason}" for item in spec.corrections]
+
+
+def _changes(correction: "Correction") -> list[str]:
+    axis, changes = correction.axis + 1, []
+    if correction.inertia_shift:
         giver = f"link {axis - 1}" if axis > 1 else "the base"
-        what = f"J{axis}: {correction.inertia_shift:g} kg m2 across the joint, from {giver} to link {axis}"
-        mass = f"; {correction.added_mass:g} kg added on the axis" if correction.added_mass else ""
-        lines.append(f"{what}{mass}. {correction.reason}")
-    return lines
+        changes.append(f"{correction.inertia_shift:g} kg m2 across the joint, from {giver} to link {axis}")
+    if correction.added_mass:
+        changes.append(f"{correction.added_mass:g} kg added on the axis")
+    if correction.added_inertia:
+        changes.append(f"{correction.added_inertia:g} kg m2 added about every axis")
+    return changes

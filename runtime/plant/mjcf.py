@@ -8,6 +8,14 @@ Coulomb friction that differs by direction: ``frictionloss`` is symmetric, so it
 and the rest is a constant torque c = (Tb - Tf) / 2 that the plant applies (``friction_bias``). Turning forward
 the joint feels c - m = -Tf, backward c + m = +Tb, and at rest it holds any torque in [-Tf, Tb] as it should.
 
+Elastic gears. Where the robot file gives a spring, the joint is two hinges in series on one axis of one body: the
+motor's, with rotor inertia N^2 J, friction and actuator, and the gear's, with spring K and damper C and nothing else.
+The first angle is the motor's at the joint side, the link stands at their sum. MuJoCo lets a body have several
+joints, so no massless body is needed between them: with M_l the inertia of what the link carries, the inertia of the
+two is [[M_l + N^2 J, M_l], [M_l, M_l]], which is regular whenever the rotor has inertia. Written out,
+
+    N^2 J ddq_m = tau - friction - K (q_m - q_l) - C (dq_m - dq_l),      M_l ddq_l + h = K (q_m - q_l) + C (dq_m - dq_l)
+
 A grasp is friction between pads and part and nothing else. Two errors of the simulation let a held part wander:
 
 * Regularisation. What sticks creeps at v = R f / b; R = A (1 - d) / d for the impedance d and the inverse inertia
@@ -76,8 +84,9 @@ def build_mjcf(
     """Return the MJCF text of a robot, alone or in its cell.
 
     Args: ``timestep`` of the physics in s; ``payload`` a body fixed to the flange, given in the flange frame (to
-    compare with the controller's model). Joints come in the order of the axes, then the two fingers, then the
-    parts; so do the actuators, whose controls are joint torques N m and finger forces N (positive opens).
+    compare with the controller's model). Joints come in the order of the axes, each elastic one followed by the
+    hinge of its gear, then the two fingers, then the parts. Actuators come in the order of axes and fingers; their
+    controls are joint torques N m and finger forces N (positive opens).
     """
     root = ET.Element("mujoco", model=spec.name)
     _options(root, timestep)
@@ -99,6 +108,16 @@ def build_mjcf(
     _actuators(root, spec, cell is not None)
     ET.indent(root)
     return ET.tostring(root, encoding="unicode")
+
+
+def joint_name(index: int) -> str:
+    """Return the name of the hinge that axis ``index`` (0-based) drives: the motor's, where the gear is elastic."""
+    return f"j{index + 1}"
+
+
+def gear_joint(index: int) -> str:
+    """Return the name of the hinge between motor and link of axis ``index``, which exists where the gear is elastic."""
+    return f"j{index + 1}_gear"
 
 
 def friction_bias(spec: RobotSpec) -> Array:
@@ -165,6 +184,8 @@ def _arm(world: ET.Element, spec: RobotSpec, timestep: float) -> ET.Element:
         parent = _body(parent, f"link{index + 1}", axis.placement)
         _inertial(parent, axis.body)
         _hinge(parent, index, axis, timestep)
+        if axis.motor.elastic:
+            _gear_spring(parent, index, axis)
         end = spec.axes[index + 1].placement if index + 1 < spec.n else spec.X_last_flange
         _link_geom(parent, index, end[:3, 3])
     return parent
@@ -175,7 +196,7 @@ def _hinge(body: ET.Element, index: int, axis: AxisSpec, timestep: float) -> Non
     ET.SubElement(
         body,
         "joint",
-        name=f"j{index + 1}",
+        name=joint_name(index),
         type="hinge",
         axis="0 0 1",
         range=_row([axis.limits.lower, axis.limits.upper]),
@@ -185,6 +206,20 @@ def _hinge(body: ET.Element, index: int, axis: AxisSpec, timestep: float) -> Non
         solreffriction=f"{2.0 * timestep!r} 1",
         solimpfriction=_STIFF,
         solreflimit=f"{CONTACT_TIME * timestep!r} 1",
+    )
+
+
+def _gear_spring(body: ET.Element, index: int, axis: AxisSpec) -> None:
+    """Turn the link against its motor: a second hinge on the same axis of the same body (see the module)."""
+    ET.SubElement(
+        body,
+        "joint",
+        name=gear_joint(index),
+        type="hinge",
+        axis="0 0 1",
+        limited="false",
+        stiffness=repr(axis.motor.stiffness),
+        damping=repr(axis.motor.damping),
     )
 
 
@@ -288,7 +323,7 @@ def _part(world: ET.Element, part: PartSpec) -> None:
 
 def _actuators(root: ET.Element, spec: RobotSpec, with_hand: bool) -> None:
     actuator = ET.SubElement(root, "actuator")
-    names = [f"j{index + 1}" for index in range(spec.n)]
+    names = [joint_name(index) for index in range(spec.n)]
     for name in [*names, *(f"finger_{side}" for side in FINGERS)] if with_hand else names:
         ET.SubElement(actuator, "motor", name=name, joint=name, gear="1")
 

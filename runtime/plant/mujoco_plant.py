@@ -10,10 +10,12 @@ it costs ten times that and says less. MuJoCo's own answers, zeroed controls and
 overruled: the plant latches, puts back the last valid state and never steps again.
 
 A physics warning that is no such number (contact buffer full, singular inertia) invalidates the state as well: the
-forces of that tick were wrong. Dry friction differs by direction through a constant bias torque (see ``mjcf``).
+forces of that tick were wrong. Where a gear is elastic (see ``mjcf``) motor and link have an angle each: ``q`` is the
+motor's, which the encoder sees, ``q_link`` the link's; the physics step is then a share of the spring's period
+(``gears``), and the arm starts hanging in its springs. Dry friction differs by direction through a constant bias
+torque (see ``mjcf``).
 """
 
-import math
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -22,13 +24,17 @@ import numpy as np
 
 from runtime.frames import Array, pose
 from runtime.plant.cell import CellSpec
+from runtime.plant.gears import elastic_axes, physics_steps
 from runtime.plant.hand import FINGERS
-from runtime.plant.mjcf import build_mjcf, friction_bias
+from runtime.plant.mjcf import build_mjcf, friction_bias, gear_joint, joint_name
 from runtime.plant.plant import HandState
 from runtime.robot.spec import RobotSpec
 
 MAX_PHYSICS_STEP = 1e-3
 """Longest physics step, s: contacts have a time constant of four of them (``mjcf.CONTACT_TIME``)."""
+
+HANG_ROUNDS = 8
+"""Rounds in which the twist of the gears at the start finds itself; each leaves a share of weight over spring."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,22 +54,56 @@ class MujocoPlant:
         _keep_off_the_disk()
         self._n = n = spec.n
         self._tick_s = tick_s
-        self._substeps = max(1, math.ceil(tick_s / MAX_PHYSICS_STEP - 1e-9))
+        self._substeps = physics_steps(spec, tick_s, MAX_PHYSICS_STEP)
         self._model: Any = mujoco.MjModel.from_xml_string(build_mjcf(spec, cell, timestep=tick_s / self._substeps))
         self._data: Any = mujoco.MjData(self._model)
         self._qpos, self._qvel = cast(Array, self._data.qpos), cast(Array, self._data.qvel)
         self._tau, self._finger_force = self._data.ctrl[:n], self._data.ctrl[n:]
         self._grip_force = cell.hand.grip_force
-        self._part_address = {part.name: n + len(FINGERS) + 7 * k for k, part in enumerate(cell.parts)}
+        self._motors = _addresses(self._model, [joint_name(axis) for axis in range(n)])
+        self._elastic = elastic_axes(spec)
+        self._gears = _addresses(self._model, [gear_joint(axis) for axis in self._elastic])
+        hand = n + len(self._elastic)
+        self._fingers = slice(hand, hand + len(FINGERS))
+        self._part_address = {part.name: hand + len(FINGERS) + 7 * k for k, part in enumerate(cell.parts)}
         self._warnings = self._data.warning.number.tobytes
         self._no_warning = self._warnings()
         self._valid = True
-        self._qpos[:n] = cell.home
-        self._qpos[n : n + len(FINGERS)] = cell.hand.stroke / 2.0
-        self._data.qfrc_applied[:n] = friction_bias(spec)
+        self._qpos[self._motors] = cell.home
+        self._qpos[self._fingers] = cell.hand.stroke / 2.0
+        self._data.qfrc_applied[self._motors] = friction_bias(spec)
+        self._hang(spec.per_axis("motor", "stiffness")[self._elastic])
         self._last_qpos, self._last_qvel = self._qpos.copy(), self._qvel.copy()
-        self._q, self._dq = _read_only(self._last_qpos[:n]), _read_only(self._last_qvel[:n])
+        self._show_state()
         self.close_hand(False)
+
+    def _hang(self, stiffness: Array) -> None:
+        """Twist the gears (m,) N m/rad by the weight that hangs on them: the arm starts at rest."""
+        for _ in range(HANG_ROUNDS if len(stiffness) else 0):
+            mujoco.mj_forward(self._model, self._data)
+            self._qpos[self._gears] = -self._data.qfrc_bias[self._gears] / stiffness
+
+    def _show_state(self) -> None:
+        """Set up the live arrays: views of the state where every gear is rigid, else copies that ``step`` renews."""
+        if not self._elastic:
+            self._q, self._dq = _read_only(self._last_qpos[: self._n]), _read_only(self._last_qvel[: self._n])
+            self._q_link = self._q
+            self._renew = None
+            return
+        self._state = np.zeros((3, self._n))
+        self._twist = np.zeros(len(self._elastic))
+        self._q, self._dq, self._q_link = (_read_only(row.view()) for row in self._state)
+        self._renew = self._read_motors_and_links
+        self._read_motors_and_links()
+
+    def _read_motors_and_links(self) -> None:
+        q, dq, q_link = self._state
+        # "clip": the addresses are valid, and numpy needs no buffer for the result then
+        self._last_qpos.take(self._motors, out=q, mode="clip")
+        self._last_qvel.take(self._motors, out=dq, mode="clip")
+        self._last_qpos.take(self._gears, out=self._twist, mode="clip")
+        q_link[:] = q
+        q_link[self._elastic] += self._twist
 
     @property
     def tick_s(self) -> float:
@@ -77,13 +117,18 @@ class MujocoPlant:
 
     @property
     def q(self) -> Array:
-        """True joint angles (n,) rad: one live read-only array."""
+        """True motor angles at the joint side (n,) rad: one live read-only array."""
         return self._q
 
     @property
     def dq(self) -> Array:
-        """True joint speeds (n,) rad/s: one live read-only array."""
+        """True motor speeds at the joint side (n,) rad/s: one live read-only array."""
         return self._dq
+
+    @property
+    def q_link(self) -> Array:
+        """True angles of the links (n,) rad: one live read-only array, ``q`` itself where every gear is rigid."""
+        return self._q_link
 
     @property
     def valid(self) -> bool:
@@ -103,6 +148,8 @@ class MujocoPlant:
             return self._stop()
         self._last_qpos[:] = self._qpos
         self._last_qvel[:] = self._qvel
+        if self._renew is not None:
+            self._renew()
         return True
 
     def _stop(self) -> bool:
@@ -124,7 +171,7 @@ class MujocoPlant:
 
     def hand(self) -> HandState:
         """Return what the hand does now; ``holding`` is the part that presses on both pads of the closed hand."""
-        opening = float(self._last_qpos[self._n : self._n + len(FINGERS)].sum())
+        opening = float(self._last_qpos[self._fingers].sum())
         return HandState(closed=self._closed, opening=opening, holding=self._held() if self._closed else None)
 
     def _held(self) -> str | None:
@@ -165,6 +212,11 @@ class MujocoPlant:
 
 
 _mj_step = mujoco.mj_step
+
+
+def _addresses(model: Any, joints: list[str]) -> Any:
+    """Return where these hinges stand in the state (m,): the same place in positions and speeds, before any part."""
+    return np.array([int(model.joint(name).qposadr[0]) for name in joints], dtype=np.intp)
 
 
 def _keep_off_the_disk() -> None:

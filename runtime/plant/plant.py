@@ -29,11 +29,18 @@ class Plant(Protocol):
 
     @property
     def q(self) -> Array:
-        """True joint angles (n,) rad: one live read-only array, the same object for the plant's whole life."""
+        """True motor angles at the joint side (n,) rad, which the encoders see: one live read-only array.
+
+        It is the same object for the plant's whole life. Where the gear is rigid it is the angle of the joint.
+        """
 
     @property
     def dq(self) -> Array:
-        """True joint speeds (n,) rad/s: live as ``q``."""
+        """True motor speeds at the joint side (n,) rad/s: live as ``q``."""
+
+    @property
+    def q_link(self) -> Array:
+        """True angles of the links (n,) rad: live as ``q``, and equal to it where the gear is rigid."""
 
     def step(self, tau: Array) -> bool:
         """Apply joint torques (n,) N m for one tick and advance.

@@ -2,9 +2,9 @@
 
     (M(q) + N^2 J) ddq = tau - h(q, dq)            integrated by semi-implicit Euler, one tick at a time
 
-It runs where MuJoCo is not wanted (``--no-physics``) and in tests of the control loop. Its hand is exact: closing
-it takes the part whose centre is within ``REACH`` of the tool point, and the arm then carries that part's true mass;
-opening it leaves the part where it is.
+Gears are rigid too, whatever the robot file says: ``q_link`` is ``q``. It runs where MuJoCo is not wanted
+(``--no-physics``) and in tests of the control loop. Its hand is exact: closing it takes the part whose centre is
+within ``REACH`` of the tool point, and the arm then carries that part's true mass; opening it leaves the part there.
 """
 
 import numpy as np
@@ -27,6 +27,7 @@ class RigidPlant:
         self.tick_s = tick_s
         self.q = np.array(cell.home, dtype=np.float64)
         self.dq = np.zeros(spec.n)
+        self.q_link = self.q
         self._spec = spec
         self._cell = cell
         self._model = ArmModel(spec, rotors=True)

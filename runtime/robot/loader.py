@@ -1,9 +1,9 @@
 """Reading a robot file into a ``RobotSpec``: every key known, every limit present, every body possible.
 
 Nothing is guessed: a missing limit is an error that names the axis and the key, and so is a key nobody reads.
-Published body data that no body can have (zero mass, a broken triangle inequality) are refused unless the file
-states a ``correction``; the smallest one that works is named in the message. A correction moves inertia across a
-joint in a way that leaves the equations of motion unchanged (``spec.shift_between_links``).
+The geometry comes as Denavit-Hartenberg rows or as joint lines in space (``geometry``). Published body data that no
+body can have (zero mass, a broken triangle inequality) are refused unless the file states a ``correction``; the
+smallest one that works is named in the message (``corrections``).
 """
 
 import math
@@ -14,6 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from runtime.frames import Array, frozen
+from runtime.robot.corrections import check_bodies, correct
+from runtime.robot.geometry import Geometry, read_form, read_geometry
 from runtime.robot.spec import (
     AxisSpec,
     Bandwidths,
@@ -24,19 +26,16 @@ from runtime.robot.spec import (
     OpwParameters,
     PathLimits,
     RobotSpec,
-    dh_transform,
-    inertia_defect,
-    shift_between_links,
 )
 from runtime.tomlfile import Source, Table, load_table, read_source
 from runtime.units import DEG, MM
 
 SCHEMA = 1
-SLACK = 1e-9
-"""A correction may exceed the smallest possible one by this much, kg m2."""
+STIFFEST = 1e8
+"""No gear is stiffer than this at the joint, N m/rad."""
 
-TOKEN_MASS = 1e-6
-"""The mass that a correction may give to a body published without one, kg: a milligram moves nothing."""
+FASTEST_SPRING = 1e4
+"""A rotor that swings faster against its gear, rad/s, needs physics steps below 25 us: such a gear is rigid."""
 
 FASTEST_LOOP = 8000.0
 """No loop is stable beyond this at the shortest servo period: bandwidth times 0.25 ms is 2, 1/s (see ``project``)."""
@@ -68,14 +67,15 @@ def parse_robot(source: Source) -> RobotSpec:
     table.integer("schema", low=SCHEMA, high=SCHEMA)
     name, title = table.text("name"), table.text("title")
     kinematics = table.table("kinematics")
-    kinematics.text("form", choices=("dh",))
+    form = read_form(kinematics)
     opw = _opw(kinematics.table("opw")) if "opw" in kinematics else None
     kinematics.done()
     path = _path_limits(table.table("path"))
     axis_tables = table.tables("axes")
     if not 1 <= len(axis_tables) <= 7:
         table.fail("RBL605", f"a robot has 1 to 7 axes, not {len(axis_tables)}", key="axes")
-    axes, published, corrections, X_last_flange = _chain(axis_tables)
+    geometry = read_geometry(form, table, axis_tables)
+    axes, published, corrections = _chain(axis_tables, geometry)
     spec = RobotSpec(
         name=name,
         title=title,
@@ -83,7 +83,7 @@ def parse_robot(source: Source) -> RobotSpec:
         notes=_texts(table, "notes"),
         rated_payload=table.number("rated_payload_kg", low=0.0, high=5000.0),
         axes=axes,
-        X_last_flange=frozen(X_last_flange),
+        X_last_flange=frozen(geometry.X_last_flange),
         path=path,
         opw=opw,
         corrections=corrections,
@@ -128,25 +128,20 @@ def _path_limits(table: Table) -> PathLimits:
 
 
 def _chain(
-    tables: list[Table],
-) -> tuple[tuple[AxisSpec, ...], tuple[Body, ...], tuple[Correction, ...], Array]:
-    """Walk the DH rows: returns the axes, their bodies as published, the corrections and the flange placement."""
+    tables: list[Table], geometry: Geometry
+) -> tuple[tuple[AxisSpec, ...], tuple[Body, ...], tuple[Correction, ...]]:
+    """Return the axes, their bodies as published and the corrections of these."""
     axes: list[AxisSpec] = []
     published: list[Body] = []
     corrections: list[Correction] = []
     names: set[str] = set()
-    placement = np.eye(4)
-    for index, table in enumerate(tables):
-        X_joint_dh = dh_transform(
-            table.number("d_m", low=-10.0, high=10.0),
-            table.number("a_m", low=-10.0, high=10.0),
-            table.number("alpha_deg", low=-360.0, high=360.0) * DEG,
-        )
-        placement = placement @ _turn(table.number("theta_offset_deg", 0.0, low=-360.0, high=360.0) * DEG)
+    for index, (table, placement, X_joint_body) in enumerate(
+        zip(tables, geometry.placements, geometry.X_joint_body, strict=True)
+    ):
         axis = AxisSpec(
             name=_unique(table, names),
             placement=frozen(placement),
-            body=_body(table, X_joint_dh),
+            body=_body(table, X_joint_body),
             motor=_motor(table.table("motor")),
             limits=_limits(table),
             bandwidths=_bandwidths(table.table("servo")),
@@ -156,16 +151,9 @@ def _chain(
         axes.append(axis)
         published.append(axis.body)
         if correction is not None:
-            corrections.append(_correct(correction, axes, index))
-        placement = X_joint_dh
-    _check_bodies(tables, axes)
-    return tuple(axes), tuple(published), tuple(corrections), placement
-
-
-def _turn(angle: float) -> Array:
-    X = np.eye(4)
-    X[:2, :2] = [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]
-    return X
+            corrections.append(correct(correction, axes, index))
+    check_bodies(tables, axes)
+    return tuple(axes), tuple(published), tuple(corrections)
 
 
 def _unique(table: Table, names: set[str]) -> str:
@@ -176,16 +164,16 @@ def _unique(table: Table, names: set[str]) -> str:
     return name
 
 
-def _body(table: Table, X_joint_dh: Array) -> Body:
+def _body(table: Table, X_joint_body: Array) -> Body:
     mass = table.number("mass_kg", low=0.0, high=10000.0)
     cog = np.array(table.numbers("cog_m", 3, low=-10.0, high=10.0))
     values = table.numbers("inertia_kg_m2", None, low=-1e5, high=1e5)
     if len(values) not in (3, 6):
         table.fail("RBL613", f"'{table.name('inertia_kg_m2')}' needs xx, yy, zz or xx, yy, zz, xy, xz, yz",
                    key="inertia_kg_m2")  # fmt: skip
-    R = X_joint_dh[:3, :3]
+    R = X_joint_body[:3, :3]
     inertia = R @ inertia_matrix(values) @ R.T
-    return Body(mass=mass, cog=frozen(R @ cog + X_joint_dh[:3, 3]), inertia=frozen(inertia))
+    return Body(mass=mass, cog=frozen(R @ cog + X_joint_body[:3, 3]), inertia=frozen(inertia))
 
 
 def inertia_matrix(values: tuple[float, ...]) -> Array:
@@ -209,11 +197,25 @@ def _motor(table: Table) -> Motor:
         coulomb_friction=(forward, backward),
         encoder_counts=table.integer("encoder_counts", low=4, high=2**30),
         current_bandwidth=table.number("current_bandwidth_hz", positive=True) * 2.0 * math.pi,
-        stiffness=table.number("joint_stiffness_nm_rad", positive=True) if elastic else math.inf,
+        stiffness=table.number("joint_stiffness_nm_rad", positive=True, high=STIFFEST) if elastic else math.inf,
         damping=table.number("joint_damping_nm_s_rad", low=0.0) if elastic else 0.0,
     )
+    _check_spring(table, motor)
     table.done()
     return motor
+
+
+def _check_spring(table: Table, motor: Motor) -> None:
+    """Refuse a spring without a mass on the motor's side, or one that swings too fast to be simulated."""
+    if not motor.elastic:
+        return
+    if not motor.rotor_inertia > 0.0:
+        table.fail("RBL605", f"'{table.name('rotor_inertia_kg_m2')}' is 0, and the spring of the gear needs a rotor",
+                   key="rotor_inertia_kg_m2")  # fmt: skip
+    if not motor.stiffness <= motor.reflected_inertia * FASTEST_SPRING**2:
+        table.fail("RBL605", f"the spring of {motor.stiffness:g} N m/rad swings the rotor too fast to be simulated",
+                   "a gear as stiff as that is rigid: leave out joint_stiffness_nm_rad and joint_damping_nm_s_rad",
+                   key="joint_stiffness_nm_rad")  # fmt: skip
 
 
 def _limits(table: Table) -> Limits:
@@ -236,90 +238,6 @@ def _bandwidths(table: Table) -> Bandwidths:
     )
     table.done()
     return bandwidths
-
-
-def _correct(table: Table, axes: list[AxisSpec], index: int) -> Correction:
-    """Apply the correction of the last axis in ``axes``; refuse one that is needless or larger than needed."""
-    shift = table.number("inertia_shift_kg_m2", low=0.0)
-    mass = table.number("added_mass_kg", low=0.0)
-    reason = table.text("reason")
-    table.done()
-    axis = axes[index]
-    published = axis.body
-    needed = _smallest_shift(published.inertia) or 0.0
-    if shift > needed + SLACK:
-        table.fail("RBL606", f"the shift of {shift:g} kg m2 is larger than the {needed:.12g} that J{index + 1} needs",
-                   f"write inertia_shift_kg_m2 = {needed:.12g}", key="inertia_shift_kg_m2")  # fmt: skip
-    if mass > 0.0 and published.mass > 0.0:
-        table.fail("RBL606", f"J{index + 1} has a mass already", "write added_mass_kg = 0", key="added_mass_kg")
-    if mass > TOKEN_MASS:
-        table.fail("RBL606", f"an added mass of {mass:g} kg is more than the {TOKEN_MASS:g} that a body needs",
-                   "if the mass is known, write it as mass_kg with its source", key="added_mass_kg")  # fmt: skip
-    if shift == 0.0 and mass == 0.0:
-        table.fail("RBL606", f"J{index + 1} needs no correction, or not this one", "remove [axes.correction]")
-    before = axes[index - 1].body if index else published
-    own, other = shift_between_links(axis, before, shift)
-    own = Body(mass=own.mass + mass, cog=own.cog, inertia=frozen(own.inertia))
-    axes[index] = _with_body(axis, own)
-    if index:  # the base takes what the first link gives, without a trace: it does not move
-        axes[index - 1] = _with_body(
-            axes[index - 1], Body(mass=other.mass, cog=other.cog, inertia=frozen(other.inertia))
-        )
-    return Correction(axis=index, inertia_shift=shift, added_mass=mass, reason=reason)
-
-
-def _with_body(axis: AxisSpec, body: Body) -> AxisSpec:
-    return AxisSpec(
-        name=axis.name,
-        placement=axis.placement,
-        body=body,
-        motor=axis.motor,
-        limits=axis.limits,
-        bandwidths=axis.bandwidths,
-    )
-
-
-def _smallest_shift(inertia: Array) -> float | None:
-    """Return the least shift (kg m2) across the joint that makes an inertia a body's; None when none does.
-
-    The defect never grows with the shift s, which is added about two of the three axes: it is the larger of
-    ``2 max - trace``, and max grows by at most s while the trace grows by 2 s, and of ``-min``. So bisection finds it.
-    """
-
-    def mended(shift: float) -> bool:
-        return inertia_defect(inertia + shift * np.diag([1.0, 1.0, 0.0])) <= 1e-3 * SLACK
-
-    low, high = 0.0, 4.0 * float(np.abs(inertia).sum())
-    if mended(low):
-        return 0.0
-    if not mended(high):
-        return None
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if mended(middle) else (middle, high)
-    return round(high, 10)  # a number that people copy; the slack covers the rest
-
-
-def _check_bodies(tables: list[Table], axes: list[AxisSpec]) -> None:
-    for index, (table, axis) in enumerate(zip(tables, axes, strict=True)):
-        defect = inertia_defect(axis.body.inertia)
-        if defect > SLACK:
-            table.fail(
-                "RBL606",
-                f"the inertia of J{index + 1} is not a body's: {defect:g} kg m2 are missing",
-                _inertia_hint(axis.body.inertia),
-                key="inertia_kg_m2",
-            )
-        if not axis.body.mass > 0.0:
-            hint = f"state [axes.correction] with added_mass_kg = {TOKEN_MASS:g}, inertia_shift_kg_m2 = 0 and a reason"
-            table.fail("RBL606", f"J{index + 1} has no mass", hint, key="mass_kg")
-
-
-def _inertia_hint(inertia: Array) -> str:
-    shift = _smallest_shift(inertia)
-    if shift is None:
-        return "no shift of inertia across the joint can mend that; check the order xx, yy, zz and the signs"
-    return f"state [axes.correction] with inertia_shift_kg_m2 = {shift:.12g}, added_mass_kg = 0 and a reason"
 
 
 def _check_opw(spec: RobotSpec, table: Table) -> None:

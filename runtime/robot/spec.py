@@ -5,8 +5,8 @@ plant, the closed-form inverse kinematics, the servo gains and the planner's lim
 
 Each axis is a revolute joint about the z axis of its own frame. ``placement`` is the pose of that frame, at joint
 angle zero, in the frame of the joint before it; body data are in the axis' own frame, which turns with the joint.
-Robot files give standard Denavit-Hartenberg rows (``form = "dh"``); DH frame i is the joint frame i
-followed by ``Tz(d) Tx(a) Rx(alpha)``, so that product places the next joint and carries the body data over.
+Robot files give standard Denavit-Hartenberg rows (``form = "dh"``) or joint lines in space (``form = "lines"``);
+``geometry`` turns either into these frames.
 """
 
 import math
@@ -48,6 +48,11 @@ class Motor:
     current_bandwidth: float
     stiffness: float = math.inf
     damping: float = 0.0
+
+    @property
+    def elastic(self) -> bool:
+        """Whether the gear is a spring between motor and link."""
+        return math.isfinite(self.stiffness)
 
     @property
     def reflected_inertia(self) -> float:
@@ -137,12 +142,13 @@ class OpwParameters:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Correction:
-    """A change made to published body data so that it is a possible body, and why (see ``loader``)."""
+    """A change made to published body data so that it is a possible body, and why (see ``corrections``)."""
 
     axis: int
     inertia_shift: float
     added_mass: float
     reason: str
+    added_inertia: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -128,7 +128,7 @@ def test_a_robot_by_name_or_by_path():
         with pytest.raises(Fault) as caught:
             load_any_robot(name)
         assert caught.value.code == "RBL708"
-        assert "built in: puma560" in caught.value.hint
+        assert "built in: irb2400, manutec_r3, puma560" in caught.value.hint
 
 
 def test_faults_come_before_diagnostics_and_nothing_is_half_read(program):

@@ -2,12 +2,16 @@ import os
 
 import pytest
 
-from runtime.robot.loader import load_builtin
+from runtime.robot.loader import library, load_builtin
 from tests.lang.cli.commands import PUMA, robolang
 
 
 def test_the_library_is_listed():
-    assert robolang("robot", "list").stdout == "puma560  Unimation Puma 560, 6 axes, 2.5 kg\n"
+    assert robolang("robot", "list").stdout.splitlines() == [
+        "irb2400     ABB IRB 2400/10, 6 axes, 10 kg",
+        "manutec_r3  Manutec r3, 6 axes, 15 kg",
+        "puma560     Unimation Puma 560, 6 axes, 2.5 kg",
+    ]
 
 
 def test_every_column_fits_80_characters_uncut():
@@ -27,6 +31,32 @@ def test_every_column_fits_80_characters_uncut():
     assert loops.split() == ["J1", "30", "120", "300", "131072"]
     bodies = [line.split() for line in text.splitlines() if line.startswith(" J3 ")][-1]
     assert bodies == ["J3", "4.8", "0", "70", "164.15", "0.066", "0.0125", "0.086", "0.06975", "0.01625", "0.086"]
+
+
+@pytest.mark.parametrize("name", library())
+def test_every_robot_is_shown_within_80_characters(name):
+    text = robolang("robot", "show", name).stdout
+    assert "…" not in text
+    assert max(map(len, text.splitlines())) <= 80
+    words, spec = " ".join(text.split()), load_builtin(name)
+    assert all(note in words for note in (*spec.sources, *spec.notes))
+
+
+def test_gear_springs_are_shown_where_there_are_any():
+    assert "Gear springs" not in robolang("robot", "show", "puma560").stdout
+    lines = robolang("robot", "show", "manutec_r3").stdout.splitlines()
+    start = lines.index(next(line for line in lines if line.startswith("Gear springs")))
+    rows = [line.split() for line in lines[start:] if line.startswith(" J")][:6]
+    # 43 N m/rad and 0.005 N m s/rad at the motor, times 105^2; 9 A x 1.1616 N m/A x 105 over the stiffness
+    assert rows[0] == ["J1", "474075", "55.125", "0.133"]
+    assert rows[1] == ["J2", "352800", "441", "0.357"]
+    assert rows[3] == ["J4", "rigid"]
+
+
+def test_a_body_published_as_a_point_is_shown_with_what_it_was_given():
+    words = " ".join(robolang("robot", "show", "manutec_r3").stdout.split())
+    assert "J6: 1e-12 kg m2 added about every axis. Published as a point mass" in words
+    assert "J1: 0.58 kg m2 across the joint, from the base to link 1. Only the 1.16" in words
 
 
 def test_corrections_sources_and_notes_are_given_in_full():
@@ -74,8 +104,8 @@ def test_long_names_and_numbers_are_folded_and_never_cut(tmp_path):
     ("name", "code", "said"),
     [
         ("puma56", "RBL708", "did you mean puma560?"),
-        ("nothing", "RBL708", "built in: puma560"),
-        ("", "RBL708", "built in: puma560"),
+        ("nothing", "RBL708", "built in: irb2400, manutec_r3, puma560"),
+        ("", "RBL708", "built in: irb2400, manutec_r3, puma560"),
         ("none.toml", "RBL600", "none.toml:1:1: error"),
         ("folder.toml", "RBL600", "is not a regular file"),
         ("pipe.toml", "RBL600", "is not a regular file"),

@@ -167,7 +167,7 @@ def test_a_robot_file_outside_the_folder_of_the_cell_is_not_opened_through_a_lin
     ("words", "code", "said"),
     [
         (("--robot", "puma650"), "RBL708", "did you mean puma560?"),
-        (("--robot", "x"), "RBL708", "built in: puma560; a robot file is named by its path"),
+        (("--robot", "x"), "RBL708", "built in: irb2400, manutec_r3, puma560; a robot file is named by its path"),
         (("--robot", "none.toml"), "RBL600", "none.toml:1:1: error RBL600 cannot open none.toml"),
         (("--robot", "folder.toml"), "RBL600", "is not a regular file"),
         (("--robot", "pipe.toml"), "RBL600", "is not a regular file"),

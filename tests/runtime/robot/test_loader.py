@@ -6,7 +6,8 @@ import re
 import numpy as np
 import pytest
 
-from runtime.robot.loader import TOKEN_MASS, inertia_matrix, library, load_builtin, load_robot, parse_robot
+from runtime.robot.corrections import TOKEN_MASS
+from runtime.robot.loader import inertia_matrix, library, load_builtin, load_robot, parse_robot
 from runtime.robot.spec import inertia_defect
 from runtime.tomlfile import FileFault, Source
 from tests.lang.cli.commands import PUMA
@@ -36,7 +37,7 @@ def line_of(text, part, start=0):
 
 
 def test_every_robot_of_the_library_loads():
-    assert library() == ["puma560"]
+    assert library() == ["irb2400", "manutec_r3", "puma560"]
     for name in library():
         assert load_builtin(name).name == name
     assert load_builtin("puma560") is load_builtin("puma560")
@@ -198,12 +199,12 @@ def test_the_correction_named_in_the_help_is_the_one_that_works(inertia, shift):
     found = refused(text)
     assert found.code == "RBL606"
     assert found.line == line_of(text, "inertia_kg_m2", ELBOW)
-    named = re.search(r"inertia_shift_kg_m2 = (\S+), added_mass_kg = 0 and a reason", found.hint)[1]
+    named, point = re.search(r"inertia_shift_kg_m2 = (\S+), added_mass_kg = 0(.*) and a reason", found.hint).groups()
     assert shift is None or named == shift
 
     def corrected(value):
         lines = f'[axes.correction]\ninertia_shift_kg_m2 = {value}\nadded_mass_kg = 0\nreason = "r"\n'
-        return text[:start] + lines + text[start:]
+        return text[:start] + lines + point.removeprefix(", ") + "\n" + text[start:]
 
     spec = parse_robot(Source("r.toml", corrected(named)))
     assert inertia_defect(spec.axes[2].body.inertia) < 1e-9

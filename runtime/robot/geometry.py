@@ -1,0 +1,131 @@
+"""From the geometry of a robot file to joint frames: rows of Denavit-Hartenberg, or the joint axes as lines in space.
+
+Both forms end in the same three things: the placement of every joint frame in the one before it (z is the joint axis),
+the frame in which the file states the body of each axis, and the flange in the last joint frame.
+
+``form = "dh"``: standard rows ``A_i = Rz(q + theta_offset) Tz(d) Tx(a) Rx(alpha)``. Bodies are stated in DH frame i,
+which is the joint frame i followed by ``Tz(d) Tx(a) Rx(alpha)``; the last of them is the flange.
+
+``form = "lines"``: at the zero pose each axis is a line, given by a point on it (``origin_m``) and its ``direction``,
+both in the base frame; so is the flange. This is how data sheets and most simulation libraries describe an arm. The
+body of an axis is stated in a frame with that origin and axes parallel to the base at the zero pose. With X_base_i
+the joint frame drawn that way,
+
+    placement_i = X_base_{i-1}^-1 X_base_i,      R_base_i = [x y z],  z = direction,  y = z x x
+
+where x is the base axis that is most nearly square to z, made square to it. Any other choice turns the joint frame
+about its own axis, which no result depends on; this one keeps right angles exact. Read at start, no rate.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Literal, cast
+
+import numpy as np
+
+from runtime.frames import Array, inverse, pose
+from runtime.robot.spec import dh_transform
+from runtime.tomlfile import Table
+from runtime.units import DEG
+
+Form = Literal["dh", "lines"]
+
+SHORTEST_DIRECTION = 1e-6
+"""A direction shorter than this has lost its digits."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Geometry:
+    """Joint frames of an arm at joint angle zero.
+
+    ``placements`` (4, 4) per axis, in the joint frame before it; ``X_joint_body`` (4, 4) per axis, the frame of its
+    body data in its joint frame; ``X_last_flange`` (4, 4).
+    """
+
+    placements: tuple[Array, ...]
+    X_joint_body: tuple[Array, ...]
+    X_last_flange: Array
+
+
+def read_form(kinematics: Table) -> Form:
+    """Return the form of geometry that a robot file uses; ``FileFault`` when it is none of them."""
+    return cast(Form, kinematics.text("form", choices=("dh", "lines")))
+
+
+def read_geometry(form: Form, table: Table, axes: list[Table]) -> Geometry:
+    """Read the geometry of the file ``table`` with the tables of its ``axes``; ``FileFault`` where it is wrong."""
+    return _dh(axes) if form == "dh" else _lines(axes, table.table("flange"))
+
+
+def _dh(tables: list[Table]) -> Geometry:
+    placements, bodies = [], []
+    placement = np.eye(4)
+    for table in tables:
+        X_joint_dh = dh_transform(
+            table.number("d_m", low=-10.0, high=10.0),
+            table.number("a_m", low=-10.0, high=10.0),
+            table.number("alpha_deg", low=-360.0, high=360.0) * DEG,
+        )
+        placements.append(placement @ _turn(table.number("theta_offset_deg", 0.0, low=-360.0, high=360.0) * DEG))
+        bodies.append(X_joint_dh)
+        placement = X_joint_dh
+    return Geometry(placements=tuple(placements), X_joint_body=tuple(bodies), X_last_flange=placement)
+
+
+def _lines(tables: list[Table], flange: Table) -> Geometry:
+    placements, bodies = [], []
+    X_base_before = np.eye(4)
+    for table in tables:
+        origin = np.array(table.numbers("origin_m", 3, low=-10.0, high=10.0))
+        R_base_joint = _frame_about(_direction(table))
+        X_base_joint = pose(origin, R_base_joint)
+        placements.append(inverse(X_base_before) @ X_base_joint)
+        bodies.append(pose(rotation=R_base_joint.T))
+        X_base_before = X_base_joint
+    return Geometry(
+        placements=tuple(placements),
+        X_joint_body=tuple(bodies),
+        X_last_flange=inverse(X_base_before) @ _flange(flange),
+    )
+
+
+def _direction(table: Table) -> Array:
+    direction = np.array(table.numbers("direction", 3, low=-10.0, high=10.0))
+    length = float(np.linalg.norm(direction))
+    if not length >= SHORTEST_DIRECTION:
+        table.fail("RBL605", f"'{table.name('direction')}' has no direction", "write a vector such as [0, 1, 0]",
+                   key="direction")  # fmt: skip
+    return np.asarray(direction / length)
+
+
+def _frame_about(z: Array) -> Array:
+    x = np.eye(3)[int(np.argmin(np.abs(z)))]
+    x = x - (x @ z) * z
+    x = x / float(np.linalg.norm(x))
+    return np.stack([x, np.cross(z, x), z], axis=1)
+
+
+def _flange(table: Table) -> Array:
+    """Return X_base_flange at the zero pose from a position and turns about the fixed x, y and z axes."""
+    position = table.numbers("position_m", 3, low=-10.0, high=10.0)
+    rx, ry, rz = (angle * DEG for angle in table.numbers("rotation_deg", 3, low=-360.0, high=360.0))
+    table.done()
+    return pose(position, _about(2, rz) @ _about(1, ry) @ _about(0, rx))
+
+
+def _about(axis: int, angle: float) -> Array:
+    """Return the rotation about a base axis, exact at right angles."""
+    c, s = _cos_sin(angle)
+    j, k = (axis + 1) % 3, (axis + 2) % 3
+    R = np.eye(3)
+    R[j, j], R[j, k], R[k, j], R[k, k] = c, -s, s, c
+    return R
+
+
+def _turn(angle: float) -> Array:
+    return pose(rotation=_about(2, angle))
+
+
+def _cos_sin(angle: float) -> tuple[float, float]:
+    # cos(pi/2) is 6e-17: rounded away, so that right angles are exact in every model built from it
+    return round(math.cos(angle), 15) + 0.0, round(math.sin(angle), 15) + 0.0
