@@ -21,7 +21,7 @@ from robolang.source import Source, read_program
 from runtime.faults import Code, Fault, register
 from runtime.plant.cell import CellSpec, load_cell, parse_cell
 from runtime.profile import Profile, ServoMode, parse_profile
-from runtime.robot import loader
+from runtime.robot import importer, loader
 from runtime.robot.spec import RobotSpec
 from runtime.tomlfile import Source as TomlSource
 
@@ -30,7 +30,7 @@ register(
         code="RBL708",
         name="robot-unknown",
         meaning="No built-in robot and no robot file has the given name.",
-        remedy="Name a built-in robot or the path of a robot file ending in .toml.",
+        remedy="Name a built-in robot or the path of a robot file ending in .toml, .urdf or .xml.",
     ),
     Code(
         code="RBL709",
@@ -91,17 +91,21 @@ def load_project(path: Path | str, cell: Path | str | None = None, robot: str | 
 
 
 def load_any_robot(name: str) -> RobotSpec:
-    """Return a built-in robot by name or the robot of a ``.toml`` file; ``Fault`` RBL708, ``FileFault`` RBL6xx."""
+    """Return a built-in robot by name or the robot of a file; ``Fault`` RBL708, ``FileFault`` RBL6xx.
+
+    A file is a robot file (``.toml``), or a URDF or MJCF file (``.urdf``, ``.xml``) with its sidecar.
+    """
     if name in loader.library():
         return loader.load_builtin(name)
-    if name.endswith(".toml"):
-        return loader.load_robot(Path(name))
+    if name.lower().endswith(importer.ROBOT_ENDINGS):
+        return importer.load_file(Path(name))
     near = difflib.get_close_matches(name, loader.library(), n=1)
     guess = f"did you mean {near[0]}? " if near else ""
     raise Fault(
         "RBL708",
         f"there is no robot '{name}'",
-        f"{guess}built in: {', '.join(loader.library())}; a robot file is named by its path, which ends in .toml",
+        f"{guess}built in: {', '.join(loader.library())}; a robot file is named by its path, which ends in .toml, "
+        ".urdf or .xml",
     )
 
 

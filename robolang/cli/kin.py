@@ -8,6 +8,7 @@ that order; without ``--tool`` the tool is the flange. ``--json`` gives full dou
     ik  {"solutions": [{"joints_deg": [...], "branch": "RIGHTY ABOVE NOFLIP", "limit_margin_deg": number}, ...]}
 
 Exit codes: 0; 1 out of reach (RBL410 on stderr); 2 a value, a robot name or a robot file that cannot be used.
+A robot may be a URDF or MJCF file: no drives are needed here. An arm without a closed form has the branch NUMERIC.
 numpy, rich and the runtime are imported inside the commands, so that ``robolang --help`` stays quick.
 """
 
@@ -28,7 +29,7 @@ app = typer.Typer(no_args_is_help=True, help="Forward and inverse kinematics of 
 POSE = ("x", "y", "z", "rx", "ry", "rz")
 POSE_UNITS = ("mm", "mm", "mm", "deg", "deg", "deg")
 
-RobotOption = Annotated[str, typer.Option("--robot", help="Built-in robot, or a path to a .toml robot file.")]
+RobotOption = Annotated[str, typer.Option("--robot", help="Built-in robot, or a .toml, .urdf or .xml file.")]
 ToolOption = Annotated[
     str | None, typer.Option("--tool", metavar="X,Y,Z,RX,RY,RZ", help="Tool in the flange frame, mm and deg.")
 ]
@@ -98,21 +99,24 @@ def _ik(robot: str, pose: str, tool: str | None, as_json: bool) -> None:
 
 
 def _kinematics(robot: str) -> "Kinematics":
-    """Return the kinematics of a built-in robot or a robot file; ``typer.Exit(2)`` or a usage error otherwise."""
+    """Return the kinematics of a built-in robot or a robot file; ``FileFault`` or a usage error otherwise."""
     from pathlib import Path
 
+    from runtime.robot.importer import ROBOT_ENDINGS, is_model, load_file, read_arm
     from runtime.robot.kinematics import Kinematics
-    from runtime.robot.loader import library, load_builtin, load_robot
+    from runtime.robot.loader import library, load_builtin
 
+    if is_model(robot):
+        return Kinematics(read_arm(Path(robot)))  # drives are not needed to say where the tool is
+    if robot.lower().endswith(ROBOT_ENDINGS):
+        return Kinematics(load_file(Path(robot)))
     try:
-        if robot.endswith(".toml"):
-            return Kinematics(load_robot(Path(robot)))
         return Kinematics(load_builtin(robot))
     except KeyError:
         known = ", ".join(library())
-        raise OptionValueError("--robot", f"{robot!r} is not a robot; known: {known}, or a .toml file") from None
-    except ValueError as error:
-        raise OptionValueError("--robot", str(error)) from None
+        raise OptionValueError(
+            "--robot", f"{robot!r} is not a robot; known: {known}, or a .toml, .urdf or .xml file"
+        ) from None
 
 
 def _pose(text: str | None, option: str) -> "Array":

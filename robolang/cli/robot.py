@@ -1,16 +1,21 @@
-"""``robolang robot list`` and ``robolang robot show R``: the robots, their data and where the data come from."""
+"""``robolang robot``: the robots, their data and where the data come from; arms from URDF and MJCF files."""
 
 import math
+import os
+from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from robolang.cli.errors import reported
 from robolang.diagnostics import safe
+from runtime.faults import Fault
 
 if TYPE_CHECKING:
     from rich.table import Table
 
+    from runtime.robot.imported import ImportedArm
     from runtime.robot.spec import Body, Correction, RobotSpec
 
 app = typer.Typer(no_args_is_help=True, help="The robot library.")
@@ -29,12 +34,17 @@ def list_robots() -> None:
 
 
 @app.command()
-def show(robot: Annotated[str, typer.Argument(help="Built-in robot, or a path to a .toml robot file.")]) -> None:
+def show(robot: Annotated[str, typer.Argument(help="Built-in robot, or a .toml, .urdf or .xml file.")]) -> None:
     """Show a robot: limits, drives, gear springs, bodies, corrections of published data, sources."""
     with reported():
         from robolang.cli.console import Console
         from robolang.project import load_any_robot
+        from runtime.robot.importer import is_model
+        from runtime.robot.sidecar import sidecar_path
 
+        if is_model(robot) and not os.path.lexists(sidecar_path(Path(robot))):
+            _show_model(robot)
+            return
         spec = load_any_robot(robot)
         console = Console()
         console.print(safe(f"{spec.name}: {spec.title}, {spec.n} axes, rated payload {spec.rated_payload:g} kg"), "\n")
@@ -48,6 +58,77 @@ def show(robot: Annotated[str, typer.Argument(help="Built-in robot, or a path to
             if lines:
                 console.print(title, style="bold")
                 console.print(_bullets(lines))
+
+
+@app.command("import")
+def import_model(
+    file: Annotated[Path, typer.Argument(help="URDF or MJCF file (.urdf, .xml).")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Where to write; default: NAME.robot.toml beside FILE.")
+    ] = None,
+    flange: Annotated[str | None, typer.Option(help="Frame that tools are mounted on, if not the last.")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Write over a file that is there.")] = False,
+) -> None:
+    """Write the sidecar of a URDF or MJCF file, with what it lacks marked MISSING."""
+    with reported():
+        from robolang.storage import write_atomic
+        from runtime.robot.importer import read_model
+        from runtime.robot.sidecar import NO_OVERLAY, sidecar_path, template
+
+        target = output if output is not None else sidecar_path(file)
+        text = template(read_model(file, replace(NO_OVERLAY, flange=flange))).encode()
+        if not force and os.path.lexists(target):
+            raise Fault("RBL706", f"{target} is there already", "Give another name with -o, or --force to replace it.")
+        write_atomic(target, lambda stream: stream.write(text))
+        gaps = text.count(b"MISSING:")
+        typer.echo(safe(f"wrote {target}: {gaps} values to fill in, marked MISSING"))
+
+
+def _show_model(robot: str) -> None:
+    """Print what a model file without a sidecar says: it has no drives."""
+    from robolang.cli.console import Console
+    from runtime.robot.importer import read_model
+    from runtime.robot.kinematics import Kinematics
+    from runtime.robot.sidecar import sidecar_path
+
+    path = Path(robot)
+    arm = read_model(path)
+    console = Console()
+    console.print(safe(f"{arm.title}, {arm.n} axes; the flange is {arm.flange!r}"), "\n")
+    for table in (_model_limits(arm), _model_bodies(arm)):
+        console.print(table)
+    form = "closed form" if Kinematics(arm).closed_form else "Newton's method"
+    lines = [
+        f"Inverse kinematics: {form}.",
+        f"Drives: none. 'robolang robot import' writes {sidecar_path(path).name}, to be filled in.",
+    ]
+    lines += [f"{axis.impossible.code} {axis.impossible.message}" for axis in arm.axes if axis.impossible is not None]
+    console.print(_bullets(lines))
+
+
+def _model_limits(arm: "ImportedArm") -> "Table":
+    from runtime.units import DEG
+
+    def shown(value: float | None, unit: float = 1.0) -> str:
+        return "-" if value is None else f"{value / unit:g}"
+
+    table = _table("Limits in the file", "range\ndeg", "speed\ndeg/s", "torque\nN m", "armature\nkg m2")
+    for index, axis in enumerate(arm.axes, start=1):
+        hinge = axis.hinge
+        reach = f"{shown(hinge.lower, DEG)} .. {shown(hinge.upper, DEG)}"
+        table.add_row(
+            safe(f"J{index} {axis.name}"), reach, shown(hinge.speed, DEG), shown(hinge.effort), f"{hinge.armature:g}"
+        )
+    return table
+
+
+def _model_bodies(arm: "ImportedArm") -> "Table":
+    table = _table("Bodies in their axis frames (inertia xx yy zz about the centre)", "mass\nkg", "cog\nmm",
+                   "inertia\nkg m2")  # fmt: skip
+    for index, axis in enumerate(arm.axes, start=1):
+        cog = " ".join(f"{round(1000 * x, 3) + 0.0:g}" for x in axis.body.cog)
+        table.add_row(f"J{index}", f"{axis.body.mass:g}", cog, _moments(axis.body))
+    return table
 
 
 def _bullets(lines: list[str]) -> "Table":

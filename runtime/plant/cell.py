@@ -16,7 +16,8 @@ from types import MappingProxyType
 import numpy as np
 
 from runtime.frames import Array, frozen, pose_from_xyzrpy
-from runtime.robot.loader import library, load_builtin, load_robot
+from runtime.robot.importer import ROBOT_ENDINGS, load_file
+from runtime.robot.loader import library, load_builtin
 from runtime.robot.spec import RobotSpec
 from runtime.tomlfile import Source, Table, load_table, read_source
 from runtime.units import DEG, MM
@@ -130,9 +131,9 @@ def parse_cell(source: Source, folder: Path | None = None) -> CellSpec:
 
 def _robot(table: Table, folder: Path | None) -> RobotSpec:
     name = table.text("robot")
-    if not name.endswith(".toml"):
+    if not name.lower().endswith(ROBOT_ENDINGS):
         return load_builtin(table.text("robot", choices=library()))
-    return load_robot(_inside(table, name, folder))
+    return load_file(_inside(table, name, folder))
 
 
 def _inside(table: Table, name: str, folder: Path | None) -> Path:

@@ -48,7 +48,7 @@ def _check_need(table: Table, published: Body, correction: Correction) -> None:
     """Refuse what is more than the published body needs."""
     shift, mass, moments = correction.inertia_shift, correction.added_mass, correction.added_inertia
     name = f"J{correction.axis + 1}"
-    needed = _smallest_shift(published.inertia) or 0.0
+    needed = smallest_shift(published.inertia) or 0.0
     if shift > needed + SLACK:
         table.fail("RBL606", f"the shift of {shift:g} kg m2 is larger than the {needed:.12g} that {name} needs",
                    f"write inertia_shift_kg_m2 = {needed:.12g}", key="inertia_shift_kg_m2")  # fmt: skip
@@ -92,7 +92,7 @@ def _shifted(inertia: Array, shift: float) -> Array:
     return np.asarray(inertia + shift * np.diag([1.0, 1.0, 0.0]))
 
 
-def _smallest_shift(inertia: Array) -> float | None:
+def smallest_shift(inertia: Array) -> float | None:
     """Return the least shift (kg m2) across the joint that makes an inertia a body's; None when none does.
 
     The defect never grows with the shift s, which is added about two of the three axes: it is the larger of
@@ -133,7 +133,7 @@ def check_bodies(tables: list[Table], axes: list[AxisSpec]) -> None:
 
 
 def _inertia_hint(inertia: Array) -> str:
-    shift = _smallest_shift(inertia)
+    shift = smallest_shift(inertia)
     if shift is None:
         return "no shift of inertia across the joint can mend that; check the order xx, yy, zz and the signs"
     point = f", added_inertia_kg_m2 = {TOKEN_INERTIA:g}" if flat(_shifted(inertia, shift)) else ""

@@ -1,14 +1,15 @@
 """Kinematics of a robot: where the flange is, which joint angles put it there, how it moves with the joints.
 
 ``Kinematics`` is the one noun that planner, session, cell and command line use. Forward kinematics and the Jacobian
-come from the chain of axes of the ``RobotSpec`` (the same data that Pinocchio and MuJoCo are built from), inverse
-kinematics from the closed form (``opw``), which a robot file must match to 1e-9 m. All arrays are in the base frame, m
-and rad, and broadcast over leading dimensions.
+come from the chain of axes of the arm (the same data that Pinocchio and MuJoCo are built from). Inverse kinematics is
+the closed form (``opw``) where the arm has one: given in its robot file, where it must match the chain to 1e-9 m, or
+found from the joint lines (``closed_form``). Other arms of 2 to 7 axes are solved by damped Newton steps (``newton``);
+their only branch is ``NUMERIC``. All arrays are in the base frame, m and rad, and broadcast over leading dimensions.
 
     X_base_flange = prod_i (placement_i Rz(q_i)) X_last_flange
     column i of the Jacobian = [ z_i x (p_flange - p_i) ; z_i ],   z_i and p_i: direction of and a point on axis i
 
-Turns. The closed form gives each angle up to whole turns of 2 pi, and a joint with a range above one turn has several
+Turns. Both solutions give each angle up to whole turns of 2 pi, and a joint with a range above one turn has several
 of them in it. Of those inside the range the one nearest to a reference is taken: the present joint angles, or the
 middle of the range. Where none is inside, the one nearest to the middle is returned, and the margin is negative.
 """
@@ -21,8 +22,9 @@ from numpy.typing import ArrayLike
 
 from runtime.frames import Array, frozen
 from runtime.robot import opw
-from runtime.robot.opw import BRANCHES, TURN, Branch
-from runtime.robot.spec import RobotSpec
+from runtime.robot.closed_form import find_opw
+from runtime.robot.newton import NewtonSolver
+from runtime.robot.opw import BRANCHES, NUMERIC, TURN, Branch, Geometry
 
 LIMIT_ROUNDING = 1e-9
 """A joint this far outside its range, rad, is not turned by a whole turn to bring it in."""
@@ -30,10 +32,16 @@ LIMIT_ROUNDING = 1e-9
 SAME_ANGLES = 1e-9
 """Two branches whose joints differ by less, rad, are one solution (they merge at a singularity)."""
 
+SAME_NUMERIC = 1e-6
+"""The same for solutions of Newton's method, rad: near a singularity their digits are fewer."""
+
+MOST_NUMERIC = 8
+"""As many solutions of Newton's method are listed, at most."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Solution:
-    """Joint angles that meet a pose: q (6,) rad, its branch, and its smallest distance to a limit, rad.
+    """Joint angles that meet a pose: q (n,) rad, its branch, and its smallest distance to a limit, rad.
 
     A negative ``limit_margin`` says how far the worst joint is outside its range.
     """
@@ -44,16 +52,20 @@ class Solution:
 
 
 class Kinematics:
-    """Kinematics of one robot. Holds no state; ``ValueError`` for a robot without a closed form."""
+    """Kinematics of one arm, of 2 to 7 axes. Keeps nothing between calls."""
 
-    def __init__(self, spec: RobotSpec) -> None:
-        if spec.opw is None:
-            raise ValueError(f"{spec.name} has no closed-form inverse kinematics (no [kinematics.opw] in its file)")
+    def __init__(self, spec: Geometry) -> None:
         self.spec = spec
         self.n = spec.n
-        self._opw = spec.opw
+        self._opw = spec.opw if spec.opw is not None else find_opw(spec.axes, spec.X_last_flange)
+        self._newton = NewtonSolver([axis.placement for axis in spec.axes], spec.X_last_flange)
         self._lower, self._upper = frozen(spec.lower), frozen(spec.upper)
         self._middle = frozen(0.5 * (spec.lower + spec.upper))
+
+    @property
+    def closed_form(self) -> bool:
+        """Whether poses are solved in closed form, branch by branch."""
+        return self._opw is not None
 
     def forward(self, q: ArrayLike) -> Array:
         """Return X_base_flange (..., 4, 4) of joint angles (..., n) rad."""
@@ -70,24 +82,33 @@ class Kinematics:
         return np.stack(columns, axis=-1)
 
     def inverse_branch(self, X_base_flange: Array, branch: Branch, near: ArrayLike | None = None) -> Array:
-        """Return the joint angles (..., 6) rad of one branch for poses (..., 4, 4); NaN where it does not exist.
+        """Return the joint angles (..., n) rad of one branch for poses (..., 4, 4); NaN where it does not exist.
 
-        With ``near`` (..., 6) each joint is the whole turn nearest to it, in range or not, and J1 and J4 follow it
+        With ``near`` (..., n) each joint is the whole turn nearest to it, in range or not, and J1 and J4 follow it
         where a singularity leaves them free; without, each is turned into its range. Samples of a path (N, 4, 4):
         pass the start as ``near`` and unwrap the result along the path (``np.unwrap(q, axis=0)``).
-        Timing: called by the path planner on all samples of a move at once; no loop over poses.
+        An arm without a closed form knows no branches: the samples are solved one after the other, each from the one
+        before it, the first from ``near`` (n,) or from the middle of the ranges, and NaN is where that does not
+        converge to 1e-10 (m and rad).
+        Timing: called by the path planner on all samples of a move at once; in closed form without a loop over poses.
         """
+        if self._opw is None:
+            return self._newton.follow(np.asarray(X_base_flange), self._start(near))
         q = opw.inverse_branch(self._opw, X_base_flange, branch, near)
         return self._into_range(q, None) if near is None else self.nearest_turns(q, near)
 
     def solutions(self, X_base_flange: Array, near: ArrayLike | None = None) -> list[Solution]:
         """Return every solution of one pose (4, 4), in the order of ``BRANCHES``; empty when out of reach.
 
-        Each joint is turned into its range where it can be, as close to ``near`` (6,) or mid-range as the range
-        allows. Branches that merge at a singularity are listed once, under the first of their names.
+        Each joint is turned into its range where it can be, as close to ``near`` (n,) or mid-range as the range
+        allows. Branches that merge at a singularity are listed once, under the first of their names. An arm without a
+        closed form gives what Newton's method finds from several starts: of a redundant arm, some of infinitely many.
         """
+        params = self._opw
+        if params is None:
+            return self._numeric_solutions(self._start(near), X_base_flange)
         found: list[Solution] = []
-        rows = self._into_range(opw.inverse(self._opw, X_base_flange, near), near)
+        rows = self._into_range(opw.inverse(params, X_base_flange, near), near)
         for branch, q in zip(BRANCHES, rows, strict=True):
             if np.isnan(q).any() or any(np.max(np.abs(opw.wrapped(q - s.q))) < SAME_ANGLES for s in found):
                 continue
@@ -95,7 +116,9 @@ class Kinematics:
         return found
 
     def branch_of(self, q: ArrayLike) -> Branch:
-        """Return the branch of one joint vector (6,) rad."""
+        """Return the branch of one joint vector (n,) rad; ``NUMERIC`` for an arm without a closed form."""
+        if self._opw is None:
+            return NUMERIC
         return opw.branch_of(self._opw, q)
 
     def limit_margin(self, q: ArrayLike) -> Array:
@@ -108,6 +131,18 @@ class Kinematics:
         """Return q (..., n) rad turned by whole turns to within half a turn of ``near`` (..., n), limits or not."""
         angles = np.asarray(q, dtype=np.float64)
         return np.asarray(angles + TURN * np.round((np.asarray(near, dtype=np.float64) - angles) / TURN))
+
+    def _start(self, near: ArrayLike | None) -> Array:
+        return self._middle if near is None else np.asarray(near, dtype=np.float64)
+
+    def _numeric_solutions(self, near: Array, X_base_flange: Array) -> list[Solution]:
+        found: list[Solution] = []
+        for q in self._newton.search(np.asarray(X_base_flange), near, self._lower, self._upper):
+            q = self._into_range(q, near)
+            if all(np.max(np.abs(opw.wrapped(q - s.q))) >= SAME_NUMERIC for s in found):
+                found.append(Solution(q=frozen(q), branch=NUMERIC, limit_margin=float(self.limit_margin(q))))
+        found.sort(key=lambda solution: solution.limit_margin < 0.0)  # in range first, otherwise as they were found
+        return found[:MOST_NUMERIC]
 
     def _into_range(self, q: Array, near: ArrayLike | None) -> Array:
         wanted = self.nearest_turns(q, self._middle if near is None else near)

@@ -70,7 +70,7 @@ def parse_robot(source: Source) -> RobotSpec:
     form = read_form(kinematics)
     opw = _opw(kinematics.table("opw")) if "opw" in kinematics else None
     kinematics.done()
-    path = _path_limits(table.table("path"))
+    path = path_limits(table.table("path"))
     axis_tables = table.tables("axes")
     if not 1 <= len(axis_tables) <= 7:
         table.fail("RBL605", f"a robot has 1 to 7 axes, not {len(axis_tables)}", key="axes")
@@ -79,8 +79,8 @@ def parse_robot(source: Source) -> RobotSpec:
     spec = RobotSpec(
         name=name,
         title=title,
-        sources=_texts(table, "sources"),
-        notes=_texts(table, "notes"),
+        sources=texts(table, "sources"),
+        notes=texts(table, "notes"),
         rated_payload=table.number("rated_payload_kg", low=0.0, high=5000.0),
         axes=axes,
         X_last_flange=frozen(geometry.X_last_flange),
@@ -94,7 +94,8 @@ def parse_robot(source: Source) -> RobotSpec:
     return spec
 
 
-def _texts(table: Table, key: str) -> tuple[str, ...]:
+def texts(table: Table, key: str) -> tuple[str, ...]:
+    """Return an optional list of texts; ``FileFault`` RBL613."""
     value = table.raw_list(key)
     if not all(isinstance(item, str) for item in value):
         table.fail("RBL613", f"'{key}' must be a list of texts", key=key)
@@ -111,7 +112,8 @@ def _opw(table: Table) -> OpwParameters:
     return OpwParameters(**lengths, offsets=frozen(np.array(offsets) * DEG), signs=frozen(signs))
 
 
-def _path_limits(table: Table) -> PathLimits:
+def path_limits(table: Table) -> PathLimits:
+    """Read ``[path]`` in mm and deg into SI; ``FileFault`` RBL60x."""
     limits = PathLimits(
         default_speed=table.number("default_speed_mm_s", positive=True) * MM,
         max_speed=table.number("max_speed_mm_s", positive=True) * MM,
@@ -142,9 +144,9 @@ def _chain(
             name=_unique(table, names),
             placement=frozen(placement),
             body=_body(table, X_joint_body),
-            motor=_motor(table.table("motor")),
-            limits=_limits(table),
-            bandwidths=_bandwidths(table.table("servo")),
+            motor=motor(table.table("motor")),
+            limits=limits(table),
+            bandwidths=bandwidths(table.table("servo")),
         )
         correction = table.table("correction") if "correction" in table else None
         table.done()
@@ -182,7 +184,8 @@ def inertia_matrix(values: tuple[float, ...]) -> Array:
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
-def _motor(table: Table) -> Motor:
+def motor(table: Table) -> Motor:
+    """Read ``[axes.motor]``, motor side; ``FileFault`` RBL60x."""
     ratio = table.number("gear_ratio", low=-10000.0, high=10000.0)
     if not abs(ratio) >= 1e-3:
         table.fail("RBL605", f"'{table.name('gear_ratio')}' is {ratio:g} and must not be zero", key="gear_ratio")
@@ -218,7 +221,8 @@ def _check_spring(table: Table, motor: Motor) -> None:
                    key="joint_stiffness_nm_rad")  # fmt: skip
 
 
-def _limits(table: Table) -> Limits:
+def limits(table: Table) -> Limits:
+    """Read the range, speed, acceleration and torque of an axis in deg and N m; ``FileFault`` RBL60x."""
     lower, upper = table.numbers("range_deg", 2, low=-3600.0, high=3600.0)
     if not lower < upper:
         table.fail("RBL607", f"'{table.name('range_deg')}' goes from {lower:g} to {upper:g}", key="range_deg")
@@ -231,7 +235,8 @@ def _limits(table: Table) -> Limits:
     )
 
 
-def _bandwidths(table: Table) -> Bandwidths:
+def bandwidths(table: Table) -> Bandwidths:
+    """Read ``[axes.servo]``, 1/s; ``FileFault`` RBL60x."""
     bandwidths = Bandwidths(
         position=table.number("position_bandwidth_rad_s", positive=True, high=FASTEST_LOOP),
         velocity=table.number("velocity_bandwidth_rad_s", positive=True, high=FASTEST_LOOP),

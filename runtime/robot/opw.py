@@ -9,6 +9,8 @@ Forward: the flange is the end of one product of elementary motions, from the ba
 
     Tz(c1) Rz(t1) T(a1, b, 0) Ry(t2) Tz(c2) Ry(t3) T(a2, 0, c3) Rz(t4) Ry(t5) Rz(t6) Tz(c4)
 
+with a constant pose before it and one behind it where an arm's own base and flange frames are others (``PlacedOpw``).
+
 Inverse, arm. The wrist centre ``w = p - c4 R ez`` does not depend on J4 to J6. Seen in the frame of the waist it is
 at (r, b) of the ground plane, so with rho = hypot(wx, wy) and sh = +1 or -1 (in front of the waist or behind it)
 
@@ -53,14 +55,17 @@ pose is still met exactly. Beyond reach (rho < |b|, or d outside [|c2 - k|, c2 +
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from runtime.frames import Array, pose, rotation_about
-from runtime.robot.spec import OpwParameters, RobotSpec
+from runtime.frames import inverse as inverse_pose
+from runtime.robot.spec import OpwParameters
 
 ROUNDING = 5e-13
 """A length in m or a sine below this is rounding: a pose out of reach by less is on the border, an arm within it of
@@ -123,8 +128,58 @@ class Branch:
 BRANCHES = tuple(Branch(arm=arm, elbow=elbow, wrist=wrist) for arm in Arm for elbow in Elbow for wrist in Wrist)
 """The eight branches, in the order in which ``inverse`` returns them."""
 
+
+
+class _Unbranched(Branch):
+    """The branch of an arm without a closed form: it has no name, and its three choices mean nothing."""
+
+    __slots__ = ()
+
+    def __str__(self) -> str:
+        return "NUMERIC"
+
+
+NUMERIC: Branch = _Unbranched(arm=Arm.RIGHTY, elbow=Elbow.ABOVE, wrist=Wrist.NOFLIP)
+"""Stands for a branch where there are none to choose from; equal to none of ``BRANCHES``."""
+
 # signs of the eight branches, (3, 8): arm, elbow, wrist
 _SIGNS = np.array([(b.arm.value, b.elbow.value, b.wrist.value) for b in BRANCHES], dtype=np.float64).T
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlacedOpw(OpwParameters):
+    """The parameters of an arm whose frames are not the model's: constant poses (4, 4) before and behind it."""
+
+    X_base_opw: Array
+    X_opw_flange: Array
+
+
+class Placed(Protocol):
+    """An axis with its frame in the frame of the axis before it, (4, 4) at joint angle zero."""
+
+    @property
+    def placement(self) -> Array: ...  # noqa: D102
+
+
+class Geometry(Protocol):
+    """What kinematics needs of an arm: ``RobotSpec`` has it, and so has an imported arm without drives."""
+
+    @property
+    def name(self) -> str: ...  # noqa: D102
+    @property
+    def title(self) -> str: ...  # noqa: D102
+    @property
+    def n(self) -> int: ...  # noqa: D102
+    @property
+    def axes(self) -> Sequence[Placed]: ...  # noqa: D102
+    @property
+    def X_last_flange(self) -> Array: ...  # noqa: D102
+    @property
+    def lower(self) -> Array: ...  # noqa: D102
+    @property
+    def upper(self) -> Array: ...  # noqa: D102
+    @property
+    def opw(self) -> OpwParameters | None: ...  # noqa: D102
 
 
 def forward(params: OpwParameters, q: ArrayLike) -> Array:
@@ -141,10 +196,11 @@ def forward(params: OpwParameters, q: ArrayLike) -> Array:
     )
     R = R_base_waist @ R_waist_fore @ rotation_about(_Z, t4) @ rotation_about(y, t5) @ rotation_about(_Z, t6)
     p = (R_base_waist @ p_waist_wrist[..., None])[..., 0] + params.c1 * _Z + params.c4 * R[..., :, 2]
-    return pose(p, R)
+    X = pose(p, R)
+    return np.asarray(params.X_base_opw @ X @ params.X_opw_flange) if isinstance(params, PlacedOpw) else X
 
 
-def mismatch(spec: RobotSpec) -> float:
+def mismatch(spec: Geometry) -> float:
     """Return the largest difference in m between the closed form and the chain of axes of a six-axis arm.
 
     The larger of the distance of the flange origins and of the angle between the flange frames (as a chord) at a
@@ -202,6 +258,8 @@ def wrapped(angle: Array) -> Array:
 def _solve(params: OpwParameters, X: Array, signs: Array, near: Array | None) -> Array:
     """Solve poses X (..., 4, 4) for branch signs (3, ...), broadcast against each other."""
     reference = params.offsets if near is None else params.signs * near + params.offsets
+    if isinstance(params, PlacedOpw):
+        X = inverse_pose(params.X_base_opw) @ X @ inverse_pose(params.X_opw_flange)
     R, p = X[..., :3, :3], X[..., :3, 3]
     with np.errstate(invalid="ignore"):
         t1, t2, t3 = _arm_angles(params, p - params.c4 * R[..., :, 2], signs[0], signs[1], reference[..., 0])

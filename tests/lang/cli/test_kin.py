@@ -13,6 +13,7 @@ from runtime.frames import pose_from_xyzrpy, xyzrpy_from_pose
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.loader import load_builtin
 from runtime.units import DEG, MM
+from tests.runtime.robot.models import SEVEN
 
 LIBRARY = Path(__file__).parents[3] / "runtime" / "robot" / "library"
 JOINTS = "10,60,150,-20,40,30"
@@ -108,11 +109,28 @@ def test_a_robot_file_is_a_robot(tmp_path):
     assert "RBL600" in run("ik", "--robot", tmp_path / "none.toml", "--pose", JOINTS, exit_code=2).stderr
 
 
-def test_a_robot_without_a_closed_form_is_a_usage_error(tmp_path):
+def test_a_robot_file_without_a_closed_form_gets_the_one_that_its_axes_have(tmp_path):
     text = (LIBRARY / "puma560.toml").read_text()
     start, end = text.index("[kinematics.opw]"), text.index("[path]")
     (tmp_path / "open.toml").write_text(text[:start] + text[end:])
-    assert "closed-form" in run("fk", "--robot", tmp_path / "open.toml", "--joints", JOINTS, exit_code=2).stderr
+    pose = ",".join(map(repr, fk()))
+    found = json.loads(run("ik", "--robot", tmp_path / "open.toml", "--pose", pose, "--json").stdout)["solutions"]
+    assert {s["branch"] for s in found} == {s["branch"] for s in ik(fk())}
+
+
+def test_a_model_file_needs_no_drives():
+    given = run("fk", "--robot", SEVEN, "--joints", "0,30,0,60,0,40,0", "--json").stdout
+    pose = json.loads(given)["pose_mm_deg"]
+    found = json.loads(run("ik", "--robot", SEVEN, "--pose", ",".join(map(str, pose)), "--json").stdout)["solutions"]
+    assert found
+    for solution in found:
+        assert solution["branch"] == "NUMERIC"
+        joints = ",".join(map(str, solution["joints_deg"]))
+        again = json.loads(run("fk", "--robot", SEVEN, "--joints", joints, "--json").stdout)["pose_mm_deg"]
+        assert again == pytest.approx(pose, abs=1e-6)
+    assert "RBL410" in run("ik", "--robot", SEVEN, "--pose", "3000,0,0,0,0,0", exit_code=1).stderr
+    assert "RBL600" in run("fk", "--robot", "none.urdf", "--joints", "0", exit_code=2).stderr
+
 
 
 def test_an_unknown_robot_is_answered_with_the_known_ones():

@@ -216,6 +216,10 @@ def test_branch_of_a_branch_is_itself(puma_kinematics):
         assert puma_kinematics.branch_of(q) == branch
 
 
-def test_an_arm_without_a_closed_form_is_refused(puma):
-    with pytest.raises(ValueError, match="puma560 has no closed-form inverse kinematics"):
-        Kinematics(replace(puma, opw=None))
+def test_without_its_closed_form_in_the_file_the_arm_is_the_same(puma):
+    bare, own = Kinematics(replace(puma, opw=None)), Kinematics(puma)
+    assert bare.closed_form
+    q = np.array([0.2, 1.0, -2.7, 0.3, 0.9, 0.2])
+    assert bare.branch_of(q) == own.branch_of(q)
+    for found, known in zip(bare.solutions(own.forward(q)), own.solutions(own.forward(q)), strict=True):
+        np.testing.assert_allclose(found.q, known.q, atol=1e-9)

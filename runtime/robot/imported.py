@@ -1,0 +1,249 @@
+"""An arm as URDF and MJCF files describe it: a tree of frames, made one serial chain of revolute axes.
+
+Both readers give the same tree. A ``Node`` is a frame with a body, fixed to the node before it or turning about
+one hinge of its own. ``serial_chain`` walks it from the root: what is fixed together becomes one link, masses
+added, inertias moved by the parallel axis theorem,
+
+    I_c = sum_i  R_i I_i R_i' + m_i (|r_i|^2 E - r_i r_i'),   r_i from the common centre of gravity,
+
+and each axis gets the frame that ``RobotSpec`` wants: z along the hinge, origin on it. Branches and loops are
+refused (RBL611), and so is a body that cannot be (RBL606) unless the sidecar states a correction for it.
+
+The result holds no drives: such files have none. Forward and inverse kinematics need no more than this.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import PurePath
+
+import numpy as np
+
+from runtime.frames import Array, frozen, inverse, pose, rotation_about, skew
+from runtime.robot.spec import Body, OpwParameters, inertia_defect
+from runtime.robot.xmlfile import Element
+from runtime.tomlfile import FileFault
+
+FEWEST_AXES, MOST_AXES = 2, 7
+INERTIA_SLACK = 1e-9
+"""Rounding of printed inertias that is let pass, kg m2."""
+
+_NO_DIRECTION = 1e-200
+
+FLANGE_NAMES = ("flange", "tool0")
+"""Names that decide which of several last frames is the flange."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hinge:
+    """A revolute joint: unit ``axis`` (3,) and ``anchor`` (3,) m in its node's frame; what the file says of it.
+
+    None is what the file leaves out. ``lower`` and ``upper`` rad, ``speed`` rad/s, ``effort`` N m, ``damping``
+    N m s/rad, ``friction`` N m, ``armature`` kg m2, all at the joint.
+    """
+
+    name: str
+    element: Element
+    axis: Array
+    anchor: Array
+    lower: float | None
+    upper: float | None
+    speed: float | None
+    effort: float | None
+    damping: float
+    friction: float
+    armature: float
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Node:
+    """A frame of the file with its body (None: it has no mass), its hinge (None: fixed) and what hangs on it.
+
+    ``X_parent_node`` (4, 4) holds at joint angle zero. ``marker``: a frame that only names a place.
+    """
+
+    name: str
+    element: Element
+    X_parent_node: Array
+    body: Body | None = None
+    hinge: Hinge | None = None
+    marker: bool = False
+    children: "list[Node]" = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ImportedAxis:
+    """One axis: ``placement`` (4, 4) as in ``AxisSpec``, ``body`` in the axis frame, ``hinge`` as the file has it.
+
+    ``impossible`` says at its place why no body can be like that; None for one that can.
+    """
+
+    name: str
+    placement: Array
+    body: Body
+    hinge: Hinge
+    impossible: FileFault | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ImportedArm:
+    """A serial arm of a URDF or MJCF file. ``lower``, ``upper`` (n,) rad; ``flange`` names its last frame."""
+
+    name: str
+    path: str
+    axes: tuple[ImportedAxis, ...]
+    X_last_flange: Array
+    flange: str
+    lower: Array
+    upper: Array
+    opw: OpwParameters | None = None
+
+    @property
+    def n(self) -> int:
+        """Number of axes."""
+        return len(self.axes)
+
+    @property
+    def title(self) -> str:
+        """What to call it to people."""
+        return f"{self.name} ({PurePath(self.path).name})"
+
+
+def joint_label(index: int, name: str) -> str:
+    """Return ``J2 shoulder_lift``: the number people use, from 1, and the name in the file."""
+    return f"J{index + 1} {name}"
+
+
+def rotation_z_to(axis: Array) -> Array:
+    """Return the smallest rotation (3, 3) that takes z to a unit vector; half a turn about x for -z."""
+    across = math.hypot(axis[0], axis[1])
+    if across < _NO_DIRECTION:
+        return np.eye(3) if axis[2] > 0.0 else np.diag([1.0, -1.0, -1.0])
+    k = np.array([-axis[1], axis[0], 0.0]) / across
+    return np.asarray(rotation_about(k, math.atan2(across, axis[2])))
+
+
+def moved(body: Body, X: Array) -> Body:
+    """Return a body given in frame b in frame a, X = X_a_b (4, 4)."""
+    R = X[:3, :3]
+    return Body(mass=body.mass, cog=R @ body.cog + X[:3, 3], inertia=R @ body.inertia @ R.T)
+
+
+def combined(bodies: list[Body]) -> Body:
+    """Return several bodies of one frame as one; a body of no mass at the origin for none."""
+    mass = sum(body.mass for body in bodies)
+    if mass <= 0.0:
+        return Body(
+            mass=0.0, cog=frozen(np.zeros(3)), inertia=frozen(sum((b.inertia for b in bodies), np.zeros((3, 3))))
+        )
+    cog = sum((body.mass * body.cog for body in bodies), np.zeros(3)) / mass
+    inertia = np.zeros((3, 3))
+    for body in bodies:
+        r = skew(body.cog - cog)
+        inertia += body.inertia - body.mass * (r @ r)
+    return Body(mass=mass, cog=frozen(cog), inertia=frozen(inertia))
+
+
+def impossible_inertia(element: Element, inertia: Array, what: str) -> FileFault | None:
+    """Return why a matrix is no body's inertia (RBL606), at its element; None when it is one."""
+    defect = inertia_defect(inertia)
+    if defect <= INERTIA_SLACK:
+        return None
+    return element.fault("RBL606", f"the inertia of {what} is not a body's: {defect:g} kg m2 are missing")
+
+
+def serial_chain(root: Node, path: str, name: str, flange: str | None) -> ImportedArm:
+    """Return the one chain of hinges of a tree; ``FileFault`` RBL605, 608, 610, 611 or 621 when it has another form.
+
+    ``flange`` names the frame to use as flange; None takes the only last frame, or one of ``FLANGE_NAMES``.
+    """
+    axes: list[ImportedAxis] = []
+    seen: set[str] = set()
+    node, X_axis_node = root, np.eye(4)
+    while True:
+        cluster = list(_fixed(node, X_axis_node))
+        if node.hinge is not None:
+            axes[-1] = _with_body(axes[-1], cluster, len(axes) - 1)
+        turning = [
+            (X @ child.X_parent_node, child) for X, member in cluster for child in member.children if child.hinge
+        ]
+        if not turning:
+            break
+        if len(turning) > 1:
+            names = " and ".join(repr(child.hinge.name) for _, child in turning[:2] if child.hinge)
+            turning[1][1].element.fail("RBL611", f"joints {names} both start at one link: the arm has a branch")
+        X, node = turning[0]
+        assert node.hinge is not None
+        if node.hinge.name in seen:
+            node.hinge.element.fail("RBL610", f"two joints are named {node.hinge.name!r}")
+        seen.add(node.hinge.name)
+        X_node_axis = pose(node.hinge.anchor, rotation_z_to(node.hinge.axis))
+        axes.append(_axis(node.hinge, X @ X_node_axis))
+        X_axis_node = inverse(X_node_axis)
+    if not FEWEST_AXES <= len(axes) <= MOST_AXES:
+        root.element.fail(
+            "RBL605", f"an arm has {FEWEST_AXES} to {MOST_AXES} revolute joints in a row, not {len(axes)}"
+        )
+    last, X_last_flange = _flange(cluster, flange, root)
+    return ImportedArm(
+        name=name,
+        path=path,
+        axes=tuple(axes),
+        X_last_flange=frozen(X_last_flange),
+        flange=last,
+        lower=_limits(axes, "lower"),
+        upper=_limits(axes, "upper"),
+    )
+
+
+def _limits(axes: list[ImportedAxis], side: str) -> Array:
+    values = [getattr(axis.hinge, side) for axis in axes]
+    return frozen([np.nan if value is None else value for value in values])
+
+
+def _axis(hinge: Hinge, placement: Array) -> ImportedAxis:
+    return ImportedAxis(
+        name=hinge.name, placement=frozen(placement), body=combined([]), hinge=hinge, impossible=None
+    )  # fmt: skip
+
+
+def _with_body(axis: ImportedAxis, cluster: list[tuple[Array, Node]], index: int) -> ImportedAxis:
+    body = combined([moved(node.body, X) for X, node in cluster if node.body is not None])
+    what = f"the link of {joint_label(index, axis.name)}"
+    impossible = impossible_inertia(axis.hinge.element, body.inertia, what)
+    for _, node in cluster:
+        if node.body is not None:  # a wrong part stays wrong when a large one beside it hides it
+            impossible = impossible or impossible_inertia(node.element, node.body.inertia, repr(node.name))
+    if not body.mass > 0.0:
+        impossible = axis.hinge.element.fault("RBL606", f"{what} has no mass")
+    return ImportedAxis(
+        name=axis.name, placement=axis.placement, body=body, hinge=axis.hinge, impossible=impossible
+    )  # fmt: skip
+
+
+def _fixed(node: Node, X: Array) -> Iterator[tuple[Array, Node]]:
+    """Yield a node and all that is fixed to it, each with its pose in the frame that X refers to."""
+    todo = [(X, node)]
+    while todo:
+        X_here, here = todo.pop()
+        yield X_here, here
+        todo += [(X_here @ child.X_parent_node, child) for child in reversed(here.children) if child.hinge is None]
+
+
+def _flange(cluster: list[tuple[Array, Node]], wanted: str | None, root: Node) -> tuple[str, Array]:
+    """Return name and pose of the flange among the frames of the last link."""
+    named = {node.name: X for X, node in cluster if node.name}
+    if wanted is not None:
+        if wanted not in named:
+            root.element.fail("RBL610", f"the flange {wanted!r} is not a frame of the last link: {', '.join(named)}")
+        return wanted, named[wanted]
+    parents = {id(child): node for _, node in cluster for child in node.children}
+    inner = {id(parents[id(node)]) for _, node in cluster if id(node) in parents and not node.marker}
+    ends = [(node.name, X) for X, node in cluster if id(node) not in inner and not node.marker]
+    if len(ends) == 1:
+        return ends[0]
+    for name in FLANGE_NAMES:
+        if name in named:
+            return name, named[name]
+    root.element.fail("RBL621", f"the last link ends in several frames: {', '.join(name for name, _ in ends)}",
+                      "name it: flange = '...' in the sidecar, or 'robolang robot import --flange'")  # fmt: skip

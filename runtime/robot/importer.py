@@ -1,0 +1,112 @@
+"""Arms from URDF and MJCF files, with the sidecar beside them.
+
+``read_arm`` gives the geometry, bodies and ranges of a model file, which is all that kinematics needs; ``load_arm`` the
+whole robot, for which the sidecar must give the drives; ``load_file`` takes any robot file by its ending. The
+text is checked here in full (``xmlfile``, ``urdf``, ``mjcf_import``, ``imported``); neither Pinocchio nor MuJoCo reads
+it: both get the ``RobotSpec``. Which of the two languages it is says the root element, not the file's name.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import NoReturn
+
+import numpy as np
+
+from runtime.frames import frozen
+from runtime.robot.closed_form import find_opw
+from runtime.robot.imported import ImportedArm, joint_label, serial_chain
+from runtime.robot.loader import load_robot
+from runtime.robot.mjcf_import import read_mjcf
+from runtime.robot.sidecar import NO_OVERLAY, Overlay, complete, read_overlay, sidecar_path
+from runtime.robot.spec import RobotSpec
+from runtime.robot.urdf import read_urdf
+from runtime.robot.xmlfile import fault_at, parse_xml
+from runtime.tomlfile import Source, read_source
+
+MODEL_ENDINGS = (".urdf", ".xml")
+ROBOT_ENDINGS = (".toml", *MODEL_ENDINGS)
+"""How the name of a robot file ends."""
+
+
+def is_model(name: str) -> bool:
+    """Return whether a name is that of a URDF or MJCF file."""
+    return name.lower().endswith(MODEL_ENDINGS)
+
+
+def load_file(path: Path) -> RobotSpec:
+    """Return the robot of a file, by its ending; ``FileFault`` RBL6xx."""
+    return load_arm(path) if is_model(path.name) else load_robot(path)
+
+
+def load_arm(path: Path) -> RobotSpec:
+    """Return the robot of a model file and its sidecar; ``FileFault`` RBL6xx, RBL608 without a complete sidecar."""
+    arm, sidecar = _with_sidecar(path)
+    if sidecar is None:
+        _refuse_without_sidecar(arm, path)
+    _check(arm, read_overlay(sidecar))
+    return complete(arm, sidecar)
+
+
+def read_arm(path: Path) -> ImportedArm:
+    """Return the arm of a model file without its drives; ``FileFault`` RBL6xx, RBL608 when a joint has no range."""
+    arm, sidecar = _with_sidecar(path)
+    _check(arm, NO_OVERLAY if sidecar is None else read_overlay(sidecar))
+    return arm
+
+
+def read_model(path: Path, overlay: Overlay = NO_OVERLAY) -> ImportedArm:
+    """Return what a model file alone says; ranges it leaves out are NaN, and bodies are not judged."""
+    return parse_model(read_source(path), overlay)
+
+
+def parse_model(source: Source, overlay: Overlay = NO_OVERLAY) -> ImportedArm:
+    """Return the arm of the text of a model file; ``FileFault`` RBL6xx at the element that is wrong."""
+    root = parse_xml(source)
+    if root.tag == "robot":
+        name, tree = read_urdf(root)
+    elif root.tag == "mujoco":
+        name, tree = read_mjcf(root, Path(source.path).name)
+    else:
+        root.fail("RBL621", f"<{root.tag}> is neither URDF (<robot>) nor MJCF (<mujoco>)")
+    arm = serial_chain(tree, source.path, name, overlay.flange)
+    ranges = [overlay.ranges.get(axis.name, (low, high)) for axis, low, high in
+              zip(arm.axes, arm.lower, arm.upper, strict=True)]  # fmt: skip
+    lower, upper = np.array(ranges).T
+    return replace(arm, lower=frozen(lower), upper=frozen(upper), opw=find_opw(arm.axes, arm.X_last_flange))
+
+
+def _with_sidecar(path: Path) -> tuple[ImportedArm, Source | None]:
+    beside = sidecar_path(path)
+    source = read_source(path)
+    sidecar = read_source(beside) if beside.is_symlink() or beside.exists() else None
+    return parse_model(source, NO_OVERLAY if sidecar is None else read_overlay(sidecar)), sidecar
+
+
+def _check(arm: ImportedArm, overlay: Overlay) -> None:
+    """Refuse bodies that cannot be and have no correction (RBL606), and joints without a range (RBL608)."""
+    for axis in arm.axes:
+        if axis.impossible is not None and axis.name not in overlay.corrected:
+            raise axis.impossible
+    open_ended = [i for i, axis in enumerate(arm.axes) if not np.isfinite(arm.lower[i] + arm.upper[i])]
+    if open_ended:
+        names = ", ".join(joint_label(i, arm.axes[i].name) for i in open_ended)
+        arm.axes[open_ended[0]].hinge.element.fail(
+            "RBL608", f"no position limits for {names}",
+            f"write them there, or range_deg in {sidecar_path(Path(arm.path)).name} ('robolang robot import')",
+        )  # fmt: skip
+
+
+def _refuse_without_sidecar(arm: ImportedArm, path: Path) -> NoReturn:
+    gaps = []
+    for index, axis in enumerate(arm.axes):
+        hinge = axis.hinge
+        given = {"range": None if hinge.upper is None else hinge.lower, "speed": hinge.speed, "torque": hinge.effort}
+        missing = [name for name, value in given.items() if value is None]
+        gaps.append(f"{joint_label(index, axis.name)}: {', '.join([*missing, 'acceleration', 'motor', 'servo'])}")
+    beside = sidecar_path(path).name
+    place = arm.axes[0].hinge.element
+    raise fault_at(
+        place.source, place.line, place.column, "RBL608",
+        f"no drives, path limits and rated payload: there is no {beside}; missing for {'; '.join(gaps)}",
+        f"'robolang robot import {path.name}' writes {beside}; fill in what it marks MISSING",
+    )  # fmt: skip

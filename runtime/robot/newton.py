@@ -1,0 +1,123 @@
+"""Inverse kinematics of arms without a closed form: damped Newton steps on Pinocchio.
+
+The error of a pose is ``e = [p - p(q); log(R R(q)')]`` in the base frame, m and rad (one rad counts as 1 m). With the
+Jacobian J of the flange, in the same frame, a step solves the damped least squares of Levenberg and Marquardt,
+
+    dq = (J'J + mu E)^-1 J' e   = J' (J J' + mu E)^-1 e,        mu = DAMPING |e|^2
+
+in the form with the smaller matrix. The damping vanishes with the error, so steps end as Newton's and converge
+quadratically (T. Sugihara, Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method, IEEE Trans.
+Robotics 27(5), 2011); a step that makes the error larger is taken back and damped ten times more. For redundant arms
+(7 axes) the step is the shortest one, so the posture changes no more than the path asks; it is not brought back to a
+preferred one. Arms with fewer than 6 axes meet a pose only if it lies in what they can reach: the least squares then
+end in an error that is not zero, and the answer is NaN, as it is for any pose out of reach.
+
+Beside a singularity convergence is linear, and a pose at its very edge may be given up (NaN) though it can be met.
+"""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import pinocchio as pin
+
+from runtime.frames import Array
+
+TOLERANCE = 1e-10
+"""A pose is met when position (m) and orientation (rad) are within this of it."""
+
+DAMPING = 1e-2
+LARGEST_STEP = 0.5
+"""No joint turns further in one step, rad: beyond, the linear model says nothing."""
+
+STEPS = 100
+SEEDS = 40
+_WORST_DAMPING = 1e8
+_DETERMINED = 6
+
+
+class NewtonSolver:
+    """Solves poses for one chain of axes: ``placements`` n times (4, 4), ``X_last_flange`` (4, 4)."""
+
+    def __init__(self, placements: Sequence[Array], X_last_flange: Array) -> None:
+        self.n = len(placements)
+        self._model = pin.Model()
+        parent = 0
+        for index, placement in enumerate(placements):
+            parent = self._model.addJoint(parent, pin.JointModelRZ(), pin.SE3(placement), f"axis{index}")
+        self._flange = pin.SE3(X_last_flange)
+        self._data = self._model.createData()
+        self._eye = np.eye(min(self.n, _DETERMINED))
+
+    def follow(self, X_base_flange: Array, q_start: Array) -> Array:
+        """Return joint angles (..., n) for poses (..., 4, 4); NaN where they cannot be met.
+
+        ``q_start`` (n,): the poses are a path, each is solved from the one before it; (..., n): each has its own.
+        """
+        poses = X_base_flange.reshape(-1, 4, 4)
+        own = np.ndim(q_start) > 1
+        starts = np.broadcast_to(q_start, (*X_base_flange.shape[:-2], self.n)).reshape(-1, self.n)
+        rows = np.empty((len(poses), self.n))
+        q = np.array(starts[0]) if len(poses) else np.zeros(self.n)
+        for index, X in enumerate(poses):
+            rows[index] = self.solve(X, starts[index] if own else q)
+            if np.isfinite(rows[index, 0]):
+                q = rows[index]
+        return rows.reshape(*X_base_flange.shape[:-2], self.n)
+
+    def solve(self, X_base_flange: Array, q_start: Array) -> Array:
+        """Return joint angles (n,) that meet one pose (4, 4), nearest in steps from q_start (n,); NaN when none do."""
+        q = np.array(q_start, dtype=np.float64)
+        e = self._error(X_base_flange, q)
+        size, worse = float(e @ e), 1.0
+        for _ in range(STEPS):
+            if max(np.linalg.norm(e[:3]), np.linalg.norm(e[3:])) < TOLERANCE:
+                return q
+            if not worse < _WORST_DAMPING:
+                break
+            trial = q + self._step(q, e, DAMPING * size * worse)
+            e_trial = self._error(X_base_flange, trial)
+            size_trial = float(e_trial @ e_trial)
+            if size_trial < size:
+                q, e, size, worse = trial, e_trial, size_trial, max(1.0, 0.1 * worse)
+            else:
+                worse *= 10.0
+        return np.full(self.n, np.nan)
+
+    def search(self, X_base_flange: Array, near: Array, lower: Array, upper: Array) -> Iterator[Array]:
+        """Yield solutions (n,) of one pose from several starts: ``near``, mid-range, and points of the ranges.
+
+        The starts are the same in every call. Solutions may come more than once and outside the ranges.
+        """
+        generator = np.random.default_rng(1992)
+        starts = [near, 0.5 * (lower + upper)]
+        starts += list(lower + (upper - lower) * generator.random((SEEDS, self.n)))
+        for start in starts:
+            q = self.solve(X_base_flange, start)
+            if np.isfinite(q).all():
+                yield q
+
+    def _error(self, X_base_flange: Array, q: Array) -> Array:
+        pin.forwardKinematics(self._model, self._data, q)
+        here = self._data.oMi[self.n] * self._flange
+        e = np.empty(6)
+        e[:3] = X_base_flange[:3, 3] - here.translation
+        e[3:] = pin.log3(X_base_flange[:3, :3] @ here.rotation.T)
+        return e
+
+    def _step(self, q: Array, e: Array, mu: float) -> Array:
+        J = self._jacobian(q)
+        damped = mu * self._eye
+        if self.n < _DETERMINED:
+            dq = np.linalg.solve(J.T @ J + damped + 1e-15 * self._eye, J.T @ e)
+        else:
+            dq = J.T @ np.linalg.solve(J @ J.T + damped + 1e-15 * self._eye, e)
+        largest = float(np.abs(dq).max())
+        return np.asarray(dq if largest <= LARGEST_STEP else dq * (LARGEST_STEP / largest))
+
+    def _jacobian(self, q: Array) -> Array:
+        """Return the Jacobian (6, n) of the flange origin, base frame."""
+        J = pin.computeJointJacobians(self._model, self._data, q)  # of the point at the base origin, base frame
+        p = (self._data.oMi[self.n] * self._flange).translation
+        moved = np.array(J)
+        moved[:3] += np.cross(J[3:], p, axis=0)
+        return moved

@@ -1,0 +1,263 @@
+"""Robot files in XML, read without trust: the way in for URDF and MJCF, before any library sees them.
+
+The text is parsed by expat with a handler for every start tag, so that each element keeps its line and column and
+every error is a ``FileFault`` at its place. Refused while reading: a document type (RBL601: with it go entities,
+which are the only way for XML to name other files or to grow without bound), more than ``MAX_DEPTH`` levels or
+``MAX_ELEMENTS`` elements (RBL612), a plugin (RBL614), a number that is not finite (RBL604) and a file name that
+leads out of the folder (RBL602). Nothing that a file names is ever opened. Standard library only.
+"""
+
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import PurePosixPath, PureWindowsPath
+from typing import NoReturn
+from xml.parsers import expat
+
+from runtime.faults import Code, register
+from runtime.tomlfile import MAX_ABS, FileFault, Source
+
+MAX_DEPTH = 100
+MAX_ELEMENTS = 50_000
+
+register(
+    Code(
+        code="RBL603",
+        name="includes-itself",
+        meaning="A robot file includes itself.",
+        remedy="Remove the include.",
+    ),
+    Code(
+        code="RBL611",
+        name="chain-not-serial",
+        meaning="The joints of a URDF or MJCF file form a loop or a branch; only one serial chain can be driven.",
+        remedy="Leave out grippers and closed linkages; the hand belongs in the cell file.",
+    ),
+    Code(
+        code="RBL612",
+        name="robot-file-too-deep",
+        meaning="A robot file is nested more deeply, or has more elements, than any arm needs.",
+        remedy="Give a file with the arm alone.",
+    ),
+    Code(
+        code="RBL614",
+        name="plugin-refused",
+        meaning="A robot file asks for a plugin; code named by a data file is never loaded.",
+        remedy="Remove the plugin element.",
+    ),
+    Code(
+        code="RBL621",
+        name="import-unsupported",
+        meaning="A URDF or MJCF file uses something that the import does not read; it is never guessed.",
+        remedy="Rewrite the element as docs/robots-import.md says, or give a robot file in TOML.",
+    ),
+)
+
+_TEXTS = frozenset(
+    [
+        "name",
+        "class",
+        "childclass",
+        "joint",
+        "joint1",
+        "joint2",
+        "link",
+        "parent",
+        "child",
+        "body",
+        "body1",
+        "body2",
+        "mesh",
+        "material",
+        "site",
+        "target",
+        "type",
+        "version",
+        "model",
+        "xmlns",
+        "group",
+        "objname",
+        "tendon",
+        "key",
+        "texture",
+        "camera",
+        "user",
+    ]
+)
+"""Attributes whose text is a name even where it looks like a number."""
+
+_FILES = frozenset(["file", "filename", "meshdir", "texturedir", "assetdir"])
+
+
+@dataclass(slots=True, eq=False)
+class Element:
+    """One element: ``tag``, ``attributes``, ``children`` and its 1-based place in ``source``."""
+
+    source: Source
+    tag: str
+    attributes: dict[str, str]
+    line: int
+    column: int
+    children: "list[Element]" = field(default_factory=list)
+
+    def fault(self, code: str, message: str, hint: str = "") -> FileFault:
+        """Return a fault at this element."""
+        return fault_at(self.source, self.line, self.column, code, message, hint)
+
+    def fail(self, code: str, message: str, hint: str = "") -> NoReturn:
+        """Raise ``FileFault`` at this element."""
+        raise self.fault(code, message, hint)
+
+    def all(self, tag: str) -> "list[Element]":
+        """Return the children with a tag."""
+        return [child for child in self.children if child.tag == tag]
+
+    def one(self, tag: str) -> "Element | None":
+        """Return the child with a tag, None without one; two are refused (RBL610)."""
+        found = self.all(tag)
+        if len(found) > 1:
+            found[1].fail("RBL610", f"<{self.tag}> has two <{tag}>")
+        return found[0] if found else None
+
+    def walk(self) -> "Iterator[Element]":
+        """Yield this element and everything in it, in file order."""
+        todo = [self]
+        while todo:
+            element = todo.pop()
+            yield element
+            todo.extend(reversed(element.children))
+
+    def text(self, key: str, default: str | None = None) -> str:
+        """Return an attribute; RBL608 when it is missing and has no default."""
+        value = self.attributes.get(key, default)
+        if value is None:
+            self.fail("RBL608", f"<{self.tag}> has no '{key}'")
+        return value
+
+    def numbers(self, key: str, count: int, default: tuple[float, ...] | None = None) -> tuple[float, ...]:
+        """Return ``count`` finite numbers of an attribute; RBL608, RBL613 or RBL604."""
+        if key not in self.attributes and default is not None:
+            return default
+        return parse_numbers(self, key, self.text(key), count)
+
+    def number(self, key: str, default: float | None = None, *, low: float = -MAX_ABS) -> float:
+        """Return one finite number of at least ``low``; RBL608, RBL613, RBL604 or RBL605."""
+        value = self.numbers(key, 1, None if default is None else (default,))[0]
+        if not value >= low:
+            self.fail("RBL605", f"'{key}' of <{self.tag}> is {value:g} and must be {low:g} or more")
+        return value
+
+
+def parse_numbers(element: Element, key: str, text: str, count: int) -> tuple[float, ...]:
+    """Return ``count`` finite numbers of ``text``; ``FileFault`` at the element."""
+    parts = text.split()
+    if len(parts) != count:
+        wanted = "one number" if count == 1 else f"{count} numbers"
+        element.fail("RBL613", f"'{key}' of <{element.tag}> must be {wanted}, not {_shown(text)}")
+    values = []
+    for part in parts:
+        value = _number(part)
+        if value is None:
+            element.fail("RBL613", f"'{key}' of <{element.tag}> is {_shown(text)}, not a number")
+        if not abs(value) <= MAX_ABS:
+            element.fail("RBL604", f"'{key}' of <{element.tag}> is {_shown(part)}, not a finite number")
+        values.append(value)
+    return tuple(values)
+
+
+def fault_at(source: Source, line: int, column: int, code: str, message: str, hint: str = "") -> FileFault:
+    """Return a ``FileFault`` at a place (1-based) of a source."""
+    lines = source.text.split("\n")
+    excerpt = lines[line - 1].removesuffix("\r") if 0 < line <= len(lines) else ""
+    return FileFault(code, message, hint, path=source.path, line=line, column=column, excerpt=excerpt[:200])
+
+
+def parse_xml(source: Source) -> Element:
+    """Return the root element of a bounded, inert XML text; ``FileFault`` RBL601, 602, 604, 612 or 614."""
+    root = _parse(source)
+    for element in root.walk():
+        _check(element)
+    return root
+
+
+def _parse(source: Source) -> Element:
+    parser = expat.ParserCreate("utf-8")  # what the declaration says of the encoding is not followed: it was read
+    stack: list[Element] = []
+    roots: list[Element] = []
+    count = 0
+
+    def place() -> tuple[int, int]:
+        return parser.CurrentLineNumber, parser.CurrentColumnNumber + 1
+
+    def refuse(code: str, message: str, hint: str = "") -> NoReturn:
+        raise fault_at(source, *place(), code, message, hint)
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        nonlocal count
+        count += 1
+        if len(stack) >= MAX_DEPTH:
+            refuse("RBL612", f"elements are nested more than {MAX_DEPTH} deep")
+        if count > MAX_ELEMENTS:
+            refuse("RBL612", f"the file has more than {MAX_ELEMENTS} elements")
+        line, column = place()
+        element = Element(source, tag, attributes, line, column)
+        (stack[-1].children if stack else roots).append(element)
+        stack.append(element)
+
+    def doctype(*_: object) -> None:
+        refuse("RBL601", "a document type (<!DOCTYPE) is not read: it can name other files and grow without bound",
+               "remove the <!DOCTYPE ...> declaration and write its entities out")  # fmt: skip
+
+    parser.StartElementHandler = start
+    parser.EndElementHandler = lambda _: stack.pop()
+    parser.StartDoctypeDeclHandler = doctype
+    try:
+        parser.Parse(source.text.encode("utf-8"), True)
+    except expat.ExpatError as error:
+        message = f"not well-formed XML: {expat.ErrorString(error.code)}"
+        raise fault_at(source, error.lineno, error.offset + 1, "RBL601", message, "correct the place named") from None
+    return roots[0]
+
+
+def _check(element: Element) -> None:
+    if element.tag in ("plugin", "extension"):
+        element.fail("RBL614", f"<{element.tag}> asks for code to be loaded")
+    if ":" in element.tag:
+        element.fail("RBL621", f"<{element.tag}> is of another language than URDF or MJCF",
+                     "expand macros first, as with xacro")  # fmt: skip
+    for key, value in element.attributes.items():
+        if key in _FILES:
+            check_path(element, key, value)
+        elif key not in _TEXTS:
+            _check_finite(element, key, value)
+
+
+def _check_finite(element: Element, key: str, text: str) -> None:
+    values = [_number(part) for part in text.split()]
+    if None in values:
+        return  # a text; whoever wants a number there refuses it
+    for value in values:
+        if value is not None and not math.isfinite(value):
+            element.fail("RBL604", f"'{key}' of <{element.tag}> is {_shown(text)}, not a finite number")
+
+
+def check_path(element: Element, key: str, text: str) -> None:
+    """Refuse a file name that leads out of the folder of the robot file (RBL602), on any system."""
+    name = re.sub(r"^(package|model)://", "", text)
+    absolute = any(kind(name).is_absolute() or kind(name).anchor for kind in (PurePosixPath, PureWindowsPath))
+    if absolute or "://" in name or ".." in re.split(r"[/\\]", name) or "\0" in name:
+        element.fail("RBL602", f"'{key}' of <{element.tag}> is {_shown(text)}, not a path inside the folder")
+
+
+def _number(text: str) -> float | None:
+    if "_" in text:  # Python reads 1_000, no other program does
+        return None
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def _shown(text: str) -> str:
+    return repr(text if len(text) <= 40 else f"{text[:37]}...")
