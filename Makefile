@@ -2,6 +2,7 @@
 # make test   the tests
 # make gates  style, types, import floors
 # make bench  ratios and start-up times, printed
+# make plots   the plots of docs/servo.md, drawn anew
 # make measured   every other figure of docs/measured.md, printed
 
 PYTHON ?= python3
@@ -9,7 +10,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test gates bench measured clean
+.PHONY: demo test gates bench measured plots clean
 
 demo: $(READY)
 	$(BIN)/robolang run programs/pick_and_place.rbl
@@ -33,6 +34,9 @@ $(READY): pyproject.toml constraints.txt
 
 measured: $(READY)
 	$(BIN)/python -m tests.bench.measure
+
+plots: $(READY)
+	$(BIN)/python -m tests.bench.plots
 
 clean:
 	rm -rf $(VENV) out

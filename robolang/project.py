@@ -5,9 +5,11 @@ hand, a table and a part, with P1 to P5 taught (docs/language.md).
 """
 
 import difflib
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -19,11 +21,13 @@ from robolang.parser import parse
 from robolang.points import PointStore
 from robolang.source import Source, read_program
 from runtime.faults import Code, Fault, register
+from runtime.frames import Array
 from runtime.plant.cell import CellSpec, load_cell, parse_cell
-from runtime.profile import Profile, ServoMode, parse_profile
+from runtime.profile import Profile, ServoMode, Settings, load_profile_file, read_layer, read_options, settle
 from runtime.robot import importer, loader
 from runtime.robot.spec import RobotSpec
 from runtime.tomlfile import Source as TomlSource
+from runtime.tomlfile import Table
 
 register(
     Code(
@@ -50,7 +54,12 @@ class Project:
     diagnostics: tuple[Diagnostic, ...]
     cell: CellSpec
     points: PointStore
-    profile: Profile
+    settings: Settings
+
+    @property
+    def profile(self) -> Profile:
+        """The controller profile in force."""
+        return self.settings.profile
 
     @property
     def ok(self) -> bool:
@@ -59,25 +68,22 @@ class Project:
 
 
 def load_project(path: Path | str, cell: Path | str | None = None, robot: str | None = None,
-                 servo: ServoMode | None = None) -> Project:  # fmt: skip
+                 servo: ServoMode | None = None, profile: Path | str | None = None,
+                 options: Mapping[str, tuple[str, Any]] | None = None) -> Project:  # fmt: skip
     """Read a program and the files beside it.
 
     ``cell`` names a cell file, ``robot`` a built-in robot or a robot file that replaces the cell's, ``servo`` the
-    servo mode that replaces the profile's. Raises ``FileFault`` or ``Fault`` for a file that cannot be used; what is
-    wrong with the program itself is in ``diagnostics``.
+    servo mode that replaces the profile's, ``profile`` a profile file whose values go over the cell's, and ``options``
+    single settings over both: dotted key to (name of the option, value). Raises ``FileFault`` or
+    ``Fault`` for a file that cannot be used; what is wrong with the program itself is in ``diagnostics``.
     """
     source = read_program(path)
     where = Path(path)
-    cell_path = Path(cell) if cell is not None else cell_beside(where)
-    cell_spec = load_cell(cell_path) if cell_path is not None else builtin_cell()
-    if robot is not None:
-        cell_spec = _with_robot(cell_spec, load_any_robot(robot))
+    given = {**({} if servo is None else {"servo.mode": ("--servo", servo)}), **(options or {})}
+    cell_path = _cell_path(where, cell)
+    cell_spec, settings = load_cell_and_settings(where, cell, robot, profile, given)
     used = cell_spec.robot
     points = taught_points(where, builtin=cell_path is None, robot=used.name, axes=used.n)
-    profile = parse_profile(cell_spec.controller)
-    if servo is not None:
-        profile = replace(profile, servo=replace(profile.servo, mode=servo))
-    _check_gains(used, profile)
     parsed = parse(source)
     found = check(parsed.program, points=points.names, rated_payload_kg=used.rated_payload)
     return Project(
@@ -86,7 +92,7 @@ def load_project(path: Path | str, cell: Path | str | None = None, robot: str | 
         diagnostics=in_order((*parsed.diagnostics, *found)),
         cell=cell_spec,
         points=points,
-        profile=profile,
+        settings=settings,
     )
 
 
@@ -118,21 +124,57 @@ def _builtin(name: str) -> str:
     return resources.files("robolang.builtin").joinpath(name).read_text("utf-8")
 
 
-def _check_gains(robot: RobotSpec, profile: Profile) -> None:
-    """Refuse bandwidths at which no sampled loop is stable: with period Ts its pole is 1 - K Ts, so K Ts < 2 (RBL616).
+def _cell_path(program: Path | None, cell: Path | str | None) -> Path | None:
+    if cell is not None:
+        return Path(cell)
+    return None if program is None else cell_beside(program)
 
-    Necessary, not sufficient: the current loop and the sampling of the speed take their share of it.
-    """
-    most = 2.0 / profile.tick_s
-    for index, axis in enumerate(robot.axes, start=1):
-        for name in ("position", "velocity"):
-            value = getattr(axis.bandwidths, name)
-            if not value < most:
-                raise Fault(
-                    "RBL616",
-                    f"{name}_bandwidth_rad_s = {value:g} of J{index} of {robot.name} cannot be stable at a servo "
-                    f"period of {profile.tick_s * 1e3:g} ms; it must be below {most:g}",
-                )
+
+def load_cell_and_settings(program: Path | None, cell: Path | str | None, robot: str | None,
+                           profile: Path | str | None, options: Mapping[str, tuple[str, Any]],
+                           ) -> tuple[CellSpec, Settings]:  # fmt: skip
+    """Return the cell of a program (None: the built-in cell) and the settings in force; see ``load_project``."""
+    cell_path = _cell_path(program, cell)
+    cell_spec = load_cell(cell_path) if cell_path is not None else builtin_cell()
+    if robot is not None:
+        cell_spec = _with_robot(cell_spec, load_any_robot(robot))
+    return cell_spec, load_settings(
+        cell_spec.robot, cell_spec.hand.X_flange_tool, cell_spec.controller, profile, options
+    )
+
+
+def load_settings(robot: RobotSpec, X_flange_tool: Array, controller: Table | None, profile: Path | str | None,
+                  options: Mapping[str, tuple[str, Any]]) -> Settings:  # fmt: skip
+    """Return the controller's settings: cell, then profile file, then options; ``FileFault`` or ``Fault`` RBL6xx."""
+    file = load_profile_file(Path(profile)) if profile is not None else {}
+    settings = settle(read_layer(controller), file, read_options(options))
+    for name in ("position", "velocity"):
+        given = settings[f"servo.{name}_bandwidth_rad_s"]
+        if len(given.value) not in (0, 1, robot.n):
+            given.fail("RBL613", f"'servo.{name}_bandwidth_rad_s' has {len(given.value)} entries; {robot.name} has "
+                       f"{robot.n} axes", "give one number for all axes or one for each")  # fmt: skip
+    _check_gains(robot, X_flange_tool, settings)
+    return settings
+
+
+def _check_gains(robot: RobotSpec, X_flange_tool: Array, settings: Settings) -> None:
+    """Refuse gains with which no sampled loop is stable (RBL616, ``runtime.servo.fixed``), where they were given."""
+    from runtime.servo.fixed import excesses
+
+    for excess in excesses(robot, settings.profile, X_flange_tool):
+        message = (
+            f"{excess.what} = {excess.value:.6g} of J{excess.axis + 1} of {robot.name} cannot be stable at a servo "
+            f"period of {settings.profile.tick_s * 1e3:g} ms; it must be below {excess.bound:g}"
+            if excess.key.endswith("bandwidth_rad_s")
+            else f"{excess.what} = {excess.value:.6g} of J{excess.axis + 1} of {robot.name} is positive feedback that "
+            f"cannot be stable; it must be below {excess.bound:g}"
+        )
+        key = f"servo.{excess.key}"
+        culprits = (key, "servo.feedforward", "servo.fixed_at", "servo.mode", "servo_period_ms")
+        given = next((settings[name] for name in culprits if settings[name].origin != "default"), None)
+        if given is None:
+            raise Fault("RBL616", message)
+        given.fail("RBL616", message)
 
 
 def _with_robot(cell: CellSpec, robot: RobotSpec) -> CellSpec:

@@ -15,6 +15,7 @@ from robolang import lowering
 from robolang.diagnostics import Diagnostic, render
 from robolang.effects import Effect, MoveTo, SetHand, SetPayload
 from robolang.interpreter import execute
+from robolang.nodes import Program
 from robolang.printer import describe
 from robolang.project import Project, load_project
 from robolang.report import build_report
@@ -41,6 +42,9 @@ class ProgramError(Exception):
 Progress = Callable[[StatementRun, int], None]
 """Told of the running statement and the simulated time in us: at its start, and every few cycles."""
 
+Effects = Callable[[Program], Iterator[Effect]]
+"""Yields the effects of a program: the interpreter, or one that changes what the program declares (``compare``)."""
+
 _PROGRESS_CYCLES = 25
 
 MAX_RUN_US = 1_800_000_000
@@ -51,10 +55,11 @@ class Session:
     """One run of one project."""
 
     def __init__(self, project: Project, *, physics: bool = True, realtime: bool = False,
-                 progress: Progress | None = None) -> None:  # fmt: skip
+                 progress: Progress | None = None, effects: Effects = execute) -> None:  # fmt: skip
         if not project.ok:
             raise ProgramError(project, project.diagnostics)
         self.project = project
+        self._effects = effects
         self._progress = progress or (lambda statement, time_us: None)
         self._stop_requested = False
         cell, profile = project.cell, project.profile
@@ -75,7 +80,7 @@ class Session:
     def run(self) -> RunResult:
         """Execute the program to its end, a fault or a stop; the log is complete in every case."""
         started = wall_s()
-        for effect in execute(self.project.program):
+        for effect in self._effects(self.project.program):
             if not self._run_statement(effect):
                 break
         log = self.controller.recorder.signals(self.controller.tool_poses)

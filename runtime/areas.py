@@ -15,17 +15,21 @@ PA and PDA belong to the language and live in the session; the other four are he
 is one frozen object swapped by one assignment, so a reader sees the old one or the new one, never a mixture.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from runtime.frames import Array
+from runtime.frames import Array, frozen
 from runtime.robot.payload import NO_PAYLOAD, Payload
+
+EMPTY_ROW = frozen(np.zeros(0))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AxisLoad:
     """One cell of ITA: ``D`` kg m2 and ``T`` N m of one axis, and what they were computed from.
+
+    ``row`` (n,) is the axis' whole row of the mass matrix, kg m2, for a servo that couples the axes.
 
     ``read_us`` is the time of the encoder reading (ANG), ``version`` counts refreshes of this axis (0: never),
     ``payload_version`` says which LOAD was in SDA.
@@ -33,6 +37,7 @@ class AxisLoad:
 
     D: float
     T: float
+    row: Array = field(default_factory=lambda: EMPTY_ROW, compare=False)
     read_us: int
     version: int
     payload_version: int

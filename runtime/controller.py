@@ -18,7 +18,7 @@ import numpy as np
 
 from runtime.areas import Areas, AxisLoad
 from runtime.clock import Clock, VirtualClock
-from runtime.dynamics.equations import axis_gravity, axis_inertia, inertia_range
+from runtime.dynamics.equations import axis_gravity, axis_row
 from runtime.dynamics.task import StepCosts, dynamics_task
 from runtime.faults import Alarm, lookup
 from runtime.frames import Array
@@ -35,6 +35,7 @@ from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
 from runtime.scheduler import IdleProcessor
 from runtime.servo.axes import ServoAxes
+from runtime.servo.fixed import fixed_inertia
 
 
 class Controller:
@@ -48,6 +49,7 @@ class Controller:
         X_flange_tool: Array,
         clock: Clock | None = None,
         kinematics: Kinematics | None = None,
+        fine: FineInterpolator | None = None,
     ) -> None:
         self.spec = spec
         self.plant = plant
@@ -70,7 +72,7 @@ class Controller:
         self.recorder = Recorder(spec.n, profile.ticks_per_cycle, profile.tick_us)
         self._planner = LinePlanner(spec, self.kinematics, profile)
         self._interpolator = Interpolator()
-        self._fine = FineInterpolator(profile.ticks_per_cycle, profile.period_s, q)
+        self._fine = fine or FineInterpolator(profile.ticks_per_cycle, profile.period_s, q)
         self._q_cmd = q
         servo = self.servo
         self._recorded = (servo.tau_cmd, servo.tau, servo.alpha, servo.beta)
@@ -78,16 +80,14 @@ class Controller:
     def _power_up(self, q: Array) -> None:
         """Fill ITA once for all axes before the brakes open, so that no servo ever works with an empty cell."""
         for axis in range(self.spec.n):
-            D, T = axis_inertia(self._model, q, axis), axis_gravity(self._model, q, axis)
-            self.areas.ita[axis] = AxisLoad(D=D, T=T, read_us=0, version=0, payload_version=0)
+            row, T = axis_row(self._model, q, axis), axis_gravity(self._model, q, axis)
+            self.areas.ita[axis] = AxisLoad(D=float(row[axis]), T=T, row=row, read_us=0, version=0, payload_version=0)
 
     def _fixed_inertia(self) -> Array:
-        """Return the middle of each axis' inertia range (n,), for gains that do not follow the posture."""
+        """Return the inertia (n,) of gains that do not follow the posture; zeros where they do."""
         if self.profile.servo.mode != "fixed":
             return np.zeros(self.spec.n)
-        rated = Payload(mass=self.spec.rated_payload, cog=np.array(self.X_flange_tool[:3, 3]))
-        smallest, largest = inertia_range(self.spec, rated)
-        return np.asarray(0.5 * (smallest + largest))
+        return fixed_inertia(self.spec, self.profile.servo, self.X_flange_tool)
 
     def _dynamics(self, processor: IdleProcessor) -> Iterator[int]:
         return dynamics_task(
@@ -166,7 +166,8 @@ class Controller:
         read_us = np.array([cell.read_us for cell in cells], dtype=np.float64)
         motion = self._fine.push(self.areas.ina)
         self._q_cmd = motion[0, -1]
-        self.servo.take(D, T, motion)
+        rows = np.stack([cell.row for cell in cells]) if self.servo.coupled else None
+        self.servo.take(D, T, motion, rows)
         self.recorder.begin_cycle(self.areas.ina, D, T, read_us, motion, self.areas.sda.mass, self.line)
         return motion
 

@@ -1,38 +1,55 @@
 """The controller profile: cycle, declared costs and servo options, with the defaults and their reasons.
 
-Read from ``[controller]`` of a cell file. Times in whole microseconds. Sources: docs/timing.md (costs) and
-docs/servo.md (Kf, Ka, K2, feed-forward source).
+A setting is taken from the first of these that gives it: an option of the command line, the profile file, the cell's
+``[controller]``, the robot file (bandwidths only), the default. ``Settings`` keeps with every value where it came
+from, so that a value that cannot be used is refused at its own place and ``robolang config show`` can say it.
+A profile file has ``schema = 1`` and the same ``[controller]`` table as a cell. Times in whole microseconds. Sources:
+docs/timing.md (costs) and docs/servo.md (Kf, Ka, K2, feed-forward source).
 """
 
-from dataclasses import dataclass
-from typing import Literal, cast
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal, NoReturn, cast
 
+from runtime.faults import Fault
 from runtime.robot.model import LoadMode
-from runtime.tomlfile import Table
+from runtime.tomlfile import FileFault, Source, Table, load_table, read_source
 from runtime.units import DEG
 
 ServoMode = Literal["scheduled", "fixed"]
+FixedAt = Literal["min", "mid", "max"]
+Coupling = Literal["diagonal", "full"]
 FeedforwardSource = Literal["command", "measured"]
 SpeedShape = Literal["jerk", "trapezoid"]
+
+SERVO_PERIODS_MS = (0.25, 0.5, 1.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServoOptions:
     """How the servo law is applied.
 
-    ``velocity_feedforward`` Kf, ``acceleration_feedforward`` Ka and ``spring_compensation`` K2 of eqs (8), (10)
-    and (6); ``gravity_compensation`` scales T in eq (11). With ``command`` as source Kf = Ka = 1 is exact; with
+    ``fixed_at``: where in its range the inertia of each axis is held when ``mode`` is fixed. ``coupling`` full takes
+    the whole row of the mass matrix in (9) and (10), diagonal its own element. ``velocity_feedforward`` Kf,
+    ``acceleration_feedforward`` Ka and ``spring_compensation`` K2 of eqs (8), (10) and (6);
+    ``gravity_compensation`` scales T in eq (11). With ``command`` as source Kf = Ka = 1 is exact; with
     ``measured``, the literal reading, they must stay below 1. ``friction_compensation`` scales the published
-    friction that is added to the current (not in the document; docs/decisions/0003).
+    friction that is added to the current (not in the document; docs/decisions/0003). The bandwidths, 1/s, one for
+    all axes or one each, replace those of the robot file; empty: the robot file's.
     """
 
     mode: ServoMode = "scheduled"
+    fixed_at: FixedAt = "mid"
+    coupling: Coupling = "diagonal"
     source: FeedforwardSource = "command"
     velocity_feedforward: float = 1.0
     acceleration_feedforward: float = 1.0
     spring_compensation: float = 0.0
     gravity_compensation: float = 1.0
     friction_compensation: float = 1.0
+    position_bandwidth: tuple[float, ...] = ()
+    velocity_bandwidth: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,49 +82,206 @@ class Profile:
         return self.period_us * 1e-6
 
 
-def parse_profile(table: Table | None) -> Profile:
-    """Read ``[controller]``; ``FileFault`` RBL6xx at the key that is wrong. None gives the defaults."""
+# --- what can be set -------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Setting:
+    """One key of ``[controller]``: how it is read, its unit in the file and its default there."""
+
+    key: str
+    unit: str
+    default: Any
+    read: Callable[[Table, str], Any]
+
+
+def _number(key: str, unit: str, default: float, **limits: Any) -> Setting:
+    return Setting(key=key, unit=unit, default=default, read=lambda table, name: table.number(name, **limits))
+
+
+def _text(key: str, *choices: str) -> Setting:
+    """Return a setting that is one of ``choices``, by default the first."""
+    return Setting(key=key, unit="", default=choices[0], read=lambda table, name: table.text(name, choices=choices))
+
+
+def _numbers(key: str, unit: str) -> Setting:
+    return Setting(key=key, unit=unit, default=(), read=_one_or_each)
+
+
+def _one_or_each(table: Table, name: str) -> tuple[float, ...]:
+    """Read a positive number for all axes, or a list with one for each."""
+    limits: dict[str, Any] = {"positive": True, "high": 1e5}
+    try:
+        return table.numbers(name, None, **limits)
+    except FileFault as fault:
+        if fault.code != "RBL613":
+            raise
+    return (table.number(name, **limits),)
+
+
+def _servo_period(table: Table, name: str) -> float:
+    value = table.number(name, positive=True)
+    if value not in SERVO_PERIODS_MS:
+        table.fail("RBL605", f"'{name}' is {value:g}; it must be 0.25, 0.5 or 1", key=name)
+    return value
+
+
+CONTROLLER = (
+    Setting(key="servo_period_ms", unit="ms", default=1.0, read=_servo_period),
+    _number("interpolation_cost_ms", "ms", 3.0, low=0.0, high=80.0),
+    _number("dynamics_cost_per_axis_ms", "ms", 1.0, low=0.001, high=1000.0),
+    _text("load_mode", "add", "replace"),
+    _text("speed_shape", "jerk", "trapezoid"),
+    _number("in_position_deg", "deg", 0.05, positive=True, high=10.0),
+    _number("settle_timeout_s", "s", 0.4, low=0.0, high=60.0),
+)
+SERVO = (
+    _text("mode", "scheduled", "fixed"),
+    Setting(key="fixed_at", unit="", default="mid",
+            read=lambda table, name: table.text(name, choices=("min", "mid", "max"))),
+    _text("coupling", "diagonal", "full"),
+    _text("feedforward", "command", "measured"),
+    _number("velocity_feedforward", "", 1.0, low=0.0, high=1.0),
+    _number("acceleration_feedforward", "", 1.0, low=0.0, high=1.0),
+    _number("spring_compensation", "", 0.0, low=0.0, high=2.0),
+    _number("gravity_compensation", "", 1.0, low=0.0, high=2.0),
+    _number("friction_compensation", "", 1.0, low=0.0, high=2.0),
+    _numbers("position_bandwidth_rad_s", "1/s"),
+    _numbers("velocity_bandwidth_rad_s", "1/s"),
+)  # fmt: skip
+KEYS = (*(setting.key for setting in CONTROLLER), *(f"servo.{setting.key}" for setting in SERVO))
+"""Every key of ``[controller]``, dotted, in the order of the documentation."""
+
+_BY_KEY = {**{item.key: item for item in CONTROLLER}, **{f"servo.{item.key}": item for item in SERVO}}
+UNITS = {key: item.unit for key, item in _BY_KEY.items()}
+"""Unit of every key, as people write it; empty for a word or a share."""
+_IDEAL_WHEN_MEASURED = ("servo.velocity_feedforward", "servo.acceleration_feedforward")
+
+
+# --- where a value comes from ----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Given:
+    """A value as its file writes it, and its place: ``origin`` for people; the table when there is one."""
+
+    value: Any
+    origin: str
+    table: Table | None = None
+    name: str = ""
+
+    def fail(self, code: str, message: str, hint: str = "") -> NoReturn:
+        """Refuse the value where it was given: ``FileFault`` in a file, else ``Fault`` that names the option."""
+        if self.table is not None:
+            self.table.fail(code, message, hint, key=self.name)
+        raise Fault(code, f"{self.origin}: {message}", hint)
+
+
+Layer = Mapping[str, Given]
+"""What one file or the command line gives, by dotted key."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Settings:
+    """Every key with its effective value and origin, and the profile they make."""
+
+    given: Layer
+    profile: Profile = field(default_factory=Profile)
+
+    def __getitem__(self, key: str) -> Given:
+        return self.given[key]
+
+
+def read_layer(table: Table | None) -> Layer:
+    """Read ``[controller]`` of a file; ``FileFault`` RBL6xx at the key that is wrong. None gives nothing."""
     if table is None:
-        return Profile()
-    default = Profile()
-    tick_ms = table.number("servo_period_ms", 1.0, positive=True)
-    if tick_ms not in (0.25, 0.5, 1.0):
-        table.fail("RBL605", f"'servo_period_ms' is {tick_ms:g}; it must be 0.25, 0.5 or 1", key="servo_period_ms")
-    profile = Profile(
-        tick_us=round(tick_ms * 1000),
-        interpolation_cost_us=round(table.number("interpolation_cost_ms", 3.0, low=0.0, high=80.0) * 1000),
-        axis_cost_us=round(table.number("dynamics_cost_per_axis_ms", 1.0, low=0.001, high=1000.0) * 1000),
-        load_mode=cast(LoadMode, table.text("load_mode", "add", choices=("add", "replace"))),
-        speed_shape=cast(SpeedShape, table.text("speed_shape", "jerk", choices=("jerk", "trapezoid"))),
-        in_position=table.number("in_position_deg", 0.05, positive=True, high=10.0) * DEG,
-        settle_timeout_us=round(
-            table.number("settle_timeout_s", default.settle_timeout_us * 1e-6, low=0.0, high=60.0) * 1e6
+        return {}
+    servo = table.table("servo", required=False)
+    found = {**_read(table, CONTROLLER, ""), **_read(servo, SERVO, "servo.")}
+    table.ask(*(item.key for item in CONTROLLER))
+    servo.ask(*(item.key for item in SERVO))
+    table.done()
+    servo.done()
+    return found
+
+
+def _read(table: Table, settings: Sequence[Setting], prefix: str) -> dict[str, Given]:
+    return {
+        prefix + item.key: Given(value=item.read(table, item.key), origin=table.place(item.key), table=table,
+                                 name=item.key)
+        for item in settings
+        if item.key in table
+    }  # fmt: skip
+
+
+def load_profile_file(path: Path) -> Layer:
+    """Read a profile file: ``schema = 1`` and ``[controller]`` as in a cell; ``FileFault`` at what is wrong."""
+    table = load_table(read_source(path))
+    table.integer("schema", low=1, high=1)
+    layer = read_layer(table.table("controller"))
+    table.done()
+    return layer
+
+
+def read_options(values: Mapping[str, tuple[str, Any]]) -> Layer:
+    """Return the layer of options: by dotted key the option's name and its value; ``Fault`` that names the option."""
+    layer = {}
+    for key, (option, value) in values.items():
+        if key not in _BY_KEY:
+            raise Fault("RBL609", f"{option}: '{key}' is not a key of the controller profile",
+                        f"known: {', '.join(KEYS)}")  # fmt: skip
+        try:
+            taken = _BY_KEY[key].read(Table(Source(option, ""), {key: value}, ()), key)
+        except FileFault as fault:
+            raise Fault(fault.code, f"{option}: {fault.message}", fault.hint) from None
+        layer[key] = Given(value=taken, origin=option)
+    return layer
+
+
+def settle(*layers: Layer) -> Settings:
+    """Put the layers together, later ones over earlier ones, and check what can be checked without a robot."""
+    given = {key: Given(value=item.default, origin="default") for key, item in _BY_KEY.items()}
+    asked = {key: value for layer in layers for key, value in layer.items()}
+    given.update(asked)
+    if given["servo.feedforward"].value == "measured":
+        for key in _IDEAL_WHEN_MEASURED:
+            if key not in asked:
+                given[key] = Given(value=0.0, origin="default")
+            elif not given[key].value < 1.0:
+                given[key].fail("RBL616", f"'controller.{key}' must be below 1 when the feed-forward is measured",
+                                'give a value such as 0.9, or write feedforward = "command"')  # fmt: skip
+    if given["servo.coupling"].value == "full" and given["servo.mode"].value == "fixed":
+        given["servo.coupling"].fail(
+            "RBL605", "'controller.servo.coupling' must be \"diagonal\" when the gains are fixed",
+            "fixed gains hold the inertia of each axis alone")  # fmt: skip
+    return Settings(given=given, profile=_profile({key: item.value for key, item in given.items()}))
+
+
+def parse_profile(table: Table | None) -> Profile:
+    """Return the profile of one ``[controller]`` table; ``FileFault`` RBL6xx. None gives the defaults."""
+    return settle(read_layer(table)).profile
+
+
+def _profile(value: Mapping[str, Any]) -> Profile:
+    return Profile(
+        tick_us=round(value["servo_period_ms"] * 1000),
+        interpolation_cost_us=round(value["interpolation_cost_ms"] * 1000),
+        axis_cost_us=round(value["dynamics_cost_per_axis_ms"] * 1000),
+        load_mode=cast(LoadMode, value["load_mode"]),
+        speed_shape=cast(SpeedShape, value["speed_shape"]),
+        in_position=value["in_position_deg"] * DEG,
+        settle_timeout_us=round(value["settle_timeout_s"] * 1e6),
+        servo=ServoOptions(
+            mode=cast(ServoMode, value["servo.mode"]),
+            fixed_at=cast(FixedAt, value["servo.fixed_at"]),
+            coupling=cast(Coupling, value["servo.coupling"]),
+            source=cast(FeedforwardSource, value["servo.feedforward"]),
+            velocity_feedforward=value["servo.velocity_feedforward"],
+            acceleration_feedforward=value["servo.acceleration_feedforward"],
+            spring_compensation=value["servo.spring_compensation"],
+            gravity_compensation=value["servo.gravity_compensation"],
+            friction_compensation=value["servo.friction_compensation"],
+            position_bandwidth=value["servo.position_bandwidth_rad_s"],
+            velocity_bandwidth=value["servo.velocity_bandwidth_rad_s"],
         ),
-        servo=_parse_servo(table.table("servo", required=False)),
     )
-    table.done()
-    return profile
-
-
-def _parse_servo(table: Table) -> ServoOptions:
-    source = cast(FeedforwardSource, table.text("feedforward", "command", choices=("command", "measured")))
-    ideal = 1.0 if source == "command" else 0.0
-    options = ServoOptions(
-        mode=cast(ServoMode, table.text("mode", "scheduled", choices=("scheduled", "fixed"))),
-        source=source,
-        velocity_feedforward=table.number("velocity_feedforward", ideal, low=0.0, high=1.0),
-        acceleration_feedforward=table.number("acceleration_feedforward", ideal, low=0.0, high=1.0),
-        spring_compensation=table.number("spring_compensation", 0.0, low=0.0, high=2.0),
-        gravity_compensation=table.number("gravity_compensation", 1.0, low=0.0, high=2.0),
-        friction_compensation=table.number("friction_compensation", 1.0, low=0.0, high=2.0),
-    )
-    for key in ("velocity_feedforward", "acceleration_feedforward"):
-        if source == "measured" and not getattr(options, key) < 1.0:
-            table.fail(
-                "RBL616",
-                f"'{table.name(key)}' must be below 1 when the feed-forward is measured",
-                'give a value such as 0.9, or write feedforward = "command"',
-                key=key,
-            )
-    table.done()
-    return options

@@ -323,6 +323,14 @@ class Table:
         except ValueError as error:
             self.fail(code, str(error), key=key)
 
+    def ask(self, *keys: str) -> None:
+        """Count optional keys as known, whether they are there or not."""
+        self._asked.update(keys)
+
+    def place(self, key: str) -> str:
+        """Return ``file:line`` of a key of this table."""
+        return f"{self.source.path}:{locate(self.source.text, (*self.keys, key))[0]}"
+
     def done(self) -> None:
         """Reject every key that was not asked for."""
         for key in self._data:

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from robolang.cli import check, explain, kin, robot, run
+from robolang.cli import check, compare, config, explain, kin, robot, run, step
 
 app = typer.Typer(
     name="robolang",
@@ -19,8 +19,11 @@ app = typer.Typer(
     help="A robot controller in a package: run a program in an industrial robot language on a true controller.",
 )
 app.command("run")(run.run)
+app.command("compare")(compare.compare)
+app.command("step")(step.step)
 app.command("check")(check.check)
 app.command("explain")(explain.explain)
+app.add_typer(config.app, name="config")
 app.add_typer(kin.app, name="kin")
 app.add_typer(robot.app, name="robot")
 

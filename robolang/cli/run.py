@@ -9,11 +9,13 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, cast
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from robolang.cli.errors import DIAGNOSTICS, MOTION, exit_code, reader_may_leave, reported, say
+from robolang.cli import servo_options as o
+from robolang.cli.errors import MOTION, reader_may_leave, reported, say
+from robolang.cli.refuse import refuse
 from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
@@ -26,9 +28,14 @@ def run(
     program: Annotated[str, typer.Argument(metavar="PROG", help="Program file (.rbl).")],
     cell: Annotated[str | None, typer.Option(help="Cell file (.toml); default: the one beside the program.")] = None,
     robot: Annotated[str | None, typer.Option(help="Built-in robot or robot file, in place of the cell's.")] = None,
-    servo: Annotated[
-        str | None, typer.Option(help="Servo gains: 'scheduled' follow the inertia, 'fixed' do not.")
-    ] = None,
+    profile: o.ProfileFile = None,
+    servo: o.Servo = None,
+    fixed_at: o.FixedAt = None,
+    coupling: o.Coupling = None,
+    feedforward: o.Feedforward = None,
+    load_mode: o.LoadMode = None,
+    servo_period: o.ServoPeriod = None,
+    settings: o.Set = None,
     no_physics: Annotated[bool, typer.Option("--no-physics", help="Ideal arm instead of MuJoCo.")] = False,
     realtime: Annotated[bool, typer.Option("--realtime", help="Keep wall time.")] = False,
     report: Annotated[Path | None, typer.Option(help="Write the report as JSON.")] = None,
@@ -36,14 +43,14 @@ def run(
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
 ) -> None:
     """Run a program on the controller and the physics."""
-    if servo not in (None, "scheduled", "fixed"):
-        raise OptionValueError("--servo", f"'{servo}' is not one of scheduled, fixed")
+    options = o.controller_options(servo=servo, fixed_at=fixed_at, coupling=coupling, feedforward=feedforward,
+                                   load_mode=load_mode, servo_period=servo_period, settings=settings)  # fmt: skip
     with reported():
         _check_outputs(program, report, log)
         from robolang.project import load_project
 
-        project = load_project(program, cell, robot, cast("Literal['scheduled', 'fixed'] | None", servo))
-        _refuse(project)
+        project = load_project(program, cell, robot, profile=profile, options=options)
+        refuse(project)
         from robolang.session import Session
 
         with _progress(quiet) as progress:
@@ -81,23 +88,6 @@ def _check_outputs(program: str, report: Path | None, log: Path | None) -> None:
     for path in (report, log):
         if path is not None:
             check_writable(path)
-
-
-def _refuse(project: "Project") -> None:
-    """Print the diagnostics; leave when the text has errors or a motion cannot be planned."""
-    from robolang.diagnostics import render
-
-    for item in project.diagnostics:
-        typer.echo(render(item, project.source), err=True)
-    if not project.ok:
-        raise typer.Exit(DIAGNOSTICS)
-    from robolang.motion_check import motion_check
-
-    refused = motion_check(project)
-    for item in refused:
-        typer.echo(render(item, project.source), err=True)
-    if refused:
-        raise typer.Exit(exit_code(refused[0].code))
 
 
 def _write(result: "RunResult", report: Path | None, log: Path | None) -> int:

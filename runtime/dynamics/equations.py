@@ -8,7 +8,7 @@ in the document. Called by the dynamics task, one axis at a time.
 
 import numpy as np
 
-from runtime.frames import Array
+from runtime.frames import Array, frozen
 from runtime.robot.model import ArmModel
 from runtime.robot.payload import NO_PAYLOAD, Payload
 from runtime.robot.spec import RobotSpec
@@ -17,6 +17,11 @@ from runtime.robot.spec import RobotSpec
 def axis_inertia(model: ArmModel, q: Array, axis: int) -> float:
     """Return D_i, kg m2, of axis ``axis`` (0-based) at posture q (n,) rad, without the rotor."""
     return float(model.inertia_column(q, axis)[axis])
+
+
+def axis_row(model: ArmModel, q: Array, axis: int) -> Array:
+    """Return row ``axis`` of the mass matrix (n,), kg m2, without the rotor; D_i is its element ``axis``."""
+    return frozen(np.array(model.inertia_column(q, axis)))  # a copy: handed over through ITA
 
 
 def axis_gravity(model: ArmModel, q: Array, axis: int) -> float:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from runtime.areas import Areas, AxisLoad
-from runtime.dynamics.equations import axis_gravity, axis_inertia
+from runtime.dynamics.equations import axis_gravity, axis_row
 from runtime.frames import Array
 from runtime.robot.model import ArmModel, LoadMode
 
@@ -61,9 +61,10 @@ def dynamics_task(
             if payload_version != areas.sda_version:
                 model.set_payload(areas.sda, load_mode)
                 payload_version = areas.sda_version
-            D = axis_inertia(model, areas.ang, axis)
+            row = axis_row(model, areas.ang, axis)
             yield costs.gravity
             T = axis_gravity(model, areas.ang, axis)
             yield costs.store
-            load = AxisLoad(D=D, T=T, read_us=read_us, version=version, payload_version=payload_version)
+            load = AxisLoad(D=float(row[axis]), T=T, row=row, read_us=read_us, version=version,
+                            payload_version=payload_version)  # fmt: skip
             areas.publish(axis, load, now_us())

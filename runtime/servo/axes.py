@@ -27,7 +27,9 @@ class ServoAxes:
 
     def __init__(self, spec: RobotSpec, options: ServoOptions, tick_s: float, q: Array, D_fixed: Array) -> None:
         self.options = options
-        self._D_fixed = D_fixed if options.mode == "fixed" else None
+        self.coupled = options.coupling == "full"
+        self.held_inertia = D_fixed if options.mode == "fixed" else None
+        """Inertia (n,) of gains that are held fixed, kg m2; None where they follow the posture."""
         self.encoders = Encoders(encoder_resolution(spec))
         self.alpha = np.zeros(spec.n)
         self.encoders.read(q, self.alpha)
@@ -41,9 +43,12 @@ class ServoAxes:
         self._forward, self._backward = friction[:, 0], friction[:, 1]
         self._viscous = spec.per_axis("motor", "joint_viscous_friction")
 
-    def take(self, D: Array, T: Array, motion: Array) -> None:
-        """Take the loads D kg m2, T N m (n,) and the motion (3, ticks, n) of the cycle that begins."""
-        self.law.update(D, T, self._D_fixed)
+    def take(self, D: Array, T: Array, motion: Array, rows: Array | None = None) -> None:
+        """Take the loads D kg m2, T N m (n,) and the motion (3, ticks, n) of the cycle that begins.
+
+        ``rows`` (n, n), kg m2, is the mass matrix of ITA when the axes are coupled.
+        """
+        self.law.update(D, T, self.held_inertia, rows)
         theta, beta, gamma = motion
         self.law.command(theta, beta, gamma, self.friction_current(beta))
 
@@ -66,11 +71,22 @@ def spec_torque_constants(spec: RobotSpec) -> Array:
     return np.array([axis.motor.joint_torque_constant for axis in spec.axes])
 
 
+def bandwidths(spec: RobotSpec, options: ServoOptions) -> tuple[Array, Array]:
+    """Return Kp and Kv of every axis (n,), 1/s: the profile's, else the robot file's."""
+    given = {"position": options.position_bandwidth, "velocity": options.velocity_bandwidth}
+    Kp, Kv = (
+        np.broadcast_to(values, spec.n).copy() if values else spec.per_axis("bandwidths", name)
+        for name, values in given.items()
+    )
+    return Kp, Kv
+
+
 def gains(spec: RobotSpec, options: ServoOptions) -> Gains:
-    """Derive the constants of the law from the bandwidths of the robot file and the profile's options."""
+    """Derive the constants of the law from the bandwidths and the profile's options."""
+    Kp, Kv = bandwidths(spec, options)
     return Gains(
-        Kp=spec.per_axis("bandwidths", "position"),
-        Kv=spec.per_axis("bandwidths", "velocity"),
+        Kp=Kp,
+        Kv=Kv,
         Ktn=spec_torque_constants(spec),
         rotor=spec_rotors(spec),
         Kf=options.velocity_feedforward,

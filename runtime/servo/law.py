@@ -22,6 +22,13 @@ Everything in the law that does not depend on the detected angle is known when a
 ``command`` therefore gathers it once per cycle into ``omega_ff = Kp theta_new + Kf beta`` and ``I_ff = gamma Ka D' /
 Ktn + T KT``, and the tick evaluates ``I = K D' (omega_ff - Kp alpha - beta) + I_ff``: the same sums in another order.
 
+The off-diagonal variant takes the row of the mass matrix, rotor on its diagonal, for D' and D in (6), (9) and (10):
+
+    (9)  I_i = sum_k D'_ik Kv_k domega_k / Ktn_i
+
+which is K sum_k D'_ik domega_k where all axes have one Kv. With exact rows the accelerations of the axes are then
+``gamma_k = Kv_k domega_k``: a motion of one axis no longer pushes the others (docs/servo.md).
+
 Shapes: everything broadcasts over leading dimensions ``(..., n)``. The tick works in place, without allocation.
 """
 
@@ -70,12 +77,15 @@ class ServoLaw:
         self._acceleration_gain = np.zeros(shape)
         self._windup = np.zeros(shape)
         self._gravity = np.zeros(shape)
+        self._rows: Array | None = None
+        self._coupled = self._velocity_rows = self._windup_rows = np.zeros(0)
         self._plan: list[tuple[Array, Array]] = []
 
-    def update(self, D: Array, T: Array, D_control: Array | None = None) -> None:
+    def update(self, D: Array, T: Array, D_control: Array | None = None, rows: Array | None = None) -> None:
         """Take new loads (step 404): D kg m2 and T N m, (..., n). Once per cycle, when ITA is sent.
 
-        ``D_control`` replaces D where gains are held fixed; the spring term keeps the true D.
+        ``D_control`` replaces D where gains are held fixed; the spring term keeps the true D. ``rows`` (..., n, n)
+        is the mass matrix of the off-diagonal variant, without rotors; its diagonal is D.
         """
         g = self.gains
         D_total = (D if D_control is None else D_control) + g.rotor
@@ -83,6 +93,11 @@ class ServoLaw:
         self._acceleration_gain[...] = g.Ka / g.Ktn * D_total
         self._windup[...] = D * (g.K2 / g.Kc)
         self._gravity[...] = T * g.KT_scale / g.Ktn
+        if rows is not None:
+            self._rows = rows
+            self._coupled = (rows + _diagonal(np.broadcast_to(g.rotor, D.shape))) / _column(g.Ktn, D)
+            self._velocity_rows = self._coupled * np.broadcast_to(g.Kv, D.shape)[..., None, :]
+            self._windup_rows = rows * _column(g.K2 / g.Kc, D)
 
     def command(self, theta: Array, beta: Array, gamma: Array, current: Array | float = 0.0) -> None:
         """Take the commanded motion of the ticks to come, after ``update``; each (ticks, ..., n).
@@ -92,8 +107,8 @@ class ServoLaw:
         omega_ff = self._Kp * theta
         current_ff = self._gravity + np.asarray(current) + np.zeros_like(theta)
         if not self._measured:
-            omega_ff += self._Kp * self._windup * gamma + self.gains.Kf * beta
-            current_ff += self._acceleration_gain * gamma
+            omega_ff += self._Kp * self._wound_up(gamma) + self.gains.Kf * beta
+            current_ff += self._accelerating(gamma)
         self._plan = list(zip(omega_ff, current_ff, strict=True))
 
     def current(self, k: int, alpha: Array) -> Array:
@@ -111,8 +126,23 @@ class ServoLaw:
         subtract(work, beta, work)
         if self._measured:
             return self._current_measured(current_ff)
-        multiply(work, self._velocity_gain, work)
+        if self._rows is not None:
+            copyto(work, np.matmul(self._velocity_rows, work[..., None])[..., 0])
+        else:
+            multiply(work, self._velocity_gain, work)
         return add(work, current_ff, work)
+
+    def _wound_up(self, gamma: Array) -> Array:
+        """Return D gamma K2 / Kc of (6), rad."""
+        if self._rows is None:
+            return self._windup * gamma
+        return np.asarray(np.matmul(self._windup_rows, gamma[..., None])[..., 0])
+
+    def _accelerating(self, gamma: Array) -> Array:
+        """Return gamma Ka D' / Ktn of (10), A."""
+        if self._rows is None:
+            return self._acceleration_gain * gamma
+        return np.asarray(self.gains.Ka * np.matmul(self._coupled, gamma[..., None])[..., 0])
 
     def _current_measured(self, current_ff: Array) -> Array:
         """Finish the tick with the detected derivatives in (6), (8) and (10), as the document prints them."""
@@ -122,6 +152,11 @@ class ServoLaw:
         copyto(self._beta_before, beta)
         multiply(beta, self.gains.Kf, extra)
         add(work, extra, work)
+        if self._rows is not None:
+            work += self._Kp * self._wound_up(gamma)
+            copyto(work, np.matmul(self._velocity_rows, work[..., None])[..., 0])
+            work += self._accelerating(gamma)
+            return add(work, current_ff, work)
         multiply(gamma, self._windup, extra)
         multiply(extra, self._Kp, extra)
         add(work, extra, work)
@@ -129,3 +164,13 @@ class ServoLaw:
         multiply(gamma, self._acceleration_gain, extra)
         add(work, extra, work)
         return add(work, current_ff, work)
+
+
+def _diagonal(values: Array) -> Array:
+    """Return matrices (..., n, n) with ``values`` (..., n) on their diagonals."""
+    return np.asarray(values[..., None] * np.eye(values.shape[-1]))
+
+
+def _column(values: Array | float, like: Array) -> Array:
+    """Return ``values`` as columns (..., n, 1) of matrices that belong to ``like`` (..., n)."""
+    return np.asarray(np.broadcast_to(values, like.shape)[..., None])

@@ -4,6 +4,7 @@ import hashlib
 import math
 import re
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,10 +13,12 @@ from robolang.lowering import pose_si
 from robolang.project import load_project
 from robolang.runlog import write_log
 from robolang.session import RunResult, Session
+from robolang.step import step
 from runtime.frames import inverse, pose, principal_axis, rotation_about, rotation_angle, rotation_from_rpy
 from runtime.motion.path import LinePath
 from runtime.plant.mjcf import build_mjcf
 from runtime.robot.model import spec_rotors
+from tests.experiments import test_step as bench
 from tests.loop.test_scheduling import Bench
 from tests.runtime.dynamics import lagrangian
 from tests.runtime.dynamics import test_equations as a2
@@ -61,10 +64,10 @@ def measure_agreement() -> None:
 def measure_scheduling() -> None:
     heading("A3 scheduling")
     for Ci, Cd in ((5, 2.5), (5, 4), (3, 1), (7, 3)):
-        bench = Bench(int(Ci * 1000), int(Cd * 1000))
-        bench.run(cycles=1800)
-        times = [t for axis, t, _ in bench.refreshes if axis == 2]
-        periods = set(np.diff(bench.interrupts).tolist())
+        rig = Bench(int(Ci * 1000), int(Cd * 1000))
+        rig.run(cycles=1800)
+        times = [t for axis, t, _ in rig.refreshes if axis == 2]
+        periods = set(np.diff(rig.interrupts).tolist())
         print(f"(Ci, Cd) = ({Ci}, {Cd}) ms: refresh {np.mean(np.diff(times)) / 1000:.2f} ms, "
               f"interpolation period {periods} us, monolithic {Ci + 6 * Cd:g} ms")  # fmt: skip
 
@@ -152,6 +155,34 @@ def measure_grasp() -> None:
     print(f"5 s at up to {acceleration:.1f} m/s2: slip {slip * 1000:.3f} mm, turn {math.degrees(turn):.4f} deg")
 
 
+def measure_servo() -> None:
+    heading("A4 step of the waist and A5 droop of the shoulder, ideal arm and MuJoCo")
+    q_near, q_far = bench.NEAR[0], bench.FAR[0]
+    fixed = [{"mode": "fixed", "fixed_at": at} for at in ("min", "mid", "max")]
+    for plant, locked, ideal, size in (("rigid", True, True, 0.1), ("rigid", False, False, 0.01),
+                                       ("mujoco", False, False, 0.01)):  # fmt: skip
+        print(f"{plant}, others {'locked' if locked else 'free'}, drives {'ideal' if ideal else 'real'}, {size} rad")
+        for q, carried, servo in ((q_near, bench.NO_PAYLOAD, {}), (q_far, bench.FIVE, {}),
+                                  (q_far, bench.FIVE, fixed[0]), (q_far, bench.FIVE, fixed[1]),
+                                  (q_near, bench.NO_PAYLOAD, fixed[2])):  # fmt: skip
+            robot = bench.STRONG if plant == "mujoco" else bench.REPLACED
+            request = bench.experiment(0, q, size, carried, robot=robot, **servo)
+            found = step(replace(request, plant=plant, locked=locked, ideal=ideal))
+            print(f"  D' {found.inertia:.3f}, gain for {found.gain_inertia:.3f} kg m2: overshoot "
+                  f"{100 * found.overshoot:.2f} %, settling {found.settling:.4f} s, short by "
+                  f"{math.degrees(found.droop):.4f} deg")  # fmt: skip
+        for name, robot, carried, said, gravity, published in bench.DROOPS:
+            used = bench.STRONG if plant == "mujoco" else robot
+            request = bench.experiment(1, bench.STRETCHED, 0.0, carried, said, used, gravity_compensation=gravity)
+            found = step(replace(request, plant=plant, ideal=ideal))
+            print(f"  {name}: droop {math.degrees(found.droop):.4f} deg (published {published})")
+    for coupling in ("diagonal", "full"):
+        for axis in range(6):
+            settling, overshoot = bench.over_the_range(axis, False, coupling)
+            print(f"  J{axis + 1} over the range, {coupling}: settling {min(settling):.4f} to {max(settling):.4f} s, "
+                  f"overshoot at most {100 * max(overshoot):.3f} %")  # fmt: skip
+
+
 def main() -> None:
     """Print all figures."""
     measure_dynamics()
@@ -160,6 +191,7 @@ def main() -> None:
     measure_axis()
     measure_program()
     measure_grasp()
+    measure_servo()
 
 
 if __name__ == "__main__":

@@ -139,7 +139,7 @@ def test_every_servo_period_follows_the_same_path(tick_us):
 def test_fixed_gains_take_the_middle_of_the_inertia_range():
     robot = controller(servo=ServoOptions(mode="fixed"))
     lows, highs = 1.55, 5.6
-    assert lows < robot.servo._D_fixed[0] < highs
+    assert lows < robot.servo.held_inertia[0] < highs
     for _ in range(5):
         assert robot.cycle()
 

@@ -136,3 +136,23 @@ def test_gains_held_fixed_replace_the_inertia_in_the_loop_only():
     law.update(np.array([3.0]), np.array([14.0]), D_control=np.array([2.0]))
     law.command(np.full((1, 1), 0.1), np.zeros((1, 1)), np.zeros((1, 1)))
     assert float(law.current(0, np.zeros(1))[0]) == pytest.approx(KV / KTN * 2.5 * KP * 0.1 + 14.0 / KTN)
+
+
+@pytest.mark.parametrize("source", ["command", "measured"])
+def test_whole_rows_take_the_place_of_the_diagonal(source):
+    n, runs, tick_s = 4, 3, 1e-3
+    rng = np.random.default_rng(4)
+    g = Gains(Kp=np.full(n, KP), Kv=np.full(n, KV), Ktn=rng.uniform(5, 15, n), rotor=rng.uniform(0, 1, n), Kf=0.4,
+              Ka=0.3, K2=0.9, Kc=np.full(n, 5000.0), source=source)  # fmt: skip
+    half = rng.normal(size=(runs, n, n))
+    M = half @ np.swapaxes(half, -1, -2)
+    alpha0, alpha1, theta, beta_cmd, gamma_cmd = (rng.normal(size=(runs, n)) for _ in range(5))
+    law = ServoLaw(g, alpha0, tick_s)
+    law.update(np.einsum("rii->ri", M), np.zeros((runs, n)), rows=M)
+    law.command(theta[None], beta_cmd[None], gamma_cmd[None])
+    beta = (alpha1 - alpha0) / tick_s
+    beta_ff, gamma = (beta, beta / tick_s) if source == "measured" else (beta_cmd, gamma_cmd)
+    total = M + np.diag(g.rotor)
+    domega = KP * (theta + np.einsum("rik,rk->ri", M, gamma) * 0.9 / 5000.0 - alpha1) + 0.4 * beta_ff - beta
+    expected = np.einsum("rik,rk->ri", total, KV * domega + 0.3 * gamma) / g.Ktn
+    np.testing.assert_allclose(law.current(0, alpha1), expected, rtol=1e-10)

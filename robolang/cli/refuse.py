@@ -1,0 +1,27 @@
+"""What every command that runs a program does first: say what is wrong with it and leave."""
+
+from typing import TYPE_CHECKING
+
+import typer
+
+from robolang.cli.errors import DIAGNOSTICS, exit_code
+
+if TYPE_CHECKING:
+    from robolang.project import Project
+
+
+def refuse(project: "Project") -> None:
+    """Print the diagnostics; leave when the text has errors or a motion cannot be planned."""
+    from robolang.diagnostics import render
+
+    for item in project.diagnostics:
+        typer.echo(render(item, project.source), err=True)
+    if not project.ok:
+        raise typer.Exit(DIAGNOSTICS)
+    from robolang.motion_check import motion_check
+
+    refused = motion_check(project)
+    for item in refused:
+        typer.echo(render(item, project.source), err=True)
+    if refused:
+        raise typer.Exit(exit_code(refused[0].code))

@@ -1,0 +1,223 @@
+"""``compare``: one program, carried out again and again with something about the controller changed each time.
+
+The program text is never touched: LOAD is left out or made wrong where its effect is carried out, so every statement
+keeps its line. Each run is a run like any other, in its own process when there are several, and the result does not
+depend on how many there are. The measures, all against the command that the servo received at the same tick:
+
+- overshoot: how far an axis goes past the commanded end of a MOVE, in percent of its last approach, that is the way
+  from where its command last turned round; axes that approach over less than ``LEAST`` are left out;
+- settling: time after the command has ended until every axis stays within 2 % of its last approach;
+- joint and tool error, largest and root of the mean square; deviation from the straight line;
+- droop: joint error that is left when a MOVE is done. There is no integrator that would take it away.
+"""
+
+import multiprocessing
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from robolang.effects import Effect, SetPayload
+from robolang.interpreter import execute
+from robolang.nodes import Program
+from robolang.project import Project, load_project
+from robolang.result import StatementRun
+from robolang.session import Session
+from runtime.frames import Array
+from runtime.units import DEG, MM
+
+BAND = 0.02
+LEAST = 1.0 * DEG
+"""Shortest approach whose overshoot is given in percent, rad."""
+WRONG_SHARE = 0.3
+"""By how much of the rated payload the wrong LOAD is wrong."""
+STARVED_COST_MS = 50.0
+"""Declared cost of one axis of a starved dynamics task, ms."""
+
+Options = dict[str, tuple[str, Any]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Variant:
+    """One way of carrying the program out: its settings over those in force, and what becomes of LOAD."""
+
+    name: str
+    title: str
+    settings: dict[str, Any] = field(default_factory=dict)
+    load: str = "as written"
+
+
+VARIANTS = (
+    Variant(name="scheduled", title="scheduled gains", settings={"servo.mode": "scheduled"}),
+    *(
+        Variant(name=f"fixed-{at}", title=f"gains fixed at {at}",
+                settings={"servo.mode": "fixed", "servo.fixed_at": at, "servo.coupling": "diagonal"})
+        for at in ("min", "mid", "max")
+    ),
+    Variant(name="coupled", title="scheduled, whole rows",
+            settings={"servo.mode": "scheduled", "servo.coupling": "full"}),
+    Variant(name="load-omitted", title="LOAD omitted", settings={"servo.mode": "scheduled"}, load="omitted"),
+    Variant(name="load-wrong", title="LOAD wrong by 30 %", settings={"servo.mode": "scheduled"}, load="wrong"),
+    Variant(name="fixed-mid-load-omitted", title="fixed at mid, LOAD omitted", load="omitted",
+            settings={"servo.mode": "fixed", "servo.fixed_at": "mid", "servo.coupling": "diagonal"}),
+    Variant(name="starved", title="dynamics starved",
+            settings={"servo.mode": "scheduled", "dynamics_cost_per_axis_ms": STARVED_COST_MS}),
+    Variant(name="no-gravity", title="no gravity compensation",
+            settings={"servo.mode": "scheduled", "servo.gravity_compensation": 0.0}),
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Request:
+    """What all variants share: the files, as given, the options in force and whether MuJoCo is the robot."""
+
+    program: str
+    cell: str | None = None
+    robot: str | None = None
+    profile: str | None = None
+    options: Options = field(default_factory=dict)
+    physics: bool = True
+
+    def project(self, variant: Variant) -> Project:
+        """Read the project with the settings of a variant over all others."""
+        changed = {key: (f"variant {variant.name}", value) for key, value in variant.settings.items()}
+        return load_project(self.program, self.cell, self.robot, profile=self.profile,
+                            options={**self.options, **changed})  # fmt: skip
+
+
+def compare(request: Request, variants: tuple[Variant, ...] = VARIANTS, jobs: int = 1,
+            done: Callable[[str], None] = lambda name: None) -> list[dict[str, Any]]:  # fmt: skip
+    """Return one row for each variant, in their order; ``done`` is told of each that is finished."""
+    if jobs <= 1 or len(variants) == 1:
+        rows = []
+        for variant in variants:
+            rows.append(run_variant(request, variant))
+            done(variant.title)
+        return rows
+    # spawn: a forked child would share the locks of whatever threads the libraries have started
+    with ProcessPoolExecutor(min(jobs, len(variants)), mp_context=multiprocessing.get_context("spawn")) as pool:
+        futures = [pool.submit(run_variant, request, variant) for variant in variants]
+        for variant, future in zip(variants, futures, strict=True):
+            future.result()
+            done(variant.title)
+        return [future.result() for future in futures]
+
+
+def run_variant(request: Request, variant: Variant) -> dict[str, Any]:
+    """Run one variant and measure it."""
+    project = request.project(variant)
+    session = Session(project, physics=request.physics, effects=_effects(variant, project.cell.robot.rated_payload))
+    result = session.run()
+    alarms: Any = result.report["alarms"]
+    return {
+        "variant": variant.name,
+        "title": variant.title,
+        "ok": result.ok,
+        "alarms": [{key: alarm[key] for key in ("code", "message", "line", "time_s")} for alarm in alarms],
+        "sim_time_s": result.report["sim_time_s"],
+        **measures(result.log, session.controller.tool_poses(result.log["q_cmd"]), session.record.statements),
+    }
+
+
+def _effects(variant: Variant, rated: float) -> Callable[[Program], Iterator[Effect]]:
+    def changed(program: Program) -> Iterator[Effect]:
+        for effect in execute(program):
+            if not isinstance(effect, SetPayload) or variant.load == "as written":
+                yield effect
+            elif variant.load == "wrong":
+                yield replace(effect, mass_kg=wrong_mass(effect.mass_kg, rated))
+
+    return changed
+
+
+def wrong_mass(mass: float, rated: float) -> float:
+    """Return a mass that is wrong by 30 % of the rated one: too much, or too little where that is over the rated."""
+    step = WRONG_SHARE * rated
+    return mass + step if mass + step <= rated else max(0.0, mass - step)
+
+
+# --- measures --------------------------------------------------------------------------------------------------------
+
+
+def measures(log: dict[str, Array], X_cmd: Array, statements: list[StatementRun]) -> dict[str, Any]:
+    """Return the figures of a run, in deg, mm, s and %, over all its MOVEs; None where there is none."""
+    moves = [run for run in statements if run.path is not None and run.end_tick > run.first_tick]
+    if not moves:
+        return dict.fromkeys(("overshoot_pct", "settling_s", "joint_error_deg", "joint_rms_deg", "tool_error_mm",
+                              "tool_rms_mm", "path_deviation_mm", "droop_deg", "per_axis", "moves"))  # fmt: skip
+    ticks = np.concatenate([np.arange(run.first_tick, run.end_tick) for run in moves])
+    joint = np.abs(log["q_cmd"][ticks] - log["q_fb"][ticks]) / DEG
+    p_fb = log["X_world_tool_fb"][:, :3, 3]
+    tool = np.linalg.norm(X_cmd[ticks, :3, 3] - p_fb[ticks], axis=1) / MM
+    rows = [_move(run, log, p_fb) for run in moves]
+    overshoots = [row["overshoot_pct"] for row in rows if row["overshoot_pct"] is not None]
+    settled = [row["settling_s"] for row in rows]
+    droop = np.array([row["droop_deg"] for row in rows])
+    return {
+        "overshoot_pct": max(overshoots, default=None),
+        "settling_s": None if None in settled else max(settled),
+        "joint_error_deg": float(joint.max()),
+        "joint_rms_deg": float(np.sqrt((joint**2).mean(axis=0)).max()),
+        "tool_error_mm": float(tool.max()),
+        "tool_rms_mm": float(np.sqrt((tool**2).mean())),
+        "path_deviation_mm": max(row["path_deviation_mm"] for row in rows),
+        "droop_deg": float(np.abs(droop).max()),
+        "per_axis": {
+            "joint_error_deg": joint.max(axis=0).tolist(),
+            "joint_rms_deg": np.sqrt((joint**2).mean(axis=0)).tolist(),
+            "droop_deg": np.abs(droop).max(axis=0).tolist(),
+        },
+        "moves": rows,
+    }
+
+
+def _move(run: StatementRun, log: dict[str, Array], p_fb: Array) -> dict[str, Any]:
+    span = slice(run.first_tick, run.end_tick)
+    assert run.path is not None  # only moves get here
+    q_cmd, q_fb, t = log["q_cmd"][span], log["q_fb"][span], log["t"][span]
+    overshoot, settling = last_approach(q_cmd, q_fb, t)
+    return {
+        "line": run.number if run.number is not None else run.line,
+        "overshoot_pct": overshoot,
+        "settling_s": settling,
+        "path_deviation_mm": float(run.path.deviation(p_fb[span]).max()) / MM,
+        "droop_deg": ((q_cmd[-1] - q_fb[-1]) / DEG).tolist(),
+        "left_mm": float(np.linalg.norm(run.path.X_end[:3, 3] - p_fb[span][-1])) / MM,
+    }
+
+
+def last_approach(q_cmd: Array, q_fb: Array, t: Array) -> tuple[float | None, float | None]:
+    """Return overshoot of the worst axis, %, and the time from the end of the command to within 2 %, s.
+
+    q_cmd, q_fb (N, n) rad, t (N,) s of one move. Overshoot is None when no axis approaches far enough, settling None
+    when an axis is still outside at the end of the statement.
+    """
+    end = q_cmd[-1]
+    standing = (np.abs(q_cmd - end) <= 1e-12).all(axis=1)
+    stop = len(q_cmd) - 1 if not standing.any() else int(len(standing) - np.argmin(standing[::-1])) % len(standing)
+    worst, settled = None, 0.0
+    for axis in range(q_cmd.shape[1]):
+        begin = _turn(q_cmd[:, axis])
+        way = end[axis] - q_cmd[begin, axis]
+        if not abs(way) >= LEAST:
+            continue
+        past = float(((q_fb[begin:, axis] - end[axis]) / way).max()) * 100.0
+        worst = max(worst or 0.0, past)
+        outside = np.flatnonzero(~(np.abs(q_fb[stop:, axis] - end[axis]) <= BAND * abs(way)))
+        if len(outside):
+            if outside[-1] == len(q_fb) - stop - 1:
+                return worst, None
+            settled = max(settled, float(t[stop + outside[-1] + 1] - t[stop]))
+    return worst, settled
+
+
+def _turn(q: Array) -> int:
+    """Return the row from which a command (N,) goes to its end without turning round by more than ``LEAST``."""
+    to_go = q - q[-1]
+    far = np.flatnonzero(np.abs(to_go) >= LEAST)
+    if not len(far):
+        return len(q) - 1
+    back = np.flatnonzero(np.diff(q[: far[-1] + 1]) * to_go[far[-1]] > 0.0)  # moving away from the end
+    return int(back[-1]) + 1 if len(back) else 0

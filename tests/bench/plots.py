@@ -1,0 +1,65 @@
+"""``make plots``: draws the plots of docs/servo.md into docs/plots/, from experiments run on the spot."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from robolang.plot import Curve, as_svg
+from robolang.step import step
+from runtime.robot.payload import NO_PAYLOAD
+from runtime.units import DEG
+from tests.experiments.test_step import FAR, FIVE, HALF, NEAR, PUMA, REPLACED, STRETCHED, experiment
+
+FOLDER = Path(__file__).parents[2] / "docs" / "plots"
+SHOWN_S = 0.5
+
+
+def response(name, end, dashed=False, **servo):
+    """Return the curve of a step of 0.1 rad on the waist at one end of its inertia range."""
+    q, carried = end
+    result = step(replace(experiment(0, q, 0.1, carried, robot=REPLACED, **servo), locked=True, seconds=0.6))
+    shown = result.t <= SHOWN_S
+    return Curve(name=name, x=result.t[shown], y=result.response[shown], dashed=dashed)
+
+
+def steps() -> str:
+    """Draw the step responses of A4."""
+    return as_svg("Step of 0.1 rad, waist of the Puma 560, D' 2.341 or 9.680 kg m2", "time, s", "angle, rad", [
+        response("scheduled, largest inertia", FAR),
+        response("scheduled, smallest inertia", NEAR, dashed=True),
+        response("fixed at smallest, largest inertia", FAR, mode="fixed", fixed_at="min"),
+        response("fixed at middle, largest inertia", FAR, mode="fixed", fixed_at="mid"),
+        response("fixed at largest, smallest inertia", NEAR, mode="fixed", fixed_at="max"),
+    ], level=0.1)  # fmt: skip
+
+
+def droops() -> str:
+    """Draw the droop of A5 over the angle of the shoulder."""
+    angles = np.arange(0.0, 91.0, 7.5)
+    curves = []
+    for name, carried, said, gravity in (
+        ("5 kg, no compensation", FIVE, FIVE, 0.0), ("bare, no compensation", NO_PAYLOAD, NO_PAYLOAD, 0.0),
+        ("5 kg, LOAD says 0.5 kg", FIVE, HALF, 1.0), ("5 kg, LOAD right", FIVE, FIVE, 1.0),
+    ):  # fmt: skip
+        found = []
+        for angle in angles:
+            q = STRETCHED + angle * DEG * np.eye(6)[1]
+            robot = PUMA if carried is NO_PAYLOAD else REPLACED
+            request = experiment(1, q, 0.0, carried, said, robot, gravity_compensation=gravity)
+            found.append(step(replace(request, seconds=0.2)).droop / DEG)
+        curves.append(Curve(name=name, x=angles, y=np.array(found)))
+    title = "Droop of the shoulder of the Puma 560, arm stretched, Kp 20, Kv 80 1/s"
+    return as_svg(title, "angle of J2 above level, deg", "droop, deg", curves, corner="top")
+
+
+def main() -> None:
+    """Write both plots."""
+    FOLDER.mkdir(exist_ok=True)
+    for name, draw in (("steps", steps), ("droop", droops)):
+        (FOLDER / f"{name}.svg").write_text(draw(), "utf-8")
+        print(f"docs/plots/{name}.svg")
+
+
+if __name__ == "__main__":
+    main()

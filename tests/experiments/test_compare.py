@@ -1,0 +1,118 @@
+"""Experiment A7: the same program under other gains and LOADs; figures of docs/servo.md."""
+
+import json
+
+import numpy as np
+import pytest
+
+from robolang.compare import VARIANTS, Request, compare, last_approach, wrong_mass
+from robolang.session import Session
+from tests.lang.cli.commands import ROOT, robolang
+
+PROGRAM = str(ROOT / "programs" / "pick_and_place.rbl")
+NAMES = ("scheduled", "coupled", "load-omitted", "fixed-mid-load-omitted")
+CHOSEN = tuple(variant for variant in VARIANTS if variant.name in NAMES)
+ARMS = ["puma560"]
+"""Robots whose cells the figures hold for; each needs a program with 90 % of its rated payload."""
+
+
+def heavy(folder, robot):
+    """Return a program that carries 90 % of the rated payload of a robot."""
+    assert robot == "puma560"
+    program = folder / "heavy.rbl"
+    program.write_text(
+        (ROOT / "programs" / "pick_and_place.rbl").read_text().replace("(0, 0, 95), 2.3", "(0, 0, 94.6), 2.25")
+    )
+    cell = (ROOT / "robolang" / "builtin" / "cell.toml").read_text().replace("mass_kg = 1.5", "mass_kg = 1.45")
+    (folder / "cell.toml").write_text(cell)
+    points = (ROOT / "robolang" / "builtin" / "points.toml").read_text()
+    (folder / "heavy.points.toml").write_text(points)
+    return str(program)
+
+
+@pytest.fixture(scope="module", params=ARMS)
+def rows(request, tmp_path_factory):
+    program = heavy(tmp_path_factory.mktemp("heavy"), request.param)
+    return {row["variant"]: row for row in compare(Request(program=program), CHOSEN)}
+
+
+def test_path_error_is_five_times_smaller_than_with_mid_gains_and_no_load(rows):
+    good, rows_good, bad = rows["scheduled"], rows["coupled"], rows["fixed-mid-load-omitted"]
+    assert bad["tool_rms_mm"] > 5.0 * good["tool_rms_mm"]
+    assert bad["path_deviation_mm"] > 5.0 * rows_good["path_deviation_mm"]
+    assert bad["path_deviation_mm"] > 3.5 * good["path_deviation_mm"]
+
+
+def test_whole_rows_follow_better_than_the_diagonal(rows):
+    assert rows["coupled"]["tool_rms_mm"] < 0.75 * rows["scheduled"]["tool_rms_mm"]
+
+
+def test_an_omitted_load_leaves_a_droop_and_never_settles(rows):
+    assert rows["load-omitted"]["droop_deg"] > 4.0 * rows["scheduled"]["droop_deg"]
+    assert rows["load-omitted"]["tool_rms_mm"] > 5.0 * rows["scheduled"]["tool_rms_mm"]
+    assert rows["scheduled"]["settling_s"] is not None
+    assert rows["load-omitted"]["settling_s"] is None
+
+
+def test_a_wrong_load_never_changes_the_commanded_path():
+    from robolang.compare import _effects
+
+    request = Request(program=PROGRAM, physics=False)
+    plans = []
+    for variant in VARIANTS:
+        if variant.name in ("scheduled", "load-omitted", "load-wrong"):
+            project = request.project(variant)
+            session = Session(project, physics=False, effects=_effects(variant, project.cell.robot.rated_payload))
+            log = session.run().log
+            for run in session.record.statements:
+                if run.path is not None:
+                    q = log["q_plan"][run.first_tick : run.end_tick]
+                    moving = np.flatnonzero((np.diff(q, axis=0) != 0.0).any(axis=1))
+                    plans.append((run.number, q[moving]))
+    by_line = {}
+    for line, q in plans:
+        by_line.setdefault(line, []).append(q)
+    assert sorted(by_line) == [30, 60, 70, 100, 110]
+    for line, same in by_line.items():
+        assert len(same) == 3
+        assert all(np.array_equal(q, same[0]) for q in same), line
+
+
+def test_two_processes_give_what_one_gives():
+    request, two = Request(program=PROGRAM, physics=False), (VARIANTS[0], VARIANTS[3])
+    told = []
+    assert compare(request, two, jobs=2, done=told.append) == compare(request, two)
+    assert told == [variant.title for variant in two]
+
+
+def test_a_load_is_wrong_by_thirty_percent_of_the_rated_one():
+    assert wrong_mass(0.8, 2.5) == pytest.approx(1.55)
+    assert wrong_mass(2.3, 2.5) == pytest.approx(1.55)
+    assert wrong_mass(0.5, 100.0) == 30.5
+
+
+def test_overshoot_and_settling_of_a_made_up_move():
+    t = np.arange(300) * 0.01
+    q_cmd = np.minimum(t, 1.0)[:, None] * 0.5  # to 0.5 rad in one second
+    q_fb = q_cmd + np.where(t < 1.0, 0.0, 0.05 * np.exp(-(t - 1.0) / 0.2))[:, None]
+    overshoot, settling = last_approach(q_cmd, q_fb, t)
+    assert overshoot == pytest.approx(10.0)
+    assert settling == pytest.approx(0.2 * np.log(5.0), abs=0.011)  # 0.05 rad down to 2 % of 0.5 rad
+    assert last_approach(q_cmd, q_cmd + 0.02, t) == (pytest.approx(4.0), None)
+    assert last_approach(0.0 * q_cmd, q_fb, t)[0] is None  # no axis approaches anything
+
+
+def test_the_command_prints_every_variant_and_says_how_far_it_is():
+    shown = robolang("compare", "--no-physics", "--only", "scheduled,fixed-max", PROGRAM)
+    assert "gains fixed at max" in shown.stdout
+    assert "2/2 gains fixed at max" in shown.stderr
+    found = json.loads(robolang("compare", "--no-physics", "--json", "--only", "scheduled", PROGRAM).stdout)
+    assert [row["variant"] for row in found["variants"]] == ["scheduled"]
+    assert len(found["variants"][0]["per_axis"]["droop_deg"]) == 6
+    assert "RBL703 --only" in robolang("compare", "--only", "nothing", PROGRAM, code=2).stderr
+
+
+def test_a_program_with_errors_is_not_compared(tmp_path):
+    program = tmp_path / "bad.rbl"
+    program.write_text("MOV P1\n")
+    assert "RBL112" in robolang("compare", program, code=1).stderr
