@@ -3,6 +3,8 @@
 # make gates  style, types, import floors
 # make bench  ratios and start-up times, printed
 # make plots   the plots of docs/servo.md, drawn anew
+# make fault-campaign         every injected fault and 200 clean runs, counted (minutes)
+# make supervision-campaign   wrong payloads in random programs, counted
 # make measured   every other figure of docs/measured.md, printed
 
 PYTHON ?= python3
@@ -10,7 +12,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test gates bench measured plots clean
+.PHONY: demo test gates bench measured plots fault-campaign supervision-campaign clean
 
 demo: $(READY)
 	$(BIN)/robolang run programs/pick_and_place.rbl
@@ -37,6 +39,12 @@ measured: $(READY)
 
 plots: $(READY)
 	$(BIN)/python -m tests.bench.plots
+
+fault-campaign: $(READY)
+	$(BIN)/python -m tests.faults.campaign faults
+
+supervision-campaign: $(READY)
+	$(BIN)/python -m tests.faults.campaign payload
 
 clean:
 	rm -rf $(VENV) out

@@ -83,8 +83,11 @@ class Request:
     def project(self, variant: Variant) -> Project:
         """Read the project with the settings of a variant over all others."""
         changed = {key: (f"variant {variant.name}", value) for key, value in variant.settings.items()}
-        return load_project(self.program, self.cell, self.robot, profile=self.profile,
-                            options={**self.options, **changed})  # fmt: skip
+        project = load_project(self.program, self.cell, self.robot, profile=self.profile,
+                               options={**self.options, **changed})  # fmt: skip
+        # most variants are wrong on purpose: what supervision would stop is what is to be seen
+        watched = project.profile.supervision
+        return project.with_profile(replace(project.profile, supervision=replace(watched, enabled=False)))
 
 
 def compare(request: Request, variants: tuple[Variant, ...] = VARIANTS, jobs: int = 1,

@@ -61,6 +61,10 @@ class Project:
         """The controller profile in force."""
         return self.settings.profile
 
+    def with_profile(self, profile: Profile) -> "Project":
+        """Return the same project under another controller profile."""
+        return replace(self, settings=replace(self.settings, profile=profile))
+
     @property
     def ok(self) -> bool:
         """Whether the program may run."""

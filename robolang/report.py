@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from robolang.result import RunRecord, StatementRun
+from runtime.faults import Alarm
 from runtime.frames import Array, xyzrpy_from_pose
 from runtime.servo.motor import torque_limit
 from runtime.units import DEG, MM, PERCENT
@@ -37,17 +38,20 @@ def build_report(record: RunRecord, log: dict[str, Array], wall_s: float) -> dic
         "objects": {
             name: {"pose_mm_deg": pose_mm_deg(X)} for name, X in sorted(controller.plant.parts().items())
         },
-        "alarms": [
-            {
-                "code": alarm.code,
-                "message": alarm.message,
-                "line": alarm.line,
-                "axis": None if alarm.axis is None else alarm.axis + 1,
-                "time_s": alarm.tick * controller.profile.tick_us / 1_000_000,
-                "hint": alarm.hint,
-            }
-            for alarm in controller.alarms
-        ],
+        "alarms": [_alarm(alarm, controller.profile.tick_us) for alarm in controller.alarms],
+        "warnings": [_alarm(alarm, controller.profile.tick_us) for alarm in controller.warnings],
+    }
+
+
+def _alarm(alarm: Alarm, tick_us: int) -> dict[str, object]:
+    return {
+        "code": alarm.code,
+        "message": alarm.message,
+        "line": alarm.line,
+        "axis": None if alarm.axis is None else alarm.axis + 1,
+        "time_s": alarm.tick * tick_us / 1_000_000,
+        "category": alarm.category,
+        "hint": alarm.hint,
     }
 
 

@@ -61,8 +61,13 @@ class Session:
         self.project = project
         self._effects = effects
         self._progress = progress or (lambda statement, time_us: None)
-        self._stop_requested = False
+        self._stop_requested = self._halt_requested = False
+        self.running = False
+        """Whether the program runs or the arm still stops."""
         cell, profile = project.cell, project.profile
+        known = profile.supervision.friction
+        friction = (1.0 if known is None else known) if physics else 0.0
+        profile = replace(profile, supervision=replace(profile.supervision, friction=friction))
         if not physics:  # the ideal arm has no friction and no gear springs, so there is nothing to compensate
             servo = replace(profile.servo, friction_compensation=0.0, spring_compensation=0.0)
             profile = replace(profile, servo=servo)
@@ -74,15 +79,21 @@ class Session:
         self.record = RunRecord(project=project, controller=self.controller, physics=physics)
 
     def request_stop(self) -> None:
-        """Ask the run to end at the next cycle; safe to call from a signal handler."""
+        """Ask the run for a controlled stop from the next cycle on; safe to call from a signal handler."""
         self._stop_requested = True
+
+    def request_halt(self) -> None:
+        """Ask the run to end at the next cycle, at once (category 0); safe to call from a signal handler."""
+        self._stop_requested = self._halt_requested = True
 
     def run(self) -> RunResult:
         """Execute the program to its end, a fault or a stop; the log is complete in every case."""
         started = wall_s()
+        self.running = True
         for effect in self._effects(self.project.program):
             if not self._run_statement(effect):
                 break
+        self.running = False
         log = self.controller.recorder.signals(self.controller.tool_poses)
         report = build_report(self.record, log, wall_s() - started)
         return RunResult(ok=not self.controller.alarms, report=report, log=log)
@@ -97,7 +108,7 @@ class Session:
         self._progress(run, controller.time_us)
         try:
             for _ in self._carry_out(effect, run):
-                if self._stop_requested or not controller.cycle():
+                if self._stop_requested or not controller.cycle() or controller.alarms:
                     break
                 if controller.time_us >= MAX_RUN_US:
                     controller.alarm("RBL509", f"the run has lasted {MAX_RUN_US / 1e6:g} s of simulated time")
@@ -107,8 +118,18 @@ class Session:
             controller.alarm(fault.code, fault.message)
         if self._stop_requested and not controller.alarms:
             controller.alarm("RBL530", "the run was stopped from outside")
+        if controller.alarms:
+            self._come_to_rest()
         run.end_tick = controller.recorder.tick
         return not controller.alarms
+
+    def _come_to_rest(self) -> None:
+        """Let the controlled stop run to its end, unless it has to end at once."""
+        controller = self.controller
+        while not controller.halted:
+            if self._halt_requested:
+                controller.halt()
+            controller.cycle()
 
     def _carry_out(self, effect: Effect, run: StatementRun) -> Iterator[None]:
         """Start an effect and yield once for every cycle it needs."""

@@ -135,7 +135,7 @@ def step(request: StepRequest) -> StepResult:
     """Run one step experiment; ``ValueError`` for an axis or a posture that the robot has not."""
     _check(request)
     robot = ideal_drives(request.robot) if request.ideal else request.robot
-    profile = request.profile
+    profile = replace(request.profile, supervision=replace(request.profile.supervision, enabled=False))
     if request.plant == "rigid":  # no friction there, so there is none to compensate
         profile = replace(profile, servo=replace(profile.servo, friction_compensation=0.0))
     cell = _cell(robot, request)
@@ -172,7 +172,7 @@ def _cell(robot: RobotSpec, request: StepRequest) -> CellSpec:
 
 
 def _plant(robot: RobotSpec, cell: CellSpec, request: StepRequest) -> Plant:
-    profile = request.profile
+    profile = replace(request.profile, supervision=replace(request.profile.supervision, enabled=False))
     if request.plant == "mujoco":
         from runtime.plant.mujoco_plant import MujocoPlant
 

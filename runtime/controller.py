@@ -9,9 +9,12 @@ One call of ``cycle`` is one interpolation period (docs/timing.md):
     400-424 meanwhile every servo tick: encoder, law, motor, one step of the plant
 
 A request that cannot be carried out raises ``Fault`` and changes nothing. What goes wrong while running becomes a
-latched ``Alarm``: from then on ``cycle`` does nothing and returns False.
+latched ``Alarm`` and stops the arm by its category (docs/supervision.md): 1 on its path, servoing until it stands, then
+the brakes; 0 at once. From then on ``cycle`` does nothing and returns False, until the alarm is acknowledged.
 """
 
+import math
+import re
 from collections.abc import Iterator
 
 import numpy as np
@@ -26,6 +29,7 @@ from runtime.motion.commands import MoveLinear
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.interpolator import Interpolator
 from runtime.motion.planner import LinePlan, LinePlanner
+from runtime.motion.stop import stopping_rows
 from runtime.plant.plant import Plant
 from runtime.profile import Profile
 from runtime.recorder import Recorder
@@ -36,6 +40,15 @@ from runtime.robot.spec import RobotSpec
 from runtime.scheduler import IdleProcessor
 from runtime.servo.axes import ServoAxes
 from runtime.servo.fixed import fixed_inertia
+from runtime.servo.motor import encoder_resolution, torque_limit
+from runtime.supervision.finding import Finding
+from runtime.supervision.supervisor import LOST, Supervisor
+
+AT_REST = 0.01
+"""Detected joint speed below which an arm that has stopped is held by its brakes, rad/s."""
+LONGEST_REST_US = 500_000
+"""Longest time that a stopped command waits for the arm to stand before the brakes hold it, us."""
+_RUNS_AWAY = ("RBL513", "RBL514", "RBL515")
 
 
 class Controller:
@@ -59,6 +72,12 @@ class Controller:
         self.line = 0
         """Program line that runs, for the log and for alarms."""
         self.alarms: list[Alarm] = []
+        """Latched alarms, the one that stopped the arm first."""
+        self.warnings: list[Alarm] = []
+        """What supervision reported without stopping."""
+        self.halted = False
+        """Whether the brakes hold the arm: nothing moves until ``acknowledge``."""
+        self._rest_us = self._loaded_us = 0
         self.late_cycles = 0
         """Cycles that started late against the wall clock (only when paced)."""
         self._clock = clock or VirtualClock()
@@ -66,7 +85,8 @@ class Controller:
         q = np.array(plant.q)
         self.areas = Areas(spec.n, q)
         self._power_up(q)
-        self.servo = ServoAxes(spec, profile.servo, profile.tick_s, q, self._fixed_inertia())
+        self._fixed = self._fixed_inertia()
+        self.servo = ServoAxes(spec, profile.servo, profile.tick_s, q, self._fixed)
         self.servo.motors.i[:] = [cell.T for cell in self.areas.ita] / self.servo.motors.Ktn
         self.processor = IdleProcessor(self._dynamics)
         self.recorder = Recorder(spec.n, profile.ticks_per_cycle, profile.tick_us)
@@ -76,6 +96,12 @@ class Controller:
         self._q_cmd = q
         servo = self.servo
         self._recorded = (servo.tau_cmd, servo.tau, servo.alpha, servo.beta)
+        self._supervisor = Supervisor(
+            spec, profile.supervision, torque=torque_limit(spec), resolution=encoder_resolution(spec),
+            lag=(1.0 - profile.servo.velocity_feedforward) / spec.per_axis("bandwidths", "position"),
+            ticks=profile.ticks_per_cycle, tick_s=profile.tick_s, friction=profile.servo.friction_compensation,
+        )  # fmt: skip
+        self._overruns = 0
 
     def _power_up(self, q: Array) -> None:
         """Fill ITA once for all axes before the brakes open, so that no servo ever works with an empty cell."""
@@ -104,16 +130,50 @@ class Controller:
     def load(self, payload: Payload) -> None:
         """LOAD: store the payload in SDA (step 106). It reaches the servo axis by axis within one refresh."""
         self.areas.declare(payload)
+        self._loaded_us = self.time_us
+        self._supervisor.declare(payload, self.profile.load_mode)
 
     def hand(self, closed: bool) -> None:
         """HAND ON / HAND OFF: tell the tool drive circuit (steps 110 and 114)."""
+        self._refuse_while_latched()
         self.plant.close_hand(closed)
+        self._supervisor.hand_moves()
 
     def move(self, command: MoveLinear) -> LinePlan:
         """Plan a straight move from the commanded position and start it; ``Fault`` RBL4xx before anything moves."""
+        self._refuse_while_latched()
         plan = self._planner.plan(np.array(self.areas.ina), command, self.X_flange_tool)
         self._interpolator.start(plan)
         return plan
+
+    def _refuse_while_latched(self) -> None:
+        if self.alarms:
+            raise RuntimeError(f"{self.alarms[0].code} is latched; acknowledge it first")
+
+    def acknowledge(self) -> None:
+        """Take note of the latched alarms: the servos hold the arm where it stands, and moves are possible again.
+
+        The interrupted move is not resumed. ``RuntimeError`` while the arm is still stopping, and when the plant's
+        state is no longer valid.
+        """
+        if not self.alarms:
+            return
+        if not self.halted:
+            raise RuntimeError("the arm is still stopping")
+        q = np.array(self.plant.q)
+        if self.plant.why_invalid() or not np.isfinite(q).all():
+            raise RuntimeError("the state of the plant is no longer valid")
+        self._interpolator.drop()
+        self._power_up(q)
+        self.servo = ServoAxes(self.spec, self.profile.servo, self.profile.tick_s, q, self._fixed)
+        self.servo.motors.i[:] = [cell.T for cell in self.areas.ita] / self.servo.motors.Ktn
+        self._recorded = (self.servo.tau_cmd, self.servo.tau, self.servo.alpha, self.servo.beta)
+        self.areas.ina = np.array(self.servo.alpha)
+        self._fine.hold(self.areas.ina)
+        self._q_cmd = self.areas.ina
+        self._supervisor.restart(self.recorder.tick)
+        self.alarms = []
+        self.halted = False
 
     # state ------------------------------------------------------------------------------------------------------
 
@@ -124,8 +184,8 @@ class Controller:
 
     @property
     def moving(self) -> bool:
-        """Whether set-points are left to send or the command has not come to rest."""
-        return self._interpolator.busy or not self._fine.settled
+        """Whether set-points are left to send or the command has not come to rest; never with the brakes on."""
+        return not self.halted and (self._interpolator.busy or not self._fine.settled)
 
     @property
     def position_error(self) -> float:
@@ -144,23 +204,35 @@ class Controller:
     # the cycle --------------------------------------------------------------------------------------------------
 
     def cycle(self) -> bool:
-        """Run one interpolation period; False when an alarm is latched and nothing was done."""
-        if self.alarms:
+        """Run one interpolation period; False once the brakes hold the arm, and nothing is done from then on."""
+        if self.halted:
             return False
         areas, profile = self.areas, self.profile
         start_us = self.time_us
         self.late_cycles += self._clock.wait_until(start_us)
         motion = self._send()
+        if motion is None:
+            return False
         foreground_us = 0
         if self._interpolator.busy:
             areas.ina = self._interpolator.next()
             foreground_us = profile.interpolation_cost_us
         self.processor.begin_cycle(foreground_us)
-        return self._run_ticks(start_us, motion)
+        if not self._run_ticks(start_us, motion):
+            return False
+        if self.profile.supervision.enabled:
+            self._supervise(start_us, motion)
+        return not self.halted
 
-    def _send(self) -> Array:
-        """Steps 218 and 220: set-points and loads go to the servos; returns the motion (3, ticks, n) of the cycle."""
+    def _send(self) -> Array | None:
+        """Steps 218 and 220: set-points and loads go to the servos; returns the motion (3, ticks, n) of the cycle.
+
+        None, with RBL510 latched, when a cell of ITA is not finite.
+        """
         cells = self.areas.ita
+        if not math.isfinite(sum([cell.D + cell.T for cell in cells])):
+            self._raise_non_finite(self._q_cmd)
+            return None
         D = np.array([cell.D for cell in cells])
         T = np.array([cell.T for cell in cells])
         read_us = np.array([cell.read_us for cell in cells], dtype=np.float64)
@@ -187,8 +259,11 @@ class Controller:
 
     def _raise_non_finite(self, q_cmd: Array) -> None:
         """Latch RBL510 and name the first hand-over that was not finite, from the command to the plant."""
-        servo = self.servo
-        for name, values in (("command q_cmd", q_cmd), ("detected angle q_fb", servo.alpha),
+        servo, cells = self.servo, self.areas.ita
+        for name, values in (("inertia D in ITA", np.array([cell.D for cell in cells])),
+                             ("gravity torque T in ITA", np.array([cell.T for cell in cells])),
+                             ("set-point in INA", self.areas.ina), ("command q_cmd", q_cmd),
+                             ("detected angle q_fb", servo.alpha),
                              ("torque tau_cmd", servo.tau_cmd), ("torque tau_sat", servo.tau)):  # fmt: skip
             bad = ~np.isfinite(values)
             if bad.any():
@@ -196,17 +271,72 @@ class Controller:
                 self.alarm("RBL510", f"the {name} of J{axis + 1} is {values[axis]}", axis)
                 return
         why = self.plant.why_invalid()
-        self.alarm("RBL510", f"the state of the plant is no longer valid{': ' + why if why else ''}")
+        bad = ~(np.isfinite(self.plant.q) & np.isfinite(self.plant.dq))
+        named = re.search(r"(?:DOF|QPOS|QVEL) (\d+)", why)  # MuJoCo counts degrees of freedom, the arm's come first
+        found = int(np.argmax(bad)) if bad.any() else int(named[1]) if named else self.spec.n
+        axis_or_none = found if found < self.spec.n else None
+        self.alarm("RBL510", f"the state of the plant is no longer valid{': ' + why if why else ''}", axis_or_none)
+
+    # supervision and stops --------------------------------------------------------------------------------------
+
+    def _supervise(self, start_us: int, motion: Array) -> None:
+        """Judge the cycle that has just run; while a stop runs, only what makes it fail counts."""
+        supervisor, recorder = self._supervisor, self.recorder
+        rows = recorder.recent(supervisor.observer.rows)
+        found = supervisor.judge(rows, motion[0], motion[1], recorder.tick)
+        if self.alarms:
+            self._follow_stop(found)
+            return
+        if found is None and self.moving:
+            cells, version = self.areas.ita, self.areas.sda_version
+            oldest = start_us - min([cell.read_us for cell in cells])
+            waiting = any(cell.payload_version != version for cell in cells)
+            found = supervisor.stale(oldest, start_us - self._loaded_us if waiting else 0, recorder.tick)
+        overruns = self.processor.overruns  # not those of the wall clock: the host is no part of the controller
+        if overruns != self._overruns or supervisor.was_late:
+            found = found or supervisor.late(overruns != self._overruns, recorder.tick)
+            self._overruns = overruns
+        if found is not None:
+            self._latch(found)
+
+    def _follow_stop(self, found: Finding | None) -> None:
+        """See a controlled stop to its end: brakes when the arm stands, at once when it does not follow."""
+        lost = self._supervisor.watch.lost_track(LOST)
+        if found is not None and found.code in _RUNS_AWAY and found.code != self.alarms[0].code:
+            self._latch(found)
+            self.halt()
+        elif lost is not None:
+            self.alarm("RBL518", f"J{lost + 1} did not follow the controlled stop", lost)
+        elif not self.moving:
+            self._rest_us += self.profile.period_us
+            if bool((np.abs(self.servo.beta) <= AT_REST).all()) or self._rest_us > LONGEST_REST_US:
+                self.halt()
+
+    def halt(self) -> None:
+        """Stop at once (category 0): the brakes hold the arm from this tick on."""
+        self._interpolator.drop()
+        self.halted = True
+
+    def _latch(self, found: Finding) -> None:
+        if found.warning:
+            self.warnings.append(self._alarm_of(found))
+        else:
+            self._stop_by(self._alarm_of(found))
 
     def alarm(self, code: str, message: str, axis: int | None = None) -> None:
-        """Latch an alarm at the running line and the current tick."""
-        self.alarms.append(
-            Alarm(
-                code=code,
-                message=message,
-                tick=self.recorder.tick,
-                axis=axis,
-                line=self.line or None,
-                hint=lookup(code).remedy,
-            )
-        )
+        """Latch an alarm at the running line and the current tick, and stop the arm by its category."""
+        self._stop_by(self._alarm_of(Finding(code=code, message=message, axis=axis, tick=self.recorder.tick)))
+
+    def _alarm_of(self, found: Finding) -> Alarm:
+        entry = lookup(found.code)
+        return Alarm(code=found.code, message=found.message, tick=found.tick, axis=found.axis, line=self.line or None,
+                     hint=entry.remedy, category=entry.category)  # fmt: skip
+
+    def _stop_by(self, alarm: Alarm) -> None:
+        self.alarms.append(alarm)
+        if alarm.category == 0:
+            self.halt()
+        elif len(self.alarms) == 1:
+            self._rest_us = 0
+            limits = self.spec.per_axis("limits", "speed"), self.spec.per_axis("limits", "acceleration")
+            self._interpolator.stop(lambda rows, at: stopping_rows(rows, at, self._fine, *limits))

@@ -14,12 +14,16 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Code:
-    """One thing that can go wrong: ``RBL412``, its kebab-case name, what it means and what to do."""
+    """One thing that can go wrong: ``RBL412``, its kebab-case name, what it means and what to do.
+
+    ``category`` is how an alarm of this code stops the arm: 1 on its path, then the brakes; 0 at once.
+    """
 
     code: str
     name: str
     meaning: str
     remedy: str
+    category: int = 1
 
 
 _registry: dict[str, Code] = {}
@@ -49,7 +53,7 @@ class Alarm:
     """A latched event of the running controller.
 
     ``tick`` is the servo tick at which it was raised, ``axis`` is 0-based (None: no single axis), ``line`` the
-    program line that ran (None: none did).
+    program line that ran (None: none did). ``category`` is the stop that answers it: 0 at once, 1 on the path.
     """
 
     code: str
@@ -58,6 +62,7 @@ class Alarm:
     axis: int | None = None
     line: int | None = None
     hint: str = ""
+    category: int = 1
 
 
 class Fault(Exception):  # noqa: N818 - the field calls it a fault
@@ -134,12 +139,75 @@ register(
         name="non-finite-state",
         meaning="A position, speed or torque became NaN or infinite: the simulation is no longer valid.",
         remedy="The last finite state is in the log. Look at masses, contacts and gains near that moment.",
+        category=0,
+    ),
+    Code(
+        code="RBL511",
+        name="following-error",
+        meaning="An axis is further from its command than the limit for its speed.",
+        remedy="Look for a blocked axis, a drive without its torque or a wrong LOAD; the limits are in "
+        "[controller.supervision].",
+    ),
+    Code(
+        code="RBL512",
+        name="torque-saturation",
+        meaning="A drive was asked for more torque than it can give, for longer than allowed.",
+        remedy="Move slower or with less ACCEL, carry less, or check the declared payload.",
+    ),
+    Code(
+        code="RBL513",
+        name="speed-excursion",
+        meaning="An axis turns faster than its speed limit and margin allow.",
+        remedy="Look for a loop that runs away: gains, payload, encoder.",
+    ),
+    Code(
+        code="RBL514",
+        name="position-excursion",
+        meaning="An axis is outside its range by more than the margin.",
+        remedy="Something moved the arm beyond its command: look at the payload, the drive and the encoder.",
+    ),
+    Code(
+        code="RBL515",
+        name="encoder-fault",
+        meaning="The readings of an encoder cannot be those of an axis that follows its command: it jumps, skips "
+        "samples or stands still.",
+        remedy="Check the encoder, its cable and the brake of the axis. The arm stops at once, since its angles "
+        "cannot be trusted.",
+        category=0,
+    ),
+    Code(
+        code="RBL516",
+        name="collision",
+        meaning="An axis needs another torque than the model of the arm explains, and no payload explains it: the arm "
+        "touches something, or a drive does not give its torque.",
+        remedy="Look for an obstacle in the way, then at the drive and the brake of the axis.",
+    ),
+    Code(
+        code="RBL517",
+        name="payload-mismatch",
+        meaning="The torques say that the arm carries another mass than LOAD declared.",
+        remedy="Put the right LOAD after each HAND ON and HAND OFF; payload_mismatch in [controller.supervision] can "
+        "be stop, warn or off.",
+    ),
+    Code(
+        code="RBL518",
+        name="stop-failed",
+        meaning="The arm did not follow the controlled stop that answers a fault.",
+        remedy="See the alarm before this one; the arm was stopped at once.",
+        category=0,
     ),
     Code(
         code="RBL520",
         name="tick-overrun",
         meaning="The work of an interpolation cycle took longer than the cycle.",
         remedy="Lower the declared costs in the controller profile, or lengthen the cycle.",
+    ),
+    Code(
+        code="RBL521",
+        name="stale-dynamics",
+        meaning="Inertia and gravity torque in use are too old, or still those of the payload before the last LOAD, "
+        "while the arm moves.",
+        remedy="Lower the declared costs in the controller profile, so that the dynamics task gets idle time.",
     ),
     Code(
         code="RBL523",

@@ -7,6 +7,7 @@ A profile file has ``schema = 1`` and the same ``[controller]`` table as a cell.
 docs/timing.md (costs) and docs/servo.md (Kf, Ka, K2, feed-forward source).
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,6 +15,7 @@ from typing import Any, Literal, NoReturn, cast
 
 from runtime.faults import Fault
 from runtime.robot.model import LoadMode
+from runtime.supervision.limits import Reaction, SupervisionLimits
 from runtime.tomlfile import FileFault, Source, Table, load_table, read_source
 from runtime.units import DEG
 
@@ -65,6 +67,7 @@ class Profile:
     in_position: float = 0.05 * DEG
     settle_timeout_us: int = 400_000
     servo: ServoOptions = ServoOptions()
+    supervision: SupervisionLimits = field(default_factory=SupervisionLimits)
 
     @property
     def ticks_per_cycle(self) -> int:
@@ -149,10 +152,31 @@ SERVO = (
     _numbers("position_bandwidth_rad_s", "1/s"),
     _numbers("velocity_bandwidth_rad_s", "1/s"),
 )  # fmt: skip
-KEYS = (*(setting.key for setting in CONTROLLER), *(f"servo.{setting.key}" for setting in SERVO))
+_LIMITS = SupervisionLimits()
+SUPERVISION = (
+    Setting(key="enabled", unit="", default=True, read=lambda table, name: table.flag(name, True)),
+    _number("following_error_deg", "deg", _LIMITS.following_error / DEG, positive=True, high=180.0),
+    _number("following_lag_ms", "ms", _LIMITS.following_lag * 1e3, low=0.0, high=1000.0),
+    _number("saturation_ms", "ms", _LIMITS.saturation_s * 1e3, low=0.0, high=60_000.0),
+    _number("speed_margin", "", _LIMITS.speed_margin, low=0.0, high=10.0),
+    _number("position_margin_deg", "deg", _LIMITS.position_margin / DEG, low=0.0, high=90.0),
+    _number("collision", "", _LIMITS.collision, low=0.0, high=10.0),
+    _number("stale_dynamics_ms", "ms", _LIMITS.stale_s * 1e3, positive=True, high=60_000.0),
+    Setting(key="overruns", unit="", default=_LIMITS.overruns,
+            read=lambda table, name: table.integer(name, low=1, high=1_000_000)),
+    _text("payload_mismatch", "stop", "warn", "off"),
+    _number("payload_tolerance", "", _LIMITS.payload_tolerance, low=0.01, high=10.0),
+    Setting(key="friction", unit="", default=None, read=lambda table, name: table.number(name, low=0.0, high=2.0)),
+    _number("friction_uncertainty", "", _LIMITS.friction_uncertainty, low=0.0, high=1.0),
+    _number("torque_uncertainty", "", _LIMITS.torque_uncertainty, low=1e-4, high=1.0),
+)  # fmt: skip
+_BY_KEY = {
+    **{item.key: item for item in CONTROLLER},
+    **{f"servo.{item.key}": item for item in SERVO},
+    **{f"supervision.{item.key}": item for item in SUPERVISION},
+}
+KEYS = tuple(_BY_KEY)
 """Every key of ``[controller]``, dotted, in the order of the documentation."""
-
-_BY_KEY = {**{item.key: item for item in CONTROLLER}, **{f"servo.{item.key}": item for item in SERVO}}
 UNITS = {key: item.unit for key, item in _BY_KEY.items()}
 """Unit of every key, as people write it; empty for a word or a share."""
 _IDEAL_WHEN_MEASURED = ("servo.velocity_feedforward", "servo.acceleration_feedforward")
@@ -196,12 +220,14 @@ def read_layer(table: Table | None) -> Layer:
     """Read ``[controller]`` of a file; ``FileFault`` RBL6xx at the key that is wrong. None gives nothing."""
     if table is None:
         return {}
-    servo = table.table("servo", required=False)
-    found = {**_read(table, CONTROLLER, ""), **_read(servo, SERVO, "servo.")}
+    found = _read(table, CONTROLLER, "")
     table.ask(*(item.key for item in CONTROLLER))
-    servo.ask(*(item.key for item in SERVO))
+    for name, settings in (("servo", SERVO), ("supervision", SUPERVISION)):
+        group = table.table(name, required=False)
+        found |= _read(group, settings, f"{name}.")
+        group.ask(*(item.key for item in settings))
+        group.done()
     table.done()
-    servo.done()
     return found
 
 
@@ -262,6 +288,25 @@ def parse_profile(table: Table | None) -> Profile:
     return settle(read_layer(table)).profile
 
 
+def _supervision(value: Mapping[str, Any]) -> SupervisionLimits:
+    return SupervisionLimits(
+        enabled=value["enabled"],
+        following_error=value["following_error_deg"] * DEG,
+        following_lag=value["following_lag_ms"] * 1e-3,
+        saturation_s=value["saturation_ms"] * 1e-3,
+        speed_margin=value["speed_margin"],
+        position_margin=value["position_margin_deg"] * DEG,
+        collision=value["collision"] or math.inf,  # 0 switches it off
+        stale_s=value["stale_dynamics_ms"] * 1e-3,
+        overruns=value["overruns"],
+        payload_mismatch=cast(Reaction, value["payload_mismatch"]),
+        payload_tolerance=value["payload_tolerance"],
+        friction=value["friction"],
+        friction_uncertainty=value["friction_uncertainty"],
+        torque_uncertainty=value["torque_uncertainty"],
+    )
+
+
 def _profile(value: Mapping[str, Any]) -> Profile:
     return Profile(
         tick_us=round(value["servo_period_ms"] * 1000),
@@ -284,4 +329,5 @@ def _profile(value: Mapping[str, Any]) -> Profile:
             position_bandwidth=value["servo.position_bandwidth_rad_s"],
             velocity_bandwidth=value["servo.velocity_bandwidth_rad_s"],
         ),
+        supervision=_supervision({key.removeprefix("supervision."): item for key, item in value.items()}),
     )

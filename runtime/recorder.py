@@ -67,6 +67,10 @@ class Recorder:
         np.concatenate(parts, out=self._ticks[self.tick])
         self.tick += 1
 
+    def recent(self, ticks: int) -> Array:
+        """Return at most the last ``ticks`` rows (ticks, 4 n) of (tau_cmd, tau_sat, q_fb, dq_fb): a live view."""
+        return self._ticks[max(0, self.tick - ticks) : self.tick]
+
     def signals(self, tool_poses: Callable[[Array], Array]) -> dict[str, Array]:
         """Return every signal by name; ``tool_poses`` maps joint angles (N, n) to poses (N, 4, 4)."""
         n, ticks = self.n, self.tick

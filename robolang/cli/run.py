@@ -111,36 +111,49 @@ def _write(result: "RunResult", report: Path | None, log: Path | None) -> int:
 
 
 def _print_alarms(project: "Project", result: "RunResult") -> None:
-    from robolang.diagnostics import Diagnostic, render
+    from robolang.diagnostics import Diagnostic, Severity, render
 
+    warnings: Any = result.report["warnings"]
     alarms: Any = result.report["alarms"]
-    for alarm in alarms:
-        message = f"at {alarm['time_s']:.3f} s: {alarm['message']}"
-        found = Diagnostic(code=alarm["code"], message=message, span=_last_span(project, result), hint=alarm["hint"])
-        typer.echo(render(found, project.source), err=True)
+    for severity, found in [(Severity.WARNING, warning) for warning in warnings] + [
+        (Severity.ERROR, alarm) for alarm in alarms
+    ]:
+        message = f"at {found['time_s']:.3f} s: {found['message']}"
+        item = Diagnostic(code=found["code"], message=message, span=_span(project, result, found["line"]),
+                          severity=severity, hint=found["hint"])  # fmt: skip
+        typer.echo(render(item, project.source), err=True)
 
 
-def _last_span(project: "Project", result: "RunResult") -> "Span":
-    """Return the place of the statement that ran last; the start of the program when none did."""
+def _span(project: "Project", result: "RunResult", number: int | None) -> "Span":
+    """Return the place of the statement that ran with this number; the start of the program when none did."""
     from robolang.source import Span
 
     statements: Any = result.report["statements"]
     places = {
         line.source_line: line.statement.span for line in project.program.statements if line.statement is not None
     }
-    return places.get(statements[-1]["line"], Span(0, 0)) if statements else Span(0, 0)
+    for run in reversed(statements):
+        if number in (run["number"], run["line"], None):
+            return places.get(run["line"], Span(0, 0))
+    return Span(0, 0)
 
 
 @contextmanager
 def _signals(session: "Session") -> Iterator[list[int]]:
-    """First Ctrl-C or SIGTERM: end the run with a complete log; the second: leave at once. Yields those received."""
+    """First Ctrl-C or SIGTERM: controlled stop; the second: stop at once; both with a complete log.
+
+    A signal too many, or a second one when the arm already stands, leaves at once. Yields those received.
+    """
     received: list[int] = []
 
     def handle(number: int, _frame: object) -> None:
-        if received:
-            sys.exit(128 + number)
         received.append(number)
-        session.request_stop()
+        if len(received) == 1:
+            session.request_stop()
+        elif len(received) == 2 and session.running:
+            session.request_halt()
+        else:
+            sys.exit(128 + number)
 
     before = {number: signal.signal(number, handle) for number in (signal.SIGINT, signal.SIGTERM)}
     try:

@@ -88,6 +88,15 @@ class FineInterpolator:
         points[3] = setpoint
         return (self._weights @ points).reshape(3, self.ticks, -1)
 
+    def hold(self, q: Array) -> None:
+        """Stand at joint angles q (n,): the pipeline holds nothing else any more."""
+        self._points[:] = q
+
+    @staticmethod
+    def weights(u: Array) -> Array:
+        """Return (..., 4): the share of the set-points (q_-1, q_0, q_1, q_2) in the position at u in [0, 1]."""
+        return np.asarray(_quintic(u) @ _DIFFERENCES)
+
     @property
     def settled(self) -> bool:
         """Whether the output stands still at the last set-point."""
@@ -99,7 +108,14 @@ class FineInterpolator:
         The same numbers as pushing the set-points after the first one by one and then the last one twice more: what
         the servo sees of a move, with the segments in which it leaves and enters rest. Used by the planner.
         """
-        padded = np.concatenate([setpoints[:1], setpoints[:1], setpoints, setpoints[-1:], setpoints[-1:]])
+        return self.continue_(np.concatenate([setpoints[:1], setpoints[:1], setpoints]))
+
+    def continue_(self, setpoints: Array) -> Array:
+        """Return (3, (N - 1) * ticks, n) for set-points (N, n) of which the first three are already in the pipeline.
+
+        The last one is held until the command stands there. As ``expand``, but from a motion that goes on.
+        """
+        padded = np.concatenate([setpoints, setpoints[-1:], setpoints[-1:]])
         segments = len(padded) - 3
         windows = np.stack([padded[k : k + segments] for k in range(4)], axis=1)
         out = (self._weights @ windows).reshape(segments, 3, self.ticks, -1)

@@ -5,6 +5,10 @@ cycle after it was computed. The rows come from the plan, where steps 204 to 210
 the whole move at once. Called once per cycle by the controller.
 """
 
+from collections.abc import Callable
+
+import numpy as np
+
 from runtime.frames import Array
 from runtime.motion.planner import LinePlan
 
@@ -13,25 +17,35 @@ class Interpolator:
     """Hands out the set-points of one move at a time."""
 
     def __init__(self) -> None:
-        self._plan: LinePlan | None = None
+        self._rows: Array | None = None
         self._n = 0
 
     def start(self, plan: LinePlan) -> None:
         """Begin a move; ``RuntimeError`` when another one still runs."""
         if self.busy:
             raise RuntimeError("a move is running")
-        self._plan = plan
+        self._rows = plan.q
         self._n = 0
+
+    def stop(self, stopping: Callable[[Array, int], Array]) -> None:
+        """Replace the rows that are left by those of a controlled stop, ``stopping(rows, reached)``."""
+        if self._rows is not None and self.busy:
+            reached = self._rows[: self._n + 1]
+            self._rows = np.concatenate([reached, stopping(self._rows, self._n)])
+
+    def drop(self) -> None:
+        """Forget the move: no set-point is left to send."""
+        self._rows = None
 
     @property
     def busy(self) -> bool:
         """Whether set-points are left to send (step 222)."""
-        return self._plan is not None and self._n + 1 < len(self._plan.q)
+        return self._rows is not None and self._n + 1 < len(self._rows)
 
     def next(self) -> Array:
         """Return the joint set-point (n,) rad of this cycle; ``RuntimeError`` when the target was reached."""
-        if self._plan is None or not self.busy:
+        if self._rows is None or not self.busy:
             raise RuntimeError("no move is running")
         self._n += 1
-        row: Array = self._plan.q[self._n]
+        row: Array = self._rows[self._n]
         return row

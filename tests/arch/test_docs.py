@@ -55,7 +55,7 @@ FILE = re.compile(
 TEST = re.compile(r"`(test_\w+)`")
 COMMAND = re.compile(r"`(robolang(?: [^`]*)?)`")
 OPTION = re.compile(r"`(--[a-z-]+)")
-MAKE = re.compile(r"`(make \w+)`")
+MAKE = re.compile(r"`(make [\w-]+)`")
 CITED = re.compile(r"docs/[\w/-]*\w(?:\.md)?")
 
 
@@ -340,7 +340,7 @@ def parse_command(words: list[str]) -> None:
 
 
 def make_targets() -> set[str]:
-    return set(re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE))
+    return set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE))
 
 
 if __name__ == "__main__":

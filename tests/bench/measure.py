@@ -108,7 +108,9 @@ def run_text(text: str, servo: str | None = None) -> tuple[Session, RunResult]:
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "program.rbl"
         program.write_text(text)
-        session = Session(load_project(program, servo=servo))
+        project = load_project(program, servo=servo)
+        warn = replace(project.profile.supervision, payload_mismatch="warn")  # so that the whole program is measured
+        session = Session(project.with_profile(replace(project.profile, supervision=warn)))
         return session, session.run()
 
 

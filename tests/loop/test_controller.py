@@ -177,7 +177,7 @@ class BrokenPlant(RigidPlant):
 @pytest.mark.parametrize(
     ("what", "named", "axis"),
     [
-        ("state", "state of the plant is no longer valid: a joint speed", None),
+        ("state", "state of the plant is no longer valid: a joint speed", 2),
         ("angle", "detected angle q_fb of J2", 1),
     ],
 )
@@ -198,7 +198,9 @@ def test_a_state_that_is_not_finite_is_caught_in_its_tick_named_and_latched(what
     assert len(robot.alarms) == 1
 
 
-@pytest.mark.parametrize(("where", "named"), [("ita", "torque tau_cmd of J4"), ("ina", "command q_cmd of J4")])
+@pytest.mark.parametrize(
+    ("where", "named"), [("ita", "gravity torque T in ITA of J4"), ("ina", "set-point in INA of J4")]
+)
 def test_a_hand_over_that_is_not_finite_is_named(where, named):
     robot = controller()
     robot.cycle()

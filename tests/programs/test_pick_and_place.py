@@ -3,6 +3,7 @@
 The 1992 listing runs once for the whole module; every figure that docs/measured.md quotes for it is asserted here.
 """
 
+import dataclasses
 import json
 import os
 import re
@@ -165,12 +166,34 @@ def test_two_runs_give_the_same_bytes(tmp_path, result):
     assert (tmp_path / "here.npz").read_bytes() == one[0]
 
 
+def forgotten(folder: Path) -> Path:
+    """Write the listing with line 50 left out and return its path."""
+    path = folder / "forgotten.rbl"
+    path.write_text(re.sub(r"(?m)^50 LOAD.*$", "", PROGRAM.read_text()))
+    return path
+
+
+def test_a_forgotten_load_is_reported_where_the_part_is_first_carried(tmp_path):
+    """R08: declared 0.8 kg, carried 2.3 kg; the arm stops on the line of the move and nothing comes after it."""
+    result = Session(load_project(forgotten(tmp_path))).run()
+    (alarm,) = result.report["alarms"]
+    assert (alarm["code"], alarm["line"], alarm["category"]) == ("RBL517", 60, 1)
+    declared, estimated, sigma = map(float, re.findall(r"\d+\.\d+", alarm["message"]))
+    assert declared == HAND
+    assert abs(estimated - HAND_AND_PART) < 2.0 * sigma < 0.5
+    assert result.report["statements"][-1]["number"] == 60
+    assert np.abs(result.log["dq_cmd"][-1]).max() < 1e-9
+    assert result.report["statements"][-1]["path_deviation_mm"] < 2.0
+
+
 def test_a_forgotten_load_droops_and_a_right_one_does_not(tmp_path, result):
-    """A7: LOAD omitted, the command is the same and the arm hangs lower."""
-    text = PROGRAM.read_text()
-    forgotten = tmp_path / "forgotten.rbl"
-    forgotten.write_text(re.sub(r"(?m)^50 LOAD.*$", "", text))
-    other = Session(load_project(forgotten)).run()
+    """A7: LOAD omitted, the command is the same and the arm hangs lower; supervision only warns."""
+    project = load_project(forgotten(tmp_path))
+    supervision = dataclasses.replace(project.profile.supervision, payload_mismatch="warn")
+    project = project.with_profile(dataclasses.replace(project.profile, supervision=supervision))
+    other = Session(project).run()
+    assert other.ok
+    assert [(entry["code"], entry["line"]) for entry in other.report["warnings"]] == [("RBL517", 60)]
     carried = ticks(other, 70)
     same = ticks(result, 70)[: len(carried)]
     np.testing.assert_array_equal(other.log["q_plan"][carried[:100]], result.log["q_plan"][same[:100]])

@@ -15,6 +15,7 @@ from tests.lang.cli.commands import dry, robolang
 REPORT_KEYS = {
     "program", "robot", "ok", "physics", "servo", "sim_time_s", "wall_time_s", "realtime_factor", "cycles",
     "overruns", "statements", "dynamics", "payload_history", "objects", "alarms",
+    "warnings",
 }  # fmt: skip
 STATEMENT_KEYS = {
     "line", "number", "text", "start_s", "duration_s", "planned_s", "joint_error_deg", "tool_error_mm",

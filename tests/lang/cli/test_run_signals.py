@@ -12,6 +12,7 @@ import pytest
 from mcap.reader import make_reader
 
 from robolang import runlog
+from runtime.controller import Controller
 from tests.lang.cli.commands import ROOT, robolang
 
 
@@ -42,7 +43,8 @@ def test_the_first_signal_ends_the_run_with_complete_files(tmp_path, number, cod
     assert [(alarm["code"], alarm["line"]) for alarm in report["alarms"]] == [("RBL530", 20)]
     assert report["ok"] is False
     assert 0.1 <= report["sim_time_s"] < 10.0
-    assert report["alarms"][0]["time_s"] == report["sim_time_s"]  # nothing was recorded after it
+    assert report["alarms"][0]["category"] == 1
+    assert 0.0 < report["sim_time_s"] - report["alarms"][0]["time_s"] < 1.5  # the controlled stop is in the log
     if log == "l.npz":
         ticks = len(np.load(tmp_path / log)["t"])
     else:
@@ -70,6 +72,27 @@ def test_a_signal_while_the_files_are_written_does_not_cut_them_off(tmp_path, mo
         assert len(np.load(tmp_path / "l.npz")["t"]) > 700
         assert json.loads((tmp_path / "r.json").read_text())["ok"] is True
         assert sorted(path.name for path in tmp_path.iterdir()) == ["l.npz", "p.rbl", "r.json"]
+
+
+def test_the_second_signal_ends_the_run_in_motion_with_complete_files(tmp_path, monkeypatch):
+    """In this process: both signals arrive in one cycle, so the arm is stopped at once and not on its path."""
+    (tmp_path / "p.rbl").write_text("MOVE P1\n")
+    cycle, seen = Controller.cycle, []
+
+    def interrupted(controller):
+        seen.append(1)
+        if len(seen) == 40:
+            os.kill(os.getpid(), signal.SIGINT)
+            os.kill(os.getpid(), signal.SIGINT)
+        return cycle(controller)
+
+    monkeypatch.setattr(Controller, "cycle", interrupted)
+    words = ["--report", tmp_path / "r.json", "--log", tmp_path / "l.npz"]
+    robolang("run", "--no-physics", tmp_path / "p.rbl", *words, code=130)
+    with np.load(tmp_path / "l.npz") as log:
+        assert len(log["t"]) == 40 * 8
+        assert np.abs(log["dq_cmd"][-1]).max() > 0.05
+    assert json.loads((tmp_path / "r.json").read_text())["alarms"][0]["code"] == "RBL530"
 
 
 def test_the_second_signal_leaves_at_once_and_leaves_no_half_file(tmp_path, monkeypatch):

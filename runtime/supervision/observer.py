@@ -1,0 +1,149 @@
+r"""Torque residual, collision and the mass that is really carried, from what the motors gave.
+
+Equation of motion on the joint side, with the payload that LOAD declared in M and h:
+
+    (M(q) + N^2 J) ddq + h(q, dq) + f(dq) + r = tau          f = N^2 B dq + |N| Tc sign(dq)
+
+The residual r is what the model does not explain. Second differences of readings one cycle P apart are the true
+acceleration weighted by a triangle, ``q(t+P) - 2 q(t) + q(t-P) = int a(s) (P - |s - t|) ds``, so the torque is averaged
+with the same triangle over the same two cycles; a torque that is constant in each tick has the weights (j + 1/2) / m^2,
+rising then falling, which sum to 1. No speed is differentiated and no filter has to be tuned. The idea of a residual
+as an observer of unexpected torque: De Luca, Mattone, "Sensorless robot collision detection", ICRA 2005.
+
+A payload that differs from the declared one by (dm, dh), mass and first moment in the flange frame, adds
+
+    r = Y (dm, dh),    Y = J' R(v, a - g)
+
+with J the Jacobian of the last joint and R the regressor of its body, columns of mass and first moment. Least squares
+with a forgetting factor over the cycles in which the arm moves; row i weighs 1/sigma_i^2,
+
+    sigma_i = torque_uncertainty tau_max + friction_uncertainty |f_i|    turning,    + |N| Tc    near rest,
+
+because below ``TURNING`` the Coulomb friction may be anything between its two values. The errors are systematic and
+do not average out, so the information is that of one mean cycle, not of their number: the quoted +- is one standard
+deviation of that. Priors: the difference is of the order of the rated payload, and its centre of gravity
+within ``COG`` of the declared one, which decides where the motion does not show it.
+
+What is left of r after the best payload belongs to no payload: a contact, or a drive. Called once per cycle.
+"""
+
+import math
+
+import numpy as np
+import pinocchio as pin
+
+from runtime.frames import Array
+from runtime.robot.model import ArmModel, LoadMode
+from runtime.robot.payload import Payload
+from runtime.robot.spec import RobotSpec
+from runtime.supervision.limits import SupervisionLimits
+
+TURNING = 0.05
+"""Speed above which the sign of the friction is known, rad/s."""
+COG = 0.1
+"""Standard deviation of the centre of gravity of what is carried but not declared, m."""
+MEMORY = 12
+"""Least-squares steps that the estimate remembers (one for every ``STRIDE`` residuals)."""
+STRIDE = 2
+FEWEST = 5
+"""Least-squares steps before the estimate is believed."""
+
+
+class LoadModel(ArmModel):
+    """The arm with rotors and the declared payload, and the torque that a small further payload would add."""
+
+    def __init__(self, spec: RobotSpec) -> None:
+        super().__init__(spec, rotors=True)
+        R, p = spec.X_last_flange[:3, :3], spec.X_last_flange[:3, 3]
+        self._to_joint = np.zeros((4, 4))
+        self._to_joint[0, 0], self._to_joint[1:, 0], self._to_joint[1:, 1:] = 1.0, p, R
+
+    def regressor(self, q: Array) -> Array:
+        """Return Y (n, 4), N m per kg and kg m of (m, m c), flange frame, for the motion last given to ``torque``."""
+        body = pin.jointBodyRegressor(self._model, self._data, self.n)[:, :4]
+        jacobian = pin.computeJointJacobian(self._model, self._data, q, self.n)
+        return np.asarray(jacobian.T @ body @ self._to_joint)
+
+
+class Observer:
+    """Residual of each cycle and the running estimate of the payload."""
+
+    def __init__(self, spec: RobotSpec, limits: SupervisionLimits, torque: Array, ticks: int, tick_s: float,
+                 friction: float) -> None:  # fmt: skip
+        self._model = LoadModel(spec)
+        self._ticks, self._period_s = ticks, ticks * tick_s
+        ramp = (np.arange(ticks) + 0.5) / ticks**2
+        self._triangle = np.concatenate([ramp, ramp[::-1]])
+        coulomb = friction * np.array([axis.motor.joint_coulomb_friction for axis in spec.axes])
+        self._forward, self._backward = coulomb[:, 0].copy(), coulomb[:, 1].copy()
+        self._coulomb = coulomb.max(axis=1)
+        self._viscous = friction * spec.per_axis("motor", "joint_viscous_friction")
+        self._base = limits.torque_uncertainty * torque
+        self._share = limits.friction_uncertainty
+        self._rated = spec.rated_payload
+        self._declared = Payload(mass=0.0, cog=np.zeros(3))
+        self.residual = np.zeros(spec.n)
+        """Torque that the model does not explain (n,), N m."""
+        self.sigma = self._base.copy()
+        """How well the model is known at this motion (n,), N m."""
+        self._q = np.zeros(spec.n)
+        self.restart()
+
+    @property
+    def rows(self) -> int:
+        """Ticks of the past that ``update`` needs."""
+        return 2 * self._ticks + 1
+
+    def declare(self, payload: Payload, mode: LoadMode) -> None:
+        """Take the payload of a LOAD: estimates start anew."""
+        self._model.set_payload(payload, mode)
+        self._declared = payload
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget what was carried: the hand has opened or closed, or another LOAD holds."""
+        self._information, self._moment, self.steps = np.zeros((4, 4)), np.zeros(4), 0
+        self._leftover = np.zeros(len(self._base))
+        prior = np.zeros((4, 4))
+        prior[0, 0] = 1.0 / self._rated**2
+        for k in range(3):
+            row = np.zeros(4)
+            row[0], row[1 + k] = -self._declared.cog[k], 1.0
+            prior += np.outer(row, row) / (COG * self._rated) ** 2
+        self._prior = prior
+
+    def update(self, tau: Array, q: Array) -> None:
+        """Take torques and readings (2 ticks + 1, n) of the last two cycles; sets ``residual`` and ``sigma``."""
+        m = self._ticks
+        before, now, after = q[0], q[m], q[2 * m]
+        speed = (after - before) / (2.0 * self._period_s)
+        acceleration = (after - 2.0 * now + before) / self._period_s**2
+        dry = np.where(speed > 0.0, self._forward, self._backward) * np.tanh(speed / 0.01)
+        friction = dry + self._viscous * speed
+        self.residual = self._triangle @ tau[: 2 * m] - friction - self._model.torque(now, speed, acceleration)
+        resting = np.abs(speed) < TURNING
+        self.sigma = self._base + np.where(resting, self._coulomb, self._share * np.abs(friction))
+        self._q = now
+
+    def learn(self) -> None:
+        """Take the last residual into the estimate of the payload."""
+        Y = self._model.regressor(self._q)
+        weighted = Y / (self.sigma**2)[:, None]
+        self.steps += 1
+        share = 1.0 / min(self.steps, MEMORY)
+        self._information += share * (weighted.T @ Y - self._information)
+        self._moment += share * (weighted.T @ self.residual - self._moment)
+        if self.steps >= FEWEST:
+            difference = np.linalg.solve(self._information + self._prior, self._moment)
+            normal = (self.residual - Y @ difference) / self.sigma
+            self._leftover += share * (normal - self._leftover)
+
+    def estimate(self) -> tuple[float, float]:
+        """Return (mass really carried, its standard deviation), kg."""
+        covariance = np.linalg.inv(self._information + self._prior)
+        return self._declared.mass + float(covariance[0] @ self._moment), math.sqrt(float(covariance[0, 0]))
+
+    @property
+    def leftover(self) -> Array:
+        """Mean of what no payload explains, in standard deviations (n,)."""
+        return self._leftover
