@@ -152,9 +152,9 @@ def measures(log: dict[str, Array], X_cmd: Array, statements: list[StatementRun]
                               "tool_rms_mm", "path_deviation_mm", "droop_deg", "per_axis", "moves"))  # fmt: skip
     ticks = np.concatenate([np.arange(run.first_tick, run.end_tick) for run in moves])
     joint = np.abs(log["q_cmd"][ticks] - log["q_fb"][ticks]) / DEG
-    p_fb = log["X_world_tool_fb"][:, :3, 3]
-    tool = np.linalg.norm(X_cmd[ticks, :3, 3] - p_fb[ticks], axis=1) / MM
-    rows = [_move(run, log, p_fb) for run in moves]
+    p_tool = log["X_world_tool"][:, :3, 3]
+    tool = np.linalg.norm(X_cmd[ticks, :3, 3] - p_tool[ticks], axis=1) / MM
+    rows = [_move(run, log, p_tool) for run in moves]
     overshoots = [row["overshoot_pct"] for row in rows if row["overshoot_pct"] is not None]
     settled = [row["settling_s"] for row in rows]
     droop = np.array([row["droop_deg"] for row in rows])
@@ -176,7 +176,7 @@ def measures(log: dict[str, Array], X_cmd: Array, statements: list[StatementRun]
     }
 
 
-def _move(run: StatementRun, log: dict[str, Array], p_fb: Array) -> dict[str, Any]:
+def _move(run: StatementRun, log: dict[str, Array], p_tool: Array) -> dict[str, Any]:
     span = slice(run.first_tick, run.end_tick)
     assert run.path is not None  # only moves get here
     q_cmd, q_fb, t = log["q_cmd"][span], log["q_fb"][span], log["t"][span]
@@ -185,9 +185,9 @@ def _move(run: StatementRun, log: dict[str, Array], p_fb: Array) -> dict[str, An
         "line": run.number if run.number is not None else run.line,
         "overshoot_pct": overshoot,
         "settling_s": settling,
-        "path_deviation_mm": float(run.path.deviation(p_fb[span]).max()) / MM,
+        "path_deviation_mm": float(run.path.deviation(p_tool[span]).max()) / MM,
         "droop_deg": ((q_cmd[-1] - q_fb[-1]) / DEG).tolist(),
-        "left_mm": float(np.linalg.norm(run.path.X_end[:3, 3] - p_fb[span][-1])) / MM,
+        "left_mm": float(np.linalg.norm(run.path.X_end[:3, 3] - p_tool[span][-1])) / MM,
     }
 
 

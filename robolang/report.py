@@ -1,7 +1,7 @@
 """The report of a run: what each statement did and how well, in the units people read. Plain JSON types only.
 
-Errors compare the command that the servo received with the detected joint angles, at the same tick. ``tool error`` is
-the distance between the commanded and the actual tool point; ``path deviation`` is the distance of the actual tool
+Joint errors compare the command that the servo received with the detected angles, at the same tick. ``tool error`` is
+the distance between the commanded and the true tool point, beyond the gear springs; ``path deviation`` is the distance of the actual tool
 point from the straight segment of a MOVE, however far along it is. Everything but the wall times repeats exactly.
 """
 
@@ -65,9 +65,9 @@ class _Measures:
     """Error measures of every tick, computed once for the whole run."""
 
     def __init__(self, log: dict[str, Array], X_cmd: Array, torque: Array) -> None:
-        self.p_fb = log["X_world_tool_fb"][:, :3, 3]
+        self.p_tool = log["X_world_tool"][:, :3, 3]
         self.joint_deg = np.abs(log["q_cmd"] - log["q_fb"]).max(axis=1) / DEG
-        self.tool_mm = np.linalg.norm(X_cmd[:, :3, 3] - self.p_fb, axis=1) / MM
+        self.tool_mm = np.linalg.norm(X_cmd[:, :3, 3] - self.p_tool, axis=1) / MM
         self.torque_pct = np.abs(log["tau_sat"] / torque).max(axis=1) / PERCENT
 
 
@@ -75,7 +75,7 @@ def _statement(run: StatementRun, measures: _Measures, tick_us: int) -> dict[str
     span = slice(run.first_tick, run.end_tick)
     deviation = None
     if run.path is not None and run.end_tick > run.first_tick:
-        deviation = float(run.path.deviation(measures.p_fb[span]).max()) / MM
+        deviation = float(run.path.deviation(measures.p_tool[span]).max()) / MM
     return {
         "line": run.line,
         "number": run.number,

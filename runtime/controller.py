@@ -89,13 +89,13 @@ class Controller:
         self.servo = ServoAxes(spec, profile.servo, profile.tick_s, q, self._fixed)
         self.servo.motors.i[:] = [cell.T for cell in self.areas.ita] / self.servo.motors.Ktn
         self.processor = IdleProcessor(self._dynamics)
-        self.recorder = Recorder(spec.n, profile.ticks_per_cycle, profile.tick_us)
+        self.recorder = Recorder(spec.n, profile.ticks_per_cycle, profile.tick_us, plant.q_link)
         self._planner = LinePlanner(spec, self.kinematics, profile)
         self._interpolator = Interpolator()
         self._fine = fine or FineInterpolator(profile.ticks_per_cycle, profile.period_s, q)
         self._q_cmd = q
         servo = self.servo
-        self._recorded = (servo.tau_cmd, servo.tau, servo.alpha, servo.beta)
+        self._recorded = (servo.tau_cmd, servo.tau, servo.alpha, servo.beta, plant.q_link)
         self._supervisor = Supervisor(
             spec, profile.supervision, torque=torque_limit(spec), resolution=encoder_resolution(spec),
             lag=(1.0 - profile.servo.velocity_feedforward) / spec.per_axis("bandwidths", "position"),
@@ -167,7 +167,8 @@ class Controller:
         self._power_up(q)
         self.servo = ServoAxes(self.spec, self.profile.servo, self.profile.tick_s, q, self._fixed)
         self.servo.motors.i[:] = [cell.T for cell in self.areas.ita] / self.servo.motors.Ktn
-        self._recorded = (self.servo.tau_cmd, self.servo.tau, self.servo.alpha, self.servo.beta)
+        servo = self.servo
+        self._recorded = (servo.tau_cmd, servo.tau, servo.alpha, servo.beta, self.plant.q_link)
         self.areas.ina = np.array(self.servo.alpha)
         self._fine.hold(self.areas.ina)
         self._q_cmd = self.areas.ina

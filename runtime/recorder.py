@@ -10,6 +10,8 @@ signal                    unit    meaning
 ``tau_sat``               N m     torque that the motor gives, after current limit and current loop
 ``q_fb`` ``dq_fb``        rad     detected angle, and speed from its differences (rad/s)
 ``X_world_tool_fb``       m       pose of the tool from the detected angles, (4, 4)
+``q_link``                rad     true angle of the link, beyond the gear spring where there is one
+``X_world_tool``          m       true pose of the tool, from the true angles, (4, 4)
 ``D`` ``T``               kg m2   inertia and gravity torque (N m) in use, without the rotor
 ``D_age`` ``T_age``       ms      time since the angles were read from which they were computed
 ``payload_mass``          kg      mass declared by LOAD
@@ -17,7 +19,7 @@ signal                    unit    meaning
 ``wrist_mode``            -       0: wrist follows the path
 ========================  ======  ==========================================================================
 
-The hot path copies one row of four vectors per tick and one row per cycle into arrays that grow by doubling; what
+The hot path copies one row of five vectors per tick and one row per cycle into arrays that grow by doubling; what
 follows from them is computed once, at the end. Two runs of the same program give the same bytes.
 """
 
@@ -33,11 +35,13 @@ _FIRST_ROWS = 8192
 class Recorder:
     """Collects the signals of one run of a robot with n axes."""
 
-    def __init__(self, n: int, ticks_per_cycle: int, tick_us: int) -> None:
+    def __init__(self, n: int, ticks_per_cycle: int, tick_us: int, q_link: Array | None = None) -> None:
+        """``q_link`` (n,) rad: the true link angles at the start of the run (None: zero)."""
         self.n = n
+        self._first_link = np.zeros(n) if q_link is None else np.array(q_link)
         self._ticks_per_cycle = ticks_per_cycle
         self._tick_us = tick_us
-        self._ticks = np.zeros((_FIRST_ROWS, 4 * n))
+        self._ticks = np.zeros((_FIRST_ROWS, 5 * n))
         self._commands = np.zeros((_FIRST_ROWS, 2 * n))
         self._cycles = np.zeros((_FIRST_ROWS // ticks_per_cycle + 1, 4 * n + 2))
         self.tick = 0
@@ -62,14 +66,14 @@ class Recorder:
         self._commands[self.tick : end, : self.n] = motion[0]
         self._commands[self.tick : end, self.n :] = motion[1]
 
-    def record(self, parts: tuple[Array, Array, Array, Array]) -> None:
-        """Record one tick: (tau_cmd, tau_sat, q_fb, dq_fb), each (n,)."""
+    def record(self, parts: tuple[Array, Array, Array, Array, Array]) -> None:
+        """Record one tick: (tau_cmd, tau_sat, q_fb, dq_fb) and the true link angles at its end, each (n,)."""
         np.concatenate(parts, out=self._ticks[self.tick])
         self.tick += 1
 
     def recent(self, ticks: int) -> Array:
         """Return at most the last ``ticks`` rows (ticks, 4 n) of (tau_cmd, tau_sat, q_fb, dq_fb): a live view."""
-        return self._ticks[max(0, self.tick - ticks) : self.tick]
+        return self._ticks[max(0, self.tick - ticks) : self.tick, : 4 * self.n]
 
     def signals(self, tool_poses: Callable[[Array], Array]) -> dict[str, Array]:
         """Return every signal by name; ``tool_poses`` maps joint angles (N, n) to poses (N, 4, 4)."""
@@ -79,6 +83,7 @@ class Recorder:
         age_ms = (t_us[:, None] - cycles[:, 3 * n : 4 * n]) * 1e-3
         tick = self._ticks[:ticks]
         q_fb = tick[:, 2 * n : 3 * n]
+        q_link = np.concatenate([self._first_link[None], tick[:, 4 * n :]])[:ticks]
         signals = {
             "t": t_us * 1e-6,
             "q_plan": cycles[:, :n],
@@ -87,8 +92,10 @@ class Recorder:
             "tau_cmd": tick[:, :n],
             "tau_sat": tick[:, n : 2 * n],
             "q_fb": q_fb,
-            "dq_fb": tick[:, 3 * n :],
+            "dq_fb": tick[:, 3 * n : 4 * n],
             "X_world_tool_fb": tool_poses(q_fb),
+            "q_link": q_link,
+            "X_world_tool": tool_poses(q_link),
             "D": cycles[:, n : 2 * n],
             "T": cycles[:, 2 * n : 3 * n],
             "D_age": age_ms,

@@ -213,7 +213,7 @@ def test_every_signal_is_in_the_table_with_its_shape():
     recorder = Recorder(6, 8, 1000)
     zeros = np.zeros(6)
     recorder.begin_cycle(zeros, zeros, zeros, zeros, np.zeros((3, 8, 6)), 0.0, 0)
-    recorder.record((zeros, zeros, zeros, zeros))
+    recorder.record((zeros, zeros, zeros, zeros, zeros))
     signals = recorder.signals(lambda q: np.zeros((len(q), 4, 4)))
     shapes = {key: "(N, " + ", ".join("n" if k == 6 else str(k) for k in values.shape[1:]) + ")"
               for key, values in signals.items()}  # fmt: skip

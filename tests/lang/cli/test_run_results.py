@@ -23,7 +23,7 @@ STATEMENT_KEYS = {
 }  # fmt: skip
 SIGNALS = {
     "t", "q_plan", "q_cmd", "dq_cmd", "tau_cmd", "tau_sat", "q_fb", "dq_fb", "X_world_tool_fb", "D", "T", "D_age",
-    "T_age", "payload_mass", "line", "wrist_mode",
+    "T_age", "payload_mass", "line", "wrist_mode", "q_link", "X_world_tool",
 }  # fmt: skip
 PROGRAMS = {
     "move": "10 LOAD (0, 0, 60), 0.8\n20 MOVE P1\n",
@@ -105,7 +105,7 @@ def test_the_npz_has_every_signal_with_the_ticks_first(results, name):
     assert set(log) == SIGNALS
     assert ticks == (0 if name != "move" else strict(results[name][0] / "r.json")["cycles"] * 8)
     for signal in SIGNALS:
-        shape = {"X_world_tool_fb": (4, 4)}.get(
+        shape = {"X_world_tool_fb": (4, 4), "X_world_tool": (4, 4)}.get(
             signal, () if signal in ("t", "payload_mass", "line", "wrist_mode") else (6,)
         )
         assert log[signal].shape == (ticks, *shape), signal
