@@ -1,8 +1,9 @@
 """The report of a run: what each statement did and how well, in the units people read. Plain JSON types only.
 
 Joint errors compare the command that the servo received with the detected angles, at the same tick. ``tool error`` is
-the distance between the commanded and the true tool point, beyond the gear springs; ``path deviation`` is the distance of the actual tool
-point from the straight segment of a MOVE, however far along it is. Everything but the wall times repeats exactly.
+the distance between the commanded and the true tool point, beyond the gear springs; ``path deviation`` is the distance
+of the true tool point from the straight segment of a MOVE, however far along it is. Everything but the wall times
+repeats exactly.
 """
 
 from typing import Any
