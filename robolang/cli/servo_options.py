@@ -29,7 +29,7 @@ LoadMode = Annotated[
 ServoPeriod = Annotated[str | None, typer.Option("--servo-period", help="Servo tick, ms: 0.25, 0.5 or 1.")]
 ProfileFile = Annotated[str | None, typer.Option("--profile", help="Controller profile file (.toml).")]
 Set = Annotated[
-    list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Any key of [controller], e.g. "
+    list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Any key of the controller profile, e.g. "
                                    "servo.gravity_compensation=0.")
 ]  # fmt: skip
 
