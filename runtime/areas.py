@@ -12,7 +12,8 @@ ANG    angles of the axis being computed           dynamics task, step 302  dyna
 =====  ==========================================  =======================  ============================
 
 PA and PDA belong to the language and live in the session; the other four are here. What one task hands to another
-is one frozen object swapped by one assignment, so a reader sees the old one or the new one, never a mixture.
+is one frozen object swapped by one assignment, so a reader sees the old one or the new one, never a mixture. ANG is
+the dynamics task's own and is written in place.
 """
 
 from dataclasses import dataclass, field

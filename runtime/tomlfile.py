@@ -11,7 +11,7 @@ import os
 import re
 import stat
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
@@ -315,13 +315,6 @@ class Table:
         """Return the sub-tables ``[key.NAME]`` by name (empty when there are none)."""
         outer = self.table(key, required=False)
         return {name: outer.table(name) for name in outer.names()}
-
-    def attempt(self, key: str, make: Callable[[], Any], code: str) -> Any:
-        """Call ``make`` and turn its ``ValueError`` into a located fault at ``key``."""
-        try:
-            return make()
-        except ValueError as error:
-            self.fail(code, str(error), key=key)
 
     def ask(self, *keys: str) -> None:
         """Count optional keys as known, whether they are there or not."""

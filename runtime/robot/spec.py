@@ -16,8 +16,6 @@ import numpy as np
 
 from runtime.frames import Array
 
-GEOMETRY_TOLERANCE = 1e-9
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Body:
