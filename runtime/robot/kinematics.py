@@ -72,7 +72,7 @@ class Kinematics:
         X = np.eye(4)
         for X in self._axis_frames(np.asarray(q, dtype=np.float64)):  # noqa: B007 - the last one is wanted
             pass
-        return np.asarray(X @ self.spec.X_last_flange)
+        return np.asarray((X.reshape(-1, 4) @ self.spec.X_last_flange).reshape(X.shape))
 
     def jacobian(self, q: ArrayLike) -> Array:
         """Return the Jacobian (..., 6, n): rows 0-2 velocity of the flange origin m/s per rad/s, 3-5 angular."""
@@ -156,7 +156,7 @@ class Kinematics:
         """Yield the frame of each axis, turned, in the base frame (..., 4, 4)."""
         X = np.eye(4)
         for i, axis in enumerate(self.spec.axes):
-            X = X @ axis.placement
+            X = (X.reshape(-1, 4) @ axis.placement).reshape(X.shape)  # one product for all postures
             c, s = np.cos(q[..., i])[..., None], np.sin(q[..., i])[..., None]
             x, y = X[..., :, 0], X[..., :, 1]
             turned = np.empty((*q.shape[:-1], 4, 4))
