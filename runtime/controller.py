@@ -221,7 +221,7 @@ class Controller:
         self.processor.begin_cycle(foreground_us)
         if not self._run_ticks(start_us, motion):
             return False
-        if self.profile.supervision.enabled:
+        if self.profile.supervision.enabled or self.alarms:  # a stop is seen to its end in any case
             self._supervise(start_us, motion)
         return not self.halted
 

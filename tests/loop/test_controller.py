@@ -13,6 +13,7 @@ from runtime.motion.commands import MoveLinear
 from runtime.plant.rigid_plant import RigidPlant
 from runtime.profile import Profile, ServoOptions
 from runtime.robot.payload import Payload
+from runtime.supervision.limits import SupervisionLimits
 
 CELL = builtin_cell()
 IDEAL = ServoOptions(friction_compensation=0.0)
@@ -96,6 +97,22 @@ def test_the_brakes_open_onto_the_torque_that_holds_the_arm():
     first = signals(robot)["tau_sat"][0]
     bare = np.array([cell.T for cell in controller().areas.ita])
     np.testing.assert_allclose(first, bare, atol=0.02 * np.abs(bare).max())
+
+
+@pytest.mark.parametrize("enabled", [True, False])
+def test_a_controlled_stop_ends_whether_or_not_supervision_is_on(enabled):
+    robot = controller(Profile(supervision=SupervisionLimits(enabled=enabled)))
+    robot.load(carried_payload())
+    robot.move(down(robot, -0.18))
+    for _ in range(30):
+        robot.cycle()
+    robot.alarm("RBL530", "stopped by the test")
+    cycles = 0
+    while robot.cycle():
+        cycles += 1
+        assert cycles < 200
+    assert robot.halted
+    assert cycles > 5  # it came to rest on its path, not at once
 
 
 def test_a_starved_task_leaves_old_loads_in_use_and_their_age_shows_it():

@@ -106,3 +106,23 @@ def test_a_foreground_longer_than_the_period_is_counted_and_starves_the_backgrou
     bench.run(cycles=10)
     assert bench.cpu.overruns == 9
     assert bench.refreshes == []
+
+
+def test_a_foreground_that_is_late_again_and_again_falls_further_behind():
+    """Ci of 9 ms in cycles of 8 ms: after k cycles the foreground owes k ms, and the background waits for all of it."""
+    bench = Bench(9000, 100)
+    bench.run(cycles=5)
+    assert bench.cpu.overruns == 4
+    for _ in range(2):  # idle cycles: 5 ms are still owed in the first
+        bench.cpu.begin_cycle(0)
+        bench.cpu.advance(bench.cpu.now_us + PERIOD_US)
+    assert sum(bench.areas.refreshes) == (2 * PERIOD_US - 5000) // 100
+
+
+def test_the_longest_refresh_is_the_longest_and_not_the_last():
+    areas = Areas(1, np.zeros(1))
+    load = areas.ita[0]
+    for now_us in (1000, 3000, 40_000, 45_000):
+        areas.publish(0, load, now_us)
+    assert areas.longest_refresh_us == 37_000
+    assert areas.mean_refresh_us == pytest.approx(44_000 / 3)

@@ -21,6 +21,7 @@ from robolang.session import RunResult, Session
 from runtime import recorder
 from runtime.frames import Array, inverse, rotation_angle
 from runtime.robot.kinematics import Kinematics
+from runtime.servo.motor import torque_limit
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = ROOT / "programs" / "pick_and_place.rbl"
@@ -206,3 +207,22 @@ def test_without_physics_the_same_program_runs_on_the_ideal_arm(result):
     assert ideal.report["cycles"] == pytest.approx(result.report["cycles"], abs=5)
     x, y, z = ideal.report["objects"]["part"]["pose_mm_deg"][:3]
     assert (x, y, z) == pytest.approx((480.0, 220.0, 640.0), abs=0.2)
+
+
+def test_peak_torque_is_what_the_motors_gave(session, result):
+    limit = torque_limit(session.project.cell.robot)
+    for number in (30, 60):
+        given = np.abs(result.log["tau_sat"][ticks(result, number)] / limit).max() * 100.0
+        asked = np.abs(result.log["tau_cmd"][ticks(result, number)] / limit).max() * 100.0
+        assert statement(result, number)["peak_torque_pct"] == pytest.approx(given, rel=1e-12)
+        assert asked != pytest.approx(given, rel=1e-6)  # so that the line above tells them apart
+
+
+def test_a_move_waits_until_the_arm_is_in_position_and_says_when_it_never_is():
+    """Without gravity compensation the arm hangs 0.1 deg low: every MOVE waits its time-out out and notes RBL523."""
+    project = load_project(PROGRAM, options={"servo.gravity_compensation": ("test", 0.0),
+                                             "supervision.enabled": ("test", False)})  # fmt: skip
+    entry = statement(Session(project).run(), 30)
+    waited = entry["duration_s"] - entry["planned_s"]
+    assert waited == pytest.approx(project.profile.settle_timeout_us / 1e6 + 0.032, abs=0.009)
+    assert any(note.startswith("RBL523 not in position") for note in entry["notes"])
