@@ -2,7 +2,8 @@
 
 The program text is never touched: LOAD is left out or made wrong where its effect is carried out, so every statement
 keeps its line. Each run is a run like any other, in its own process when there are several, and the result does not
-depend on how many there are. The measures, all against the command that the servo received at the same tick:
+depend on how many there are. The measures compare the true links with the command that the servo received at the
+same tick:
 
 - overshoot: how far an axis goes past the commanded end of a MOVE, in percent of its last approach, that is the way
   from where its command last turned round; axes that approach over less than ``LEAST`` are left out;
@@ -56,12 +57,17 @@ VARIANTS = (
                 settings={"servo.mode": "fixed", "servo.fixed_at": at, "servo.coupling": "diagonal"})
         for at in ("min", "mid", "max")
     ),
-    Variant(name="coupled", title="scheduled, whole rows",
-            settings={"servo.mode": "scheduled", "servo.coupling": "full"}),
+    Variant(name="diagonal", title="scheduled, diagonal",
+            settings={"servo.mode": "scheduled", "servo.coupling": "diagonal"}),
     Variant(name="load-omitted", title="LOAD omitted", settings={"servo.mode": "scheduled"}, load="omitted"),
     Variant(name="load-wrong", title="LOAD wrong by 30 %", settings={"servo.mode": "scheduled"}, load="wrong"),
     Variant(name="fixed-mid-load-omitted", title="fixed at mid, LOAD omitted", load="omitted",
             settings={"servo.mode": "fixed", "servo.fixed_at": "mid", "servo.coupling": "diagonal"}),
+    Variant(name="no-lead", title="no spring lead",
+            settings={"servo.mode": "scheduled", "servo.spring_compensation": 0.0, "servo.gravity_lead": 0.0}),
+    Variant(name="conventional", title="conventional", load="omitted",
+            settings={"servo.mode": "fixed", "servo.fixed_at": "mid", "servo.coupling": "diagonal",
+                      "servo.spring_compensation": 0.0, "servo.gravity_lead": 0.0}),
     Variant(name="starved", title="dynamics starved",
             settings={"servo.mode": "scheduled", "dynamics_cost_per_axis_ms": STARVED_COST_MS}),
     Variant(name="no-gravity", title="no gravity compensation",
@@ -151,7 +157,7 @@ def measures(log: dict[str, Array], X_cmd: Array, statements: list[StatementRun]
         return dict.fromkeys(("overshoot_pct", "settling_s", "joint_error_deg", "joint_rms_deg", "tool_error_mm",
                               "tool_rms_mm", "path_deviation_mm", "droop_deg", "per_axis", "moves"))  # fmt: skip
     ticks = np.concatenate([np.arange(run.first_tick, run.end_tick) for run in moves])
-    joint = np.abs(log["q_cmd"][ticks] - log["q_fb"][ticks]) / DEG
+    joint = np.abs(log["q_cmd"][ticks] - log["q_link"][ticks]) / DEG
     p_tool = log["X_world_tool"][:, :3, 3]
     tool = np.linalg.norm(X_cmd[ticks, :3, 3] - p_tool[ticks], axis=1) / MM
     rows = [_move(run, log, p_tool) for run in moves]
@@ -179,22 +185,22 @@ def measures(log: dict[str, Array], X_cmd: Array, statements: list[StatementRun]
 def _move(run: StatementRun, log: dict[str, Array], p_tool: Array) -> dict[str, Any]:
     span = slice(run.first_tick, run.end_tick)
     assert run.path is not None  # only moves get here
-    q_cmd, q_fb, t = log["q_cmd"][span], log["q_fb"][span], log["t"][span]
-    overshoot, settling = last_approach(q_cmd, q_fb, t)
+    q_cmd, q_link, t = log["q_cmd"][span], log["q_link"][span], log["t"][span]
+    overshoot, settling = last_approach(q_cmd, q_link, t)
     return {
         "line": run.number if run.number is not None else run.line,
         "overshoot_pct": overshoot,
         "settling_s": settling,
         "path_deviation_mm": float(run.path.deviation(p_tool[span]).max()) / MM,
-        "droop_deg": ((q_cmd[-1] - q_fb[-1]) / DEG).tolist(),
+        "droop_deg": ((q_cmd[-1] - q_link[-1]) / DEG).tolist(),
         "left_mm": float(np.linalg.norm(run.path.X_end[:3, 3] - p_tool[span][-1])) / MM,
     }
 
 
-def last_approach(q_cmd: Array, q_fb: Array, t: Array) -> tuple[float | None, float | None]:
+def last_approach(q_cmd: Array, q_link: Array, t: Array) -> tuple[float | None, float | None]:
     """Return overshoot of the worst axis, %, and the time from the end of the command to within 2 %, s.
 
-    q_cmd, q_fb (N, n) rad, t (N,) s of one move. Overshoot is None when no axis approaches far enough, settling None
+    q_cmd, q_link (N, n) rad, t (N,) s of one move. Overshoot is None when no axis approaches far enough, settling None
     when an axis is still outside at the end of the statement.
     """
     end = q_cmd[-1]
@@ -206,11 +212,11 @@ def last_approach(q_cmd: Array, q_fb: Array, t: Array) -> tuple[float | None, fl
         way = end[axis] - q_cmd[begin, axis]
         if not abs(way) >= LEAST:
             continue
-        past = float(((q_fb[begin:, axis] - end[axis]) / way).max()) * 100.0
+        past = float(((q_link[begin:, axis] - end[axis]) / way).max()) * 100.0
         worst = max(worst or 0.0, past)
-        outside = np.flatnonzero(~(np.abs(q_fb[stop:, axis] - end[axis]) <= BAND * abs(way)))
+        outside = np.flatnonzero(~(np.abs(q_link[stop:, axis] - end[axis]) <= BAND * abs(way)))
         if len(outside):
-            if outside[-1] == len(q_fb) - stop - 1:
+            if outside[-1] == len(q_link) - stop - 1:
                 return worst, None
             settled = max(settled, float(t[stop + outside[-1] + 1] - t[stop]))
     return worst, settled

@@ -1,6 +1,6 @@
 """The report of a run: what each statement did and how well, in the units people read. Plain JSON types only.
 
-Joint errors compare the command that the servo received with the detected angles, at the same tick. ``tool error`` is
+Joint errors compare the command that the servo received with the true link angles, at the same tick. ``tool error`` is
 the distance between the commanded and the true tool point, beyond the gear springs; ``path deviation`` is the distance
 of the true tool point from the straight segment of a MOVE, however far along it is. Everything but the wall times
 repeats exactly.
@@ -67,7 +67,7 @@ class _Measures:
 
     def __init__(self, log: dict[str, Array], X_cmd: Array, torque: Array) -> None:
         self.p_tool = log["X_world_tool"][:, :3, 3]
-        self.joint_deg = np.abs(log["q_cmd"] - log["q_fb"]).max(axis=1) / DEG
+        self.joint_deg = np.abs(log["q_cmd"] - log["q_link"]).max(axis=1) / DEG
         self.tool_mm = np.linalg.norm(X_cmd[:, :3, 3] - self.p_tool, axis=1) / MM
         self.torque_pct = np.abs(log["tau_sat"] / torque).max(axis=1) / PERCENT
 

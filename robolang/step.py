@@ -192,7 +192,7 @@ def _run(controller: Controller, seconds: float, lost: float = np.inf) -> None:
 def _measure(request: StepRequest, controller: Controller, first: int) -> StepResult:
     axis, size, tick_s = request.axis, request.size, controller.profile.tick_s
     log = controller.recorder.signals(controller.tool_poses)
-    q, rest = log["q_fb"][:, axis], log["q_fb"][first - 1, axis]
+    q, rest = log["q_link"][:, axis], log["q_link"][first - 1, axis]
     response = q[first:] - rest
     t = np.arange(len(response)) * tick_s
     last = response[-round(0.1 / tick_s) :]

@@ -87,13 +87,13 @@ class Controller:
         self._power_up(q)
         self._fixed = self._fixed_inertia()
         self.servo = ServoAxes(spec, profile.servo, profile.tick_s, q, self._fixed)
-        self.servo.motors.i[:] = [cell.T for cell in self.areas.ita] / self.servo.motors.Ktn
+        self._hold(q)
         self.processor = IdleProcessor(self._dynamics)
         self.recorder = Recorder(spec.n, profile.ticks_per_cycle, profile.tick_us, plant.q_link)
         self._planner = LinePlanner(spec, self.kinematics, profile)
         self._interpolator = Interpolator()
-        self._fine = fine or FineInterpolator(profile.ticks_per_cycle, profile.period_s, q)
-        self._q_cmd = q
+        self._fine = fine or FineInterpolator(profile.ticks_per_cycle, profile.period_s, self.areas.ina)
+        self._fine.hold(self.areas.ina)
         servo = self.servo
         self._recorded = (servo.tau_cmd, servo.tau, servo.alpha, servo.beta, plant.q_link)
         self._supervisor = Supervisor(
@@ -108,6 +108,13 @@ class Controller:
         for axis in range(self.spec.n):
             row, T = axis_row(self._model, q, axis), axis_gravity(self._model, q, axis)
             self.areas.ita[axis] = AxisLoad(D=float(row[axis]), T=T, row=row, read_us=0, version=0, payload_version=0)
+
+    def _hold(self, q: Array) -> None:
+        """Let the servos hold motors that stand at q (n,) rad: currents against the weight, command and reference."""
+        T = np.array([cell.T for cell in self.areas.ita])
+        self.servo.motors.i[:] = T / self.servo.motors.Ktn
+        self.areas.ina = self.servo.resting_command(q, T)
+        self.servo.q_ref = q
 
     def _fixed_inertia(self) -> Array:
         """Return the inertia (n,) of gains that do not follow the posture; zeros where they do."""
@@ -166,12 +173,10 @@ class Controller:
         self._interpolator.drop()
         self._power_up(q)
         self.servo = ServoAxes(self.spec, self.profile.servo, self.profile.tick_s, q, self._fixed)
-        self.servo.motors.i[:] = [cell.T for cell in self.areas.ita] / self.servo.motors.Ktn
+        self._hold(np.array(self.servo.alpha))
         servo = self.servo
         self._recorded = (servo.tau_cmd, servo.tau, servo.alpha, servo.beta, self.plant.q_link)
-        self.areas.ina = np.array(self.servo.alpha)
         self._fine.hold(self.areas.ina)
-        self._q_cmd = self.areas.ina
         self._supervisor.restart(self.recorder.tick)
         self.alarms = []
         self.halted = False
@@ -190,8 +195,8 @@ class Controller:
 
     @property
     def position_error(self) -> float:
-        """Largest distance of a detected joint angle from its command, rad."""
-        return float(np.abs(self._q_cmd - self.servo.alpha).max())
+        """Largest distance of a detected joint angle from its command and lead, rad."""
+        return float(np.abs(self.servo.q_ref - self.servo.alpha).max())
 
     @property
     def overruns(self) -> int:
@@ -232,14 +237,13 @@ class Controller:
         """
         cells = self.areas.ita
         if not math.isfinite(sum([cell.D + cell.T for cell in cells])):
-            self._raise_non_finite(self._q_cmd)
+            self._raise_non_finite(self.servo.q_ref)
             return None
         D = np.array([cell.D for cell in cells])
         T = np.array([cell.T for cell in cells])
         read_us = np.array([cell.read_us for cell in cells], dtype=np.float64)
         motion = self._fine.push(self.areas.ina)
-        self._q_cmd = motion[0, -1]
-        rows = np.stack([cell.row for cell in cells]) if self.servo.coupled else None
+        rows = np.array([cell.row for cell in cells]) if self.servo.coupled else None
         self.servo.take(D, T, motion, rows)
         self.recorder.begin_cycle(self.areas.ina, D, T, read_us, motion, self.areas.sda.mass, self.line)
         return motion
@@ -284,7 +288,7 @@ class Controller:
         """Judge the cycle that has just run; while a stop runs, only what makes it fail counts."""
         supervisor, recorder = self._supervisor, self.recorder
         rows = recorder.recent(supervisor.observer.rows)
-        found = supervisor.judge(rows, motion[0], motion[1], recorder.tick)
+        found = supervisor.judge(rows, self.servo.law.reference, motion[1], recorder.tick)
         if self.alarms:
             self._follow_stop(found)
             return

@@ -33,21 +33,23 @@ class ServoOptions:
     """How the servo law is applied.
 
     ``fixed_at``: where in its range the inertia of each axis is held when ``mode`` is fixed. ``coupling`` full takes
-    the whole row of the mass matrix in (9) and (10), diagonal its own element. ``velocity_feedforward`` Kf,
-    ``acceleration_feedforward`` Ka and ``spring_compensation`` K2 of eqs (8), (10) and (6);
-    ``gravity_compensation`` scales T in eq (11). With ``command`` as source Kf = Ka = 1 is exact; with
-    ``measured``, the literal reading, they must stay below 1. ``friction_compensation`` scales the published
-    friction that is added to the current (not in the document; docs/decisions/0003). The bandwidths, 1/s, one for
-    all axes or one each, replace those of the robot file; empty: the robot file's.
+    the whole row of the mass matrix in (6), (9) and (10), diagonal its own element; fixed gains have the element
+    only. ``velocity_feedforward`` Kf, ``acceleration_feedforward`` Ka and ``spring_compensation`` K2 of eqs (8), (10)
+    and (6); ``gravity_lead`` KG adds the wind-up under the weight to (6); ``gravity_compensation`` scales T in (11).
+    With ``command`` as source Kf = Ka = 1 is exact; with ``measured``, the literal reading, they must stay below 1,
+    and they and K2 default to 0. ``friction_compensation`` scales the published friction that is added to the current
+    (not in the document; docs/decisions/0003). The bandwidths, 1/s, one for all axes or one each, replace those of
+    the robot file; empty: the robot file's.
     """
 
     mode: ServoMode = "scheduled"
     fixed_at: FixedAt = "mid"
-    coupling: Coupling = "diagonal"
+    coupling: Coupling = "full"
     source: FeedforwardSource = "command"
     velocity_feedforward: float = 1.0
     acceleration_feedforward: float = 1.0
-    spring_compensation: float = 0.0
+    spring_compensation: float = 1.0
+    gravity_lead: float = 1.0
     gravity_compensation: float = 1.0
     friction_compensation: float = 1.0
     position_bandwidth: tuple[float, ...] = ()
@@ -142,11 +144,12 @@ SERVO = (
     _text("mode", "scheduled", "fixed"),
     Setting(key="fixed_at", unit="", default="mid",
             read=lambda table, name: table.text(name, choices=("min", "mid", "max"))),
-    _text("coupling", "diagonal", "full"),
+    _text("coupling", "full", "diagonal"),
     _text("feedforward", "command", "measured"),
     _number("velocity_feedforward", "", 1.0, low=0.0, high=1.0),
     _number("acceleration_feedforward", "", 1.0, low=0.0, high=1.0),
-    _number("spring_compensation", "", 0.0, low=0.0, high=2.0),
+    _number("spring_compensation", "", 1.0, low=0.0, high=2.0),
+    _number("gravity_lead", "", 1.0, low=0.0, high=2.0),
     _number("gravity_compensation", "", 1.0, low=0.0, high=2.0),
     _number("friction_compensation", "", 1.0, low=0.0, high=2.0),
     _numbers("position_bandwidth_rad_s", "1/s"),
@@ -180,6 +183,7 @@ KEYS = tuple(_BY_KEY)
 UNITS = {key: item.unit for key, item in _BY_KEY.items()}
 """Unit of every key, as people write it; empty for a word or a share."""
 _IDEAL_WHEN_MEASURED = ("servo.velocity_feedforward", "servo.acceleration_feedforward")
+_FEEDS_BACK_WHEN_MEASURED = (*_IDEAL_WHEN_MEASURED, "servo.spring_compensation")
 
 
 # --- where a value comes from ----------------------------------------------------------------------------------------
@@ -270,16 +274,19 @@ def settle(*layers: Layer) -> Settings:
     asked = {key: value for layer in layers for key, value in layer.items()}
     given.update(asked)
     if given["servo.feedforward"].value == "measured":
-        for key in _IDEAL_WHEN_MEASURED:
+        for key in _FEEDS_BACK_WHEN_MEASURED:
             if key not in asked:
                 given[key] = Given(value=0.0, origin="default")
-            elif not given[key].value < 1.0:
+            elif key in _IDEAL_WHEN_MEASURED and not given[key].value < 1.0:
                 given[key].fail("RBL616", f"'controller.{key}' must be below 1 when the feed-forward is measured",
                                 'give a value such as 0.9, or write feedforward = "command"')  # fmt: skip
-    if given["servo.coupling"].value == "full" and given["servo.mode"].value == "fixed":
-        given["servo.coupling"].fail(
-            "RBL605", "'controller.servo.coupling' must be \"diagonal\" when the gains are fixed",
-            "fixed gains hold the inertia of each axis alone")  # fmt: skip
+    if given["servo.mode"].value == "fixed":
+        if "servo.coupling" not in asked:
+            given["servo.coupling"] = Given(value="diagonal", origin="default")
+        elif given["servo.coupling"].value == "full":
+            given["servo.coupling"].fail(
+                "RBL605", "'controller.servo.coupling' must be \"diagonal\" when the gains are fixed",
+                "fixed gains hold the inertia of each axis alone")  # fmt: skip
     return Settings(given=given, profile=_profile({key: item.value for key, item in given.items()}))
 
 
@@ -324,6 +331,7 @@ def _profile(value: Mapping[str, Any]) -> Profile:
             velocity_feedforward=value["servo.velocity_feedforward"],
             acceleration_feedforward=value["servo.acceleration_feedforward"],
             spring_compensation=value["servo.spring_compensation"],
+            gravity_lead=value["servo.gravity_lead"],
             gravity_compensation=value["servo.gravity_compensation"],
             friction_compensation=value["servo.friction_compensation"],
             position_bandwidth=value["servo.position_bandwidth_rad_s"],

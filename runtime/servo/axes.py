@@ -27,7 +27,7 @@ class ServoAxes:
 
     def __init__(self, spec: RobotSpec, options: ServoOptions, tick_s: float, q: Array, D_fixed: Array) -> None:
         self.options = options
-        self.coupled = options.coupling == "full"
+        self.coupled = options.coupling == "full" and options.mode == "scheduled"
         self.held_inertia = D_fixed if options.mode == "fixed" else None
         """Inertia (n,) of gains that are held fixed, kg m2; None where they follow the posture."""
         self.encoders = Encoders(encoder_resolution(spec))
@@ -35,6 +35,8 @@ class ServoAxes:
         self.encoders.read(q, self.alpha)
         self.law = ServoLaw(gains(spec, options), self.alpha, tick_s)
         self.beta = self.law.beta
+        self.q_ref = self.alpha
+        """Where the motors should be at the last tick of the cycle (n,) rad: the command and the lead of eq (6)."""
         self._Ktn = spec_torque_constants(spec)
         self.motors = Motors(self._Ktn, current_limit(spec), spec.per_axis("motor", "current_bandwidth"), tick_s)
         self.tau_cmd = np.zeros(spec.n)
@@ -51,6 +53,11 @@ class ServoAxes:
         self.law.update(D, T, self.held_inertia, rows)
         theta, beta, gamma = motion
         self.law.command(theta, beta, gamma, self.friction_current(beta))
+        self.q_ref = self.law.reference[-1]
+
+    def resting_command(self, q: Array, T: Array) -> Array:
+        """Return the command (n,) rad whose lead holds motors at q (n,) rad under the weight T (n,) N m."""
+        return np.asarray(q - self.law.sag(T))
 
     def friction_current(self, dq: Array) -> Array:
         """Return the current (..., n) A that overcomes the published friction at speed dq (..., n) rad/s."""
@@ -92,6 +99,7 @@ def gains(spec: RobotSpec, options: ServoOptions) -> Gains:
         Kf=options.velocity_feedforward,
         Ka=options.acceleration_feedforward,
         K2=options.spring_compensation,
+        KG=options.gravity_lead,
         Kc=spec.per_axis("motor", "stiffness"),
         KT_scale=options.gravity_compensation,
         source=options.source,

@@ -1,7 +1,7 @@
 r"""The servo law of Fig 8, eqs (6) to (11), for all axes at once.
 
     402  beta = d alpha/dt,  gamma = d beta/dt                  from differences of the detected angle
-    (6)  theta_new = theta + gamma D K2 / Kc                    spring wind-up
+    (6)  theta_new = theta + gamma D K2 / Kc + T KG / Kc        spring wind-up; the last term is ours
     410  dtheta    = theta_new - alpha
     (7)  omega     = Kp dtheta
     (8)  omega_new = omega + beta Kf                            velocity feed-forward
@@ -12,6 +12,8 @@ r"""The servo law of Fig 8, eqs (6) to (11), for all axes at once.
 
 Units (joint side): theta, alpha rad; omega, beta rad/s; gamma rad/s2; D, D' kg m2; Kc N m/rad; Kp 1/s; Ktn N m/A;
 K A s/(kg m2 rad), from the velocity bandwidth Kv = K Ktn in 1/s; KT = 1/Ktn. ``D' = D + N^2 J`` (docs/servo.md).
+KG, the gravity lead, is not in the document, whose (6) knows of acceleration only: the weight winds the spring up as
+well (docs/decisions/0017). T jumps when a LOAD reaches the servo, so its lead follows with ``LEAD_S``.
 With ``source = "command"`` the beta and gamma of (6), (8) and (10) are those of the command; with ``"measured"`` they
 are the detected ones, as printed. Step 416 always takes the detected speed.
 
@@ -22,7 +24,8 @@ Everything in the law that does not depend on the detected angle is known when a
 ``command`` therefore gathers it once per cycle into ``omega_ff = Kp theta_new + Kf beta`` and ``I_ff = gamma Ka D' /
 Ktn + T KT``, and the tick evaluates ``I = K D' (omega_ff - Kp alpha - beta) + I_ff``: the same sums in another order.
 
-The off-diagonal variant takes the row of the mass matrix, rotor on its diagonal, for D' and D in (6), (9) and (10):
+The off-diagonal variant, which is the default, takes the row of the mass matrix, rotor on its diagonal, for D' and D
+in (6), (9) and (10):
 
     (9)  I_i = sum_k D'_ik Kv_k domega_k / Ktn_i
 
@@ -40,6 +43,9 @@ from numpy import add, copyto, multiply, subtract
 from runtime.frames import Array
 from runtime.profile import FeedforwardSource
 
+LEAD_S = 0.02
+"""Time constant with which the lead for the weight follows T, s."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gains:
@@ -52,6 +58,7 @@ class Gains:
     Kf: float = 1.0
     Ka: float = 1.0
     K2: float = 0.0
+    KG: float = 0.0
     Kc: Array | float = np.inf
     KT_scale: float = 1.0
     source: FeedforwardSource = "command"
@@ -65,6 +72,7 @@ class ServoLaw:
         shape = np.shape(alpha)
         self._Kp = np.broadcast_to(gains.Kp, shape).copy()
         self._per_tick = 1.0 / tick_s
+        self._tick_s = tick_s
         self._measured = gains.source == "measured"
         self.beta = np.zeros(shape)
         """Detected speed of the last tick, rad/s."""
@@ -77,6 +85,16 @@ class ServoLaw:
         self._acceleration_gain = np.zeros(shape)
         self._windup = np.zeros(shape)
         self._gravity = np.zeros(shape)
+        self._sags = bool(np.any(gains.KG / np.broadcast_to(gains.Kc, shape) > 0.0))
+        self._sag = np.zeros(shape)
+        self._lead: Array | None = None
+        self.reference = np.zeros((1, *shape))
+        """Where (6) leads the motors (ticks, ..., n) in the ticks to come, rad, but for detected accelerations."""
+        self._winds = bool(np.any(gains.K2 / np.broadcast_to(gains.Kc, shape) > 0.0))
+        self._rotor_rows = _diagonal(np.broadcast_to(gains.rotor, shape))
+        self._Ktn_column = _column(gains.Ktn, self._work)
+        self._Kv_row = np.broadcast_to(gains.Kv, shape)[..., None, :]
+        self._windup_column = _column(gains.K2 / gains.Kc, self._work)
         self._rows: Array | None = None
         self._coupled = self._velocity_rows = self._windup_rows = np.zeros(0)
         self._plan: list[tuple[Array, Array]] = []
@@ -93,21 +111,30 @@ class ServoLaw:
         self._acceleration_gain[...] = g.Ka / g.Ktn * D_total
         self._windup[...] = D * (g.K2 / g.Kc)
         self._gravity[...] = T * g.KT_scale / g.Ktn
+        self._sag[...] = self.sag(T)
+        if self._lead is None:
+            self._lead = self._sag.copy()
         if rows is not None:
             self._rows = rows
-            self._coupled = (rows + _diagonal(np.broadcast_to(g.rotor, D.shape))) / _column(g.Ktn, D)
-            self._velocity_rows = self._coupled * np.broadcast_to(g.Kv, D.shape)[..., None, :]
-            self._windup_rows = rows * _column(g.K2 / g.Kc, D)
+            self._coupled = (rows + self._rotor_rows) / self._Ktn_column
+            self._velocity_rows = self._coupled * self._Kv_row
+            if self._winds:
+                self._windup_rows = rows * self._windup_column
 
     def command(self, theta: Array, beta: Array, gamma: Array, current: Array | float = 0.0) -> None:
         """Take the commanded motion of the ticks to come, after ``update``; each (ticks, ..., n).
 
         theta rad, beta rad/s, gamma rad/s2, ``current`` A added to every command (friction).
         """
+        if self._sags:
+            theta = theta + self._leads(len(theta))
+        if self._winds and not self._measured:
+            theta = theta + self._wound_up(gamma)
+        self.reference = theta
         omega_ff = self._Kp * theta
         current_ff = self._gravity + np.asarray(current) + np.zeros_like(theta)
         if not self._measured:
-            omega_ff += self._Kp * self._wound_up(gamma) + self.gains.Kf * beta
+            omega_ff += self.gains.Kf * beta
             current_ff += self._accelerating(gamma)
         self._plan = list(zip(omega_ff, current_ff, strict=True))
 
@@ -127,10 +154,30 @@ class ServoLaw:
         if self._measured:
             return self._current_measured(current_ff)
         if self._rows is not None:
-            copyto(work, np.matmul(self._velocity_rows, work[..., None])[..., 0])
+            work = self._through_rows(work)
         else:
             multiply(work, self._velocity_gain, work)
         return add(work, current_ff, work)
+
+    def sag(self, T: Array) -> Array:
+        """Return T KG / Kc (..., n) rad: by how much the motors lead links that weigh T N m at rest."""
+        return np.asarray(T * (self.gains.KG / self.gains.Kc))
+
+    def _leads(self, ticks: int) -> Array:
+        """Return the lead for the weight at each tick of a cycle (ticks, ..., n), and follow T by one cycle."""
+        assert self._lead is not None  # update comes before command
+        step = (self._sag - self._lead) * -np.expm1(-ticks * self._tick_s / LEAD_S)
+        share = (np.arange(ticks) / ticks).reshape((ticks,) + (1,) * step.ndim)
+        leads = self._lead + share * step
+        self._lead += step
+        return np.asarray(leads)
+
+    def _through_rows(self, domega: Array) -> Array:
+        """Return sum_k D'_ik Kv_k domega_k / Ktn_i of (9) for the coupled axes, in place of the second buffer."""
+        if domega.ndim == 1:
+            return np.dot(self._velocity_rows, domega, out=self._extra)
+        copyto(self._extra, np.matmul(self._velocity_rows, domega[..., None])[..., 0])
+        return self._extra
 
     def _wound_up(self, gamma: Array) -> Array:
         """Return D gamma K2 / Kc of (6), rad."""
@@ -153,8 +200,9 @@ class ServoLaw:
         multiply(beta, self.gains.Kf, extra)
         add(work, extra, work)
         if self._rows is not None:
-            work += self._Kp * self._wound_up(gamma)
-            copyto(work, np.matmul(self._velocity_rows, work[..., None])[..., 0])
+            if self._winds:
+                work += self._Kp * self._wound_up(gamma)
+            work = self._through_rows(work)
             work += self._accelerating(gamma)
             return add(work, current_ff, work)
         multiply(gamma, self._windup, extra)

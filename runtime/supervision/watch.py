@@ -5,7 +5,7 @@ r"""Checks of every servo tick: following error, saturation, excursions and enco
     excursion           |dq_fb| <= dq_max (1 + margin),  q_min - margin <= q_fb <= q_max + margin
     encoder             |dq_fb| <= 3 dq_max (else: it jumped);  a reading equal to the last one while the command turns
                         by 100 encoder steps per tick, and then one that catches up, is a lost sample (two in a
-                        cycle count); 12 ms without a new reading a standing encoder
+                        cycle count); 24 ms without a new reading a standing encoder
 
 The speed that scales the following error is held and decays, because an axis lags behind its command, by (1 - Kf)/Kp
 where the servo has no full velocity feed-forward, and is still closing in when the command has stopped. The ticks of
@@ -29,7 +29,7 @@ STEPS = 100.0
 """Encoder steps per tick from which a reading that does not change is wrong."""
 CATCH_UP = 1.4
 """Share of the commanded speed that the reading after a lost sample shows at least."""
-STANDING_S = 0.012
+STANDING_S = 0.024
 """Time with the same reading that makes an encoder stand still, s; a servo that lags gets its lag on top."""
 _HOLD_S = 0.1
 
@@ -121,7 +121,7 @@ class Watch:
         for bad, what in (
             (~(speed <= JUMP * self._speed), "jumped"),
             (self._standing >= self._longest_stand,
-             f"has not changed for {self._longest_stand} ticks of motion: encoder or brake stuck"),
+             f"has not changed for {self._longest_stand} ticks of motion: encoder or brake stuck, or the axis blocked"),
             (self._lost >= 2.0, "repeats readings while the axis moves: samples are lost"),
         ):  # fmt: skip
             if bad.any():

@@ -10,15 +10,16 @@ from robolang.session import Session
 from tests.lang.cli.commands import ROOT, robolang
 
 PROGRAM = str(ROOT / "programs" / "pick_and_place.rbl")
-NAMES = ("scheduled", "coupled", "load-omitted", "fixed-mid-load-omitted")
+NAMES = ("scheduled", "diagonal", "load-omitted", "fixed-mid-load-omitted", "conventional")
 CHOSEN = tuple(variant for variant in VARIANTS if variant.name in NAMES)
-ARMS = ["puma560"]
+ARMS = ["puma560", "manutec_r3"]
 """Robots whose cells the figures hold for; each needs a program with 90 % of its rated payload."""
 
 
 def heavy(folder, robot):
     """Return a program that carries 90 % of the rated payload of a robot."""
-    assert robot == "puma560"
+    if robot == "manutec_r3":
+        return str(ROOT / "programs" / "manutec_pick_and_place.rbl")
     program = folder / "heavy.rbl"
     program.write_text(
         (ROOT / "programs" / "pick_and_place.rbl").read_text().replace("(0, 0, 95), 2.3", "(0, 0, 94.6), 2.25")
@@ -37,19 +38,25 @@ def rows(request, tmp_path_factory):
 
 
 def test_path_error_is_five_times_smaller_than_with_mid_gains_and_no_load(rows):
-    good, rows_good, bad = rows["scheduled"], rows["coupled"], rows["fixed-mid-load-omitted"]
+    good, bad = rows["scheduled"], rows["conventional"]
     assert bad["tool_rms_mm"] > 5.0 * good["tool_rms_mm"]
-    assert bad["path_deviation_mm"] > 5.0 * rows_good["path_deviation_mm"]
-    assert bad["path_deviation_mm"] > 3.5 * good["path_deviation_mm"]
+    assert bad["path_deviation_mm"] > 5.0 * good["path_deviation_mm"]
+
+
+def test_what_the_spring_lead_alone_does_is_not_counted_as_the_work_of_gains_and_load(rows):
+    """The same with the lead in both: still 5 times on rigid gears, 3.5 on the Manutec, where dry friction remains."""
+    good, bad = rows["scheduled"], rows["fixed-mid-load-omitted"]
+    assert bad["tool_rms_mm"] > 3.5 * good["tool_rms_mm"]
+    assert bad["path_deviation_mm"] > 4.5 * good["path_deviation_mm"]
 
 
 def test_whole_rows_follow_better_than_the_diagonal(rows):
-    assert rows["coupled"]["tool_rms_mm"] < 0.75 * rows["scheduled"]["tool_rms_mm"]
+    assert rows["scheduled"]["tool_rms_mm"] < 0.75 * rows["diagonal"]["tool_rms_mm"]
 
 
 def test_an_omitted_load_leaves_a_droop_and_never_settles(rows):
-    assert rows["load-omitted"]["droop_deg"] > 4.0 * rows["scheduled"]["droop_deg"]
-    assert rows["load-omitted"]["tool_rms_mm"] > 5.0 * rows["scheduled"]["tool_rms_mm"]
+    assert rows["load-omitted"]["droop_deg"] > 3.5 * rows["scheduled"]["droop_deg"]
+    assert rows["load-omitted"]["tool_rms_mm"] > 3.5 * rows["scheduled"]["tool_rms_mm"]
     assert rows["scheduled"]["settling_s"] is not None
     assert rows["load-omitted"]["settling_s"] is None
 

@@ -31,7 +31,7 @@ STRETCHED = np.radians([0.0, 0.0, -90.0, 0.0, 0.0, 0.0])
 
 def experiment(axis, q, size, carried=NO_PAYLOAD, declared=None, robot=STRONG, profile=None, **servo):
     servo = {"velocity_feedforward": 0.0, "acceleration_feedforward": 0.0, "position_bandwidth": (20.0,),
-             "velocity_bandwidth": (80.0,), **servo}  # fmt: skip
+             "velocity_bandwidth": (80.0,), "coupling": "diagonal", **servo}  # fmt: skip
     return StepRequest(
         robot=robot, axis=axis, q=np.asarray(q), size=size, carried=carried,
         declared=carried if declared is None else declared,

@@ -126,7 +126,7 @@ def test_a_starved_task_leaves_old_loads_in_use_and_their_age_shows_it():
 
 
 def test_a_right_load_holds_the_arm_still_and_a_missing_one_lets_it_sag():
-    still, sagging = controller(), controller()
+    still, sagging = (controller(servo=dataclasses.replace(IDEAL, coupling="diagonal")) for _ in range(2))
     still.load(carried_payload())
     for robot in (still, sagging):
         for _ in range(125):

@@ -79,3 +79,10 @@ def test_the_help_for_unstable_feedforward_mends_it():
         profile("[controller.servo]\nfeedforward = 'measured'\nvelocity_feedforward = 1")
     assert "such as 0.9" in caught.value.hint
     profile("[controller.servo]\nfeedforward = 'measured'\nvelocity_feedforward = 0.9")
+
+
+def test_defaults_follow_the_mode_and_the_source_of_derivatives():
+    assert (profile("").servo.coupling, profile("").servo.spring_compensation) == ("full", 1.0)
+    assert profile("[controller.servo]\nmode = 'fixed'\n").servo.coupling == "diagonal"
+    measured = profile("[controller.servo]\nfeedforward = 'measured'\n").servo
+    assert (measured.spring_compensation, measured.gravity_lead) == (0.0, 1.0)

@@ -91,7 +91,7 @@ def test_step_prints_its_figures_and_writes_a_plot(tmp_path):
     shown = robolang(*words, "--plot", tmp_path / "a.svg")
     assert "overshoot" in shown.stdout
     assert (tmp_path / "a.svg").read_text().startswith("<svg")
-    found = json.loads(robolang(*words, "--json", "--load", "0,0,0,0", "--size", "0").stdout)
+    found = json.loads(robolang(*words, "--json", "--load", "0,0,0,0", "--size", "0", "--coupling", "diagonal").stdout)
     assert found["droop_deg"] > 0.05
     assert found["overshoot_pct"] is None
     assert "over the rated 2.5 kg" in robolang(*words[:-1], "5,0,0,100").stderr

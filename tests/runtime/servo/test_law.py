@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from runtime.servo.law import Gains, ServoLaw
+from runtime.servo.law import LEAD_S, Gains, ServoLaw
 
 SMALLEST, LARGEST = 2.341, 9.680
 MIDDLE = 0.5 * (SMALLEST + LARGEST)
@@ -156,3 +156,44 @@ def test_whole_rows_take_the_place_of_the_diagonal(source):
     domega = KP * (theta + np.einsum("rik,rk->ri", M, gamma) * 0.9 / 5000.0 - alpha1) + 0.4 * beta_ff - beta
     expected = np.einsum("rik,rk->ri", total, KV * domega + 0.3 * gamma) / g.Ktn
     np.testing.assert_allclose(law.current(0, alpha1), expected, rtol=1e-10)
+
+
+def test_the_lead_for_the_weight_is_there_at_once_and_follows_a_new_load_slowly():
+    """T KG / Kc: no step when the law starts, and 1 - exp(-t / LEAD_S) of the way after a LOAD, tick by tick."""
+    n, ticks, tick_s = 3, 8, 1e-3
+    one, zero = np.ones(n), np.zeros((ticks, n))
+    law = ServoLaw(Gains(Kp=KP * one, Kv=KV * one, Ktn=KTN * one, rotor=0.0 * one, KG=0.5,
+                         Kc=np.array([1e4, 2e4, np.inf])), np.zeros(n), tick_s)  # fmt: skip
+    T = np.array([100.0, -100.0, 100.0])
+    law.update(one, T)
+    law.command(zero, zero, zero)
+    assert np.allclose(law.reference, [0.005, -0.0025, 0.0], atol=0, rtol=1e-12)
+    law.update(one, 3.0 * T)
+    seen = []
+    for _ in range(20):
+        law.command(zero, zero, zero)
+        seen.append(law.reference)
+    lead = np.concatenate(seen)[:, 0]
+    at = np.arange(0, len(lead), ticks)
+    assert lead[at] == pytest.approx(0.015 - 0.01 * np.exp(-at * tick_s / LEAD_S), rel=1e-12)
+    assert np.abs(np.diff(lead)).max() < 1.01 * 0.01 * (1.0 - math.exp(-8 * tick_s / LEAD_S)) / ticks
+    assert not np.concatenate(seen)[:, 2].any()
+
+
+def test_one_arm_through_rows_gives_what_many_give():
+    """The product of one posture and that of leading dimensions are two code paths."""
+    rng, n, ticks = np.random.default_rng(8), 4, 3
+    rows = rng.normal(size=(n, n))
+    rows = rows @ rows.T + n * np.eye(n)
+    motion, alpha = rng.normal(size=(3, ticks, n)), rng.normal(size=(ticks, n))
+    found = []
+    for lead in ((), (2,)):
+        def wide(x, lead=lead):
+            return np.broadcast_to(x, (*lead, *x.shape)).copy()
+
+        one = np.ones(n)
+        law = ServoLaw(Gains(Kp=KP * one, Kv=KV * one, Ktn=KTN * one, rotor=one), wide(alpha[0]), 1e-3)
+        law.update(wide(np.diag(rows)), wide(one), rows=wide(rows))
+        law.command(*(np.broadcast_to(m[:, None], (ticks, 2, n)) if lead else m for m in motion))
+        found.append(np.array([law.current(k, wide(alpha[k])).copy() for k in range(ticks)]))
+    assert np.allclose(found[1], found[0][:, None], rtol=1e-12)
