@@ -1,8 +1,9 @@
 """Meaning: what is wrong with a program that parses.
 
 Every limit is written so that NaN fails it. Limits of the robot's own (reach, joints, speed) belong to the planner
-and are found before the move that breaks them; here are the limits that hold for every robot, and the two facts of
-the cell that need no kinematics: which points are taught and what the arm may carry. Time is linear in the program.
+and are found before the move that breaks them; here are the limits that hold for every robot, and the facts of
+the cell that need no kinematics: its names (taught points, sensors) and what the arm may carry. Time is linear in the
+program.
 """
 
 import math
@@ -13,6 +14,7 @@ from itertools import chain, islice
 from robolang.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related, Severity, in_order
 from robolang.nodes import (
     Accel,
+    Component,
     Expression,
     Hand,
     Line,
@@ -23,8 +25,10 @@ from robolang.nodes import (
     Node,
     Option,
     Program,
+    Seam,
     Speed,
     Time,
+    Wrist,
     constant,
 )
 from robolang.source import Span
@@ -34,6 +38,7 @@ MAX_COG_MM = 2000.0
 MAX_SPEED_MM_S = 10_000.0
 MAX_ACCEL_PCT = 100.0
 MAX_SECONDS = 600.0
+MAX_HELD = 2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,10 +47,15 @@ class _Facts:
 
     points: frozenset[str] | None
     rated_payload_kg: float | None
+    sensors: frozenset[str] | None
 
 
 def check(
-    program: Program, *, points: Collection[str] | None = None, rated_payload_kg: float | None = None
+    program: Program,
+    *,
+    points: Collection[str] | None = None,
+    rated_payload_kg: float | None = None,
+    sensors: Collection[str] | None = None,
 ) -> tuple[Diagnostic, ...]:
     """Return what is wrong with a program, by place.
 
@@ -53,13 +63,15 @@ def check(
         program: the tree; ``Unparsed`` statements are passed over, the parser has reported them.
         points: names of the taught points, in any case; None when they are not known.
         rated_payload_kg: what the robot may carry; None when the robot is not known.
+        sensors: names of the cell's seam sensors, in any case; None when the cell is not known.
     """
-    facts = _Facts(
-        points=None if points is None else frozenset(name.upper() for name in points),
-        rated_payload_kg=rated_payload_kg,
-    )
+    facts = _Facts(points=_keys(points), rated_payload_kg=rated_payload_kg, sensors=_keys(sensors))
     found = chain(_line_numbers(program), _emptiness(program), _statements(program, facts))
     return in_order(islice(found, MAX_DIAGNOSTICS + 1))
+
+
+def _keys(names: Collection[str] | None) -> frozenset[str] | None:
+    return None if names is None else frozenset(name.upper() for name in names)
 
 
 def _statements(program: Program, facts: _Facts) -> Iterator[Diagnostic]:
@@ -71,6 +83,10 @@ def _statements(program: Program, facts: _Facts) -> Iterator[Diagnostic]:
             yield from _load(statement, facts)
         elif isinstance(statement, Hand):
             yield from _hand(statement)
+        elif isinstance(statement, Wrist):
+            yield from _wrist(statement)
+        elif isinstance(statement, Seam):
+            yield from _seam(statement, facts)
 
 
 def _emptiness(program: Program) -> Iterator[Diagnostic]:
@@ -102,30 +118,56 @@ def _line_numbers(program: Program) -> Iterator[Diagnostic]:
 
 def _move(move: Move, facts: _Facts) -> Iterator[Diagnostic]:
     if facts.points is not None and move.target.key not in facts.points:
-        yield _undefined(move.target, facts.points)
+        message = f"point {move.target.text} is not taught"
+        hint = _names(move.target, facts.points, known="taught", none="no point is taught")
+        yield Diagnostic(code="RBL301", message=message, span=move.target.span, hint=hint)
     seen: dict[type, Option] = {}
     for option in move.options:
         word = type(option).__name__.upper()
         if earlier := seen.get(type(option)):
-            related = (Related(span=earlier.span, message="first given here"),)
-            yield Diagnostic(code="RBL118", message=f"{word} is given twice", span=option.span, related=related)
+            yield _twice(word, option.span, earlier.span)
         seen.setdefault(type(option), option)
-        yield from _option(option, word)
+        yield from _wrist(option) if isinstance(option, Wrist) else _value(option, word)
     if Speed in seen and Time in seen:
         message = "TIME fixes how long the move takes, so SPEED cannot be given too"
         related = (Related(span=seen[Time].span, message="TIME is given here"),)
         yield Diagnostic(code="RBL119", message=message, span=seen[Speed].span, related=related)
 
 
-def _undefined(target: Name, points: frozenset[str]) -> Diagnostic:
-    guess = near(target.key, points)
-    hint = f"did you mean {guess}?" if guess else ""
-    if not hint and len(points) <= 10:
-        hint = f"taught: {', '.join(sorted(points))}" if points else "no point is taught"
-    return Diagnostic(code="RBL301", message=f"point {target.text} is not taught", span=target.span, hint=hint)
+def _names(name: Name, names: frozenset[str], *, known: str, none: str) -> str:
+    """Return what a name that is not among ``names`` was probably meant to be, or which there are, or ``""``."""
+    if guess := near(name.key, names):
+        return f"did you mean {guess}?"
+    if not names:
+        return none
+    return f"{known}: {', '.join(sorted(names))}" if len(names) <= 10 else ""
 
 
-def _option(option: Option, word: str) -> Iterator[Diagnostic]:
+def _twice(word: str, place: Span, first: Span) -> Diagnostic:
+    related = (Related(span=first, message="first given here"),)
+    return Diagnostic(code="RBL118", message=f"{word} is given twice", span=place, related=related)
+
+
+def _wrist(wrist: Wrist) -> Iterator[Diagnostic]:
+    seen: dict[Component, Span] = {}
+    for component, place in zip(wrist.held, wrist.held_spans, strict=True):
+        if first := seen.get(component):
+            yield _twice(component.value, place, first)
+        elif len(seen) >= MAX_HELD:
+            message = f"{component.value} is one too many: the wrist can hold at most two components"
+            yield Diagnostic(code="RBL120", message=message, span=place)
+        seen.setdefault(component, place)
+
+
+def _seam(seam: Seam, facts: _Facts) -> Iterator[Diagnostic]:
+    sensor = seam.sensor
+    if sensor is not None and facts.sensors is not None and sensor.key not in facts.sensors:
+        hint = _names(sensor, facts.sensors, known="seam sensors", none="the cell has no seam sensor")
+        message = f"the cell has no seam sensor {sensor.text}"
+        yield Diagnostic(code="RBL306", message=message, span=sensor.span, hint=hint)
+
+
+def _value(option: Speed | Accel | Time, word: str) -> Iterator[Diagnostic]:
     value = constant(option.value)
     if value is None:
         yield _no_value(option.value)
@@ -136,7 +178,7 @@ def _option(option: Option, word: str) -> Iterator[Diagnostic]:
         yield Diagnostic(code="RBL404", message=message, span=option.value.span)
 
 
-def _range(option: Option) -> tuple[float, str]:
+def _range(option: Speed | Accel | Time) -> tuple[float, str]:
     if isinstance(option, Speed):
         return MAX_SPEED_MM_S, "mm/s"
     return (MAX_ACCEL_PCT, "%") if isinstance(option, Accel) else (MAX_SECONDS, "s")

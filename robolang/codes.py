@@ -53,7 +53,7 @@ _TEXT = (
         "RBL112",
         "unknown-instruction",
         "The line does not start with an instruction of the language.",
-        "The instructions are MOVE, LOAD, HAND ON and HAND OFF.",
+        "The instructions are MOVE, LOAD, HAND ON, HAND OFF, WRIST and SEAM.",
     ),
     ("RBL113", "line-number-duplicated", "Two lines have the same line number.", "Renumber one of them."),
     (
@@ -78,14 +78,25 @@ _TEXT = (
         "RBL117",
         "not-in-this-edition",
         "The word belongs to the language but this edition does not run it yet.",
-        "This edition runs MOVE, LOAD, HAND ON and HAND OFF.",
+        "This edition runs MOVE, LOAD, HAND ON, HAND OFF, WRIST and SEAM.",
     ),
-    ("RBL118", "option-given-twice", "A statement has the same option twice.", "Remove one of them."),
+    (
+        "RBL118",
+        "option-given-twice",
+        "A statement has the same option twice, or WRIST HOLD the same component.",
+        "Remove one of them.",
+    ),
     (
         "RBL119",
         "options-contradict",
         "SPEED and TIME are both given for one move.",
         "Give one: TIME fixes the duration, SPEED the speed along the path.",
+    ),
+    (
+        "RBL120",
+        "too-many-components",
+        "WRIST HOLD names more than two components of the posture.",
+        "Name one or two of TILT, ADVANCE and ROTATION.",
     ),
 )
 
@@ -128,6 +139,12 @@ _POINTS = (
         "point-frame-or-tool-unknown",
         "A point was taught in a frame or with a tool that the cell does not have.",
         "Add the frame or the tool to the cell file, or correct the name in the file of points.",
+    ),
+    (
+        "RBL306",
+        "sensor-unknown",
+        "SEAM ON names a sensor that the cell does not have.",
+        "Add [sensors.NAME] to the cell file, or correct the name.",
     ),
     (
         "RBL307",

@@ -2,13 +2,14 @@
 
 Fig 4 of the 1992 controller tests the instruction in the order MOVE (100), LOAD (104), HAND OFF (108), HAND ON
 (112) and then takes the next one. The four exclude one another, so dispatch on the type of the statement is the same
-program; the order of the tests below is kept all the same. Nothing is computed ahead: the generator stands at the
-statement whose effect it yielded until the session asks for the next, which is when that statement is done.
+program; the order of the tests below is kept all the same, and WRIST and SEAM follow. Nothing is computed ahead: the
+generator stands at the statement whose effect it yielded until the session asks for the next, which is when that
+statement is done.
 """
 
 from collections.abc import Iterator
 
-from robolang.effects import Effect, MoveTo, SetHand, SetPayload
+from robolang.effects import Effect, MoveTo, SetHand, SetPayload, SetSeam, SetWrist
 from robolang.nodes import (
     Accel,
     Expression,
@@ -18,8 +19,11 @@ from robolang.nodes import (
     Load,
     Move,
     Program,
+    Seam,
     Speed,
     Time,
+    Wrist,
+    WristMode,
     constant,
 )
 
@@ -27,25 +31,40 @@ from robolang.nodes import (
 def execute(program: Program) -> Iterator[Effect]:
     """Yield the effects of a checked program in order.
 
+    What a WRIST statement says holds for the moves that follow, and each of them carries it.
+
     Raises ``ValueError`` at a statement with an error: such a program must not be run.
     """
+    setting: Wrist | None = None
     for line in program.statements:
-        yield _effect(line)
+        if isinstance(line.statement, Wrist):
+            setting = line.statement
+        yield _effect(line, setting)
 
 
-def _effect(line: Line) -> Effect:
+def _effect(line: Line, setting: Wrist | None) -> Effect:
     statement = line.statement
     if isinstance(statement, Move):
-        return _move(line, statement)
+        return _move(line, statement, setting)
     if isinstance(statement, Load):
         return _load(line, statement)
     if isinstance(statement, Hand):
         return _hand(line, statement)
+    if isinstance(statement, Wrist):
+        return _wrist(line, statement)
+    if isinstance(statement, Seam):
+        return _seam(line, statement)
     raise ValueError(f"line {line.source_line} has an error and cannot be run")
 
 
-def _move(line: Line, node: Move) -> MoveTo:
-    values: dict[type, float] = {type(option): _value(option.value, line) for option in node.options}
+def _move(line: Line, node: Move, setting: Wrist | None) -> MoveTo:
+    values: dict[type, float] = {}
+    wrist = setting
+    for option in node.options:
+        if isinstance(option, Wrist):
+            wrist = option
+        else:
+            values[type(option)] = _value(option.value, line)
     return MoveTo(
         line=line.source_line,
         number=line.number,
@@ -55,6 +74,8 @@ def _move(line: Line, node: Move) -> MoveTo:
         speed_mm_s=values.get(Speed),
         accel_pct=values.get(Accel),
         time_s=values.get(Time),
+        wrist=None if wrist is None else _mode(wrist),
+        held=() if wrist is None else _held(wrist),
     )
 
 
@@ -78,6 +99,35 @@ def _hand(line: Line, node: Hand) -> SetHand:
         node=node,
         closed=node.state is HandState.ON,
         dwell_s=None if node.dwell is None else _value(node.dwell, line),
+    )
+
+
+def _wrist(line: Line, node: Wrist) -> SetWrist:
+    return SetWrist(
+        line=line.source_line,
+        number=line.number,
+        span=node.span,
+        node=node,
+        mode=_mode(node),
+        held=_held(node),
+    )
+
+
+def _mode(wrist: Wrist) -> str:
+    return "keep" if wrist.mode is WristMode.KEEP else "auto"
+
+
+def _held(wrist: Wrist) -> tuple[str, ...]:
+    return tuple(component.value for component in wrist.held)
+
+
+def _seam(line: Line, node: Seam) -> SetSeam:
+    return SetSeam(
+        line=line.source_line,
+        number=line.number,
+        span=node.span,
+        node=node,
+        sensor=None if node.sensor is None else node.sensor.key,
     )
 
 

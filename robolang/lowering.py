@@ -5,6 +5,7 @@ waiting time. Errors are ``Fault`` values with a code; the session adds the plac
 """
 
 from collections.abc import Mapping
+from typing import cast
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from robolang.effects import MoveTo, SetHand, SetPayload
 from robolang.points import Point, PointStore
 from runtime.faults import Fault
 from runtime.frames import Array, inverse, pose_from_xyzrpy
-from runtime.motion.commands import MoveLinear
+from runtime.motion.commands import Component, MoveLinear, Wrist
 from runtime.motion.speed import MAX_DURATION
 from runtime.plant.cell import CellSpec
 from runtime.robot.kinematics import Kinematics
@@ -37,6 +38,11 @@ def move(effect: MoveTo, points: PointStore, cell: CellSpec, kinematics: Kinemat
         raise Fault("RBL301", f"point {effect.point} is not taught in {points.path}")
     return MoveLinear(
         X_world_tool=target(point, cell, kinematics),
+        q_end=None if point.joints is None else np.array(point.joints) * DEG,
+        configuration=point.configuration,
+        turns=point.turns,
+        wrist=cast("Wrist | None", effect.wrist),
+        held=cast("tuple[Component, ...]", effect.held),
         speed=None if effect.speed_mm_s is None else effect.speed_mm_s * MM,
         acceleration=1.0 if effect.accel_pct is None else effect.accel_pct * PERCENT,
         duration=effect.time_s,
@@ -47,7 +53,7 @@ def target(point: Point, cell: CellSpec, kinematics: Kinematics) -> Array:
     """Return X_world_tool (4, 4) of a taught point; ``Fault`` RBL310 or RBL305 when the cell cannot place it.
 
     A pose stands in its frame (the world without one) and belongs to the tool it was taught with; joint angles give
-    the pose of the tool in use.
+    the pose of the tool in use, and are where the move ends.
     """
     if point.joints is not None:
         if len(point.joints) != cell.robot.n:

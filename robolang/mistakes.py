@@ -11,11 +11,24 @@ from dataclasses import dataclass
 
 from robolang.diagnostics import Diagnostic
 from robolang.source import Span
-from robolang.words import INSTRUCTIONS, KEYWORDS, code_point, form_of, instruction_hint, look_alike, near
+from robolang.words import (
+    COMPONENTS,
+    INNER_WORDS,
+    INSTRUCTIONS,
+    KEYWORDS,
+    OPTIONS,
+    RESERVED,
+    code_point,
+    form_of,
+    instruction_hint,
+    look_alike,
+    near,
+)
 from runtime.faults import lookup
 
 _END = frozenset({"$END", "COMMENT"})
-_OPTIONS = frozenset({"SPEED", "ACCEL", "TIME"})
+_OPTIONS = frozenset(OPTIONS)
+_HAND_WORDS = frozenset({"OPEN", "CLOSE", "GRASP", "GRIP", "RELEASE"})
 _SIGNS = {"LPAR": "'('", "RPAR": "')'", "_COMMA": "','", "$END": "the end of the line"}
 _LAST_WORD = re.compile(r"(?:[\w.$]+|[^\s\w])[ \t]*\Z")
 _QUOTE = 30
@@ -40,6 +53,11 @@ class Unexpected:
     def is_first(self) -> bool:
         """Whether the statement starts with the token."""
         return not self.before.strip()
+
+    @property
+    def instruction(self) -> str:
+        """The instruction that the token stands behind, in capitals; ``""`` when it is first."""
+        return re.split(r"\W", self.before, maxsplit=1)[0].upper()
 
 
 def explain(found: Unexpected) -> Diagnostic:
@@ -84,7 +102,7 @@ def _not_yet(found: Unexpected) -> Diagnostic | None:
     """Return RBL117 for what the language has and this edition does not run."""
     word = found.text.upper()
     what = ""
-    if found.kind == "LATER" and (found.is_first or "NAME" in found.accepts or found.accepts & _OPTIONS):
+    if found.kind == "LATER" and (found.is_first or found.accepts & _OPTIONS or _takes_value(found)):
         what = word
     elif found.is_first and found.kind == "NAME" and found.after.lstrip().startswith("="):
         what = f"assignment to {quote(found.text)}"
@@ -95,6 +113,11 @@ def _not_yet(found: Unexpected) -> Diagnostic | None:
     return Diagnostic(code="RBL117", message=f"{what} is not in this edition yet", span=found.span) if what else None
 
 
+def _takes_value(found: Unexpected) -> bool:
+    """Return whether a point or a value can stand here, which the language computes from words of its own, too."""
+    return "NAME" in found.accepts and found.instruction != "SEAM"
+
+
 def _unknown(found: Unexpected) -> Diagnostic | None:
     if not (found.is_first and found.kind == "NAME"):
         return None
@@ -103,7 +126,7 @@ def _unknown(found: Unexpected) -> Diagnostic | None:
 
 
 def _unexpected(found: Unexpected) -> Diagnostic:
-    message = f"expected {_expected(found.accepts)}{_after(found.before)}"
+    message = f"expected {_expected(found)}{_after(found.before)}"
     if found.kind in _END:
         end = found.span.start
         return Diagnostic(code="RBL111", message=message, span=Span(end, end), hint=_hint(found))
@@ -111,26 +134,29 @@ def _unexpected(found: Unexpected) -> Diagnostic:
     return Diagnostic(code="RBL111", message=f"{message}, not {shown}", span=found.span, hint=_hint(found))
 
 
-def _expected(accepts: Set[str]) -> str:
+def _expected(found: Unexpected) -> str:
     """Return accepted terminals in words, as in ``',' or the end of the line``."""
-    words = []
-    if accepts & INSTRUCTIONS:
-        words.append("an instruction")
+    if found.is_first:
+        return "an instruction"
+    accepts, words = found.accepts, []
     if "NUMBER" in accepts:
         words.append("a number")
     elif "NAME" in accepts:
-        words.append("a point name")
-    words += [word for word in ("ON", "OFF", "SPEED", "ACCEL", "TIME") if word in accepts]
-    if not accepts & INSTRUCTIONS:
-        words += [sign for kind, sign in _SIGNS.items() if kind in accepts]
+        words.append("a sensor name" if found.instruction == "SEAM" else "a point name")
+    words += [word for word in INNER_WORDS if word in accepts]
+    words += [sign for kind, sign in _SIGNS.items() if kind in accepts]
     return " or ".join([*([", ".join(words[:-1])] if words[:-1] else []), words[-1]])
 
 
-def _after(before: str) -> str:
+def _last_word(before: str) -> str:
     last = _LAST_WORD.search(before[-200:])
-    if last is None:
+    return last[0].rstrip() if last else ""
+
+
+def _after(before: str) -> str:
+    word = _last_word(before)
+    if not word:
         return ""
-    word = last[0].rstrip()
     if not re.match(r"[\w.]", word):
         return f" after '{word}'"
     return f" after {word.upper() if word.upper() in KEYWORDS else quote(word)}"
@@ -142,15 +168,21 @@ def _hint(found: Unexpected) -> str:
     if found.is_first:
         whole = found.kind == "NUMBER"
         return "a line number is a whole number" if whole else lookup("RBL112").remedy
-    if found.kind == "NAME" and {"ON", "OFF"} <= found.accepts:
-        return instruction_hint(word) if word in ("OPEN", "CLOSE", "GRASP", "GRIP", "RELEASE") else ""
-    if found.kind == "NAME" and found.accepts & _OPTIONS:
-        guess = near(word, _OPTIONS)
-        return f"did you mean {guess}?" if guess else ""
-    if "_COMMA" in found.accepts and word in _OPTIONS:
+    if found.instruction == "HAND" and "ON" in found.accepts and word in _HAND_WORDS:
+        return instruction_hint(word)
+    if found.kind == "NAME" and (guess := near(word, found.accepts & KEYWORDS)):
+        return f"did you mean {guess}?"
+    if "_COMMA" in found.accepts and _lacks_comma(found, word):
         return f"write a comma before {word}"
     if "$END" in found.accepts and (word in INSTRUCTIONS or found.kind == "NAME"):
         return "write one instruction on each line"
-    if "NAME" in found.accepts and word in KEYWORDS:
+    if "NAME" in found.accepts and word in RESERVED:
         return f"{word} is a word of the language and cannot be a name"
-    return form_of(found.before.split(maxsplit=1)[0])
+    return form_of("WRIST" if _last_word(found.before).upper() in ("WRIST", "HOLD") else found.instruction)
+
+
+def _lacks_comma(found: Unexpected, word: str) -> bool:
+    """Return whether a word would be right behind a comma: the next option, or the next component of a HOLD."""
+    if word in COMPONENTS:
+        return _last_word(found.before).upper() in COMPONENTS
+    return found.instruction == "MOVE" and word in _OPTIONS

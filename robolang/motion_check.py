@@ -4,15 +4,16 @@ Every statement is lowered and every MOVE planned from where the one before it e
 uses. The first refusal ends the check: where the arm would be after it is not known.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from robolang import lowering
 from robolang.diagnostics import Diagnostic
-from robolang.effects import Effect, MoveTo, SetPayload
+from robolang.effects import MoveTo, SetHand, SetPayload, SetSeam
 from robolang.interpreter import execute
 from robolang.project import Project
 from runtime.faults import Fault
-from runtime.frames import Array
 from runtime.motion.planner import LinePlanner
 from runtime.robot.kinematics import Kinematics
 
@@ -22,22 +23,18 @@ def motion_check(project: Project) -> tuple[Diagnostic, ...]:
     cell = project.cell
     kinematics = Kinematics(cell.robot)
     planner = LinePlanner(cell.robot, kinematics, project.profile)
-    q = np.array(cell.home)
+    q, tracked = np.array(cell.home), False
     for effect in execute(project.program):
         try:
-            q = _end_of(effect, q, project, planner, kinematics)
+            if isinstance(effect, MoveTo):
+                command = replace(lowering.move(effect, project.points, cell, kinematics), tracked=tracked)
+                q = np.array(planner.plan(q, command, cell.hand.X_flange_tool).q[-1])
+            elif isinstance(effect, SetPayload):
+                lowering.payload(effect, cell)
+            elif isinstance(effect, SetHand):
+                lowering.dwell_s(effect, cell)
+            elif isinstance(effect, SetSeam):
+                tracked = effect.sensor is not None
         except Fault as fault:
             return (Diagnostic(code=fault.code, message=fault.message, span=effect.span, hint=fault.hint),)
     return ()
-
-
-def _end_of(effect: Effect, q: Array, project: Project, planner: LinePlanner, kinematics: Kinematics) -> Array:
-    cell = project.cell
-    if isinstance(effect, MoveTo):
-        command = lowering.move(effect, project.points, cell, kinematics)
-        return np.array(planner.plan(q, command, cell.hand.X_flange_tool).q[-1])
-    if isinstance(effect, SetPayload):
-        lowering.payload(effect, cell)
-    else:
-        lowering.dwell_s(effect, cell)
-    return q

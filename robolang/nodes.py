@@ -33,7 +33,7 @@ class Number(Node):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Name(Node):
-    """The name of a point or a value; ``key`` is the spelling that is compared and looked up."""
+    """The name of a point, a sensor or a value; ``key`` is the spelling that is compared and looked up."""
 
     text: str = field(compare=False)
     key: str = field(init=False)
@@ -82,7 +82,39 @@ class Time(Node):
     value: Expression
 
 
-Option: TypeAlias = Speed | Accel | Time
+class WristMode(Enum):
+    """What the wrist may do on a move: ``KEEP`` the sign of J5, change it (``AUTO``), or that with components held."""
+
+    KEEP = "KEEP"
+    AUTO = "AUTO"
+    HOLD = "HOLD"
+
+
+class Component(Enum):
+    """A component of the posture that ``WRIST HOLD`` holds."""
+
+    TILT = "TILT"
+    ADVANCE = "ADVANCE"
+    ROTATION = "ROTATION"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wrist(Node):
+    """``WRIST KEEP|AUTO`` or ``WRIST HOLD c {, c}``: an option of one move, or a statement for the moves that follow.
+
+    ``held`` are the components of HOLD as written, ``held_spans`` their places; the checker bounds their number.
+    """
+
+    mode: WristMode
+    held: tuple[Component, ...] = ()
+    held_spans: tuple[Span, ...] = field(default=(), compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if not self.held_spans:
+            object.__setattr__(self, "held_spans", (NOWHERE,) * len(self.held))
+
+
+Option: TypeAlias = Speed | Accel | Time | Wrist
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,13 +149,20 @@ class Hand(Node):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Seam(Node):
+    """``SEAM ON, sensor`` or ``SEAM OFF`` (``sensor`` None): follow a seam sensor of the cell, or stop following."""
+
+    sensor: Name | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Unparsed(Node):
     """A statement that has an error; a program that contains one does not run."""
 
     text: str
 
 
-Statement: TypeAlias = Move | Load | Hand | Unparsed
+Statement: TypeAlias = Move | Load | Hand | Wrist | Seam | Unparsed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,6 +12,7 @@ cached on disk: that cache would be unpickled from a place others may write to.
 
 import math
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -213,7 +214,8 @@ class _Builder(Transformer[Token, nodes.Node]):
         text, at = comment.rstrip(), _span(comment).start
         return statement, nodes.Comment(text=text, span=Span(at, at + len(text)))
 
-    def move(self, word: Token, target: nodes.Name, *options: nodes.Option) -> nodes.Move:
+    def move(self, word: Token, target: nodes.Name, *parts: nodes.Option | list[Token] | Token) -> nodes.Move:
+        options = _options(parts)
         end = options[-1].span.end if options else target.span.end
         return nodes.Move(target=target, options=options, span=Span(_span(word).start, end))
 
@@ -223,6 +225,19 @@ class _Builder(Transformer[Token, nodes.Node]):
     def hand(self, word: Token, state: Token, dwell: nodes.Expression | None) -> nodes.Hand:
         end = _span(state).end if dwell is None else dwell.span.end
         return nodes.Hand(state=nodes.HandState[state.type], dwell=dwell, span=Span(_span(word).start, end))
+
+    def wrist(self, word: Token, mode: Token) -> nodes.Wrist:
+        return nodes.Wrist(mode=nodes.WristMode[mode.type], span=Span(_span(word).start, _span(mode).end))
+
+    def hold(self, *words: Token) -> list[Token]:
+        return list(words)
+
+    def holding(self, hold: list[Token], *more: Token) -> nodes.Wrist:
+        return _holding([*hold, *more])
+
+    def seam(self, word: Token, state: Token, sensor: nodes.Name | None = None) -> nodes.Seam:
+        end = _span(state).end if sensor is None else sensor.span.end
+        return nodes.Seam(sensor=sensor, span=Span(_span(word).start, end))
 
     def speed(self, word: Token, value: nodes.Expression) -> nodes.Speed:
         return nodes.Speed(value=value, span=Span(_span(word).start, value.span.end))
@@ -245,3 +260,28 @@ class _Builder(Transformer[Token, nodes.Node]):
 
     def name(self, token: Token) -> nodes.Name:
         return nodes.Name(text=str(token), span=_span(token))
+
+
+def _options(parts: Iterable[nodes.Option | list[Token] | Token]) -> tuple[nodes.Option, ...]:
+    """Return the options of a move, each WRIST HOLD with the components that follow it."""
+    found: list[nodes.Option | list[Token]] = []
+    hold: list[Token] = []
+    for part in parts:
+        if isinstance(part, Token):
+            hold.append(part)
+            continue
+        if isinstance(part, list):
+            hold = part
+        found.append(part)
+    return tuple(_holding(part) if isinstance(part, list) else part for part in found)
+
+
+def _holding(words: list[Token]) -> nodes.Wrist:
+    """Return the node of ``WRIST HOLD c {, c}``, given as its words."""
+    held = words[2:]
+    return nodes.Wrist(
+        mode=nodes.WristMode.HOLD,
+        held=tuple(nodes.Component[word.type] for word in held),
+        held_spans=tuple(map(_span, held)),
+        span=Span(_span(words[0]).start, _span(words[-1]).end),
+    )

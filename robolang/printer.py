@@ -16,8 +16,10 @@ from robolang.nodes import (
     Number,
     Option,
     Program,
+    Seam,
     Speed,
     Statement,
+    Wrist,
 )
 
 
@@ -31,6 +33,10 @@ def describe(statement: Statement) -> str:
     if isinstance(statement, Hand):
         dwell = "" if statement.dwell is None else f", {_expression(statement.dwell)}"
         return f"HAND {statement.state.value}{dwell}"
+    if isinstance(statement, Wrist):
+        return _wrist(statement)
+    if isinstance(statement, Seam):
+        return "SEAM OFF" if statement.sensor is None else f"SEAM ON, {statement.sensor.text}"
     return statement.text
 
 
@@ -48,8 +54,15 @@ def print_program(program: Program) -> str:
 
 
 def _option(option: Option) -> str:
+    if isinstance(option, Wrist):
+        return _wrist(option)
     word = "SPEED" if isinstance(option, Speed) else "ACCEL" if isinstance(option, Accel) else "TIME"
     return f"{word} {_expression(option.value)}"
+
+
+def _wrist(wrist: Wrist) -> str:
+    held = f" {', '.join(component.value for component in wrist.held)}" if wrist.held else ""
+    return f"WRIST {wrist.mode.value}{held}"
 
 
 def _expression(expression: Expression) -> str:

@@ -89,7 +89,7 @@ def load_project(path: Path | str, cell: Path | str | None = None, robot: str | 
     used = cell_spec.robot
     points = taught_points(where, builtin=cell_path is None, robot=used.name, axes=used.n)
     parsed = parse(source)
-    found = check(parsed.program, points=points.names, rated_payload_kg=used.rated_payload)
+    found = check(parsed.program, points=points.names, rated_payload_kg=used.rated_payload, sensors=cell_spec.sensors)
     return Project(
         source=source,
         program=parsed.program,

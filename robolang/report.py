@@ -69,13 +69,14 @@ class _Measures:
         self.p_tool = log["X_world_tool"][:, :3, 3]
         self.joint_deg = np.abs(log["q_cmd"] - log["q_link"]).max(axis=1) / DEG
         self.tool_mm = np.linalg.norm(X_cmd[:, :3, 3] - self.p_tool, axis=1) / MM
+        self.wrist_mode, self.deviation = log["wrist_mode"], log["seam_deviation"]
         self.torque_pct = np.abs(log["tau_sat"] / torque).max(axis=1) / PERCENT
 
 
 def _statement(run: StatementRun, measures: _Measures, tick_us: int) -> dict[str, Any]:
     span = slice(run.first_tick, run.end_tick)
     deviation = None
-    if run.path is not None and run.end_tick > run.first_tick:
+    if run.path is not None and run.seam is None and run.end_tick > run.first_tick:
         deviation = float(run.path.deviation(measures.p_tool[span]).max()) / MM
     return {
         "line": run.line,
@@ -88,7 +89,43 @@ def _statement(run: StatementRun, measures: _Measures, tick_us: int) -> dict[str
         "tool_error_mm": _largest(measures.tool_mm[span]),
         "path_deviation_mm": deviation,
         "peak_torque_pct": _largest(measures.torque_pct[span]),
+        "wrist": _wrist(run, measures.wrist_mode[span], tick_us),
+        "seam": _seam(run, measures.deviation[span]),
         "notes": list(run.notes),
+    }
+
+
+def _wrist(run: StatementRun, mode: Array, tick_us: int) -> dict[str, object] | None:
+    """Return the event of a wrist that left its posture: from when to when, why, and by how much; None for none."""
+    on = np.flatnonzero(mode)
+    if not len(on):
+        return None
+    change = run.wrist
+    start, end = ((run.first_tick + int(at)) * tick_us / 1_000_000 for at in (on[0], on[-1] + 1))
+    event: dict[str, object] = {"start_s": start, "end_s": end}
+    if change is not None:
+        event |= {
+            "condition": change.condition,
+            "axis": None if change.axis is None else change.axis + 1,
+            "from_path_pct": change.share / PERCENT,
+            "to_path_pct": change.share_end / PERCENT,
+            "remedy": change.remedy,
+            "held": list(change.held),
+            "posture_deviation_deg": change.deviation / DEG,
+        }
+    return event
+
+
+def _seam(run: StatementRun, deviation: Array) -> dict[str, object] | None:
+    """Return what a MOVE under a seam sensor followed; None without one."""
+    if run.seam is None:
+        return None
+    far, turned = np.linalg.norm(deviation[:, :3], axis=1), np.abs(deviation[:, 3:]).max(axis=1)
+    return {
+        "sensor": run.seam.name,
+        "largest_mm": _largest(far / MM),
+        "largest_deg": _largest(turned / DEG),
+        "lost_readings": run.lost,
     }
 
 

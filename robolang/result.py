@@ -6,11 +6,17 @@ from robolang.project import Project
 from runtime.controller import Controller
 from runtime.frames import Array
 from runtime.motion.path import LinePath
+from runtime.motion.planner import WristChange
+from runtime.motion.seam import SeamTracker
 
 
 @dataclass(slots=True, kw_only=True)
 class StatementRun:
-    """What became of one statement: its place, its first and last tick, the path it moved on."""
+    """What became of one statement: its place, its first and last tick, the path it moved on.
+
+    ``wrist`` is what its plan did with the wrist, ``seam`` the tracker it moved under, ``lost`` the readings that this
+    one lost since; ``lamp`` what the pendant's lamp shows now: ``wrist`` while the wrist goes its own way.
+    """
 
     line: int
     number: int | None
@@ -19,6 +25,10 @@ class StatementRun:
     end_tick: int = 0
     path: LinePath | None = None
     planned_s: float | None = None
+    wrist: WristChange | None = None
+    seam: SeamTracker | None = None
+    lost: int = 0
+    lamp: str = ""
     notes: list[str] = field(default_factory=list)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from robolang import lowering
 from robolang.diagnostics import Diagnostic, render
-from robolang.effects import Effect, MoveTo, SetHand, SetPayload
+from robolang.effects import Effect, MoveTo, SetHand, SetPayload, SetSeam
 from robolang.interpreter import execute
 from robolang.nodes import Program
 from robolang.printer import describe
@@ -23,7 +23,9 @@ from robolang.result import RunRecord, RunResult, StatementRun
 from runtime.clock import PacedClock, VirtualClock, wall_s
 from runtime.controller import Controller
 from runtime.faults import Fault
+from runtime.motion.seam import SeamTracker
 from runtime.plant.plant import Plant
+from runtime.plant.seam_sensor import SeamSensor
 from runtime.profile import ServoMode
 from runtime.robot.kinematics import Kinematics
 from runtime.units import MM
@@ -45,6 +47,9 @@ Progress = Callable[[StatementRun, int], None]
 Effects = Callable[[Program], Iterator[Effect]]
 """Yields the effects of a program: the interpreter, or one that changes what the program declares (``compare``)."""
 
+LAMPS = ("", "WRIST", "WRIST HOLD")
+"""What the lamp shows by ``wrist_mode``."""
+
 _PROGRESS_CYCLES = 25
 
 MAX_RUN_US = 1_800_000_000
@@ -62,6 +67,7 @@ class Session:
         self._effects = effects
         self._progress = progress or (lambda statement, time_us: None)
         self._stop_requested = self._halt_requested = False
+        self._tracker: SeamTracker | None = None
         self.running = False
         """Whether the program runs or the arm still stops."""
         cell, profile = project.cell, project.profile
@@ -137,8 +143,10 @@ class Session:
             self._load(effect)
         elif isinstance(effect, MoveTo):
             yield from self._move(effect, run)
-        else:
+        elif isinstance(effect, SetHand):
             yield from self._hand(effect, run)
+        elif isinstance(effect, SetSeam):
+            self._seam(effect)
 
     def _load(self, effect: SetPayload) -> None:
         payload = lowering.payload(effect, self.project.cell)
@@ -152,6 +160,15 @@ class Session:
             }
         )
 
+    def _seam(self, effect: SetSeam) -> None:
+        """SEAM ON and OFF; the setting of WRIST is in each MOVE and needs nothing here."""
+        self._tracker = None
+        if effect.sensor is not None:
+            spec = {name.upper(): each for name, each in self.project.cell.sensors.items()}[effect.sensor]
+            read = SeamSensor(spec).read
+            self._tracker = SeamTracker(effect.sensor, spec.limits, self.project.profile.period_s, read)
+        self.controller.seam(self._tracker)
+
     def _move(self, effect: MoveTo, run: StatementRun) -> Iterator[None]:
         controller, profile = self.controller, self.project.profile
         command = lowering.move(effect, self.project.points, self.project.cell, self._kinematics)
@@ -159,8 +176,12 @@ class Session:
         run.path = plan.path
         run.planned_s = (len(plan.q) - 1) * profile.period_us / 1_000_000
         run.notes += plan.notes
+        run.wrist, run.seam = plan.wrist, self._tracker
+        lost = 0 if run.seam is None else run.seam.lost
         while controller.moving:
             yield
+            run.lamp = LAMPS[controller.wrist_mode]
+            run.lost = 0 if run.seam is None else run.seam.lost - lost
         waited_us = 0
         while not controller.position_error <= profile.in_position:
             if waited_us >= profile.settle_timeout_us:

@@ -10,26 +10,33 @@ import re
 import unicodedata
 from collections.abc import Iterable
 
-INSTRUCTIONS = frozenset({"MOVE", "LOAD", "HAND"})
-KEYWORDS = INSTRUCTIONS | {"ON", "OFF", "SPEED", "ACCEL", "TIME"}
+INSTRUCTIONS = frozenset({"MOVE", "LOAD", "HAND", "WRIST", "SEAM"})
+OPTIONS = ("SPEED", "ACCEL", "TIME", "WRIST")
+COMPONENTS = ("TILT", "ADVANCE", "ROTATION")
+INNER_WORDS = ("ON", "OFF", *OPTIONS, "KEEP", "AUTO", "HOLD", *COMPONENTS)
+"""Words that stand behind an instruction, in the order in which messages list them."""
+KEYWORDS = INSTRUCTIONS | frozenset(INNER_WORDS)
 _LATER_INSTRUCTIONS = """
-    MOVEJ MOVEC APPROACH DEPART SPEEDJ OVERRIDE ZONE TOOL FRAME WRIST SEAM OUT WAIT DELAY PULSE DIM CONST
+    MOVEJ MOVEC APPROACH DEPART SPEEDJ OVERRIDE ZONE TOOL FRAME OUT WAIT DELAY PULSE DIM CONST
     IF ELSEIF ELSE ENDIF FOR NEXT WHILE WEND SELECT CASE ENDSELECT GOTO GOSUB RETURN SUB ENDSUB CALL END STOP
     PAUSE RESUME PRINT
 """
 _LATER_WORDS = """
-    FINE KEEP AUTO HOLD IN TIMEOUT THEN TO STEP ERROR ERR POSE JOINT HERE DIST AND OR NOT MOD
+    FINE IN TIMEOUT THEN TO STEP ERROR ERR POSE JOINT HERE DIST AND OR NOT MOD
     ABS SGN INT ROUND SQR SIN COS TAN ATN2 MIN MAX DEG RAD STR$ VAL LEN TIMER
 """
 _FORMS = {
-    "MOVE": "MOVE point [, SPEED mm/s] [, ACCEL %] [, TIME s]",
+    "MOVE": "MOVE point [, SPEED mm/s] [, ACCEL %] [, TIME s] [, WRIST mode]",
     "LOAD": "LOAD (x, y, z), mass",
     "HAND": "HAND ON [, s] or HAND OFF [, s]",
+    "WRIST": "WRIST KEEP, WRIST AUTO or WRIST HOLD component [, component]",
+    "SEAM": "SEAM ON, sensor or SEAM OFF",
 }
 LATER_INSTRUCTIONS = frozenset(_LATER_INSTRUCTIONS.split())
 LATER = LATER_INSTRUCTIONS | frozenset(_LATER_WORDS.split())
 RESERVED = KEYWORDS | LATER | {"REM", "NAN", "INF"}
 
+_PHRASES = {"HAND ON", "HAND OFF", "WRIST KEEP", "WRIST AUTO", "WRIST HOLD", "SEAM ON", "SEAM OFF"}
 _OTHER_LANGUAGES = {
     "CLOSE": "HAND ON closes the hand",
     "GRASP": "HAND ON closes the hand",
@@ -84,7 +91,7 @@ def instruction_hint(word: str) -> str:
         return known
     if joined := re.fullmatch(r"(MOVE|LOAD|HAND)(\w*\d)", word.upper()):
         return f"leave a space: {joined[1]} {joined[2]}"
-    guess = near(word, INSTRUCTIONS | LATER_INSTRUCTIONS | {"HAND ON", "HAND OFF"})
+    guess = near(word, INSTRUCTIONS | LATER_INSTRUCTIONS | _PHRASES)
     return f"did you mean {guess}?" if guess else ""
 
 

@@ -16,6 +16,7 @@ the brakes; 0 at once. From then on ``cycle`` does nothing and returns False, un
 import math
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -28,7 +29,8 @@ from runtime.frames import Array
 from runtime.motion.commands import MoveLinear
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.interpolator import Interpolator
-from runtime.motion.planner import LinePlan, LinePlanner
+from runtime.motion.planner import FOLLOWS, LinePlan, LinePlanner
+from runtime.motion.seam import SeamTracker
 from runtime.motion.stop import stopping_rows
 from runtime.plant.plant import Plant
 from runtime.profile import Profile
@@ -91,6 +93,10 @@ class Controller:
         self.processor = IdleProcessor(self._dynamics)
         self.recorder = Recorder(spec.n, profile.ticks_per_cycle, profile.tick_us, plant.q_link)
         self._planner = LinePlanner(spec, self.kinematics, profile)
+        self._tracker: SeamTracker | None = None
+        self.wrist_mode = FOLLOWS
+        """Whether the wrist follows the path at the set-point in INA, or goes its own way (``runtime.motion.planner``).
+        """
         self._interpolator = Interpolator()
         self._fine = fine or FineInterpolator(profile.ticks_per_cycle, profile.period_s, self.areas.ina)
         self._fine.hold(self.areas.ina)
@@ -102,6 +108,7 @@ class Controller:
             ticks=profile.ticks_per_cycle, tick_s=profile.tick_s, friction=profile.servo.friction_compensation,
         )  # fmt: skip
         self._overruns = 0
+        self._no_deviation = np.zeros(6)
 
     def _power_up(self, q: Array) -> None:
         """Fill ITA once for all axes before the brakes open, so that no servo ever works with an empty cell."""
@@ -149,9 +156,27 @@ class Controller:
     def move(self, command: MoveLinear) -> LinePlan:
         """Plan a straight move from the commanded position and start it; ``Fault`` RBL4xx before anything moves."""
         self._refuse_while_latched()
-        plan = self._planner.plan(np.array(self.areas.ina), command, self.X_flange_tool)
-        self._interpolator.start(plan)
+        here, tracker = np.array(self.areas.ina), self._tracker
+        if tracker is None:
+            plan = self._planner.plan(here, command, self.X_flange_tool)
+            self._interpolator.start(plan)
+            return plan
+        command = replace(command, tracked=True)
+        q_from = here if tracker.q_calculated is None else tracker.q_calculated
+        plan = self._planner.plan(q_from, command, self.X_flange_tool)
+        seam = self._planner.tracked(plan, command, q_from, here, tracker, self.X_flange_tool)
+        self._interpolator.start(plan, seam)
+        tracker.q_calculated = plan.q[-1]
         return plan
+
+    def seam(self, tracker: SeamTracker | None) -> None:
+        """SEAM ON: the moves that follow go where the tracker's sensor sees the seam; None, SEAM OFF, ends that."""
+        self._tracker = tracker
+
+    @property
+    def seam_deviation(self) -> Array:
+        """Deviation (6,) that is superposed on the path, m and rad in the world; zeros without SEAM ON."""
+        return self._no_deviation if self._tracker is None else self._tracker.deviation
 
     def _refuse_while_latched(self) -> None:
         if self.alarms:
@@ -223,6 +248,10 @@ class Controller:
         if self._interpolator.busy:
             areas.ina = self._interpolator.next()
             foreground_us = profile.interpolation_cost_us
+            self.wrist_mode = self._interpolator.mode
+            fault = self._interpolator.fault
+            if fault is not None and not self.alarms:
+                self.alarm(fault.code, fault.message)
         self.processor.begin_cycle(foreground_us)
         if not self._run_ticks(start_us, motion):
             return False
@@ -245,7 +274,8 @@ class Controller:
         motion = self._fine.push(self.areas.ina)
         rows = np.array([cell.row for cell in cells]) if self.servo.coupled else None
         self.servo.take(D, T, motion, rows)
-        self.recorder.begin_cycle(self.areas.ina, D, T, read_us, motion, self.areas.sda.mass, self.line)
+        self.recorder.begin_cycle((self.areas.ina, D, T, read_us, self.seam_deviation), motion,
+                                  (self.areas.sda.mass, self.line, self.wrist_mode))  # fmt: skip
         return motion
 
     def _run_ticks(self, start_us: int, motion: Array) -> bool:

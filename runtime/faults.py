@@ -216,6 +216,24 @@ register(
         remedy="Check the declared payload against the real one, and the torque limits in the report.",
     ),
     Code(
+        code="RBL524",
+        name="seam-too-far",
+        meaning="A seam sensor sees the seam further from its taught place than is believed.",
+        remedy="Check the work piece and the sensor; most_mm and most_deg of the sensor bound what is followed.",
+    ),
+    Code(
+        code="RBL525",
+        name="seam-lost",
+        meaning="A seam sensor has given no reading for too long.",
+        remedy="Check the sensor, or allow longer gaps with lost_ms of the sensor.",
+    ),
+    Code(
+        code="RBL526",
+        name="seam-not-followed",
+        meaning="The joints cannot follow where a seam sensor sees the seam: out of reach, out of range or too fast.",
+        remedy="Move slower, teach the seam nearer to where it is, or lower most_mm of the sensor.",
+    ),
+    Code(
         code="RBL530",
         name="stopped-by-user",
         meaning="The run was stopped from outside (Ctrl-C or SIGTERM).",

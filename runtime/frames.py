@@ -66,6 +66,13 @@ def rotation_angle(R_a: Array, R_b: Array) -> float:
     return principal_axis(R_a, R_b)[1]
 
 
+def rotation_angles(R_a: Array, R_b: Array) -> Array:
+    """Return the angles (...,) between orientations (..., 3, 3) in rad, in [0, pi], exact near zero."""
+    M = np.swapaxes(R_a, -1, -2) @ R_b
+    w = np.stack([M[..., 2, 1] - M[..., 1, 2], M[..., 0, 2] - M[..., 2, 0], M[..., 1, 0] - M[..., 0, 1]], axis=-1)
+    return np.asarray(np.arctan2(np.linalg.norm(w, axis=-1), np.trace(M, axis1=-2, axis2=-1) - 1.0))
+
+
 def rotation_from_rpy(rpy: ArrayLike) -> Array:
     """Return ``Rz(rz) @ Ry(ry) @ Rx(rx)``; rpy (..., 3) rad -> (..., 3, 3)."""
     rx, ry, rz = np.moveaxis(np.asarray(rpy, dtype=np.float64), -1, 0)

@@ -9,7 +9,7 @@ docs/timing.md (costs) and docs/servo.md (Kf, Ka, K2, feed-forward source).
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal, NoReturn, cast
 
@@ -17,13 +17,16 @@ from runtime.faults import Fault
 from runtime.robot.model import LoadMode
 from runtime.supervision.limits import Reaction, SupervisionLimits
 from runtime.tomlfile import FileFault, Source, Table, load_table, read_source
-from runtime.units import DEG
+from runtime.units import DEG, MM
 
 ServoMode = Literal["scheduled", "fixed"]
 FixedAt = Literal["min", "mid", "max"]
 Coupling = Literal["diagonal", "full"]
 FeedforwardSource = Literal["command", "measured"]
 SpeedShape = Literal["jerk", "trapezoid"]
+WristMode = Literal["auto", "keep"]
+WristShape = Literal["smooth", "linear", "hermite"]
+PostureLaw = Literal["axis", "rpy"]
 
 SERVO_PERIODS_MS = (0.25, 0.5, 1.0)
 
@@ -57,6 +60,48 @@ class ServoOptions:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class WristOptions:
+    """When and how a straight move leaves its posture to change the wrist (``runtime.motion.wrist``, docs/wrist.md).
+
+    ``mode`` for moves that name none. C1 ``speed_condition``; C2 ``remaining_time`` s and ``remaining_distance`` m, 0
+    for off; C3 ``range_condition``, ``look_ahead`` cycles; C4 ``deviation_condition``, ``deviation`` rad of J4 to
+    J6; C6 ``guard``. ``speed`` theta_kd of the three, rad/s, empty: the robot's limits. ``shape`` of the wrist's way
+    and ``width`` of its soft start. ``posture``: law of the orientation along the path. A path that ends as taught is
+    slowed by up to ``posture_first`` rather than left; the tool turns at most ``most_deviation`` rad from its posture,
+    and at most ``untaught_deviation`` where a pose is taught and no angles. ``remedies``: what else is tried where the
+    document alone breaks a limit.
+    """
+
+    mode: WristMode = "auto"
+    speed_condition: Literal["any", "all", "off"] = "any"
+    remaining_time: float = 0.0
+    remaining_distance: float = 0.0
+    range_condition: bool = True
+    look_ahead: int = 10
+    deviation_condition: Literal["moving", "start", "end", "off"] = "moving"
+    deviation: tuple[float, ...] = (90.0 * DEG, 180.0 * DEG, 90.0 * DEG)
+    guard: bool = True
+    speed: tuple[float, ...] = ()
+    shape: WristShape = "smooth"
+    width: float = 0.5
+    posture: PostureLaw = "axis"
+    posture_first: float = 2.0
+    most_deviation: float = 180.0 * DEG
+    untaught_deviation: float = 45.0 * DEG
+    remedies: bool = True
+
+    def only(self, *, range_condition: bool = False, guard: bool = False) -> "WristOptions":
+        """Return the options with no condition but these."""
+        return replace(self, speed_condition="off", remaining_time=0.0, remaining_distance=0.0,
+                       range_condition=range_condition, deviation_condition="off", guard=guard)  # fmt: skip
+
+    @property
+    def peak(self) -> float:
+        """Largest wrist speed of a shape over that of the linear one, started from rest."""
+        return {"linear": 1.0, "hermite": 1.6, "smooth": 1.0 / (1.0 - self.width / 2.0)}[self.shape]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Profile:
     """Cycle times, declared costs and options of a controller."""
 
@@ -69,6 +114,7 @@ class Profile:
     in_position: float = 0.05 * DEG
     settle_timeout_us: int = 400_000
     servo: ServoOptions = ServoOptions()
+    wrist: WristOptions = WristOptions()
     supervision: SupervisionLimits = field(default_factory=SupervisionLimits)
 
     @property
@@ -113,6 +159,16 @@ def _numbers(key: str, unit: str) -> Setting:
     return Setting(key=key, unit=unit, default=(), read=_one_or_each)
 
 
+def _flag(key: str, default: bool) -> Setting:
+    return Setting(key=key, unit="", default=default, read=lambda table, name: table.flag(name, default))
+
+
+def _three(key: str, unit: str, default: tuple[float, ...]) -> Setting:
+    """Return a setting of three positive numbers, for J4, J5 and J6 or whatever the wrist axes are."""
+    return Setting(key=key, unit=unit, default=default,
+                   read=lambda table, name: table.numbers(name, 3, positive=True, high=1e5))  # fmt: skip
+
+
 def _one_or_each(table: Table, name: str) -> tuple[float, ...]:
     """Read a positive number for all axes, or a list with one for each."""
     limits: dict[str, Any] = {"positive": True, "high": 1e5}
@@ -155,9 +211,29 @@ SERVO = (
     _numbers("position_bandwidth_rad_s", "1/s"),
     _numbers("velocity_bandwidth_rad_s", "1/s"),
 )  # fmt: skip
+WRIST = (
+    _text("mode", "auto", "keep"),
+    _text("speed_condition", "any", "all", "off"),
+    _number("remaining_time_s", "s", 0.0, low=0.0, high=600.0),
+    _number("remaining_distance_mm", "mm", 0.0, low=0.0, high=20_000.0),
+    _flag("range_condition", True),
+    Setting(key="look_ahead_cycles", unit="cycles", default=10,
+            read=lambda table, name: table.integer(name, low=0, high=1000)),
+    _text("deviation_condition", "moving", "start", "end", "off"),
+    _three("deviation_deg", "deg", (90.0, 180.0, 90.0)),
+    _flag("guard", True),
+    _three("speed_deg_s", "deg/s", ()),
+    _text("shape", "smooth", "linear", "hermite"),
+    _number("soft_start", "", 0.5, positive=True, high=1.0),
+    _text("posture", "axis", "rpy"),
+    _number("posture_first", "", 2.0, low=1.0, high=20.0),
+    _number("most_deviation_deg", "deg", 180.0, low=0.0, high=180.0),
+    _number("untaught_deviation_deg", "deg", 45.0, low=0.0, high=180.0),
+    _flag("remedies", True),
+)  # fmt: skip
 _LIMITS = SupervisionLimits()
 SUPERVISION = (
-    Setting(key="enabled", unit="", default=True, read=lambda table, name: table.flag(name, True)),
+    _flag("enabled", True),
     _number("following_error_deg", "deg", _LIMITS.following_error / DEG, positive=True, high=180.0),
     _number("following_lag_ms", "ms", _LIMITS.following_lag * 1e3, low=0.0, high=1000.0),
     _number("saturation_ms", "ms", _LIMITS.saturation_s * 1e3, low=0.0, high=60_000.0),
@@ -176,6 +252,7 @@ SUPERVISION = (
 _BY_KEY = {
     **{item.key: item for item in CONTROLLER},
     **{f"servo.{item.key}": item for item in SERVO},
+    **{f"wrist.{item.key}": item for item in WRIST},
     **{f"supervision.{item.key}": item for item in SUPERVISION},
 }
 KEYS = tuple(_BY_KEY)
@@ -226,7 +303,7 @@ def read_layer(table: Table | None) -> Layer:
         return {}
     found = _read(table, CONTROLLER, "")
     table.ask(*(item.key for item in CONTROLLER))
-    for name, settings in (("servo", SERVO), ("supervision", SUPERVISION)):
+    for name, settings in (("servo", SERVO), ("wrist", WRIST), ("supervision", SUPERVISION)):
         group = table.table(name, required=False)
         found |= _read(group, settings, f"{name}.")
         group.ask(*(item.key for item in settings))
@@ -314,6 +391,33 @@ def _supervision(value: Mapping[str, Any]) -> SupervisionLimits:
     )
 
 
+def _wrist(value: Mapping[str, Any]) -> WristOptions:
+    return WristOptions(
+        mode=cast(WristMode, value["mode"]),
+        speed_condition=value["speed_condition"],
+        remaining_time=value["remaining_time_s"],
+        remaining_distance=value["remaining_distance_mm"] * MM,
+        range_condition=value["range_condition"],
+        look_ahead=value["look_ahead_cycles"],
+        deviation_condition=value["deviation_condition"],
+        deviation=tuple(angle * DEG for angle in value["deviation_deg"]),
+        guard=value["guard"],
+        speed=tuple(speed * DEG for speed in value["speed_deg_s"]),
+        shape=cast(WristShape, value["shape"]),
+        width=value["soft_start"],
+        posture=cast(PostureLaw, value["posture"]),
+        posture_first=value["posture_first"],
+        most_deviation=value["most_deviation_deg"] * DEG,
+        untaught_deviation=value["untaught_deviation_deg"] * DEG,
+        remedies=value["remedies"],
+    )
+
+
+def _group(value: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """Return the values of one group by the keys of its own table."""
+    return {key.removeprefix(f"{name}."): item for key, item in value.items() if key.startswith(f"{name}.")}
+
+
 def _profile(value: Mapping[str, Any]) -> Profile:
     return Profile(
         tick_us=round(value["servo_period_ms"] * 1000),
@@ -337,5 +441,6 @@ def _profile(value: Mapping[str, Any]) -> Profile:
             position_bandwidth=value["servo.position_bandwidth_rad_s"],
             velocity_bandwidth=value["servo.velocity_bandwidth_rad_s"],
         ),
-        supervision=_supervision({key.removeprefix("supervision."): item for key, item in value.items()}),
+        wrist=_wrist(_group(value, "wrist")),
+        supervision=_supervision(_group(value, "supervision")),
     )

@@ -16,7 +16,8 @@ signal                    unit    meaning
 ``D_age`` ``T_age``       ms      time since the angles were read from which they were computed
 ``payload_mass``          kg      mass declared by LOAD
 ``line``                  -       line of the program that runs (0: none)
-``wrist_mode``            -       0: wrist follows the path
+``wrist_mode``            -       0: wrist follows the path, 1: goes to its end angles, 2: with components held
+``seam_deviation``        m, rad  what the seam sensor adds to the path, (6,), world frame
 ========================  ======  ==========================================================================
 
 The hot path copies one row of five vectors per tick and one row per cycle into arrays that grow by doubling; what
@@ -43,21 +44,23 @@ class Recorder:
         self._tick_us = tick_us
         self._ticks = np.zeros((_FIRST_ROWS, 5 * n))
         self._commands = np.zeros((_FIRST_ROWS, 2 * n))
-        self._cycles = np.zeros((_FIRST_ROWS // ticks_per_cycle + 1, 4 * n + 2))
+        self._cycles = np.zeros((_FIRST_ROWS // ticks_per_cycle + 1, 4 * n + 9))
         self.tick = 0
         """Ticks recorded so far."""
         self.cycle = 0
         """Cycles begun so far."""
 
-    def begin_cycle(self, q_plan: Array, D: Array, T: Array, read_us: Array, motion: Array, payload_mass: float,
-                    line: int) -> None:  # fmt: skip
-        """Record what is constant in a cycle and the commanded motion (3, ticks, n) of its ticks."""
+    def begin_cycle(self, vectors: tuple[Array, ...], motion: Array, scalars: tuple[float, int, int]) -> None:
+        """Record what is constant in a cycle and the commanded motion (3, ticks, n) of its ticks.
+
+        ``vectors``: q_plan, D, T, time of reading us, each (n,), and the seam's deviation (6,); ``scalars``: mass
+        declared, line, wrist_mode.
+        """
         if self.cycle == len(self._cycles):
             self._cycles = np.concatenate([self._cycles, np.zeros_like(self._cycles)])
         row = self._cycles[self.cycle]
-        np.concatenate((q_plan, D, T, read_us), out=row[:-2])
-        row[-2] = payload_mass
-        row[-1] = line
+        np.concatenate(vectors, out=row[:-3])
+        row[-3:] = scalars
         self.cycle += 1
         end = self.tick + self._ticks_per_cycle
         if end > len(self._ticks):
@@ -100,8 +103,9 @@ class Recorder:
             "T": cycles[:, 2 * n : 3 * n],
             "D_age": age_ms,
             "T_age": age_ms.copy(),
-            "payload_mass": cycles[:, -2],
-            "line": cycles[:, -1].astype(np.int32),
-            "wrist_mode": np.zeros(ticks, dtype=np.int8),
+            "payload_mass": cycles[:, -3],
+            "line": cycles[:, -2].astype(np.int32),
+            "wrist_mode": cycles[:, -1].astype(np.int8),
+            "seam_deviation": cycles[:, 4 * n : 4 * n + 6],
         }
         return {name: np.ascontiguousarray(values) for name, values in signals.items()}

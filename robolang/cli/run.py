@@ -188,11 +188,11 @@ def _live_line() -> Iterator["Progress"]:
 
 
 def _line_printer() -> "Progress":
-    shown: list[StatementRun] = []
+    shown: list[tuple[StatementRun, str]] = []
 
     def show(statement: "StatementRun", time_us: int) -> None:
-        if not shown or shown[-1] is not statement:
-            shown[:] = [statement]
+        if not shown or shown[-1][0] is not statement or (statement.lamp and statement.lamp != shown[-1][1]):
+            shown[:] = [(statement, statement.lamp)]
             typer.echo(_status(statement, time_us), err=True)
 
     return show
@@ -200,4 +200,5 @@ def _line_printer() -> "Progress":
 
 def _status(statement: "StatementRun", time_us: int) -> str:
     number = statement.number if statement.number is not None else statement.line
-    return f"{time_us / 1e6:9.3f} s  line {number:<4} {statement.text}"
+    lamp = f"[{statement.lamp}]  " if statement.lamp else ""
+    return f"{time_us / 1e6:9.3f} s  line {number:<4} {lamp}{statement.text}"

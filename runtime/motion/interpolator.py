@@ -2,15 +2,18 @@
 
 Step 210 of cycle n writes what the 8 ms interrupt of cycle n + 1 sends (step 218), so the servo gets a set-point one
 cycle after it was computed. The rows come from the plan, where steps 204 to 210 were carried out and checked for
-the whole move at once. Called once per cycle by the controller.
+the whole move at once; under a seam sensor each is computed in its own cycle (``seam``). Called once per cycle by the
+controller.
 """
 
 from collections.abc import Callable
 
 import numpy as np
 
+from runtime.faults import Fault
 from runtime.frames import Array
-from runtime.motion.planner import LinePlan
+from runtime.motion.planner import EXCEPTION, FOLLOWS, LinePlan
+from runtime.motion.seam import SeamMove
 
 
 class Interpolator:
@@ -18,34 +21,56 @@ class Interpolator:
 
     def __init__(self) -> None:
         self._rows: Array | None = None
+        self._modes: list[int] = []
+        self._seam: SeamMove | None = None
         self._n = 0
+        self.fault: Fault | None = None
+        """What the last set-point has to stop the arm for: a seam that cannot be followed."""
 
-    def start(self, plan: LinePlan) -> None:
-        """Begin a move; ``RuntimeError`` when another one still runs."""
+    def start(self, plan: LinePlan, seam: SeamMove | None = None) -> None:
+        """Begin a move, with ``seam`` point by point; ``RuntimeError`` when another one still runs."""
         if self.busy:
             raise RuntimeError("a move is running")
-        self._rows = plan.q
+        self._rows, self._modes, self._seam = plan.q, plan.modes.tolist(), seam
+        if seam is not None:
+            self._rows = np.array(plan.q)  # the plan's rows are those without deviation; each is replaced in its turn
+            self._rows[0] = seam.here
         self._n = 0
 
     def stop(self, stopping: Callable[[Array, int], Array]) -> None:
         """Replace the rows that are left by those of a controlled stop, ``stopping(rows, reached)``."""
         if self._rows is not None and self.busy:
-            reached = self._rows[: self._n + 1]
-            self._rows = np.concatenate([reached, stopping(self._rows, self._n)])
+            rows, reached = self._rows, self._rows[: self._n + 1]
+            if self._seam is not None:
+                rows, self._seam = np.concatenate([reached, self._seam.rest(self._n + 1)]), None
+            self._rows = np.concatenate([reached, stopping(rows, self._n)])
 
     def drop(self) -> None:
         """Forget the move: no set-point is left to send."""
-        self._rows = None
+        self._rows = self._seam = None
 
     @property
     def busy(self) -> bool:
         """Whether set-points are left to send (step 222)."""
         return self._rows is not None and self._n + 1 < len(self._rows)
 
+    @property
+    def mode(self) -> int:
+        """``wrist_mode`` of the last set-point; the wrist follows the path when none is left."""
+        if not self.busy:
+            return FOLLOWS
+        if self._seam is not None:
+            return FOLLOWS if self._seam.law is None else EXCEPTION
+        return self._modes[min(self._n, len(self._modes) - 1)]
+
     def next(self) -> Array:
         """Return the joint set-point (n,) rad of this cycle; ``RuntimeError`` when the target was reached."""
         if self._rows is None or not self.busy:
             raise RuntimeError("no move is running")
         self._n += 1
+        if self._seam is not None:
+            self._rows[self._n], self.fault = self._seam.next(self._n)
+            if self._n + 1 == len(self._rows):
+                self._seam.finish()
         row: Array = self._rows[self._n]
         return row

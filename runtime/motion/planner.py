@@ -1,39 +1,44 @@
 """Planning a straight move: every set-point computed and checked before the first one is sent.
 
-The path is sampled where the interpolator will send it, every 8 ms, solved for the joints in the arm configuration
-it starts in, and refused when a sample is out of reach (RBL410), outside a joint's range (RBL411) or needs another
-wrist configuration (RBL412). Joint speeds and accelerations are then measured where the servo sees them, at every
-tick of the fine interpolation. Where they pass the robot's limits the whole profile is slowed by one factor,
-``k = max(speed ratio, sqrt(acceleration ratio))``, and sampled again, until it holds them: the path stays, the time
-grows, and the plan says by how much and because of which axis. What was checked is what runs: the interpolator
-hands out these very rows (docs/decisions/0002).
+The path is sampled where the interpolator will send it, every 8 ms, and solved for the joints: in the arm configuration
+it starts in, with the wrist leaving the posture of the path where it has to (``wrist_planner``). It is refused when a
+sample is out of reach (RBL410), outside a joint's range (RBL411) or cannot be passed (RBL412). Joint speeds and
+accelerations are then measured where the servo sees them, at every tick of the fine interpolation. Where they pass the
+robot's limits the whole profile is slowed by one factor, ``k = max(speed ratio, sqrt(acceleration ratio))``, and
+sampled again, until it holds them: the path stays, the time grows, and the plan says by how much and because of which
+axis. What was checked is what runs: the interpolator hands out these very rows (docs/decisions/0002).
 """
 
-import math
 from dataclasses import dataclass
-from typing import NoReturn
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runtime.faults import Fault
-from runtime.frames import Array, frozen, inverse
+from runtime.frames import Array, frozen
 from runtime.motion.commands import MoveLinear
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.path import LinePath
+from runtime.motion.seam import SeamMove, SeamTracker
+from runtime.motion.solver import Arm, LineSolver, WristSolver
 from runtime.motion.speed import MAX_DURATION, SpeedLimits, bound, profile
+from runtime.motion.wrist import CONDITIONS, SAME_ANGLES, Condition
+from runtime.motion.wrist_planner import Choice, Solver, choose, ends, posture_deviation
 from runtime.profile import Profile
+from runtime.robot.frozen_wrist import MAIN_AXES, WRIST_AXES
 from runtime.robot.kinematics import Kinematics
-from runtime.robot.opw import Branch
 from runtime.robot.spec import PathLimits, RobotSpec
 from runtime.units import DEG, MM
 
 MOST_SLOWDOWN = 20.0
 """A move that would have to be slowed more than this runs too close to a singularity to be meant."""
 
-RANGE_TOLERANCE = 1e-9
-"""How far past its range a joint may be commanded, rad: rounding, nothing more."""
+FOLLOWS, EXCEPTION, HELD = 0, 1, 2
+"""``wrist_mode``: the wrist follows the path, goes to its end angles, does so with posture components held."""
 
-_NOTHING_TO_DO = 1e-9
+NOTHING_TO_DO = 1e-9
+"""A path shorter than this, m and rad, is none."""
+
 _MARGIN = 1.0 + 1e-6
 _ROUNDS = 12
 _WELL_USED = 0.99
@@ -50,17 +55,47 @@ class Slowdown:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class WristChange:
+    """Where a move leaves the posture of its path to change the wrist, and what it costs.
+
+    ``condition`` that was met on ``axis`` (0-based; None: no single one); ``row`` from which the wrist goes its own way
+    and ``share`` of the path there; ``remedy`` beyond the document's rule, or ""; ``deviation`` rad: the largest angle
+    between the tool and its planned posture.
+    """
+
+    condition: Condition
+    axis: int | None
+    row: int
+    row_end: int
+    share: float
+    share_end: float
+    remedy: str
+    held: tuple[str, ...]
+    deviation: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class LinePlan:
     """A planned straight move: joint set-points ``q`` (N + 1, n) rad, from the start to the end, 8 ms apart.
 
-    ``s`` (N + 1,) path parameter of each, ``slowdown`` None when the move runs as asked, ``notes`` for people.
+    ``s`` (N + 1,) path parameter of each, ``slowdown`` None when the move runs as asked, ``wrist`` None when the tool
+    keeps the posture of the path, ``notes`` for people.
     """
 
     path: LinePath
     s: Array
     q: Array
     slowdown: Slowdown | None
+    wrist: WristChange | None = None
     notes: tuple[str, ...]
+
+    @property
+    def modes(self) -> NDArray[np.int8]:
+        """``wrist_mode`` (N + 1,) of every set-point."""
+        modes = np.full(len(self.q), FOLLOWS, dtype=np.int8)
+        if self.wrist is not None:
+            modes[self.wrist.row + 1 : self.wrist.row_end + 1] = HELD if self.wrist.held else EXCEPTION
+        return modes
 
 
 class LinePlanner:
@@ -80,17 +115,64 @@ class LinePlanner:
         ``X_flange_tool`` (4, 4) is the tool whose point moves.
         """
         X_start = self._kinematics.forward(q_start) @ X_flange_tool
-        path = LinePath.between(X_start, command.X_world_tool)
-        if path.length < _NOTHING_TO_DO and path.angle < _NOTHING_TO_DO:
+        path = LinePath.between(X_start, command.X_world_tool, self._profile.wrist.posture)
+        way = 0.0 if command.q_end is None else float(np.abs(command.q_end - q_start)[-WRIST_AXES:].max())
+        if max(path.length, path.angle, way) < NOTHING_TO_DO:
             return LinePlan(path=path, s=np.ones(1), q=frozen([q_start]), slowdown=None, notes=("already there",))
-        solver = _LineSolver(self._spec, self._kinematics, self._fine, path, X_flange_tool, q_start)
-        limits = speed_limits(path, command, self._spec.path, self._profile)
-        s, q, slowdown = self._within_limits(solver, limits, command.duration)
-        notes = self._notes(s, slowdown, command)
-        return LinePlan(path=path, s=frozen(s), q=frozen(q), slowdown=slowdown, notes=notes)
+        arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=self._fine, X_flange_tool=X_flange_tool)
+        line = LineSolver(arm, path, q_start)
+        limits = speed_limits(path, command, self._spec.path, self._profile, way)
+        choice = self._choose(line, limits, command)
+        s, q, slowdown = self._within_limits(choice.solver, limits, command.duration)
+        wrist = _wrist_change(choice, line, s, q)
+        notes = self._notes(s, slowdown, command) + _wrist_notes(wrist) + _kept_notes(command, q)
+        return LinePlan(path=path, s=frozen(s), q=frozen(q), slowdown=slowdown, wrist=wrist, notes=notes)
+
+    def tracked(self, plan: LinePlan, command: MoveLinear, q_from: Array, q_here: Array, tracker: SeamTracker,
+                X_flange_tool: Array) -> SeamMove:  # fmt: skip
+        """Return a planned move (``command.tracked``) as one that follows a seam, point by point.
+
+        q_from (n,) is where its calculated path begins, q_here (n,) where the arm really is, rad.
+        """
+        arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=self._fine, X_flange_tool=X_flange_tool)
+        options, wrist = self._profile.wrist, plan.wrist
+        if (command.wrist or options.mode) == "keep":
+            options = options.only()
+        elif wrist is None or wrist.remedy:  # the plan knows better than C1, C2 and C4 when the wrist has to go
+            options = options.only(range_condition=options.range_condition, guard=options.guard)
+        return SeamMove(LineSolver(arm, plan.path, q_from), plan.s, q_here, plan.q[-1],
+                        None if wrist is None else wrist.row, tracker, options, self._profile.period_s)  # fmt: skip
+
+    def _choose(self, line: LineSolver, limits: SpeedLimits, command: MoveLinear) -> Choice:
+        """Return how the move goes through the wrist: to the taught end angles, or to any that its point leaves open.
+        """
+        options = self._profile.wrist
+        mode = command.wrist or options.mode
+        if mode == "keep" or self._spec.n != MAIN_AXES + WRIST_AXES:
+            return Choice(solver=line)
+        s = profile(limits, self._profile.period_s, command.duration)
+        q = line.rows(s)
+        q[0] = line.q_start
+        most = options.untaught_deviation if command.q_end is None else options.most_deviation
+        best: Choice | None = None
+        first: Fault | None = None
+        for q_end in ends(line, q, command):
+            try:
+                choice = choose(line, s, q, q_end, self._profile.period_s, options, self._excess, most,
+                                None if command.tracked else command.held)  # fmt: skip
+            except Fault as fault:
+                first = first or fault
+                continue
+            if choice.ratio <= 1.0:
+                return choice
+            if best is None or choice.ratio < best.ratio:
+                best = choice
+        if best is None and first is not None:
+            raise first
+        return best or Choice(solver=line)  # no end to go to: the path itself says where it is lost
 
     def _within_limits(
-        self, solver: "_LineSolver", limits: SpeedLimits, duration: float | None
+        self, solver: Solver, limits: SpeedLimits, duration: float | None
     ) -> tuple[Array, Array, Slowdown | None]:
         period_s = self._profile.period_s
         s = profile(limits, period_s, duration)
@@ -140,8 +222,51 @@ class LinePlanner:
         return tuple(notes)
 
 
-def speed_limits(path: LinePath, command: MoveLinear, robot: PathLimits, profile: Profile) -> SpeedLimits:
-    """Return the bounds of the path parameter for a command; ``Fault`` RBL404 when it asks for the impossible."""
+def _wrist_change(choice: Choice, line: LineSolver, s: Array, q: Array) -> WristChange | None:
+    """Return what the plan does with the wrist, measured on its samples; None where it follows the path."""
+    if choice.switch is None:
+        return None
+    row = int(np.searchsorted(s, choice.switch, side="right")) - 1
+    trigger, solver = choice.trigger, choice.solver
+    assert isinstance(solver, WristSolver)  # what has a switch has a way from it
+    return WristChange(
+        condition="end" if trigger is None else trigger.condition,
+        axis=None if trigger is None else trigger.axis,
+        row=row, row_end=min(int(np.searchsorted(s, solver.law.s_return)), len(s) - 1), share=choice.switch,
+        share_end=solver.law.s_return, remedy=choice.remedy, held=choice.held, deviation=posture_deviation(line, s, q),
+    )  # fmt: skip
+
+
+def _wrist_notes(wrist: WristChange | None) -> tuple[str, ...]:
+    if wrist is None:
+        return ()
+    axis = "" if wrist.axis is None else f" of J{wrist.axis + 1}"
+    why = f"{wrist.condition}, {CONDITIONS[wrist.condition]}{axis}"
+    remedy = f"; {wrist.remedy}" if wrist.remedy else ""
+    held = f"; {' and '.join(wrist.held)} held" if wrist.held else ""
+    return (
+        f"wrist goes to its end angles from {100 * wrist.share:.1f} to {100 * wrist.share_end:.1f} % of the path ({why}"
+        f"{remedy}{held}): the tool turns up to {wrist.deviation / DEG:.1f} deg from its posture on the path",
+    )
+
+
+def _kept_notes(command: MoveLinear, q: Array) -> tuple[str, ...]:
+    """Return what a move that keeps its wrist leaves undone: the taught angles at which it does not end."""
+    if command.q_end is None:
+        return ()
+    axis = int(np.argmax(np.abs(q[-1] - command.q_end)))
+    if abs(q[-1, axis] - command.q_end[axis]) <= SAME_ANGLES:
+        return ()
+    return (f"keeps the wrist and ends with J{axis + 1} at {q[-1, axis] / DEG:.1f} deg, not at the taught "
+            f"{command.q_end[axis] / DEG:.1f} deg",)  # fmt: skip
+
+
+def speed_limits(path: LinePath, command: MoveLinear, robot: PathLimits, profile: Profile,
+                 wrist_way: float = 0.0) -> SpeedLimits:  # fmt: skip
+    """Return the bounds of the path parameter for a command; ``Fault`` RBL404 when it asks for the impossible.
+
+    ``wrist_way`` rad is how far the wrist has to turn, for a move whose tool stays where it is.
+    """
     speed = command.speed if command.speed is not None else robot.default_speed
     if command.duration is not None:
         speed = robot.max_speed
@@ -155,84 +280,5 @@ def speed_limits(path: LinePath, command: MoveLinear, robot: PathLimits, profile
     share = command.acceleration
     position = (path.length, speed, robot.acceleration * share, robot.jerk * share)
     turning = (robot.rotation_speed, robot.rotation_acceleration * share, robot.rotation_jerk * share)
-    return bound([position, (path.angle, *turning)], profile.speed_shape)
-
-
-class _LineSolver:
-    """Joint angles along one path, in one arm configuration, refused where there are none."""
-
-    def __init__(
-        self,
-        spec: RobotSpec,
-        kinematics: Kinematics,
-        fine: FineInterpolator,
-        path: LinePath,
-        X_flange_tool: Array,
-        q_start: Array,
-    ) -> None:
-        self._spec = spec
-        self._kinematics = kinematics
-        self._fine = fine
-        self._path = path
-        self._X_tool_flange = inverse(X_flange_tool)
-        self._q_start = q_start
-        self._branch: Branch = kinematics.branch_of(q_start)
-
-    def joints(self, s: Array) -> Array:
-        """Return q (N + 1, n) at path parameters s, continuous from the start; ``Fault`` RBL410, 411, 412."""
-        q = self._kinematics.inverse_branch(self._path.poses(s) @ self._X_tool_flange, self._branch, self._q_start)
-        self._check_reach(s, q)
-        q = np.unwrap(q, axis=0) + 0.0
-        q += 2.0 * math.pi * np.round((self._q_start - q[0]) / (2.0 * math.pi))
-        self._check_continuity(s, q)
-        q[0] = self._q_start
-        self._check_range(s, q)
-        return q
-
-    def _check_reach(self, s: Array, q: Array) -> None:
-        bad = ~np.isfinite(q).all(axis=1)
-        if not bad.any():
-            return
-        first = int(np.argmax(bad))
-        place = self._path.poses(s[first : first + 1])[0, :3, 3] / MM
-        raise Fault(
-            "RBL410",
-            f"the point ({place[0]:.1f}, {place[1]:.1f}, {place[2]:.1f}) mm at {100 * s[first]:.1f} % of the path is "
-            f"out of reach of {self._spec.name} ({self._branch})",
-        )
-
-    def _check_continuity(self, s: Array, q: Array) -> None:
-        jumps = np.abs(np.diff(q, axis=0))
-        if np.abs(q[0] - self._q_start).max() > 1e-3:  # the start is itself at a singularity
-            self.refuse_singular(s[:1], q, int(np.argmax(np.abs(q[0] - self._q_start))))
-        if len(jumps) > 4 and jumps.max() > math.pi / 4:
-            step, axis = np.unravel_index(int(np.argmax(jumps)), jumps.shape)
-            self.refuse_singular(s[step : step + 1], q, int(axis))
-
-    def _check_range(self, s: Array, q: Array) -> None:
-        """Refuse a path that leaves a joint's range at any servo tick: between set-points the command may pass them."""
-        positions = self._fine.expand(q)[0]
-        excess = np.maximum(self._spec.lower - positions, positions - self._spec.upper)
-        axis = int(np.argmax(excess.max(axis=0)))
-        worst = int(np.argmax(excess[:, axis]))
-        if excess[worst, axis] <= RANGE_TOLERANCE:
-            return
-        first = int(np.argmax(excess[:, axis] > RANGE_TOLERANCE)) // self._fine.ticks
-        limits = self._spec.axes[axis].limits
-        limit = limits.lower if positions[worst, axis] < limits.lower else limits.upper
-        raise Fault(
-            "RBL411",
-            f"J{axis + 1} would pass its limit of {limit / DEG:g} deg by {excess[worst, axis] / DEG:.4g} deg, "
-            f"first at {100 * s[min(first, len(s) - 1)]:.1f} % of the path",
-        )
-
-    def refuse_singular(self, s: Array, q: Array, axis: int) -> NoReturn:
-        """Raise ``Fault`` RBL412 where axis moves most between two samples."""
-        where = s[0]
-        if len(s) == len(q) and len(s) > 1:
-            where = s[int(np.argmax(np.abs(np.diff(q[:, axis]))))]
-        raise Fault(
-            "RBL412",
-            f"at {100 * where:.1f} % of the straight path J{axis + 1} would have to turn too fast: it passes a "
-            f"singularity, or its end needs another configuration than {self._branch}",
-        )
+    angle = path.angle if max(path.length, path.angle) >= NOTHING_TO_DO else wrist_way
+    return bound([position, (angle, *turning)], profile.speed_shape)

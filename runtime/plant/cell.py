@@ -16,6 +16,7 @@ from types import MappingProxyType
 import numpy as np
 
 from runtime.frames import Array, frozen, pose_from_xyzrpy
+from runtime.plant.seam_sensor import SensorSpec, read_sensor
 from runtime.robot.importer import ROBOT_ENDINGS, load_file
 from runtime.robot.loader import library, load_builtin
 from runtime.robot.spec import RobotSpec
@@ -82,8 +83,8 @@ class LoadSpec:
 class CellSpec:
     """A cell in SI: robot, home joints (n,) rad, hand, parts, obstacles and the names a program may use.
 
-    ``tools`` are poses X_flange_tool, ``frames`` poses X_world_frame (4, 4). ``controller`` is the unread table
-    of the controller profile (None: the file has none).
+    ``tools`` are poses X_flange_tool, ``frames`` poses X_world_frame (4, 4), ``sensors`` seam sensors. ``controller``
+    is the unread table of the controller profile (None: the file has none).
     """
 
     robot: RobotSpec
@@ -94,6 +95,7 @@ class CellSpec:
     loads: Mapping[str, LoadSpec]
     tools: Mapping[str, Array]
     frames: Mapping[str, Array]
+    sensors: Mapping[str, SensorSpec]
     controller: Table | None
 
 
@@ -123,6 +125,7 @@ def parse_cell(source: Source, folder: Path | None = None) -> CellSpec:
         loads=MappingProxyType({name: _load(item) for name, item in _named(table, "loads").items()}),
         tools=MappingProxyType({name: _only_pose(item) for name, item in _named(table, "tools").items()}),
         frames=MappingProxyType({name: _only_pose(item) for name, item in _named(table, "frames").items()}),
+        sensors=MappingProxyType({name: read_sensor(item, folder) for name, item in _named(table, "sensors").items()}),
         controller=table.table("controller") if "controller" in table else None,
     )
     table.done()

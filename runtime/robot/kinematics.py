@@ -25,6 +25,7 @@ from runtime.robot import opw
 from runtime.robot.closed_form import find_opw
 from runtime.robot.newton import NewtonSolver
 from runtime.robot.opw import BRANCHES, NUMERIC, TURN, Branch, Geometry
+from runtime.robot.spec import OpwParameters
 
 LIMIT_ROUNDING = 1e-9
 """A joint this far outside its range, rad, is not turned by a whole turn to bring it in."""
@@ -58,7 +59,8 @@ class Kinematics:
         self.spec = spec
         self.n = spec.n
         self._opw = spec.opw if spec.opw is not None else find_opw(spec.axes, spec.X_last_flange)
-        self._newton = NewtonSolver([axis.placement for axis in spec.axes], spec.X_last_flange)
+        self.newton = NewtonSolver([axis.placement for axis in spec.axes], spec.X_last_flange)
+        """Solves what has no closed form."""
         self._lower, self._upper = frozen(spec.lower), frozen(spec.upper)
         self._middle = frozen(0.5 * (spec.lower + spec.upper))
 
@@ -66,6 +68,11 @@ class Kinematics:
     def closed_form(self) -> bool:
         """Whether poses are solved in closed form, branch by branch."""
         return self._opw is not None
+
+    @property
+    def opw(self) -> OpwParameters | None:
+        """Parameters of the closed form; None for an arm that has none."""
+        return self._opw
 
     def forward(self, q: ArrayLike) -> Array:
         """Return X_base_flange (..., 4, 4) of joint angles (..., n) rad."""
@@ -93,7 +100,7 @@ class Kinematics:
         Timing: called by the path planner on all samples of a move at once; in closed form without a loop over poses.
         """
         if self._opw is None:
-            return self._newton.follow(np.asarray(X_base_flange), self._start(near))
+            return self.newton.follow(np.asarray(X_base_flange), self._start(near))
         q = opw.inverse_branch(self._opw, X_base_flange, branch, near)
         return self._into_range(q, None) if near is None else self.nearest_turns(q, near)
 
@@ -137,7 +144,7 @@ class Kinematics:
 
     def _numeric_solutions(self, near: Array, X_base_flange: Array) -> list[Solution]:
         found: list[Solution] = []
-        for q in self._newton.search(np.asarray(X_base_flange), near, self._lower, self._upper):
+        for q in self.newton.search(np.asarray(X_base_flange), near, self._lower, self._upper):
             q = self._into_range(q, near)
             if all(np.max(np.abs(opw.wrapped(q - s.q))) >= SAME_NUMERIC for s in found):
                 found.append(Solution(q=frozen(q), branch=NUMERIC, limit_margin=float(self.limit_margin(q))))

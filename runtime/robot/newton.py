@@ -96,6 +96,13 @@ class NewtonSolver:
             if np.isfinite(q).all():
                 yield q
 
+    def point(self, q: Array, offset: Array) -> tuple[Array, Array]:
+        """Return where a point ``offset`` (3,) m of the flange frame is, (3,) m, and its Jacobian (3, n), base frame.
+        """
+        J = pin.computeJointJacobians(self._model, self._data, q)  # of the point at the base origin, base frame
+        p = (self._data.oMi[self.n] * self._flange).act(offset)
+        return p, J[:3] + np.cross(J[3:], p, axis=0)
+
     def _error(self, X_base_flange: Array, q: Array) -> Array:
         pin.forwardKinematics(self._model, self._data, q)
         here = self._data.oMi[self.n] * self._flange

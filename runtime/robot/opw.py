@@ -262,7 +262,7 @@ def _solve(params: OpwParameters, X: Array, signs: Array, near: Array | None) ->
         X = inverse_pose(params.X_base_opw) @ X @ inverse_pose(params.X_opw_flange)
     R, p = X[..., :3, :3], X[..., :3, 3]
     with np.errstate(invalid="ignore"):
-        t1, t2, t3 = _arm_angles(params, p - params.c4 * R[..., :, 2], signs[0], signs[1], reference[..., 0])
+        t1, t2, t3 = arm_angles(params, p - params.c4 * R[..., :, 2], signs[0], signs[1], t1_free=reference[..., 0])
         W = _wrist_rotation(R, t1, t2 + t3)
         t4, t5, t6 = _wrist_angles(W, params.signs[4] * signs[2], reference[..., 3])
         theta = np.stack(np.broadcast_arrays(t1, t2, t3, t4, t5, t6), axis=-1)
@@ -270,29 +270,34 @@ def _solve(params: OpwParameters, X: Array, signs: Array, near: Array | None) ->
         return wrapped(params.signs * (theta - params.offsets))
 
 
-def _arm_angles(
-    params: OpwParameters, p_wrist: Array, arm: Array, elbow: Array, t1_free: Array
-) -> tuple[Array, Array, Array]:
-    """Return t1, t2, t3 that put the wrist centre (..., 3) in its place; NaN out of reach."""
-    x, y, z = np.moveaxis(p_wrist, -1, 0)
+def arm_angles(params: OpwParameters, p_end: Array, arm: Array | int, elbow: Array | int, *,
+               t1_free: Array | float = 0.0, a2: Array | None = None, b: Array | None = None, c3: Array | None = None,
+               ) -> tuple[Array, Array, Array]:  # fmt: skip
+    """Return t1, t2, t3 (...,) that put the end of the forearm at p_end (..., 3); NaN out of reach.
+
+    The end is the wrist centre, or another point of a forearm of lengths ``a2``, ``b`` and ``c3`` (...,), m: the tool
+    point where the wrist is held (``frozen_wrist``). ``arm`` and ``elbow`` are the signs of the branch.
+    """
+    own = np.array([params.a2, params.b, params.c3])
+    a2, b, c3 = (mine if given is None else given for mine, given in zip(own, (a2, b, c3), strict=True))
+    x, y, z = np.moveaxis(p_end, -1, 0)
     rho = np.hypot(x, y)
-    r = arm * _leg(rho, abs(params.b))
-    t1 = np.arctan2(y, x) - np.arctan2(params.b, r)
-    if params.b == 0.0:
-        t1 = np.where(rho < ROUNDING, t1_free, t1)
+    r = arm * _leg(rho, np.abs(b))
+    t1 = np.arctan2(y, x) - np.arctan2(b, r)
+    t1 = np.where((rho < ROUNDING) & (np.abs(b) < ROUNDING), t1_free, t1)
     u, v = r - params.a1, z - params.c1
     d = np.hypot(u, v)
-    k = math.hypot(params.a2, params.c3)
+    k = np.hypot(a2, c3)
     # 'above' bends the elbow towards +t behind the waist and in front of it in opposite senses: hence arm * elbow
-    g = arm * elbow * 2.0 * np.arctan2(_leg(params.c2 + k, d), _leg(d, abs(params.c2 - k)))
+    g = arm * elbow * 2.0 * np.arctan2(_leg(params.c2 + k, d), _leg(d, np.abs(params.c2 - k)))
     t2 = np.arctan2(u, v) - np.arctan2(k * np.sin(g), params.c2 + k * np.cos(g))
-    return t1, t2, g - math.atan2(params.a2, params.c3)
+    return t1, t2, g - np.arctan2(a2, c3)
 
 
-def _leg(hypotenuse: Array | float, other: Array | float) -> Array:
+def _leg(hypotenuse: ArrayLike, other: ArrayLike) -> Array:
     """Return sqrt(h^2 - o^2) of lengths in m, zero where o is longer by rounding only, NaN where it is longer."""
-    gap = np.asarray(hypotenuse - other)
-    return np.asarray(np.sqrt(np.where(gap >= -ROUNDING, np.maximum(gap, 0.0), np.nan) * (hypotenuse + other)))
+    gap = np.subtract(hypotenuse, other)
+    return np.asarray(np.sqrt(np.where(gap >= -ROUNDING, np.maximum(gap, 0.0), np.nan) * np.add(hypotenuse, other)))
 
 
 def _wrist_rotation(R: Array, t1: Array, t23: Array) -> tuple[Array, Array, Array]:

@@ -210,12 +210,12 @@ def test_the_layers_are_those_that_are_checked():
 
 
 def test_every_signal_is_in_the_table_with_its_shape():
-    recorder = Recorder(6, 8, 1000)
-    zeros = np.zeros(6)
-    recorder.begin_cycle(zeros, zeros, zeros, zeros, np.zeros((3, 8, 6)), 0.0, 0)
+    recorder = Recorder(7, 8, 1000)  # seven axes: a deviation has six entries on any arm
+    zeros = np.zeros(7)
+    recorder.begin_cycle((zeros, zeros, zeros, zeros, np.zeros(6)), np.zeros((3, 8, 7)), (0.0, 0, 0))
     recorder.record((zeros, zeros, zeros, zeros, zeros))
     signals = recorder.signals(lambda q: np.zeros((len(q), 4, 4)))
-    shapes = {key: "(N, " + ", ".join("n" if k == 6 else str(k) for k in values.shape[1:]) + ")"
+    shapes = {key: "(N, " + ", ".join("n" if k == 7 else str(k) for k in values.shape[1:]) + ")"
               for key, values in signals.items()}  # fmt: skip
     rows = re.findall(r"^\| `(\w+)` \| (\(N[^|]*\)) \|", (ROOT / "docs/signals.md").read_text("utf-8"), re.MULTILINE)
     assert dict(rows) == {key: shape.replace("(N, )", "(N,)") for key, shape in shapes.items()}

@@ -40,5 +40,6 @@ def only(text: str) -> Diagnostic:
     return diagnostic
 
 
-def checked(text: str, points: tuple[str, ...] | None = None, rated: float | None = None) -> Found:
-    return places(text, check(parsed(text), points=points, rated_payload_kg=rated))
+def checked(text: str, points: tuple[str, ...] | None = None, rated: float | None = None,
+            sensors: tuple[str, ...] | None = None) -> Found:  # fmt: skip
+    return places(text, check(parsed(text), points=points, rated_payload_kg=rated, sensors=sensors))

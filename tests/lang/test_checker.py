@@ -3,6 +3,7 @@ import pytest
 from robolang.checker import check
 from robolang.diagnostics import MAX_DIAGNOSTICS, Severity
 from robolang.parser import parse
+from robolang.source import Span
 from tests.lang.helpers import checked, parsed, source
 
 
@@ -13,7 +14,8 @@ def first(text, **facts):
 
 def test_a_good_program_has_nothing():
     text = "10 LOAD (0, 0, 60), 0.8\n20 MOVE p1, SPEED 200, ACCEL 100\n30 HAND ON, 0\n40 MOVE P2, TIME 600"
-    assert checked(text, points=("P1", "p2"), rated=2.5) == []
+    text += "\n50 WRIST HOLD TILT, ADVANCE\n60 SEAM ON, torch\n70 MOVE P1, WRIST HOLD ROTATION, TILT\n80 SEAM OFF"
+    assert checked(text, points=("P1", "p2"), rated=2.5, sensors=("Torch",)) == []
 
 
 @pytest.mark.parametrize("text", ["", "' nothing\n\n", "10\n"])
@@ -98,12 +100,70 @@ def test_options_twice_and_against_each_other():
     assert diagnostic.related[0].span.start == 9
 
 
+def test_wrist_twice_in_a_move():
+    assert checked("MOVE P1, WRIST KEEP, SPEED 1, WRIST AUTO") == [("RBL118", 1, 31, 10)]
+    assert checked("MOVE P1, WRIST HOLD TILT, WRIST HOLD TILT") == [("RBL118", 1, 27, 15)]
+    diagnostic = first("MOVE P1, WRIST KEEP, WRIST KEEP")
+    assert diagnostic.message == "WRIST is given twice"
+    assert diagnostic.related[0].span == Span(9, 19)
+
+
+@pytest.mark.parametrize("lead", ["", "MOVE P1, ", "MOVE P1, SPEED 5, "])
+def test_components_twice_and_too_many(lead):
+    at = len(lead) + 12
+    assert checked(f"{lead}WRIST HOLD TILT, TILT") == [("RBL118", 1, at + 6, 4)]
+    assert checked(f"{lead}WRIST HOLD TILT, ADVANCE, TILT") == [("RBL118", 1, at + 15, 4)]
+    assert checked(f"{lead}WRIST HOLD TILT, TILT, ADVANCE") == [("RBL118", 1, at + 6, 4)]
+    assert checked(f"{lead}WRIST HOLD TILT, ADVANCE, ROTATION") == [("RBL120", 1, at + 15, 8)]
+    assert checked(f"{lead}WRIST HOLD TILT, ADVANCE, ROTATION, ROTATION") == [
+        ("RBL120", 1, at + 15, 8), ("RBL118", 1, at + 25, 8),
+    ]  # fmt: skip
+
+
+def test_messages_about_components():
+    twice = first("WRIST HOLD tilt, Tilt")
+    assert twice.message == "TILT is given twice"
+    assert twice.related[0].span == Span(11, 15)
+    again = check(parsed("WRIST HOLD TILT, TILT, TILT"))
+    assert [item.related[0].span.start for item in again] == [11, 11]
+    many = first("WRIST HOLD ROTATION, ADVANCE, tilt")
+    assert many.message == "TILT is one too many: the wrist can hold at most two components"
+    assert many.severity is Severity.ERROR
+
+
+def test_the_same_component_in_two_statements_is_no_repetition():
+    assert checked("WRIST HOLD TILT, ADVANCE\nWRIST HOLD TILT\nMOVE P1, WRIST HOLD TILT, ROTATION") == []
+
+
+def test_sensors():
+    assert checked("SEAM ON, arc", sensors=("TORCH",)) == [("RBL306", 1, 10, 3)]
+    assert checked("SEAM ON, arc", sensors=()) == [("RBL306", 1, 10, 3)]
+    assert checked("SEAM ON, ARC\nSEAM on, arc", sensors=("Arc",)) == []
+    assert checked("SEAM OFF", sensors=()) == []
+    assert checked("SEAM ON, arc") == []
+
+
+@pytest.mark.parametrize(
+    ("sensors", "hint"),
+    [
+        (("torch", "arc"), "did you mean TORCH?"),
+        (("B", "A"), "seam sensors: A, B"),
+        ((), "the cell has no seam sensor"),
+        (tuple("ABDEFGIJKLM"), "Add [sensors.NAME] to the cell file, or correct the name."),
+    ],
+)
+def test_near_sensors_are_suggested(sensors, hint):
+    diagnostic = first("SEAM ON, Trch", sensors=sensors)
+    assert (diagnostic.message, diagnostic.hint) == ("the cell has no seam sensor Trch", hint)
+
+
 @pytest.mark.parametrize(
     ("text", "place"),
     [
         ("LOAD (0, 0, 0), -w", ("RBL117", 1, 18, 1)),
         ("LOAD (0, d, 0), 1", ("RBL117", 1, 10, 1)),
         ("MOVE P1, SPEED v", ("RBL117", 1, 16, 1)),
+        ("MOVE P1, WRIST HOLD TILT, SPEED v", ("RBL117", 1, 33, 1)),
         ("HAND ON, t", ("RBL117", 1, 10, 1)),
     ],
 )

@@ -16,7 +16,10 @@ def test_every_code_is_complete():
         assert code.remedy.endswith(".")
 
 
-@pytest.mark.parametrize("code", ["RBL103", "RBL201", "RBL301", "RBL311", "RBL401", "RBL601", "RBL701", "RBL900"])
+@pytest.mark.parametrize(
+    "code",
+    ["RBL103", "RBL120", "RBL201", "RBL301", "RBL306", "RBL311", "RBL401", "RBL601", "RBL701", "RBL900"],
+)
 def test_one_import_fills_the_registry(code):
     assert lookup(code).code == code
 

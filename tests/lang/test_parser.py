@@ -1,13 +1,36 @@
+import logging
 from pathlib import Path
 
+import lark
 import pytest
 
 import robolang.parser as parser_module
 from robolang.diagnostics import MAX_DIAGNOSTICS, Severity
-from robolang.nodes import Accel, Hand, HandState, Load, Move, Name, Negate, Number, Speed, Time, Unparsed, Vector
+from robolang.nodes import (
+    Accel,
+    Component,
+    Hand,
+    HandState,
+    Load,
+    Move,
+    Name,
+    Negate,
+    Number,
+    Seam,
+    Speed,
+    Time,
+    Unparsed,
+    Vector,
+    Wrist,
+    WristMode,
+)
 from robolang.parser import MAX_DEPTH, MAX_LINE, parse
+from robolang.printer import describe
 from robolang.source import Span
+from robolang.words import KEYWORDS, LATER
 from tests.lang.helpers import only, parse_found, parsed, source
+
+WRIST_FORM = "WRIST KEEP, WRIST AUTO or WRIST HOLD component [, component]"
 
 
 def statement(text):
@@ -30,6 +53,79 @@ def test_the_four_instructions():
 def test_move_options():
     options = (Speed(value=number("200")), Accel(value=number("50")), Time(value=number("3")))
     assert statement("MOVE P1, SPEED 200, ACCEL 50, TIME 3") == Move(target=Name(text="P1"), options=options)
+
+
+KEEP = Wrist(mode=WristMode.KEEP)
+AUTO = Wrist(mode=WristMode.AUTO)
+
+
+def hold(*components):
+    return Wrist(mode=WristMode.HOLD, held=tuple(Component[word] for word in components))
+
+
+def test_wrist_as_a_setting():
+    assert statement("WRIST KEEP") == KEEP
+    assert statement("WRIST AUTO") == AUTO
+    assert statement("WRIST HOLD TILT") == hold("TILT")
+    assert statement("WRIST HOLD ROTATION, ADVANCE") == hold("ROTATION", "ADVANCE")
+    assert statement("WRIST HOLD TILT, TILT, ADVANCE, ROTATION") == hold("TILT", "TILT", "ADVANCE", "ROTATION")
+    assert len({KEEP, AUTO, hold("TILT"), hold("ADVANCE"), hold("TILT", "ADVANCE"), hold("ADVANCE", "TILT")}) == 6
+
+
+@pytest.mark.parametrize(
+    ("text", "options"),
+    [
+        ("WRIST KEEP", (KEEP,)),
+        ("WRIST AUTO", (AUTO,)),
+        ("WRIST HOLD TILT", (hold("TILT"),)),
+        ("SPEED 5, WRIST HOLD TILT, ADVANCE", (Speed(value=number("5")), hold("TILT", "ADVANCE"))),
+        ("WRIST HOLD TILT, SPEED 5", (hold("TILT"), Speed(value=number("5")))),
+        ("WRIST HOLD TILT, ADVANCE, ROTATION, TIME 5", (hold("TILT", "ADVANCE", "ROTATION"), Time(value=number("5")))),
+        ("WRIST HOLD TILT, WRIST KEEP", (hold("TILT"), KEEP)),
+        ("WRIST KEEP, WRIST HOLD TILT", (KEEP, hold("TILT"))),
+        (
+            "WRIST HOLD TILT, ADVANCE, WRIST HOLD ROTATION, ACCEL 5, WRIST HOLD TILT, ROTATION",
+            (hold("TILT", "ADVANCE"), hold("ROTATION"), Accel(value=number("5")), hold("TILT", "ROTATION")),
+        ),
+    ],
+)
+def test_wrist_as_an_option_takes_all_components_that_follow(text, options):
+    assert statement(f"MOVE P1, {text}") == Move(target=Name(text="P1"), options=options)
+
+
+def test_seam():
+    assert statement("SEAM ON, torch") == Seam(sensor=Name(text="Torch"))
+    assert statement("SEAM OFF") == Seam(sensor=None)
+    assert statement("SEAM ON, torch").sensor.text == "torch"
+    assert len({statement("SEAM ON, torch"), statement("SEAM ON, arc"), statement("SEAM OFF")}) == 3
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["WRIST KEEP", "WRIST AUTO", "WRIST HOLD TILT, ADVANCE", "SEAM ON, torch", "SEAM OFF", "MOVE P1, WRIST KEEP",
+     "MOVE P1, SPEED 100, WRIST HOLD TILT, ADVANCE, TIME 3"],
+)  # fmt: skip
+def test_wrist_and_seam_have_one_canonical_text(text):
+    assert describe(statement(text)) == text
+    assert describe(statement(text.replace("torch", "TORCH").lower())).upper() == text.upper()
+    assert statement(text.lower().replace(",", " ,").replace(" ", "\t ")) == statement(text)
+
+
+def test_no_word_is_of_this_edition_and_of_a_later_one():
+    assert {"WRIST", "SEAM", "KEEP", "AUTO", "HOLD", "TILT", "ADVANCE", "ROTATION"} <= KEYWORDS
+    assert not KEYWORDS & LATER
+
+
+def conflicts(grammar, caplog):
+    """What Lark says on its log only: it settles a conflict of shift and reduce for one side."""
+    with caplog.at_level(logging.DEBUG, logger="lark"):
+        lark.Lark(grammar, parser="lalr", lexer="basic", start=["start"], debug=True)
+    return [record.message for record in caplog.records if "conflict" in record.message]
+
+
+def test_the_grammar_is_lalr_1_without_a_conflict(caplog):
+    assert conflicts(Path(parser_module.__file__).with_name("grammar.lark").read_text(encoding="utf-8"), caplog) == []
+    assert conflicts('start: "m" ("," hold)*\nhold: "h" "c" ("," "c")*', caplog)
 
 
 def test_case_and_space_do_not_matter():
@@ -81,6 +177,23 @@ def test_spans_are_offsets_of_the_source():
     assert where.slice(load.statement.cog.span) == "(1, 2, 3)"
 
 
+def test_spans_of_wrist_and_seam():
+    text = "\n10 wrist hold tilt , rotation ' x\nMOVE P1, WRIST KEEP, wrist HOLD TILT,  ADVANCE, TIME 2\n"
+    text += "SEAM ON, torch \n SEAM OFF ' x\nWRIST AUTO "
+    where = source(text)
+    hold, move, on, off, auto = (line.statement for line in parsed(text).lines)
+    assert where.slice(hold.span) == "wrist hold tilt , rotation"
+    assert [where.slice(span) for span in hold.held_spans] == ["tilt", "rotation"]
+    assert where.slice(move.span) == "MOVE P1, WRIST KEEP, wrist HOLD TILT,  ADVANCE, TIME 2"
+    keep, option, time = move.options
+    assert [where.slice(part.span) for part in (keep, time)] == ["WRIST KEEP", "TIME 2"]
+    assert where.slice(option.span) == "wrist HOLD TILT,  ADVANCE"
+    assert [where.slice(span) for span in option.held_spans] == ["TILT", "ADVANCE"]
+    assert (where.slice(on.span), where.slice(on.sensor.span)) == ("SEAM ON, torch", "torch")
+    assert (where.slice(off.span), where.slice(auto.span)) == ("SEAM OFF", "WRIST AUTO")
+    assert statement("MOVE P1, WRIST HOLD TILT, ADVANCE ' x").span == Span(0, 33)
+
+
 @pytest.mark.parametrize("end", ["\n", "\r", "\r\n"])
 def test_line_ends(end):
     program = parsed(end.join(["MOVE P1", "MOVE P2", ""]))
@@ -105,6 +218,39 @@ def test_line_ends(end):
         ("LOAD (0, 0), 1", ("RBL111", 1, 11, 1)),
         ("LOAD (0, 0, 60)", ("RBL111", 1, 16, 0)),
         ("LOAD (0, 0, 60), ", ("RBL111", 1, 17, 0)),
+        ("WRIST", ("RBL111", 1, 6, 0)),
+        ("WRIST ' x", ("RBL111", 1, 6, 0)),
+        ("WRIST FREE", ("RBL111", 1, 7, 4)),
+        ("WRIST TILT", ("RBL111", 1, 7, 4)),
+        ("WRIST KEEP AUTO", ("RBL111", 1, 12, 4)),
+        ("WRIST KEEP, TILT", ("RBL111", 1, 11, 1)),
+        ("WRIST HOLD", ("RBL111", 1, 11, 0)),
+        ("WRIST HOLD SPEED", ("RBL111", 1, 12, 5)),
+        ("WRIST HOLD TILT,", ("RBL111", 1, 17, 0)),
+        ("WRIST HOLD TILT, SPEED 5", ("RBL111", 1, 18, 5)),
+        ("WRIST HOLD TILT ADVANCE", ("RBL111", 1, 17, 7)),
+        ("MOVE P1, WRIST", ("RBL111", 1, 15, 0)),
+        ("MOVE P1, WRIST FREE", ("RBL111", 1, 16, 4)),
+        ("MOVE P1, WRIST HOLD", ("RBL111", 1, 20, 0)),
+        ("MOVE P1, WRIST HOLD SPEED 5", ("RBL111", 1, 21, 5)),
+        ("MOVE P1, WRIST HOLD TILT,", ("RBL111", 1, 26, 0)),
+        ("MOVE P1, WRIST HOLD TILT, SPEED 5, ADVANCE", ("RBL111", 1, 36, 7)),
+        ("MOVE P1, WRIST KEEP, TILT", ("RBL111", 1, 22, 4)),
+        ("MOVE P1, TILT", ("RBL111", 1, 10, 4)),
+        ("MOVE TILT", ("RBL111", 1, 6, 4)),
+        ("MOVE Advance", ("RBL111", 1, 6, 7)),
+        ("MOVE rotation", ("RBL111", 1, 6, 8)),
+        ("HOLD TILT", ("RBL111", 1, 1, 4)),
+        ("SEAM", ("RBL111", 1, 5, 0)),
+        ("SEAM torch", ("RBL111", 1, 6, 5)),
+        ("SEAM ON", ("RBL111", 1, 8, 0)),
+        ("SEAM ON torch", ("RBL111", 1, 9, 5)),
+        ("SEAM ON,", ("RBL111", 1, 9, 0)),
+        ("SEAM ON, 5", ("RBL111", 1, 10, 1)),
+        ("SEAM ON, SEAM", ("RBL111", 1, 10, 4)),
+        ("SEAM ON, HERE", ("RBL111", 1, 10, 4)),
+        ("SEAM OFF, torch", ("RBL111", 1, 9, 1)),
+        ("WRISTKEEP", ("RBL112", 1, 1, 9)),
         ("10.5 MOVE P1", ("RBL111", 1, 1, 4)),
         ("OFF", ("RBL111", 1, 1, 3)),
         ("/", ("RBL111", 1, 1, 1)),
@@ -152,19 +298,55 @@ def test_bad_lines(text, found):
         ("MOVE", "expected a point name after MOVE", "the form is MOVE"),
         ("MOVE P1 P2", "expected ',' or the end of the line after P1, not P2", "one instruction on each line"),
         ("MOVE P1 SPEED 3", "expected ',' or the end of the line after P1, not SPEED", "a comma before SPEED"),
-        ("MOVE P1, SPED 3", "expected SPEED, ACCEL or TIME after ',', not SPED", "did you mean SPEED?"),
+        ("MOVE P1, SPED 3", "expected SPEED, ACCEL, TIME or WRIST after ',', not SPED", "did you mean SPEED?"),
+        ("MOVE P1, FREE", "expected SPEED, ACCEL, TIME or WRIST after ',', not FREE", "[, WRIST mode]"),
+        ("MOVE P1, WRST KEEP", "expected SPEED, ACCEL, TIME or WRIST after ',', not WRST", "did you mean WRIST?"),
+        ("MOVE P1 WRIST KEEP", "expected ',' or the end of the line after P1, not WRIST", "a comma before WRIST"),
+        ("HAND ON WRIST KEEP", "expected ',' or the end of the line after ON, not WRIST", "one instruction on each"),
+        ("MOVE TILT", "expected a point name after MOVE, not TILT", "TILT is a word of the language and cannot be a"),
+        ("wrist", "expected KEEP, AUTO or HOLD after WRIST", f"the form is {WRIST_FORM}"),
+        ("WRIST FREE", "expected KEEP, AUTO or HOLD after WRIST, not FREE", f"the form is {WRIST_FORM}"),
+        ("WRIST KEPT", "expected KEEP, AUTO or HOLD after WRIST, not KEPT", "did you mean KEEP?"),
+        ("WRIST HOLD", "expected TILT, ADVANCE or ROTATION after HOLD", f"the form is {WRIST_FORM}"),
+        ("WRIST HOLD SPEED", "expected TILT, ADVANCE or ROTATION after HOLD, not SPEED", f"the form is {WRIST_FORM}"),
+        ("WRIST HOLD TILTED", "expected TILT, ADVANCE or ROTATION after HOLD, not TILTED", "did you mean TILT?"),
+        ("WRIST HOLD TILT, FREE", "expected TILT, ADVANCE or ROTATION after ',', not FREE", f"form is {WRIST_FORM}"),
+        ("WRIST HOLD TILT ADVANCE", "expected ',' or the end of the line after TILT, not ADVANCE", "before ADVANCE"),
+        ("WRIST KEEP TILT", "expected the end of the line after KEEP, not TILT", f"the form is {WRIST_FORM}"),
+        ("WRIST KEEP MOVE P1", "expected the end of the line after KEEP, not MOVE", "one instruction on each line"),
+        ("MOVE P1, WRIST", "expected KEEP, AUTO or HOLD after WRIST", f"the form is {WRIST_FORM}"),
+        ("MOVE P1, WRIST HOLD 5", "expected TILT, ADVANCE or ROTATION after HOLD, not 5", f"the form is {WRIST_FORM}"),
+        (
+            "MOVE P1, WRIST HOLD TILT, ADVNCE",
+            "expected SPEED, ACCEL, TIME, WRIST, TILT, ADVANCE or ROTATION after ',', not ADVNCE",
+            "did you mean ADVANCE?",
+        ),
+        ("MOVE P1, WRIST HOLD TILT SPEED 5", "expected ',' or the end of the line after TILT, not SPEED", "a comma"),
+        ("MOVE P1, WRIST KEEP TILT", "expected ',' or the end of the line after KEEP, not TILT", "the form is MOVE"),
+        ("seam", "expected ON or OFF after SEAM", "the form is SEAM ON, sensor or SEAM OFF"),
+        ("SEAM CLOSE", "expected ON or OFF after SEAM, not CLOSE", "the form is SEAM ON, sensor or SEAM OFF"),
+        ("SEAM ON", "expected ',' after ON", "the form is SEAM ON, sensor or SEAM OFF"),
+        ("SEAM ON,", "expected a sensor name after ','", "the form is SEAM ON, sensor or SEAM OFF"),
+        ("SEAM ON, 5", "expected a sensor name after ',', not 5", "the form is SEAM ON, sensor or SEAM OFF"),
+        ("SEAM ON, HERE", "expected a sensor name after ',', not HERE", "HERE is a word of the language and cannot be"),
+        ("SEAM ON, TILT", "expected a sensor name after ',', not TILT", "TILT is a word of the language and cannot be"),
+        ("WRITS KEEP", "unknown instruction 'WRITS'", "did you mean WRIST?"),
+        ("WRISTKEEP", "unknown instruction 'WRISTKEEP'", "did you mean WRIST KEEP?"),
+        ("SEAMOFF", "unknown instruction 'SEAMOFF'", "did you mean SEAM OFF?"),
         ("MOVE P1, SPEED", "expected a number after SPEED", "the form is MOVE"),
         ("MOVE LOAD", "expected a point name after MOVE, not LOAD", "cannot be a name"),
         ("hand", "expected ON or OFF after HAND", "the form is HAND"),
         ("HAND OPEN", "expected ON or OFF after HAND, not OPEN", "HAND OFF opens the hand"),
+        ("HAND ONN", "expected ON or OFF after HAND, not ONN", "did you mean ON?"),
         ("LOAD 1", "expected '(' after LOAD, not 1", "the form is LOAD (x, y, z), mass"),
+        ("LOAD(0, 0 SPEED", "expected ',' after 0, not SPEED", "the form is LOAD (x, y, z), mass"),
         ("10.5 MOVE P1", "expected an instruction, not 10.5", "whole number"),
         ("MOV P1", "unknown instruction 'MOV'", "did you mean MOVE?"),
         ("HANDON", "unknown instruction 'HANDON'", "did you mean HAND ON?"),
         ("movep1", "unknown instruction 'movep1'", "leave a space: MOVE P1"),
         ("OPEN", "unknown instruction 'OPEN'", "HAND OFF opens the hand"),
-        ("QQQQ", "unknown instruction 'QQQQ'", "The instructions are MOVE, LOAD"),
-        ("MOVEJ P1", "MOVEJ is not in this edition yet", "MOVE, LOAD"),
+        ("QQQQ", "unknown instruction 'QQQQ'", "are MOVE, LOAD, HAND ON, HAND OFF, WRIST and SEAM"),
+        ("MOVEJ P1", "MOVEJ is not in this edition yet", "runs MOVE, LOAD, HAND ON, HAND OFF, WRIST and SEAM"),
         ("X = 5", "assignment to X is not in this edition yet", "MOVE, LOAD"),
         ("HAND ON, 1_000", "'1_000' is not a number", "write 1000"),
         ("LOAD (0, 0, 60), 800g", "'800g' is not a number", "masses in kg"),

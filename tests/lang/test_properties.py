@@ -11,6 +11,7 @@ from robolang.interpreter import execute
 from robolang.nodes import (
     Accel,
     Comment,
+    Component,
     Hand,
     HandState,
     Line,
@@ -20,10 +21,13 @@ from robolang.nodes import (
     Negate,
     Number,
     Program,
+    Seam,
     Speed,
     Time,
     Unparsed,
     Vector,
+    Wrist,
+    WristMode,
 )
 from robolang.parser import parse
 from robolang.printer import print_program
@@ -50,11 +54,21 @@ names = (
 )
 expressions = st.recursive(numbers | names, lambda inner: make(Negate, operand=inner), max_leaves=4)
 vectors = make(Vector, x=expressions, y=expressions, z=expressions)
-options = st.one_of(*(make(kind, value=expressions) for kind in (Speed, Accel, Time)))
+wrists = st.one_of(
+    make(Wrist, mode=st.sampled_from([WristMode.KEEP, WristMode.AUTO])),
+    make(
+        Wrist,
+        mode=st.just(WristMode.HOLD),
+        held=st.lists(st.sampled_from(Component), min_size=1, max_size=4).map(tuple),
+    ),
+)
+options = st.one_of(*(make(kind, value=expressions) for kind in (Speed, Accel, Time)), wrists)
 statements = st.one_of(
     make(Move, target=names, options=st.lists(options, max_size=4).map(tuple)),
     make(Load, cog=vectors, mass=expressions),
     make(Hand, state=st.sampled_from(HandState), dwell=st.none() | expressions),
+    wrists,
+    make(Seam, sensor=st.none() | names),
 )
 comments = st.text(st.characters(categories=["L", "N", "P", "S", "Zs"]), max_size=20).map(
     lambda text: Comment(text=f"'{text}".rstrip())
@@ -69,7 +83,8 @@ programs = st.lists(lines, max_size=8).map(lambda found: Program(source_path="p"
 
 fragments = st.sampled_from(
     ["MOVE", "move ", "LOAD", "HAND ", "ON", "OFF", "P1", "P2 ", "SPEED", "TIME", ",", "(", ")", "-", "+", "1", ".5",
-     "1E999", "1_0", "'", "REM ", "\n", "\r\n", "\r", "\t", " ", "10 ", "МOVE", "\u202e", "\x00", "=", "*", "MOVEJ"]
+     "1E999", "1_0", "'", "REM ", "\n", "\r\n", "\r", "\t", " ", "10 ", "МOVE", "\u202e", "\x00", "=", "*", "MOVEJ",
+     "WRIST ", "KEEP", "HOLD ", "TILT", "ADVANCE", "SEAM "]
 )  # fmt: skip
 texts = st.text(max_size=200) | st.lists(fragments, max_size=60).map("".join)
 
@@ -96,7 +111,7 @@ def test_any_text_gives_a_tree_and_located_diagnostics(text):
     unparsed = [line for line in result.program.lines if isinstance(line.statement, Unparsed)]
     assert {line.source_line for line in unparsed} == bad
     assert len(unparsed) == sum(item.code != "RBL110" for item in result.diagnostics)
-    for item in (*result.diagnostics, *check(result.program, points=["P1"], rated_payload_kg=2.5)):
+    for item in (*result.diagnostics, *check(result.program, points=["P1"], rated_payload_kg=2.5, sensors=["P2"])):
         assert 0 <= item.span.start <= item.span.end <= len(text)
         assert render(item, where).isprintable() or "\n" in render(item, where)
         assert "\x1b" not in render(item, where)
@@ -142,9 +157,12 @@ def calls(text):
 
 def test_work_grows_with_the_text_and_not_faster():
     parse(source("MOVE P1"))
-    shapes = ["10 MOVE P1, SPEED 200 ' x\n", "LOAD (1, -2, 3), 4\n", "'\n", "\n", "MOVE " + "-" * 90 + "\n", "1_0 \n"]
+    shapes = ["10 MOVE P1, SPEED 200 ' x\n", "LOAD (1, -2, 3), 4\n", "'\n", "\n", "MOVE " + "-" * 90 + "\n", "1_0 \n",
+              "MOVE P1, WRIST HOLD TILT, ADVANCE, TIME 2\n", "WRIST HOLD TILT\n", "SEAM ON, s\n"]  # fmt: skip
     for shape in shapes:
         small, large = calls(shape * 100), calls(shape * 200)
         assert large <= 2.1 * small + 100, shape
-    options = ", SPEED 1"
-    assert calls("MOVE P1" + options * 200) <= 2.1 * calls("MOVE P1" + options * 100) + 100
+    repeated = [("MOVE P1", ", SPEED 1"), ("MOVE P1", ", WRIST HOLD TILT"), ("MOVE P1, WRIST HOLD TILT", ", TILT"),
+                ("WRIST HOLD TILT", ", TILT")]  # fmt: skip
+    for start, more in repeated:
+        assert calls(start + more * 200) <= 2.1 * calls(start + more * 100) + 100, more

@@ -31,6 +31,15 @@ def test_a_bad_program_is_exit_code_1():
     assert result.stderr == ""
 
 
+def test_wrist_and_seam_are_checked(folder):
+    text = "WRIST HOLD TILT, ADVANCE\nMOVE P1, WRIST KEEP\nSEAM OFF\n"
+    (folder / "wrist.rbl").write_text(text)
+    assert robolang("check", "wrist.rbl").stdout == ""
+    (folder / "wrist.rbl").write_text(f"{text}WRIST HOLD TILT, ADVANCE, ROTATION\nSEAM ON\nMOVE P1, WRIST\n")
+    found = places(robolang("check", "wrist.rbl", code=1).stdout)
+    assert found == [(4, 27, "RBL120"), (5, 8, "RBL111"), (6, 15, "RBL111")]
+
+
 def test_a_warning_is_printed_and_exit_code_0():
     assert "empty.rbl:1:1: warning RBL201" in robolang("check", "empty.rbl").stdout
 

@@ -27,7 +27,7 @@ def refused(name, *words, code):
 
 BAD_TEXT = [
     ("10 MOV P1", (1, 4, "RBL112"), "did you mean MOVE?"),
-    ("10 FROB P1", (1, 4, "RBL112"), "MOVE, LOAD, HAND ON and HAND OFF"),
+    ("10 FROB P1", (1, 4, "RBL112"), "MOVE, LOAD, HAND ON, HAND OFF, WRIST and SEAM"),
     ("10 HAND OM", (1, 9, "RBL111"), ""),
     ("10 LOAD (0, 0, 60), -1", (1, 21, "RBL401"), "zero or more"),
     ("10 LOAD (0, 0, 60), 1E999", (1, 21, "RBL114"), "ordinary size"),
@@ -103,7 +103,7 @@ def test_a_missing_program_with_its_suffix_forgotten(folder):
     ],
 )
 def test_a_move_that_the_robot_cannot_make_is_refused_before_any_motion(folder, second, code, said):
-    (folder / "p.rbl").write_text("10 LOAD (0, 0, 60), 0.8\n20 MOVE A\n30 MOVE B\n")
+    (folder / "p.rbl").write_text("10 LOAD (0, 0, 60), 0.8\n20 MOVE A\n30 MOVE B, WRIST KEEP\n")
     first = POINT.format(10 if code == "RBL411" else 180)
     (folder / "p.cell.toml").write_text((BUILTIN / "cell.toml").read_text())
     (folder / "p.points.toml").write_text(f"schema = 1\n[points.A]\n{first}\n[points.B]\n{second}\n")

@@ -19,11 +19,11 @@ REPORT_KEYS = {
 }  # fmt: skip
 STATEMENT_KEYS = {
     "line", "number", "text", "start_s", "duration_s", "planned_s", "joint_error_deg", "tool_error_mm",
-    "path_deviation_mm", "peak_torque_pct", "notes",
+    "path_deviation_mm", "peak_torque_pct", "wrist", "seam", "notes",
 }  # fmt: skip
 SIGNALS = {
     "t", "q_plan", "q_cmd", "dq_cmd", "tau_cmd", "tau_sat", "q_fb", "dq_fb", "X_world_tool_fb", "D", "T", "D_age",
-    "T_age", "payload_mass", "line", "wrist_mode", "q_link", "X_world_tool",
+    "T_age", "payload_mass", "line", "wrist_mode", "seam_deviation", "q_link", "X_world_tool",
 }  # fmt: skip
 PROGRAMS = {
     "move": "10 LOAD (0, 0, 60), 0.8\n20 MOVE P1\n",

@@ -145,7 +145,7 @@ def test_out_of_reach_names_the_place_on_the_path():
 
 
 def test_past_a_joint_limit_names_joint_limit_and_excess():
-    fault = refusal(0.48, -0.22, 0.84, rpy=(math.pi, math.pi / 2.2, 0.0))
+    fault = refusal(0.48, -0.22, 0.84, rpy=(math.pi, math.pi / 2.2, 0.0), wrist="keep")
     assert fault.code == "RBL411"
     joint = int(fault.message[1]) - 1
     assert f"{math.degrees(SPEC.lower[joint]):g} deg" in fault.message or (
@@ -161,7 +161,7 @@ def test_a_line_through_the_straight_wrist_is_refused_before_it_moves():
     q_start[4], q_end[4] = math.radians(-40.0), math.radians(40.0)
     X_end = KINEMATICS.forward(q_end) @ TOOL
     with pytest.raises(Fault) as caught:
-        LinePlanner(SPEC, KINEMATICS, PROFILE).plan(q_start, MoveLinear(X_world_tool=X_end), TOOL)
+        LinePlanner(SPEC, KINEMATICS, PROFILE).plan(q_start, MoveLinear(X_world_tool=X_end, wrist="keep"), TOOL)
     assert caught.value.code in ("RBL411", "RBL412")
 
 
@@ -175,7 +175,7 @@ def past_the_straight_wrist(bend_deg: float, **options) -> LinePlan:
     for X, angle in zip(ends, (-25.0, 25.0), strict=True):
         X[:3, :3] = rotation_about(across, math.radians(angle)) @ X[:3, :3]
     start = KINEMATICS.inverse_branch(ends[0] @ inverse(TOOL), KINEMATICS.branch_of(q_middle), q_middle)
-    command = MoveLinear(X_world_tool=ends[1], **options)
+    command = MoveLinear(X_world_tool=ends[1], wrist="keep", **options)
     return LinePlanner(SPEC, KINEMATICS, PROFILE).plan(start, command, TOOL)
 
 

@@ -49,8 +49,8 @@ def test_a_pose_near_by_is_met(n, seed):
 def test_the_jacobian_is_that_of_the_chain():
     for kinematics in (SEVEN_AXES, FIVE_AXES):
         q = np.linspace(-1, 1, kinematics.n)
-        kinematics._newton._error(np.eye(4), q)
-        np.testing.assert_allclose(kinematics._newton._jacobian(q), kinematics.jacobian(q), atol=1e-13)
+        kinematics.newton._error(np.eye(4), q)
+        np.testing.assert_allclose(kinematics.newton._jacobian(q), kinematics.jacobian(q), atol=1e-13)
 
 
 def test_a_path_is_followed_without_jumps():

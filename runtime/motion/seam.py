@@ -1,0 +1,233 @@
+r"""Seam tracking: a sensor's deviation superposed on a straight move, its end point and the end of its wrist following.
+
+A sensor sees where the seam really is, relative to the *calculated* point P(n) of the move. So every reading is the
+whole deviation, and none adds to the one before:
+
+    S5'    the tool goes to P(n) + d(n);  joints theta'(n) from it, sign of J5 kept
+           the end is Q2(n) = Q2 + d(n);  its wrist angles theta_ke(n) from it, branch and turns of the taught end kept
+    (11')  conditions, and (21') the way to the end angles, use theta_ke(n);  S9 uses the position of P(n) + d(n)
+
+``P + d`` adds the translation and turns by the rotation about fixed axes: [R_d R_P, p_P + d]. Deviations are [x, y, z]
+m and [rx, ry, rz] rad in the world frame.
+
+The reading passes a critically damped filter of time constant ``filter_s`` twice, so d has no steps of speed; a lost
+sample holds the last one. A reading beyond its bound, or too many lost in a row, is a fault of the running line
+(RBL524, RBL525): the arm stops on its path. So is a point that the joints cannot follow within their limits (RBL526):
+the move was planned without deviation, and what a sensor asks for cannot be planned.
+
+Source: CN103429397A (Kobe Steel), embodiment 3. Called once per 8 ms cycle by the interpolator.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from runtime.faults import Fault
+from runtime.frames import Array, inverse, pose, rotation_from_rpy
+from runtime.motion.solver import LineSolver
+from runtime.motion.wrist import Conditions, WristLaw, law_from
+from runtime.motion.wrist_planner import wrist_limits
+from runtime.profile import WristOptions
+from runtime.robot.frozen_wrist import WRIST_AXES, FrozenWrist, Side
+from runtime.robot.opw import Branch
+from runtime.units import DEG, MM
+
+SPEED_SLACK = 1.2
+"""A tracked point may ask for this much of a joint's speed limit: the plan knew nothing of the deviation."""
+
+
+Read = Callable[[float, Array], Array | None]
+"""Of the way along the path since SEAM ON, m, and its direction (3,): the deviation (6,) seen, None when it was lost.
+"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeamLimits:
+    """What is believed of a sensor: ``filter_s`` s, largest deviation ``most`` m and ``most_turn`` rad, longest
+    ``lost_s``.
+    """
+
+    filter_s: float = 0.04
+    most: float = 0.02
+    most_turn: float = 10.0 * DEG
+    lost_s: float = 0.1
+
+
+class SeamTracker:
+    """The deviation in force from SEAM ON to SEAM OFF: filtered, bounded, held while samples are lost."""
+
+    def __init__(self, name: str, limits: SeamLimits, period_s: float, read: Read) -> None:
+        self.name, self._limits, self._period_s, self._read = name, limits, period_s, read
+        self.deviation = np.zeros(6)
+        """Deviation in force, m and rad."""
+        self.way = 0.0
+        """Way along the calculated path since SEAM ON, up to the move that runs, m."""
+        self.q_calculated: Array | None = None
+        """Joint angles (n,) of the calculated point where the last move ended; None before the first."""
+        self.lost = 0
+        """Samples lost so far."""
+        self._target = np.zeros(6)
+        self._rate = np.zeros(6)
+        self._lost_in_a_row = 0
+
+    def observe(self, way: float, travel: Array) -> None:
+        """Read the sensor for this cycle, ``way`` m into the move that runs; ``Fault`` RBL524 or RBL525.
+
+        Whatever happens, the deviation follows the last good reading for one cycle.
+        """
+        try:
+            self._take(self._read(self.way + way, travel))
+        finally:
+            self._follow()
+
+    def _take(self, reading: Array | None) -> None:
+        limits = self._limits
+        if reading is None:
+            self.lost += 1
+            self._lost_in_a_row += 1
+            if self._lost_in_a_row * self._period_s > limits.lost_s:
+                raise Fault("RBL525", f"seam sensor {self.name} has given nothing for "
+                            f"{self._lost_in_a_row * self._period_s * 1e3:.0f} ms")  # fmt: skip
+            return
+        self._lost_in_a_row = 0
+        far, turned = float(np.linalg.norm(reading[:3])), float(np.abs(reading[3:]).max())
+        if not (far <= limits.most and turned <= limits.most_turn):
+            raise Fault("RBL524", f"seam sensor {self.name} sees the seam {far / MM:.2f} mm and {turned / DEG:.2f} deg "
+                        f"away, more than {limits.most / MM:g} mm or {limits.most_turn / DEG:g} deg")  # fmt: skip
+        self._target = np.array(reading, dtype=np.float64)
+
+    def freeze(self, deviation: Array) -> None:
+        """Hold a deviation (6,) from now on: the arm is about to stop."""
+        self.deviation = self._target = np.array(deviation)
+        self._rate = np.zeros(6)
+
+    def _follow(self) -> None:
+        """Let the deviation follow the last reading for one cycle: a critically damped second-order lag, exact."""
+        tau, h = self._limits.filter_s, self._period_s
+        if tau <= 0.0:
+            self.deviation = self._target.copy()
+            return
+        away = self.deviation - self._target
+        drive = self._rate + away / tau
+        decay = math.exp(-h / tau)
+        self.deviation = self._target + (away + drive * h) * decay
+        self._rate = (self._rate - drive * h / tau) * decay
+
+
+def superposed(X: Array, deviation: Array) -> Array:
+    """Return the pose X (4, 4) with a deviation (6,) on it."""
+    return pose(X[:3, 3] + deviation[:3], rotation_from_rpy(deviation[3:]) @ X[:3, :3])
+
+
+class SeamMove:
+    """One straight move under a tracker, point by point.
+
+    ``line``: the calculated path from its calculated start; s (N + 1,); q_start (n,): where the arm really is; q_end
+    (n,): the end without deviation; ``switch``: sample at which the plan lets the wrist go, None where it never does.
+    """
+
+    def __init__(self, line: LineSolver, s: Array, q_start: Array, q_end: Array, switch: int | None,
+                 tracker: SeamTracker, options: WristOptions, period_s: float) -> None:  # fmt: skip
+        arm = line.arm
+        self._line, self._s, self._switch, self._tracker = line, s, switch, tracker
+        self._kinematics, self._X_tool_flange = arm.kinematics, inverse(arm.X_flange_tool)
+        self._frozen = FrozenWrist(arm.kinematics, arm.X_flange_tool)
+        self._poses = line.path.poses(s)
+        self._travel = line.path.X_end[:3, 3] - line.path.X_start[:3, 3]
+        self._end_branch = arm.kinematics.branch_of(q_end)
+        self._limits = wrist_limits(arm.spec, options)
+        self._options = options
+        self._conditions = Conditions(s, q_start[-WRIST_AXES:], period_s, self._limits, options, line.path.length)
+        self._most_step = arm.spec.per_axis("limits", "speed") * period_s * SPEED_SLACK
+        self._lower, self._upper = arm.spec.lower, arm.spec.upper
+        self.before, self.here = q_start, q_start
+        self.q_end = np.array(q_end)
+        """Joint angles (n,) of the end as it is seen now, rad."""
+        self.law: WristLaw | None = None
+        """Way of the wrist once it has left the path."""
+        self._side: Side | None = None
+
+    def next(self, n: int) -> tuple[Array, Fault | None]:
+        """Read the sensor and return the set-point (n,) of sample n, and the fault that has to stop the arm, if any.
+
+        Where the seam cannot be followed the deviation stays as it was, so the set-point goes on along the path.
+        """
+        held, fault = self._tracker.deviation, None
+        try:
+            self._tracker.observe(float(self._s[n]) * self._line.path.length, self._travel)
+            return self.row(n), None
+        except Fault as found:
+            fault = found
+        self._tracker.freeze(held if fault.code == "RBL526" else self._tracker.deviation)
+        try:
+            return self.row(n), fault
+        except Fault:
+            return self.here, fault
+
+    def finish(self) -> None:
+        """Tell the tracker that the move has ended: the next one begins at its calculated end."""
+        self._tracker.way += self._line.path.length
+
+    def row(self, n: int) -> Array:
+        """Return the joint set-point (n,) of sample n for the deviation in force; ``Fault`` RBL526."""
+        deviation = self._tracker.deviation
+        X = superposed(self._poses[n], deviation)
+        self.q_end = self._solve(superposed(self._line.path.X_end, deviation), self._end_branch, self.q_end)
+        end = self.q_end[-WRIST_AXES:]
+        if self.law is None:
+            q = self._solve(X, self._line.branch, self.here)
+            switched = self._switch is not None and n > self._switch
+            if switched or not np.isfinite(q).all() or self._met(n, q, end):
+                self._leave(n, end)
+        if self.law is not None:
+            share = (self._s[n] - self.law.s_switch) / (1.0 - self.law.s_switch)
+            wrist = self.law.angles(self._s[n : n + 1]) + share * (end - self.law.end)
+            q = self._frozen.solve(X[None, :3, 3], wrist, self.here, self._side)[0]
+        self._check(n, q)
+        self.before, self.here = self.here, q
+        return q
+
+    def _solve(self, X_base_tool: Array, branch: Branch, near: Array) -> Array:
+        return self._kinematics.inverse_branch(X_base_tool @ self._X_tool_flange, branch, near)
+
+    def _met(self, n: int, q: Array, end: Array) -> bool:
+        """Return whether sample n meets an exception condition with the end as it is seen now, S61."""
+        wrist, before = q[-WRIST_AXES:], self.here[-WRIST_AXES:]
+        soon = wrist + self._options.look_ahead * (wrist - before)
+        outside = (soon > self._limits.upper) | (soon < self._limits.lower)
+        met = self._conditions.met(slice(n, n + 1), wrist[None], before[None], end, outside[None])
+        return any(bool(where.any()) for where in met.values())
+
+    def _leave(self, n: int, end: Array) -> None:
+        """Let the wrist go to its end angles from the sample before n, S63."""
+        rows, s = np.stack([self.before, self.here]), self._s[[max(n - 2, 0), n - 1]]
+        shape = self._options.shape
+        self.law = law_from(rows[1:] if n == 1 else rows, s[1:] if n == 1 else s, 0 if n == 1 else 1, end, shape,
+                            self._options.width)  # fmt: skip
+        self._side = self._frozen.side_of(self.here)
+
+    def _check(self, n: int, q: Array) -> None:
+        where = f"at {100 * self._s[n]:.1f} % of the path"
+        if not np.isfinite(q).all():
+            raise Fault("RBL526", f"{where} the seam is out of reach")
+        step = np.abs(q - self.here)
+        if not (step <= self._most_step).all():
+            axis = int(np.argmax(step / self._most_step))
+            raise Fault("RBL526", f"{where} J{axis + 1} would have to turn at "
+                        f"{step[axis] / self._most_step[axis] * SPEED_SLACK:.2f} times its limit to follow the "
+                        "seam")  # fmt: skip
+        if not ((q >= self._lower - 1e-9) & (q <= self._upper + 1e-9)).all():
+            axis = int(np.argmax(np.maximum(self._lower - q, q - self._upper)))
+            raise Fault("RBL526", f"{where} J{axis + 1} would leave its range to follow the seam")
+
+    def rest(self, n: int) -> Array:
+        """Return the set-points (k, n) from sample n to the end for the deviation as it is, as far as there are any."""
+        rows = []
+        try:
+            for k in range(n, len(self._s)):
+                rows.append(self.row(k))
+        except Fault:
+            pass  # what cannot be followed is not needed: the rows are those of a stop
+        return np.array(rows).reshape(-1, len(self.here))

@@ -1,0 +1,185 @@
+"""Joint angles along a straight path: in the posture of the path, or with the wrist going its own way from a switch on.
+
+``LineSolver`` keeps the arm configuration of the start and meets every pose of the path. ``WristSolver`` does the same
+up to a switch; from there the wrist follows a ``WristLaw`` and the main axes put the tool point on the path
+(docs/wrist.md). Both are functions of the path parameter, so a slower move is the same curve with more samples.
+``joints`` refuses what cannot be executed, with the place on the path: out of reach (RBL410), out of a joint's range
+(RBL411), through a singularity or into another configuration (RBL412). Called by the planner, before anything moves.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NoReturn
+
+import numpy as np
+
+from runtime.faults import Fault
+from runtime.frames import Array, inverse
+from runtime.motion.fine import FineInterpolator
+from runtime.motion.hold import WristTable
+from runtime.motion.path import LinePath
+from runtime.motion.wrist import SAME_ANGLES, WristLaw
+from runtime.robot.frozen_wrist import FrozenWrist
+from runtime.robot.kinematics import Kinematics
+from runtime.robot.opw import Branch
+from runtime.robot.spec import RobotSpec
+from runtime.units import DEG, MM
+
+RANGE_TOLERANCE = 1e-9
+"""How far past its range a joint may be commanded, rad: rounding, nothing more."""
+
+JUMP = math.pi / 4.0
+"""No joint turns further from one sample to the next, rad: it has changed its configuration."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Arm:
+    """What every solver of one robot needs: its data, its kinematics, its fine interpolation and the tool in use."""
+
+    spec: RobotSpec
+    kinematics: Kinematics
+    fine: FineInterpolator
+    X_flange_tool: Array
+
+
+class LineSolver:
+    """Joint angles along one path in one arm configuration: that of q_start (n,), or with ``to_end`` that of its end.
+    """
+
+    def __init__(self, arm: Arm, path: LinePath, q_start: Array, *, to_end: bool = False) -> None:
+        self.arm, self.path, self.q_start = arm, path, q_start
+        self._X_tool_flange = inverse(arm.X_flange_tool)
+        self.branch: Branch = arm.kinematics.branch_of(q_start)
+        self._known = -1 if to_end else 0
+
+    def rows(self, s: Array) -> Array:
+        """Return q (N + 1, n) at path parameters s, continuous with the known end; NaN where there is no solution."""
+        poses = self.path.poses(s) @ self._X_tool_flange
+        if self._known:  # an arm without branches follows its solution, so it has to begin where that is known
+            poses = poses[::-1]
+        q = self.arm.kinematics.inverse_branch(poses, self.branch, self.q_start)
+        q = np.unwrap(q, axis=0) + 0.0
+        q += 2.0 * math.pi * np.round((self.q_start - q[0]) / (2.0 * math.pi))
+        return q[::-1] if self._known else q
+
+    def joints(self, s: Array) -> Array:
+        """Return q (N + 1, n) at path parameters s; ``Fault`` RBL410, 411, 412."""
+        q = self.rows(s)
+        self._check_reach(s, q)
+        self._check_continuity(s, q)
+        q[0] = self.q_start
+        check_range(self.arm, s, q)
+        return q
+
+    def _check_reach(self, s: Array, q: Array) -> None:
+        bad = ~np.isfinite(q).all(axis=1)
+        if not bad.any():
+            return
+        first = int(np.argmax(bad))
+        place = self.path.points(s[first : first + 1])[0] / MM
+        raise Fault(
+            "RBL410",
+            f"the point ({place[0]:.1f}, {place[1]:.1f}, {place[2]:.1f}) mm at {100 * s[first]:.1f} % of the path is "
+            f"out of reach of {self.arm.spec.name} ({self.branch})",
+        )
+
+    def _check_continuity(self, s: Array, q: Array) -> None:
+        jumps = np.abs(np.diff(q, axis=0))
+        if np.abs(q[0] - self.q_start).max() > 1e-3:  # the start is itself at a singularity
+            self.refuse_singular(s[:1], q, int(np.argmax(np.abs(q[0] - self.q_start))))
+        if len(jumps) > 4 and jumps.max() > JUMP:
+            step, axis = np.unravel_index(int(np.argmax(jumps)), jumps.shape)
+            self.refuse_singular(s[step : step + 1], q, int(axis))
+
+    def refuse_singular(self, s: Array, q: Array, axis: int) -> NoReturn:
+        """Raise ``Fault`` RBL412 where axis moves most between two samples."""
+        raise Fault(
+            "RBL412",
+            f"at {100 * _steepest(s, q, axis):.1f} % of the straight path J{axis + 1} would have to turn too fast: it "
+            f"passes a singularity, or its end needs another configuration than {self.branch}",
+        )
+
+
+class WristSolver:
+    """Joint angles along one path whose wrist follows ``law`` from its switch to its return, and which ends at q_end.
+
+    From the return on, where it is before the end, ``back`` has the joints: the path in the configuration of q_end
+    (n,).
+    """
+
+    def __init__(self, line: LineSolver, law: WristLaw | WristTable, q_switch: Array, q_end: Array,
+                 back: LineSolver | None = None) -> None:  # fmt: skip
+        self._line, self.law, self._q_end, self._back = line, law, q_end, back
+        self._frozen = FrozenWrist(line.arm.kinematics, line.arm.X_flange_tool)
+        self._q_switch = q_switch
+        self._side = self._frozen.side_of(q_switch)
+
+    def rows(self, s: Array) -> Array:
+        """Return q (N + 1, n) at path parameters s; NaN where there is no solution."""
+        first, last = np.searchsorted(s, [self.law.s_switch, self.law.s_return], side="right")
+        way = s[first:last]
+        parts = [self._frozen.solve(self._line.path.points(way), self.law.angles(way), self._q_switch, self._side)]
+        if first:
+            parts.insert(0, self._line.rows(s[:first]))
+            parts[0][0] = self._line.q_start
+        if last < len(s) and self._back is not None:
+            parts.append(self._back.rows(s[last:]))
+        return np.concatenate(parts)
+
+    def joints(self, s: Array) -> Array:
+        """Return q (N + 1, n) at path parameters s; ``Fault`` RBL411 or RBL412."""
+        q = self.rows(s)
+        lost = ~np.isfinite(q).all(axis=1)
+        if lost.any():
+            raise Fault(
+                "RBL412",
+                f"at {100 * s[int(np.argmax(lost))]:.1f} % of the straight path the wrist on its way to its end angles "
+                f"takes the tool point out of reach of the main axes",
+            )
+        jumps = np.abs(np.diff(q, axis=0))
+        step, axis = np.unravel_index(int(np.argmax(jumps)), jumps.shape)
+        if len(jumps) > 4 and not jumps[step, axis] <= JUMP:
+            raise Fault("RBL412", f"at {100 * s[step]:.1f} % of the straight path J{axis + 1} would have to change the "
+                        "arm configuration")  # fmt: skip
+        off = np.abs(q[-1] - self._q_end)
+        if not off.max() <= SAME_ANGLES:
+            worst = int(np.argmax(off))
+            raise Fault("RBL412", f"the move would end with J{worst + 1} at {q[-1, worst] / DEG:.1f} deg in another "
+                        f"arm configuration, not at the taught {self._q_end[worst] / DEG:.1f} deg")  # fmt: skip
+        q[-1] = self._q_end
+        check_range(self._line.arm, s, q)
+        return q
+
+    def refuse_singular(self, s: Array, q: Array, axis: int) -> NoReturn:
+        """Raise ``Fault`` RBL412 where axis moves most between two samples."""
+        raise Fault(
+            "RBL412",
+            f"at {100 * _steepest(s, q, axis):.1f} % of the straight path J{axis + 1} would have to turn too fast "
+            "while the wrist goes to its end angles",
+        )
+
+
+def _steepest(s: Array, q: Array, axis: int) -> float:
+    """Return where on the path an axis moves most between two samples."""
+    if len(s) == len(q) and len(s) > 1:
+        return float(s[int(np.argmax(np.abs(np.diff(q[:, axis]))))])
+    return float(s[0])
+
+
+def check_range(arm: Arm, s: Array, q: Array) -> None:
+    """Refuse a path that leaves a joint's range at any servo tick: between set-points the command may pass them."""
+    spec = arm.spec
+    positions = arm.fine.expand(q)[0]
+    excess = np.maximum(spec.lower - positions, positions - spec.upper)
+    axis = int(np.argmax(excess.max(axis=0)))
+    worst = int(np.argmax(excess[:, axis]))
+    if excess[worst, axis] <= RANGE_TOLERANCE:
+        return
+    first = int(np.argmax(excess[:, axis] > RANGE_TOLERANCE)) // arm.fine.ticks
+    limits = spec.axes[axis].limits
+    limit = limits.lower if positions[worst, axis] < limits.lower else limits.upper
+    raise Fault(
+        "RBL411",
+        f"J{axis + 1} would pass its limit of {limit / DEG:g} deg by {excess[worst, axis] / DEG:.4g} deg, "
+        f"first at {100 * s[min(first, len(s) - 1)]:.1f} % of the path",
+    )

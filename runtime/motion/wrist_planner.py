@@ -1,0 +1,277 @@
+"""Choosing the way of a straight move through the wrist: the document's switch, then its remedies, then a refusal.
+
+The whole move is tried before it starts, on the 8 ms samples and at every servo tick. So what CN103429397A leaves to
+chance shows while the arm stands still: no solution of the main axes (H1), another arm configuration at the end (H2), a
+wrist (H3) or main axis (H4) beyond its speed, a range passed. Tried in this order:
+
+    1  the path with its posture, where it ends at the taught angles, slowed by at most ``posture_first``
+    2  the switch where the first condition is met, in the shape of the profile
+    3  softer starts, other switches, ways that return to the posture before the end: of those that keep every limit at
+       the programmed speed the one whose posture, or whose held components, deviate least
+    4  that of 1 to 3 which has to be slowed least
+
+``remedies = false`` in the profile is the document alone: 1 only where no condition is met, then 2. Places to try are
+shares of the path, so the choice does not depend on the sampling. Called by ``LinePlanner``; docs/wrist.md has the
+hazards and what each remedy is good for.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from runtime.faults import Fault
+from runtime.frames import Array, inverse, rotation_angles
+from runtime.motion.commands import Component, MoveLinear, in_configuration
+from runtime.motion.hold import COMPONENTS, Suppression, component_deviation, held_way
+from runtime.motion.solver import LineSolver, WristSolver
+from runtime.motion.wrist import (
+    CONDITIONS,
+    SAME_ANGLES,
+    Trigger,
+    WristLimits,
+    first_trigger,
+    law_between,
+    law_from,
+)
+from runtime.profile import WristOptions
+from runtime.robot.frozen_wrist import WRIST_AXES
+from runtime.robot.kinematics import LIMIT_ROUNDING
+from runtime.robot.spec import RobotSpec
+from runtime.units import DEG
+
+EARLIER = (0.9, 0.75, 0.6, 0.45, 0.3, 0.15, 0.0)
+"""Switches tried when the document's does not do: shares of the way to it."""
+
+LATER = (0.25, 0.5, 0.75)
+"""And shares of the way from it to the end."""
+
+SOFTER = (1.0, 0.25)
+"""Widths of the soft start tried beside that of the profile."""
+
+HELD_WINDOWS = (0.15, 0.4)
+"""Shares of the way over which the choice of a held posture is averaged."""
+
+WINDOWS = (0.1, 0.2, 0.35, 0.5)
+"""Half widths of the part of the path in which the wrist goes from one configuration to the other, tried last."""
+
+MIDDLES = (0.5, 0.25, 0.75)
+"""Middles of that part, beside the place where the configurations are nearest."""
+
+Solver = LineSolver | WristSolver
+Excess = Callable[[Array], tuple[float, int, str]]
+"""Of samples q (N + 1, n): factor by which they are too fast (1 and less: not), axis (0-based), ``speed`` or other."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Choice:
+    """How a move goes: its solver; the condition that made it leave the path (None: it does not); what else was done.
+
+    ``ratio`` is the factor by which it is too fast at the programmed speed; ``deviation`` rad by how much the posture,
+    or what is held of it, is left.
+    """
+
+    solver: Solver
+    ratio: float = 1.0
+    deviation: float = 0.0
+    trigger: Trigger | None = None
+    switch: float | None = None
+    remedy: str = ""
+    held: tuple[Component, ...] = ()
+
+
+def ends(line: LineSolver, q: Array, command: MoveLinear) -> list[Array]:
+    """Return the joint angles (n,) at which a move may end: the taught ones, or those that its point leaves open.
+
+    q (N + 1, n): the path in the configuration of its start.
+    Of a taught pose the end in the configuration of the start comes first, then the others that a straight move can
+    reach, arm and elbow as they are, those first to which the wrist turns least; none where the pose is out of reach.
+    ``Fault`` RBL412 when the point names another arm or elbow, or turns that no solution has.
+    """
+    arm = line.arm
+    if command.q_end is not None:
+        there = arm.kinematics.branch_of(command.q_end)
+        if (there.arm, there.elbow) != (line.branch.arm, line.branch.elbow):
+            raise Fault("RBL412", f"the end is taught {there}, the move starts {line.branch}: a straight move cannot "
+                        "change the configuration of the arm", "Teach the end in the arm configuration of the start, "
+                        "or go there over a via point; WRIST KEEP ends in the configuration of the start.")  # fmt: skip
+        return [np.array(command.q_end)]
+    X_end = line.path.X_end @ inverse(arm.X_flange_tool)
+    others = [np.array(each.q) for each in arm.kinematics.solutions(X_end, line.q_start)
+              if (each.branch.arm, each.branch.elbow) == (line.branch.arm, line.branch.elbow)
+              and each.limit_margin >= -LIMIT_ROUNDING]  # fmt: skip
+    others.sort(key=lambda end: float(np.abs(end - line.q_start)[-WRIST_AXES:].max()))
+    found = [end for end in (q[-1], *others) if np.isfinite(end).all()]
+    wanted = [end for end in found if _as_taught(line, end, command)]
+    if found and not wanted:
+        words = " ".join(command.configuration) or f"with turns {list(command.turns)}"
+        raise Fault("RBL412", f"the end is taught {words}, the move starts {line.branch}: no straight move reaches it")
+    return wanted
+
+
+def _as_taught(line: LineSolver, q: Array, command: MoveLinear) -> bool:
+    turns = np.round(q / (2.0 * np.pi))[: len(command.turns)]
+    fits = in_configuration(line.arm.kinematics.branch_of(q), command.configuration)
+    return fits and bool((turns == np.array(command.turns)).all())
+
+
+def choose(line: LineSolver, s: Array, q: Array, q_end: Array, period_s: float, options: WristOptions, excess: Excess,
+           most_deviation: float = math.pi, held: tuple[Component, ...] | None = ()) -> Choice:  # fmt: skip
+    """Return how a move to the taught joint angles q_end (n,) goes; ``Fault`` RBL412 (or 410, 411) where it cannot.
+
+    s (N + 1,): its path parameter at the programmed speed, ``period_s`` apart; q (N + 1, n): the path in the
+    configuration of its start. ``most_deviation`` rad: the tool may
+    turn that far from its posture on the path. ``held`` None is for a path that a sensor will shift: nothing is held,
+    and the wrist does not return to the posture before the end.
+    """
+    trigger = first_trigger(q, q_end, s, period_s, wrist_limits(line.arm.spec, options), options, line.path.length)
+    arrives = bool(np.abs(q[-1] - q_end).max() <= SAME_ANGLES)
+    tried = _candidates(line, q, s, q_end, trigger, arrives, period_s, options, held)
+    held = held or ()
+    found: list[Choice] = []
+    failures: list[Fault] = []
+    for choice in tried:
+        try:
+            rows = choice.solver.joints(s)
+        except Fault as fault:
+            failures.append(fault)
+            continue
+        ratio, _, _ = excess(rows)
+        choice = replace(choice, ratio=ratio)
+        if choice.switch is None:
+            if ratio <= options.posture_first:
+                return choice
+        else:
+            deviation = posture_deviation(line, s, rows)
+            if not deviation <= most_deviation:
+                failures.append(Fault("RBL412", f"the tool would turn up to {deviation / DEG:.0f} deg from its posture "
+                                      f"on the path, more than {most_deviation / DEG:g} deg"))  # fmt: skip
+                continue
+            if ratio <= 1.0 and not choice.remedy and not held:
+                return choice  # as the document has it
+            if held:
+                deviation = posture_deviation(line, s, rows, held)
+            choice = replace(choice, deviation=deviation if ratio <= 1.0 else math.inf)
+        found.append(choice)
+    if not found:
+        raise _refusal(line, trigger, arrives, s, failures)
+    return min(found, key=lambda choice: (choice.deviation, choice.ratio))
+
+
+def posture_deviation(line: LineSolver, s: Array, q: Array, held: tuple[Component, ...] = ()) -> float:
+    """Return by how much the tool turns from its posture on the path, rad: the whole angle, or of held components."""
+    R = (line.arm.kinematics.forward(q) @ line.arm.X_flange_tool)[:, :3, :3]
+    planned = line.path.poses(s)[:, :3, :3]
+    if not held or line.path.length <= 0.0:
+        return float(rotation_angles(planned, R).max())
+    return float(component_deviation(line.path, planned, R)[:, [COMPONENTS.index(each) for each in held]].max())
+
+
+def wrist_limits(spec: RobotSpec, options: WristOptions) -> WristLimits:
+    """Return theta_kd and the ranges of the wrist axes: the profile's, else the robot's."""
+    limits = spec.per_axis("limits", "speed")[-WRIST_AXES:]
+    speed = np.broadcast_to(options.speed, WRIST_AXES) if options.speed else limits
+    return WristLimits(speed=speed, lower=spec.lower[-WRIST_AXES:], upper=spec.upper[-WRIST_AXES:])
+
+
+def _candidates(line: LineSolver, q: Array, s: Array, q_end: Array, trigger: Trigger | None, arrives: bool,
+                period_s: float, options: WristOptions,
+                held: tuple[Component, ...] | None) -> Iterator[Choice]:  # fmt: skip
+    """Yield what to try: the path itself where it arrives, the document's switch, other switches."""
+    if arrives and (trigger is None or options.remedies):
+        yield Choice(solver=line)
+    end = q_end[-WRIST_AXES:]
+    index = len(s) - 1 if trigger is None else trigger.index - 1
+    finite = np.isfinite(q).all(axis=1)
+    usable = min(len(s) - 2, len(s) - 1 if finite.all() else int(np.argmin(finite)) - 1)
+
+    suppression = _suppression(line, options, held or ())
+    rate = float(np.diff(s).max()) / period_s
+
+    def at(k: int, width: float, remedy: str = "") -> Choice:
+        law = law_from(q, s, k, end, options.shape, width)
+        return Choice(solver=WristSolver(line, law, q[k], q_end), trigger=trigger, switch=float(s[k]), remedy=remedy)
+
+    def holding(k: int, window: float, remedy: str = "") -> Iterator[Choice]:
+        if suppression is not None:
+            slope = law_from(q, s, k, end, "linear").slope
+            way = held_way(suppression, line.path, q[k], slope, end, float(s[k]), rate, window)
+            yield Choice(solver=WristSolver(line, way, q[k], q_end), trigger=trigger, switch=float(s[k]), remedy=remedy,
+                         held=held or ())  # fmt: skip
+
+    if trigger is not None:
+        yield at(index, options.width)
+        yield from holding(index, HELD_WINDOWS[0])
+    if not options.remedies:
+        return
+    widths = (options.width, *SOFTER) if options.shape == "smooth" else (options.width,)
+    seen = {index}
+    if trigger is not None:
+        for width in widths[1:]:
+            yield at(index, width, "softer start")
+        yield from holding(index, HELD_WINDOWS[1], "softer start")
+    where = [(share * s[index], "earlier switch") for share in EARLIER]
+    where += [(s[index] + share * (1.0 - s[index]), "later switch") for share in LATER]
+    for place, remedy in where:
+        k = int(np.searchsorted(s, place, side="right")) - 1
+        if k in seen or k > usable:
+            continue
+        seen.add(k)
+        for width in widths:
+            yield at(k, width, remedy)
+        for window in HELD_WINDOWS:
+            yield from holding(k, window, remedy)
+    if held is not None:
+        yield from _windows(line, q, s, q_end, trigger)
+
+
+def _suppression(line: LineSolver, options: WristOptions, held: tuple[Component, ...]) -> Suppression | None:
+    """Return what holds posture components; None where there are none, or no direction of travel to count them in."""
+    if not held or line.path.length <= 0.0:
+        return None
+    travel = line.path.X_end[:3, 3] - line.path.X_start[:3, 3]
+    speed = wrist_limits(line.arm.spec, options).speed
+    return Suppression(line.arm.kinematics, line.arm.X_flange_tool, travel, held, speed)
+
+
+def _windows(line: LineSolver, q: Array, s: Array, q_end: Array, trigger: Trigger | None) -> Iterator[Choice]:
+    """Yield ways that leave the path and return to it: where the two configurations are nearest, and elsewhere.
+
+    Before and after, the tool has the posture of the path; in between the wrist goes from one solution to the other.
+    Beside a singularity they are close: what J4 and J6 would have to turn there, they need not.
+    """
+    back = LineSolver(line.arm, line.path, q_end, to_end=True)
+    q_back = back.rows(s)
+    gap = (np.abs(q_back - q)[:, -WRIST_AXES:] / line.arm.spec.per_axis("limits", "speed")[-WRIST_AXES:]).max(axis=1)
+    both = np.isfinite(gap)
+    if not both.any():
+        return
+    nearest = float(s[int(np.nanargmin(gap))])
+    for half in WINDOWS:
+        for middle in (nearest, *MIDDLES):
+            low, high = max(0.0, middle - half), min(1.0, middle + half)
+            first, last = int(np.searchsorted(s, low, side="right")) - 1, int(np.searchsorted(s, high))
+            last = min(last, len(s) - 1)
+            if last - first < 4 or not (both[first] and both[last]):
+                continue
+            law = law_between(q, q_back, s, first, last)
+            solver = WristSolver(line, law, q[first], q_end, back)
+            yield Choice(solver=solver, trigger=trigger, switch=float(s[first]), remedy="back to the posture")
+
+
+def _refusal(line: LineSolver, trigger: Trigger | None, arrives: bool, s: Array, failures: list[Fault]) -> Fault:
+    """Return the refusal of a move for which nothing did: why the wrist has to change, and what the remedies met."""
+    if arrives or trigger is None:
+        if failures:
+            return failures[0]
+        return Fault("RBL412", f"the end needs another wrist configuration than {line.branch}, and no condition of the "
+                     "profile lets the wrist change")  # fmt: skip
+    axis = "" if trigger.axis is None else f" of J{trigger.axis + 1}"
+    tried = f", nor from {len(failures) - 1} other switches" if len(failures) > 1 else ""
+    return Fault(
+        "RBL411" if failures[0].code == "RBL411" else "RBL412",
+        f"the wrist has to change on this straight move ({trigger.condition}, {CONDITIONS[trigger.condition]}{axis}, "
+        f"at {100 * s[trigger.index]:.1f} % of the path) and cannot from there{tried}: {failures[0].message}",
+        failures[0].hint,
+    )
