@@ -20,18 +20,15 @@ from runtime.motion.commands import MoveLinear
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.path import LinePath
 from runtime.motion.seam import SeamMove, SeamTracker
-from runtime.motion.solver import Arm, LineSolver, WristSolver
+from runtime.motion.solver import MOST_SLOWDOWN, Arm, LineSolver, WristSolver
 from runtime.motion.speed import MAX_DURATION, SpeedLimits, bound, profile
 from runtime.motion.wrist import CONDITIONS, SAME_ANGLES, Condition
-from runtime.motion.wrist_planner import Choice, Solver, choose, ends, posture_deviation
+from runtime.motion.wrist_planner import Choice, Solver, choose, ends, explained, posture_deviation
 from runtime.profile import Profile
 from runtime.robot.frozen_wrist import MAIN_AXES, WRIST_AXES
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.spec import PathLimits, RobotSpec
 from runtime.units import DEG, MM
-
-MOST_SLOWDOWN = 20.0
-"""A move that would have to be slowed more than this runs too close to a singularity to be meant."""
 
 FOLLOWS, EXCEPTION, HELD = 0, 1, 2
 """``wrist_mode``: the wrist follows the path, goes to its end angles, does so with posture components held."""
@@ -123,7 +120,12 @@ class LinePlanner:
         line = LineSolver(arm, path, q_start)
         limits = speed_limits(path, command, self._spec.path, self._profile, way)
         choice = self._choose(line, limits, command)
-        s, q, slowdown = self._within_limits(choice.solver, limits, command.duration)
+        try:
+            s, q, slowdown = self._within_limits(choice.solver, limits, command.duration)
+        except Fault as fault:
+            if choice.trigger is None or choice.switch is None:
+                raise
+            raise explained(fault, choice.trigger) from None
         wrist = _wrist_change(choice, line, s, q)
         notes = self._notes(s, slowdown, command) + _wrist_notes(wrist) + _kept_notes(command, q)
         return LinePlan(path=path, s=frozen(s), q=frozen(q), slowdown=slowdown, wrist=wrist, notes=notes)

@@ -28,6 +28,9 @@ from runtime.units import DEG, MM
 RANGE_TOLERANCE = 1e-9
 """How far past its range a joint may be commanded, rad: rounding, nothing more."""
 
+MOST_SLOWDOWN = 20.0
+"""A move that would have to be slowed more than this runs too close to a singularity to be meant."""
+
 JUMP = math.pi / 4.0
 """No joint turns further from one sample to the next, rad: it has changed its configuration."""
 

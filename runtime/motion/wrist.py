@@ -57,10 +57,13 @@ SAME_ANGLES = 1e-8
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trigger:
-    """The first condition that a move meets: at sample ``index`` (1 or more), on ``axis`` (0-based; None: no single).
+    """The first condition that a move meets: at sample ``index`` (1 or more), ``share`` of the path, on ``axis``.
+
+    The axis is 0-based; None: no single one.
     """
 
     index: int
+    share: float
     condition: Condition
     axis: int | None
 
@@ -140,7 +143,7 @@ def first_trigger(q: Array, q_end: Array, s: Array, period_s: float, limits: Wri
         return None
     index, name = min(found, key=lambda each: each[0])  # of equals the one that stands first
     axis = None if name == "reach" else q.shape[1] - WRIST_AXES + int(np.argmax(met[name][index]))
-    return Trigger(index=index + 1, condition=name, axis=axis)
+    return Trigger(index=index + 1, share=float(s[index + 1]), condition=name, axis=axis)
 
 
 def _ahead(outside: Mask, cycles: int) -> Mask:
@@ -157,7 +160,7 @@ class WristLaw:
 
     ``slope`` (3,) is d theta / ds of the path at the switch, where ``shape`` continues it; ``width`` in (0, 1] is the
     share of the way in which ``smooth`` changes its slope. ``slope_return`` (3,) is that of the path to which it
-    returns before the end; only ``hermite`` can meet it.
+    returns before the end, ``detour`` (3,) rad how far from the cubic it is half-way; only ``hermite`` has these.
     """
 
     s_switch: float
@@ -168,6 +171,7 @@ class WristLaw:
     width: float = 0.5
     s_return: float = 1.0
     slope_return: Array | None = None
+    detour: Array | None = None
 
     def angles(self, s: Array) -> Array:
         """Return the wrist angles (N, 3) rad at s (N,), from the switch on."""
@@ -181,6 +185,8 @@ class WristLaw:
             angles = self.start + (x**3 - 2 * x**2 + x) * slope + (3 * x**2 - 2 * x**3) * way
             if self.slope_return is not None:
                 angles = angles + (x**3 - x**2) * self.slope_return * left
+            if self.detour is not None:
+                angles = angles + 16.0 * (x - x**2) ** 2 * self.detour
             return np.asarray(angles)
         w = self.width
         # slope(x) = slope + (final - slope) S(x/w), S = 3u^2 - 2u^3 up to u = 1; its integral ends at the end angles

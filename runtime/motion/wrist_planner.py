@@ -9,6 +9,7 @@ wrist (H3) or main axis (H4) beyond its speed, a range passed. Tried in this ord
     3  softer starts, other switches, ways that return to the posture before the end: of those that keep every limit at
        the programmed speed the one whose posture, or whose held components, deviate least
     4  that of 1 to 3 which has to be slowed least
+    5  where none of them has a solution at all, detours of the wrist on its way, likewise
 
 ``remedies = false`` in the profile is the document alone: 1 only where no condition is met, then 2. Places to try are
 shares of the path, so the choice does not depend on the sampling. Called by ``LinePlanner``; docs/wrist.md has the
@@ -25,7 +26,7 @@ from runtime.faults import Fault
 from runtime.frames import Array, inverse, rotation_angles
 from runtime.motion.commands import Component, MoveLinear, in_configuration
 from runtime.motion.hold import COMPONENTS, Suppression, component_deviation, held_way
-from runtime.motion.solver import LineSolver, WristSolver
+from runtime.motion.solver import MOST_SLOWDOWN, LineSolver, WristSolver
 from runtime.motion.wrist import (
     CONDITIONS,
     SAME_ANGLES,
@@ -58,6 +59,10 @@ WINDOWS = (0.1, 0.2, 0.35, 0.5)
 
 MIDDLES = (0.5, 0.25, 0.75)
 """Middles of that part, beside the place where the configurations are nearest."""
+
+DETOUR = "detour of the wrist"
+DETOURS = ((0, 45), (0, -45), (60, 0), (-60, 0), (0, 80), (0, -80), (60, 80), (-60, -80), (120, 80), (-120, -80))
+"""How far J4 and J5 go out of their way at half of it, deg, where nothing else places the main axes at all."""
 
 Solver = LineSolver | WristSolver
 Excess = Callable[[Array], tuple[float, int, str]]
@@ -98,9 +103,9 @@ def ends(line: LineSolver, q: Array, command: MoveLinear) -> list[Array]:
                         "or go there over a via point; WRIST KEEP ends in the configuration of the start.")  # fmt: skip
         return [np.array(command.q_end)]
     X_end = line.path.X_end @ inverse(arm.X_flange_tool)
-    others = [np.array(each.q) for each in arm.kinematics.solutions(X_end, line.q_start)
-              if (each.branch.arm, each.branch.elbow) == (line.branch.arm, line.branch.elbow)
-              and each.limit_margin >= -LIMIT_ROUNDING]  # fmt: skip
+    others = [_turned(each.q, command.turns) for each in arm.kinematics.solutions(X_end, line.q_start)
+              if (each.branch.arm, each.branch.elbow) == (line.branch.arm, line.branch.elbow)]  # fmt: skip
+    others = [end for end in others if arm.kinematics.limit_margin(end) >= -LIMIT_ROUNDING]
     others.sort(key=lambda end: float(np.abs(end - line.q_start)[-WRIST_AXES:].max()))
     found = [end for end in (q[-1], *others) if np.isfinite(end).all()]
     wanted = [end for end in found if _as_taught(line, end, command)]
@@ -108,6 +113,13 @@ def ends(line: LineSolver, q: Array, command: MoveLinear) -> list[Array]:
         words = " ".join(command.configuration) or f"with turns {list(command.turns)}"
         raise Fault("RBL412", f"the end is taught {words}, the move starts {line.branch}: no straight move reaches it")
     return wanted
+
+
+def _turned(q: Array, turns: tuple[int, ...]) -> Array:
+    """Return joint angles (n,) with as many whole turns on each joint as a point asks for."""
+    count = len(turns)
+    within = q[:count] - 2.0 * np.pi * np.round(q[:count] / (2.0 * np.pi))
+    return np.concatenate([within + 2.0 * np.pi * np.array(turns), q[count:]])
 
 
 def _as_taught(line: LineSolver, q: Array, command: MoveLinear) -> bool:
@@ -132,16 +144,23 @@ def choose(line: LineSolver, s: Array, q: Array, q_end: Array, period_s: float, 
     found: list[Choice] = []
     failures: list[Fault] = []
     for choice in tried:
+        if found and choice.remedy == DETOUR:
+            break
         try:
             rows = choice.solver.joints(s)
         except Fault as fault:
             failures.append(fault)
             continue
-        ratio, _, _ = excess(rows)
+        ratio, axis, quantity = excess(rows)
+        if ratio > MOST_SLOWDOWN:
+            failures.append(Fault("RBL412", f"J{axis + 1} would pass its limit of {quantity} so far that the move "
+                                  f"would have to be slowed {ratio:.0f} times"))  # fmt: skip
+            continue
         choice = replace(choice, ratio=ratio)
         if choice.switch is None:
             if ratio <= options.posture_first:
                 return choice
+            choice = replace(choice, deviation=math.inf)  # too slow to win by its posture
         else:
             deviation = posture_deviation(line, s, rows)
             if not deviation <= most_deviation:
@@ -155,7 +174,7 @@ def choose(line: LineSolver, s: Array, q: Array, q_end: Array, period_s: float, 
             choice = replace(choice, deviation=deviation if ratio <= 1.0 else math.inf)
         found.append(choice)
     if not found:
-        raise _refusal(line, trigger, arrives, s, failures)
+        raise _refusal(line, trigger, arrives, failures)
     return min(found, key=lambda choice: (choice.deviation, choice.ratio))
 
 
@@ -224,6 +243,10 @@ def _candidates(line: LineSolver, q: Array, s: Array, q_end: Array, trigger: Tri
             yield from holding(k, window, remedy)
     if held is not None:
         yield from _windows(line, q, s, q_end, trigger)
+    for j4, j5 in DETOURS:
+        law = replace(law_from(q, s, 0, end, "hermite"), slope=np.zeros(WRIST_AXES),
+                      detour=np.radians([j4, j5, 0.0]))  # fmt: skip
+        yield Choice(solver=WristSolver(line, law, q[0], q_end), trigger=trigger, switch=0.0, remedy=DETOUR)
 
 
 def _suppression(line: LineSolver, options: WristOptions, held: tuple[Component, ...]) -> Suppression | None:
@@ -260,18 +283,23 @@ def _windows(line: LineSolver, q: Array, s: Array, q_end: Array, trigger: Trigge
             yield Choice(solver=solver, trigger=trigger, switch=float(s[first]), remedy="back to the posture")
 
 
-def _refusal(line: LineSolver, trigger: Trigger | None, arrives: bool, s: Array, failures: list[Fault]) -> Fault:
+def _refusal(line: LineSolver, trigger: Trigger | None, arrives: bool, failures: list[Fault]) -> Fault:
     """Return the refusal of a move for which nothing did: why the wrist has to change, and what the remedies met."""
     if arrives or trigger is None:
         if failures:
             return failures[0]
         return Fault("RBL412", f"the end needs another wrist configuration than {line.branch}, and no condition of the "
                      "profile lets the wrist change")  # fmt: skip
+    return explained(failures[0], trigger, len(failures) - 1)
+
+
+def explained(fault: Fault, trigger: Trigger, others: int = 0) -> Fault:
+    """Return the refusal of a way through the wrist with the reason why the wrist has to go at all."""
     axis = "" if trigger.axis is None else f" of J{trigger.axis + 1}"
-    tried = f", nor from {len(failures) - 1} other switches" if len(failures) > 1 else ""
+    tried = f", nor from {others} other switches" if others else ""
     return Fault(
-        "RBL411" if failures[0].code == "RBL411" else "RBL412",
+        fault.code if fault.code == "RBL411" else "RBL412",
         f"the wrist has to change on this straight move ({trigger.condition}, {CONDITIONS[trigger.condition]}{axis}, "
-        f"at {100 * s[trigger.index]:.1f} % of the path) and cannot from there{tried}: {failures[0].message}",
-        failures[0].hint,
+        f"at {100 * trigger.share:.1f} % of the path) and cannot from there{tried}: {fault.message}",
+        fault.hint,
     )

@@ -1,0 +1,230 @@
+"""How a move through the wrist is chosen: what is kept, what is tried, what is refused and in which words."""
+
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from runtime.faults import Fault
+from runtime.frames import inverse
+from runtime.motion.commands import MoveLinear
+from runtime.motion.fine import FineInterpolator
+from runtime.motion.planner import EXCEPTION, FOLLOWS, HELD, LinePlan, LinePlanner
+from runtime.profile import Profile, WristOptions
+from runtime.robot.kinematics import Kinematics
+from runtime.robot.loader import load_builtin
+from tests.bench.wrist_campaign import Bench
+from tests.runtime.motion.wrist_moves import E1, E2, E3, KINEMATICS, SPEC, TOOL
+
+SPEED = SPEC.per_axis("limits", "speed")
+ACCELERATION = SPEC.per_axis("limits", "acceleration")
+
+
+def plan(move, options: WristOptions | None = None, **command) -> LinePlan:
+    start, end = (np.radians(q) for q in move)
+    X = KINEMATICS.forward(end) @ TOOL
+    length = np.linalg.norm((X - KINEMATICS.forward(start) @ TOOL)[:3, 3])
+    given = {"q_end": end, "speed": length / 4.0, **command}
+    planner = LinePlanner(SPEC, KINEMATICS, Profile(wrist=options or WristOptions()))
+    return planner.plan(start, MoveLinear(X_world_tool=X, **given), TOOL)
+
+
+def must_hold(found: LinePlan, end_deg) -> None:
+    """Line, end angles, and every joint limit at every servo tick."""
+    q, dq, ddq = FineInterpolator(8, 0.008, found.q[0]).expand(found.q)
+    tool = (KINEMATICS.forward(found.q) @ TOOL)[:, :3, 3]
+    assert np.abs(tool - found.path.points(found.s)).max() < 1e-9
+    assert np.abs(np.degrees(found.q[-1]) - end_deg).max() < 1e-6
+    assert ((q >= SPEC.lower - 1e-8) & (q <= SPEC.upper + 1e-8)).all()
+    assert (np.abs(dq) <= SPEED * (1 + 1e-9)).all()
+    assert (np.abs(ddq) <= ACCELERATION * (1 + 1e-9)).all()
+
+
+@pytest.mark.parametrize("move", [E1, E2, E3], ids=["E1", "E2", "E3"])
+@pytest.mark.parametrize("options", [
+    WristOptions(), WristOptions(posture="rpy"), WristOptions(shape="hermite"), WristOptions(shape="linear"),
+    WristOptions(width=1.0),
+], ids=["default", "rpy", "hermite", "linear", "soft"])  # fmt: skip
+def test_the_moves_of_the_document_end_as_taught_within_every_limit(move, options):
+    must_hold(plan(move, options), move[1])
+
+
+@pytest.mark.parametrize(("move", "most"), [(E1, 44.0), (E2, 1.1), (E3, 0.5)], ids=["E1", "E2", "E3"])
+def test_the_way_that_turns_the_tool_least_is_taken_at_the_programmed_speed(move, most):
+    """The document's switches turn it by 43.5, 7.6 and 2.8 deg; they start with a step of speed."""
+    found = plan(move)
+    assert found.slowdown is None
+    assert math.degrees(found.wrist.deviation) < most
+    assert found.wrist.remedy
+
+
+def test_the_document_alone_switches_where_its_condition_is_met():
+    found = plan(E1, WristOptions(remedies=False, deviation_condition="off", look_ahead=0))
+    must_hold(found, E1[1])
+    assert (found.wrist.condition, found.wrist.axis, found.wrist.remedy) == ("C1", 3, "")
+    assert found.wrist.share_end == 1.0
+    assert found.modes[found.wrist.row] == FOLLOWS
+    assert (found.modes[found.wrist.row + 1 :] == EXCEPTION).all()
+
+
+def test_keep_ends_in_the_other_posture_and_says_so():
+    found = plan(E1, wrist="keep")
+    assert found.wrist is None
+    assert np.degrees(found.q[-1, 3:]) == pytest.approx((125, 65, -95))
+    assert re.fullmatch(r"keeps the wrist and ends with J[46] at \S+ deg, not at the taught \S+ deg", found.notes[0])
+    assert plan(E1, WristOptions(mode="keep")).notes == found.notes
+    with pytest.raises(Fault, match="RBL411: J4 would pass its limit of -200 deg by 25 deg"):
+        plan(E2, wrist="keep")
+
+
+def test_a_move_without_a_change_of_the_wrist_is_that_of_keep():
+    move = E2[0], (25, 15, 0, -70, -20, 35)
+    kept, free = plan(move, wrist="keep"), plan(move)
+    assert free.wrist is None
+    np.testing.assert_array_equal(free.q, kept.q)
+
+
+def test_a_path_that_arrives_is_slowed_before_its_posture_is_left():
+    """J5 = 4 deg all the way, 0.5 m/s: the path would have to be slowed 2.4 times; the profile says which gives in."""
+    move, fast = ((0, 0, 0, 48.8, 4.1, 0), (20.3, -1.3, -1.3, -47.5, 3.2, 53.2)), {"speed": 0.5}
+    ratio = plan(move, WristOptions(mode="keep"), **fast).slowdown.factor
+    assert 2.0 < ratio < 3.0
+    kept = plan(move, WristOptions(posture_first=3.0), **fast)
+    assert kept.wrist is None
+    assert kept.slowdown.factor == ratio
+    left = plan(move, **fast)
+    assert left.wrist is not None
+    assert left.slowdown is None or left.slowdown.factor < 0.75 * ratio
+    must_hold(left, move[1])
+
+
+def test_held_components_change_less_than_the_free_ones():
+    from runtime.motion.hold import component_deviation
+
+    def off(found: LinePlan) -> np.ndarray:
+        taken = (KINEMATICS.forward(found.q) @ TOOL)[:, :3, :3]
+        return np.degrees(component_deviation(found.path, found.path.poses(found.s)[:, :3, :3], taken).max(axis=0))
+
+    options = WristOptions(posture="rpy")
+    free = off(plan(E2, options))
+    for k, component in enumerate(("TILT", "ADVANCE", "ROTATION")):
+        found = plan(E2, options, held=(component,))
+        must_hold(found, E2[1])
+        assert off(found)[k] <= free[k] + 1e-9
+        assert not found.wrist.held or (found.modes == HELD).any()
+
+
+def test_turns_of_the_taught_end_are_reached():
+    """J6 one turn further than where the path would end."""
+    move = E2[0], (25, 15, 0, -70, -20, 35 + 360)
+    found = plan(move, speed=0.05)
+    must_hold(found, move[1])
+    assert found.wrist.condition in ("C1", "C4")
+
+
+def test_a_move_of_the_wrist_alone_keeps_the_tool_point_where_it_is():
+    move = (10, 20, 10, 30, 40, -50), None
+    end = np.radians(move[0])
+    X = KINEMATICS.forward(end) @ TOOL
+    other = next(each.q for each in KINEMATICS.solutions(X @ inverse(TOOL))
+                 if str(each.branch) == str(KINEMATICS.branch_of(end)).replace("NOFLIP", "FLIP"))  # fmt: skip
+    found = plan((move[0], np.degrees(other)), speed=0.1)
+    must_hold(found, np.degrees(other))
+    assert found.path.length < 1e-12
+    assert len(found.q) > 50
+
+
+def test_an_untaught_end_takes_the_solution_that_turns_the_tool_least():
+    """Only the pose of E3's end is taught; beside J5 = 0 that is the other sign of J5, with J4 and J6 hardly turned."""
+    found = plan(E3, q_end=None)
+    must_hold(found, E3[1])
+    assert math.degrees(found.wrist.deviation) < 1.0
+
+
+def test_configuration_and_turns_choose_the_end_of_a_taught_pose():
+    flip = plan(E1, q_end=None, configuration=("FLIP",))
+    assert np.degrees(flip.q[-1, 3:]) == pytest.approx((-55, -65, 85))
+    noflip = plan(E1, q_end=None, configuration=("NOFLIP",))
+    assert np.degrees(noflip.q[-1, 3:]) == pytest.approx((125, 65, -95))
+    turned = plan(E1, WristOptions(untaught_deviation=math.pi), q_end=None, configuration=("NOFLIP",),
+                  turns=(0, 0, 0, 0, 0, 1), speed=0.1)  # fmt: skip
+    assert np.degrees(turned.q[-1, 5]) == pytest.approx(-95 + 360)
+    with pytest.raises(Fault, match="RBL412: the end is taught FLIP"):
+        plan(E1, q_end=None, configuration=("FLIP",), turns=(0, 0, 0, 5))
+
+
+def test_another_arm_configuration_is_no_straight_move():
+    elbow_down = next(each.q for each in KINEMATICS.solutions(KINEMATICS.forward(np.radians(E1[1])))
+                      if "BELOW" in str(each.branch))  # fmt: skip
+    with pytest.raises(Fault, match=r"RBL412: the end is taught .* BELOW .*cannot change the configuration of the arm"):
+        plan((E1[0], np.degrees(elbow_down)))
+
+
+def test_the_hazards_of_the_document_are_met_before_anything_moves():
+    """(vi): one of the two moves of the specification has no solution at its switch, the other leaves the branch."""
+    lost = (-20, -25, -30, 50, -30, 50), (-55, -50, -35, -30, 30, 45)
+    astray = (-30, -20, -20, 5, -65, 60), (-15, -45, -20, 10, 65, 75)
+    c4 = WristOptions(shape="linear", remedies=False, look_ahead=0).only()
+    for move, document in (
+        (lost, replace(c4, deviation_condition="moving")),
+        (astray, replace(c4, speed_condition="any", speed=tuple(np.radians((119.0, 119.0, 148.0))))),
+    ):
+        with pytest.raises(Fault, match=r"RBL41[12]") as caught:
+            plan(move, document)
+        assert "configuration" in caught.value.message
+
+
+def test_a_refusal_names_condition_axis_place_what_was_tried_and_what_would_help():
+    refused = []
+    bench, random = Bench("irb2400"), np.random.default_rng(1)
+    while len(refused) < 5:
+        start, end, speed = bench.draw(random)
+        try:
+            X = KINEMATICS.forward(end) @ TOOL
+            bench.planner.plan(start, MoveLinear(X_world_tool=X, q_end=end, speed=speed), TOOL)
+        except Fault as fault:
+            refused.append(fault)
+    assert any("nor from" in fault.message for fault in refused)
+    for fault in refused:
+        assert fault.code in ("RBL411", "RBL412")
+        assert "the wrist has to change" in fault.message
+        assert "% of the path" in fault.message
+        assert "via point" in fault.hint
+
+
+def test_a_bound_on_the_posture_refuses_what_turns_the_tool_further():
+    with pytest.raises(Fault, match=r"turn up to 4\d deg from its posture on the path, more than 20 deg"):
+        plan(E1, WristOptions(most_deviation=math.radians(20.0)))
+    assert plan(E3, WristOptions(most_deviation=math.radians(20.0))).wrist is not None
+
+
+@pytest.mark.parametrize("robot", ["irb2400", "puma560"])
+def test_random_moves_hold_every_limit_or_are_refused(robot):
+    """``make wrist-campaign`` in small."""
+    bench, random, executed = Bench(robot), np.random.default_rng(11), 0
+    for _ in range(30):
+        start, end, speed = bench.draw(random)
+        command = MoveLinear(X_world_tool=bench.kinematics.forward(end) @ TOOL, q_end=end, speed=speed)
+        try:
+            found = bench.planner.plan(start, command, TOOL)
+        except Fault as fault:
+            assert fault.code in ("RBL410", "RBL411", "RBL412")
+            continue
+        executed += 1
+        assert bench.violations(found, end) == []
+        assert bench.keep(start, command) != "ends as taught"
+    assert executed >= 22
+
+
+def test_an_arm_without_a_closed_form_goes_through_its_wrist_by_newton():
+    spec = load_builtin("irb2400")
+    kinematics = Kinematics(spec)
+    kinematics._opw = None
+    start, end = (np.radians(q) for q in E3)
+    planner = LinePlanner(spec, kinematics, Profile(wrist=WristOptions(remedies=False)))
+    command = MoveLinear(X_world_tool=kinematics.forward(end) @ TOOL, q_end=end, speed=0.1)
+    found = planner.plan(start, command, TOOL)
+    must_hold(found, E3[1])
+    assert found.wrist is not None
