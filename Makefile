@@ -5,6 +5,7 @@
 # make plots   the plots of docs/servo.md, drawn anew
 # make fault-campaign         every injected fault and 200 clean runs, counted (minutes)
 # make supervision-campaign   wrong payloads in random programs, counted
+# make wrist-campaign         random straight moves through the wrist, counted (minutes)
 # make measured   every other figure of docs/measured.md, printed
 
 PYTHON ?= python3
@@ -12,7 +13,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test gates bench measured plots fault-campaign supervision-campaign clean
+.PHONY: demo test gates bench measured plots fault-campaign supervision-campaign wrist-campaign clean
 
 demo: $(READY)
 	$(BIN)/robolang run programs/pick_and_place.rbl
@@ -45,6 +46,9 @@ fault-campaign: $(READY)
 
 supervision-campaign: $(READY)
 	$(BIN)/python -m tests.faults.campaign payload
+
+wrist-campaign: $(READY)
+	$(BIN)/python -m tests.bench.wrist_campaign
 
 clean:
 	rm -rf $(VENV) out

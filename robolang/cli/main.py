@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from robolang.cli import check, compare, config, explain, kin, robot, run, step
+from robolang.cli import check, compare, config, explain, kin, robot, run, step, wrist_demo
 
 app = typer.Typer(
     name="robolang",
@@ -21,6 +21,7 @@ app = typer.Typer(
 app.command("run")(run.run)
 app.command("compare")(compare.compare)
 app.command("step")(step.step)
+app.command("wrist-demo")(wrist_demo.wrist_demo)
 app.command("check")(check.check)
 app.command("explain")(explain.explain)
 app.add_typer(config.app, name="config")

@@ -110,6 +110,14 @@ class FineInterpolator:
         """
         return self.continue_(np.concatenate([setpoints[:1], setpoints[:1], setpoints]))
 
+    def peaks(self, setpoints: Array) -> tuple[Array, Array]:
+        """Return the largest speed and acceleration (n,) of a whole sequence (N + 1, n), as ``expand`` has them."""
+        padded = np.concatenate([setpoints[:1], setpoints[:1], setpoints, setpoints[-1:], setpoints[-1:]])
+        windows = np.lib.stride_tricks.sliding_window_view(padded, 4, axis=0)  # (segments, n, 4)
+        ticks = self.ticks
+        moving = np.abs(windows @ self._weights[ticks:].T)  # (segments, n, 2 ticks)
+        return moving[..., :ticks].max(axis=(0, 2)), moving[..., ticks:].max(axis=(0, 2))
+
     def continue_(self, setpoints: Array) -> Array:
         """Return (3, (N - 1) * ticks, n) for set-points (N, n) of which the first three are already in the pipeline.
 

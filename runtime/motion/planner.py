@@ -204,7 +204,7 @@ class LinePlanner:
 
     def _excess(self, q: Array) -> tuple[float, int, str]:
         """Return (time factor needed, axis, quantity) of the worst violation at the servo ticks; <= 1 is none."""
-        _, dq, ddq = np.abs(self._fine.expand(q)).max(axis=1)
+        dq, ddq = self._fine.peaks(q)
         ratios = np.stack([dq / self._speed, np.sqrt(ddq / self._acceleration)])
         kind, axis = np.unravel_index(int(np.argmax(ratios)), ratios.shape)
         return float(ratios[kind, axis]), int(axis), ("speed", "acceleration")[kind]

@@ -54,10 +54,26 @@ class LineSolver:
         self._X_tool_flange = inverse(arm.X_flange_tool)
         self.branch: Branch = arm.kinematics.branch_of(q_start)
         self._known = -1 if to_end else 0
+        self._solved: tuple[Array, Array] | None = None
+        self._posed: tuple[Array, Array] | None = None
 
     def rows(self, s: Array) -> Array:
-        """Return q (N + 1, n) at path parameters s, continuous with the known end; NaN where there is no solution."""
-        poses = self.path.poses(s) @ self._X_tool_flange
+        """Return q (N + 1, n) at path parameters s, continuous with the known end; NaN where there is no solution.
+
+        The last answer is kept: a planner asks for the same samples again for every way that leaves this path.
+        """
+        if self._solved is None or self._solved[0] is not s:
+            self._solved = s, self._solve(s)
+        return self._solved[1].copy()
+
+    def planned(self, s: Array) -> Array:
+        """Return the poses (N + 1, 4, 4) of the path at s, kept like the answer of ``rows``."""
+        if self._posed is None or self._posed[0] is not s:
+            self._posed = s, self.path.poses(s)
+        return self._posed[1]
+
+    def _solve(self, s: Array) -> Array:
+        poses = self.planned(s) @ self._X_tool_flange
         if self._known:  # an arm without branches follows its solution, so it has to begin where that is known
             poses = poses[::-1]
         q = self.arm.kinematics.inverse_branch(poses, self.branch, self.q_start)
@@ -123,10 +139,10 @@ class WristSolver:
         way = s[first:last]
         parts = [self._frozen.solve(self._line.path.points(way), self.law.angles(way), self._q_switch, self._side)]
         if first:
-            parts.insert(0, self._line.rows(s[:first]))
+            parts.insert(0, self._line.rows(s)[:first])
             parts[0][0] = self._line.q_start
         if last < len(s) and self._back is not None:
-            parts.append(self._back.rows(s[last:]))
+            parts.append(self._back.rows(s)[last:])
         return np.concatenate(parts)
 
     def joints(self, s: Array) -> Array:
@@ -172,6 +188,10 @@ def _steepest(s: Array, q: Array, axis: int) -> float:
 def check_range(arm: Arm, s: Array, q: Array) -> None:
     """Refuse a path that leaves a joint's range at any servo tick: between set-points the command may pass them."""
     spec = arm.spec
+    # no segment leaves its set-points by more than a step of its neighbours (tests/runtime/motion/test_fine.py)
+    between = np.abs(np.diff(q, axis=0)).max(axis=0, initial=0.0)
+    if (q.min(axis=0) - between >= spec.lower).all() and (q.max(axis=0) + between <= spec.upper).all():
+        return
     positions = arm.fine.expand(q)[0]
     excess = np.maximum(spec.lower - positions, positions - spec.upper)
     axis = int(np.argmax(excess.max(axis=0)))

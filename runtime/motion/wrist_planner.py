@@ -181,7 +181,7 @@ def choose(line: LineSolver, s: Array, q: Array, q_end: Array, period_s: float, 
 def posture_deviation(line: LineSolver, s: Array, q: Array, held: tuple[Component, ...] = ()) -> float:
     """Return by how much the tool turns from its posture on the path, rad: the whole angle, or of held components."""
     R = (line.arm.kinematics.forward(q) @ line.arm.X_flange_tool)[:, :3, :3]
-    planned = line.path.poses(s)[:, :3, :3]
+    planned = line.planned(s)[:, :3, :3]
     if not held or line.path.length <= 0.0:
         return float(rotation_angles(planned, R).max())
     return float(component_deviation(line.path, planned, R)[:, [COMPONENTS.index(each) for each in held]].max())

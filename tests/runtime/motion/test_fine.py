@@ -59,3 +59,22 @@ def test_a_straight_line_stays_a_straight_line():
     fine = FineInterpolator(8, PERIOD, q[0]).expand(q)
     inner = fine[:, 24:-24]
     np.testing.assert_allclose(inner[1], np.tile([1 / PERIOD, -2 / PERIOD], (inner.shape[1], 1)), rtol=1e-10)
+
+
+def test_peaks_are_those_of_the_expanded_motion():
+    q = np.cumsum(np.random.default_rng(2).normal(size=(40, 3)), axis=0)
+    fine = FineInterpolator(8, 0.008, q[0])
+    _, dq, ddq = np.abs(fine.expand(q)).max(axis=1)
+    found = fine.peaks(q)
+    np.testing.assert_allclose(found[0], dq, rtol=1e-12)
+    np.testing.assert_allclose(found[1], ddq, rtol=1e-12)
+
+
+def test_no_segment_leaves_its_set_points_by_more_than_the_largest_step():
+    """What lets the planner pass over the ticks of a path that stays well inside its ranges."""
+    for seed in range(20):
+        q = np.cumsum(np.random.default_rng(seed).normal(size=(30, 1)), axis=0)
+        positions = FineInterpolator(8, 0.008, q[0]).expand(q)[0]
+        step = np.abs(np.diff(q, axis=0)).max()
+        assert positions.max() <= q.max() + step
+        assert positions.min() >= q.min() - step

@@ -1,0 +1,282 @@
+"""``robolang wrist-demo [FIGURE...]``: the figures of CN103429397A, computed anew; a table, plots with ``--out``."""
+
+import json
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from robolang.cli.errors import reported
+from robolang.cli.values import OptionValueError
+
+if TYPE_CHECKING:
+    from robolang.plot import Mark
+    from robolang.wrist_demo import Figure, Run
+
+    Shown = tuple[Figure, list[Run]]
+
+SILENT_S = 1.0
+"""The figure at work is named on stderr after this long."""
+_LEAD_S = 0.2
+"""A plot of posture components begins this long before the switch: until then there is nothing to see."""
+_STYLE = "body{font-family:sans-serif;max-width:46rem;margin:2em auto;padding:0 1em}img{width:100%}figure{margin:2em 0}"
+
+
+def wrist_demo(
+    figures: Annotated[
+        list[str] | None, typer.Argument(metavar="[FIGURE...]", help="Figures of the document; default: all.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Write wrist-figNN.svg and index.html there.")
+    ] = None,
+    robot: Annotated[str, typer.Option("--robot", help="Built-in robot, or a path to a robot file.")] = "irb2400",
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+) -> None:
+    """Straight moves through a change of the wrist, as in the figures of CN103429397A."""
+    with reported():
+        from robolang.project import load_any_robot
+        from robolang.wrist_demo import FIGURES, run, unusable
+        from runtime.faults import Fault
+
+        chosen = _chosen(figures or [], FIGURES)
+        spec = load_any_robot(robot)
+        why = unusable(spec)
+        if why:
+            raise OptionValueError("--robot", why)
+        if out is not None:
+            _check_folder(out, chosen)
+        shown, since = [], time.monotonic()
+        for count, figure in enumerate(chosen, start=1):
+            if time.monotonic() - since > SILENT_S:
+                typer.echo(f"{count}/{len(chosen)} figure {figure.number}", err=True)
+            try:
+                shown.append((figure, [run(spec, trial) for trial in figure.trials]))
+            except Fault as fault:
+                raise Fault(fault.code, f"figure {figure.number}: {fault.message}", fault.hint) from None
+        if out is not None:
+            _write(out, spec.name, shown)
+        if as_json:
+            found = [{"figure": figure.number, "title": figure.title, "sentence": figure.sentence,
+                      "file": None if out is None else str(out / _file(figure)),
+                      "runs": [_plain(each) for each in runs]} for figure, runs in shown]  # fmt: skip
+            typer.echo(json.dumps({"robot": spec.name, "figures": found}, indent=2))
+        else:
+            _print(spec.name, shown, out)
+
+
+def _chosen(words: Sequence[str], known: Sequence["Figure"]) -> list["Figure"]:
+    """Return the figures that are asked for, in the order of the document; ``OptionValueError``."""
+    numbers = {str(figure.number): figure for figure in known}
+    for position, word in enumerate(words, start=1):
+        if word not in numbers:
+            message = f"'{word}' is not a figure of the demo; known: {', '.join(numbers)}"
+            raise OptionValueError("FIGURE", message, position if len(words) > 1 else None)
+    return [figure for number, figure in numbers.items() if not words or number in words]
+
+
+def _plain(run: "Run") -> dict[str, Any]:
+    """Return the figures of a run in plain types, in deg, s and mm; axes from 1."""
+    import numpy as np
+
+    from runtime.units import DEG, MM
+
+    trial = run.trial
+    components = np.abs(run.components).max(axis=0) / DEG
+    return {
+        "move": trial.move,
+        "condition": trial.condition,
+        "posture": trial.options.posture,
+        "period_ms": trial.period_s * 1e3,
+        "switch_s": None if run.switch_s is None else round(run.switch_s, 9),
+        "axis": None if run.axis is None else run.axis + 1,
+        "speed_deg_s": (run.speed / DEG).tolist(),
+        "whole_move_speed_deg_s": (run.peak / DEG).tolist(),
+        "lowest_deg": (run.q.min(axis=0) / DEG).tolist(),
+        "highest_deg": (run.q.max(axis=0) / DEG).tolist(),
+        "end_deg": (run.q[-1] / DEG).tolist(),
+        "end_error_deg": run.end_error / DEG,
+        "posture_deviation_deg": float(run.posture.max()) / DEG,
+        "component_deviation_deg": dict(zip(("tilt", "advance", "rotation"), components.tolist(), strict=True)),
+        "off_path_mm": float(run.off_path.max()) / MM,
+    }
+
+
+# --- the table -------------------------------------------------------------------------------------------------------
+
+
+def _print(robot: str, shown: list["Shown"], out: Path | None) -> None:
+    from rich import box
+    from rich.table import Table
+
+    from robolang.cli.console import Console
+    from robolang.diagnostics import safe
+
+    console = Console()
+    headings = ["fig", "of", "condition,\nor what is\nheld", "switch\ns, by", "J4, J5, J6\nfastest*\ndeg/s",
+                "tool\nturn\ndeg", "end\nerror\ndeg"]  # fmt: skip
+    table = Table(title=safe(f"Figures of CN103429397A on {robot}"), box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0),
+                  pad_edge=False)  # fmt: skip
+    for k, heading in enumerate([*headings, *(["file"] if out else [])]):
+        table.add_column(heading, justify="right" if k in (4, 5, 6) else "left", no_wrap=k != 2)
+    for figure, runs in shown:
+        for k, row in enumerate(map(_plain, runs)):
+            speeds = " ".join(f"{speed:5.1f}" for speed in row["speed_deg_s"][-3:])
+            cells = [str(figure.number) if k == 0 else "", row["move"], row["condition"],
+                     "-" if row["switch_s"] is None else f"{row['switch_s']:.2f} {_axis(row)}", speeds,
+                     f"{row['posture_deviation_deg']:.1f}", _small(row["end_error_deg"])]  # fmt: skip
+            table.add_row(*cells, *([_file(figure) if k == 0 else ""] if out else []))
+    console.print(table)
+    console.print("* from the switch on; of the whole move where there is none", style="italic")
+    _print_components(console, shown)
+    worst = max(float(run.off_path.max()) for _, runs in shown for run in runs)
+    console.print(f"tool point at most {worst * 1e3:.0e} mm off its way at any control point")
+    if out is not None:
+        console.print(safe(f"all plots: {out / 'index.html'}"), soft_wrap=True)
+
+
+def _print_components(console: Any, shown: list["Shown"]) -> None:
+    from rich import box
+    from rich.table import Table
+
+    rows = [(figure, row) for figure, runs in shown if figure.drawn is not None for row in map(_plain, runs)]
+    if not rows:
+        return
+    table = Table(title="Largest change of the posture components, deg", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0),
+                  pad_edge=False)  # fmt: skip
+    for heading in ("fig", "of", "held", "tilt", "advance", "rotation"):
+        table.add_column(heading, justify="right" if heading in ("tilt", "advance", "rotation") else "left")
+    for figure, row in rows:
+        values = (f"{value:.2f}" for value in row["component_deviation_deg"].values())
+        table.add_row(str(figure.number), row["move"], row["condition"], *values)
+    console.print(table)
+
+
+def _axis(row: dict[str, Any]) -> str:
+    return "" if row["axis"] is None else f"J{row['axis']}"
+
+
+def _small(value: float) -> str:
+    """Return an error in five characters; one of rounding as its power of ten."""
+    return f"{value:.1f}" if value >= 0.05 or value == 0.0 else f"{value:.0e}"
+
+
+# --- the plots -------------------------------------------------------------------------------------------------------
+
+
+def _file(figure: "Figure") -> str:
+    return f"wrist-fig{figure.number:02}.svg"
+
+
+def _check_folder(out: Path, figures: Sequence["Figure"]) -> None:
+    """Make the folder where there is none; ``Fault`` RBL706 where a file could not be written into it."""
+    from robolang.storage import check_writable
+
+    with suppress(OSError):  # what it means is said of the first file
+        out.mkdir(exist_ok=True)
+    for name in (*map(_file, figures), "index.html"):
+        check_writable(out / name)
+
+
+def _write(out: Path, robot: str, shown: list["Shown"]) -> None:
+    for figure, runs in shown:
+        _save(out / _file(figure), _svg(figure, runs, robot))
+    _save(out / "index.html", _index(robot, shown))
+
+
+def _save(path: Path, text: str) -> None:
+    from robolang.storage import write_atomic
+
+    write_atomic(path, lambda stream: stream.write(text.encode("utf-8")))
+
+
+def _title(figure: "Figure") -> str:
+    """Return a title that says which move it is, as the document does: by J5."""
+    from robolang.wrist_demo import MOVES
+
+    move = figure.trials[0].move
+    first, last = (ends[4] for ends in MOVES[move])
+    return f"Fig {figure.number}, {move} (J5 {first:+g} to {last:+g} deg): {figure.title}"
+
+
+def _svg(figure: "Figure", runs: list["Run"], robot: str) -> str:
+    title = f"{_title(figure)}, {robot}"
+    if figure.drawn is not None:
+        return _components_svg(title, figure, runs[figure.drawn])
+    return _joints_svg(title, figure, runs)
+
+
+def _joints_svg(title: str, figure: "Figure", runs: list["Run"]) -> str:
+    """Draw J4 to J6 of the runs over time, the second one dashed, with the switches and the taught end angles."""
+    import numpy as np
+
+    from robolang.plot import Curve, Dots, as_svg
+    from runtime.units import DEG
+
+    curves = [Curve(name=f"J{axis + 1} {figure.variant}" if k else f"J{axis + 1}", x=run.t, y=run.q[:, axis] / DEG,
+                    dashed=k > 0, colour=axis - 3) for k, run in enumerate(runs) for axis in (3, 4, 5)]  # fmt: skip
+    moved = any(run.trial.seam for run in runs)
+    ends = np.concatenate([run.q_end[3:] for run in (runs if moved else runs[:1])]) / DEG
+    dots = Dots(name="taught and moved end" if moved else "taught end", x=np.full(len(ends), runs[0].t[-1]), y=ends)
+    return as_svg(title, "time, s", "angle, deg", curves, corner="above", marks=_marks(figure, runs), dots=dots)
+
+
+def _marks(figure: "Figure", runs: list["Run"]) -> list["Mark"]:
+    """Return the switches, and the ends of the range where a run has to do with them."""
+    from robolang.plot import Mark
+    from robolang.wrist_demo import RANGE
+    from runtime.units import DEG
+
+    marks: list[Mark] = []
+    at = [run.switch_s for run in runs]
+    for k, switch in enumerate(at):
+        if switch is not None and switch not in at[:k]:
+            name = f"{figure.variant} {switch:.2f} s" if k else f"{figure.switch} {switch:.2f} s"
+            first = all(switch <= other for other in at if other is not None)
+            marks.append(Mark(name=name, x=switch, side="left" if first and len(runs) > 1 else "right"))
+    if any(run.trial.options.range_condition or abs(run.q[:, 3:]).max() > RANGE for run in runs):
+        marks += [Mark(name=f"{bound / DEG:g} deg", y=bound / DEG) for bound in (RANGE, -RANGE)]
+    return marks
+
+
+def _components_svg(title: str, figure: "Figure", run: "Run") -> str:
+    """Draw the change of tilt, advance and rotation over time."""
+    from robolang.plot import Curve, Mark, as_svg
+    from runtime.units import DEG
+
+    switch = run.switch_s or 0.0
+    shown = run.t >= switch - _LEAD_S - 1e-9
+    curves = [Curve(name=name, x=run.t[shown], y=run.components[shown, k] / DEG)
+              for k, name in enumerate(("tilt", "advance", "rotation"))]  # fmt: skip
+    mark = Mark(name=f"{figure.switch} {switch:.2f} s", x=switch)
+    return as_svg(title, "time, s", "change of the posture, deg", curves, level=0.0, corner="above", marks=[mark])
+
+
+def _index(robot: str, shown: list["Shown"]) -> str:
+    """Return a page that shows all plots, each with its sentence and what came of its runs."""
+    title = f"Figures of CN103429397A on {robot}"
+    parts = [f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>',
+             f"<style>{_STYLE}</style></head><body><h1>{escape(title)}</h1>"]  # fmt: skip
+    for figure, runs in shown:
+        facts = "<br>".join(escape(_facts(_plain(run), components=figure.drawn is not None)) for run in runs)
+        parts.append(f'<figure id="fig{figure.number}"><img src="{_file(figure)}" alt="{escape(_title(figure))}">'
+                     f'<figcaption><p>{escape(figure.sentence)}</p><p>{facts}</p>'
+                     "</figcaption></figure>")  # fmt: skip
+    return "\n".join([*parts, "</body></html>", ""])
+
+
+def _facts(row: dict[str, Any], *, components: bool) -> str:
+    """Return what came of a run, in a sentence, with the posture components where the figure is about them."""
+    switch = "no switch;"
+    if row["switch_s"] is not None:
+        switch = f"switch at {row['switch_s']:.2f} s{' by ' if row['axis'] else ''}{_axis(row)}, from there on"
+    speeds = ", ".join(f"{speed:.1f}" for speed in row["speed_deg_s"][-3:])
+    turned = f"tool turned by up to {row['posture_deviation_deg']:.1f} deg"
+    if components:
+        values = row["component_deviation_deg"].values()
+        turned += f" (tilt, advance, rotation {', '.join(f'{value:.2f}' for value in values)})"
+    return (f"{row['move']}, {row['condition']}: {switch} J4, J5, J6 at most {speeds} deg/s; {turned}; end error "
+            f"{_small(row['end_error_deg'])} deg.")  # fmt: skip
