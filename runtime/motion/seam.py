@@ -80,7 +80,7 @@ class SeamTracker:
         try:
             self._take(self._read(self.way + way, travel))
         finally:
-            self._follow()
+            self.follow()
 
     def _take(self, reading: Array | None) -> None:
         limits = self._limits
@@ -98,12 +98,16 @@ class SeamTracker:
                         f"away, more than {limits.most / MM:g} mm or {limits.most_turn / DEG:g} deg")  # fmt: skip
         self._target = np.array(reading, dtype=np.float64)
 
+    def settle(self) -> None:
+        """Come to rest near the deviation in force: the arm is about to stop, and readings no longer count."""
+        self._target = self.deviation.copy()
+
     def freeze(self, deviation: Array) -> None:
-        """Hold a deviation (6,) from now on: the arm is about to stop."""
-        self.deviation = self._target = np.array(deviation)
+        """Hold a deviation (6,) from now on: the one that the joints could still follow."""
+        self.deviation, self._target = np.array(deviation), np.array(deviation)
         self._rate = np.zeros(6)
 
-    def _follow(self) -> None:
+    def follow(self) -> None:
         """Let the deviation follow the last reading for one cycle: a critically damped second-order lag, exact."""
         tau, h = self._limits.filter_s, self._period_s
         if tau <= 0.0:
@@ -160,7 +164,10 @@ class SeamMove:
             return self.row(n), None
         except Fault as found:
             fault = found
-        self._tracker.freeze(held if fault.code == "RBL526" else self._tracker.deviation)
+        if fault.code == "RBL526":
+            self._tracker.freeze(held)
+        else:
+            self._tracker.settle()
         try:
             return self.row(n), fault
         except Fault:
@@ -223,10 +230,12 @@ class SeamMove:
             raise Fault("RBL526", f"{where} J{axis + 1} would leave its range to follow the seam")
 
     def rest(self, n: int) -> Array:
-        """Return the set-points (k, n) from sample n to the end for the deviation as it is, as far as there are any."""
+        """Return the set-points (k, n) from sample n on, as far as there are any, while the deviation settles."""
         rows = []
+        self._tracker.settle()
         try:
             for k in range(n, len(self._s)):
+                self._tracker.follow()
                 rows.append(self.row(k))
         except Fault:
             pass  # what cannot be followed is not needed: the rows are those of a stop

@@ -51,6 +51,9 @@ LATER = (0.25, 0.5, 0.75)
 SOFTER = (1.0, 0.25)
 """Widths of the soft start tried beside that of the profile."""
 
+HELD_EARLIER = (0.75, 0.45, 0.15)
+"""Those of them from which a posture is held as well: choosing it costs more than all the rest."""
+
 HELD_WINDOWS = (0.15, 0.4)
 """Shares of the way over which the choice of a held posture is averaged."""
 
@@ -230,6 +233,7 @@ def _candidates(line: LineSolver, q: Array, s: Array, q_end: Array, trigger: Tri
         for width in widths[1:]:
             yield at(index, width, "softer start")
         yield from holding(index, HELD_WINDOWS[1], "softer start")
+    held_places = [share * s[index] for share in HELD_EARLIER]
     where = [(share * s[index], "earlier switch") for share in EARLIER]
     where += [(s[index] + share * (1.0 - s[index]), "later switch") for share in LATER]
     for place, remedy in where:
@@ -239,8 +243,9 @@ def _candidates(line: LineSolver, q: Array, s: Array, q_end: Array, trigger: Tri
         seen.add(k)
         for width in widths:
             yield at(k, width, remedy)
-        for window in HELD_WINDOWS:
-            yield from holding(k, window, remedy)
+        if place in held_places:
+            for window in HELD_WINDOWS:
+                yield from holding(k, window, remedy)
     if held is not None:
         yield from _windows(line, q, s, q_end, trigger)
     for j4, j5 in DETOURS:
