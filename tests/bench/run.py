@@ -9,16 +9,23 @@ import statistics
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import mujoco
 import numpy as np
 
+from robolang.effects import MoveTo
+from robolang.interpreter import execute
 from robolang.project import Project, load_project
 from robolang.session import RunResult, Session
 from runtime.plant.mujoco_plant import MujocoPlant
+from tests.runtime.motion.test_seam import SAME, tracked
+from tests.runtime.motion.wrist_moves import E2, NOTHING
 
 PROGRAM = "programs/pick_and_place.rbl"
+WRIST = "programs/wrist/e1.rbl"
 ROUNDS = 11
+WRIST_ROUNDS = 7
 PROCESSES = 7
 
 
@@ -65,6 +72,53 @@ def run_seconds(project: Project) -> tuple[float, RunResult, np.ndarray]:
     return time.perf_counter() - started, result, np.array(session.controller.plant.q)
 
 
+def wrist_seconds() -> dict[str, tuple[float, float]]:
+    """Return by way the median time of a cycle, run and planning together, and of planning alone, of move E1, s."""
+    base = load_project(WRIST)
+    ways = {"KEEP": {"mode": "keep"}, "document": {"remedies": False}, "all remedies": {}, "HOLD": {}}
+    projects = {way: base.with_profile(replace(base.profile, wrist=replace(base.profile.wrist, **changes)))
+                for way, changes in ways.items()}  # fmt: skip
+    times: dict[str, list[tuple[float, float]]] = {way: [] for way in ways}
+    for _ in range(WRIST_ROUNDS):
+        for way, project in projects.items():
+            held = ("TILT",) if way == "HOLD" else ()
+            session = Session(project, effects=lambda program, h=held: (
+                replace(effect, held=h) if isinstance(effect, MoveTo) else effect for effect in execute(program)
+            ))  # fmt: skip
+            planner, spent = session.controller._planner, [0.0]
+
+            def timed(*args, plan=planner.plan, spent=spent):
+                began = time.perf_counter()
+                try:
+                    return plan(*args)
+                finally:
+                    spent[0] += time.perf_counter() - began
+
+            planner.plan = timed
+            whole = run_seconds_of(session)
+            times[way].append((whole / session.controller.recorder.cycle, spent[0]))
+    return {way: tuple(statistics.median(column) for column in zip(*rows, strict=True)) for way, rows in times.items()}
+
+
+def tracked_microseconds() -> tuple[float, float]:
+    """Return the median time of a set-point on a seam, on the path and with the wrist on its own way, us."""
+    times = []
+    for move, options in ((SAME, NOTHING), (E2, replace(NOTHING, remaining_time=3.9))):
+        going, _, planned = tracked(move, options)
+        began = time.perf_counter()
+        for n in range(1, len(planned)):
+            going.next(n)
+        times.append(1e6 * (time.perf_counter() - began) / len(planned))
+    return times[0], times[1]
+
+
+def run_seconds_of(session: Session) -> float:
+    """Return the time of a whole run of a session, s."""
+    started = time.perf_counter()
+    session.run()
+    return time.perf_counter() - started
+
+
 def process_seconds(*command: str) -> float:
     """Return the median wall time of a whole process."""
     times = []
@@ -91,6 +145,13 @@ def main() -> None:
     print(f"whole run / bare mj_step loop, same steps and controls: median {statistics.median(ratios):.2f} "
           f"(min {min(ratios):.2f}, max {max(ratios):.2f}; goal <= 6, aim 3)")  # fmt: skip
     print(f"steps {len(controls)}, simulated {sim_s:.3f} s, real-time factor {sim_s / statistics.median(runs):.1f}")
+    wrist = wrist_seconds()
+    for way, (cycle, planning) in wrist.items():
+        print(f"{WRIST}, {way}: {1e6 * cycle:.0f} us a cycle with planning, {cycle / wrist['KEEP'][0]:.2f} of KEEP; "
+              f"planning {1e3 * planning:.1f} ms before the move")  # fmt: skip
+    on_path, on_its_way = tracked_microseconds()
+    print(f"set-point on a seam: {on_path:.0f} us on the path, {on_its_way / on_path:.2f} of that with the wrist on "
+          "its way")  # fmt: skip
     print(f"robolang run {PROGRAM}, whole process: {process_seconds('run', PROGRAM):.2f} s (goal <= 2 s)")
     print(f"robolang --version, whole process: {1000 * process_seconds('--version'):.0f} ms (goal <= 150 ms)")
     print(f"robolang --help, whole process: {1000 * process_seconds('--help'):.0f} ms")
