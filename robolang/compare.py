@@ -159,8 +159,9 @@ def measures(log: dict[str, Array], X_cmd: Array, statements: list[StatementRun]
     ticks = np.concatenate([np.arange(run.first_tick, run.end_tick) for run in moves])
     joint = np.abs(log["q_cmd"][ticks] - log["q_link"][ticks]) / DEG
     p_tool = log["X_world_tool"][:, :3, 3]
+    p_line = p_tool - log["seam_deviation"][:, :3]
     tool = np.linalg.norm(X_cmd[ticks, :3, 3] - p_tool[ticks], axis=1) / MM
-    rows = [_move(run, log, p_tool) for run in moves]
+    rows = [_move(run, log, p_line) for run in moves]
     overshoots = [row["overshoot_pct"] for row in rows if row["overshoot_pct"] is not None]
     settled = [row["settling_s"] for row in rows]
     droop = np.array([row["droop_deg"] for row in rows])

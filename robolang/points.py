@@ -167,7 +167,7 @@ def _point(name: str, entry: Table, axes: int | None) -> Point:
         frame=entry.text("frame", ""),
         tool=entry.text("tool", ""),
         configuration=_configuration(entry),
-        turns=_turns(entry),
+        turns=_turns(entry, axes),
         comment=entry.text("comment", ""),
     )
     entry.done()
@@ -207,8 +207,9 @@ def _configuration(entry: Table) -> tuple[str, ...]:
     return tuple(words)
 
 
-def _turns(entry: Table) -> tuple[int, ...]:
+def _turns(entry: Table, axes: int | None) -> tuple[int, ...]:
     values = entry.numbers("turns", None, (), low=-MAX_TURNS, high=MAX_TURNS)
-    if len(values) > 7 or any(value != int(value) for value in values):
-        entry.fail("RBL307", "'turns' must be at most 7 whole numbers", key="turns")
+    most = 7 if axes is None else axes
+    if len(values) > most or any(value != int(value) for value in values):
+        entry.fail("RBL307", f"'turns' must be at most {most} whole numbers, one for each joint", key="turns")
     return tuple(int(value) for value in values)

@@ -76,8 +76,8 @@ class _Measures:
 def _statement(run: StatementRun, measures: _Measures, tick_us: int) -> dict[str, Any]:
     span = slice(run.first_tick, run.end_tick)
     deviation = None
-    if run.path is not None and run.seam is None and run.end_tick > run.first_tick:
-        deviation = float(run.path.deviation(measures.p_tool[span]).max()) / MM
+    if run.path is not None and run.end_tick > run.first_tick:
+        deviation = float(run.path.deviation((measures.p_tool - measures.deviation[:, :3])[span]).max()) / MM
     return {
         "line": run.line,
         "number": run.number,

@@ -75,7 +75,7 @@ class Session:
         friction = (1.0 if known is None else known) if physics else 0.0
         profile = replace(profile, supervision=replace(profile.supervision, friction=friction))
         if not physics:  # the ideal arm has no friction and no gear springs, so there is nothing to compensate
-            servo = replace(profile.servo, friction_compensation=0.0, spring_compensation=0.0)
+            servo = replace(profile.servo, friction_compensation=0.0, spring_compensation=0.0, gravity_lead=0.0)
             profile = replace(profile, servo=servo)
         self._kinematics = Kinematics(cell.robot)
         clock = PacedClock(profile.period_us) if realtime else VirtualClock()

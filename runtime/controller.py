@@ -110,17 +110,18 @@ class Controller:
         self._overruns = 0
         self._no_deviation = np.zeros(6)
 
-    def _power_up(self, q: Array) -> None:
+    def _power_up(self, q: Array, now_us: int = 0) -> None:
         """Fill ITA once for all axes before the brakes open, so that no servo ever works with an empty cell."""
         for axis in range(self.spec.n):
             row, T = axis_row(self._model, q, axis), axis_gravity(self._model, q, axis)
-            self.areas.ita[axis] = AxisLoad(D=float(row[axis]), T=T, row=row, read_us=0, version=0, payload_version=0)
+            self.areas.ita[axis] = AxisLoad(D=float(row[axis]), T=T, row=row, read_us=now_us, version=0,
+                                            payload_version=self.areas.sda_version)  # fmt: skip
 
     def _hold(self, q: Array) -> None:
         """Let the servos hold motors that stand at q (n,) rad: currents against the weight, command and reference."""
         T = np.array([cell.T for cell in self.areas.ita])
         self.servo.motors.i[:] = T / self.servo.motors.Ktn
-        self.areas.ina = self.servo.resting_command(q, T)
+        self.areas.ina = np.clip(self.servo.resting_command(q, T), self.spec.lower, self.spec.upper)
         self.servo.q_ref = q
 
     def _fixed_inertia(self) -> Array:
@@ -166,7 +167,6 @@ class Controller:
         plan = self._planner.plan(q_from, command, self.X_flange_tool)
         seam = self._planner.tracked(plan, command, q_from, here, tracker, self.X_flange_tool)
         self._interpolator.start(plan, seam)
-        tracker.q_calculated = plan.q[-1]
         return plan
 
     def seam(self, tracker: SeamTracker | None) -> None:
@@ -185,8 +185,8 @@ class Controller:
     def acknowledge(self) -> None:
         """Take note of the latched alarms: the servos hold the arm where it stands, and moves are possible again.
 
-        The interrupted move is not resumed. ``RuntimeError`` while the arm is still stopping, and when the plant's
-        state is no longer valid.
+        The interrupted move is not resumed, and a seam is no longer followed. ``RuntimeError`` while the arm is still
+        stopping, and when the plant's state is no longer valid.
         """
         if not self.alarms:
             return
@@ -196,7 +196,10 @@ class Controller:
         if self.plant.why_invalid() or not np.isfinite(q).all():
             raise RuntimeError("the state of the plant is no longer valid")
         self._interpolator.drop()
-        self._power_up(q)
+        self._tracker, self.wrist_mode = None, FOLLOWS
+        if self.areas.sda_version:
+            self._model.set_payload(self.areas.sda, self.profile.load_mode)
+        self._power_up(q, self.time_us)
         self.servo = ServoAxes(self.spec, self.profile.servo, self.profile.tick_s, q, self._fixed)
         self._hold(np.array(self.servo.alpha))
         servo = self.servo
@@ -350,6 +353,7 @@ class Controller:
     def halt(self) -> None:
         """Stop at once (category 0): the brakes hold the arm from this tick on."""
         self._interpolator.drop()
+        self.wrist_mode = FOLLOWS
         self.halted = True
 
     def _latch(self, found: Finding) -> None:
@@ -374,4 +378,4 @@ class Controller:
         elif len(self.alarms) == 1:
             self._rest_us = 0
             limits = self.spec.per_axis("limits", "speed"), self.spec.per_axis("limits", "acceleration")
-            self._interpolator.stop(lambda rows, at: stopping_rows(rows, at, self._fine, *limits))
+            self._interpolator.stop(lambda rows, at, whole: stopping_rows(rows, at, self._fine, *limits, whole))

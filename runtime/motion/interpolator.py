@@ -31,23 +31,25 @@ class Interpolator:
         """Begin a move, with ``seam`` point by point; ``RuntimeError`` when another one still runs."""
         if self.busy:
             raise RuntimeError("a move is running")
-        self._rows, self._modes, self._seam = plan.q, plan.modes.tolist(), seam
+        self._rows, self._modes, self._seam, self.fault = plan.q, plan.modes.tolist(), seam, None
         if seam is not None:
             self._rows = np.array(plan.q)  # the plan's rows are those without deviation; each is replaced in its turn
             self._rows[0] = seam.here
         self._n = 0
 
-    def stop(self, stopping: Callable[[Array, int], Array]) -> None:
-        """Replace the rows that are left by those of a controlled stop, ``stopping(rows, reached)``."""
+    def stop(self, stopping: Callable[[Array, int, bool], Array]) -> None:
+        """Replace the rows that are left by those of a stop, ``stopping(rows, reached, whether they end at rest)``."""
         if self._rows is not None and self.busy:
-            rows, reached = self._rows, self._rows[: self._n + 1]
+            rows, reached, mode, whole = self._rows, self._rows[: self._n + 1], self.mode, True
             if self._seam is not None:
-                rows, self._seam = np.concatenate([reached, self._seam.rest(self._n + 1)]), None
-            self._rows = np.concatenate([reached, stopping(rows, self._n)])
+                rest, whole = self._seam.rest(self._n + 1)
+                rows, self._seam = np.concatenate([reached, rest]), None
+            self._rows = np.concatenate([reached, stopping(rows, self._n, whole)])
+            self._modes = [mode] * len(self._rows)
 
     def drop(self) -> None:
         """Forget the move: no set-point is left to send."""
-        self._rows = self._seam = None
+        self._rows = self._seam = self.fault = None
 
     @property
     def busy(self) -> bool:
@@ -61,7 +63,7 @@ class Interpolator:
             return FOLLOWS
         if self._seam is not None:
             return FOLLOWS if self._seam.law is None else EXCEPTION
-        return self._modes[min(self._n, len(self._modes) - 1)]
+        return self._modes[self._n]
 
     def next(self) -> Array:
         """Return the joint set-point (n,) rad of this cycle; ``RuntimeError`` when the target was reached."""

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from runtime.faults import Fault
 from runtime.frames import Array, frozen
-from runtime.motion.commands import MoveLinear
+from runtime.motion.commands import Component, MoveLinear
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.path import LinePath
 from runtime.motion.seam import SeamMove, SeamTracker
@@ -32,6 +32,9 @@ from runtime.units import DEG, MM
 
 FOLLOWS, EXCEPTION, HELD = 0, 1, 2
 """``wrist_mode``: the wrist follows the path, goes to its end angles, does so with posture components held."""
+
+MOST_SAMPLES = 2000
+"""As many samples of a move are looked at when its way through the wrist is chosen."""
 
 NOTHING_TO_DO = 1e-9
 """A path shorter than this, m and rad, is none."""
@@ -57,7 +60,7 @@ class WristChange:
 
     ``condition`` that was met on ``axis`` (0-based; None: no single one); ``row`` from which the wrist goes its own way
     and ``share`` of the path there; ``remedy`` beyond the document's rule, or ""; ``deviation`` rad: the largest angle
-    between the tool and its planned posture.
+    between the tool and its planned posture. ``components``: of each that was to be held by how much it changes, rad.
     """
 
     condition: Condition
@@ -69,6 +72,7 @@ class WristChange:
     remedy: str
     held: tuple[str, ...]
     deviation: float
+    components: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,7 +117,7 @@ class LinePlanner:
         """
         X_start = self._kinematics.forward(q_start) @ X_flange_tool
         path = LinePath.between(X_start, command.X_world_tool, self._profile.wrist.posture)
-        way = 0.0 if command.q_end is None else float(np.abs(command.q_end - q_start)[-WRIST_AXES:].max())
+        way = 0.0 if command.q_end is None else float(np.abs(command.q_end - q_start).max())
         if max(path.length, path.angle, way) < NOTHING_TO_DO:
             return LinePlan(path=path, s=np.ones(1), q=frozen([q_start]), slowdown=None, notes=("already there",))
         arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=self._fine, X_flange_tool=X_flange_tool)
@@ -126,7 +130,7 @@ class LinePlanner:
             if choice.trigger is None or choice.switch is None:
                 raise
             raise explained(fault, choice.trigger) from None
-        wrist = _wrist_change(choice, line, s, q)
+        wrist = _wrist_change(choice, line, s, q, command.held)
         notes = self._notes(s, slowdown, command) + _wrist_notes(wrist) + _kept_notes(command, q)
         return LinePlan(path=path, s=frozen(s), q=frozen(q), slowdown=slowdown, wrist=wrist, notes=notes)
 
@@ -138,7 +142,7 @@ class LinePlanner:
         """
         arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=self._fine, X_flange_tool=X_flange_tool)
         options, wrist = self._profile.wrist, plan.wrist
-        if (command.wrist or options.mode) == "keep":
+        if (command.wrist or options.mode) == "keep" or self._spec.n != MAIN_AXES + WRIST_AXES:
             options = options.only()
         elif wrist is None or wrist.remedy:  # the plan knows better than C1, C2 and C4 when the wrist has to go
             options = options.only(range_condition=options.range_condition, guard=options.guard)
@@ -153,19 +157,27 @@ class LinePlanner:
         if mode == "keep" or self._spec.n != MAIN_AXES + WRIST_AXES:
             return Choice(solver=line)
         s = profile(limits, self._profile.period_s, command.duration)
+        every = -(-(len(s) - 1) // MOST_SAMPLES)  # a long move is looked at in coarser steps, as if it were faster
+        s, period_s = np.unique(np.append(s[::every], 1.0)), every * self._profile.period_s
         q = line.rows(s)
         q[0] = line.q_start
-        most = options.untaught_deviation if command.q_end is None else options.most_deviation
+        taught = command.q_end is not None or bool(command.configuration or command.turns)
+        most = options.most_deviation if taught else options.untaught_deviation
+
+        def excess(q: Array) -> tuple[float, int, str]:
+            ratio, axis, quantity = self._excess(q)
+            return ratio / every, axis, quantity
+
         best: Choice | None = None
         first: Fault | None = None
         for q_end in ends(line, q, command):
             try:
-                choice = choose(line, s, q, q_end, self._profile.period_s, options, self._excess, most,
+                choice = choose(line, s, q, q_end, period_s, options, excess, most,
                                 None if command.tracked else command.held)  # fmt: skip
             except Fault as fault:
                 first = first or fault
                 continue
-            if choice.ratio <= 1.0:
+            if choice.ratio <= (1.0 if choice.switch is not None else options.posture_first):
                 return choice
             if best is None or choice.ratio < best.ratio:
                 best = choice
@@ -197,6 +209,9 @@ class LinePlanner:
             if found is not None and wanted >= len(found[0]) - 1:
                 break
             s = profile(limits.slowed(wanted / fastest), period_s, duration)
+            while len(s) - 1 <= too_fast:  # a slower profile may round to the same cycles
+                wanted += 1.0
+                s = profile(limits.slowed(wanted / fastest), period_s, duration)
         if found is None:
             solver.refuse_singular(s, solver.joints(s), worst[0])
         factor = (len(found[0]) - 1) / asked
@@ -224,7 +239,8 @@ class LinePlanner:
         return tuple(notes)
 
 
-def _wrist_change(choice: Choice, line: LineSolver, s: Array, q: Array) -> WristChange | None:
+def _wrist_change(choice: Choice, line: LineSolver, s: Array, q: Array,
+                  held: tuple[Component, ...]) -> WristChange | None:  # fmt: skip
     """Return what the plan does with the wrist, measured on its samples; None where it follows the path."""
     if choice.switch is None:
         return None
@@ -236,6 +252,7 @@ def _wrist_change(choice: Choice, line: LineSolver, s: Array, q: Array) -> Wrist
         axis=None if trigger is None else trigger.axis,
         row=row, row_end=min(int(np.searchsorted(s, solver.law.s_return)), len(s) - 1), share=choice.switch,
         share_end=solver.law.s_return, remedy=choice.remedy, held=choice.held, deviation=posture_deviation(line, s, q),
+        components=tuple((each, posture_deviation(line, s, q, (each,))) for each in held),
     )  # fmt: skip
 
 
@@ -248,7 +265,8 @@ def _wrist_notes(wrist: WristChange | None) -> tuple[str, ...]:
     held = f"; {' and '.join(wrist.held)} held" if wrist.held else ""
     return (
         f"wrist goes to its end angles from {100 * wrist.share:.1f} to {100 * wrist.share_end:.1f} % of the path ({why}"
-        f"{remedy}{held}): the tool turns up to {wrist.deviation / DEG:.1f} deg from its posture on the path",
+        f"{remedy}{held}): the tool turns up to {wrist.deviation / DEG:.1f} deg from its posture on the path"
+        + "".join(f", {name} up to {off / DEG:.1f} deg" for name, off in wrist.components),
     )
 
 

@@ -30,11 +30,11 @@ from runtime.motion.solver import LineSolver
 from runtime.motion.wrist import Conditions, WristLaw, law_from
 from runtime.motion.wrist_planner import wrist_limits
 from runtime.profile import WristOptions
-from runtime.robot.frozen_wrist import WRIST_AXES, FrozenWrist, Side
+from runtime.robot.frozen_wrist import MAIN_AXES, WRIST_AXES, FrozenWrist, Side
 from runtime.robot.opw import Branch
 from runtime.units import DEG, MM
 
-SPEED_SLACK = 1.2
+SPEED_SLACK = 1.1
 """A tracked point may ask for this much of a joint's speed limit: the plan knew nothing of the deviation."""
 
 
@@ -137,7 +137,8 @@ class SeamMove:
         arm = line.arm
         self._line, self._s, self._switch, self._tracker = line, s, switch, tracker
         self._kinematics, self._X_tool_flange = arm.kinematics, inverse(arm.X_flange_tool)
-        self._frozen = FrozenWrist(arm.kinematics, arm.X_flange_tool)
+        six = arm.kinematics.n == MAIN_AXES + WRIST_AXES
+        self._frozen = FrozenWrist(arm.kinematics, arm.X_flange_tool) if six else None
         self._poses = line.path.poses(s)
         self._travel = line.path.X_end[:3, 3] - line.path.X_start[:3, 3]
         self._end_branch = arm.kinematics.branch_of(q_end)
@@ -147,6 +148,7 @@ class SeamMove:
         self._most_step = arm.spec.per_axis("limits", "speed") * period_s * SPEED_SLACK
         self._lower, self._upper = arm.spec.lower, arm.spec.upper
         self.before, self.here = q_start, q_start
+        self._q_calculated = q_end
         self.q_end = np.array(q_end)
         """Joint angles (n,) of the end as it is seen now, rad."""
         self.law: WristLaw | None = None
@@ -176,19 +178,22 @@ class SeamMove:
     def finish(self) -> None:
         """Tell the tracker that the move has ended: the next one begins at its calculated end."""
         self._tracker.way += self._line.path.length
+        self._tracker.q_calculated = self._q_calculated
 
     def row(self, n: int) -> Array:
         """Return the joint set-point (n,) of sample n for the deviation in force; ``Fault`` RBL526."""
         deviation = self._tracker.deviation
         X = superposed(self._poses[n], deviation)
-        self.q_end = self._solve(superposed(self._line.path.X_end, deviation), self._end_branch, self.q_end)
+        seen = self._solve(superposed(self._line.path.X_end, deviation), self._end_branch, self.q_end)
+        if np.isfinite(seen).all():  # an end that is out of reach for a moment stays where it was
+            self.q_end = seen
         end = self.q_end[-WRIST_AXES:]
         if self.law is None:
             q = self._solve(X, self._line.branch, self.here)
             switched = self._switch is not None and n > self._switch
-            if switched or not np.isfinite(q).all() or self._met(n, q, end):
-                self._leave(n, end)
-        if self.law is not None:
+            if self._frozen is not None and (switched or not np.isfinite(q).all() or self._met(n, q, end)):
+                self._leave(n, end, self._frozen)
+        if self.law is not None and self._frozen is not None:
             share = (self._s[n] - self.law.s_switch) / (1.0 - self.law.s_switch)
             wrist = self.law.angles(self._s[n : n + 1]) + share * (end - self.law.end)
             q = self._frozen.solve(X[None, :3, 3], wrist, self.here, self._side)[0]
@@ -207,13 +212,13 @@ class SeamMove:
         met = self._conditions.met(slice(n, n + 1), wrist[None], before[None], end, outside[None])
         return any(bool(where.any()) for where in met.values())
 
-    def _leave(self, n: int, end: Array) -> None:
+    def _leave(self, n: int, end: Array, frozen: FrozenWrist) -> None:
         """Let the wrist go to its end angles from the sample before n, S63."""
         rows, s = np.stack([self.before, self.here]), self._s[[max(n - 2, 0), n - 1]]
         shape = self._options.shape
         self.law = law_from(rows[1:] if n == 1 else rows, s[1:] if n == 1 else s, 0 if n == 1 else 1, end, shape,
                             self._options.width)  # fmt: skip
-        self._side = self._frozen.side_of(self.here)
+        self._side = frozen.side_of(self.here)
 
     def _check(self, n: int, q: Array) -> None:
         where = f"at {100 * self._s[n]:.1f} % of the path"
@@ -229,8 +234,11 @@ class SeamMove:
             axis = int(np.argmax(np.maximum(self._lower - q, q - self._upper)))
             raise Fault("RBL526", f"{where} J{axis + 1} would leave its range to follow the seam")
 
-    def rest(self, n: int) -> Array:
-        """Return the set-points (k, n) from sample n on, as far as there are any, while the deviation settles."""
+    def rest(self, n: int) -> tuple[Array, bool]:
+        """Return the set-points (k, n) from sample n on, as far as there are any, and whether they reach the end.
+
+        The deviation settles meanwhile, and readings no longer count.
+        """
         rows = []
         self._tracker.settle()
         try:
@@ -238,5 +246,5 @@ class SeamMove:
                 self._tracker.follow()
                 rows.append(self.row(k))
         except Fault:
-            pass  # what cannot be followed is not needed: the rows are those of a stop
-        return np.array(rows).reshape(-1, len(self.here))
+            pass  # the arm has to stand before it gets there
+        return np.array(rows).reshape(-1, len(self.here)), len(rows) == len(self._s) - n

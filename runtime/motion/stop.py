@@ -22,21 +22,38 @@ _LONGEST = 250
 _SLACK = 1.0 + 1e-9
 
 
-def stopping_rows(rows: Array, at: int, fine: FineInterpolator, speed: Array, acceleration: Array) -> Array:
+def stopping_rows(rows: Array, at: int, fine: FineInterpolator, speed: Array, acceleration: Array,
+                  ends_at_rest: bool = True) -> Array:  # fmt: skip
     """Return the set-points (K, n) that follow row ``at`` of ``rows`` (N + 1, n) and end at rest on their curve.
 
     ``speed`` rad/s and ``acceleration`` rad/s2 (n,) are the joints' limits. No row left gives no set-point.
+    ``ends_at_rest`` False: the rows break off in motion, so the best stop that they allow is taken.
     """
+    limits = speed, acceleration
     left = len(rows) - 1 - at
-    cycles = _SHORTEST
+    sent = rows[np.maximum(np.arange(at - 3, at + 1), 0)]
+    touched = len(sent) * fine.ticks
+    # what has been sent cannot be taken back: where it is rough, the ticks that it reaches may be as rough as they are
+    rough = _excess(fine, np.concatenate([sent, rows[at + 1 : at + 1 + len(sent)]]), limits)[:touched].max(initial=0.0)
+    cycles, best = _SHORTEST, None
     while cycles / 2.0 <= left and cycles <= _LONGEST:
         candidate = _curve(rows, at + _progress(cycles))
-        played = np.concatenate([rows[np.maximum(np.arange(at - 3, at + 1), 0)], candidate])
-        _, dq, ddq = np.abs(fine.continue_(played)).max(axis=1)
-        if (dq <= speed * _SLACK).all() and (ddq <= acceleration * _SLACK).all():
+        ratio = _excess(fine, np.concatenate([sent, candidate]), limits)
+        worst = max(float(ratio[:touched].max()) / max(1.0, 1.1 * rough), float(ratio[touched:].max(initial=0.0)))
+        if worst <= _SLACK:
             return candidate
+        if best is None or worst < best[0]:
+            best = worst, candidate
         cycles += max(1, cycles // 8)
+    if best is not None and not ends_at_rest:
+        return best[1]
     return rows[at + 1 :]
+
+
+def _excess(fine: FineInterpolator, played: Array, limits: tuple[Array, Array]) -> Array:
+    """Return the largest share of a joint's speed or acceleration limit at every tick (ticks,) of played rows."""
+    _, dq, ddq = np.abs(fine.continue_(played))
+    return np.asarray(np.maximum((dq / limits[0]).max(axis=1), (ddq / limits[1]).max(axis=1)))
 
 
 def _progress(cycles: int) -> Array:

@@ -91,8 +91,8 @@ class Conditions:
         rate = np.diff(s) / period_s
         self._fastest = np.append(np.maximum.accumulate(rate[::-1])[::-1], 0.0)
         left_s = period_s * (len(s) - 1 - np.arange(len(s)))
-        on = options.remaining_time > 0.0 or options.remaining_distance > 0.0
-        self._late = ((left_s <= options.remaining_time) | ((1.0 - s) * length <= options.remaining_distance)) & on
+        self._late = (left_s <= options.remaining_time) & (options.remaining_time > 0.0)
+        self._late |= ((1.0 - s) * length <= options.remaining_distance) & (options.remaining_distance > 0.0)
 
     def met(self, at: slice, wrist: Array, before: Array, end: Array, outside: Mask) -> dict[Condition, Mask]:
         """Return which conditions the samples ``at`` meet, each (k, 3) by wrist axis; left sides of (11) to (63).

@@ -67,6 +67,9 @@ DETOUR = "detour of the wrist"
 DETOURS = ((0, 45), (0, -45), (60, 0), (-60, 0), (0, 80), (0, -80), (60, 80), (-60, -80), (120, 80), (-120, -80))
 """How far J4 and J5 go out of their way at half of it, deg, where nothing else places the main axes at all."""
 
+SHORTEST_TRAVEL = 1e-6
+"""A shorter way has no direction in which tilt and advance could be counted, m."""
+
 Solver = LineSolver | WristSolver
 Excess = Callable[[Array], tuple[float, int, str]]
 """Of samples q (N + 1, n): factor by which they are too fast (1 and less: not), axis (0-based), ``speed`` or other."""
@@ -106,7 +109,8 @@ def ends(line: LineSolver, q: Array, command: MoveLinear) -> list[Array]:
                         "or go there over a via point; WRIST KEEP ends in the configuration of the start.")  # fmt: skip
         return [np.array(command.q_end)]
     X_end = line.path.X_end @ inverse(arm.X_flange_tool)
-    others = [_turned(each.q, command.turns) for each in arm.kinematics.solutions(X_end, line.q_start)
+    turns = command.turns[: arm.kinematics.n]
+    others = [_turned(each.q, turns) for each in arm.kinematics.solutions(X_end, line.q_start)
               if (each.branch.arm, each.branch.elbow) == (line.branch.arm, line.branch.elbow)]  # fmt: skip
     others = [end for end in others if arm.kinematics.limit_margin(end) >= -LIMIT_ROUNDING]
     others.sort(key=lambda end: float(np.abs(end - line.q_start)[-WRIST_AXES:].max()))
@@ -128,7 +132,7 @@ def _turned(q: Array, turns: tuple[int, ...]) -> Array:
 def _as_taught(line: LineSolver, q: Array, command: MoveLinear) -> bool:
     turns = np.round(q / (2.0 * np.pi))[: len(command.turns)]
     fits = in_configuration(line.arm.kinematics.branch_of(q), command.configuration)
-    return fits and bool((turns == np.array(command.turns)).all())
+    return fits and bool((turns == np.array(command.turns[: len(q)])).all())
 
 
 def choose(line: LineSolver, s: Array, q: Array, q_end: Array, period_s: float, options: WristOptions, excess: Excess,
@@ -185,7 +189,7 @@ def posture_deviation(line: LineSolver, s: Array, q: Array, held: tuple[Componen
     """Return by how much the tool turns from its posture on the path, rad: the whole angle, or of held components."""
     R = (line.arm.kinematics.forward(q) @ line.arm.X_flange_tool)[:, :3, :3]
     planned = line.planned(s)[:, :3, :3]
-    if not held or line.path.length <= 0.0:
+    if not held or line.path.length < SHORTEST_TRAVEL:
         return float(rotation_angles(planned, R).max())
     return float(component_deviation(line.path, planned, R)[:, [COMPONENTS.index(each) for each in held]].max())
 
@@ -255,8 +259,11 @@ def _candidates(line: LineSolver, q: Array, s: Array, q_end: Array, trigger: Tri
 
 
 def _suppression(line: LineSolver, options: WristOptions, held: tuple[Component, ...]) -> Suppression | None:
-    """Return what holds posture components; None where there are none, or no direction of travel to count them in."""
-    if not held or line.path.length <= 0.0:
+    """Return what holds posture components; None where there are none, or no direction of travel to count them in.
+
+    Nor without a closed form: 125 solutions by steps in every cycle would take half a minute.
+    """
+    if not held or line.path.length < SHORTEST_TRAVEL or not line.arm.kinematics.closed_form:
         return None
     travel = line.path.X_end[:3, 3] - line.path.X_start[:3, 3]
     speed = wrist_limits(line.arm.spec, options).speed

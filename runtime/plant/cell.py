@@ -10,13 +10,13 @@ folder is ever opened, whatever the file says. Read once, before anything moves.
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from pathlib import Path, PurePosixPath, PureWindowsPath
+from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
 
 from runtime.frames import Array, frozen, pose_from_xyzrpy
-from runtime.plant.seam_sensor import SensorSpec, read_sensor
+from runtime.plant.seam_sensor import SensorSpec, inside, read_sensor
 from runtime.robot.importer import ROBOT_ENDINGS, load_file
 from runtime.robot.loader import library, load_builtin
 from runtime.robot.spec import RobotSpec
@@ -136,24 +136,7 @@ def _robot(table: Table, folder: Path | None) -> RobotSpec:
     name = table.text("robot")
     if not name.lower().endswith(ROBOT_ENDINGS):
         return load_builtin(table.text("robot", choices=library()))
-    return load_file(_inside(table, name, folder))
-
-
-def _inside(table: Table, name: str, folder: Path | None) -> Path:
-    """Return the file that ``name`` means, or refuse it when it is not inside ``folder`` (RBL602)."""
-    if folder is None:
-        table.fail("RBL602", f"'{name}' is a file, and this cell has no folder", key="robot")
-    # a Windows path must be refused on Linux too: the same cell file means the same on both
-    absolute = any(kind(name).is_absolute() or kind(name).anchor for kind in (PurePosixPath, PureWindowsPath))
-    if absolute or ".." in re.split(r"[/\\]", name) or "\0" in name:
-        table.fail("RBL602", f"'{name}' is not a path inside the folder of the cell file", key="robot")
-    try:
-        target = (folder / name).resolve()
-    except (OSError, RuntimeError) as error:
-        table.fail("RBL602", f"'{name}' cannot be followed: {error}", key="robot")
-    if not target.is_relative_to(folder.resolve()):
-        table.fail("RBL602", f"'{name}' leads out of the folder of the cell file", key="robot")
-    return target
+    return load_file(inside(table, name, folder, "robot"))
 
 
 def _home(table: Table, robot: RobotSpec) -> Array:

@@ -14,9 +14,10 @@ per 8 ms cycle by the controller.
 import csv
 import io
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Literal, cast
 
 import numpy as np
@@ -31,6 +32,8 @@ Kind = Literal["ramp", "sine", "table"]
 KINDS: tuple[Kind, ...] = ("ramp", "sine", "table")
 SCALE = np.array([MM, MM, MM, DEG, DEG, DEG])
 MOST_ROWS = 10_000
+SHORTEST_TRAVEL = 1e-6
+"""A shorter way has no direction, m."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,12 +69,15 @@ class SeamSensor:
     def __init__(self, spec: SensorSpec) -> None:
         self._spec = spec
         self._random = np.random.default_rng(spec.seed)
+        self._travel = np.array([1.0, 0.0, 0.0])
 
     def read(self, way: float, travel: Array) -> Array | None:
         """Return the deviation (6,) seen at a way along the path, m and rad in the world; None when it is lost.
 
-        ``travel`` (3,) is the direction of the path.
+        ``travel`` (3,) is the direction of the path; where it has none, that of the move before counts.
         """
+        if float(np.linalg.norm(travel)) > SHORTEST_TRAVEL:
+            self._travel = travel
         spec = self._spec
         noise, lost = self._random.normal(size=6) * spec.noise, self._random.random() < spec.lost
         if lost:
@@ -79,7 +85,7 @@ class SeamSensor:
         seen = spec.at(way) + noise
         if not spec.in_line_frame:
             return seen
-        R_world_line = weld_line_frame(travel)
+        R_world_line = weld_line_frame(self._travel)
         turned = R_world_line @ rotation_from_rpy(seen[3:]) @ R_world_line.T
         return np.concatenate([R_world_line @ seen[:3], rpy_from_rotation(turned)])
 
@@ -115,25 +121,49 @@ def read_sensor(table: Table, folder: Path | None) -> SensorSpec:
 def _rows(table: Table, folder: Path | None) -> tuple[Array, Array]:
     """Read the CSV file of a sensor: ways (K,) m, rising, and deviations (K, 6) m and rad."""
     name = table.text("file")
-    path = Path(name)
-    if folder is None or path.is_absolute() or ".." in path.parts or "\\" in name:
-        table.fail("RBL602", f"'{name}' is not a file inside the folder of the cell file", key="file")
-    target = (folder / path).resolve()
-    if not target.is_relative_to(folder.resolve()):
-        table.fail("RBL602", f"'{name}' leads out of the folder of the cell file", key="file")
-    source = read_source(target)
+    source = read_source(inside(table, name, folder, "file"))
     found: list[list[float]] = []
-    for number, cells in enumerate(csv.reader(io.StringIO(source.text)), start=1):
-        row = _numbers(cells)
-        if row is None:
-            if number > 1 and any(cell.strip() for cell in cells):  # the first line may be a heading
+    try:
+        for number, cells in enumerate(csv.reader(io.StringIO(source.text), strict=True), start=1):
+            row = _numbers(cells)
+            if row is not None:
+                found.append(row)
+            elif any(cell.strip() for cell in cells) and not (number == 1 and _is_heading(cells)):
                 table.fail("RBL604", f"line {number} of '{name}' is not 4 or 7 finite numbers", key="file")
-            continue
-        found.append(row)
+    except csv.Error as error:
+        table.fail("RBL604", f"'{name}' is not a CSV file: {error}", key="file")
     rows = np.array(found).reshape(-1, 7)
     if not 1 <= len(rows) <= MOST_ROWS or not (np.diff(rows[:, 0]) > 0.0).all():
         table.fail("RBL605", f"'{name}' must have 1 to {MOST_ROWS} rows whose first number rises", key="file")
     return rows[:, 0] * MM, rows[:, 1:] * SCALE
+
+
+def inside(table: Table, name: str, folder: Path | None, key: str) -> Path:
+    """Return the file that ``name`` means, or refuse it when it is not inside ``folder`` (RBL602)."""
+    if folder is None:
+        table.fail("RBL602", f"'{name}' is a file, and this cell has no folder", key=key)
+    # a Windows path must be refused on Linux too: the same cell file means the same on both
+    absolute = any(kind(name).is_absolute() or kind(name).anchor for kind in (PurePosixPath, PureWindowsPath))
+    if absolute or ".." in re.split(r"[/\\]", name) or "\0" in name:
+        table.fail("RBL602", f"'{name}' is not a path inside the folder of the cell file", key=key)
+    try:
+        target = (folder / name).resolve()
+    except (OSError, RuntimeError, ValueError) as error:
+        table.fail("RBL602", f"'{name}' cannot be followed: {error}", key=key)
+    if not target.is_relative_to(folder.resolve()):
+        table.fail("RBL602", f"'{name}' leads out of the folder of the cell file", key=key)
+    return target
+
+
+def _is_heading(cells: Sequence[str]) -> bool:
+    """Return whether a first line names its columns: no cell of it is a number."""
+    for cell in cells:
+        try:
+            float(cell)
+        except ValueError:
+            continue
+        return False
+    return True
 
 
 def _numbers(cells: Sequence[str]) -> list[float] | None:

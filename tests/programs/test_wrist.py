@@ -97,7 +97,7 @@ def test_the_seam_is_followed_and_the_end_is_where_the_sensor_saw_it():
     assert 5.5 < weld["seam"]["largest_mm"] < 6.2
     assert 1.9 < weld["seam"]["largest_deg"] < 2.05
     assert weld["seam"]["lost_readings"] > 10
-    assert weld["path_deviation_mm"] is None
+    assert weld["path_deviation_mm"] < 0.3  # from the line that the sensor saw
     rows = np.flatnonzero(result.log["line"] == 30)
     last, deviation = result.log["q_plan"][rows[-1]], result.log["seam_deviation"][rows[-1]]
     taught = session.controller.tool_poses(np.radians(MOVES["e2"]))
@@ -109,7 +109,7 @@ def test_the_seam_is_followed_and_the_end_is_where_the_sensor_saw_it():
 @pytest.mark.parametrize(("edit", "code", "said"), [
     ((".cell.toml", "lost = 0.05", "lost = 0.05\nmost_mm = 3"), "RBL524", "more than 3 mm"),
     ((".cell.toml", "lost = 0.05", "lost = 1.0"), "RBL525", "has given nothing for 104 ms"),
-    ((".cell.toml", "[0, 5, -3, 0, 0, 2]", "[0, 0, 900, 0, 0, 0]\nmost_mm = 1000"), "RBL526", "out of reach"),
+    ((".cell.toml", "[0, 5, -3, 0, 0, 2]", "[0, 0, 900, 0, 0, 0]\nmost_mm = 1000"), "RBL526", "% of the path"),
 ])  # fmt: skip
 def test_a_seam_that_cannot_be_followed_stops_the_arm_on_its_path_at_the_line(tmp_path, edit, code, said):
     copy(tmp_path, "seam", edit)

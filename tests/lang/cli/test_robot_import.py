@@ -8,7 +8,8 @@ import pytest
 from robolang.project import builtin_cell, load_any_robot, load_project
 from robolang.session import Session
 from runtime.frames import frozen
-from runtime.tomlfile import FileFault
+from runtime.plant.seam_sensor import read_sensor
+from runtime.tomlfile import FileFault, Source, load_table
 from tests.lang.cli.commands import flat, robolang
 from tests.runtime.robot.models import ANGLES, SEVEN, fill
 
@@ -85,20 +86,39 @@ def test_a_run_without_drives_is_refused_with_what_is_missing(seven):
     assert "J7 joint_7: acceleration, motor, servo" in error
 
 
-def test_a_seven_axis_arm_carries_out_moves(seven):
+SENSOR = 'kind = "ramp"\ndeviation_mm_deg = [3, 0, 2, 0, 0, 0]\nover_mm = 200\n'
+
+
+def seven_session(seven, text):
+    """Return the session of a program on the arm of seven axes, in a cell with a seam sensor."""
     robolang("robot", "import", seven)
     sidecar = seven.with_name("seven.robot.toml")
     sidecar.write_text(fill(sidecar.read_text()))
     program = seven.with_name("a.rbl")
-    program.write_text("MOVE P1, SPEED 200\nMOVE P2, SPEED 150\n")
+    program.write_text(text)
     seven.with_name("a.points.toml").write_text(
         "schema = 1\n[points.P1]\npose = [450, 150, 500, 180, 0, 180]\n"
         "[points.P2]\npose = [450, -150, 500, 180, 0, 180]\n"
     )
     project = load_project(program)
     robot = load_any_robot(str(seven))
-    cell = replace(builtin_cell(), robot=robot, home=frozen(HOME))
-    result = Session(replace(project, cell=cell), physics=False).run()
+    sensor = read_sensor(load_table(Source("cell.toml", SENSOR)), None)
+    cell = replace(builtin_cell(), robot=robot, home=frozen(HOME), sensors={"CAM": sensor})
+    return Session(replace(project, cell=cell, diagnostics=()), physics=False)
+
+
+def test_a_seven_axis_arm_follows_a_seam_in_its_posture(seven):
+    session = seven_session(seven, "MOVE P1, SPEED 200\nSEAM ON, CAM\nMOVE P2, SPEED 150\n")
+    result = session.run()
+    assert result.ok, result.report
+    log = result.log
+    np.testing.assert_allclose(log["seam_deviation"][-1, :3], [0.003, 0.0, 0.002], atol=1e-4)
+    np.testing.assert_allclose(session.controller.tool_poses(log["q_cmd"][-1])[:3, 3], [0.453, -0.15, 0.502], atol=1e-4)
+    assert not log["wrist_mode"].any()
+
+
+def test_a_seven_axis_arm_carries_out_moves(seven):
+    result = seven_session(seven, "MOVE P1, SPEED 200\nMOVE P2, SPEED 150\n").run()
     assert result.ok, result.report
     line, X = result.log["line"], result.log["X_world_tool_fb"]
     first, second = X[line == 1], X[line == 2]

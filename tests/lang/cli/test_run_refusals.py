@@ -99,7 +99,7 @@ def test_a_missing_program_with_its_suffix_forgotten(folder):
     [
         ("pose = [5000, 0, 840, 180, 0, 180]", "RBL410", "% of the path is out of reach of puma560"),
         (POINT.format(-160), "RBL411", "J6 would pass its limit of 266 deg by 65.89 deg, first at 61.8 %"),
-        ("pose = [480, -220, 840, 180, 90, 180]", "RBL412", "at 69.8 % of the straight path J6"),
+        ("pose = [480, -220, 840, 180, 100, 170]", "RBL412", "at 62.7 % of the straight path J4"),
     ],
 )
 def test_a_move_that_the_robot_cannot_make_is_refused_before_any_motion(folder, second, code, said):

@@ -170,7 +170,8 @@ def test_what_the_joints_cannot_follow_is_a_fault_and_the_point_goes_on_along_th
     assert "times its limit to follow the seam" in fault.message
     assert n in (250, 251)
     np.testing.assert_allclose((KINEMATICS.forward(q) @ TOOL)[:3, 3], planned[n, :3, 3], atol=1e-9)
-    rest = going.rest(n + 1)
+    rest, whole = going.rest(n + 1)
+    assert whole
     assert len(rest) == len(planned) - n - 1
     np.testing.assert_allclose((KINEMATICS.forward(rest[-1]) @ TOOL)[:3, 3], planned[-1, :3, 3], atol=1e-9)
 

@@ -228,3 +228,61 @@ def test_an_arm_without_a_closed_form_goes_through_its_wrist_by_newton():
     found = planner.plan(start, command, TOOL)
     must_hold(found, E3[1])
     assert found.wrist is not None
+
+
+def test_a_move_whose_slower_profiles_round_to_the_same_cycles_is_slowed_all_the_same():
+    move = ((-90.6966, -21.1265, 20.5946, 94.6183, 0.9047, -24.6039),
+            (-78.7505, -17.611, 4.8456, -79.761, 0.4655, 149.7754))  # fmt: skip
+    for options in ({"wrist": "keep"}, {}):
+        found = plan(move, WristOptions(posture_first=20.0), speed=0.3, **options)
+        assert found.slowdown.factor < 3.0
+        if not options:
+            must_hold(found, move[1])
+
+
+def test_a_taught_pose_is_not_flipped_to_it_to_save_a_little_time():
+    """The path itself needs 1.4 times; another end would be a few rows faster with the tool 40 deg off."""
+    spec = load_builtin("manutec_r3")
+    kinematics = Kinematics(spec)
+    start, end = (np.radians(q) for q in ((-23.33, 39.95, -8.25, -11.66, -66.85, 137.2),
+                                          (-45.03, 60.33, 12.57, -10.49, -83.68, 123.09)))  # fmt: skip
+    X = kinematics.forward(end) @ TOOL
+    found = LinePlanner(spec, kinematics, Profile()).plan(start, MoveLinear(X_world_tool=X), TOOL)
+    assert found.wrist is None
+
+
+def test_c2_by_time_is_that_of_the_time_on_a_move_that_only_turns():
+    start = np.radians((10, 20, 10, 30, 40, -50))
+    X = KINEMATICS.forward(start) @ TOOL
+    other = next(each.q for each in KINEMATICS.solutions(X @ inverse(TOOL), start)
+                 if str(each.branch) == str(KINEMATICS.branch_of(start)).replace("NOFLIP", "FLIP"))  # fmt: skip
+    end = np.degrees(other) + (0, 0, 0, 0, 0, 30)
+    options = replace(WristOptions(remedies=False).only(), remaining_time=0.2)
+    found = plan((np.degrees(start), end), options, speed=0.1)
+    assert found.wrist.condition == "C2"
+    assert 0.8 < found.wrist.share < 1.0
+
+
+def test_turns_of_a_taught_pose_reach_an_end_that_is_not_the_nearest():
+    move = (10, 5, 5, 20, 30, 0), (10, 5, 5, 20, 30, 320)
+    found = plan(move, q_end=None, turns=(0, 0, 0, 0, 0, 1), speed=0.1)
+    must_hold(found, move[1])
+    seven = plan(move, q_end=None, turns=(0, 0, 0, 0, 0, 1, 0), speed=0.1)  # one too many says nothing
+    np.testing.assert_array_equal(seven.q, found.q)
+
+
+def test_long_moves_are_chosen_in_coarser_steps_and_checked_in_fine_ones():
+    found = plan(E1, duration=120.0, speed=None)
+    must_hold(found, E1[1])
+    assert len(found.q) == 15001
+
+
+def test_a_hold_is_said_with_what_it_came_to():
+    found = plan(E2, WristOptions(posture="rpy"), held=("TILT",))
+    assert re.search(r"from its posture on the path, TILT up to \d+\.\d deg$", found.notes[0])
+
+
+def test_a_whole_turn_of_the_waist_is_not_passed_over():
+    move = (-180, 20, 10, 30, 40, 50), (180, 20, 10, 30, 40, 50)
+    with pytest.raises(Fault, match="RBL412"):
+        plan(move, speed=0.1)

@@ -85,3 +85,28 @@ def test_what_a_cell_may_not_say(tmp_path, text, code):
         sensor(text, folder)
     assert caught.value.code == code
     assert caught.value.line >= 1
+
+
+@pytest.mark.parametrize(("content", "code"), [
+    ("0,0,0,0\n" + "1" * 140_000 + ",0,0,0\n", "RBL604"), ('0,0,0,0\n"1,0,0,0\n', "RBL604"),
+    ("0,nan,0,0\n1,0,0,0\n", "RBL604"), ("0,0,0\n1,0,0,0\n", "RBL604"),
+])  # fmt: skip
+def test_a_damaged_table_is_located_and_no_first_line_is_dropped_unseen(tmp_path, content, code):
+    (tmp_path / "seam.csv").write_text(content)
+    with pytest.raises(FileFault) as caught:
+        sensor('kind = "table"\nfile = "seam.csv"\n', tmp_path)
+    assert caught.value.code == code
+
+
+def test_a_name_with_a_null_and_a_link_to_itself_are_refused(tmp_path):
+    (tmp_path / "ring.csv").symlink_to(tmp_path / "ring.csv")
+    for text in ('kind = "table"\nfile = "a\\u0000b.csv"\n', 'kind = "table"\nfile = "ring.csv"\n'):
+        with pytest.raises(FileFault, match=r"RBL60[02]"):
+            sensor(text, tmp_path)
+
+
+def test_a_move_that_only_turns_keeps_the_line_frame_of_the_one_before():
+    found = sensor('kind = "ramp"\ndeviation_mm_deg = [0, 5, 0, 0, 0, 0]\nover_mm = 1\nframe = "line"\n')
+    np.testing.assert_allclose(found.read(1.0, np.zeros(3)), [0, 5 * MM, 0, 0, 0, 0], atol=1e-12)
+    found.read(1.0, np.array([0.0, 1.0, 0.0]))
+    np.testing.assert_allclose(found.read(1.0, np.zeros(3)), [-5 * MM, 0, 0, 0, 0, 0], atol=1e-12)
