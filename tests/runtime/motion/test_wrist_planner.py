@@ -260,7 +260,7 @@ def test_c2_by_time_is_that_of_the_time_on_a_move_that_only_turns():
     options = replace(WristOptions(remedies=False).only(), remaining_time=0.2)
     found = plan((np.degrees(start), end), options, speed=0.1)
     assert found.wrist.condition == "C2"
-    assert 0.8 < found.wrist.share < 1.0
+    assert 0.5 < found.wrist.share < 1.0  # 0.2 s before the end of a short move; not at its first sample
 
 
 def test_turns_of_a_taught_pose_reach_an_end_that_is_not_the_nearest():
