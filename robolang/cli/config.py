@@ -87,6 +87,8 @@ def _print(robot: str, rows: list[dict[str, Any]]) -> None:
 
 
 def _shown(value: Any) -> str:
+    if isinstance(value, tuple):
+        return f"[{', '.join(map(_shown, value))}]" if value else "as the robot file"
     if isinstance(value, list):
         return _shown(value[0]) if len(set(value)) == 1 else ", ".join(map(_shown, value))
     if value is None:

@@ -181,7 +181,7 @@ def choose(line: LineSolver, s: Array, q: Array, q_end: Array, period_s: float, 
             choice = replace(choice, deviation=deviation if ratio <= 1.0 else math.inf)
         found.append(choice)
     if not found:
-        raise _refusal(line, trigger, arrives, failures)
+        raise _refusal(line, trigger, arrives, failures, _what_would_do(line, s, excess))
     return min(found, key=lambda choice: (choice.deviation, choice.ratio))
 
 
@@ -292,20 +292,38 @@ def _windows(line: LineSolver, q: Array, s: Array, q_end: Array, trigger: Trigge
                 continue
             law = law_between(q, q_back, s, first, last)
             solver = WristSolver(line, law, q[first], q_end, back)
-            yield Choice(solver=solver, trigger=trigger, switch=float(s[first]), remedy="back to the posture")
+            remedy = "back to the posture" if last < len(s) - 1 else "other switch"
+            yield Choice(solver=solver, trigger=trigger, switch=float(s[first]), remedy=remedy)
 
 
-def _refusal(line: LineSolver, trigger: Trigger | None, arrives: bool, failures: list[Fault]) -> Fault:
+def _what_would_do(line: LineSolver, s: Array, excess: Excess) -> str:
+    """Return what makes a refused move possible: the wrist of its start, where that does, or another line."""
+    via = ("A via point beside the line, or another place of the work piece, gives the main axes room; a slower SPEED "
+           "does not.")  # fmt: skip
+    try:
+        q = line.joints(s)
+        ratio, _, _ = excess(q)
+    except Fault:
+        return via
+    if ratio > MOST_SLOWDOWN:
+        return via
+    angles = ", ".join(f"{angle / DEG:.1f}" for angle in q[-1, -WRIST_AXES:])
+    slowed = f", slowed {ratio:.1f} times," if ratio > 1.0 else ""
+    return (f"With WRIST KEEP it runs{slowed} and ends with J4 to J6 at {angles} deg: teach that end, or go over a via "
+            "point.")  # fmt: skip
+
+
+def _refusal(line: LineSolver, trigger: Trigger | None, arrives: bool, failures: list[Fault], hint: str) -> Fault:
     """Return the refusal of a move for which nothing did: why the wrist has to change, and what the remedies met."""
     if arrives or trigger is None:
         if failures:
             return failures[0]
         return Fault("RBL412", f"the end needs another wrist configuration than {line.branch}, and no condition of the "
                      "profile lets the wrist change")  # fmt: skip
-    return explained(failures[0], trigger, len(failures) - 1)
+    return explained(failures[0], trigger, len(failures) - 1, hint)
 
 
-def explained(fault: Fault, trigger: Trigger, others: int = 0) -> Fault:
+def explained(fault: Fault, trigger: Trigger, others: int = 0, hint: str = "") -> Fault:
     """Return the refusal of a way through the wrist with the reason why the wrist has to go at all."""
     axis = "" if trigger.axis is None else f" of J{trigger.axis + 1}"
     tried = f", nor from {others} other switches" if others else ""
@@ -313,5 +331,5 @@ def explained(fault: Fault, trigger: Trigger, others: int = 0) -> Fault:
         fault.code if fault.code == "RBL411" else "RBL412",
         f"the wrist has to change on this straight move ({trigger.condition}, {CONDITIONS[trigger.condition]}{axis}, "
         f"at {100 * trigger.share:.1f} % of the path) and cannot from there{tried}: {fault.message}",
-        fault.hint,
+        hint or fault.hint,
     )

@@ -203,5 +203,15 @@ def test_a_path_that_is_lost_is_a_condition_of_its_own():
     assert (found.index, found.condition, found.axis) == (6, "reach", None)
 
 
+def test_the_two_hazards_of_the_specification_are_where_it_says():
+    """(vi): one move has no solution at 1.28 s, the other ends with J1 239 deg off, on another side of the arm."""
+    lost = carry_out(((-20, -25, -30, 50, -30, 50), (-55, -50, -35, -30, 30, 45)), C4, ROBOT, dt=0.04)
+    assert np.argmin(np.isfinite(lost.q_deg).all(axis=1)) * 0.04 == pytest.approx(1.28)
+    end = (-15, -45, -20, 10, 65, 75)
+    astray = carry_out(((-30, -20, -20, 5, -65, 60), end), C1_ANY, (119, 119, 148), dt=0.04)
+    assert abs(astray.q_deg[-1, 0] - end[0]) == pytest.approx(239, abs=1)
+    assert astray.off_line_mm < 1e-6  # the tool point is where it should be all the same
+
+
 def test_the_limits_of_the_robot_are_those_of_the_specification():
     assert np.degrees(SPEC.per_axis("limits", "speed")[3:]) == pytest.approx(ROBOT)

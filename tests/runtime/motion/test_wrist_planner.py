@@ -192,6 +192,7 @@ def test_a_refusal_names_condition_axis_place_what_was_tried_and_what_would_help
         assert "the wrist has to change" in fault.message
         assert "% of the path" in fault.message
         assert "via point" in fault.hint
+        assert "WRIST KEEP it runs" in fault.hint or "a slower SPEED does not" in fault.hint
 
 
 def test_a_bound_on_the_posture_refuses_what_turns_the_tool_further():
