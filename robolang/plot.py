@@ -12,7 +12,10 @@ from runtime.frames import Array
 WIDTH, HEIGHT = 640, 360
 LEFT, RIGHT, TOP, BOTTOM = 62, 16, 34, 46
 COLOURS = ("#0b6bcb", "#d1481c", "#2b8a3e", "#8a3ea8", "#b58900", "#555555")
+SHADES = ("#440154", "#3b528b", "#21918c", "#5ec962", "#fde725")
 _POINTS = 400
+_MAP_HEIGHT, _MAP_TOP, _MAP_RIGHT, _BAR = 420, 52, 104, 16  # of a map: height, margins beside its scale, its width
+_BANDS = 10.0
 _ROW, _LETTER = 18, 6.6  # height of a row of names, width of a letter in it
 
 
@@ -105,6 +108,29 @@ def as_svg(title: str, x_label: str, y_label: str, curves: Sequence[Curve], leve
     return "\n".join([*parts, *(["</g>"] if down else []), "</svg>", ""])
 
 
+def as_map_svg(title: str, x_label: str, y_label: str, scale_label: str, x: Array, y: Array, values: Array,
+               every: float | None = None) -> str:  # fmt: skip
+    """Return an SVG of values (len(y), len(x)) over a plane, as bands of colour beside their scale.
+
+    ``x`` and ``y`` rise, at least two points each; between the points of a row values are taken as linear. The
+    smallest and the largest are marked where the values differ. What is not finite stays blank. ``every``: distance of
+    the ticks on both axes.
+    """
+    view = _MapView(x, y)
+    edges = _bands(values)
+    parts = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {_MAP_HEIGHT}" font-family="sans-serif" '
+        f'font-size="12" fill="#222"><rect width="{WIDTH}" height="{_MAP_HEIGHT}" fill="#fff"/>',
+        f'<text x="{LEFT}" y="20" font-size="14">{escape(title)}</text>',
+        *(_band(view, values, edge, colour) for edge, colour in zip(edges[:-1], _shades(len(edges) - 1), strict=True)),
+        *_map_axes(view, x_label, y_label, every),
+        *_scale(edges, scale_label),
+    ]
+    if len(edges) > 2:
+        parts += _extremes(view, x, y, values)
+    return "\n".join([*parts, "</svg>", ""])
+
+
 def as_html(title: str, svg: str) -> str:
     """Return one page with a plot in it."""
     return f'<!doctype html>\n<html lang="en"><meta charset="utf-8"><title>{escape(title)}</title>\n{svg}</html>\n'
@@ -178,6 +204,117 @@ def _mark(view: _View, mark: Mark) -> list[str]:
     towards_zero = 13 if (mark.y or 0.0) > 0.0 else -4
     return [f'<line x1="{LEFT}" y1="{y:.1f}" x2="{WIDTH - RIGHT}" y2="{y:.1f}"{dash}',
             _text(LEFT + 6, y + towards_zero, mark.name, "start")]  # fmt: skip
+
+
+class _MapView:
+    """Maps values to the picture of a map; every row of points has a stripe that reaches half way to the next."""
+
+    def __init__(self, x: Array, y: Array) -> None:
+        self.x_bounds, self.y_bounds = (float(x[0]), float(x[-1])), (float(y[0]), float(y[-1]))
+        self.columns = x
+        self.rows = [f"{self.y(edge):.1f}" for edge in (y[0], *(y[1:] + y[:-1]) / 2.0, y[-1])]
+
+    def x(self, value: float) -> float:
+        low, high = self.x_bounds
+        return LEFT + (value - low) / (high - low) * (WIDTH - LEFT - _MAP_RIGHT)
+
+    def y(self, value: float) -> float:
+        low, high = self.y_bounds
+        return _MAP_HEIGHT - BOTTOM - (value - low) / (high - low) * (_MAP_HEIGHT - _MAP_TOP - BOTTOM)
+
+
+def _bands(values: Array) -> list[float]:
+    """Return round edges of about ten bands that span the values; two equal ones where the values are all one."""
+    found = values[np.isfinite(values)]
+    low, high = (float(found.min()), float(found.max())) if found.size else (0.0, 0.0)
+    if not high - low > 1e-9 * max(abs(low), abs(high)):
+        return [low, low]
+    raw = (high - low) / _BANDS
+    base = 10.0 ** np.floor(np.log10(raw))
+    size = float(next(step * base for step in (1.0, 2.0, 2.5, 5.0, 10.0) if step * base >= raw * (1.0 - 1e-9)))
+    first, last = int(np.floor(low / size + 1e-9)), int(np.ceil(high / size - 1e-9))
+    return [float(f"{k * size:.10g}") + 0.0 for k in range(first, last + 1)]
+
+
+def _band(view: _MapView, values: Array, edge: float, colour: str) -> str:
+    """Return everything from ``edge`` upward in one colour; the next band is painted over it."""
+    level = edge - 1e-9 * abs(edge)  # rounding can leave the smallest value a little below the first edge
+    runs = []
+    for row, above in enumerate(values >= level):
+        change = np.flatnonzero(np.diff(np.concatenate([[False], above, [False]]))).tolist()
+        for first, end in zip(change[::2], change[1::2], strict=True):
+            left, right = (f"{view.x(_crossing(view.columns, values[row], k, level)):.1f}" for k in (first, end))
+            runs.append(f"M{left} {view.rows[row]}H{right}V{view.rows[row + 1]}H{left}Z")
+    return f'<path d="{"".join(runs)}" fill="{colour}" shape-rendering="crispEdges"/>'
+
+
+def _crossing(x: Array, values: Array, k: int, level: float) -> float:
+    """Return where a row passes ``level`` between points k-1 and k; half way beside a gap, the end beyond the last."""
+    if k in (0, len(x)):
+        return float(x[0] if k == 0 else x[-1])
+    share = (level - values[k - 1]) / (values[k] - values[k - 1])
+    return float(x[k - 1] + (share if np.isfinite(share) else 0.5) * (x[k] - x[k - 1]))
+
+
+def _shades(count: int) -> list[str]:
+    """Return colours from dark to light, as many as there are bands."""
+    anchors = np.array([[int(shade[k : k + 2], 16) for k in (1, 3, 5)] for shade in SHADES], dtype=np.float64)
+    at = np.linspace(0.0, len(SHADES) - 1.0, count) if count > 1 else np.array([(len(SHADES) - 1.0) / 2.0])
+    mixed = [np.interp(at, np.arange(len(SHADES)), anchors[:, k]) for k in range(3)]
+    return ["#" + "".join(f"{round(float(part[k])):02x}" for part in mixed) for k in range(count)]
+
+
+def _map_axes(view: _MapView, x_label: str, y_label: str, every: float | None) -> list[str]:
+    bottom, middle = _MAP_HEIGHT - BOTTOM, (_MAP_TOP + _MAP_HEIGHT - BOTTOM) / 2
+    parts = []
+    for tick in _inner_ticks(view.x_bounds, every):
+        parts += [_line(view.x(tick), bottom, view.x(tick), bottom + 5, "#666"),
+                  _text(view.x(tick), bottom + 18, f"{tick:g}", "middle")]  # fmt: skip
+    for tick in _inner_ticks(view.y_bounds, every):
+        parts += [_line(LEFT - 5, view.y(tick), LEFT, view.y(tick), "#666"),
+                  _text(LEFT - 8, view.y(tick) + 4, f"{tick:g}", "end")]  # fmt: skip
+    return [
+        *parts,
+        _text((LEFT + WIDTH - _MAP_RIGHT) / 2, _MAP_HEIGHT - 8, x_label, "middle"),
+        f'<text x="16" y="{middle:.0f}" text-anchor="middle" transform="rotate(-90 16 {middle:.0f})">'
+        f"{escape(y_label)}</text>",
+    ]
+
+
+def _inner_ticks(bounds: tuple[float, float], every: float | None) -> list[float]:
+    low, high = bounds
+    if every is None:
+        return [tick for tick in _ticks(bounds) if low <= tick <= high]
+    # ends of a range given in degrees and kept in radians come back a little short
+    first, last = int(np.ceil(low / every - 1e-9)), int(np.floor(high / every + 1e-9))
+    return [k * every + 0.0 for k in range(first, last + 1)]
+
+
+def _scale(edges: Sequence[float], label: str) -> list[str]:
+    """Return the column of colours beside the map, each edge with its value, and what the values are above it."""
+    x, height = WIDTH - _MAP_RIGHT + 22, _MAP_HEIGHT - _MAP_TOP - BOTTOM
+    step = height / (len(edges) - 1)
+    bottom = _MAP_HEIGHT - BOTTOM
+    parts = [_text(x, _MAP_TOP - 10, label, "start")]
+    for k, shade in enumerate(_shades(len(edges) - 1)):
+        parts.append(f'<rect x="{x}" y="{bottom - (k + 1) * step:.1f}" width="{_BAR}" height="{step:.1f}" '
+                     f'fill="{shade}" shape-rendering="crispEdges"/>')  # fmt: skip
+    if len(edges) == 2 and edges[0] == edges[1]:
+        return [*parts, _text(x + _BAR + 6, bottom - height / 2 + 4, f"{edges[0]:.4g}", "start")]
+    return [*parts, *(_text(x + _BAR + 6, bottom - k * step + 4, f"{edge:g}", "start") for k, edge in enumerate(edges))]
+
+
+def _extremes(view: _MapView, x: Array, y: Array, values: Array) -> list[str]:
+    """Return a white dot at the smallest value and a black one at the largest, and their names above the map."""
+    parts = []
+    for at, name, fill, edge, index in ((LEFT + 5, "smallest", "#fff", "#222", np.nanargmin(values)),
+                                        (LEFT + 165, "largest", "#222", "#fff", np.nanargmax(values))):  # fmt: skip
+        row, column = divmod(int(index), len(x))
+        look = f'r="5" fill="{fill}" stroke="{edge}" stroke-width="1.5"/>'
+        parts += [f'<circle cx="{view.x(float(x[column])):.1f}" cy="{view.y(float(y[row])):.1f}" {look}',
+                  f'<circle cx="{at}" cy="{_MAP_TOP - 14}" {look}',
+                  _text(at + 12, _MAP_TOP - 10, f"{name} {values[row, column]:.4g}", "start")]  # fmt: skip
+    return parts
 
 
 def _dot(x: float, y: float, colour: str) -> str:

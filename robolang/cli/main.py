@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from robolang.cli import check, compare, config, explain, kin, robot, run, step, wrist_demo
+from robolang.cli import check, compare, config, explain, inertia, kin, robot, run, step, weigh, wrist_demo
 
 app = typer.Typer(
     name="robolang",
@@ -21,6 +21,8 @@ app = typer.Typer(
 app.command("run")(run.run)
 app.command("compare")(compare.compare)
 app.command("step")(step.step)
+app.command("inertia")(inertia.inertia)
+app.command("weigh")(weigh.weigh)
 app.command("wrist-demo")(wrist_demo.wrist_demo)
 app.command("check")(check.check)
 app.command("explain")(explain.explain)

@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 import typer
 
 from robolang.cli import servo_options as o
+from robolang.cli import values
 from robolang.cli.errors import MOTION, reported
 from robolang.cli.values import OptionValueError, numbers
 
 if TYPE_CHECKING:
     from robolang.step import PlantName, StepRequest, StepResult
-    from runtime.robot.payload import Payload
-    from runtime.robot.spec import RobotSpec
 
-PAYLOAD = ("mass kg", "x mm", "y mm", "z mm")
 
 
 def step(
@@ -68,10 +66,15 @@ def step(
         in_force = load_settings(spec, pose(tool_point, np.eye(3)), None, profile, options)
         if not (abs(size) <= 360.0):
             raise OptionValueError("--size", f"{size:g} is not between -360 and 360 deg")
-        carried = _payload(payload, "--payload", spec)
+        carried = values.payload(payload, "--payload", spec)
+        values.note_overload(carried, "--payload", spec)
+        declared = carried
+        if load is not None:
+            declared = values.payload(load, "--load", spec)
+            values.note_overload(declared, "--load", spec)
         request = StepRequest(
-            robot=spec, axis=axis - 1, q=_posture(joints, spec), size=size * DEG, carried=carried,
-            declared=carried if load is None else _payload(load, "--load", spec),
+            robot=spec, axis=axis - 1, q=values.posture(joints, spec), size=size * DEG, carried=carried,
+            declared=declared,
             profile=in_force.profile, plant=cast("PlantName", plant), ideal=drives == "ideal", locked=lock,
             seconds=seconds,
             tool=tool_point,
@@ -93,33 +96,6 @@ def step(
             _write_plot(plot, request, result)
     if not result.stable:
         raise typer.Exit(MOTION)
-
-
-def _posture(joints: str | None, spec: "RobotSpec") -> Any:
-    """Return q (n,) rad of ``--joints``; by default zero, or the nearest angle in range."""
-    import numpy as np
-
-    if joints is None:
-        return np.clip(np.zeros(spec.n), spec.lower, spec.upper)
-    names = tuple(f"J{i}" for i in range(1, spec.n + 1))
-    return np.deg2rad(numbers(joints, option="--joints", names=names))
-
-
-def _payload(text: str, option: str, spec: "RobotSpec") -> "Payload":
-    """Return a payload; over the rated one it is said and taken all the same, for this is the bench."""
-    import numpy as np
-
-    from runtime.faults import Fault
-    from runtime.robot.payload import declared
-    from runtime.units import MM
-
-    mass, *cog = numbers(text, option=option, names=PAYLOAD)
-    if mass > spec.rated_payload:
-        typer.echo(f"note: {option} {mass:g} kg is over the rated {spec.rated_payload:g} kg of {spec.name}", err=True)
-    try:
-        return declared(mass, np.array(cog) * MM, max(spec.rated_payload, mass))
-    except Fault as fault:
-        raise OptionValueError(option, fault.message) from None
 
 
 _LINES = (

@@ -6,11 +6,17 @@ Imports the standard library and typer only, so that ``robolang --help`` stays q
 """
 
 import math
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 import typer
 
+if TYPE_CHECKING:
+    from runtime.frames import Array
+    from runtime.robot.payload import Payload
+    from runtime.robot.spec import RobotSpec
+
 OPTION_VALUE = "RBL703"
+PAYLOAD = ("mass kg", "x mm", "y mm", "z mm")
 MAX_ABS = 1e9
 
 
@@ -38,6 +44,38 @@ def numbers(text: str, *, option: str, names: tuple[str, ...]) -> tuple[float, .
     return tuple(
         _number(part.strip(), option, name, i) for i, (part, name) in enumerate(zip(parts, names, strict=True), start=1)
     )
+
+
+def posture(text: str | None, spec: "RobotSpec") -> "Array":
+    """Return joint angles (n,) rad of ``--joints``; without it zero, or the nearest angle in range."""
+    import numpy as np
+
+    if text is None:
+        return np.clip(np.zeros(spec.n), spec.lower, spec.upper)
+    names = tuple(f"J{i}" for i in range(1, spec.n + 1))
+    return np.deg2rad(numbers(text, option="--joints", names=names))
+
+
+def payload(text: str, option: str, spec: "RobotSpec", *, heavier: bool = True) -> "Payload":
+    """Return a payload of mass, kg, and centre of gravity, mm; ``heavier``: it may be over the rated one."""
+    import numpy as np
+
+    from runtime.faults import Fault
+    from runtime.robot.payload import declared
+    from runtime.units import MM
+
+    mass, *cog = numbers(text, option=option, names=PAYLOAD)
+    try:
+        return declared(mass, np.array(cog) * MM, max(spec.rated_payload, mass) if heavier else spec.rated_payload)
+    except Fault as fault:
+        raise OptionValueError(option, fault.message) from None
+
+
+def note_overload(carried: "Payload", option: str, spec: "RobotSpec") -> None:
+    """Say that a payload is over the rated one; it is taken all the same, for this is the bench."""
+    mass, rated = carried.mass, spec.rated_payload
+    if mass > rated:
+        typer.echo(f"note: {option} {mass:g} kg is over the rated {rated:g} kg of {spec.name}", err=True)
 
 
 def _number(text: str, option: str, name: str, position: int) -> float:

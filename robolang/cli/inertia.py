@@ -1,0 +1,175 @@
+"""``robolang inertia``: the inertia that the motor of every axis sees in a posture; or a map of it over two joints.
+
+``--json`` prints one object, in SI with angles in deg and axes from 1:
+
+    {"robot", "joints_deg", "payload_kg", "axes": [{"axis", "link_inertia", "rotor_inertia", "motor_inertia",
+                                                    "compensation", "gravity"}, ...]}
+    with --map  {"robot", "joints_deg", "payload_kg", "axis", "map", "smallest": {...}, "largest": {...}, "file"}
+
+Exit codes: 0; 2 a value or a robot that cannot be used; 4 the picture cannot be written.
+"""
+
+import json
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from robolang.cli import values
+from robolang.cli.errors import reported
+from robolang.cli.values import OptionValueError
+
+if TYPE_CHECKING:
+    from robolang.inertia import InertiaMap
+    from runtime.robot.spec import RobotSpec
+
+KG_CM2 = 1e-4
+"""kg m2 of a kg cm2, in which catalogues of motors give inertia."""
+
+TICKS_DEG = 45.0
+
+
+def inertia(
+    robot: Annotated[str, typer.Option("--robot", help="Built-in robot, or a .toml, .urdf or .xml file.")],
+    joints: Annotated[str | None, typer.Option("--joints", metavar="J1,J2,...", help="Posture, deg.")] = None,
+    payload: Annotated[str, typer.Option("--payload", metavar="M,X,Y,Z", help="Carried: kg, mm.")] = "0,0,0,0",
+    over: Annotated[
+        str | None, typer.Option("--map", metavar="J2,J3", help="Map over the ranges of these two joints.")
+    ] = None,
+    axis: Annotated[int | None, typer.Option("--axis", help="Axis that is mapped, from 1; default 1.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", metavar="FILE.svg", help="Draw the map there.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object, in SI.")] = False,
+) -> None:
+    """Print the inertia of every axis at the link and at the motor, and its gravity torque."""
+    _check_use(over, axis, out)
+    with reported():
+        import numpy as np
+
+        from robolang.inertia import at_posture, extremes, over_plane, plain
+        from robolang.project import load_any_robot
+
+        spec = load_any_robot(robot)
+        q, carried = values.posture(joints, spec), values.payload(payload, "--payload", spec)
+        values.note_overload(carried, "--payload", spec)
+        head = {"robot": spec.name, "joints_deg": [float(f"{angle:.12g}") + 0.0 for angle in np.rad2deg(q)],
+                "payload_kg": carried.mass}  # fmt: skip
+        if over is None:
+            found: dict[str, Any] = {**head, "axes": plain(at_posture(spec, q, carried))}
+            if as_json:
+                typer.echo(json.dumps(found))
+            else:
+                _print(found)
+            return
+        plane, mapped = _plane(over, spec), _axis(axis, spec)
+        if out is not None:
+            from robolang.storage import check_writable
+
+            check_writable(out)
+        drawn = over_plane(spec, mapped, plane, q, carried)
+        found = {**head, "axis": mapped + 1, "map": [joint + 1 for joint in plane], **extremes(drawn),
+                 "file": None if out is None else str(out)}  # fmt: skip
+        if out is not None:
+            _draw(out, spec, drawn, carried.mass)
+        if as_json:
+            typer.echo(json.dumps(found))
+        else:
+            _print_extremes(found)
+
+
+# --- options ---------------------------------------------------------------------------------------------------------
+
+
+def _check_use(over: str | None, axis: int | None, out: Path | None) -> None:
+    for option, value in (("--axis", axis), ("--out", out)):
+        if over is None and value is not None:
+            raise OptionValueError(option, "is of a map; give --map too")
+    if out is not None and out.suffix != ".svg":
+        raise OptionValueError("--out", f"'{out}' must end in .svg")
+
+
+def _plane(text: str, spec: "RobotSpec") -> tuple[int, int]:
+    """Return the two joints (0-based) of ``J2,J3``; ``OptionValueError``."""
+    words = text.split(",")
+    if len(words) != 2:
+        given = "1 is" if len(words) == 1 else f"{len(words)} are"
+        raise OptionValueError("--map", f"2 joints are needed, such as J2,J3, but {given} given")
+    first, second = (_joint(word.strip(), position, spec) for position, word in enumerate(words, start=1))
+    if first == second:
+        raise OptionValueError("--map", f"is J{first + 1} again; two different joints span a map", 2)
+    return first, second
+
+
+def _joint(word: str, position: int, spec: "RobotSpec") -> int:
+    given = re.fullmatch(r"[Jj]?([0-9]{1,2})", word)
+    if given is None or not 1 <= int(given[1]) <= spec.n:
+        shown = word if len(word) <= 40 else f"{word[:37]}..."
+        raise OptionValueError("--map", f"{shown!r} is not one of J1 to J{spec.n}", position)
+    return int(given[1]) - 1
+
+
+def _axis(axis: int | None, spec: "RobotSpec") -> int:
+    if axis is not None and not 1 <= axis <= spec.n:
+        raise OptionValueError("--axis", f"{axis} is not one of 1 to {spec.n}")
+    return 0 if axis is None else axis - 1
+
+
+# --- output ----------------------------------------------------------------------------------------------------------
+
+
+def _print(found: dict[str, Any]) -> None:
+    from rich import box
+    from rich.table import Table
+
+    from robolang.cli.console import Console
+    from robolang.diagnostics import safe
+
+    angles = ", ".join(f"{angle:g}" for angle in found["joints_deg"])
+    table = Table(title=safe(f"{found['robot']} at ({angles}) deg{_with(found['payload_kg'])}"), box=box.SIMPLE_HEAD,
+                  padding=(0, 1, 0, 0), pad_edge=False)  # fmt: skip
+    for heading in ("axis", "link D\nkg m2", "rotor N^2 J\nkg m2", "at the motor\nkg cm2", "compensation\nkg cm2",
+                    "gravity\nN m"):  # fmt: skip
+        table.add_column(heading, justify="left" if heading == "axis" else "right", no_wrap=True)
+    for row in found["axes"]:
+        table.add_row(f"J{row['axis']}", f"{row['link_inertia']:.4g}", f"{row['rotor_inertia']:.4g}",
+                      f"{row['motor_inertia'] / KG_CM2:.4g}", f"{row['compensation'] / KG_CM2:.4g}",
+                      f"{round(row['gravity'], 3) + 0.0:.3f}")  # fmt: skip
+    console = Console()
+    console.print(table)
+    console.print("at the motor: D / N^2 + J; 1 kg cm2 = 1e-4 kg m2", style="italic")
+
+
+def _print_extremes(found: dict[str, Any]) -> None:
+    from robolang.diagnostics import safe
+
+    first, second = found["map"]
+    over = f"over J{first} and J{second}{_with(found['payload_kg'])}"
+    typer.echo(safe(f"{found['robot']}: inertia of J{found['axis']} at the motor {over}"))
+    low, high = (found[name]["motor_inertia"] for name in ("smallest", "largest"))
+    if not high - low > 1e-9 * high:
+        typer.echo(f"  {low / KG_CM2:.4g} kg cm2 everywhere: these two joints do not change it")
+    for name in ("smallest", "largest") if high - low > 1e-9 * high else ():
+        at = found[name]
+        x, y = at["joints_deg"]
+        typer.echo(f"  {name:<9} {at['motor_inertia'] / KG_CM2:.4g} kg cm2 (link D {at['link_inertia']:.4g} kg m2) "
+                   f"at J{first} {x:.1f}, J{second} {y:.1f} deg")  # fmt: skip
+    if found["file"] is not None:
+        typer.echo(safe(f"  drawn in {found['file']}"))
+
+
+def _with(mass: float) -> str:
+    return f" with {mass:g} kg" if mass else ""
+
+
+def _draw(path: Path, spec: "RobotSpec", found: "InertiaMap", mass: float) -> None:
+    from robolang.plot import as_map_svg
+    from robolang.storage import write_atomic
+    from runtime.units import DEG
+
+    first, second = (f"J{joint + 1}" for joint in found.joints)
+    title = f"{spec.name}{_with(mass)}: inertia of J{found.axis + 1} at its motor, D / N^2 + J"
+    others = [joint for joint in range(found.axis + 1, spec.n) if joint not in found.joints]  # it depends on these
+    held = ", ".join(f"J{joint + 1} {round(found.q[joint] / DEG, 3) + 0.0:g}" for joint in others)
+    svg = as_map_svg(title, f"{first}, deg{f' (at {held} deg)' if held else ''}", f"{second}, deg", "kg cm2",
+                     found.x / DEG, found.y / DEG, found.motor / KG_CM2, every=TICKS_DEG)  # fmt: skip
+    write_atomic(path, lambda stream: stream.write(svg.encode("utf-8")))

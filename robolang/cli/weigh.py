@@ -1,0 +1,107 @@
+"""``robolang weigh [PROG]``: mass and centre of gravity of what the arm carries, from the torques of a short exercise.
+
+``--json`` prints one object, in kg, mm, deg and N m:
+
+    {"robot", "plant", "home_deg", "seconds", "amplitudes_deg", "estimated": {"mass_kg", "mass_sd_kg", "cog_mm",
+     "cog_sd_mm"}, "true": {"mass_kg", "cog_mm"}, "friction_off_pct", "left_rms_nm", "left_peak_nm", "load"}
+
+Exit codes: 0; 2 a value, a cell or a robot that cannot be used; 3 the exercise was refused or ended with an alarm.
+"""
+
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, cast
+
+import typer
+
+from robolang.cli import values
+from robolang.cli.errors import reported
+from robolang.cli.values import OptionValueError
+
+if TYPE_CHECKING:
+    from robolang.weigh import PlantName, WeighRequest
+    from runtime.plant.cell import CellSpec
+
+MOST_AMPLITUDE = 90.0
+
+
+def weigh(
+    program: Annotated[str | None, typer.Argument(metavar="[PROG]", help="Program, for the cell beside it.")] = None,
+    cell: Annotated[str | None, typer.Option(help="Cell file (.toml).")] = None,
+    robot: Annotated[str | None, typer.Option(help="Built-in robot or robot file, in place of the cell's.")] = None,
+    payload: Annotated[
+        str | None, typer.Option("--payload", metavar="M,X,Y,Z", help="True body beside the hand: kg, mm.")
+    ] = None,
+    plant: Annotated[str, typer.Option("--plant", help="'mujoco' or 'rigid' ideal arm.")] = "mujoco",
+    amplitude: Annotated[
+        float | None, typer.Option("--amplitude", metavar="DEG", help="Swing of the wrist axes; default: what fits.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+) -> None:
+    """Weigh what the arm carries: mass, centre of gravity and the LOAD to write."""
+    if plant not in ("mujoco", "rigid"):
+        raise OptionValueError("--plant", f"'{plant}' is not one of mujoco, rigid")
+    if amplitude is not None and not 0.0 < amplitude <= MOST_AMPLITUDE:  # NaN is refused too
+        raise OptionValueError("--amplitude", f"{amplitude:g} is not above 0 and at most {MOST_AMPLITUDE:g} deg")
+    if program is not None and not Path(program).exists():
+        raise OptionValueError("PROG", f"there is no file '{program}'")
+    with reported():
+        from robolang.project import load_cell_and_settings
+        from robolang.weigh import WeighRequest, carried, plan_exercise
+        from robolang.weigh import as_json as figures
+        from robolang.weigh import weigh as run_weigh
+        from runtime.units import DEG
+
+        where = None if program is None else Path(program)
+        found_cell, in_force = load_cell_and_settings(where, cell, robot, None, {})
+        request = WeighRequest(
+            cell=found_cell,
+            added=None if payload is None else values.payload(payload, "--payload", found_cell.robot),
+            profile=in_force.profile,
+            plant=cast("PlantName", plant), amplitude=None if amplitude is None else amplitude * DEG,
+        )  # fmt: skip
+        _note(carried(request).mass, found_cell)
+        _say_what_comes(request, plan_exercise(request).amplitudes)
+        found = figures(request, run_weigh(request))
+        if as_json:
+            typer.echo(json.dumps(found))
+        else:
+            _print(found)
+
+
+def _note(mass: float, cell: "CellSpec") -> None:
+    rated = cell.robot.rated_payload
+    if mass > rated:
+        typer.echo(f"note: hand and --payload weigh {mass:g} kg, over the rated {rated:g} kg of {cell.robot.name}; no "
+                   "program can declare that", err=True)  # fmt: skip
+
+
+def _say_what_comes(request: "WeighRequest", amplitudes: Any) -> None:
+    from robolang.weigh import SECONDS
+    from runtime.units import DEG
+
+    swings = ", ".join(f"J{axis + 1} {by / DEG:.3g}" for axis, by in enumerate(amplitudes) if by > 0.0)
+    typer.echo(f"weighing: {SECONDS:g} s of motion about home, swings of {swings} deg", err=True)
+
+
+def _print(found: dict[str, Any]) -> None:
+    from robolang.diagnostics import safe
+
+    estimated, true = found["estimated"], found["true"]
+    typer.echo(safe(f"{found['robot']}, {found['plant']} arm, {found['seconds']:.1f} s"))
+    typer.echo(f"  {'':<20} {'estimated':>9}    {'+-':>6} {'true':>10}")
+    _row("mass, kg", estimated["mass_kg"], estimated["mass_sd_kg"], true["mass_kg"], 3)
+    if estimated["cog_mm"] is None:
+        typer.echo("  centre of gravity    unknown: the mass does not differ from nothing")
+    else:
+        for k, name in enumerate("xyz"):
+            _row(f"cog {name}, mm", estimated["cog_mm"][k], estimated["cog_sd_mm"][k], true["cog_mm"][k], 2)
+    typer.echo(f"\n{found['load']}")
+
+
+def _row(label: str, value: float, sd: float, true: float, digits: int) -> None:
+    # adding zero turns a rounded -0.0 into 0.0; an uncertainty is never shown as none
+    least = math.pow(10.0, -digits)
+    typer.echo(f"  {label:<20} {round(value, digits) + 0.0:9.{digits}f}    {max(sd, least):6.{digits}f} "
+               f"{round(true, digits) + 0.0:10.{digits}f}")  # fmt: skip

@@ -1,0 +1,97 @@
+"""Inertia of every axis at a posture and over a plane of two joints, at the link and at the motor.
+
+The total at the motor, which the velocity gain of a drive follows, is D / N^2 + J (docs/motor-inertia.md): D what hangs
+on the axis, J the rotor, N the ratio of the gear. ``compensation`` is Jc, what an identification at the motor found
+beyond D / N^2, and then takes the place of J, which it holds (document 003, 3.5). None is given here yet: it is 0.
+"""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from runtime.dynamics.motor_inertia import link_chain, link_inertia, motor_side
+from runtime.frames import Array
+from runtime.robot.model import ArmModel, spec_rotors
+from runtime.robot.payload import Payload
+from runtime.robot.spec import RobotSpec
+
+POINTS = 121
+"""Points of a map along each of its joints."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AxisInertia:
+    """An axis (from 1): D and N^2 J at the joint, their sum over N^2 at the motor, kg m2; gravity torque N m."""
+
+    axis: int
+    link_inertia: float
+    rotor_inertia: float
+    motor_inertia: float
+    compensation: float
+    gravity: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class InertiaMap:
+    """The inertia of ``axis`` over the ranges of two ``joints`` (all 0-based), the others as they are in ``q``.
+
+    ``x`` and ``y`` (N,) rad are angles of the first and of the second joint, ``link`` and ``motor`` (N, N) kg m2 the
+    inertia D at the joint and the total at the motor, one row per angle of the second joint.
+    """
+
+    axis: int
+    joints: tuple[int, int]
+    q: Array
+    x: Array
+    y: Array
+    link: Array
+    motor: Array
+
+
+def at_posture(spec: RobotSpec, q: Array, payload: Payload) -> list[AxisInertia]:
+    """Return the inertia of every axis at q (n,) rad with ``payload`` at the flange, added to the last link."""
+    chain, model = link_chain(spec, payload), ArmModel(spec)
+    model.set_payload(payload)
+    D, rotors, T = link_inertia(chain, q), spec_rotors(spec), model.gravity(q)
+    total, none = motor_side(chain, D + rotors), np.zeros(spec.n)
+    rows = zip(D.tolist(), rotors.tolist(), total.tolist(), none.tolist(), T.tolist(), strict=True)
+    return [
+        AxisInertia(axis=axis, link_inertia=d, rotor_inertia=rotor, motor_inertia=motor, compensation=extra, gravity=t)
+        for axis, (d, rotor, motor, extra, t) in enumerate(rows, start=1)
+    ]
+
+
+def over_plane(spec: RobotSpec, axis: int, joints: tuple[int, int], q: Array, payload: Payload) -> InertiaMap:
+    """Return the inertia of ``axis`` on a grid over the ranges of two joints (0-based), in one call."""
+    x, y = (np.linspace(spec.lower[joint], spec.upper[joint], POINTS) for joint in joints)
+    grid = np.broadcast_to(q, (POINTS, POINTS, spec.n)).copy()
+    grid[..., joints[0]], grid[..., joints[1]] = x, y[:, None]
+    chain = link_chain(spec, payload)
+    D = link_inertia(chain, grid)
+    motor = motor_side(chain, D + spec_rotors(spec))
+    return InertiaMap(axis=axis, joints=joints, q=q, x=x, y=y, link=D[..., axis], motor=motor[..., axis])
+
+
+def extremes(found: InertiaMap) -> dict[str, dict[str, Any]]:
+    """Return the smallest and the largest inertia of a map with the two angles of each, plain types, SI and deg.
+
+    Where many points have it, the first one stands for them.
+    """
+    places = {"smallest": int(np.argmin(found.motor)), "largest": int(np.argmax(found.motor))}
+    out = {}
+    for name, index in places.items():
+        row, column = divmod(index, len(found.x))
+        angles = np.rad2deg([found.x[column], found.y[row]]) + 0.0
+        out[name] = {
+            "link_inertia": float(found.link[row, column]),
+            "motor_inertia": float(found.motor[row, column]),
+            "joints_deg": [float(f"{angle:.10g}") for angle in angles],
+        }
+    return out
+
+
+def plain(rows: list[AxisInertia]) -> list[dict[str, Any]]:
+    """Return plain types without negative zeros, SI."""
+    return [{key: value + 0.0 if isinstance(value, float) else value for key, value in asdict(row).items()}
+            for row in rows]  # fmt: skip

@@ -1,0 +1,284 @@
+"""Weighing: the arm makes a short exercise about the home of its cell, and its torques say what it carries.
+
+The whole controller runs, with no LOAD declared: cycle, dynamics task, servo, motors, plant. Only planning is left out:
+the exercise is a sum of sines, written into INA set-point by set-point. Axis i swings by
+
+    A_i w(t) sin(2 pi k_i t / T)          k_i whole swings, no two axes alike; w rises and falls smoothly
+
+so that every axis passes every angle in both directions, at many combinations of the others. The wrist axes swing by
+the whole amplitude, the last one by twice of it, since it turns the centre of gravity round in the torque of the one
+before; the main axes by a fifth, since they only have to turn to be believed, and the tool should stay where it is.
+An axis that feels no weight anywhere, such as an upright waist, stands still.
+
+Range, speed and acceleration of every axis are checked over all servo ticks before anything moves. Supervision runs,
+except for its own opinion of payload and collision: there is no LOAD that could be wrong. What the torques of the
+exercise leave unexplained by any payload is judged afterwards instead (RBL516).
+"""
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from runtime.controller import Controller
+from runtime.dynamics.payload_identification import BodyModel, Knowledge, WeighedPayload, identify_payload
+from runtime.faults import Fault
+from runtime.frames import Array, frozen
+from runtime.motion.fine import FineInterpolator
+from runtime.plant.cell import CellSpec
+from runtime.plant.plant import Plant
+from runtime.profile import Profile
+from runtime.robot.payload import Payload
+from runtime.robot.spec import RobotSpec
+from runtime.servo.motor import torque_limit
+from runtime.units import DEG, MM
+
+PlantName = Literal["rigid", "mujoco"]
+
+AMPLITUDE = 25.0 * DEG
+"""Swing of the wrist axes where none is given, rad."""
+LEAST = 2.0 * DEG
+"""An axis that has less room stands still where no amplitude is given, rad."""
+MAIN, LAST = 0.2, 2.0
+"""Share of the amplitude by which the main axes and the last one swing."""
+WRIST = 3
+"""First axis that counts as wrist."""
+SECONDS = 12.0
+RAMP_S = 1.5
+"""Time in which the swing grows and dies away."""
+SETTLE_S = 0.4
+"""Time in which the arm finds its rest under the unknown load before it swings."""
+SWINGS = (5, 3, 2, 7, 4, 1, 6)
+"""Whole swings of each axis, in the order of the axes."""
+SHARE = 0.9
+"""Share of a limit that is used where no amplitude is given."""
+MARGIN = 1.0 * DEG
+"""Distance from the ends of the range: what the unknown load may push the arm beyond its command, rad."""
+FEELS = 1e-3
+"""Torque by weight, N m per kg at 1 m, below which an axis does not feel it."""
+BELIEVED = 3.0
+"""Standard uncertainties within which a mass may still be the rated one."""
+UNEXPLAINED = 0.05
+"""Share of the torque limit that no payload may leave unexplained."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WeighRequest:
+    """What is weighed where: ``added`` is a body beside the hand of the cell; ``amplitude`` rad (None: what fits)."""
+
+    cell: CellSpec
+    added: Payload | None = None
+    profile: Profile = field(default_factory=Profile)
+    plant: PlantName = "mujoco"
+    amplitude: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Exercise:
+    """Set-points from rest to rest (N, n) rad beside the home posture, and the swing of each axis (n,) rad."""
+
+    offsets: Array
+    amplitudes: Array
+
+    @property
+    def axes(self) -> list[int]:
+        """Axes that swing, 0-based."""
+        return [int(axis) for axis in np.flatnonzero(self.amplitudes)]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WeighResult:
+    """What was found and what is true."""
+
+    found: WeighedPayload
+    true: Payload
+    exercise: Exercise
+    seconds: float
+
+
+def carried(request: WeighRequest) -> Payload:
+    """Return what the plant really carries: the hand of the cell and the added body."""
+    hand, added = request.cell.hand, request.added
+    if added is None or added.mass == 0.0:
+        return Payload(mass=hand.mass, cog=frozen(hand.cog))
+    mass = hand.mass + added.mass
+    return Payload(mass=mass, cog=frozen((hand.mass * np.asarray(hand.cog) + added.mass * added.cog) / mass))
+
+
+# --- the exercise ----------------------------------------------------------------------------------------------------
+
+
+def plan_exercise(request: WeighRequest) -> Exercise:
+    """Return the exercise about home; ``Fault`` before anything moves.
+
+    RBL411 where an axis would leave its range, RBL404 where one would be too fast. Without an amplitude in the request
+    each axis swings by what its limits leave; RBL411 when they leave nothing.
+    """
+    robot, home, profile = request.cell.robot, request.cell.home, request.profile
+    unit = _shape(robot, profile.period_s)
+    wanted = _share(robot) * (AMPLITUDE if request.amplitude is None else request.amplitude)
+    if not wanted.any():
+        raise Fault("RBL411", f"no axis of {robot.name} feels the weight of what it carries")
+    fine = FineInterpolator(profile.ticks_per_cycle, profile.period_s, np.zeros(robot.n))
+    limits = robot.per_axis("limits", "speed"), robot.per_axis("limits", "acceleration")
+    most = np.min([limit / peak for limit, peak in zip(limits, fine.peaks(unit), strict=True)], axis=0)
+    room = np.minimum(robot.upper - home, home - robot.lower) - MARGIN
+    if request.amplitude is None:
+        fitting = np.minimum(wanted, np.minimum(SHARE * most, room))
+        wanted = np.where(fitting >= np.minimum(LEAST, wanted), fitting, 0.0)
+        if not wanted.any():
+            raise Fault("RBL411", f"home leaves no axis of {robot.name} {LEAST / DEG:g} deg to either side to swing",
+                        "choose a home further inside the joint ranges")  # fmt: skip
+    else:
+        _refuse(robot, home, wanted, room, most, request.amplitude)
+    return Exercise(offsets=frozen(unit * wanted), amplitudes=frozen(wanted))
+
+
+def _refuse(robot: RobotSpec, home: Array, wanted: Array, room: Array, most: Array, amplitude: float) -> None:
+    """Raise the fault of the first axis whose swing passes a limit; the hint says which amplitude would not."""
+    moving = wanted > 0.0
+    best = amplitude * float(np.min(np.minimum(room, most)[moving] / wanted[moving])) / DEG
+    hint = "home is too near to the end of a joint range"
+    if best >= 0.1:
+        hint = f"an amplitude of {math.floor(10.0 * best) / 10.0:g} deg fits; without one each axis does what it can"
+    for axis in np.flatnonzero(moving):
+        low, high, by = robot.lower[axis], robot.upper[axis], float(wanted[axis])
+        if by > room[axis]:
+            end = home[axis] + by if high - home[axis] < home[axis] - low else home[axis] - by
+            raise Fault("RBL411", f"J{axis + 1} would swing to {end / DEG:.1f} deg; its range is {low / DEG:g} to "
+                        f"{high / DEG:g} deg, with {MARGIN / DEG:g} deg kept free at its ends", hint)  # fmt: skip
+        if by > most[axis]:
+            raise Fault("RBL404", f"J{axis + 1} would swing by {by / DEG:.1f} deg and can by {most[axis] / DEG:.1f} "
+                        "deg in this time without passing its speed or acceleration", hint)  # fmt: skip
+
+
+def _share(robot: RobotSpec) -> Array:
+    """Return by which share of the amplitude each axis swings (n,); 0 for one that never feels weight."""
+    model = BodyModel(robot)
+    felt = np.zeros(robot.n)
+    zero = np.zeros(robot.n)
+    for q in np.random.default_rng(560).uniform(robot.lower, robot.upper, (16, robot.n)):
+        model.torque(q, zero, zero)
+        felt = np.maximum(felt, np.abs(model.regressor(q)).max(axis=1))
+    share = np.where(np.arange(robot.n) < WRIST, MAIN, 1.0)
+    if robot.n > WRIST:
+        share[-1] = LAST
+    return np.where(felt > FEELS, share, 0.0)
+
+
+def _shape(robot: RobotSpec, period_s: float) -> Array:
+    """Return the swings of all axes with amplitude 1, from rest to rest, one row for each cycle (N, n)."""
+    t = np.arange(round(SECONDS / period_s) + 1) * period_s
+    end = np.clip(np.minimum(t, t[-1] - t) / RAMP_S, 0.0, 1.0)
+    w = end**3 * (10.0 - 15.0 * end + 6.0 * end**2)
+    k = np.resize(SWINGS, robot.n)
+    return np.asarray(w[:, None] * np.sin(2.0 * math.pi * k * t[:, None] / t[-1]))
+
+
+# --- the run ---------------------------------------------------------------------------------------------------------
+
+
+def weigh(request: WeighRequest) -> WeighResult:
+    """Plan, move and weigh; ``Fault`` when the exercise is refused or the arm does not get through it."""
+    exercise = plan_exercise(request)
+    profile, rigid = _profile(request), request.plant == "rigid"
+    robot, true = request.cell.robot, carried(request)
+    controller = Controller(robot, _plant(request, profile), profile, request.cell.hand.X_flange_tool)
+    start = controller.areas.ina
+    _play(controller, np.zeros((round(SETTLE_S / profile.period_s), robot.n)) + start)
+    first = controller.recorder.tick
+    _play(controller, start + exercise.offsets)
+    log = controller.recorder.signals(controller.tool_poses)
+    watched = profile.supervision
+    known = Knowledge(
+        torque=torque_limit(robot), friction=0.0 if rigid else 1.0 if watched.friction is None else watched.friction,
+        springs=not rigid, friction_uncertainty=watched.friction_uncertainty,
+        torque_uncertainty=watched.torque_uncertainty,
+    )  # fmt: skip
+    found = identify_payload(robot, log["tau_sat"][first:], log["q_fb"][first:], ticks=profile.ticks_per_cycle,
+                             tick_s=profile.tick_s, known=known)  # fmt: skip
+    _explained(found, known.torque)
+    return WeighResult(found=found, true=true, exercise=exercise, seconds=controller.time_us / 1e6)
+
+
+def _profile(request: WeighRequest) -> Profile:
+    """Return the profile without the opinions on a payload that nobody has declared, and as the plant needs it."""
+    profile = request.profile
+    watched = replace(profile.supervision, payload_mismatch="off", collision=math.inf)
+    if request.plant == "mujoco":
+        return replace(profile, supervision=watched)
+    servo = replace(profile.servo, friction_compensation=0.0, spring_compensation=0.0, gravity_lead=0.0)
+    return replace(profile, supervision=replace(watched, friction=0.0), servo=servo)
+
+
+def _plant(request: WeighRequest, profile: Profile) -> Plant:
+    true = carried(request)
+    cell = replace(request.cell, hand=replace(request.cell.hand, mass=true.mass, cog=true.cog))
+    if request.plant == "mujoco":
+        from runtime.plant.mujoco_plant import MujocoPlant
+
+        return MujocoPlant(cell.robot, cell, profile.tick_s)
+    from runtime.plant.rigid_plant import RigidPlant
+
+    return RigidPlant(cell.robot, cell, profile.tick_s)
+
+
+def _play(controller: Controller, rows: Array) -> None:
+    """Send set-points (N, n), one in each cycle; ``Fault`` with the code of the alarm that ends it."""
+    for row in rows:
+        controller.areas.ina = row
+        if not controller.cycle() or controller.alarms:
+            alarm = controller.alarms[0]
+            at = alarm.tick * controller.profile.tick_s
+            raise Fault(alarm.code, f"while weighing, at {at:.3f} s: {alarm.message}", alarm.hint)
+
+
+def _explained(found: WeighedPayload, torque: Array) -> None:
+    share = found.peak / torque
+    axis = int(np.argmax(share))
+    if share[axis] > UNEXPLAINED:
+        raise Fault("RBL516", f"up to {found.peak[axis]:.1f} N m of J{axis + 1} in the exercise belong to no payload",
+                    "clear the space about home; then look at the drive, brake and friction of the axis")  # fmt: skip
+
+
+# --- what is shown ---------------------------------------------------------------------------------------------------
+
+
+def load_statement(found: WeighedPayload, rated: float) -> str:
+    """Return the LOAD to paste: kg and mm with the digits that their uncertainty leaves, at most 3 and 1 decimals.
+
+    A mass over the rated one by no more than its uncertainty explains is written as the rated one, to be declared.
+    """
+    if found.cog is None or found.cog_sd is None:
+        return "LOAD (0, 0, 0), 0"
+    cog = ", ".join(_rounded(c / MM, sd / MM, 1) for c, sd in zip(found.cog, found.cog_sd, strict=True))
+    excess = found.mass - rated
+    mass = rated if 0.0 < excess < BELIEVED * found.mass_sd else found.mass
+    return f"LOAD ({cog}), {_rounded(mass, found.mass_sd, 3)}"
+
+
+def _rounded(value: float, sd: float, most: int) -> str:
+    digits = min(most, max(0, -math.floor(math.log10(sd)))) if sd > 0.0 else most
+    text = f"{value:.{digits}f}"
+    text = text.rstrip("0").rstrip(".") if digits else text
+    return "0" if text == "-0" else text
+
+
+def as_json(request: WeighRequest, result: WeighResult) -> dict[str, Any]:
+    """Return the figures in plain types, in kg, mm, deg and N m; a centre of gravity that is not known is None."""
+    found, true = result.found, result.true
+    cog, sd = (None if x is None else [float(v) / MM for v in x] for x in (found.cog, found.cog_sd))
+    return {
+        "robot": request.cell.robot.name,
+        "plant": request.plant,
+        "home_deg": [float(x) for x in request.cell.home / DEG],
+        "seconds": result.seconds,
+        "amplitudes_deg": [float(x) for x in result.exercise.amplitudes / DEG],
+        "estimated": {"mass_kg": found.mass, "mass_sd_kg": found.mass_sd, "cog_mm": cog, "cog_sd_mm": sd},
+        "true": {"mass_kg": true.mass, "cog_mm": [float(x) / MM for x in true.cog]},
+        "friction_off_pct": [float(x) * 100.0 for x in found.friction],
+        "left_rms_nm": [float(x) for x in found.left],
+        "left_peak_nm": [float(x) for x in found.peak],
+        "load": load_statement(found, request.cell.robot.rated_payload),
+    }
