@@ -172,6 +172,15 @@ _POINTS = (
     ),
 )
 
+_IDENTIFICATION = (
+    (
+        "RBL420",
+        "test-motion-refused",
+        "A test motion of identification would leave the range, the speed, the acceleration or the torque of a joint.",
+        "Identify the other axes with --axis, carry less, or take another robot; nothing has moved.",
+    ),
+)
+
 _COMMAND = (
     ("RBL701", "file-missing", "The program file does not exist.", "Check the name and the folder."),
     (
@@ -209,6 +218,6 @@ _COMMAND = (
 runtime.faults.register(
     *(
         Code(code=code, name=name, meaning=meaning, remedy=remedy)
-        for code, name, meaning, remedy in (*_TEXT, *_MEANING, *_POINTS, *_COMMAND)
+        for code, name, meaning, remedy in (*_TEXT, *_MEANING, *_POINTS, *_IDENTIFICATION, *_COMMAND)
     )
 )

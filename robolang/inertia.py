@@ -2,7 +2,7 @@
 
 The total at the motor, which the velocity gain of a drive follows, is D / N^2 + J (docs/motor-inertia.md): D what hangs
 on the axis, J the rotor, N the ratio of the gear. ``compensation`` is Jc, what an identification at the motor found
-beyond D / N^2, and then takes the place of J, which it holds (document 003, 3.5). None is given here yet: it is 0.
+beyond D / N^2, and takes the place of J, which it holds (document 003, 3.5). It is 0 where none is given.
 """
 
 from dataclasses import asdict, dataclass
@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from runtime.dynamics.compensation import Compensation
 from runtime.dynamics.motor_inertia import link_chain, link_inertia, motor_side
 from runtime.frames import Array
 from runtime.robot.model import ArmModel, spec_rotors
@@ -49,13 +50,18 @@ class InertiaMap:
     motor: Array
 
 
-def at_posture(spec: RobotSpec, q: Array, payload: Payload) -> list[AxisInertia]:
-    """Return the inertia of every axis at q (n,) rad with ``payload`` at the flange, added to the last link."""
+def at_posture(spec: RobotSpec, q: Array, payload: Payload,
+               compensation: Compensation | None = None) -> list[AxisInertia]:  # fmt: skip
+    """Return the inertia of every axis at q (n,) rad with ``payload`` at the flange, added to the last link.
+
+    With a compensation the total at the motor is D / N^2 + Jc, without one D / N^2 + J.
+    """
     chain, model = link_chain(spec, payload), ArmModel(spec)
     model.set_payload(payload)
     D, rotors, T = link_inertia(chain, q), spec_rotors(spec), model.gravity(q)
-    total, none = motor_side(chain, D + rotors), np.zeros(spec.n)
-    rows = zip(D.tolist(), rotors.tolist(), total.tolist(), none.tolist(), T.tolist(), strict=True)
+    found = np.zeros(spec.n) if compensation is None else motor_side(chain, compensation.rotors(spec))
+    total = motor_side(chain, D + rotors) if compensation is None else motor_side(chain, D) + found
+    rows = zip(D.tolist(), rotors.tolist(), total.tolist(), found.tolist(), T.tolist(), strict=True)
     return [
         AxisInertia(axis=axis, link_inertia=d, rotor_inertia=rotor, motor_inertia=motor, compensation=extra, gravity=t)
         for axis, (d, rotor, motor, extra, t) in enumerate(rows, start=1)

@@ -20,6 +20,7 @@ from robolang.nodes import Program
 from robolang.parser import parse
 from robolang.points import PointStore
 from robolang.source import Source, read_program
+from runtime.dynamics.compensation import load_compensation
 from runtime.faults import Code, Fault, register
 from runtime.frames import Array
 from runtime.plant.cell import CellSpec, load_cell, parse_cell
@@ -27,7 +28,7 @@ from runtime.profile import Profile, ServoMode, Settings, load_profile_file, rea
 from runtime.robot import importer, loader
 from runtime.robot.spec import RobotSpec
 from runtime.tomlfile import Source as TomlSource
-from runtime.tomlfile import Table
+from runtime.tomlfile import Table, inside
 
 register(
     Code(
@@ -157,8 +158,22 @@ def load_settings(robot: RobotSpec, X_flange_tool: Array, controller: Table | No
         if len(given.value) not in (0, 1, robot.n):
             given.fail("RBL613", f"'servo.{name}_bandwidth_rad_s' has {len(given.value)} entries; {robot.name} has "
                        f"{robot.n} axes", "give one number for all axes or one for each")  # fmt: skip
+    settings = _compensated(robot, settings)
     _check_gains(robot, X_flange_tool, settings)
     return settings
+
+
+def _compensated(robot: RobotSpec, settings: Settings) -> Settings:
+    """Give the servo the compensation file that is named: inside the folder of the file that names it."""
+    given = settings["servo.compensation"]
+    if not given.value:
+        return settings
+    path = Path(given.value)
+    if given.table is not None:
+        path = inside(given.table, given.value, Path(given.table.source.path).parent, given.name)
+    found = load_compensation(path, robot)
+    servo = replace(settings.profile.servo, rotors=tuple(found.rotors(robot).tolist()))
+    return replace(settings, profile=replace(settings.profile, servo=servo))
 
 
 def _check_gains(robot: RobotSpec, X_flange_tool: Array, settings: Settings) -> None:

@@ -26,6 +26,7 @@ from runtime.profile import Profile
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import NO_PAYLOAD, Payload
 from runtime.robot.spec import RobotSpec
+from runtime.servo.axes import rotors
 from runtime.servo.ideal import ideal_drives
 from runtime.units import DEG
 
@@ -218,7 +219,7 @@ def _measure(request: StepRequest, controller: Controller, first: int) -> StepRe
         rise=rise,
         droop=float(request.q[axis] + size - q[-1]),
         inertia=axis_inertia(model, request.q, axis) + rotor,
-        gain_inertia=float(used) + rotor,
+        gain_inertia=float(used) + float(rotors(request.robot, request.profile.servo)[axis]),
         peak_torque=float(np.abs(log["tau_sat"][first - 1 :, axis]).max()),
         stable=stable,
     )

@@ -23,6 +23,7 @@ import numpy as np
 from runtime.areas import Areas, AxisLoad
 from runtime.clock import Clock, VirtualClock
 from runtime.dynamics.equations import axis_gravity, axis_row
+from runtime.dynamics.source import InertiaRows
 from runtime.dynamics.task import StepCosts, dynamics_task
 from runtime.faults import Alarm, lookup
 from runtime.frames import Array
@@ -84,6 +85,8 @@ class Controller:
         """Cycles that started late against the wall clock (only when paced)."""
         self._clock = clock or VirtualClock()
         self._model = ArmModel(spec)
+        source = profile.inertia_source
+        self._rows = None if source == "pass" else InertiaRows(spec, self._model, source)
         q = np.array(plant.q)
         self.areas = Areas(spec.n, q)
         self._power_up(q)
@@ -138,6 +141,7 @@ class Controller:
             read_angles=lambda: self.servo.alpha,
             now_us=lambda: processor.now_us,
             load_mode=self.profile.load_mode,
+            rows=self._rows,
         )
 
     # requests ---------------------------------------------------------------------------------------------------
@@ -198,7 +202,7 @@ class Controller:
         self._interpolator.drop()
         self._tracker, self.wrist_mode = None, FOLLOWS
         if self.areas.sda_version:
-            self._model.set_payload(self.areas.sda, self.profile.load_mode)
+            (self._rows or self._model).set_payload(self.areas.sda, self.profile.load_mode)
         self._power_up(q, self.time_us)
         self.servo = ServoAxes(self.spec, self.profile.servo, self.profile.tick_s, q, self._fixed)
         self._hold(np.array(self.servo.alpha))

@@ -24,6 +24,7 @@ FixedAt = Literal["min", "mid", "max"]
 Coupling = Literal["diagonal", "full"]
 FeedforwardSource = Literal["command", "measured"]
 SpeedShape = Literal["jerk", "trapezoid"]
+InertiaSource = Literal["pass", "recursion", "matrix"]
 WristMode = Literal["auto", "keep"]
 WristShape = Literal["smooth", "linear", "hermite"]
 PostureLaw = Literal["axis", "rpy"]
@@ -42,7 +43,8 @@ class ServoOptions:
     With ``command`` as source Kf = Ka = 1 is exact; with ``measured``, the literal reading, they must stay below 1,
     and they and K2 default to 0. ``friction_compensation`` scales the published friction that is added to the current
     (not in the document; docs/decisions/0003). The bandwidths, 1/s, one for all axes or one each, replace those of
-    the robot file; empty: the robot file's.
+    the robot file; empty: the robot file's. ``rotors``: N^2 Jc of a compensation file, kg m2 at the joint, one each,
+    in place of N^2 J (docs/identification.md); empty: the robot file's rotors.
     """
 
     mode: ServoMode = "scheduled"
@@ -57,6 +59,7 @@ class ServoOptions:
     friction_compensation: float = 1.0
     position_bandwidth: tuple[float, ...] = ()
     velocity_bandwidth: tuple[float, ...] = ()
+    rotors: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,6 +113,7 @@ class Profile:
     interpolation_cost_us: int = 3000
     axis_cost_us: int = 1000
     load_mode: LoadMode = "add"
+    inertia_source: InertiaSource = "pass"
     speed_shape: SpeedShape = "jerk"
     in_position: float = 0.05 * DEG
     settle_timeout_us: int = 400_000
@@ -192,6 +196,7 @@ CONTROLLER = (
     _number("interpolation_cost_ms", "ms", 3.0, low=0.0, high=80.0),
     _number("dynamics_cost_per_axis_ms", "ms", 1.0, low=0.001, high=1000.0),
     _text("load_mode", "add", "replace"),
+    _text("inertia_source", "pass", "recursion", "matrix"),
     _text("speed_shape", "jerk", "trapezoid"),
     _number("in_position_deg", "deg", 0.05, positive=True, high=10.0),
     _number("settle_timeout_s", "s", 0.4, low=0.0, high=60.0),
@@ -210,6 +215,7 @@ SERVO = (
     _number("friction_compensation", "", 1.0, low=0.0, high=2.0),
     _numbers("position_bandwidth_rad_s", "1/s"),
     _numbers("velocity_bandwidth_rad_s", "1/s"),
+    Setting(key="compensation", unit="", default="", read=lambda table, name: table.text(name)),
 )  # fmt: skip
 WRIST = (
     _text("mode", "auto", "keep"),
@@ -424,6 +430,7 @@ def _profile(value: Mapping[str, Any]) -> Profile:
         interpolation_cost_us=round(value["interpolation_cost_ms"] * 1000),
         axis_cost_us=round(value["dynamics_cost_per_axis_ms"] * 1000),
         load_mode=cast(LoadMode, value["load_mode"]),
+        inertia_source=cast(InertiaSource, value["inertia_source"]),
         speed_shape=cast(SpeedShape, value["speed_shape"]),
         in_position=value["in_position_deg"] * DEG,
         settle_timeout_us=round(value["settle_timeout_s"] * 1e6),

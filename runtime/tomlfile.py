@@ -13,7 +13,7 @@ import stat
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any, NoReturn
 
 from runtime.faults import Code, Fault, register
@@ -105,6 +105,18 @@ register(
         name="gains-unstable",
         meaning="The controller profile gives gains with which a servo loop cannot be stable.",
         remedy="Lower the velocity bandwidth or shorten the servo period, as the message says.",
+    ),
+    Code(
+        code="RBL617",
+        name="compensation-other-robot",
+        meaning="A compensation file was identified on another robot.",
+        remedy="Name the file of this robot, or write it with robolang identify.",
+    ),
+    Code(
+        code="RBL618",
+        name="compensation-schema",
+        meaning="A compensation file was written by an older or newer version.",
+        remedy="Update robolang, or write the file anew with robolang identify.",
     ),
 )
 
@@ -389,3 +401,20 @@ def _header_path(dotted: str, is_array: bool, counts: dict[tuple[str | int, ...]
         elif key in counts:
             path.append(counts[key])
     return path
+
+
+def inside(table: Table, name: str, folder: Path | None, key: str) -> Path:
+    """Return the file that ``name`` means, or refuse it when it is not inside ``folder`` (RBL602)."""
+    if folder is None:
+        table.fail("RBL602", f"'{name}' is a file, and this cell has no folder", key=key)
+    # a Windows path must be refused on Linux too: the same cell file means the same on both
+    absolute = any(kind(name).is_absolute() or kind(name).anchor for kind in (PurePosixPath, PureWindowsPath))
+    if absolute or ".." in re.split(r"[/\\]", name) or "\0" in name:
+        table.fail("RBL602", f"'{name}' is not a path inside the folder of the cell file", key=key)
+    try:
+        target = (folder / name).resolve()
+    except (OSError, RuntimeError, ValueError) as error:
+        table.fail("RBL602", f"'{name}' cannot be followed: {error}", key=key)
+    if not target.is_relative_to(folder.resolve()):
+        table.fail("RBL602", f"'{name}' leads out of the folder of the cell file", key=key)
+    return target

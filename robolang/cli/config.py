@@ -93,6 +93,8 @@ def _shown(value: Any) -> str:
         return _shown(value[0]) if len(set(value)) == 1 else ", ".join(map(_shown, value))
     if value is None:
         return "as the servo"  # the only open setting: the friction that supervision expects
+    if value == "":
+        return "none"
     if isinstance(value, bool):
         return str(value).lower()
     return f"{value:g}" if isinstance(value, float) else str(value)

@@ -34,6 +34,9 @@ def inertia(
     robot: Annotated[str, typer.Option("--robot", help="Built-in robot, or a .toml, .urdf or .xml file.")],
     joints: Annotated[str | None, typer.Option("--joints", metavar="J1,J2,...", help="Posture, deg.")] = None,
     payload: Annotated[str, typer.Option("--payload", metavar="M,X,Y,Z", help="Carried: kg, mm.")] = "0,0,0,0",
+    compensation: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Compensation file of 'robolang identify'.")
+    ] = None,
     over: Annotated[
         str | None, typer.Option("--map", metavar="J2,J3", help="Map over the ranges of these two joints.")
     ] = None,
@@ -43,6 +46,8 @@ def inertia(
 ) -> None:
     """Print the inertia of every axis at the link and at the motor, and its gravity torque."""
     _check_use(over, axis, out)
+    if over is not None and compensation is not None:
+        raise OptionValueError("--compensation", "it has no place on a map, which shows the model")
     with reported():
         import numpy as np
 
@@ -55,7 +60,10 @@ def inertia(
         head = {"robot": spec.name, "joints_deg": [float(f"{angle:.12g}") + 0.0 for angle in np.rad2deg(q)],
                 "payload_kg": carried.mass}  # fmt: skip
         if over is None:
-            found: dict[str, Any] = {**head, "axes": plain(at_posture(spec, q, carried))}
+            from runtime.dynamics.compensation import load_compensation
+
+            extra = None if compensation is None else load_compensation(compensation, spec)
+            found: dict[str, Any] = {**head, "axes": plain(at_posture(spec, q, carried, extra))}
             if as_json:
                 typer.echo(json.dumps(found))
             else:
@@ -136,7 +144,8 @@ def _print(found: dict[str, Any]) -> None:
                       f"{round(row['gravity'], 3) + 0.0:.3f}")  # fmt: skip
     console = Console()
     console.print(table)
-    console.print("at the motor: D / N^2 + J; 1 kg cm2 = 1e-4 kg m2", style="italic")
+    beyond = "compensation" if any(row["compensation"] for row in found["axes"]) else "J"
+    console.print(f"at the motor: D / N^2 + {beyond}; 1 kg cm2 = 1e-4 kg m2", style="italic")
 
 
 def _print_extremes(found: dict[str, Any]) -> None:

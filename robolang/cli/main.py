@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from robolang.cli import check, compare, config, explain, inertia, kin, robot, run, step, weigh, wrist_demo
+from robolang.cli import check, compare, config, explain, identify, inertia, kin, robot, run, step, weigh, wrist_demo
 
 app = typer.Typer(
     name="robolang",
@@ -22,6 +22,7 @@ app.command("run")(run.run)
 app.command("compare")(compare.compare)
 app.command("step")(step.step)
 app.command("inertia")(inertia.inertia)
+app.command("identify")(identify.identify)
 app.command("weigh")(weigh.weigh)
 app.command("wrist-demo")(wrist_demo.wrist_demo)
 app.command("check")(check.check)

@@ -35,6 +35,7 @@ def run(
     feedforward: o.Feedforward = None,
     load_mode: o.LoadMode = None,
     servo_period: o.ServoPeriod = None,
+    compensation: o.Compensation = None,
     settings: o.Set = None,
     no_physics: Annotated[bool, typer.Option("--no-physics", help="Ideal arm instead of MuJoCo.")] = False,
     realtime: Annotated[bool, typer.Option("--realtime", help="Keep wall time.")] = False,
@@ -44,7 +45,8 @@ def run(
 ) -> None:
     """Run a program on the controller and the physics."""
     options = o.controller_options(servo=servo, fixed_at=fixed_at, coupling=coupling, feedforward=feedforward,
-                                   load_mode=load_mode, servo_period=servo_period, settings=settings)  # fmt: skip
+                                   load_mode=load_mode, servo_period=servo_period, settings=settings,
+                                   compensation=compensation)  # fmt: skip
     with reported():
         _check_outputs(program, report, log)
         from robolang.project import load_project

@@ -28,6 +28,9 @@ LoadMode = Annotated[
 ]
 ServoPeriod = Annotated[str | None, typer.Option("--servo-period", help="Servo tick, ms: 0.25, 0.5 or 1.")]
 ProfileFile = Annotated[str | None, typer.Option("--profile", help="Controller profile file (.toml).")]
+Compensation = Annotated[
+    str | None, typer.Option("--compensation", help="Compensation file of 'robolang identify', in place of the rotors.")
+]
 Set = Annotated[
     list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Any key of the controller profile, e.g. "
                                    "servo.gravity_compensation=0.")
@@ -48,7 +51,7 @@ Options = dict[str, tuple[str, Any]]
 
 def controller_options(*, servo: str | None = None, fixed_at: str | None = None, coupling: str | None = None,
                        feedforward: str | None = None, load_mode: str | None = None, servo_period: str | None = None,
-                       settings: list[str] | None = None) -> Options:  # fmt: skip
+                       settings: list[str] | None = None, compensation: str | None = None) -> Options:  # fmt: skip
     """Return the options that were given; ``OptionValueError`` for a value that is none of the choices.
 
     ``--fixed-at`` alone means fixed gains; beside ``--servo scheduled`` it would mean nothing and is refused.
@@ -61,6 +64,8 @@ def controller_options(*, servo: str | None = None, fixed_at: str | None = None,
     for text in settings or []:
         key, value = _setting(text)
         options[key] = ("--set", value)
+    if compensation is not None:
+        options["servo.compensation"] = ("--compensation", compensation)
     if fixed_at is not None:
         options["servo.mode"] = ("--fixed-at", "fixed")
     for option, chosen in given.items():

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from runtime.areas import Areas, AxisLoad
 from runtime.dynamics.equations import axis_gravity, axis_row
+from runtime.dynamics.source import InertiaRows
 from runtime.frames import Array
 from runtime.robot.model import ArmModel, LoadMode
 
@@ -44,10 +45,12 @@ def dynamics_task(
     read_angles: Callable[[], Array],
     now_us: Callable[[], int],
     load_mode: LoadMode = "add",
+    rows: InertiaRows | None = None,
 ) -> Iterator[int]:
     """Refresh ITA for ever; yields the cost in us of the step that follows.
 
-    ``read_angles`` returns the detected angles (n,) rad, ``now_us`` the time at which the running step ends.
+    ``read_angles`` returns the detected angles (n,) rad, ``now_us`` the time at which the running step ends. ``rows``
+    is where inertia comes from; None: the unit-acceleration pass of ``model``.
     """
     payload_version = -1
     version = 0
@@ -59,9 +62,9 @@ def dynamics_task(
             read_us = now_us()
             yield costs.inertia
             if payload_version != areas.sda_version:
-                model.set_payload(areas.sda, load_mode)
+                (rows or model).set_payload(areas.sda, load_mode)
                 payload_version = areas.sda_version
-            row = axis_row(model, areas.ang, axis)
+            row = axis_row(model, areas.ang, axis) if rows is None else rows.row(areas.ang, axis)
             yield costs.gravity
             T = axis_gravity(model, areas.ang, axis)
             yield costs.store

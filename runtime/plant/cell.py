@@ -16,11 +16,11 @@ from types import MappingProxyType
 import numpy as np
 
 from runtime.frames import Array, frozen, pose_from_xyzrpy
-from runtime.plant.seam_sensor import SensorSpec, inside, read_sensor
+from runtime.plant.seam_sensor import SensorSpec, read_sensor
 from runtime.robot.importer import ROBOT_ENDINGS, load_file
 from runtime.robot.loader import library, load_builtin
 from runtime.robot.spec import RobotSpec
-from runtime.tomlfile import Source, Table, load_table, read_source
+from runtime.tomlfile import Source, Table, inside, load_table, read_source
 from runtime.units import DEG, MM
 
 SCHEMA = 1

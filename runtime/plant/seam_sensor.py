@@ -14,10 +14,9 @@ per 8 ms cycle by the controller.
 import csv
 import io
 import math
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path, PurePosixPath, PureWindowsPath
+from pathlib import Path
 from typing import Literal, cast
 
 import numpy as np
@@ -25,7 +24,7 @@ import numpy as np
 from runtime.frames import Array, frozen, rotation_from_rpy, rpy_from_rotation
 from runtime.motion.hold import weld_line_frame
 from runtime.motion.seam import SeamLimits
-from runtime.tomlfile import Table, read_source
+from runtime.tomlfile import Table, inside, read_source
 from runtime.units import DEG, MM
 
 Kind = Literal["ramp", "sine", "table"]
@@ -136,23 +135,6 @@ def _rows(table: Table, folder: Path | None) -> tuple[Array, Array]:
     if not 1 <= len(rows) <= MOST_ROWS or not (np.diff(rows[:, 0]) > 0.0).all():
         table.fail("RBL605", f"'{name}' must have 1 to {MOST_ROWS} rows whose first number rises", key="file")
     return rows[:, 0] * MM, rows[:, 1:] * SCALE
-
-
-def inside(table: Table, name: str, folder: Path | None, key: str) -> Path:
-    """Return the file that ``name`` means, or refuse it when it is not inside ``folder`` (RBL602)."""
-    if folder is None:
-        table.fail("RBL602", f"'{name}' is a file, and this cell has no folder", key=key)
-    # a Windows path must be refused on Linux too: the same cell file means the same on both
-    absolute = any(kind(name).is_absolute() or kind(name).anchor for kind in (PurePosixPath, PureWindowsPath))
-    if absolute or ".." in re.split(r"[/\\]", name) or "\0" in name:
-        table.fail("RBL602", f"'{name}' is not a path inside the folder of the cell file", key=key)
-    try:
-        target = (folder / name).resolve()
-    except (OSError, RuntimeError, ValueError) as error:
-        table.fail("RBL602", f"'{name}' cannot be followed: {error}", key=key)
-    if not target.is_relative_to(folder.resolve()):
-        table.fail("RBL602", f"'{name}' leads out of the folder of the cell file", key=key)
-    return target
 
 
 def _is_heading(cells: Sequence[str]) -> bool:

@@ -88,6 +88,11 @@ def bandwidths(spec: RobotSpec, options: ServoOptions) -> tuple[Array, Array]:
     return Kp, Kv
 
 
+def rotors(spec: RobotSpec, options: ServoOptions) -> Array:
+    """Return what D' has beyond D (n,), kg m2 at the joint: N^2 Jc of a compensation, else N^2 J. Never both."""
+    return np.array(options.rotors) if options.rotors else spec_rotors(spec)
+
+
 def gains(spec: RobotSpec, options: ServoOptions) -> Gains:
     """Derive the constants of the law from the bandwidths and the profile's options."""
     Kp, Kv = bandwidths(spec, options)
@@ -95,7 +100,7 @@ def gains(spec: RobotSpec, options: ServoOptions) -> Gains:
         Kp=Kp,
         Kv=Kv,
         Ktn=spec_torque_constants(spec),
-        rotor=spec_rotors(spec),
+        rotor=rotors(spec, options),
         Kf=options.velocity_feedforward,
         Ka=options.acceleration_feedforward,
         K2=options.spring_compensation,

@@ -18,10 +18,9 @@ import numpy as np
 from runtime.dynamics.equations import inertia_range
 from runtime.frames import Array
 from runtime.profile import Profile, ServoOptions
-from runtime.robot.model import spec_rotors
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
-from runtime.servo.axes import bandwidths
+from runtime.servo.axes import bandwidths, rotors
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,7 +54,7 @@ def excesses(spec: RobotSpec, profile: Profile, X_flange_tool: Array) -> Iterato
     feeds_back = options.source == "measured" and options.spring_compensation + options.acceleration_feedforward > 0.0
     if options.mode == "scheduled" and not feeds_back:
         return
-    rotor = spec_rotors(spec)
+    rotor = rotors(spec, options)
     ends = rated_range(spec, X_flange_tool)
     held = fixed_inertia(spec, options, X_flange_tool) if options.mode == "fixed" else None
     for D in ends:

@@ -277,3 +277,20 @@ def test_importing_the_command_loads_no_numerics():
     heavy = ("numpy", "pinocchio", "mujoco", "ruckig", "rich.table")
     code = f"import sys, robolang.cli.inertia; print([m for m in {heavy} if m in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "[]\n"
+
+
+def test_a_compensation_takes_the_place_of_the_rotor(tmp_path):
+    """Jc of J1 is 3e-4 kg m2, the rotor of the file 2e-4; the others keep what they have."""
+    rows = "".join(f"[[axes]]\ncompensation_kg_m2 = {value}\n" for value in (3e-4, 2e-4, 2e-4, 33e-6, 33e-6, 33e-6))
+    file = tmp_path / "p.compensation.toml"
+    head = 'schema = 1\nrobot = "puma560"\npositions = 5\n[payload]\nmass_kg = 0.0\ncog_mm = [0, 0, 0]\n'
+    file.write_text(head + rows)
+    words = ("inertia", "--robot", "puma560", "--joints", "0,45,-90,0,45,0", "--json")
+    bare, found = (json.loads(robolang(*words, *more).stdout)["axes"] for more in ((), ("--compensation", file)))
+    assert [axis["compensation"] for axis in bare] == [0.0] * 6
+    assert found[0]["compensation"] == pytest.approx(3e-4)
+    assert found[0]["motor_inertia"] - bare[0]["motor_inertia"] == pytest.approx(1e-4)
+    assert found[1]["motor_inertia"] == pytest.approx(bare[1]["motor_inertia"])
+    assert "RBL617" in robolang("inertia", "--robot", "irb2400", "--compensation", file, code=2).stderr
+    mapped = ("--map", "J2,J3", "--compensation", file)
+    assert "RBL703" in robolang("inertia", "--robot", "puma560", *mapped, code=2).stderr

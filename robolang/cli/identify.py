@@ -1,0 +1,140 @@
+"""``robolang identify ROBOT``: motor-side inertia by accelerating and braking, and the compensation file of it.
+
+Progress goes to stderr, the table to stdout. The output file is tried before the arm moves and written whole.
+"""
+
+import datetime
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, cast
+
+import typer
+
+from robolang.cli import values
+from robolang.cli.errors import reported
+from robolang.cli.values import OptionValueError
+
+if TYPE_CHECKING:
+    from robolang.identify import PlantName, Progress, Request
+
+ENDING = ".compensation.toml"
+
+
+def identify(
+    robot: Annotated[str, typer.Argument(metavar="ROBOT", help="Built-in robot, or a path to a robot file.")],
+    axis: Annotated[str, typer.Option("--axis", metavar="all|1,2,...", help="Axes to identify, from 1.")] = "all",
+    positions: Annotated[int, typer.Option("--positions", min=1, max=50, help="Places of each axis.")] = 5,
+    plant: Annotated[str, typer.Option("--plant", help="'mujoco' or 'rigid' ideal arm with friction.")] = "mujoco",
+    error: Annotated[
+        int | None, typer.Option("--error", metavar="SEED", min=0, help="Real bodies 5 to 20 % heavier than the model.")
+    ] = None,
+    payload: Annotated[str, typer.Option("--payload", metavar="M,X,Y,Z", help="Carried and declared: kg, mm.")] = (
+        "0,0,0,0"
+    ),
+    out: Annotated[Path | None, typer.Option("--out", metavar=f"FILE{ENDING}", help="Write the compensation.")] = None,
+    date: Annotated[str, typer.Option("--date", metavar="YYYY-MM-DD", help="Date that the file states.")] = "",
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+) -> None:
+    """Identify the inertia at the motor of each axis, and what the model lacks of it."""
+    if plant not in ("rigid", "mujoco"):
+        raise OptionValueError("--plant", f"'{plant}' is not one of rigid, mujoco")
+    if out is not None and not out.name.endswith(ENDING):
+        raise OptionValueError("--out", f"'{out}' must end in {ENDING}")
+    day = _day(date)
+    with reported():
+        from robolang.identify import Request, compensation_of, with_errors
+        from robolang.identify import as_json as figures
+        from robolang.identify import identify as run_all
+        from robolang.project import load_any_robot
+        from robolang.storage import check_writable, write_atomic
+        from runtime.dynamics.compensation import as_toml
+
+        spec = load_any_robot(robot)
+        request = Request(
+            robot=spec, axes=_axes(axis, spec.n), positions=positions, plant=cast("PlantName", plant),
+            real=None if error is None else with_errors(spec, error),
+            payload=values.payload(payload, "--payload", spec, heavier=False),
+        )  # fmt: skip
+        if out is not None:
+            check_writable(out)
+        with _progress(positions) as progress:
+            results = run_all(request, progress)
+        if out is not None:
+            text = as_toml(compensation_of(request, results, day))
+            write_atomic(out, lambda stream: stream.write(text.encode("utf-8")))
+        found = figures(request, results)
+        if as_json:
+            typer.echo(json.dumps(found))
+        else:
+            _print(request, found)
+
+
+def _day(date: str) -> str:
+    try:
+        return datetime.date.fromisoformat(date).isoformat() if date else ""
+    except ValueError:
+        raise OptionValueError("--date", f"'{date[:40]}' is not a day as in 2026-11-24") from None
+
+
+def _axes(text: str, n: int) -> tuple[int, ...]:
+    """Return the 0-based axes of ``all`` or a list of numbers, each once and in order."""
+    if text.strip() == "all":
+        return tuple(range(n))
+    axes = set()
+    for position, part in enumerate(text.split(","), start=1):
+        if not (part.strip().isdecimal() and 1 <= int(part[:9]) <= n):
+            raise OptionValueError("--axis", f"'{part.strip()[:20]}' is not one of 1 to {n}, or all", position)
+        axes.add(int(part) - 1)
+    return tuple(sorted(axes))
+
+
+@contextmanager
+def _progress(positions: int) -> Iterator["Progress"]:
+    """Yield the progress function: a live line on a terminal, one line per position elsewhere."""
+
+    def text(axis: int, number: int, q: float) -> str:
+        return f"J{axis + 1}, position {number} of {positions}, {q * 57.29577951308232:.1f} deg"
+
+    if sys.stderr is not None and sys.stderr.isatty():
+        from robolang.cli.console import Console
+
+        with Console(stderr=True).status("planning") as status:
+            yield lambda axis, number, q: status.update(text(axis, number, q))
+    else:
+        yield lambda axis, number, q: typer.echo(text(axis, number, q), err=True)
+
+
+_UNIT = 1e-6
+_COLUMNS = (
+    ("identified", "identified_kg_m2"),
+    ("links of\nthe model", "model_kg_m2"),
+    ("compen-\nsation", "compensation_kg_m2"),
+    ("spread", "spread_kg_m2"),
+    ("rotor", "rotor_kg_m2"),
+)
+
+
+def _print(request: "Request", found: dict[str, Any]) -> None:
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    from robolang.cli.console import Console
+    from robolang.diagnostics import safe
+
+    real = ", bodies 5 to 20 % heavier than the model" if found["model_errors"] else ""
+    places = f"{request.positions} position{'' if request.positions == 1 else 's'} of each axis"
+    console = Console()
+    title = f"{found['robot']}: inertia at the motor in 1e-6 kg m2, {places}, {found['plant']} arm{real}"
+    console.print(safe(title), soft_wrap=True)
+    table = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+    table.add_column("axis", no_wrap=True)
+    for heading in ("accel.\nrad/s2", *(heading for heading, _ in _COLUMNS), "off the\nplant, %"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for row in found["axes"]:
+        off = (row["identified_kg_m2"] / row["true_kg_m2"] - 1.0) * 100.0
+        figures = (f"{row[key] / _UNIT:.3f}" for _, key in _COLUMNS)
+        table.add_row(f"J{row['axis']}", f"{row['acceleration_rad_s2']:.2f}", *figures, f"{off:+.2f}")
+    console.print(table)

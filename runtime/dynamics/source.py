@@ -1,0 +1,48 @@
+"""Where the dynamics task takes the inertia of an axis from: three ways to the same numbers.
+
+    pass        one unit-acceleration pass of Pinocchio over the chain; the default      ``ArmModel.inertia_column``
+    recursion   document 003, from the link of the axis outward and back to the base     ``motor_inertia.inertia_row``
+    matrix      the whole mass matrix, of which one row is taken                          ``ArmModel.mass_matrix``
+
+They agree to 1e-12 kg m2 and differ in cost alone (docs/decisions/0019). Each returns the row of the axis, rotor not in
+it, because a servo with whole rows needs it; D is the element of the axis. Called once per axis by the dynamics task.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from runtime.dynamics.equations import axis_row
+from runtime.dynamics.motor_inertia import inertia_row, link_chain
+from runtime.frames import Array, frozen
+from runtime.profile import InertiaSource
+from runtime.robot.model import ArmModel, LoadMode
+from runtime.robot.payload import Payload
+from runtime.robot.spec import RobotSpec
+
+Row = Callable[[Array, int], Array]
+"""Of joint angles (n,) rad and an axis (0-based): the row of the mass matrix (n,), kg m2, without rotors."""
+
+
+class InertiaRows:
+    """The source of a robot's inertia rows; ``model`` carries the payload for the two sources that are Pinocchio's."""
+
+    def __init__(self, spec: RobotSpec, model: ArmModel, source: InertiaSource) -> None:
+        self._spec, self._model, self._source = spec, model, source
+        self._chain = link_chain(spec)
+        self.row: Row = {"pass": self._by_pass, "recursion": self._by_recursion, "matrix": self._by_matrix}[source]
+
+    def set_payload(self, payload: Payload, mode: LoadMode) -> None:
+        """Carry ``payload`` from now on, in the model as well."""
+        self._model.set_payload(payload, mode)
+        if self._source == "recursion":
+            self._chain = link_chain(self._spec, payload, mode)
+
+    def _by_pass(self, q: Array, axis: int) -> Array:
+        return axis_row(self._model, q, axis)
+
+    def _by_recursion(self, q: Array, axis: int) -> Array:
+        return inertia_row(self._chain, q, axis)
+
+    def _by_matrix(self, q: Array, axis: int) -> Array:
+        return frozen(np.array(self._model.mass_matrix(q)[axis]))
