@@ -8,7 +8,8 @@ wrist (H3) or main axis (H4) beyond its speed, a range passed. Tried in this ord
     2  the switch where the first condition is met, in the shape of the profile
     3  softer starts, other switches, ways that return to the posture before the end: of those that keep every limit at
        the programmed speed the one whose posture, or whose held components, deviate least
-    4  that of 1 to 3 which has to be slowed least
+    4  of 1 to 3, where each has to be slowed, the one that deviates least of those slowed by at most ``posture_first``;
+       where all have to be slowed more, the one slowed least
     5  where none of them has a solution at all, detours of the wrist on its way, likewise
 
 ``remedies = false`` in the profile is the document alone: 1 only where no condition is met, then 2. Places to try are
@@ -167,7 +168,6 @@ def choose(line: LineSolver, s: Array, q: Array, q_end: Array, period_s: float, 
         if choice.switch is None:
             if ratio <= options.posture_first:
                 return choice
-            choice = replace(choice, deviation=math.inf)  # too slow to win by its posture
         else:
             deviation = posture_deviation(line, s, rows)
             if not deviation <= most_deviation:
@@ -176,13 +176,14 @@ def choose(line: LineSolver, s: Array, q: Array, q_end: Array, period_s: float, 
                 continue
             if ratio <= 1.0 and not choice.remedy and not held:
                 return choice  # as the document has it
-            if held:
-                deviation = posture_deviation(line, s, rows, held)
-            choice = replace(choice, deviation=deviation if ratio <= 1.0 else math.inf)
+            choice = replace(choice, deviation=posture_deviation(line, s, rows, held) if held else deviation)
         found.append(choice)
     if not found:
         raise _refusal(line, trigger, arrives, failures, _what_would_do(line, s, excess))
-    return min(found, key=lambda choice: (choice.deviation, choice.ratio))
+    fastest = min(choice.ratio for choice in found)
+    slowest = 1.0 if fastest <= 1.0 else max(fastest, options.posture_first)
+    quick = [choice for choice in found if choice.ratio <= slowest]
+    return min(quick, key=lambda choice: (choice.deviation, choice.ratio))
 
 
 def posture_deviation(line: LineSolver, s: Array, q: Array, held: tuple[Component, ...] = ()) -> float:
