@@ -23,61 +23,43 @@ the mean speeds too by the mirror, and what gravity adds in first and second ord
 The whole controller runs: set-points in INA, fine interpolation, servo of all axes, plant. The other axes are held at
 ``posture``, where the model's D_ii is near its mean over the joint ranges: there a constant fits all postures best.
 D_ii does not depend on the axis' own angle, so the compensations of all positions are one number, and their spread is
-the error of the identification. Everything is planned and checked before anything moves.
+the error of the identification. D_ii depends on the axes beyond, and so does Jc when the model is wrong: with a table,
+axis 1 passes one place at each posture of a grid over J2 and J3 as well, axis 2 over J3. Everything is planned and
+checked before anything moves (``trial_motion``).
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from robolang.project import builtin_cell
+from robolang.trial_motion import Grid, PlantName, Request, Test, plan, plan_table, quintic
 from runtime.controller import Controller
 from runtime.dynamics.compensation import AxisCompensation, Compensation
 from runtime.dynamics.equations import axis_inertia
 from runtime.faults import Fault
 from runtime.frames import Array
-from runtime.motion.fine import FineInterpolator
 from runtime.plant.cell import CellSpec
 from runtime.plant.hand import hand_body
 from runtime.plant.plant import Plant
 from runtime.plant.rigid_plant import RigidPlant
-from runtime.profile import Profile
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import NO_PAYLOAD, Payload
+from runtime.robot.joint_table import JointTable
+from runtime.robot.model import ArmModel
+from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
-from runtime.servo.motor import torque_limit
 from runtime.units import DEG
 
-STROKE = 0.5
-"""Way of a test motion, rad, where the range has room for it."""
-LEAST_STROKE = 0.1
-"""Shorter than this an axis is not identified, rad."""
-MARGIN = 2.0 * DEG
-"""Distance that test motions keep from the ends of the range, rad."""
-SHARE = 0.5
-"""Share of the speed and acceleration limits that test motions use."""
-TORQUE_SHARE = 0.75
-"""Share of the torque limit that they use by the model, which may be wrong by 20 %."""
-PEAK = 0.5 - np.sqrt(3.0) / 6.0
-"""Share of the duration at which the quintic accelerates most."""
 WINDOW = 0.15
 """Half width of the weights, as a share of the duration: the axis moves forward all through them."""
 HOLD_S = 0.2
 """Rest before each pass, s."""
 LIGHTEST = 0.01
 """Mass of the hand that MuJoCo is given where nothing is carried, kg; it is declared as well."""
-CLEARANCE = 0.2
-"""Least height of every joint and the flange over the ground in a safe posture, m."""
-LONGEST = 3.0
-"""A test motion that needs longer than this times its shortest for want of torque is refused."""
-NEAR = 0.05
-"""How near the mean inertia a posture is near enough."""
-
-PlantName = Literal["rigid", "mujoco"]
 Progress = Callable[[int, int, float], None]
-"""Told of the axis (0-based), the position's number from 1 and the position, rad, before each position."""
+"""Told of the axis (0-based), the position's number from 1 and the position, rad, before each position; those of a
+table come last."""
 
 
 class RubbingPlant(RigidPlant):
@@ -102,47 +84,29 @@ class RubbingPlant(RigidPlant):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Request:
-    """What to identify: ``axes`` 0-based, each at ``positions`` places; ``payload`` is carried and declared.
-
-    ``robot`` is the controller's model; the plant is ``real``, by default the same.
-    """
-
-    robot: RobotSpec
-    axes: tuple[int, ...]
-    positions: int = 5
-    plant: PlantName = "mujoco"
-    real: RobotSpec | None = None
-    payload: Payload = field(default=NO_PAYLOAD)
-    profile: Profile = field(default_factory=Profile)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Test:
-    """The test motions of one axis: home ``q`` (n,) rad, ``positions`` (P,) rad, ``stroke`` rad, ``rows`` (K + 1,).
-
-    ``rows`` is the way from 0 to ``stroke``, a set-point every cycle.
-    """
-
-    axis: int
-    q: Array
-    positions: Array
-    stroke: float
-    rows: Array
-
-    def starts(self, position: float) -> tuple[float, float]:
-        """Return where the accelerating and the braking pass of a position start, rad."""
-        before = self.stroke * float(_quintic(np.array(PEAK)))
-        return position - before, position - (self.stroke - before)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Passage:
     """Weighted means of one pass: torque N m, acceleration rad/s2, speed rad/s, at the joint."""
 
     tau: float
     alpha: float
     speed: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TableResult:
+    """What came of an axis' table: ``grid`` rad of each of ``joints`` (0-based); inertias at the motor, row-major."""
+
+    joints: tuple[int, ...]
+    grid: tuple[tuple[float, ...], ...]
+    identified: Array
+    model: Array
+    true: Array
+
+    @property
+    def compensation(self) -> JointTable:
+        """Jc over the grid."""
+        values = tuple((self.identified - self.model).tolist())
+        return JointTable(joints=self.joints, grid=self.grid, values=values)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -159,15 +123,23 @@ class AxisResult:
     identified: Array
     model: float
     true: float
+    table: TableResult | None = None
+
+    @property
+    def means(self) -> tuple[float, float, float]:
+        """Means over the table, without one over the positions: identified, of the model, true."""
+        found = self if self.table is None else self.table
+        return float(np.mean(found.identified)), float(np.mean(found.model)), float(np.mean(found.true))
 
     @property
     def compensation(self) -> float:
-        """Mean of Jc over the positions."""
-        return float(self.identified.mean()) - self.model
+        """Mean of Jc over the table, without one over the positions."""
+        identified, model, _ = self.means
+        return identified - model
 
     @property
     def spread(self) -> float:
-        """Largest minus smallest Jc."""
+        """Largest minus smallest Jc over the positions."""
         return float(np.ptp(self.identified))
 
 
@@ -191,7 +163,8 @@ def identify(request: Request, progress: Progress = lambda axis, number, q: None
     """Identify the axes one after the other; ``Fault`` RBL420 before anything moves, RBL5xx where a motion failed."""
     carried = _carried(request)
     tests = [plan(request, carried, axis) for axis in request.axes]
-    return [_identify_axis(request, carried, test, progress) for test in tests]
+    grids = [plan_table(request, carried, test) for test in tests]
+    return [_identify_axis(request, carried, *both, progress) for both in zip(tests, grids, strict=True)]
 
 
 def compensation_of(request: Request, results: list[AxisResult], date: str = "") -> Compensation:
@@ -199,148 +172,39 @@ def compensation_of(request: Request, results: list[AxisResult], date: str = "")
     axes = [AxisCompensation(compensation=axis.motor.rotor_inertia) for axis in request.robot.axes]
     for found in results:
         axes[found.axis] = AxisCompensation(
-            compensation=found.compensation, spread=found.spread, model=found.model,
-            identified=float(found.identified.mean()),
+            compensation=found.compensation, spread=found.spread, model=found.means[1], identified=found.means[0],
+            table=None if found.table is None else found.table.compensation,
         )  # fmt: skip
     carried = _carried(request)
     return Compensation(robot=request.robot.name, date=date, positions=request.positions, axes=tuple(axes),
                         payload=replace(carried, inertia=np.zeros((3, 3))))  # fmt: skip
 
 
-# --- planning --------------------------------------------------------------------------------------------------------
-
-
-def plan(request: Request, payload: Payload, axis: int) -> Test:
-    """Return the test motions of an axis; ``Fault`` RBL420 when they would leave a limit of the robot."""
-    spec, profile = request.robot, request.profile
-    if not 0 <= axis < spec.n:
-        raise Fault("RBL420", f"{spec.name} has the axes 1 to {spec.n}, no J{axis + 1}")
-    model = ArmModel(spec)
-    model.set_payload(payload)
-    limits = spec.axes[axis].limits
-    q, room = posture(spec, model, axis)
-    low, high = max(limits.lower + MARGIN, room[0]), min(limits.upper - MARGIN, room[1])
-    before = float(_quintic(np.array(PEAK)))
-    stroke = min(STROKE, (high - low) / 2.0)
-    if stroke < LEAST_STROKE:
-        raise Fault("RBL420", f"J{axis + 1} has {max(0.0, high - low) / DEG:.1f} deg that are over the ground and "
-                    f"{MARGIN / DEG:g} deg off the ends of its range, {limits.lower / DEG:.1f} to "
-                    f"{limits.upper / DEG:.1f} deg; the test motions need {2.0 * LEAST_STROKE / DEG:.1f}")  # fmt: skip
-    reach = stroke * (1.0 - before)
-    positions = np.linspace(low + reach, high - reach, request.positions) if request.positions > 1 else np.array(
-        [0.5 * (low + high)])  # fmt: skip
-    shortest = max(np.sqrt(_PEAK_ACCELERATION * stroke / (SHARE * limits.acceleration)),
-                   _PEAK_SPEED * stroke / (SHARE * limits.speed))  # fmt: skip
-    for slower in np.geomspace(1.0, LONGEST, 8):
-        cycles = int(np.ceil(slower * shortest / profile.period_s))
-        test = Test(axis=axis, q=q, positions=positions, stroke=stroke,
-                    rows=stroke * _quintic(np.arange(cycles + 1) / cycles))  # fmt: skip
-        refusal = _refusal(spec, profile, model, test)
-        if not refusal:
-            return test
-    raise Fault("RBL420", refusal)
-
-
-def _refusal(spec: RobotSpec, profile: Profile, model: ArmModel, test: Test) -> str:
-    """Return which limit a test motion would leave, where and by what; empty: none."""
-    torque = TORQUE_SHARE * torque_limit(spec)
-    lower, upper = spec.lower, spec.upper
-    rotor, friction = spec_rotors(spec), _friction(spec)
-    for position in test.positions:
-        for start in test.starts(float(position)):
-            rows = np.tile(test.q, (len(test.rows), 1))
-            rows[:, test.axis] = start + test.rows
-            q, dq, ddq = FineInterpolator(profile.ticks_per_cycle, profile.period_s, rows[0]).expand(rows)
-            tau = np.array([model.torque(*motion) for motion in zip(q, dq, ddq, strict=True)])
-            tau += rotor * ddq + friction * np.sign(dq) + spec.per_axis("motor", "joint_viscous_friction") * dq
-            for what, unit, values, least, most in (
-                ("angle", "deg", q, lower, upper),
-                ("speed", "deg/s", dq, *_both(spec.per_axis("limits", "speed"))),
-                ("acceleration", "deg/s2", ddq, *_both(spec.per_axis("limits", "acceleration"))),
-                ("torque", "N m", tau, *_both(torque)),
-            ):
-                beyond = np.maximum(least - values, values - most).max(axis=0)
-                axis = int(np.argmax(beyond))
-                if not beyond[axis] <= 1e-9:
-                    worst = values[np.argmax(np.abs(values[:, axis])), axis]
-                    scale = 1.0 if unit == "N m" else DEG
-                    return (f"J{test.axis + 1} at {position / DEG:.1f} deg: the test motion takes the {what} of "
-                            f"J{axis + 1} to {worst / scale:.1f} {unit}, beyond {least[axis] / scale:.1f} to "
-                            f"{most[axis] / scale:.1f}")  # fmt: skip
-    return ""
-
-
-def _both(limit: Array) -> tuple[Array, Array]:
-    return -limit, limit
-
-
-def _friction(spec: RobotSpec) -> Array:
-    return np.array([max(axis.motor.joint_coulomb_friction) for axis in spec.axes])
-
-
-def posture(spec: RobotSpec, model: ArmModel, axis: int) -> tuple[Array, tuple[float, float]]:
-    """Return q (n,) rad at which the other axes are held, and the range of the axis that is over the ground, rad.
-
-    The posture is one near the middle of the ranges with the model's D_ii near its mean over the ranges, preferably
-    such that the axis can go through its whole range.
-    """
-    rng = np.random.default_rng(560)
-    middle, width = 0.5 * (spec.lower + spec.upper), spec.upper - spec.lower
-    mean = np.mean([axis_inertia(model, q, axis) for q in rng.uniform(spec.lower, spec.upper, (200, spec.n))])
-    offsets = rng.uniform(-1.0 / 3.0, 1.0 / 3.0, (300, spec.n))
-    offsets[:, : axis + 1] = 0.0  # D_ii does not depend on these
-    offsets = np.concatenate([np.zeros((1, spec.n)), offsets[np.argsort((offsets**2).sum(axis=1), kind="stable")]])
-    best, room, least = middle, (float(middle[axis]), float(middle[axis])), np.inf
-    for q in middle + offsets * width:
-        low, high = _room(spec, q, axis)
-        away = abs(axis_inertia(model, q, axis) / mean - 1.0) + 0.5 * (1.0 - (high - low) / width[axis])
-        if away < least:
-            best, room, least = q, (low, high), away
-        if least <= NEAR:
-            break
-    return np.asarray(best), room
-
-
-def _room(spec: RobotSpec, q: Array, axis: int) -> tuple[float, float]:
-    """Return the angles around the middle of an axis' range, rad, where joints and flange keep ``CLEARANCE``."""
-    X, points = np.eye(4), []
-    for index, joint in enumerate(spec.axes):
-        X = X @ joint.placement
-        if index == axis:
-            up, X = X[2], np.eye(4)  # from here on in the frame of the axis, before it turns
-        elif index > axis:
-            points.append(X[:, 3])
-        if index != axis:
-            c, s = np.cos(q[index]), np.sin(q[index])
-            X = X @ np.array([[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
-    x, y, z, _ = np.array([*points, (X @ spec.X_last_flange)[:, 3]]).T
-    own = np.linspace(spec.lower[axis], spec.upper[axis], 2 * _SCAN + 1)[:, None]
-    c, s = np.cos(own), np.sin(own)
-    height = up[0] * (c * x - s * y) + up[1] * (s * x + c * y) + up[2] * z + up[3]
-    low_places = np.flatnonzero(height.min(axis=1) < CLEARANCE)
-    before, after = low_places[low_places <= _SCAN], low_places[low_places >= _SCAN]
-    first = int(before.max()) + 1 if len(before) else 0
-    last = int(after.min()) - 1 if len(after) else 2 * _SCAN
-    return (float(own[first, 0]), float(own[last, 0])) if first <= last else (float(own[_SCAN, 0]),) * 2
-
-
-def _quintic(s: Array) -> Array:
-    return np.asarray(s**3 * (10.0 - 15.0 * s + 6.0 * s * s))
-
-
-_SCAN = 90
-_PEAK_SPEED = 1.875
-_PEAK_ACCELERATION = 10.0 / np.sqrt(3.0)
-
-
 # --- the experiment --------------------------------------------------------------------------------------------------
 
 
-def _identify_axis(request: Request, carried: Payload, test: Test, progress: Progress) -> AxisResult:
+def _identify_axis(request: Request, carried: Payload, test: Test, grid: Grid | None, progress: Progress) -> AxisResult:
+    found = _at_posture(request, carried, test, progress, 1)
+    if grid is None:
+        return found
+    first = request.positions + 1
+    each = [_at_posture(request, carried, one, progress, number) for number, one in enumerate(grid.tests, start=first)]
+    table = TableResult(
+        joints=grid.joints,
+        grid=tuple(tuple(angles.tolist()) for angles in grid.angles),
+        identified=np.array([one.identified[0] for one in each]),
+        model=np.array([one.model for one in each]),
+        true=np.array([one.true for one in each]),
+    )
+    return replace(found, table=table)
+
+
+def _at_posture(request: Request, carried: Payload, test: Test, progress: Progress, first: int) -> AxisResult:
+    """Pass all places of a test; ``first`` is the number of the first of them."""
     spec, axis = request.robot, test.axis
     bench = _Bench(request, carried, test)
     found = []
-    for number, position in enumerate(test.positions, start=1):
+    for number, position in enumerate(test.positions, start=first):
         progress(axis, number, float(position))
         found.append(tuple(bench.passage(start, float(position)) for start in test.starts(float(position))))
     J = np.array([(up.tau - down.tau) / (up.alpha - down.alpha) for up, down in found])
@@ -386,7 +250,7 @@ class _Bench:
         controller, test = self._controller, self._test
         here = float(controller.areas.ina[test.axis])
         steps = max(1, round(abs(start - here) / test.stroke * len(test.rows)))
-        self._play(here + (start - here) * _quintic(np.arange(1, steps + 1) / steps), position)
+        self._play(here + (start - here) * quintic(np.arange(1, steps + 1) / steps), position)
         self._play(np.full(round(HOLD_S / controller.profile.period_s), start), position)
         first = controller.recorder.tick
         self._play(start + np.concatenate([test.rows[1:], test.rows[-1:], test.rows[-1:]]), position)
@@ -479,13 +343,22 @@ def as_json(request: Request, results: list[AxisResult]) -> dict[str, Any]:
                 "acceleration_rad_s2": float(found.alpha.mean()),
                 "speed_rad_s": float(found.speed.mean()),
                 "identified_by_position_kg_m2": found.identified.tolist(),
-                "identified_kg_m2": float(found.identified.mean()),
-                "model_kg_m2": found.model,
+                "identified_kg_m2": found.means[0],
+                "model_kg_m2": found.means[1],
                 "compensation_kg_m2": found.compensation,
                 "spread_kg_m2": found.spread,
                 "rotor_kg_m2": request.robot.axes[found.axis].motor.rotor_inertia,
-                "true_kg_m2": found.true,
+                "true_kg_m2": found.means[2],
+                **({} if found.table is None else {"table": _plain(found.table.compensation)}),
             }
             for found in results
         ],
+    }
+
+
+def _plain(table: JointTable) -> dict[str, Any]:
+    return {
+        "joints": [joint + 1 for joint in table.joints],
+        "deg": [[round(angle / DEG, 9) for angle in angles] for angles in table.grid],
+        "compensation_kg_m2": list(table.values),
     }

@@ -59,7 +59,7 @@ def at_posture(spec: RobotSpec, q: Array, payload: Payload,
     chain, model = link_chain(spec, payload), ArmModel(spec)
     model.set_payload(payload)
     D, rotors, T = link_inertia(chain, q), spec_rotors(spec), model.gravity(q)
-    found = np.zeros(spec.n) if compensation is None else motor_side(chain, compensation.rotors(spec))
+    found = np.zeros(spec.n) if compensation is None else motor_side(chain, compensation.at(spec, q))
     total = motor_side(chain, D + rotors) if compensation is None else motor_side(chain, D) + found
     rows = zip(D.tolist(), rotors.tolist(), total.tolist(), found.tolist(), T.tolist(), strict=True)
     return [

@@ -172,7 +172,8 @@ def _compensated(robot: RobotSpec, settings: Settings) -> Settings:
     if given.table is not None:
         path = inside(given.table, given.value, Path(given.table.source.path).parent, given.name)
     found = load_compensation(path, robot)
-    servo = replace(settings.profile.servo, rotors=tuple(found.rotors(robot).tolist()))
+    servo = replace(settings.profile.servo, rotors=tuple(found.rotors(robot).tolist()),
+                    rotor_tables=found.rotor_tables(robot))  # fmt: skip
     return replace(settings, profile=replace(settings.profile, servo=servo))
 
 

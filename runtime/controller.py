@@ -85,8 +85,9 @@ class Controller:
         """Cycles that started late against the wall clock (only when paced)."""
         self._clock = clock or VirtualClock()
         self._model = ArmModel(spec)
-        source = profile.inertia_source
-        self._rows = None if source == "pass" else InertiaRows(spec, self._model, source)
+        source, tables = profile.inertia_source, profile.servo.rotor_tables
+        own = source == "pass" and not tables
+        self._rows = None if own else InertiaRows(spec, self._model, source, tables)
         q = np.array(plant.q)
         self.areas = Areas(spec.n, q)
         self._power_up(q)
@@ -116,7 +117,8 @@ class Controller:
     def _power_up(self, q: Array, now_us: int = 0) -> None:
         """Fill ITA once for all axes before the brakes open, so that no servo ever works with an empty cell."""
         for axis in range(self.spec.n):
-            row, T = axis_row(self._model, q, axis), axis_gravity(self._model, q, axis)
+            row = axis_row(self._model, q, axis) if self._rows is None else self._rows.row(q, axis)
+            T = axis_gravity(self._model, q, axis)
             self.areas.ita[axis] = AxisLoad(D=float(row[axis]), T=T, row=row, read_us=now_us, version=0,
                                             payload_version=self.areas.sda_version)  # fmt: skip
 

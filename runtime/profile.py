@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, Literal, NoReturn, cast
 
 from runtime.faults import Fault
+from runtime.robot.joint_table import JointTable
 from runtime.robot.model import LoadMode
 from runtime.supervision.limits import Reaction, SupervisionLimits
 from runtime.tomlfile import FileFault, Source, Table, load_table, read_source
@@ -44,7 +45,8 @@ class ServoOptions:
     and they and K2 default to 0. ``friction_compensation`` scales the published friction that is added to the current
     (not in the document; docs/decisions/0003). The bandwidths, 1/s, one for all axes or one each, replace those of
     the robot file; empty: the robot file's. ``rotors``: N^2 Jc of a compensation file, kg m2 at the joint, one each,
-    in place of N^2 J (docs/identification.md); empty: the robot file's rotors.
+    in place of N^2 J (docs/identification.md); empty: the robot file's rotors. ``rotor_tables``: what the file says
+    beyond ``rotors`` by posture, one each or None, kg m2 at the joint; it is published with D. Empty: nothing.
     """
 
     mode: ServoMode = "scheduled"
@@ -60,6 +62,7 @@ class ServoOptions:
     position_bandwidth: tuple[float, ...] = ()
     velocity_bandwidth: tuple[float, ...] = ()
     rotors: tuple[float, ...] = ()
+    rotor_tables: tuple[JointTable | None, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -18,7 +18,8 @@ from robolang.cli.errors import reported
 from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
-    from robolang.identify import PlantName, Progress, Request
+    from robolang.identify import Progress
+    from robolang.trial_motion import PlantName, Request
 
 ENDING = ".compensation.toml"
 
@@ -34,6 +35,9 @@ def identify(
     payload: Annotated[str, typer.Option("--payload", metavar="M,X,Y,Z", help="Carried and declared: kg, mm.")] = (
         "0,0,0,0"
     ),
+    table: Annotated[
+        int | None, typer.Option("--table", metavar="K", min=2, max=7, help="Table over J2 and J3, K angles each.")
+    ] = None,
     out: Annotated[Path | None, typer.Option("--out", metavar=f"FILE{ENDING}", help="Write the compensation.")] = None,
     date: Annotated[str, typer.Option("--date", metavar="YYYY-MM-DD", help="Date that the file states.")] = "",
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
@@ -45,22 +49,23 @@ def identify(
         raise OptionValueError("--out", f"'{out}' must end in {ENDING}")
     day = _day(date)
     with reported():
-        from robolang.identify import Request, compensation_of, with_errors
         from robolang.identify import as_json as figures
+        from robolang.identify import compensation_of, with_errors
         from robolang.identify import identify as run_all
         from robolang.project import load_any_robot
         from robolang.storage import check_writable, write_atomic
+        from robolang.trial_motion import Request
         from runtime.dynamics.compensation import as_toml
 
         spec = load_any_robot(robot)
         request = Request(
             robot=spec, axes=_axes(axis, spec.n), positions=positions, plant=cast("PlantName", plant),
             real=None if error is None else with_errors(spec, error),
-            payload=values.payload(payload, "--payload", spec, heavier=False),
+            payload=values.payload(payload, "--payload", spec, heavier=False), table=table or 0,
         )  # fmt: skip
         if out is not None:
             check_writable(out)
-        with _progress(positions) as progress:
+        with _progress(request) as progress:
             results = run_all(request, progress)
         if out is not None:
             text = as_toml(compensation_of(request, results, day))
@@ -92,11 +97,11 @@ def _axes(text: str, n: int) -> tuple[int, ...]:
 
 
 @contextmanager
-def _progress(positions: int) -> Iterator["Progress"]:
+def _progress(request: "Request") -> Iterator["Progress"]:
     """Yield the progress function: a live line on a terminal, one line per position elsewhere."""
 
     def text(axis: int, number: int, q: float) -> str:
-        return f"J{axis + 1}, position {number} of {positions}, {q * 57.29577951308232:.1f} deg"
+        return f"J{axis + 1}, position {number} of {request.places(axis)}, {q * 57.29577951308232:.1f} deg"
 
     if sys.stderr is not None and sys.stderr.isatty():
         from robolang.cli.console import Console
@@ -126,6 +131,8 @@ def _print(request: "Request", found: dict[str, Any]) -> None:
 
     real = ", bodies 5 to 20 % heavier than the model" if found["model_errors"] else ""
     places = f"{request.positions} position{'' if request.positions == 1 else 's'} of each axis"
+    if any("table" in row for row in found["axes"]):
+        places += f", a table of {request.table} angles of each joint"
     console = Console()
     title = f"{found['robot']}: inertia at the motor in 1e-6 kg m2, {places}, {found['plant']} arm{real}"
     console.print(safe(title), soft_wrap=True)

@@ -4,7 +4,8 @@
 
 Jc is the identified inertia minus that of the model's links, so it holds the rotor, the gear and whatever the model
 misses. It takes the place of the rotor inertia J in D' = D + N^2 J of eqs (9) and (10); the two are never added
-(docs/identification.md). One scalar per axis: D_ii does not depend on the axis' own angle, so neither does Jc.
+(docs/identification.md). One scalar per axis: D_ii does not depend on the axis' own angle, so neither does Jc. It may
+depend on the joints beyond the axis; a table over one or two of them then says how.
 
 ::
 
@@ -20,40 +21,56 @@ misses. It takes the place of the rotor inertia J in D' = D + N^2 J of eqs (9) a
     spread_kg_m2 = 1e-8                 # largest minus smallest over the positions; this and the two below are
     model_kg_m2 = 4.2e-4                # left out of an axis that was not identified, whose Jc is the rotor's J
     identified_kg_m2 = 6.3e-4
+    table_joints = [2, 3]               # optional, all three: joints beyond the axis, one or two,
+    table_deg = [[-90, 0], [0, 45, 90]] # their angles, rising,
+    table_kg_m2 = [1e-4, ...]           # and Jc over them, the angle of the last joint first
 
 Every error is a ``FileFault`` at its line. Read once, before anything moves.
 """
 
 import datetime
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import pairwise, product
+from math import prod
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from runtime.dynamics.equations import inertia_range
+from runtime.dynamics.equations import axis_inertia, inertia_range
 from runtime.faults import Fault
 from runtime.frames import Array
-from runtime.robot.model import spec_rotors
+from runtime.robot.joint_table import JointTable
+from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import NO_PAYLOAD, Payload, declared
 from runtime.robot.spec import RobotSpec
 from runtime.tomlfile import Table, load_table, read_source
-from runtime.units import MM
+from runtime.units import DEG, MM
 
 SCHEMA = 1
 MOST_POSITIONS = 1000
 MOST = 10.0
 """Largest N^2 Jc that is believed, in terms of the largest D + N^2 J of the axis."""
+MOST_JOINTS, MOST_ANGLES = 2, 50
+"""Size of the largest table that is read."""
+FURTHEST = 3600.0
+"""Largest angle of a table, deg."""
 _POSTURES = 200
+_FEW = 20
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AxisCompensation:
-    """One axis, kg m2 at the motor: ``compensation`` Jc; None where the axis was not identified."""
+    """One axis, kg m2 at the motor: ``compensation`` Jc; None where the axis was not identified.
+
+    ``table``: Jc over joints beyond the axis, where it is known; ``compensation`` is its mean then.
+    """
 
     compensation: float
     spread: float | None = None
     model: float | None = None
     identified: float | None = None
+    table: JointTable | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,6 +86,23 @@ class Compensation:
     def rotors(self, spec: RobotSpec) -> Array:
         """Return N^2 Jc of every axis (n,), kg m2 at the joint: it is added to D in place of N^2 J."""
         return np.array([a.compensation for a in self.axes]) * spec.per_axis("motor", "gear_ratio") ** 2
+
+    def at(self, spec: RobotSpec, q: Array) -> Array:
+        """Return N^2 Jc of every axis (n,) at joint angles q (n,) rad, kg m2 at the joint."""
+        found = self.rotors(spec)
+        for axis, table in enumerate(self.rotor_tables(spec)):
+            found[axis] += 0.0 if table is None else table.at(q)
+        return found
+
+    def rotor_tables(self, spec: RobotSpec) -> tuple[JointTable | None, ...]:
+        """Return N^2 (Jc(q) - Jc) of every axis, kg m2 at the joint: what is beyond ``rotors``; () without tables."""
+        if all(axis.table is None for axis in self.axes):
+            return ()
+        squared = (spec.per_axis("motor", "gear_ratio") ** 2).tolist()
+        return tuple(
+            axis.table and replace(axis.table, values=tuple(N2 * (Jc - axis.compensation) for Jc in axis.table.values))
+            for N2, axis in zip(squared, self.axes, strict=True)
+        )
 
 
 def load_compensation(path: Path, spec: RobotSpec) -> Compensation:
@@ -86,7 +120,7 @@ def load_compensation(path: Path, spec: RobotSpec) -> Compensation:
         date=_date(table),
         positions=table.integer("positions", low=1, high=MOST_POSITIONS),
         payload=_payload(table.table("payload"), spec),
-        axes=tuple(_axis(item) for item in axes),
+        axes=tuple(_axis(item, axis, spec.n) for axis, item in enumerate(axes)),
     )
     table.done()
     _believe(found, spec, axes)
@@ -105,7 +139,17 @@ def as_toml(found: Compensation) -> str:
         for name in ("compensation", "spread", "model", "identified"):
             value = getattr(axis, name)
             lines += [] if value is None else [f"{name}_kg_m2 = {float(value)!r}"]
+        lines += [] if axis.table is None else _table_lines(axis.table)
     return "\n".join(lines) + "\n"
+
+
+def _table_lines(table: JointTable) -> list[str]:
+    """Return the lines of a table, one line of values for each angle of the first joint; angles to 1e-9 deg."""
+    angles = ", ".join(f"[{', '.join(repr(round(angle / DEG, 9)) for angle in grid)}]" for grid in table.grid)
+    size = len(table.values) // len(table.grid[0])
+    rows = [table.values[k : k + size] for k in range(0, len(table.values), size)]
+    return [f"table_joints = [{', '.join(str(joint + 1) for joint in table.joints)}]", f"table_deg = [{angles}]",
+            "table_kg_m2 = [", *(f"  {', '.join(repr(float(Jc)) for Jc in row)}," for row in rows), "]"]  # fmt: skip
 
 
 def _schema(table: Table) -> None:
@@ -133,29 +177,78 @@ def _payload(table: Table, spec: RobotSpec) -> Payload:
         table.fail(fault.code, fault.message, fault.hint, key="cog_mm")
 
 
-def _axis(table: Table) -> AxisCompensation:
-    compensation = table.number("compensation_kg_m2")
-    if not any(f"{name}_kg_m2" in table for name in ("spread", "model", "identified")):
-        table.done()
-        return AxisCompensation(compensation=compensation)
-    spread = table.number("spread_kg_m2", low=0.0)
-    model, identified = (table.number(f"{name}_kg_m2", positive=True) for name in ("model", "identified"))
+def _axis(table: Table, axis: int, n: int) -> AxisCompensation:
+    found = AxisCompensation(compensation=table.number("compensation_kg_m2"), table=_joint_table(table, axis, n))
+    if any(f"{name}_kg_m2" in table for name in ("spread", "model", "identified")):
+        spread = table.number("spread_kg_m2", low=0.0)
+        model, identified = (table.number(f"{name}_kg_m2", positive=True) for name in ("model", "identified"))
+        found = replace(found, spread=spread, model=model, identified=identified)
     table.done()
-    return AxisCompensation(compensation=compensation, spread=spread, model=model, identified=identified)
+    return found
+
+
+def _joint_table(table: Table, axis: int, n: int) -> JointTable | None:
+    """Read the table of axis ``axis`` (0-based) of ``n``, None where it has none."""
+    if not any(f"table_{name}" in table for name in ("joints", "deg", "kg_m2")):
+        return None
+    joints = table.numbers("table_joints", None)
+    if not 1 <= len(joints) <= MOST_JOINTS:
+        table.fail("RBL613", f"'{table.name('table_joints')}' must name one or two joints", key="table_joints")
+    if not all(joint in range(axis + 2, n + 1) for joint in joints) or not _rising(joints):
+        beyond = f"joints beyond J{axis + 1}, up to J{n} and rising" if axis + 1 < n else "no joint: none is beyond it"
+        table.fail("RBL605", f"'{table.name('table_joints')}' must name {beyond}", key="table_joints")
+    grid = tuple(_angles(table, angles) for angles in table.raw_list("table_deg"))
+    if len(grid) != len(joints):
+        table.fail("RBL613", f"'{table.name('table_deg')}' must have {len(joints)} lists of angles, one for each "
+                   f"joint, not {len(grid)}", key="table_deg")  # fmt: skip
+    values = table.numbers("table_kg_m2", prod(len(angles) for angles in grid))
+    return JointTable(joints=tuple(int(joint) - 1 for joint in joints), grid=grid, values=values)
+
+
+def _angles(table: Table, angles: Any) -> tuple[float, ...]:
+    """Return one list of ``table_deg``, rad."""
+    key = "table_deg"
+    found = Table(table.source, {key: angles}, table.keys).numbers(key, None, low=-FURTHEST, high=FURTHEST)
+    if not 2 <= len(found) <= MOST_ANGLES:
+        table.fail("RBL613", f"a list of '{table.name(key)}' must have 2 to {MOST_ANGLES} angles, not {len(found)}",
+                   key=key)  # fmt: skip
+    found = tuple(angle * DEG for angle in found)
+    if not _rising(found):
+        table.fail("RBL605", f"the angles of a list of '{table.name(key)}' must rise", key=key)
+    return found
+
+
+def _rising(values: tuple[float, ...]) -> bool:
+    return all(before < after for before, after in pairwise(values))
 
 
 def _believe(found: Compensation, spec: RobotSpec, axes: list[Table]) -> None:
     """Refuse a Jc with which the inertia in the gains is not positive, or beyond anything the axis can have."""
-    rotors = found.rotors(spec)
+    squared = spec.per_axis("motor", "gear_ratio") ** 2
     smallest, largest = inertia_range(spec, postures=_POSTURES)
     most = MOST * (largest + spec_rotors(spec))
-    for axis, table in enumerate(axes):
-        total = float(smallest[axis] + rotors[axis])
-        if not (total > 0.0 and rotors[axis] <= most[axis]):
-            why = (f"more than {MOST:g} times what J{axis + 1} has" if total > 0.0
-                   else f"which leaves J{axis + 1} {total:.3g} kg m2 at the joint where it is lightest")  # fmt: skip
-            table.fail("RBL605", f"'compensation_kg_m2' of J{axis + 1} is {found.axes[axis].compensation:.4g}, {why}",
-                       key="compensation_kg_m2")  # fmt: skip
+    for axis, (entry, table) in enumerate(zip(found.axes, axes, strict=True)):
+        what = [("compensation_kg_m2", entry.compensation, float(smallest[axis]))]
+        if entry.table is not None:
+            at_points = _smallest_over(entry.table, spec, axis)
+            what += [("table_kg_m2", Jc, D) for Jc, D in zip(entry.table.values, at_points, strict=True)]
+        for key, Jc, D in what:
+            total = float(D + squared[axis] * Jc)
+            if not (total > 0.0 and squared[axis] * Jc <= most[axis]):
+                lightest = f"which leaves J{axis + 1} {total:.3g} kg m2 at the joint where it is lightest"
+                why = f"more than {MOST:g} times what J{axis + 1} has" if total > 0.0 else lightest
+                verb = "has" if key == "table_kg_m2" else "is"
+                table.fail("RBL605", f"'{key}' of J{axis + 1} {verb} {Jc:.4g}, {why}", key=key)
+
+
+def _smallest_over(table: JointTable, spec: RobotSpec, axis: int) -> list[float]:
+    """Return the smallest D of the axis at each point of its table, the other joints in a few postures, kg m2."""
+    model, found = ArmModel(spec), []
+    samples = np.random.default_rng(560).uniform(spec.lower, spec.upper, (_FEW, spec.n))
+    for angles in product(*table.grid):
+        samples[:, table.joints] = angles
+        found.append(min(axis_inertia(model, q, axis) for q in np.clip(samples, spec.lower, spec.upper)))
+    return found
 
 
 def _escaped(text: str) -> str:

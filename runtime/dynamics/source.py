@@ -6,9 +6,10 @@
 
 They agree to 1e-12 kg m2 and differ in cost alone (docs/decisions/0019). Each returns the row of the axis, rotor not in
 it, because a servo with whole rows needs it; D is the element of the axis. Called once per axis by the dynamics task.
+Where a compensation file has a table, D is more by N^2 (Jc(q) - Jc), Jc being what the servo adds (``rotors``).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from runtime.dynamics.equations import axis_row
 from runtime.dynamics.motor_inertia import inertia_row, link_chain
 from runtime.frames import Array, frozen
 from runtime.profile import InertiaSource
+from runtime.robot.joint_table import JointTable
 from runtime.robot.model import ArmModel, LoadMode
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
@@ -25,18 +27,32 @@ Row = Callable[[Array, int], Array]
 
 
 class InertiaRows:
-    """The source of a robot's inertia rows; ``model`` carries the payload for the two sources that are Pinocchio's."""
+    """The source of a robot's inertia rows; ``model`` carries the payload for the two sources that are Pinocchio's.
 
-    def __init__(self, spec: RobotSpec, model: ArmModel, source: InertiaSource) -> None:
+    ``tables``, one for each axis or None, or none at all: kg m2 that D has beyond the model, by posture.
+    """
+
+    def __init__(self, spec: RobotSpec, model: ArmModel, source: InertiaSource,
+                 tables: Sequence[JointTable | None] = ()) -> None:  # fmt: skip
         self._spec, self._model, self._source = spec, model, source
         self._chain = link_chain(spec)
-        self.row: Row = {"pass": self._by_pass, "recursion": self._by_recursion, "matrix": self._by_matrix}[source]
+        self._tables = tables
+        self._bare: Row = {"pass": self._by_pass, "recursion": self._by_recursion, "matrix": self._by_matrix}[source]
+        self.row: Row = self._with_table if tables else self._bare
 
     def set_payload(self, payload: Payload, mode: LoadMode) -> None:
         """Carry ``payload`` from now on, in the model as well."""
         self._model.set_payload(payload, mode)
         if self._source == "recursion":
             self._chain = link_chain(self._spec, payload, mode)
+
+    def _with_table(self, q: Array, axis: int) -> Array:
+        row, table = self._bare(q, axis), self._tables[axis]
+        if table is None:
+            return row
+        row = np.array(row)
+        row[axis] += table.at(q)
+        return frozen(row)
 
     def _by_pass(self, q: Array, axis: int) -> Array:
         return axis_row(self._model, q, axis)

@@ -10,20 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robolang.identify import (
-    LEAST_STROKE,
-    MARGIN,
-    Request,
-    RubbingPlant,
-    compensation_of,
-    identify,
-    passage,
-    plan,
-    posture,
-    with_errors,
-)
+from robolang.identify import RubbingPlant, compensation_of, identify, passage, with_errors
 from robolang.project import load_project
 from robolang.session import Session
+from robolang.trial_motion import LEAST_STROKE, MARGIN, Request, plan, plan_table, posture
 from runtime.controller import Controller
 from runtime.faults import Fault
 from runtime.motion.fine import FineInterpolator
@@ -42,10 +32,10 @@ SEEDS = (0, 3, 4, 8)
 
 
 @cache
-def experiment(robot="puma560", plant="mujoco", seed=None, axes=(0, 1, 2), mixed=False, positions=5):
+def experiment(robot="puma560", plant="mujoco", seed=None, axes=(0, 1, 2), mixed=False, positions=5, table=0):
     spec = load_builtin(robot)
     real = None if seed is None else with_errors(spec, seed, mixed=mixed)
-    request = Request(robot=spec, axes=axes, plant=plant, real=real, positions=positions)
+    request = Request(robot=spec, axes=axes, plant=plant, real=real, positions=positions, table=table)
     return request, identify(request)
 
 
@@ -173,6 +163,63 @@ def test_a_constant_is_nearly_as_good_as_it_can_be():
         assert (rms_errors(request, results)[1] < 1.25 * least + 0.004).all()
 
 
+def table_errors(request, results, scalars):
+    """RMS relative error of the inertia over 500 random postures within the grid, by axis: scalar, table."""
+    spec, errors = request.robot, []
+    for found, scalar in zip(results, scalars, strict=True):
+        axis, table = found.axis, found.table.compensation
+        lower, upper = spec.lower.copy(), spec.upper.copy()
+        joints = list(table.joints)
+        lower[joints], upper[joints] = np.array([(grid[0], grid[-1]) for grid in table.grid]).T
+        postures = np.random.default_rng(1).uniform(lower, upper, (500, spec.n))
+        model, real = (
+            np.array([arm.inertia_column(q, axis)[axis] for q in postures]) / N2[axis]
+            for arm in (ArmModel(spec), ArmModel(request.real))
+        )
+        true = real + spec.axes[axis].motor.rotor_inertia
+        by_posture = np.array([table.at(q) for q in postures])
+        errors.append([np.sqrt((((model + Jc) / true - 1.0) ** 2).mean())
+                       for Jc in (scalar.compensation, found.compensation, by_posture)])  # fmt: skip
+    return np.array(errors)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_table_follows_what_a_constant_cannot(seed):
+    """5 angles of each joint: 0.5 to 0.7 % at J1 where the constant leaves 2.5 to 3.5, 0.2 at J2 for 0.9 to 1.4."""
+    request, results = experiment(plant="rigid", seed=seed, axes=(0, 1), positions=1, table=5)
+    _, scalars = experiment(plant="rigid", seed=seed, axes=(0, 1), positions=1)
+    errors = table_errors(request, results, scalars)
+    assert (errors[:, 2] < errors[:, 0] / 4.0).all(), errors
+    assert (errors[:, 2] < errors[:, 1] / 4.0).all(), errors
+    assert (errors[:, 2] < [0.008, 0.003]).all(), errors
+
+
+def test_a_table_on_mujoco_finds_what_the_plant_has_at_each_posture():
+    request, (found,) = experiment(seed=4, axes=(1,), positions=1, table=3)
+    table = found.table
+    assert (np.abs(table.identified / table.true - 1.0) < 5e-3).all()
+    assert np.ptp(table.true) > 0.3 * table.true.mean()
+    assert found.compensation == pytest.approx(table.compensation.mean)
+    assert found.means == pytest.approx([x.mean() for x in (table.identified, table.model, table.true)])
+    (entry,) = (axis for axis in compensation_of(request, [found]).axes if axis.table is not None)
+    assert entry.identified - entry.model == pytest.approx(entry.compensation)
+    assert entry.table == table.compensation
+
+
+def test_a_table_leaves_the_positions_as_they_were():
+    """They come first and are told first; other axes have no table."""
+    told = []
+    requests = [Request(robot=SPEC, axes=(1, 5), plant="rigid", positions=2, table=table) for table in (0, 2)]
+    without = identify(requests[0])
+    with_it = identify(requests[1], lambda axis, number, q: told.append((axis, number)))
+    for a, b in zip(without, with_it, strict=True):
+        assert (a.identified.tobytes(), a.spread, a.model) == (b.identified.tobytes(), b.spread, b.model)
+    assert with_it[1].table is None
+    assert told == [(1, 1), (1, 2), (1, 3), (1, 4), (5, 1), (5, 2)]
+    assert [requests[1].places(axis) for axis in (0, 1, 2, 5)] == [6, 4, 2, 2]
+
+
 def test_errors_are_physical_and_of_their_size():
     for mixed in (False, True):
         for seed in range(20):
@@ -215,6 +262,53 @@ def test_other_axes_stand_inside_their_ranges_where_the_inertia_is_near_its_mean
         assert (q > SPEC.lower + MARGIN).all()
         assert (q < SPEC.upper - MARGIN).all()
         assert high - low > 0.85 * (SPEC.upper[axis] - SPEC.lower[axis])  # J2 would reach the ground
+
+
+@pytest.mark.parametrize("robot", ["puma560", "irb2400", "manutec_r3"])
+@pytest.mark.parametrize(("axis", "joints"), [(0, (1, 2)), (1, (2,))])
+def test_the_postures_of_a_table_are_over_the_ground_with_all_of_their_motions(robot, axis, joints):
+    spec = load_builtin(robot)
+    kinematics = Kinematics(spec)
+    request = Request(robot=spec, axes=(axis,), table=4)
+    grid = plan_table(request, NO_PAYLOAD, plan(request, NO_PAYLOAD, axis))
+    assert grid.joints == joints
+    assert len(grid.tests) == 4 ** len(joints)
+    for joint, angles in zip(joints, grid.angles, strict=True):
+        assert np.ptp(np.diff(angles)) < np.radians(0.03)
+        assert angles[0] > spec.lower[joint] + 0.9 * MARGIN
+        assert angles[-1] < spec.upper[joint] - 0.9 * MARGIN
+        assert np.ptp(angles) > 0.4 * (spec.upper[joint] - spec.lower[joint])
+    for number, test in enumerate(grid.tests):
+        index = np.unravel_index(number, (4,) * len(joints))
+        assert [test.q[joint] for joint in joints] == [angles[k] for k, angles in zip(index, grid.angles, strict=True)]
+        (position,) = test.positions
+        for start in test.starts(position):
+            q = np.tile(test.q, (len(test.rows), 1))
+            q[:, axis] = start + test.rows
+            assert (kinematics.forward(q)[:, 2, 3] > 0.19).all()
+
+
+def test_a_table_shrinks_off_the_ground():
+    """The shoulder of the Puma hangs the arm down at both ends of its range: the grid is what is left."""
+    grid = plan_table(request := Request(robot=SPEC, axes=(0,), table=3), NO_PAYLOAD, plan(request, NO_PAYLOAD, 0))
+    low, high = np.degrees(grid.angles[0][[0, -1]])
+    assert -45.0 + 20.0 < low < high < 225.0 - 20.0
+
+
+def test_a_table_without_room_is_refused_before_anything_moves(monkeypatch):
+    request = Request(robot=SPEC, axes=(1,), table=2)
+    test = plan(request, NO_PAYLOAD, 1)
+    monkeypatch.setattr("robolang.trial_motion.CLEARANCE", 9.0)
+    with pytest.raises(Fault, match="J2 has no room for a table over J3") as caught:
+        plan_table(request, NO_PAYLOAD, test)
+    assert caught.value.code == "RBL420"
+
+
+def test_a_torque_that_is_not_there_at_a_posture_of_a_table_is_refused_with_it():
+    request = Request(robot=changed(0, torque=35.0), axes=(0,), table=3)
+    test = plan(Request(robot=SPEC, axes=(0,)), NO_PAYLOAD, 0)
+    with pytest.raises(Fault, match=r"torque of J1 .*, in the posture J2 1\.3, J3 -?\d+\.\d deg of its table"):
+        plan_table(request, NO_PAYLOAD, test)
 
 
 def changed(axis, **limits):
@@ -261,7 +355,7 @@ def test_a_plant_that_does_not_follow_stops_the_identification():
 
 def test_a_contact_stops_the_identification(monkeypatch):
     """The Puma reaches the ground when nothing keeps it off."""
-    monkeypatch.setattr("robolang.identify.CLEARANCE", -9.0)
+    monkeypatch.setattr("robolang.trial_motion.CLEARANCE", -9.0)
     with pytest.raises(Fault, match=r"J2 at -?\d+\.\d deg: floor touches \w+") as caught:
         identify(Request(robot=SPEC, axes=(1,)))
     assert caught.value.code == "RBL516"

@@ -4,6 +4,7 @@ import json
 import re
 import shutil
 
+import numpy as np
 import pytest
 
 from robolang.project import load_project
@@ -87,6 +88,8 @@ def test_without_a_date_the_file_has_none(tmp_path):
         (("--payload", "9,0,0,0"), "over the rated"),
         (("--positions", "0"), "--positions"),
         (("--error", "x"), "--error"),
+        (("--table", "1"), "--table"),
+        (("--table", "8"), "--table"),
     ],
 )
 def test_options_that_cannot_be_are_refused(words, said):
@@ -109,6 +112,36 @@ def test_a_test_motion_that_would_leave_a_limit_is_refused_with_its_joint(tmp_pa
     assert "error RBL420 J3 has 10.0 deg" in result.stderr
     assert "position 1" not in result.stderr
     assert not list(tmp_path.glob("*.compensation.toml"))
+
+
+@pytest.fixture(scope="module")
+def with_table(tmp_path_factory):
+    path = tmp_path_factory.mktemp("table") / "arm.compensation.toml"
+    words = ("--axis", "1,2,6", "--plant", "rigid", "--positions", "1", "--table", "2", "--error", "4", "--json")
+    return path, robolang("identify", "puma560", *words, "--out", path)
+
+
+def test_a_table_is_in_the_file_the_figures_and_the_progress(with_table):
+    path, result = with_table
+    found, shown = load_compensation(path, SPEC), json.loads(result.stdout)["axes"]
+    assert [axis.table is not None for axis in found.axes] == [True, True, False, False, False, False]
+    for number in (0, 1):
+        table = found.axes[number].table
+        assert table.joints == ((1, 2), (2,))[number]
+        assert [joint - 1 for joint in shown[number]["table"]["joints"]] == list(table.joints)
+        assert shown[number]["table"]["compensation_kg_m2"] == list(table.values)
+        assert np.radians(shown[number]["table"]["deg"]) == pytest.approx(np.array(table.grid))
+        assert found.axes[number].compensation == shown[number]["compensation_kg_m2"] == pytest.approx(table.mean)
+    assert "table" not in shown[2]
+    told = re.findall(r"J(\d), position (\d) of (\d)", result.stderr)
+    assert told == [*(("1", str(k), "5") for k in range(1, 6)), *(("2", str(k), "3") for k in range(1, 4)),
+                    ("6", "1", "1")]  # fmt: skip
+
+
+def test_the_heading_names_the_table():
+    words = ("--axis", "2", "--plant", "rigid", "--positions", "1", "--table", "2")
+    assert "1 position of each axis, a table of 2 angles of each joint" in robolang(
+        "identify", "puma560", *words).stdout  # fmt: skip
 
 
 # --- use -------------------------------------------------------------------------------------------------------------
@@ -136,6 +169,15 @@ def test_a_run_takes_the_file_by_option_and_by_the_cell(tmp_path, made):
     assert load_project(program).profile.servo.rotors == expected
     assert load_project(project(tmp_path, made, ""), options=option).profile.servo.rotors == expected
     assert load_project(program).profile.servo.rotors == ()
+
+
+def test_a_run_takes_the_table(tmp_path, with_table):
+    program = project(tmp_path, with_table)
+    dry(program)
+    found, servo = load_compensation(with_table[0], SPEC), load_project(program).profile.servo
+    assert servo.rotors == tuple(found.rotors(SPEC))
+    assert servo.rotor_tables == found.rotor_tables(SPEC)
+    assert servo.rotor_tables[0].mean == pytest.approx(0.0, abs=1e-12)
 
 
 def test_a_profile_names_the_file_beside_itself(tmp_path, made):

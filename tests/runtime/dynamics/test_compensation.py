@@ -9,11 +9,13 @@ import pytest
 from runtime.dynamics.compensation import AxisCompensation, Compensation, as_toml, load_compensation
 from runtime.faults import lookup
 from runtime.profile import ServoOptions
+from runtime.robot.joint_table import JointTable
 from runtime.robot.loader import load_builtin
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import Payload
 from runtime.servo.axes import ServoAxes, gains, rotors
 from runtime.tomlfile import FileFault
+from runtime.units import DEG
 
 SPEC = load_builtin("puma560")
 N2 = SPEC.per_axis("motor", "gear_ratio") ** 2
@@ -27,6 +29,16 @@ FOUND = Compensation(
         *(AxisCompensation(compensation=2.2e-4 / k, spread=0.0, model=1e-4, identified=3e-4) for k in (1, 3)),
         *(AxisCompensation(compensation=axis.motor.rotor_inertia) for axis in SPEC.axes[3:]),
     ),
+)
+
+
+TABLES = (
+    JointTable(joints=(1, 2), grid=tuple(tuple(deg * DEG for deg in grid) for grid in ((1.33, 90.0), (-223, 0.1, 43))),
+               values=tuple((3.1e-4 + np.arange(6) / 7e5).tolist())),
+    JointTable(joints=(2,), grid=((-100.07 * DEG, 20.0 * DEG),), values=(2.1e-4, 2.3e-4)),
+)  # fmt: skip
+WITH_TABLES = replace(
+    FOUND, axes=(*(replace(axis, table=t) for axis, t in zip(FOUND.axes, TABLES, strict=False)), *FOUND.axes[2:])
 )
 
 
@@ -53,6 +65,95 @@ def test_the_date_may_be_left_out(tmp_path):
 def test_rotors_are_at_the_joint(tmp_path):
     np.testing.assert_array_equal(FOUND.rotors(SPEC)[3:], spec_rotors(SPEC)[3:])
     assert FOUND.rotors(SPEC)[0] == pytest.approx(62.6111**2 * 3.1529473526410994e-04)
+
+
+def test_tables_are_read_back_to_the_last_bit(tmp_path):
+    found = read(tmp_path, as_toml(WITH_TABLES))
+    assert found.axes == WITH_TABLES.axes
+    assert as_toml(found) == as_toml(WITH_TABLES)
+    assert "table" not in as_toml(FOUND)
+
+
+def test_an_axis_that_was_not_identified_may_have_a_table(tmp_path):
+    axes = (*FOUND.axes[:3], replace(FOUND.axes[3], table=replace(TABLES[1], joints=(5,), values=(3e-5, 4e-5))))
+    axes = (*axes, *FOUND.axes[4:])
+    assert read(tmp_path, as_toml(replace(FOUND, axes=axes))).axes == axes
+
+
+def test_what_the_servo_gets_adds_up_to_the_table():
+    """N^2 Jc of the file stays in the gains, D has the rest: together they are the table, wherever its mean is."""
+    assert FOUND.rotor_tables(SPEC) == ()
+    tables = WITH_TABLES.rotor_tables(SPEC)
+    assert [table is None for table in tables] == [False, False, True, True, True, True]
+    for q in np.random.default_rng(2).uniform(SPEC.lower, SPEC.upper, (20, 6)):
+        Jc = [TABLES[0].at(q), TABLES[1].at(q), *(axis.compensation for axis in FOUND.axes[2:])]
+        np.testing.assert_allclose(WITH_TABLES.at(SPEC, q), N2 * Jc, rtol=1e-12)
+        added = [0.0 if table is None else table.at(q) for table in tables]
+        np.testing.assert_allclose(FOUND.rotors(SPEC) + added, N2 * Jc, rtol=1e-12)
+    np.testing.assert_array_equal(FOUND.at(SPEC, np.zeros(6)), FOUND.rotors(SPEC))
+
+
+@pytest.mark.parametrize(("point", "fits"), [(0, True), (1, True), (2, False), (3, False)])
+def test_a_table_may_take_off_what_the_arm_has_in_that_posture(point, fits, tmp_path):
+    """J1 of the Puma has 4.3 and 2.7 kg m2 with the upper arm level, 1.6 upright."""
+    values = [1e-4] * 4
+    values[point] = -2.0 / N2[0]
+    table = JointTable(joints=(1, 2), grid=((0.0, 0.5 * np.pi), (-0.5 * np.pi, 0.5 * np.pi)), values=tuple(values))
+    text = as_toml(replace(FOUND, axes=(replace(FOUND.axes[0], table=table), *FOUND.axes[1:])))
+    if fits:
+        assert read(tmp_path, text).axes[0].table == table
+    else:
+        with pytest.raises(FileFault, match="table_kg_m2"):
+            read(tmp_path, text)
+
+
+WRONG_TABLE = {
+    "no joint": (r"(table_joints = )\[2, 3\]", r"\1[]", "RBL613", "one or two"),
+    "three joints": (r"(table_joints = )\[2, 3\]", r"\1[2, 3, 4]", "RBL613", "one or two"),
+    "the axis itself": (r"(table_joints = )\[2, 3\]", r"\1[1, 3]", "RBL605", "beyond J1"),
+    "a joint twice": (r"(table_joints = )\[2, 3\]", r"\1[3, 3]", "RBL605", "rising"),
+    "joints the other way": (r"(table_joints = )\[2, 3\]", r"\1[3, 2]", "RBL605", "rising"),
+    "a joint that is none": (r"(table_joints = )\[2, 3\]", r"\1[2, 7]", "RBL605", "up to J6"),
+    "half a joint": (r"(table_joints = )\[2, 3\]", r"\1[2, 2.5]", "RBL605", "beyond J1"),
+    "joints are no list": (r"(table_joints = )\[2, 3\]", r"\1 2", "RBL613", "list"),
+    "no joints": (r"table_joints = \[2, 3\]\n", "", "RBL608", "table_joints"),
+    "one list": (r"(table_deg = )\[(\[.*?\]).*", r"\1[\2]", "RBL613", "2 lists"),
+    "no lists": (r"(table_deg = ).*", r"\1[1, 2]", "RBL613", "list"),
+    "no angles": (r"table_deg = .*\n", "", "RBL613", "2 lists"),
+    "angles are no list": (r"(table_deg = ).*", r"\1 3", "RBL613", "list"),
+    "one angle": (r"\[1.33, 90.0\]", "[1.33]", "RBL613", "2 to 50"),
+    "too many angles": (r"\[1.33, 90.0\]", str(list(range(51))), "RBL613", "2 to 50"),
+    "angles that fall": (r"\[1.33, 90.0\]", "[90, 1]", "RBL605", "rise"),
+    "an angle twice": (r"\[1.33, 90.0\]", "[90, 90]", "RBL605", "rise"),
+    "two angles that are one": (r"\[1.33, 90.0\]", "[0, 1e-323]", "RBL605", "rise"),
+    "an angle without end": (r"\[1.33, 90.0\]", "[1, inf]", "RBL604", "finite"),
+    "an angle far off": (r"\[1.33, 90.0\]", "[1, 1e6]", "RBL605", "3600"),
+    "an angle in words": (r"\[1.33, 90.0\]", '[1, "two"]', "RBL613", "number"),
+    "a value less": (r"(table_kg_m2 = \[\n).*?,", r"\1", "RBL613", "6 numbers, not 5"),
+    "a value more": (r"(table_kg_m2 = \[\n)", r"\1 1e-4, ", "RBL613", "6 numbers, not 7"),
+    "a value without end": (r"(table_kg_m2 = \[\n).*?,", r"\1 nan,", "RBL604", "finite"),
+    "a value beyond belief": (r"(table_kg_m2 = \[\n).*?,", r"\1 0.1,", "RBL605", "10 times"),
+    "a value below nothing": (r"(table_kg_m2 = \[\n).*?,", r"\1 -0.01,", "RBL605", "J1"),
+    "no values": (r"table_kg_m2 = \[[^]]*\]\n", "", "RBL608", "table_kg_m2"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG_TABLE)
+def test_what_is_wrong_with_a_table_is_refused_in_its_axis(case, tmp_path):
+    before, after, code, word = WRONG_TABLE[case]
+    text, count = re.subn(before, after, as_toml(WITH_TABLES), count=1)
+    assert count == 1
+    with pytest.raises(FileFault) as caught:
+        read(tmp_path, text)
+    assert (caught.value.code, word in caught.value.message) == (code, True), caught.value
+    first, second = [k for k, line in enumerate(text.splitlines(), start=1) if "[[axes]]" in line][:2]
+    assert first <= caught.value.line < second
+
+
+def test_the_last_axis_has_no_table(tmp_path):
+    axes = (*FOUND.axes[:5], replace(FOUND.axes[5], table=TABLES[1]))
+    with pytest.raises(FileFault, match="none is beyond it"):
+        read(tmp_path, as_toml(replace(FOUND, axes=axes)))
 
 
 WRONG = {

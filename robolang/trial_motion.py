@@ -1,0 +1,300 @@
+"""The test motions of an identification, planned and checked before anything moves (``identify``, document 003).
+
+``plan`` is for one axis: the posture in which the others are held, the places that it passes, and the quintic way past
+them. ``plan_table`` is for the grid of postures over the joints beyond the axis, at each of which it passes one place.
+"""
+
+from dataclasses import dataclass, field
+from itertools import product
+from typing import Literal
+
+import numpy as np
+
+from runtime.dynamics.equations import axis_inertia
+from runtime.faults import Fault
+from runtime.frames import Array
+from runtime.motion.fine import FineInterpolator
+from runtime.profile import Profile
+from runtime.robot.model import ArmModel, spec_rotors
+from runtime.robot.payload import NO_PAYLOAD, Payload
+from runtime.robot.spec import RobotSpec
+from runtime.servo.motor import torque_limit
+from runtime.units import DEG
+
+STROKE = 0.5
+"""Way of a test motion, rad, where the range has room for it."""
+LEAST_STROKE = 0.1
+"""Shorter than this an axis is not identified, rad."""
+MARGIN = 2.0 * DEG
+"""Distance that test motions keep from the ends of the range, rad."""
+SHARE = 0.5
+"""Share of the speed and acceleration limits that test motions use."""
+TORQUE_SHARE = 0.75
+"""Share of the torque limit that they use by the model, which may be wrong by 20 %."""
+PEAK = 0.5 - np.sqrt(3.0) / 6.0
+"""Share of the duration at which the quintic accelerates most."""
+CLEARANCE = 0.2
+"""Least height of every joint and the flange over the ground in a safe posture, m."""
+LONGEST = 3.0
+"""A test motion that needs longer than this times its shortest for want of torque is refused."""
+NEAR = 0.05
+"""How near the mean inertia a posture is near enough."""
+TABLE_JOINTS = (1, 2)
+"""Joints over which a table is made, where they are beyond its axis: the inertia depends most on them."""
+RASTER = 25
+"""Angles of each joint at which it is looked up where a table may reach."""
+
+PlantName = Literal["rigid", "mujoco"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Request:
+    """What to identify: ``axes`` 0-based, each at ``positions`` places; ``payload`` is carried and declared.
+
+    ``robot`` is the controller's model; the plant is ``real``, by default the same. ``table`` angles of each joint make
+    the grid of postures of a table; 0: none.
+    """
+
+    robot: RobotSpec
+    axes: tuple[int, ...]
+    positions: int = 5
+    plant: PlantName = "mujoco"
+    real: RobotSpec | None = None
+    payload: Payload = field(default=NO_PAYLOAD)
+    profile: Profile = field(default_factory=Profile)
+    table: int = 0
+
+    def places(self, axis: int) -> int:
+        """Return how many places axis ``axis`` (0-based) passes, those of its table among them."""
+        joints = _table_joints(self, axis)
+        return self.positions + (self.table ** len(joints) if joints else 0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Test:
+    """The test motions of one axis: home ``q`` (n,) rad, ``positions`` (P,) rad, ``stroke`` rad, ``rows`` (K + 1,).
+
+    ``rows`` is the way from 0 to ``stroke``, a set-point every cycle.
+    """
+
+    axis: int
+    q: Array
+    positions: Array
+    stroke: float
+    rows: Array
+
+    def starts(self, position: float) -> tuple[float, float]:
+        """Return where the accelerating and the braking pass of a position start, rad."""
+        before = self.stroke * float(quintic(np.array(PEAK)))
+        return position - before, position - (self.stroke - before)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Grid:
+    """The postures of a table: ``angles`` (K,) rad of each of ``joints`` (0-based), one test each, row-major."""
+
+    joints: tuple[int, ...]
+    angles: tuple[Array, ...]
+    tests: tuple[Test, ...]
+
+
+def plan(request: Request, payload: Payload, axis: int) -> Test:
+    """Return the test motions of an axis; ``Fault`` RBL420 when they would leave a limit of the robot."""
+    spec = request.robot
+    if not 0 <= axis < spec.n:
+        raise Fault("RBL420", f"{spec.name} has the axes 1 to {spec.n}, no J{axis + 1}")
+    model = _loaded(spec, payload)
+    return _planned(request, model, axis, *posture(spec, model, axis), request.positions)
+
+
+def plan_table(request: Request, payload: Payload, test: Test) -> Grid | None:
+    """Return the tests of an axis' table, None when it has none; ``Fault`` RBL420 when there is no room for one.
+
+    The grid spans the largest rectangle of a raster of ``RASTER`` angles of each joint, ``MARGIN`` off the ends of its
+    range, in all of whose postures the axis has room for the least test motion with all of the arm over the ground. As
+    long as a point of the grid itself has none, the rectangle is shrunk by a raster step on every side.
+    """
+    spec, axis, joints = request.robot, test.axis, _table_joints(request, test.axis)
+    if not joints:
+        return None
+
+    def at(angles: tuple[float, ...]) -> Array:
+        q = np.array(test.q)
+        q[list(joints)] = angles
+        return q
+
+    def safe(angles: tuple[float, ...]) -> bool:
+        low, high = _usable(spec, axis, _room(spec, at(angles), axis))
+        return high - low >= 2.0 * LEAST_STROKE
+
+    raster = [np.linspace(spec.lower[joint] + MARGIN, spec.upper[joint] - MARGIN, RASTER) for joint in joints]
+    fits = np.array([safe(angles) for angles in product(*raster)]).reshape([RASTER] * len(joints))
+    ends = [values[list(span)] for values, span in zip(raster, _largest(fits), strict=True)]
+    steps = [values[1] - values[0] for values in raster]
+    while True:
+        if any(high - low < LEAST_STROKE for low, high in ends):
+            over = " and ".join(f"J{joint + 1}" for joint in joints)
+            raise Fault("RBL420", f"J{axis + 1} has no room for a table over {over}: too few postures have all of the "
+                        "arm over the ground")  # fmt: skip
+        grid = tuple(np.round(np.linspace(low, high, request.table) / DEG, 2) * DEG for low, high in ends)
+        if all(safe(angles) for angles in product(*grid)):
+            break
+        ends = [values + [step, -step] for values, step in zip(ends, steps, strict=True)]
+    model = _loaded(spec, payload)
+    tests = []
+    for angles in product(*grid):
+        try:
+            tests.append(_planned(request, model, axis, at(angles), _room(spec, at(angles), axis), 1))
+        except Fault as fault:
+            where = ", ".join(f"J{joint + 1} {angle / DEG:.1f}" for joint, angle in zip(joints, angles, strict=True))
+            raise Fault(fault.code, f"{fault.message}, in the posture {where} deg of its table", fault.hint) from None
+    return Grid(joints=joints, angles=grid, tests=tuple(tests))
+
+
+def _table_joints(request: Request, axis: int) -> tuple[int, ...]:
+    return tuple(j for j in TABLE_JOINTS if axis < j < request.robot.n) if request.table else ()
+
+
+def _largest(fits: Array) -> list[tuple[int, int]]:
+    """Return first and last index of each dimension of the largest block of a (R,) or (R, R) raster that fits."""
+    plane = fits.reshape(len(fits), -1)
+    best, found = 0, [(0, 0)] * 2
+    for first in range(len(plane)):
+        row = np.ones(plane.shape[1], dtype=bool)
+        for last in range(first, len(plane)):
+            row = row & plane[last]
+            edges = np.flatnonzero(np.diff(np.concatenate([[False], row, [False]])))
+            for start, end in edges.reshape(-1, 2).tolist():
+                if (last - first + 1) * (end - start) > best:
+                    best, found = (last - first + 1) * (end - start), [(first, last), (start, end - 1)]
+    return found[: fits.ndim]
+
+
+def _loaded(spec: RobotSpec, payload: Payload) -> ArmModel:
+    model = ArmModel(spec)
+    model.set_payload(payload)
+    return model
+
+
+def _usable(spec: RobotSpec, axis: int, room: tuple[float, float]) -> tuple[float, float]:
+    limits = spec.axes[axis].limits
+    return max(limits.lower + MARGIN, room[0]), min(limits.upper - MARGIN, room[1])
+
+
+def _planned(request: Request, model: ArmModel, axis: int, q: Array, room: tuple[float, float], places: int) -> Test:
+    """Return the test motions at ``places`` places within ``room`` rad, the other axes held at q (n,) rad."""
+    spec, profile = request.robot, request.profile
+    limits = spec.axes[axis].limits
+    low, high = _usable(spec, axis, room)
+    before = float(quintic(np.array(PEAK)))
+    stroke = min(STROKE, (high - low) / 2.0)
+    if stroke < LEAST_STROKE:
+        raise Fault("RBL420", f"J{axis + 1} has {max(0.0, high - low) / DEG:.1f} deg that are over the ground and "
+                    f"{MARGIN / DEG:g} deg off the ends of its range, {limits.lower / DEG:.1f} to "
+                    f"{limits.upper / DEG:.1f} deg; the test motions need {2.0 * LEAST_STROKE / DEG:.1f}")  # fmt: skip
+    reach = stroke * (1.0 - before)
+    positions = np.linspace(low + reach, high - reach, places) if places > 1 else np.array(
+        [0.5 * (low + high)])  # fmt: skip
+    shortest = max(np.sqrt(_PEAK_ACCELERATION * stroke / (SHARE * limits.acceleration)),
+                   _PEAK_SPEED * stroke / (SHARE * limits.speed))  # fmt: skip
+    for slower in np.geomspace(1.0, LONGEST, 8):
+        cycles = int(np.ceil(slower * shortest / profile.period_s))
+        test = Test(axis=axis, q=q, positions=positions, stroke=stroke,
+                    rows=stroke * quintic(np.arange(cycles + 1) / cycles))  # fmt: skip
+        refusal = _refusal(spec, profile, model, test)
+        if not refusal:
+            return test
+    raise Fault("RBL420", refusal)
+
+
+def _refusal(spec: RobotSpec, profile: Profile, model: ArmModel, test: Test) -> str:
+    """Return which limit a test motion would leave, where and by what; empty: none."""
+    torque = TORQUE_SHARE * torque_limit(spec)
+    lower, upper = spec.lower, spec.upper
+    rotor, friction = spec_rotors(spec), _friction(spec)
+    for position in test.positions:
+        for start in test.starts(float(position)):
+            rows = np.tile(test.q, (len(test.rows), 1))
+            rows[:, test.axis] = start + test.rows
+            q, dq, ddq = FineInterpolator(profile.ticks_per_cycle, profile.period_s, rows[0]).expand(rows)
+            tau = np.array([model.torque(*motion) for motion in zip(q, dq, ddq, strict=True)])
+            tau += rotor * ddq + friction * np.sign(dq) + spec.per_axis("motor", "joint_viscous_friction") * dq
+            for what, unit, values, least, most in (
+                ("angle", "deg", q, lower, upper),
+                ("speed", "deg/s", dq, *_both(spec.per_axis("limits", "speed"))),
+                ("acceleration", "deg/s2", ddq, *_both(spec.per_axis("limits", "acceleration"))),
+                ("torque", "N m", tau, *_both(torque)),
+            ):
+                beyond = np.maximum(least - values, values - most).max(axis=0)
+                axis = int(np.argmax(beyond))
+                if not beyond[axis] <= 1e-9:
+                    worst = values[np.argmax(np.abs(values[:, axis])), axis]
+                    scale = 1.0 if unit == "N m" else DEG
+                    return (f"J{test.axis + 1} at {position / DEG:.1f} deg: the test motion takes the {what} of "
+                            f"J{axis + 1} to {worst / scale:.1f} {unit}, beyond {least[axis] / scale:.1f} to "
+                            f"{most[axis] / scale:.1f}")  # fmt: skip
+    return ""
+
+
+def _both(limit: Array) -> tuple[Array, Array]:
+    return -limit, limit
+
+
+def _friction(spec: RobotSpec) -> Array:
+    return np.array([max(axis.motor.joint_coulomb_friction) for axis in spec.axes])
+
+
+def posture(spec: RobotSpec, model: ArmModel, axis: int) -> tuple[Array, tuple[float, float]]:
+    """Return q (n,) rad at which the other axes are held, and the range of the axis that is over the ground, rad.
+
+    The posture is one near the middle of the ranges with the model's D_ii near its mean over the ranges, preferably
+    such that the axis can go through its whole range.
+    """
+    rng = np.random.default_rng(560)
+    middle, width = 0.5 * (spec.lower + spec.upper), spec.upper - spec.lower
+    mean = np.mean([axis_inertia(model, q, axis) for q in rng.uniform(spec.lower, spec.upper, (200, spec.n))])
+    offsets = rng.uniform(-1.0 / 3.0, 1.0 / 3.0, (300, spec.n))
+    offsets[:, : axis + 1] = 0.0  # D_ii does not depend on these
+    offsets = np.concatenate([np.zeros((1, spec.n)), offsets[np.argsort((offsets**2).sum(axis=1), kind="stable")]])
+    best, room, least = middle, (float(middle[axis]), float(middle[axis])), np.inf
+    for q in middle + offsets * width:
+        low, high = _room(spec, q, axis)
+        away = abs(axis_inertia(model, q, axis) / mean - 1.0) + 0.5 * (1.0 - (high - low) / width[axis])
+        if away < least:
+            best, room, least = q, (low, high), away
+        if least <= NEAR:
+            break
+    return np.asarray(best), room
+
+
+def _room(spec: RobotSpec, q: Array, axis: int) -> tuple[float, float]:
+    """Return the angles around the middle of an axis' range, rad, where joints and flange keep ``CLEARANCE``."""
+    X, points = np.eye(4), []
+    for index, joint in enumerate(spec.axes):
+        X = X @ joint.placement
+        if index == axis:
+            up, X = X[2], np.eye(4)  # from here on in the frame of the axis, before it turns
+        elif index > axis:
+            points.append(X[:, 3])
+        if index != axis:
+            c, s = np.cos(q[index]), np.sin(q[index])
+            X = X @ np.array([[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
+    x, y, z, _ = np.array([*points, (X @ spec.X_last_flange)[:, 3]]).T
+    own = np.linspace(spec.lower[axis], spec.upper[axis], 2 * _SCAN + 1)[:, None]
+    c, s = np.cos(own), np.sin(own)
+    height = up[0] * (c * x - s * y) + up[1] * (s * x + c * y) + up[2] * z + up[3]
+    low_places = np.flatnonzero(height.min(axis=1) < CLEARANCE)
+    before, after = low_places[low_places <= _SCAN], low_places[low_places >= _SCAN]
+    first = int(before.max()) + 1 if len(before) else 0
+    last = int(after.min()) - 1 if len(after) else 2 * _SCAN
+    return (float(own[first, 0]), float(own[last, 0])) if first <= last else (float(own[_SCAN, 0]),) * 2
+
+
+def quintic(s: Array) -> Array:
+    """Return the share of its way that a test motion has gone at the share s of its duration."""
+    return np.asarray(s**3 * (10.0 - 15.0 * s + 6.0 * s * s))
+
+
+_SCAN = 90
+_PEAK_SPEED = 1.875
+_PEAK_ACCELERATION = 10.0 / np.sqrt(3.0)
