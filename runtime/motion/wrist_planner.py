@@ -93,8 +93,8 @@ class Choice:
     held: tuple[Component, ...] = ()
 
 
-def ends(line: LineSolver, q: Array, command: MoveLinear) -> list[Array]:
-    """Return the joint angles (n,) at which a move may end: the taught ones, or those that its point leaves open.
+def ends(line: LineSolver, q: Array, command: MoveLinear) -> Iterator[Array]:
+    """Yield the joint angles (n,) at which a move may end: the taught ones, or those that its point leaves open.
 
     q (N + 1, n): the path in the configuration of its start.
     Of a taught pose the end in the configuration of the start comes first, then the others that a straight move can
@@ -108,19 +108,23 @@ def ends(line: LineSolver, q: Array, command: MoveLinear) -> list[Array]:
             raise Fault("RBL412", f"the end is taught {there}, the move starts {line.branch}: a straight move cannot "
                         "change the configuration of the arm", "Teach the end in the arm configuration of the start, "
                         "or go there over a via point; WRIST KEEP ends in the configuration of the start.")  # fmt: skip
-        return [np.array(command.q_end)]
+        yield np.array(command.q_end)
+        return
+    kept = bool(np.isfinite(q[-1]).all())
+    wanted = kept and _as_taught(line, q[-1], command)
+    if wanted:
+        yield q[-1]  # nearly always the one that is taken: the others are not looked for before they are asked for
     X_end = line.path.X_end @ inverse(arm.X_flange_tool)
     turns = command.turns[: arm.kinematics.n]
     others = [_turned(each.q, turns) for each in arm.kinematics.solutions(X_end, line.q_start)
               if (each.branch.arm, each.branch.elbow) == (line.branch.arm, line.branch.elbow)]  # fmt: skip
     others = [end for end in others if arm.kinematics.limit_margin(end) >= -LIMIT_ROUNDING]
     others.sort(key=lambda end: float(np.abs(end - line.q_start)[-WRIST_AXES:].max()))
-    found = [end for end in (q[-1], *others) if np.isfinite(end).all()]
-    wanted = [end for end in found if _as_taught(line, end, command)]
-    if found and not wanted:
+    fitting = [end for end in others if _as_taught(line, end, command)]
+    yield from fitting
+    if (kept or others) and not wanted and not fitting:
         words = " ".join(command.configuration) or f"with turns {list(command.turns)}"
         raise Fault("RBL412", f"the end is taught {words}, the move starts {line.branch}: no straight move reaches it")
-    return wanted
 
 
 def _turned(q: Array, turns: tuple[int, ...]) -> Array:
