@@ -11,7 +11,10 @@ from runtime.faults import Fault
 from runtime.frames import inverse
 from runtime.motion.commands import MoveLinear
 from runtime.motion.fine import FineInterpolator
+from runtime.motion.path import LinePath
 from runtime.motion.planner import EXCEPTION, FOLLOWS, HELD, LinePlan, LinePlanner
+from runtime.motion.solver import Arm, LineSolver
+from runtime.motion.wrist_planner import _windows
 from runtime.profile import Profile, WristOptions
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.loader import load_builtin
@@ -287,3 +290,13 @@ def test_a_whole_turn_of_the_waist_is_not_passed_over():
     move = (-180, 20, 10, 30, 40, 50), (180, 20, 10, 30, 40, 50)
     with pytest.raises(Fault, match="RBL412"):
         plan(move, speed=0.1)
+
+
+def test_the_first_way_back_to_the_posture_is_about_the_place_where_j5_passes_zero():
+    """On E3, with its posture about one axis, that is at 2.7 of 4 s; elsewhere J4 and J6 are half a turn apart."""
+    arm = Arm(spec=SPEC, kinematics=KINEMATICS, fine=FineInterpolator(8, 0.008, np.zeros(6)), X_flange_tool=TOOL)
+    start, end = (np.radians(q) for q in E3)
+    path = LinePath.between(*(KINEMATICS.forward(q) @ TOOL for q in (start, end)))
+    line, s = LineSolver(arm, path, start), np.linspace(0.0, 1.0, 501)
+    first = next(_windows(line, line.rows(s), s, end, None))
+    assert 0.5 * (first.switch + first.solver.law.s_return) == pytest.approx(0.68, abs=0.03)
