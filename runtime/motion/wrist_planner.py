@@ -62,7 +62,7 @@ WINDOWS = (0.1, 0.2, 0.35, 0.5)
 """Half widths of the part of the path in which the wrist goes from one configuration to the other, tried last."""
 
 MIDDLES = (0.5, 0.25, 0.75)
-"""Middles of that part, beside the place where the configurations are nearest."""
+"""Middles of that part, beside the one about which the wrist has to turn least."""
 
 DETOUR = "detour of the wrist"
 DETOURS = ((0, 45), (0, -45), (60, 0), (-60, 0), (0, 80), (0, -80), (60, 80), (-60, -80), (120, 80), (-120, -80))
@@ -276,19 +276,24 @@ def _suppression(line: LineSolver, options: WristOptions, held: tuple[Component,
 
 
 def _windows(line: LineSolver, q: Array, s: Array, q_end: Array, trigger: Trigger | None) -> Iterator[Choice]:
-    """Yield ways that leave the path and return to it: where the two configurations are nearest, and elsewhere.
+    """Yield ways that leave the path and return to it: where the wrist turns least on them, and elsewhere.
 
-    Before and after, the tool has the posture of the path; in between the wrist goes from one solution to the other.
-    Beside a singularity they are close: what J4 and J6 would have to turn there, they need not.
+    Before and after, the tool has the posture of the path; in between the wrist goes from one solution to the other. At
+    one place J4 and J6 of the two are always half a turn apart, but beside a singularity both turn fast: what one has
+    before it and the other behind it is close, and what J4 and J6 would have to turn there, they need not.
     """
     back = LineSolver(line.arm, line.path, q_end, to_end=True)
     q_back = back.rows(s)
-    gap = (np.abs(q_back - q)[:, -WRIST_AXES:] / line.arm.spec.per_axis("limits", "speed")[-WRIST_AXES:]).max(axis=1)
-    both = np.isfinite(gap)
+    limits = line.arm.spec.per_axis("limits", "speed")[-WRIST_AXES:]
+    leaves, joins = q[:, -WRIST_AXES:] / limits, q_back[:, -WRIST_AXES:] / limits
+    both = np.isfinite((leaves + joins).sum(axis=1))
     if not both.any():
         return
-    nearest = float(s[int(np.nanargmin(gap))])
     for half in WINDOWS:
+        firsts = np.searchsorted(s, np.maximum(s - half, 0.0), side="right") - 1
+        lasts = np.minimum(np.searchsorted(s, np.minimum(s + half, 1.0)), len(s) - 1)
+        turned = np.abs(joins[lasts] - leaves[firsts]).max(axis=1)
+        nearest = float(s[int(np.nanargmin(turned))]) if np.isfinite(turned).any() else 0.5
         for middle in (nearest, *MIDDLES):
             low, high = max(0.0, middle - half), min(1.0, middle + half)
             first, last = int(np.searchsorted(s, low, side="right")) - 1, int(np.searchsorted(s, high))
