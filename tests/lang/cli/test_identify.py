@@ -188,6 +188,9 @@ def test_a_profile_names_the_file_beside_itself(tmp_path, made):
     text = 'schema = 1\n[controller.servo]\ncompensation = "its.compensation.toml"\n'
     (folder / "p.toml").write_text(text, "utf-8")
     dry(program, "--profile", folder / "p.toml")
+    (folder / "its.compensation.toml").rename(tmp_path / "its.compensation.toml")
+    result = dry(program, "--profile", folder / "p.toml", code=2)
+    assert "its.compensation.toml" in result.stderr
 
 
 @pytest.mark.parametrize("name", ["../arm.compensation.toml", "/etc/passwd", "C:\\\\arm.toml"])
