@@ -26,6 +26,9 @@ D_ii does not depend on the axis' own angle, so the compensations of all positio
 the error of the identification. D_ii depends on the axes beyond, and so does Jc when the model is wrong: with a table,
 axis 1 passes one place at each posture of a grid over J2 and J3 as well, axis 2 over J3. Everything is planned and
 checked before anything moves (``trial_motion``).
+
+What the two passes have in common is the torque at no acceleration, weight and friction; over three places or more
+they part, and the weight gives the first moments that the links have beyond the model (``first_moments``).
 """
 
 from collections.abc import Callable, Iterator
@@ -39,6 +42,7 @@ from robolang.trial_motion import Grid, PlantName, Request, Test, plan, plan_tab
 from runtime.controller import Controller
 from runtime.dynamics.compensation import AxisCompensation, Compensation
 from runtime.dynamics.equations import axis_inertia
+from runtime.dynamics.first_moments import Weight, gravity_columns, weigh_links
 from runtime.faults import Fault
 from runtime.frames import Array
 from runtime.plant.cell import CellSpec
@@ -49,12 +53,15 @@ from runtime.robot.joint_table import JointTable
 from runtime.robot.model import ArmModel
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
+from runtime.servo.motor import torque_limit
 from runtime.units import DEG
 
 WINDOW = 0.15
 """Half width of the weights, as a share of the duration: the axis moves forward all through them."""
 HOLD_S = 0.2
 """Rest before each pass, s."""
+PLACES = 3
+"""Fewest places of an axis that tell its weight from its friction."""
 LIGHTEST = 0.01
 """Mass of the hand that MuJoCo is given where nothing is carried, kg; it is declared as well."""
 Progress = Callable[[int, int, float], None]
@@ -113,7 +120,9 @@ class TableResult:
 class AxisResult:
     """What came of one axis; inertias kg m2 at the motor, one per position (P,) where they are arrays.
 
-    ``true`` is what the plant really has in that posture, rotor included: a simulation knows.
+    ``true`` is what the plant really has in that posture, rotor included: a simulation knows. ``held`` (K,) N m at the
+    joint are the torques without acceleration, weight and friction, in ``postures`` (K, n) rad: those of the positions,
+    then those of the table.
     """
 
     axis: int
@@ -123,6 +132,8 @@ class AxisResult:
     identified: Array
     model: float
     true: float
+    postures: Array
+    held: Array
     table: TableResult | None = None
 
     @property
@@ -167,14 +178,30 @@ def identify(request: Request, progress: Progress = lambda axis, number, q: None
     return [_identify_axis(request, carried, *both, progress) for both in zip(tests, grids, strict=True)]
 
 
+def weight_of(request: Request, results: list[AxisResult]) -> Weight | None:
+    """Return what the torques without acceleration say of weight and friction; None with too few places of any axis."""
+    found = [result for result in results if len(result.held) >= PLACES]
+    if not found:
+        return None
+    axes, postures, held = (
+        np.concatenate(rows)
+        for rows in zip(*((np.full(len(r.held), r.axis), r.postures, r.held) for r in found), strict=True)
+    )
+    return weigh_links(request.robot, _carried(request), axes, postures, held, torque_limit(request.robot))
+
+
 def compensation_of(request: Request, results: list[AxisResult], date: str = "") -> Compensation:
     """Return what the file says: the mean of each axis, the rotor of the robot file where one was not identified."""
     axes = [AxisCompensation(compensation=axis.motor.rotor_inertia) for axis in request.robot.axes]
+    weight = weight_of(request, results)
     for found in results:
         axes[found.axis] = AxisCompensation(
             compensation=found.compensation, spread=found.spread, model=found.means[1], identified=found.means[0],
             table=None if found.table is None else found.table.compensation,
         )  # fmt: skip
+    if weight is not None:
+        moments = weight.first_moments.tolist()
+        axes = [replace(axis, first_moment=tuple(moment)) for axis, moment in zip(axes, moments, strict=True)]
     carried = _carried(request)
     return Compensation(robot=request.robot.name, date=date, positions=request.positions, axes=tuple(axes),
                         payload=replace(carried, inertia=np.zeros((3, 3))))  # fmt: skip
@@ -196,7 +223,8 @@ def _identify_axis(request: Request, carried: Payload, test: Test, grid: Grid | 
         model=np.array([one.model for one in each]),
         true=np.array([one.true for one in each]),
     )
-    return replace(found, table=table)
+    postures, held = ([getattr(one, name) for one in (found, *each)] for name in ("postures", "held"))
+    return replace(found, table=table, postures=np.concatenate(postures), held=np.concatenate(held))
 
 
 def _at_posture(request: Request, carried: Payload, test: Test, progress: Progress, first: int) -> AxisResult:
@@ -208,6 +236,9 @@ def _at_posture(request: Request, carried: Payload, test: Test, progress: Progre
         progress(axis, number, float(position))
         found.append(tuple(bench.passage(start, float(position)) for start in test.starts(float(position))))
     J = np.array([(up.tau - down.tau) / (up.alpha - down.alpha) for up, down in found])
+    held = [(up.tau * down.alpha - down.tau * up.alpha) / (down.alpha - up.alpha) for up, down in found]
+    postures = np.tile(test.q, (len(found), 1))
+    postures[:, axis] = test.positions
     squared = spec.axes[axis].motor.gear_ratio ** 2
     real = request.real or spec
     return AxisResult(
@@ -218,6 +249,8 @@ def _at_posture(request: Request, carried: Payload, test: Test, progress: Progre
         identified=J / squared,
         model=_inertia(spec, carried, test.q, axis) / squared,
         true=_inertia(real, carried, test.q, axis) / squared + real.axes[axis].motor.rotor_inertia,
+        postures=postures,
+        held=np.array(held),
     )
 
 
@@ -330,7 +363,12 @@ def _contacts(plant: Plant) -> Iterator[tuple[str, str]]:
 
 
 def as_json(request: Request, results: list[AxisResult]) -> dict[str, Any]:
-    """Return the figures of an identification in plain types; inertias kg m2 at the motor, angles deg."""
+    """Return the figures of an identification in plain types; inertias kg m2 at the motor, angles deg.
+
+    Where an axis had the places for it: its friction at the speed of the test, N m at the joint, and the most that its
+    weight was off the model's; of all links the first moments beyond the model, kg m.
+    """
+    weight = weight_of(request, results)
     return {
         "robot": request.robot.name,
         "plant": request.plant,
@@ -349,11 +387,19 @@ def as_json(request: Request, results: list[AxisResult]) -> dict[str, Any]:
                 "spread_kg_m2": found.spread,
                 "rotor_kg_m2": request.robot.axes[found.axis].motor.rotor_inertia,
                 "true_kg_m2": found.means[2],
+                **({} if weight is None or len(found.held) < PLACES else _weight(request, found, weight)),
                 **({} if found.table is None else {"table": _plain(found.table.compensation)}),
             }
             for found in results
         ],
+        **({} if weight is None else {"first_moments_kg_m": weight.first_moments.tolist()}),
     }
+
+
+def _weight(request: Request, found: AxisResult, weight: Weight) -> dict[str, float]:
+    columns = np.array([gravity_columns(request.robot, q)[found.axis] for q in found.postures])
+    beyond = np.einsum("kjx,jx->k", columns, weight.first_moments)
+    return {"friction_nm": float(weight.friction[found.axis]), "weight_beyond_nm": float(np.abs(beyond).max())}
 
 
 def _plain(table: JointTable) -> dict[str, Any]:

@@ -54,9 +54,11 @@ def at_posture(spec: RobotSpec, q: Array, payload: Payload,
                compensation: Compensation | None = None) -> list[AxisInertia]:  # fmt: skip
     """Return the inertia of every axis at q (n,) rad with ``payload`` at the flange, added to the last link.
 
-    With a compensation the total at the motor is D / N^2 + Jc, without one D / N^2 + J.
+    With a compensation the total at the motor is D / N^2 + Jc, without one D / N^2 + J; its first
+    moments are in the gravity torque.
     """
-    chain, model = link_chain(spec, payload), ArmModel(spec)
+    moments = None if compensation is None or not compensation.first_moments else np.array(compensation.first_moments)
+    chain, model = link_chain(spec, payload), ArmModel(spec, first_moments=moments)
     model.set_payload(payload)
     D, rotors, T = link_inertia(chain, q), spec_rotors(spec), model.gravity(q)
     found = np.zeros(spec.n) if compensation is None else motor_side(chain, compensation.at(spec, q))

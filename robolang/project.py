@@ -173,7 +173,7 @@ def _compensated(robot: RobotSpec, settings: Settings) -> Settings:
         path = inside(given.table, given.value, Path(given.table.source.path).parent, given.name)
     found = load_compensation(path, robot)
     servo = replace(settings.profile.servo, rotors=tuple(found.rotors(robot).tolist()),
-                    rotor_tables=found.rotor_tables(robot))  # fmt: skip
+                    rotor_tables=found.rotor_tables(robot), first_moments=found.first_moments)  # fmt: skip
     return replace(settings, profile=replace(settings.profile, servo=servo))
 
 

@@ -41,10 +41,11 @@ from runtime.robot.model import ArmModel
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
 from runtime.scheduler import IdleProcessor
-from runtime.servo.axes import ServoAxes
+from runtime.servo.axes import ServoAxes, first_moments, rotors
 from runtime.servo.fixed import fixed_inertia
 from runtime.servo.motor import encoder_resolution, torque_limit
 from runtime.supervision.finding import Finding
+from runtime.supervision.observer import LoadModel
 from runtime.supervision.supervisor import LOST, Supervisor
 
 AT_REST = 0.01
@@ -84,7 +85,8 @@ class Controller:
         self.late_cycles = 0
         """Cycles that started late against the wall clock (only when paced)."""
         self._clock = clock or VirtualClock()
-        self._model = ArmModel(spec)
+        moments = first_moments(spec, profile.servo)
+        self._model = ArmModel(spec, first_moments=moments)
         source, tables = profile.inertia_source, profile.servo.rotor_tables
         own = source == "pass" and not tables
         self._rows = None if own else InertiaRows(spec, self._model, source, tables)
@@ -110,6 +112,7 @@ class Controller:
             spec, profile.supervision, torque=torque_limit(spec), resolution=encoder_resolution(spec),
             lag=(1.0 - profile.servo.velocity_feedforward) / spec.per_axis("bandwidths", "position"),
             ticks=profile.ticks_per_cycle, tick_s=profile.tick_s, friction=profile.servo.friction_compensation,
+            model=LoadModel(spec, rotors(spec, profile.servo), moments),
         )  # fmt: skip
         self._overruns = 0
         self._no_deviation = np.zeros(6)

@@ -47,6 +47,7 @@ class ServoOptions:
     the robot file; empty: the robot file's. ``rotors``: N^2 Jc of a compensation file, kg m2 at the joint, one each,
     in place of N^2 J (docs/identification.md); empty: the robot file's rotors. ``rotor_tables``: what the file says
     beyond ``rotors`` by posture, one each or None, kg m2 at the joint; it is published with D. Empty: nothing.
+    ``first_moments``: what the links have beyond the model by that file, kg m in link frames, one each; it is in T.
     """
 
     mode: ServoMode = "scheduled"
@@ -63,6 +64,7 @@ class ServoOptions:
     velocity_bandwidth: tuple[float, ...] = ()
     rotors: tuple[float, ...] = ()
     rotor_tables: tuple[JointTable | None, ...] = ()
+    first_moments: tuple[tuple[float, ...], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

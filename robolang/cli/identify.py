@@ -1,5 +1,7 @@
-"""``robolang identify ROBOT``: motor-side inertia by accelerating and braking, and the compensation file of it.
+"""``robolang identify``: motor-side inertia by accelerating and braking, weight, and the compensation file of them.
 
+The argument is a robot, or a program: then its cell's robot under its cell's controller, the hand on the flange. With
+``--payload`` what the arm carries is identified in place of the arm: ``robolang weigh``.
 Progress goes to stderr, the table to stdout. The output file is tried before the arm moves and written whole.
 """
 
@@ -16,25 +18,38 @@ import typer
 from robolang.cli import values
 from robolang.cli.errors import reported
 from robolang.cli.values import OptionValueError
+from robolang.cli.weigh import weigh
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from robolang.identify import Progress
     from robolang.trial_motion import PlantName, Request
+    from runtime.profile import Profile
+    from runtime.robot.payload import Payload
+    from runtime.robot.spec import RobotSpec
 
 ENDING = ".compensation.toml"
+POSITIONS = 5
 
 
 def identify(
-    robot: Annotated[str, typer.Argument(metavar="ROBOT", help="Built-in robot, or a path to a robot file.")],
+    subject: Annotated[
+        str, typer.Argument(metavar="PROG_OR_ROBOT", help="Program, for its cell; built-in robot or robot file.")
+    ],
     axis: Annotated[str, typer.Option("--axis", metavar="all|1,2,...", help="Axes to identify, from 1.")] = "all",
-    positions: Annotated[int, typer.Option("--positions", min=1, max=50, help="Places of each axis.")] = 5,
+    positions: Annotated[int, typer.Option("--positions", min=1, max=50, help="Places of each axis.")] = POSITIONS,
     plant: Annotated[str, typer.Option("--plant", help="'mujoco' or 'rigid' ideal arm with friction.")] = "mujoco",
     error: Annotated[
         int | None, typer.Option("--error", metavar="SEED", min=0, help="Real bodies 5 to 20 % heavier than the model.")
     ] = None,
-    payload: Annotated[str, typer.Option("--payload", metavar="M,X,Y,Z", help="Carried and declared: kg, mm.")] = (
-        "0,0,0,0"
-    ),
+    carrying: Annotated[
+        str | None,
+        typer.Option("--carrying", metavar="M,X,Y,Z", help="Carried and declared: kg, mm; default: the cell's hand."),
+    ] = None,
+    payload: Annotated[
+        bool, typer.Option("--payload", help="Identify what is carried, as 'robolang weigh' does.")
+    ] = False,
     table: Annotated[
         int | None, typer.Option("--table", metavar="K", min=2, max=7, help="Table over J2 and J3, K angles each.")
     ] = None,
@@ -42,7 +57,16 @@ def identify(
     date: Annotated[str, typer.Option("--date", metavar="YYYY-MM-DD", help="Date that the file states.")] = "",
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
-    """Identify the inertia at the motor of each axis, and what the model lacks of it."""
+    """Identify inertia at the motor and weight of each axis, and what the model lacks of them."""
+    if payload:
+        given = {"--axis": axis != "all", "--positions": positions != POSITIONS, "--error": error is not None,
+                 "--carrying": carrying is not None, "--table": table is not None, "--out": out is not None,
+                 "--date": date != ""}  # fmt: skip
+        for option in (name for name, there in given.items() if there):
+            raise OptionValueError(option, "it has no place beside --payload")
+        program = _is_program(subject)
+        weigh(subject if program else None, None, None if program else subject, None, plant, None, as_json)
+        return
     if plant not in ("rigid", "mujoco"):
         raise OptionValueError("--plant", f"'{plant}' is not one of rigid, mujoco")
     if out is not None and not out.name.endswith(ENDING):
@@ -52,16 +76,16 @@ def identify(
         from robolang.identify import as_json as figures
         from robolang.identify import compensation_of, with_errors
         from robolang.identify import identify as run_all
-        from robolang.project import load_any_robot
         from robolang.storage import check_writable, write_atomic
         from robolang.trial_motion import Request
         from runtime.dynamics.compensation import as_toml
 
-        spec = load_any_robot(robot)
+        spec, profile, hand = _subject(subject)
         request = Request(
             robot=spec, axes=_axes(axis, spec.n), positions=positions, plant=cast("PlantName", plant),
-            real=None if error is None else with_errors(spec, error),
-            payload=values.payload(payload, "--payload", spec, heavier=False), table=table or 0,
+            real=None if error is None else with_errors(spec, error), profile=profile,
+            payload=hand if carrying is None else values.payload(carrying, "--carrying", spec, heavier=False),
+            table=table or 0,
         )  # fmt: skip
         if out is not None:
             check_writable(out)
@@ -75,6 +99,24 @@ def identify(
             typer.echo(json.dumps(found))
         else:
             _print(request, found)
+
+
+def _is_program(subject: str) -> bool:
+    return subject.lower().endswith(".rbl")
+
+
+def _subject(subject: str) -> "tuple[RobotSpec, Profile, Payload]":
+    """Return robot, controller and what hangs on the flange: of a program's cell, or of a robot on its own."""
+    from robolang.project import load_any_robot, load_cell_and_settings
+    from runtime.profile import Profile
+    from runtime.robot.payload import NO_PAYLOAD, Payload
+
+    if not _is_program(subject):
+        return load_any_robot(subject), Profile(), NO_PAYLOAD
+    if not Path(subject).exists():
+        raise OptionValueError("PROG_OR_ROBOT", f"there is no file '{subject}'")
+    cell, settings = load_cell_and_settings(Path(subject), None, None, None, {})
+    return cell.robot, settings.profile, Payload(mass=cell.hand.mass, cog=cell.hand.cog)
 
 
 def _day(date: str) -> str:
@@ -145,3 +187,27 @@ def _print(request: "Request", found: dict[str, Any]) -> None:
         figures = (f"{row[key] / _UNIT:.3f}" for _, key in _COLUMNS)
         table.add_row(f"J{row['axis']}", f"{row['acceleration_rad_s2']:.2f}", *figures, f"{off:+.2f}")
     console.print(table)
+    if "first_moments_kg_m" in found:
+        console.print(_weights(found))
+
+
+def _weights(found: dict[str, Any]) -> "Table":
+    """Return the table of what the same passes say of friction and weight, N m at the joints."""
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    table = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+    table.add_column("axis", no_wrap=True)
+    for heading in ("friction\nN m", "at\nrad/s", "weight off\nmodel, N m", "first moment of the\nlink beyond, kg m"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for row in found["axes"]:
+        moment = found["first_moments_kg_m"][row["axis"] - 1]
+        known = "friction_nm" in row
+        table.add_row(
+            f"J{row['axis']}",
+            f"{row['friction_nm']:.2f}" if known else "-",
+            f"{row['speed_rad_s']:.2f}",
+            f"{row['weight_beyond_nm']:.3f}" if known else "-",
+            ", ".join(f"{round(h, 4) + 0.0:.4f}" for h in moment),
+        )
+    return table

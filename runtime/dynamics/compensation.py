@@ -5,7 +5,8 @@
 Jc is the identified inertia minus that of the model's links, so it holds the rotor, the gear and whatever the model
 misses. It takes the place of the rotor inertia J in D' = D + N^2 J of eqs (9) and (10); the two are never added
 (docs/identification.md). One scalar per axis: D_ii does not depend on the axis' own angle, so neither does Jc. It may
-depend on the joints beyond the axis; a table over one or two of them then says how.
+depend on the joints beyond the axis; a table over one or two of them then says how. The first moment that a link has
+beyond the model stands beside it: the weight that the same passes showed (``first_moments``).
 
 ::
 
@@ -24,6 +25,7 @@ depend on the joints beyond the axis; a table over one or two of them then says 
     table_joints = [2, 3]               # optional, all three: joints beyond the axis, one or two,
     table_deg = [[-90, 0], [0, 45, 90]] # their angles, rising,
     table_kg_m2 = [1e-4, ...]           # and Jc over them, the angle of the last joint first
+    first_moment_kg_m = [0.2, 0.0, 0.0] # optional: what the link has beyond the model, in its own frame
 
 Every error is a ``FileFault`` at its line. Read once, before anything moves.
 """
@@ -38,6 +40,7 @@ from typing import Any
 import numpy as np
 
 from runtime.dynamics.equations import axis_inertia, inertia_range
+from runtime.dynamics.first_moments import scale
 from runtime.faults import Fault
 from runtime.frames import Array
 from runtime.robot.joint_table import JointTable
@@ -55,6 +58,8 @@ MOST_JOINTS, MOST_ANGLES = 2, 50
 """Size of the largest table that is read."""
 FURTHEST = 3600.0
 """Largest angle of a table, deg."""
+FAR = 0.3
+"""Distance at which the rated payload may have been left out of the model, m."""
 _POSTURES = 200
 _FEW = 20
 
@@ -63,7 +68,8 @@ _FEW = 20
 class AxisCompensation:
     """One axis, kg m2 at the motor: ``compensation`` Jc; None where the axis was not identified.
 
-    ``table``: Jc over joints beyond the axis, where it is known; ``compensation`` is its mean then.
+    ``table``: Jc over joints beyond the axis, where it is known; ``compensation`` is its mean then. ``first_moment``:
+    what the link has beyond the model, kg m in its frame; empty where it was not identified.
     """
 
     compensation: float
@@ -71,6 +77,7 @@ class AxisCompensation:
     model: float | None = None
     identified: float | None = None
     table: JointTable | None = None
+    first_moment: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,6 +93,13 @@ class Compensation:
     def rotors(self, spec: RobotSpec) -> Array:
         """Return N^2 Jc of every axis (n,), kg m2 at the joint: it is added to D in place of N^2 J."""
         return np.array([a.compensation for a in self.axes]) * spec.per_axis("motor", "gear_ratio") ** 2
+
+    @property
+    def first_moments(self) -> tuple[tuple[float, ...], ...]:
+        """What each link has beyond the model, kg m in its frame; () where none was identified."""
+        if not any(axis.first_moment for axis in self.axes):
+            return ()
+        return tuple(axis.first_moment or (0.0, 0.0, 0.0) for axis in self.axes)
 
     def at(self, spec: RobotSpec, q: Array) -> Array:
         """Return N^2 Jc of every axis (n,) at joint angles q (n,) rad, kg m2 at the joint."""
@@ -124,6 +138,7 @@ def load_compensation(path: Path, spec: RobotSpec) -> Compensation:
     )
     table.done()
     _believe(found, spec, axes)
+    _believe_moments(found, spec, axes)
     return found
 
 
@@ -140,6 +155,8 @@ def as_toml(found: Compensation) -> str:
             value = getattr(axis, name)
             lines += [] if value is None else [f"{name}_kg_m2 = {float(value)!r}"]
         lines += [] if axis.table is None else _table_lines(axis.table)
+        moment = ", ".join(repr(float(h)) for h in axis.first_moment)
+        lines += [f"first_moment_kg_m = [{moment}]"] if moment else []
     return "\n".join(lines) + "\n"
 
 
@@ -183,6 +200,8 @@ def _axis(table: Table, axis: int, n: int) -> AxisCompensation:
         spread = table.number("spread_kg_m2", low=0.0)
         model, identified = (table.number(f"{name}_kg_m2", positive=True) for name in ("model", "identified"))
         found = replace(found, spread=spread, model=model, identified=identified)
+    if "first_moment_kg_m" in table:
+        found = replace(found, first_moment=tuple(table.numbers("first_moment_kg_m", 3)))
     table.done()
     return found
 
@@ -239,6 +258,16 @@ def _believe(found: Compensation, spec: RobotSpec, axes: list[Table]) -> None:
                 why = f"more than {MOST:g} times what J{axis + 1} has" if total > 0.0 else lightest
                 verb = "has" if key == "table_kg_m2" else "is"
                 table.fail("RBL605", f"'{key}' of J{axis + 1} {verb} {Jc:.4g}, {why}", key=key)
+
+
+def _believe_moments(found: Compensation, spec: RobotSpec, axes: list[Table]) -> None:
+    """Refuse a first moment beyond anything the link can have."""
+    most = MOST * (scale(spec) + FAR * spec.rated_payload)
+    for axis, (moment, table) in enumerate(zip(found.first_moments, axes, strict=False)):
+        size = float(np.linalg.norm(moment))
+        if not size <= most[axis]:
+            table.fail("RBL605", f"'first_moment_kg_m' of J{axis + 1} is {size:.4g} long; more than {most[axis]:.3g} "
+                       "is not believed of that link", key="first_moment_kg_m")  # fmt: skip
 
 
 def _smallest_over(table: JointTable, spec: RobotSpec, axis: int) -> list[float]:

@@ -12,7 +12,7 @@ import numpy as np
 from runtime.frames import Array, inverse
 from runtime.plant.cell import CellSpec
 from runtime.plant.plant import HandState
-from runtime.robot.model import ArmModel
+from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
 
@@ -30,7 +30,7 @@ class RigidPlant:
         self.q_link = self.q
         self._spec = spec
         self._cell = cell
-        self._model = ArmModel(spec, rotors=True)
+        self._model = ArmModel(spec, rotors=spec_rotors(spec))
         self._parts = {part.name: np.array(part.X_world_part) for part in cell.parts}
         self._closed = False
         self._holding: str | None = None

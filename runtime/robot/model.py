@@ -2,8 +2,8 @@
 
 ``ArmModel`` is the typed adapter around Pinocchio (which has no type stubs): mass matrix, one column of it,
 gravity torque and forward dynamics, in SI, for one posture at a time. Rotor inertia is not in it: the servo adds
-N^2 J itself (docs/servo.md). With ``rotors=True`` it is in the model, for the
-ideal plant.
+N^2 J itself (docs/servo.md). With ``rotors`` it is in the model, for the ideal plant and the supervision. What an
+identification found beyond the bodies, first moments, is in ``gravity`` and ``torque`` alone (docs/identification.md).
 """
 
 from typing import Any, Literal
@@ -16,21 +16,26 @@ from runtime.robot.payload import NO_PAYLOAD, Payload
 from runtime.robot.spec import Body, RobotSpec
 from runtime.units import GRAVITY
 
+_NO_MASS = 1e-9
 LoadMode = Literal["add", "replace"]
 
 
 class ArmModel:
-    """Rigid-body model of a robot that carries one payload at a time."""
+    """Rigid-body model of a robot that carries one payload at a time.
 
-    def __init__(self, spec: RobotSpec, *, rotors: bool = False) -> None:
+    ``rotors`` (n,) kg m2 at the joints, ``first_moments`` (n, 3) kg m in link frames, weighed and not accelerated.
+    """
+
+    def __init__(self, spec: RobotSpec, *, rotors: Array | None = None, first_moments: Array | None = None) -> None:
         self.n = spec.n
         self._X_last_flange = pin.SE3(spec.X_last_flange)
         self._model = _build(spec)
-        if rotors:
-            self._model.armature = spec_rotors(spec)
+        if rotors is not None:
+            self._model.armature = rotors
         self._weightless = self._model.copy()
         self._weightless.gravity = pin.Motion.Zero()
         self._data = self._model.createData()
+        self._moments: Any = None if first_moments is None else _only_moments(self._model, first_moments)
         self._weightless_data = self._weightless.createData()
         self._bare_last = self._model.inertias[self.n].copy()
         self._zero = np.zeros(self.n)
@@ -55,7 +60,8 @@ class ArmModel:
 
     def gravity(self, q: Array) -> Array:
         """Return the torques (n,) N m that hold the arm at rest."""
-        return np.asarray(pin.computeGeneralizedGravity(self._model, self._data, q))
+        T = np.asarray(pin.computeGeneralizedGravity(self._model, self._data, q))
+        return T if self._moments is None else T + self._beyond(q)
 
     def acceleration(self, q: Array, dq: Array, tau: Array) -> Array:
         """Return ddq (n,) rad/s2 under joint torques tau (n,) N m (forward dynamics)."""
@@ -63,7 +69,12 @@ class ArmModel:
 
     def torque(self, q: Array, dq: Array, ddq: Array) -> Array:
         """Return the joint torques (n,) N m of a motion (inverse dynamics, with gravity)."""
-        return np.asarray(pin.rnea(self._model, self._data, q, dq, ddq))
+        tau = np.asarray(pin.rnea(self._model, self._data, q, dq, ddq))
+        return tau if self._moments is None else tau + self._beyond(q)
+
+    def _beyond(self, q: Array) -> Array:
+        model, data = self._moments
+        return np.asarray(pin.computeGeneralizedGravity(model, data, q))
 
     def flange(self, q: Array) -> Array:
         """Return X_base_flange (4, 4)."""
@@ -84,6 +95,14 @@ def _build(spec: RobotSpec) -> Any:
         parent = model.addJoint(parent, pin.JointModelRZ(), pin.SE3(axis.placement), axis.name)
         model.appendBodyToJoint(parent, _inertia(axis.body), pin.SE3.Identity())
     return model
+
+
+def _only_moments(model: Any, first_moments: Array) -> tuple[Any, Any]:
+    """Return the arm with bodies that have these first moments and next to no mass, and its data."""
+    model = model.copy()
+    for joint, h in enumerate(first_moments, start=1):
+        model.inertias[joint] = pin.Inertia(_NO_MASS, h / _NO_MASS, np.zeros((3, 3)))
+    return model, model.createData()
 
 
 def _inertia(body: Body) -> Any:

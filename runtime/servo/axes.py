@@ -93,6 +93,11 @@ def rotors(spec: RobotSpec, options: ServoOptions) -> Array:
     return np.array(options.rotors) if options.rotors else spec_rotors(spec)
 
 
+def first_moments(spec: RobotSpec, options: ServoOptions) -> Array | None:
+    """Return the first moments that an identification found beyond the model (n, 3), kg m; None: there are none."""
+    return np.array(options.first_moments).reshape(spec.n, 3) if options.first_moments else None
+
+
 def gains(spec: RobotSpec, options: ServoOptions) -> Gains:
     """Derive the constants of the law from the bandwidths and the profile's options."""
     Kp, Kv = bandwidths(spec, options)

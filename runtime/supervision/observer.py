@@ -33,7 +33,7 @@ import numpy as np
 import pinocchio as pin
 
 from runtime.frames import Array
-from runtime.robot.model import ArmModel, LoadMode
+from runtime.robot.model import ArmModel, LoadMode, spec_rotors
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
 from runtime.supervision.limits import SupervisionLimits
@@ -50,10 +50,13 @@ FEWEST = 5
 
 
 class LoadModel(ArmModel):
-    """The arm with rotors and the declared payload, and the torque that a small further payload would add."""
+    """The arm with rotors and the declared payload, and the torque that a small further payload would add.
 
-    def __init__(self, spec: RobotSpec) -> None:
-        super().__init__(spec, rotors=True)
+    ``rotors`` (n,) kg m2 at the joints and ``first_moments`` (n, 3) kg m are those of an identification, if any.
+    """
+
+    def __init__(self, spec: RobotSpec, rotors: Array | None = None, first_moments: Array | None = None) -> None:
+        super().__init__(spec, rotors=spec_rotors(spec) if rotors is None else rotors, first_moments=first_moments)
         R, p = spec.X_last_flange[:3, :3], spec.X_last_flange[:3, 3]
         self._to_joint = np.zeros((4, 4))
         self._to_joint[0, 0], self._to_joint[1:, 0], self._to_joint[1:, 1:] = 1.0, p, R
@@ -66,11 +69,11 @@ class LoadModel(ArmModel):
 
 
 class Observer:
-    """Residual of each cycle and the running estimate of the payload."""
+    """Residual of each cycle and the running estimate of the payload; ``model``: by default that of the robot file."""
 
     def __init__(self, spec: RobotSpec, limits: SupervisionLimits, torque: Array, ticks: int, tick_s: float,
-                 friction: float) -> None:  # fmt: skip
-        self._model = LoadModel(spec)
+                 friction: float, model: LoadModel | None = None) -> None:  # fmt: skip
+        self._model = model or LoadModel(spec)
         self._ticks, self._period_s = ticks, ticks * tick_s
         ramp = (np.arange(ticks) + 0.5) / ticks**2
         self._triangle = np.concatenate([ramp, ramp[::-1]])

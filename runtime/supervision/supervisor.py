@@ -16,7 +16,7 @@ from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
 from runtime.supervision.finding import Finding
 from runtime.supervision.limits import SupervisionLimits
-from runtime.supervision.observer import FEWEST, STRIDE, Observer
+from runtime.supervision.observer import FEWEST, STRIDE, LoadModel, Observer
 from runtime.supervision.watch import Watch
 
 MOVING = 0.02
@@ -35,15 +35,16 @@ class Supervisor:
     """Watches one robot.
 
     ``torque`` (n,) N m are its torque limits, ``resolution`` (n,) rad its encoder steps, ``lag`` (n,) s by how much a
-    servo without full velocity feed-forward follows late, ``friction`` the share that the servo compensates.
+    servo without full velocity feed-forward follows late, ``friction`` the share that the servo compensates, ``model``
+    what torques are judged by: that of the robot file by default.
     """
 
     def __init__(self, spec: RobotSpec, limits: SupervisionLimits, *, torque: Array, resolution: Array, lag: Array,
-                 ticks: int, tick_s: float, friction: float) -> None:  # fmt: skip
+                 ticks: int, tick_s: float, friction: float, model: LoadModel | None = None) -> None:  # fmt: skip
         self._limits, self._ticks, self._rated = limits, ticks, spec.rated_payload
         share = limits.friction if limits.friction is not None else friction
         self.watch = Watch(spec, limits, torque, resolution, lag, ticks, tick_s)
-        self.observer = Observer(spec, limits, torque, ticks, tick_s, share)
+        self.observer = Observer(spec, limits, torque, ticks, tick_s, share, model)
         self._collision = limits.collision * torque
         self._top = spec.per_axis("limits", "speed")
         self._payload: Payload | None = None

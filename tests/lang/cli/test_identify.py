@@ -7,10 +7,10 @@ import shutil
 import numpy as np
 import pytest
 
-from robolang.project import load_project
+from robolang.project import builtin_cell, load_project
 from runtime.dynamics.compensation import load_compensation
 from runtime.robot.loader import load_builtin
-from tests.lang.cli.commands import BUILTIN, PUMA, dry, flat, places, robolang
+from tests.lang.cli.commands import BUILTIN, PUMA, ROOT, dry, flat, places, robolang
 
 SPEC = load_builtin("puma560")
 QUICK = ("--plant", "rigid", "--positions", "2")
@@ -21,7 +21,7 @@ def made(tmp_path_factory):
     """A file of axes 3 and 6, and what the command printed."""
     path = tmp_path_factory.mktemp("identify") / "arm.compensation.toml"
     result = robolang("identify", "puma560", "--axis", "3,6", *QUICK, "--error", "4", "--out", path,
-                      "--date", "2026-11-24", "--payload", "0.8,0,0,60")  # fmt: skip
+                      "--date", "2026-11-24", "--carrying", "0.8,0,0,60")  # fmt: skip
     return path, result
 
 
@@ -84,8 +84,8 @@ def test_without_a_date_the_file_has_none(tmp_path):
         (("--plant", "real"), "RBL703 --plant"),
         (("--date", "yesterday"), "RBL703 --date"),
         (("--out", "file.toml"), "must end in .compensation.toml"),
-        (("--payload", "1,0,0"), "RBL703 --payload"),
-        (("--payload", "9,0,0,0"), "over the rated"),
+        (("--carrying", "1,0,0"), "RBL703 --carrying"),
+        (("--carrying", "9,0,0,0"), "over the rated"),
         (("--positions", "0"), "--positions"),
         (("--error", "x"), "--error"),
         (("--table", "1"), "--table"),
@@ -142,6 +142,41 @@ def test_the_heading_names_the_table():
     words = ("--axis", "2", "--plant", "rigid", "--positions", "1", "--table", "2")
     assert "1 position of each axis, a table of 2 angles of each joint" in robolang(
         "identify", "puma560", *words).stdout  # fmt: skip
+
+
+def test_three_places_tell_friction_and_weight(tmp_path):
+    path = tmp_path / "a.compensation.toml"
+    words = ("--axis", "2,3", "--plant", "rigid", "--positions", "3", "--error", "4")
+    shown = json.loads(robolang("identify", "puma560", *words, "--json", "--out", path).stdout)
+    found = load_compensation(path, SPEC)
+    assert [list(moment) for moment in found.first_moments] == shown["first_moments_kg_m"]
+    assert np.linalg.norm(found.first_moments[1]) > 0.2
+    for row, axis in zip(shown["axes"], (1, 2), strict=True):
+        assert row["friction_nm"] > SPEC.axes[axis].motor.joint_coulomb_friction[0]
+        assert row["weight_beyond_nm"] > 0.5
+    text = robolang("identify", "puma560", *words).stdout
+    assert max(map(len, text.splitlines()[1:])) <= 80
+    assert re.search(rf"^ *J2 +{shown['axes'][0]['friction_nm']:.2f} ", text, re.M)
+
+
+def test_a_program_names_robot_controller_and_hand(tmp_path):
+    program = ROOT / "programs/manutec_pick_and_place.rbl"
+    path = tmp_path / "a.compensation.toml"
+    words = ("--axis", "6", *QUICK, "--json", "--out", path)
+    found = json.loads(robolang("identify", program, *words).stdout)
+    hand = load_project(program).cell.hand
+    assert (found["robot"], found["payload_kg"]) == ("manutec_r3", hand.mass)
+    assert load_compensation(path, load_builtin("manutec_r3")).payload.mass == hand.mass
+    assert "there is no file" in robolang("identify", tmp_path / "no.rbl", code=2).stderr
+
+
+def test_the_payload_is_identified_as_weigh_does(tmp_path):
+    words = (ROOT / "programs/pick_and_place.rbl", "--plant", "rigid", "--json")
+    assert robolang("identify", "--payload", *words).stdout == robolang("weigh", *words).stdout
+    of_robot = json.loads(robolang("identify", "puma560", "--payload", "--plant", "rigid", "--json").stdout)
+    assert of_robot["true"]["mass_kg"] == builtin_cell().hand.mass
+    result = robolang("identify", "puma560", "--payload", "--table", "3", code=2)
+    assert "RBL703 --table" in result.stderr
 
 
 # --- use -------------------------------------------------------------------------------------------------------------

@@ -26,7 +26,8 @@ FOUND = Compensation(
     payload=Payload(mass=0.8, cog=np.array([0.0, 0.01, 0.06])),
     axes=(
         AxisCompensation(compensation=3.1529473526410994e-04, spread=2.3e-8, model=7.3e-4, identified=1.05e-3),
-        *(AxisCompensation(compensation=2.2e-4 / k, spread=0.0, model=1e-4, identified=3e-4) for k in (1, 3)),
+        AxisCompensation(compensation=2.2e-4, spread=0.0, model=1e-4, identified=3e-4, first_moment=(0.5, -0.01, 0.0)),
+        AxisCompensation(compensation=2.2e-4 / 3, spread=0.0, model=1e-4, identified=3e-4),
         *(AxisCompensation(compensation=axis.motor.rotor_inertia) for axis in SPEC.axes[3:]),
     ),
 )
@@ -179,6 +180,9 @@ WRONG = {
     "payload far away": (r"cog_mm = .*", "cog_mm = [0, 0, 3000]", "RBL403", "3000"),
     "payload below nothing": ("mass_kg = 0.8", "mass_kg = -0.8", "RBL605", "mass_kg"),
     "inertia below nothing": (r"compensation_kg_m2 = 0.0003\d*", "compensation_kg_m2 = -0.01", "RBL605", "J1"),
+    "a moment of two": (r"first_moment_kg_m = \[.*\]", "first_moment_kg_m = [1.0, 2.0]", "RBL613", "3 numbers"),
+    "a moment beyond belief": (r"first_moment_kg_m = \[.*\]", "first_moment_kg_m = [99.0, 0.0, 0.0]", "RBL605", "J2"),
+    "a moment not a number": (r"first_moment_kg_m = \[.*\]", "first_moment_kg_m = [nan, 0.0, 0.0]", "RBL604", "finite"),
     "inertia beyond belief": (r"compensation_kg_m2 = 0.0003\d*", "compensation_kg_m2 = 0.1", "RBL605", "10 times"),
     "not TOML": ("positions = 5", "positions = = 5", "RBL601", ""),
 }

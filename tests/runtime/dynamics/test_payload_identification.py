@@ -8,7 +8,7 @@ import pytest
 from runtime.dynamics.payload_identification import BodyModel, Knowledge, identify_payload
 from runtime.frames import pose_from_xyzrpy
 from runtime.robot.loader import load_builtin
-from runtime.robot.model import ArmModel
+from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import NO_PAYLOAD, Payload
 
 PUMA, MANUTEC = load_builtin("puma560"), load_builtin("manutec_r3")
@@ -29,7 +29,7 @@ def motion(spec, seconds=6.0, moving=None):
 
 def readings(spec, body, friction=0.0, springs=False, moving=None):
     """Torques that the motion takes, in the middle of each tick as a motor gives them, and angles at its start."""
-    model = ArmModel(spec, rotors=True)
+    model = ArmModel(spec, rotors=spec_rotors(spec))
     model.set_payload(body)
     q, dq, ddq = motion(spec, moving=moving)
     links = np.array([model.torque(*row) for row in zip(q, dq, ddq, strict=True)])

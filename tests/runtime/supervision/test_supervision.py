@@ -5,7 +5,7 @@ import pytest
 
 from runtime.profile import parse_profile
 from runtime.robot.loader import load_builtin
-from runtime.robot.model import ArmModel
+from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import Payload
 from runtime.supervision.limits import SupervisionLimits
 from runtime.supervision.observer import LoadModel, Observer
@@ -87,7 +87,7 @@ def test_excursions_and_saturation(column, value, code):
 
 def test_the_regressor_is_the_derivative_of_the_torque():
     rng = np.random.default_rng(5)
-    model, bare = LoadModel(SPEC), ArmModel(SPEC, rotors=True)
+    model, bare = LoadModel(SPEC), ArmModel(SPEC, rotors=spec_rotors(SPEC))
     for _ in range(10):
         q, dq, ddq = rng.uniform(-1, 1, (3, 6))
         model.torque(q, dq, ddq)
@@ -103,13 +103,13 @@ def test_the_regressor_is_the_derivative_of_the_torque():
 
 def test_the_residual_of_an_exact_motion_vanishes_and_a_payload_is_weighed():
     observer = Observer(SPEC, SupervisionLimits(), TORQUE, 8, 1e-3, 0.0)
-    carried = ArmModel(SPEC, rotors=True)
+    carried = ArmModel(SPEC, rotors=spec_rotors(SPEC))
     carried.set_payload(Payload(mass=1.3, cog=np.array([0.0, 0.0, 0.05])))
     t = np.arange(17)[:, None] * 1e-3
     for k in range(30):
         phase = np.arange(6) + 0.1 * k + t
         q, dq, ddq = 0.5 * np.sin(phase), 0.5 * np.cos(phase), -0.5 * np.sin(phase)
-        for model, expected in ((ArmModel(SPEC, rotors=True), 0.0), (carried, 1.3)):
+        for model, expected in ((ArmModel(SPEC, rotors=spec_rotors(SPEC)), 0.0), (carried, 1.3)):
             tau = np.array([model.torque(*row) for row in zip(q, dq, ddq, strict=True)])
             observer.update(0.5 * (tau + np.roll(tau, -1, axis=0)), q)
             if expected == 0.0:
