@@ -9,6 +9,8 @@ sampled again, until it holds them: the path stays, the time grows, and the plan
 axis. What was checked is what runs: the interpolator hands out these very rows (docs/decisions/0002).
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -99,6 +101,34 @@ class LinePlan:
         return modes
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LineWay:
+    """The curve of a straight move in joint space, and what bounds its path parameter; ``limits`` None: already there.
+
+    ``line`` keeps the posture of the path, ``choice`` is how the move really goes.
+    """
+
+    path: LinePath
+    line: LineSolver
+    limits: SpeedLimits | None
+    choice: Choice
+
+    def joints(self, s: Array) -> Array:
+        """Return q (N, n) rad at path parameters s (N,); ``Fault`` RBL410, 411 or 412."""
+        with self.explaining():
+            return self.choice.solver.joints(s)
+
+    @contextmanager
+    def explaining(self) -> Iterator[None]:
+        """Add to a refusal of a way through the wrist the reason why the wrist has to go at all."""
+        try:
+            yield
+        except Fault as fault:
+            if self.choice.trigger is None or self.choice.switch is None:
+                raise
+            raise explained(fault, self.choice.trigger) from None
+
+
 class LinePlanner:
     """Plans straight moves of the flange frame for one robot under one controller profile."""
 
@@ -115,24 +145,26 @@ class LinePlanner:
 
         ``X_flange_tool`` (4, 4) is the tool whose point moves.
         """
+        way = self.way(q_start, command, X_flange_tool)
+        if way.limits is None:
+            return LinePlan(path=way.path, s=np.ones(1), q=frozen([q_start]), slowdown=None, notes=("already there",))
+        with way.explaining():
+            s, q, slowdown = self._within_limits(way.choice.solver, way.limits, command.duration)
+        wrist = _wrist_change(way.choice, way.line, s, q, command.held)
+        notes = self._notes(s, slowdown, command) + _wrist_notes(wrist) + _kept_notes(command, q)
+        return LinePlan(path=way.path, s=frozen(s), q=frozen(q), slowdown=slowdown, wrist=wrist, notes=notes)
+
+    def way(self, q_start: Array, command: MoveLinear, X_flange_tool: Array) -> LineWay:
+        """Return the curve of a move, at any path parameter, and its limits; arguments and faults of ``plan``."""
         X_start = self._kinematics.forward(q_start) @ X_flange_tool
         path = LinePath.between(X_start, command.X_world_tool, self._profile.wrist.posture)
-        way = 0.0 if command.q_end is None else float(np.abs(command.q_end - q_start).max())
-        if max(path.length, path.angle, way) < NOTHING_TO_DO:
-            return LinePlan(path=path, s=np.ones(1), q=frozen([q_start]), slowdown=None, notes=("already there",))
+        turn = 0.0 if command.q_end is None else float(np.abs(command.q_end - q_start).max())
         arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=self._fine, X_flange_tool=X_flange_tool)
         line = LineSolver(arm, path, q_start)
-        limits = speed_limits(path, command, self._spec.path, self._profile, way)
-        choice = self._choose(line, limits, command)
-        try:
-            s, q, slowdown = self._within_limits(choice.solver, limits, command.duration)
-        except Fault as fault:
-            if choice.trigger is None or choice.switch is None:
-                raise
-            raise explained(fault, choice.trigger) from None
-        wrist = _wrist_change(choice, line, s, q, command.held)
-        notes = self._notes(s, slowdown, command) + _wrist_notes(wrist) + _kept_notes(command, q)
-        return LinePlan(path=path, s=frozen(s), q=frozen(q), slowdown=slowdown, wrist=wrist, notes=notes)
+        if max(path.length, path.angle, turn) < NOTHING_TO_DO:
+            return LineWay(path=path, line=line, limits=None, choice=Choice(solver=line))
+        limits = speed_limits(path, command, self._spec.path, self._profile, turn)
+        return LineWay(path=path, line=line, limits=limits, choice=self._choose(line, limits, command))
 
     def tracked(self, plan: LinePlan, command: MoveLinear, q_from: Array, q_here: Array, tracker: SeamTracker,
                 X_flange_tool: Array) -> SeamMove:  # fmt: skip
