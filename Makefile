@@ -5,6 +5,7 @@
 # make plots   the plots of docs/servo.md, drawn anew
 # make fault-campaign         every injected fault and 200 clean runs, counted (minutes)
 # make supervision-campaign   wrong payloads in random programs, counted
+# make pulse-campaign         random moves of four machines as pulse tables, counted
 # make wrist-campaign         random straight moves through the wrist, counted (minutes)
 # make measured   every other figure of docs/measured.md, printed
 
@@ -13,7 +14,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test gates bench measured plots fault-campaign supervision-campaign wrist-campaign clean
+.PHONY: demo test gates bench measured plots fault-campaign supervision-campaign wrist-campaign pulse-campaign clean
 
 demo: $(READY)
 	$(BIN)/robolang run programs/pick_and_place.rbl
@@ -47,6 +48,9 @@ fault-campaign: $(READY)
 
 supervision-campaign: $(READY)
 	$(BIN)/python -m tests.faults.campaign payload
+
+pulse-campaign: $(READY)
+	$(BIN)/python -m tests.bench.pulse_campaign
 
 wrist-campaign: $(READY)
 	$(BIN)/python -m tests.bench.wrist_campaign

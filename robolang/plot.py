@@ -136,6 +136,16 @@ def as_html(title: str, svg: str) -> str:
     return f'<!doctype html>\n<html lang="en"><meta charset="utf-8"><title>{escape(title)}</title>\n{svg}</html>\n'
 
 
+def stacked(svgs: Sequence[str]) -> str:
+    """Return one SVG with others of ``as_svg`` or ``as_map_svg`` below one another."""
+    parts, down = [], 0
+    for svg in svgs:
+        height = int(svg.partition(f'viewBox="0 0 {WIDTH} ')[2].partition('"')[0])
+        parts.append(svg.replace("<svg ", f'<svg y="{down}" width="{WIDTH}" height="{height}" ', 1))
+        down += height
+    return f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {down}">\n{"".join(parts)}</svg>\n'
+
+
 class _View:
     """Maps values to the picture."""
 

@@ -8,9 +8,10 @@ file is ever replaced: not a device, a pipe or a folder, and of a link the file 
 import json
 import math
 import os
+import shutil
 import stat
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import IO, NoReturn
 
@@ -51,6 +52,55 @@ def write_atomic(path: Path, write: Callable[[IO[bytes]], object]) -> None:
     except BaseException:
         Path(temporary).unlink(missing_ok=True)
         raise
+
+
+def check_folder(path: Path, ours: Callable[[str], bool]) -> None:
+    """Raise ``Fault`` RBL706 when ``write_folder`` could not make or replace that folder now; leaves nothing behind."""
+    try:
+        if path.is_symlink() or path.exists():
+            if not path.is_dir() or path.is_symlink():
+                raise Fault("RBL706", f"{path} is not a folder", "Give the name of a folder, there or not.")
+            other = sorted(item.name for item in path.iterdir() if not (item.is_file() and ours(item.name)))
+            if other:
+                hint = "Give an empty or a new folder."
+                raise Fault("RBL706", f"{path} has other files in it, such as {other[0]}", hint)
+        with tempfile.TemporaryDirectory(dir=path.absolute().parent, prefix=_PREFIX) as probe:
+            (Path(probe) / "probe").write_bytes(_PROBE)
+    except OSError as error:
+        _refuse(path, error)
+
+
+def write_folder(path: Path, files: Mapping[str, bytes], ours: Callable[[str], bool]) -> None:
+    """Make a folder with these files, whole or not at all; ``Fault`` RBL706, with what was there untouched.
+
+    A folder that is there is replaced when ``ours`` says of all names in it that they were written here.
+    """
+    check_folder(path, ours)
+    parent = path.absolute().parent
+    try:
+        made = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=parent))
+    except OSError as error:
+        _refuse(path, error)
+    old: Path | None = None
+    try:
+        for name, data in files.items():
+            with (made / name).open("wb") as stream:
+                stream.write(data)
+                stream.flush()
+                os.fsync(stream.fileno())
+        made.chmod(0o777 & ~_umask())
+        if path.exists():
+            old = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=parent))
+            path.replace(old)
+        made.replace(path)
+    except OSError as error:
+        if old is not None and not path.exists():
+            old.replace(path)
+        _refuse(path, error)
+    finally:
+        for left in (made, old):
+            if left is not None:
+                shutil.rmtree(left, ignore_errors=True)
 
 
 def write_json(path: Path, value: object) -> None:

@@ -9,7 +9,22 @@ from typing import Annotated
 
 import typer
 
-from robolang.cli import check, compare, config, explain, identify, inertia, kin, robot, run, step, weigh, wrist_demo
+from robolang.cli import (
+    check,
+    compare,
+    config,
+    explain,
+    export,
+    identify,
+    inertia,
+    kin,
+    replay_pulses,
+    robot,
+    run,
+    step,
+    weigh,
+    wrist_demo,
+)
 
 app = typer.Typer(
     name="robolang",
@@ -25,9 +40,11 @@ app.command("inertia")(inertia.inertia)
 app.command("identify")(identify.identify)
 app.command("weigh")(weigh.weigh)
 app.command("wrist-demo")(wrist_demo.wrist_demo)
+app.command("replay-pulses")(replay_pulses.replay_pulses)
 app.command("check")(check.check)
 app.command("explain")(explain.explain)
 app.add_typer(config.app, name="config")
+app.add_typer(export.app, name="export")
 app.add_typer(kin.app, name="kin")
 app.add_typer(robot.app, name="robot")
 

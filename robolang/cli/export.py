@@ -1,0 +1,214 @@
+"""``robolang export pulses PROG -o DIR``: a program as positioning tables for a PLC with pulse channels.
+
+The folder is written whole or not at all: manifest.json, one table for each move and channel, the same for F174
+(docs/pulses.md). ``--json`` prints one object: {"machine", "step_s", "folder", "moves": [{"line", "number", "text",
+"steps", "seconds", "length_mm", "speed_mm_s", "slowed", "error_mm", "notes", "channels": [...]}], "markers": [...]}.
+
+Exit codes: 0; 1 the program has errors; 2 a file or an option; 3 a move that cannot be exported; 4 the folder.
+"""
+
+import json
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from robolang.cli.errors import DIAGNOSTICS, exit_code, reported
+from robolang.cli.values import OptionValueError
+
+if TYPE_CHECKING:
+    from robolang.project import Project
+    from robolang.pulse_export import Export
+    from runtime.pulses.channels import Channel
+
+app = typer.Typer(no_args_is_help=True, help="Turn a program into what other controllers run.")
+SHORTEST_MS, LONGEST_MS = 1.0, 1000.0
+
+
+@app.callback()
+def formats() -> None:
+    """Turn a program into what other controllers run."""
+
+
+@app.command("pulses")
+def pulses(
+    program: Annotated[str, typer.Argument(metavar="PROG", help="Program file (.rbl).")],
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder to write: new, empty, or an export.")],
+    channels: Annotated[
+        str | None,
+        typer.Option("--channels", metavar="F.toml|NAME", help="Channel file, or xy, cylindrical, scara."),
+    ] = None,
+    step: Annotated[str, typer.Option("--step", metavar="TIME", help="Length of a step, such as 10ms.")] = "10ms",
+    fmin: Annotated[
+        float | None, typer.Option("--fmin", metavar="HZ", help="Lowest pulse frequency of every channel; default 191.")
+    ] = None,
+    plc: Annotated[
+        str, typer.Option("--plc", metavar="f174|none", help="Form of a PLC beside the neutral one.")
+    ] = "f174",
+    cell: Annotated[str | None, typer.Option(help="Cell file (.toml); default: the one beside the program.")] = None,
+    robot: Annotated[str | None, typer.Option(help="Built-in robot or robot file, in place of the cell's.")] = None,
+    plot: Annotated[
+        Path | None, typer.Option("--plot", metavar="FILE", help="Draw frequencies and path error: .svg or .html.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+) -> None:
+    """Export a program as pulse tables: equal-time steps for the channels of a PLC."""
+    step_hz = _step_hz(step)
+    if plc not in ("f174", "none"):
+        raise OptionValueError("--plc", f"'{plc}' is not one of f174, none")
+    if fmin is not None and not 1.0 <= fmin <= 1e5:  # NaN is refused too
+        raise OptionValueError("--fmin", f"{fmin:g} is not between 1 and 100000 Hz")
+    if plot is not None and plot.suffix not in (".svg", ".html"):
+        raise OptionValueError("--plot", f"'{plot}' must end in .svg or .html")
+    with reported():
+        from robolang.storage import check_folder, check_writable, write_folder
+
+        check_folder(out, written_here)
+        if plot is not None:
+            check_writable(plot)
+        from robolang.project import load_project
+        from robolang.pulse_export import ExportRequest, NotExportableError, export
+
+        project = load_project(program, cell, robot)
+        _refuse(project)
+        try:
+            found = export(project, ExportRequest(channels=channels, step_hz=step_hz, min_hz=fmin, f174=plc == "f174"))
+        except NotExportableError as error:
+            from robolang.diagnostics import render
+
+            typer.echo(render(error.diagnostic, project.source), err=True)
+            raise typer.Exit(exit_code(error.diagnostic.code)) from None
+        write_folder(out, {name: text.encode("utf-8") for name, text in found.files.items()}, written_here)
+        if as_json:
+            typer.echo(json.dumps(_plain(found, out)))
+        else:
+            _print(found, out)
+        if plot is not None:
+            _plot(out, plot)
+
+
+def written_here(name: str) -> bool:
+    """Return whether a file of that name may be one of an earlier export."""
+    return name == "manifest.json" or re.fullmatch(r"\d+_line\d+_\w+(\.f174)?\.csv", name) is not None
+
+
+def _step_hz(text: str) -> int:
+    """Return steps a second; a step must be a whole share of a second, for frequencies to be whole numbers."""
+    found = re.fullmatch(r"([0-9]+(?:\.[0-9]*)?|\.[0-9]+) *(ms|s)?", text.strip().lower())
+    if found is None:
+        raise OptionValueError("--step", f"'{text[:20]}' is not a time such as 10ms")
+    ms = float(found[1]) * (1000.0 if found[2] == "s" else 1.0)
+    if not SHORTEST_MS <= ms <= LONGEST_MS:
+        raise OptionValueError("--step", f"{ms:g} ms is not between {SHORTEST_MS:g} and {LONGEST_MS:g} ms")
+    whole = round(1000.0 / ms)
+    if abs(1000.0 / ms - whole) > 1e-9 * whole:
+        near = ", ".join(f"{1000.0 / each:g}ms" for each in (whole + 1, max(whole, 1)))
+        raise OptionValueError("--step", f"{ms:g} ms does not divide a second, so frequencies would be no whole "
+                               f"numbers; near it: {near}")  # fmt: skip
+    return whole
+
+
+def _refuse(project: "Project") -> None:
+    """Print what is wrong with the text; leave when it has errors."""
+    from robolang.diagnostics import render
+
+    for item in project.diagnostics:
+        typer.echo(render(item, project.source), err=True)
+    if not project.ok:
+        raise typer.Exit(DIAGNOSTICS)
+
+
+def _plain(found: "Export", out: Path) -> dict[str, Any]:
+    from robolang.pulse_export import MANIFEST, summary
+
+    sequence = json.loads(found.files[MANIFEST])["sequence"]
+    head = ("line", "number", "text")
+    moves = [{key: entry[key] for key in head} for entry in sequence if entry["kind"] == "move"]
+    return {
+        "machine": found.machine.name, "step_s": found.request.step_s, "folder": str(out),
+        "moves": [{**entry, **summary(move, found)} for entry, move in zip(moves, found.moves, strict=True)],
+        "markers": [{key: value for key, value in entry.items() if key != "kind"}
+                    for entry in sequence if entry["kind"] == "marker"],
+    }  # fmt: skip
+
+
+def _print(found: "Export", out: Path) -> None:
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    from robolang.cli.console import Console
+    from robolang.diagnostics import safe
+
+    plain, console = _plain(found, out), Console()
+    moves, markers = plain["moves"], plain["markers"]
+
+    def table(*headings: str) -> Table:
+        made = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+        for heading in headings:
+            text = heading in ("statement", "channel")
+            made.add_column(heading, justify="left" if text else "right", no_wrap=True, overflow="ellipsis",
+                            max_width=24 if heading == "statement" else None)  # fmt: skip
+        return made
+
+    title = f"{found.machine.name}: pulse tables in steps of {found.request.step_s * 1e3:g} ms"
+    console.print(safe(title), soft_wrap=True)
+    by_move = table("line", "statement", "steps", "time, s", "mm/s", "raised", "tables", "off, mm")
+    rows = [(entry["line"], _move_row(entry)) for entry in moves]
+    rows += [(entry["line"], (_number(entry), safe(entry["text"]))) for entry in markers]
+    for _, row in sorted(rows, key=lambda item: item[0]):
+        by_move.add_row(*row)
+    console.print(by_move)
+    by_channel = table("channel", "one pulse", "lowest Hz", "largest Hz", "raised", "tables", "debt, pulses")
+    for k, channel in enumerate(found.channels):
+        by_channel.add_row(*_channel_row(channel, [entry["channels"][k] for entry in moves]))
+    console.print(by_channel)
+    for note in _notes(moves):
+        console.print(safe(note), soft_wrap=True)
+    seconds = sum(entry["seconds"] for entry in moves)
+    worst = max((entry["error_mm"] for entry in moves), default=0.0)
+    console.print(safe(f"{len(found.files)} files in {out}: {len(moves)} moves of {seconds:.2f} s, {len(markers)} "
+                       f"markers between them; largest path error {worst:.4f} mm"), soft_wrap=True)  # fmt: skip
+
+
+def _number(entry: dict[str, Any]) -> str:
+    return str(entry["line"] if entry["number"] is None else entry["number"])
+
+
+def _move_row(entry: dict[str, Any]) -> tuple[str, ...]:
+    from robolang.diagnostics import safe
+
+    channels = entry["channels"]
+    return (
+        _number(entry), safe(entry["text"]), str(entry["steps"]), f"{entry['seconds']:.2f}",
+        f"{entry['speed_mm_s']:.1f}", str(sum(channel["raised"] for channel in channels)),
+        str(sum(channel["tables"] for channel in channels)), f"{entry['error_mm']:.4f}",
+    )  # fmt: skip
+
+
+def _channel_row(channel: "Channel", moves: list[dict[str, Any]]) -> tuple[str, ...]:
+    unit, scale = channel.unit
+    return (
+        channel.joint.name, f"{channel.pulse / scale:.6g} {unit}", f"{channel.min_hz:g}",
+        str(max((move["highest_hz"] for move in moves), default=0)), str(sum(move["raised"] for move in moves)),
+        str(sum(move["tables"] for move in moves)), str(max((move["debt_pulses"] for move in moves), default=0)),
+    )  # fmt: skip
+
+
+def _notes(moves: list[dict[str, Any]]) -> list[str]:
+    """Return what a move says of itself, and which channels are too slow to keep running."""
+    notes = []
+    for entry in moves:
+        held = [channel["name"] for channel in entry["channels"] if channel["rule"] == "hold"]
+        waits = [f"{', '.join(held)}: stands between pulses, too slow for the lowest frequency"] if held else []
+        notes += [f"line {_number(entry)}: {note}" for note in [*entry["notes"], *waits]]
+    return notes
+
+
+def _plot(folder: Path, file: Path) -> None:
+    """Draw what a PLC would do with the tables, from the files themselves."""
+    from robolang.cli.replay_pulses import write_plot
+    from runtime.pulses.replay import read_export, replay
+
+    found = read_export(folder)
+    write_plot(file, found, replay(found))

@@ -1,0 +1,385 @@
+"""``robolang replay-pulses DIR``: exported pulse tables, read anew and played; how straight they are, and the real arm.
+
+The tables are integrated as a PLC counts them (``runtime.pulses.replay``) and compared with the straight lines that the
+program asks for. ``--physics`` drives the arm of the cell with them too. ``--json`` prints one object, in mm, s and Hz:
+
+    {"folder", "program", "mechanism": {"kind", "name"}, "step_s", "seconds", "path_error_mm",
+     "channels": [{"name", "unit", "per_pulse", "pulses", "highest_hz"}, ...],
+     "sequence": [{"kind": "marker", "line", "number", "text", "dwell_s"},
+                  {"kind": "move", "line", "number", "text", "steps", "seconds", "pulses": {channel: count},
+                   "highest_hz", "highest_channel", "rows_mm", "between_mm", "end_mm",
+                   "real": null or {"seconds", "error_mm", "end_mm", "notes"}}, ...],
+     "physics": null or {"seconds", "alarms": [{"code", "message", "line", "axis", "time_s"}, ...], "warnings"}}
+
+Exit codes: 0; 1 the tables lead further from a line than ``--max-error`` (RBL635); 2 a value or a folder that cannot be
+used, or one for another robot; 3 the real arm stopped with an alarm.
+"""
+
+import json
+import math
+from itertools import chain
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from robolang.cli.errors import DIAGNOSTICS, MOTION, reader_may_leave, reported, say
+from robolang.cli.values import OptionValueError
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from robolang.plot import Mark
+    from robolang.pulse_drive import Drive, DrivenMove
+    from runtime.faults import Alarm
+    from runtime.frames import Array
+    from runtime.pulses.replay import Export, Marker, Move, MoveReplay
+
+
+def replay_pulses(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of exported pulse tables.")],
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    plot: Annotated[
+        Path | None, typer.Option("--plot", help="Write frequencies and path error as .svg or .html.")
+    ] = None,
+    max_error: Annotated[
+        float | None, typer.Option("--max-error", metavar="MM", help="Fail when the tables are further off a line.")
+    ] = None,
+    physics: Annotated[bool, typer.Option("--physics", help="Drive the arm of --cell in MuJoCo too.")] = False,
+    cell: Annotated[str | None, typer.Option("--cell", help="Cell file (.toml) for --physics.")] = None,
+) -> None:
+    """Play exported pulse tables: frequencies, path error, and the real arm."""
+    if plot is not None and plot.suffix not in (".svg", ".html"):
+        raise OptionValueError("--plot", f"'{plot}' must end in .svg or .html")
+    if max_error is not None and not 0.0 <= max_error < math.inf:  # NaN is refused too
+        raise OptionValueError("--max-error", f"{max_error:g} is not a distance in mm")
+    if physics and cell is None:
+        raise OptionValueError("--physics", "it needs the cell of the arm, --cell FILE.toml")
+    if cell is not None and not physics:
+        raise OptionValueError("--cell", "it has a place beside --physics only")
+    with reported():
+        from runtime.pulses.replay import read_export, replay
+
+        export = read_export(folder)
+        if plot is not None:
+            from robolang.storage import check_writable
+
+            check_writable(plot)
+        drive = None if cell is None else _drive(export, cell)
+        replays = replay(export)
+        found = _figures(folder, export, replays, drive)
+        if plot is not None:
+            write_plot(plot, export, replays)
+        with reader_may_leave():
+            if as_json:
+                typer.echo(json.dumps(found))
+            else:
+                _print(found)
+        too_far = max_error is not None and _is_too_far(replays, max_error)
+    if drive is not None and drive.alarms:
+        raise typer.Exit(MOTION)
+    if too_far:
+        raise typer.Exit(DIAGNOSTICS)
+
+
+def _drive(export: "Export", cell: str) -> "Drive":
+    from robolang.project import load_cell_and_settings
+    from robolang.pulse_drive import drive, start_angles
+
+    spec, settings = load_cell_and_settings(None, cell, None, None, {})
+    start_angles(export, spec)  # before anything is said to move
+    typer.echo(f"driving {spec.robot.name}: {export.seconds:.1f} s of motion", err=True)
+    return drive(export, spec, settings.profile)
+
+
+def _is_too_far(replays: "list[MoveReplay]", max_error: float) -> bool:
+    """Name the worst move on stderr when it is further off its line than ``max_error``, mm."""
+    from runtime.faults import Fault
+
+    worst = max(replays, key=lambda item: item.worst_mm, default=None)
+    if worst is None or worst.worst_mm <= max_error:
+        return False
+    move = worst.move
+    number = move.line if move.number is None else move.number
+    message = f"line {number}, {move.text}: {worst.worst_mm:.4f} mm off its line, {max_error:g} mm are allowed"
+    say(Fault("RBL635", message))
+    return True
+
+
+# --- the figures -----------------------------------------------------------------------------------------------------
+
+
+def _figures(folder: Path, export: "Export", replays: "list[MoveReplay]", drive: "Drive | None") -> dict[str, Any]:
+    """Return what came of it in plain types; see the module for the keys."""
+    from runtime.pulses.replay import Marker
+
+    played = iter(replays)
+    driven = iter(() if drive is None else drive.moves)
+    sequence = [
+        _marker(item) if isinstance(item, Marker) else _move(export, next(played), next(driven, None))
+        for item in export.sequence
+    ]
+    return {
+        "folder": str(folder),
+        "program": export.program,
+        "mechanism": {"kind": export.mechanism.kind, "name": export.mechanism.name},
+        "step_s": export.step_s,
+        "seconds": export.seconds,
+        "path_error_mm": max((item.worst_mm for item in replays), default=0.0),
+        "channels": _channels(export, replays),
+        "sequence": sequence,
+        "physics": None if drive is None else {
+            "seconds": drive.seconds,
+            "alarms": [_alarm(alarm, drive.tick_s) for alarm in drive.alarms],
+            "warnings": [_alarm(alarm, drive.tick_s) for alarm in drive.warnings],
+        },
+    }  # fmt: skip
+
+
+def _marker(marker: "Marker") -> dict[str, Any]:
+    return {"kind": "marker", "line": marker.line, "number": marker.number, "text": marker.text,
+            "dwell_s": marker.dwell_s}  # fmt: skip
+
+
+def _move(export: "Export", found: "MoveReplay", driven: "DrivenMove | None") -> dict[str, Any]:
+    move, (hz, channel) = found.move, found.fastest
+    names = [item.name for item in export.channels]
+    return {
+        "kind": "move", "line": move.line, "number": move.number, "text": move.text, "steps": move.steps,
+        "seconds": found.duration_s, "pulses": dict(zip(names, found.counts, strict=True)), "highest_hz": hz,
+        "highest_channel": names[channel] if hz else None, "rows_mm": found.rows_mm, "between_mm": found.between_mm,
+        "end_mm": found.end_mm, "real": None if driven is None else _driven(driven),
+    }  # fmt: skip
+
+
+def _channels(export: "Export", replays: "list[MoveReplay]") -> list[dict[str, Any]]:
+    return [
+        {"name": channel.name, "unit": channel.unit, "per_pulse": channel.per_pulse,
+         "pulses": sum(item.counts[k] for item in replays),
+         "highest_hz": max((float(abs(item.frequency[:, k]).max(initial=0.0)) for item in replays), default=0.0)}
+        for k, channel in enumerate(export.channels)
+    ]  # fmt: skip
+
+
+def _driven(move: "DrivenMove") -> dict[str, Any]:
+    return {"seconds": move.seconds, "error_mm": move.error_mm, "end_mm": move.end_mm, "notes": list(move.notes)}
+
+
+def _alarm(alarm: "Alarm", tick_s: float) -> dict[str, Any]:
+    axis = None if alarm.axis is None else alarm.axis + 1
+    return {"code": alarm.code, "message": alarm.message, "line": alarm.line, "axis": axis,
+            "time_s": round(alarm.tick * tick_s, 9)}  # fmt: skip
+
+
+# --- the table -------------------------------------------------------------------------------------------------------
+
+_COLUMNS = ("steps", "time\n\ns", "fastest\nchannel\nHz", "at\nrows\nmm", "be-\ntween\nmm", "at\nend\nmm")
+_REAL = "real\narm\nmm"
+_NARROWEST, _WIDEST = 8, 40
+
+
+def _print(found: dict[str, Any]) -> None:
+    from robolang.cli.console import Console
+    from robolang.diagnostics import safe
+
+    console = Console()
+    mechanism, physics = found["mechanism"], found["physics"]
+    console.print(safe(f"{found['program']} on {mechanism['name']}, steps of {found['step_s'] * 1e3:g} ms"),
+                  style="italic", soft_wrap=True)  # fmt: skip
+    console.print(_table(found, console.width))
+    for row in found["sequence"]:
+        for note in (row.get("real") or {}).get("notes", ()):
+            console.print(safe(f"  line {_number(row)}: {note}"), soft_wrap=True)
+    for kind, alarms in () if physics is None else (("warning", physics["warnings"]), ("stopped", physics["alarms"])):
+        for alarm in alarms:
+            where = "" if alarm["line"] is None else f" at line {alarm['line']}"
+            text = f"{kind}{where}, {alarm['time_s']:.3f} s: {alarm['code']} {alarm['message']}"
+            console.print(safe(text), soft_wrap=True)
+    for line in _totals(found):
+        console.print(line)
+
+
+def _number(row: dict[str, Any]) -> int:
+    return int(row["line"] if row["number"] is None else row["number"])
+
+
+def _table(found: dict[str, Any], width: int) -> "Table":
+    from rich import box
+    from rich.table import Table
+
+    headings = (*_COLUMNS, *(() if found["physics"] is None else (_REAL,)))
+    rows = [_cells(row, real=found["physics"] is not None) for row in found["sequence"]]
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False, show_edge=False)
+    table.add_column("line", justify="right", no_wrap=True)
+    table.add_column("statement", no_wrap=True)
+    for heading in headings:
+        table.add_column(heading, justify="right", no_wrap=True)
+    room = _room(rows, headings, width)
+    for number, text, *cells in rows:
+        table.add_row(number, text if len(text) <= room else f"{text[: room - 1]}…", *cells)
+    return table
+
+
+def _cells(row: dict[str, Any], *, real: bool) -> list[str]:
+    from robolang.diagnostics import safe
+
+    head = [str(_number(row)), safe(row["text"])]
+    if row["kind"] == "marker":
+        waits = f"{row['dwell_s']:.3f}" if row["dwell_s"] else ""
+        return [*head, "", waits, *([""] * (len(_COLUMNS) - 2 + real))]
+    fastest = "-" if row["highest_channel"] is None else f"{row['highest_hz']:.0f} {row['highest_channel']}"
+    cells = [str(row["steps"]), f"{row['seconds']:.3f}", fastest,
+             *(f"{row[key]:.4f}" for key in ("rows_mm", "between_mm", "end_mm"))]  # fmt: skip
+    return [*head, *cells, *((["-"] if row["real"] is None else [f"{row['real']['error_mm']:.3f}"]) if real else [])]
+
+
+def _room(rows: list[list[str]], headings: tuple[str, ...], width: int) -> int:
+    """Return how wide a statement may be so that the table is not wider than the console."""
+    names = ["line", "", *(max(heading.split("\n"), key=len) for heading in headings)]
+    widths = [max(map(len, column)) for column in zip(names, *rows, strict=True)]
+    taken = sum(widths) - widths[1] + 2 * (len(widths) - 1)  # two spaces between columns
+    return min(max(width - taken, _NARROWEST), _WIDEST)
+
+
+def _totals(found: dict[str, Any]) -> list[str]:
+    """Return a line of the tables and, where it was driven, one of the real arm."""
+    moves = [row for row in found["sequence"] if row["kind"] == "move"]
+    pulses = sum(channel["pulses"] for channel in found["channels"])
+    many = "1 move" if len(moves) == 1 else f"{len(moves)} moves"
+    lines = [f"{many}, {sum(row['steps'] for row in moves)} steps, {found['seconds']:.3f} s, {pulses} pulses"]
+    if moves:
+        worst = max(moves, key=_worst)
+        lines[0] += f"; at most {_worst(worst):.4f} mm off (line {_number(worst)})"
+    driven = [row for row in moves if row["real"] is not None]
+    if driven:
+        worst = max(driven, key=lambda row: float(row["real"]["error_mm"]))
+        lines.append(f"real arm: {found['physics']['seconds']:.3f} s simulated; at most "
+                     f"{worst['real']['error_mm']:.3f} mm off (line {_number(worst)})")  # fmt: skip
+    return lines
+
+
+def _worst(row: dict[str, Any]) -> float:
+    return float(max(row["rows_mm"], row["between_mm"], row["end_mm"]))
+
+
+# --- the plots -------------------------------------------------------------------------------------------------------
+
+_BUCKETS = 195
+"""Parts of the time axis of which four points are drawn; a curve keeps four times that whole."""
+_KHZ_FROM = 10_000.0
+_MICRO_BELOW = 0.1
+"""Frequencies are drawn in kHz from so many Hz on, errors in µm below so many mm: the axis has room for few digits."""
+_LETTER = 7.0
+_LONGEST_NAME = 32
+
+
+def write_plot(path: Path, export: "Export", replays: "list[MoveReplay]") -> None:
+    """Draw frequencies and path error over the time of the program; ``Fault`` RBL706."""
+    from robolang.diagnostics import safe
+    from robolang.plot import as_html, stacked
+    from robolang.storage import write_atomic
+
+    program = safe(export.program)
+    program = program if len(program) <= _LONGEST_NAME else f"{program[: _LONGEST_NAME - 1]}…"
+    svgs = _svgs(program, export, replays)
+    text = as_html(f"{program}: pulse tables", "".join(svgs)) if path.suffix == ".html" else stacked(svgs)
+    write_atomic(path, lambda stream: stream.write(text.encode("utf-8")))
+
+
+def _svgs(program: str, export: "Export", replays: "list[MoveReplay]") -> list[str]:
+    """Return the plot of all frequencies and that of the path error, both over the time of the whole program."""
+    import numpy as np
+
+    from robolang.plot import COLOURS, Curve, as_svg
+
+    starts = _starts(export)
+    marks = _marks(export, starts, [item.move for item in replays])
+    highest = max((item.fastest[0] for item in replays), default=0.0)
+    hz, per_hz = ("kHz", 1e-3) if highest >= _KHZ_FROM else ("Hz", 1.0)
+    curves = []
+    for k, channel in enumerate(export.channels):
+        parts = [_held(start, item.frequency[:, k], export.step_s) for start, item in zip(starts, replays, strict=True)]
+        rest = np.zeros(1)
+        x, y = _thinned(*_joined([(rest, rest), *parts, (rest + export.seconds, rest)]))
+        curves.append(Curve(name=channel.name, x=x, y=y * per_hz, dashed=k >= len(COLOURS)))
+    worst = max((item.worst_mm for item in replays), default=0.0)
+    mm, per_mm = ("µm", 1e3) if worst < _MICRO_BELOW else ("mm", 1.0)
+    x, y = _thinned(*_errors(export, starts, replays))
+    error = Curve(name="tool point", x=x, y=y * per_mm)
+    return [
+        as_svg(f"{program}: frequency of each channel, below 0 when counting down", "time, s", f"frequency, {hz}",
+               curves, level=0.0, corner="above", marks=marks),
+        as_svg(f"{program}: distance of the tool point from its straight lines", "time, s", f"path error, {mm}",
+               [error], corner="above", marks=marks),
+    ]  # fmt: skip
+
+
+def _errors(export: "Export", starts: list[float], replays: "list[MoveReplay]") -> "tuple[Array, Array]":
+    """Return times and path errors of all moves, mm; the tool point stays where it is between the moves."""
+    import numpy as np
+
+    parts = [(start + item.times, item.error_mm) for start, item in zip(starts, replays, strict=True)]
+    held = [(np.array([until]), errors[-1:]) for until, (_, errors) in zip([*starts[1:], export.seconds], parts,
+                                                                           strict=False)]  # fmt: skip
+    first = [(np.zeros(1), errors[:1]) for _, errors in parts[:1]]
+    return _joined([*first, *chain.from_iterable(zip(parts, held, strict=True))])
+
+
+def _starts(export: "Export") -> list[float]:
+    """Return the time at which each move starts, s."""
+    from runtime.pulses.replay import Move
+
+    now, starts = 0.0, []
+    for item in export.sequence:
+        if isinstance(item, Move):
+            starts.append(now)
+            now += item.steps * export.step_s
+        else:
+            now += item.dwell_s
+    return starts
+
+
+def _held(start: float, values: "Array", step_s: float) -> "tuple[Array, Array]":
+    """Return the corners of a curve that holds each value (S,) for a step, from zero and back to zero."""
+    import numpy as np
+
+    edges = start + np.arange(len(values) + 1) * step_s
+    return np.repeat(edges, 2), np.concatenate([[0.0], np.repeat(values, 2), [0.0]])
+
+
+def _joined(parts: "list[tuple[Array, Array]]") -> "tuple[Array, Array]":
+    import numpy as np
+
+    if not parts:
+        return np.zeros(0), np.zeros(0)
+    return np.concatenate([x for x, _ in parts]), np.concatenate([y for _, y in parts])
+
+
+def _thinned(x: "Array", y: "Array") -> "tuple[Array, Array]":
+    """Return first, smallest, largest and last point of every part of the time axis, in order: no peak is lost."""
+    import numpy as np
+
+    if len(x) <= 4 * _BUCKETS:
+        return x, y
+    share = (x - x[0]) / max(float(x[-1] - x[0]), 1e-9)
+    bucket = np.minimum(share * _BUCKETS, _BUCKETS - 1).astype(np.int64)
+    kept: set[int] = set()
+    for part in np.split(np.arange(len(x)), np.flatnonzero(np.diff(bucket)) + 1):
+        kept |= {int(part[k]) for k in (0, np.argmin(y[part]), np.argmax(y[part]), -1)}
+    at = sorted(kept)
+    return x[at], y[at]
+
+
+def _marks(export: "Export", starts: list[float], moves: "list[Move]") -> "list[Mark]":
+    """Return a mark where each move starts, with its line where there is room for it before the next one."""
+    from robolang.plot import LEFT, RIGHT, WIDTH, Mark
+
+    per_second = (WIDTH - LEFT - RIGHT) / max(export.seconds, 1e-9)
+    marks, free = [], 0.0
+    for start, move in zip(starts, moves, strict=True):
+        name = str(move.line if move.number is None else move.number)
+        x = start * per_second
+        fits = x >= free
+        free = x + _LETTER * (len(name) + 1) if fits else free
+        marks.append(Mark(name=name if fits else "", x=start))
+    return marks

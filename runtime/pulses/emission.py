@@ -1,0 +1,171 @@
+"""Pulses that a channel can emit: no step below its lowest frequency, and not one pulse lost (document 004, 4.5).
+
+A channel cannot run below F_min, so a step of fewer than dP_min = ceil(F_min dT) pulses cannot be emitted as it is.
+
+``compensate``, S06 of the document: such a step is raised to dP_min, and what it emits too much is carried, signed,
+until a step of 2 dP_min or more can give it back:
+
+    0 < |d| < dP_min            e = sgn(d) dP_min           c += e - d
+    |d| >= 2 dP_min, c with d   e = d - sgn(d) pay          c -= sgn(d) pay         pay = min(|c|, |d| - dP_min)
+    |d| >= dP_min, c against d  e = d - c                   c = 0
+    otherwise                   e = d
+
+``hold``, ours: where a joint creeps for a whole move there is no such step, and c grows without bound. There the
+channel stands still until more than half of dP_min is due, and emits what is due, dP_min at least: it is never more
+than half of that off, and never turns round for what it emitted too much.
+``emit`` takes the document's rule while it keeps within ``MOST_CARRIED`` dP_min and leaves no more at the end than one
+step can bear, else the second (docs/decisions/0021).
+
+``settle`` makes the sum exact: what is carried after the last point is taken from the last step that can bear it, else
+from several, else a step is left out and others raised, else one or two steps are appended.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Pulses = NDArray[np.int64]
+Rule = Literal["none", "compensate", "hold"]
+
+MOST_CARRIED = 2
+"""Pulses carried by the document's rule that are put up with, in terms of dP_min."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Emission:
+    """What a channel emits for a move: ``steps`` (N',) pulses, N' >= N where steps were appended.
+
+    ``raised`` counts the steps that were changed for want of frequency, ``debt`` is the most pulses emitted too many or
+    too few after any step, ``settled`` what was left for the end; ``rule`` says how.
+    """
+
+    steps: Pulses
+    raised: int
+    debt: int
+    settled: int
+    rule: Rule
+
+
+def least_step(min_hz: float, step_s: float) -> int:
+    """Return dP_min, the fewest pulses of a step that is not empty."""
+    return max(1, math.ceil(min_hz * step_s - 1e-9))
+
+
+def emit(wanted: Pulses, least: int, most: int) -> Emission:
+    """Return the emission of ``wanted`` steps (N,) pulses, each 0 or from ``least`` to ``most``; the sum is the same.
+
+    ``ValueError`` where that cannot be done because a step wants more than ``most``.
+    """
+    if len(wanted) and int(np.abs(wanted).max()) > most:
+        raise ValueError(f"a step of {int(np.abs(wanted).max())} pulses is over {most}")
+    short = (wanted != 0) & (np.abs(wanted) < least)
+    if not short.any():
+        return Emission(steps=wanted, raised=0, debt=0, settled=0, rule="none")
+    steps, raised, left = compensate(wanted, least)
+    rule: Rule = "compensate"
+    worst = _debt(steps, wanted)
+    borne = left == 0 or _bearer(steps, left, least, most) is not None
+    if worst > MOST_CARRIED * least or int(np.abs(steps).max()) > most or not borne:
+        steps, raised, left = hold(wanted, least, most)
+        rule = "hold"
+    settled = settle(steps, -left, least, most)
+    return Emission(steps=settled, raised=raised, debt=_debt(settled, wanted), settled=left, rule=rule)
+
+
+def compensate(wanted: Pulses, least: int) -> tuple[Pulses, int, int]:
+    """Return the steps of S06, how many were raised, and the pulses carried at the end."""
+    emitted, carried, raised = [], 0, 0
+    for d in wanted.tolist():
+        size, sign = abs(d), 1 if d > 0 else -1
+        e = d
+        if 0 < size < least:
+            e = sign * least
+            raised += 1
+        elif carried * sign > 0 and size >= 2 * least:
+            e = d - sign * min(abs(carried), size - least)
+        elif carried * sign < 0 and size >= least:
+            e = d - carried
+        carried += e - d
+        emitted.append(e)
+    return np.array(emitted, dtype=np.int64), raised, carried
+
+
+def hold(wanted: Pulses, least: int, most: int) -> tuple[Pulses, int, int]:
+    """Return steps that stand until half of ``least`` is due, how many differ, and the pulses carried at the end."""
+    emitted, due = [], 0
+    for d in wanted.tolist():
+        due += d
+        size, sign = abs(due), 1 if due > 0 else -1
+        e = sign * min(max(size, least), most) if 2 * size > least else 0
+        due -= e
+        emitted.append(e)
+    steps = np.array(emitted, dtype=np.int64)
+    return steps, int((steps != wanted).sum()), -due
+
+
+def settle(steps: Pulses, missing: int, least: int, most: int) -> Pulses:
+    """Return steps whose sum is larger by ``missing`` pulses, none of them between 0 and ``least``."""
+    found = _spread(steps, missing, least, most)
+    if found is None:
+        against = np.flatnonzero(steps * missing < 0)
+        if len(against):
+            last = int(against[-1])
+            without = steps.copy()
+            without[last] = 0
+            found = _spread(without, missing + int(steps[last]), least, most)
+    if found is not None:
+        return found
+    sign = 1 if missing > 0 else -1
+    more = _pieces(missing, least, most) if abs(missing) >= least else [missing + sign * least, -sign * least]
+    return np.append(steps, more)
+
+
+def _spread(steps: Pulses, missing: int, least: int, most: int) -> Pulses | None:
+    """Return steps with ``missing`` given to the last one that can bear it, else to several; None where none can."""
+    steps = steps.copy()
+    if missing == 0:
+        return steps
+    at = _bearer(steps, -missing, least, most)
+    if at is not None:
+        steps[at] += missing
+        return steps
+    return steps if _shared(steps, missing, least, most) == 0 else None
+
+
+def _bearer(steps: Pulses, carried: int, least: int, most: int) -> int | None:
+    """Return the last step that stays a step when ``carried`` is taken from it."""
+    after = steps - carried
+    able = (steps != 0) & (steps * after > 0) & (np.abs(after) >= least) & (np.abs(after) <= most)
+    found = np.flatnonzero(able)
+    return int(found[-1]) if len(found) else None
+
+
+def _shared(steps: Pulses, missing: int, least: int, most: int) -> int:
+    """Give ``missing`` to several steps from the last on, in place; return what is left of it."""
+    for k in reversed(np.flatnonzero(steps).tolist()):
+        if missing == 0:
+            break
+        size, along = abs(int(steps[k])), missing * int(steps[k]) > 0
+        share = min(abs(missing), most - size if along else size - least)
+        change = share if missing > 0 else -share
+        steps[k] += change
+        missing -= change
+    return missing
+
+
+def _pieces(pulses: int, least: int, most: int) -> list[int]:
+    """Return ``pulses`` in as few steps of ``least`` to ``most`` as will do."""
+    count = -(-abs(pulses) // most)
+    size, more = divmod(abs(pulses), count)
+    return [(size + (k < more)) * (1 if pulses > 0 else -1) for k in range(count)]
+
+
+def _debt(steps: Pulses, wanted: Pulses) -> int:
+    """Return the largest distance of what was emitted from what was wanted, after any step."""
+    off = np.cumsum(steps)
+    off[: len(wanted)] -= np.cumsum(wanted)
+    off[len(wanted) :] -= int(wanted.sum())
+    return int(np.abs(off).max()) if len(off) else 0
