@@ -23,7 +23,8 @@ from runtime.frames import Array, frozen
 from runtime.plant.cell import CellSpec
 from runtime.plant.plant import Plant
 from runtime.profile import Profile
-from runtime.pulses.replay import Export, Load, Marker, Move, distances, joint_values, positions
+from runtime.pulses.exported import Export, Load, Marker, Move
+from runtime.pulses.replay import distances, joint_values, positions
 from runtime.robot.payload import Payload, declared
 from runtime.units import DEG, MM
 
@@ -206,7 +207,8 @@ class _Arm:
 def set_points(export: Export, move: Move, period_s: float) -> Array:
     """Return the joint set-points (K, M) rad of a move, one for each interpolation cycle, the last one its end."""
     count = int(np.ceil(move.steps * export.step_s / period_s - 1e-9))
-    return joint_values(export, positions(move, np.arange(1, count + 1) * period_s))
+    times = np.arange(1, count + 1, dtype=np.float64) * period_s
+    return joint_values(export, positions(move, times))
 
 
 def _driven(run: _Run, tool: Array, tick_s: float) -> DrivenMove:

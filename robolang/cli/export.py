@@ -207,8 +207,9 @@ def _notes(moves: list[dict[str, Any]]) -> list[str]:
 
 def _plot(folder: Path, file: Path) -> None:
     """Draw what a PLC would do with the tables, from the files themselves."""
-    from robolang.cli.replay_pulses import write_plot
-    from runtime.pulses.replay import read_export, replay
+    from robolang.pulse_plot import write_plot
+    from runtime.pulses.folder import read_export
+    from runtime.pulses.replay import replay
 
     found = read_export(folder)
     write_plot(file, found, replay(found))

@@ -11,7 +11,8 @@ from robolang.project import load_cell_and_settings
 from robolang.pulse_drive import RAMP_S, drive, set_points, start_angles
 from runtime.controller import Controller
 from runtime.faults import Fault
-from runtime.pulses.replay import read_export, replay
+from runtime.pulses.folder import read_export
+from runtime.pulses.replay import replay
 from runtime.robot.kinematics import Kinematics
 from runtime.units import DEG
 from tests.runtime.pulses import Handmade

@@ -4,7 +4,7 @@ import pytest
 
 import robolang.project
 from runtime.faults import all_codes
-from tests.lang.cli.commands import flat, robolang
+from tests.lang.cli.commands import ROOT, flat, robolang, shell
 
 
 @pytest.mark.parametrize("word", ["RBL412", "rbl412", "412", "wrist-singularity", " RBL412 "])
@@ -59,3 +59,12 @@ def test_all_codes_are_listed_in_an_aligned_table():
     assert all(row[7:name].isspace() and row[meaning - 2 : meaning].isspace() for row in rows)
     assert max(map(len, lines)) <= 80
     assert "…" not in "".join(lines)
+
+
+def test_a_fresh_process_knows_every_code_of_the_page():
+    """Here the tests have imported everything; a user's command imports no more than it asks for."""
+    page = (ROOT / "docs" / "codes.md").read_text("utf-8")
+    listed = shell("explain").stdout
+    codes = re.findall(r"^\| (RBL\d{3}) \|", page, re.M)
+    assert len(codes) > 80
+    assert re.findall(r"^ (RBL\d{3}) ", listed, re.M) == codes

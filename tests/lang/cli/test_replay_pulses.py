@@ -128,6 +128,7 @@ def test_the_end_of_a_line_counts_and_the_worst_move_is_named(tmp_path):
     result = robolang("replay-pulses", folder, "--json", "--max-error", "3", code=1)
     assert "error RBL635 line 4, MOVE P2: 4.0000 mm off its line" in result.stderr
     assert json.loads(result.stdout)["path_error_mm"] == pytest.approx(4.0)
+    assert "at most 4.0000 mm off (line 4)" in robolang("replay-pulses", folder).stdout
 
 
 # --- the real arm ----------------------------------------------------------------------------------------------------

@@ -11,7 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from runtime.faults import lookup
-from runtime.pulses.replay import Marker, Move, distances, positions, read_export, replay, tool_points
+from runtime.pulses.exported import Marker, Move
+from runtime.pulses.folder import read_export
+from runtime.pulses.replay import distances, positions, replay, tool_points
 from runtime.tomlfile import FileFault
 from tests.runtime.pulses import Handmade, csv, pose, rows, staircase, turntable
 
