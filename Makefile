@@ -5,6 +5,7 @@
 # make plots   the plots of docs/servo.md, drawn anew
 # make fault-campaign         every injected fault and 200 clean runs, counted (minutes)
 # make supervision-campaign   wrong payloads in random programs, counted
+# make blend-campaign         random chains of moves with zones, counted
 # make pulse-campaign         random moves of four machines as pulse tables, counted
 # make wrist-campaign         random straight moves through the wrist, counted (minutes)
 # make measured   every other figure of docs/measured.md, printed
@@ -14,7 +15,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test gates bench measured plots fault-campaign supervision-campaign wrist-campaign pulse-campaign clean
+.PHONY: demo test gates bench measured plots fault-campaign supervision-campaign wrist-campaign pulse-campaign blend-campaign clean
 
 demo: $(READY)
 	$(BIN)/robolang run programs/pick_and_place.rbl
@@ -48,6 +49,9 @@ fault-campaign: $(READY)
 
 supervision-campaign: $(READY)
 	$(BIN)/python -m tests.faults.campaign payload
+
+blend-campaign: $(READY)
+	$(BIN)/python -m tests.bench.blend_campaign
 
 pulse-campaign: $(READY)
 	$(BIN)/python -m tests.bench.pulse_campaign

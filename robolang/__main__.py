@@ -1,6 +1,6 @@
 """Entry point of ``robolang`` and ``python -m robolang``.
 
-``--version`` is answered here, before typer and rich are imported.
+``--version`` is answered here, before typer and rich are imported, and ``check`` goes without the other commands.
 """
 
 import sys
@@ -14,7 +14,10 @@ def main() -> None:
         sys.stdout.write(f"robolang {__version__}\n")
         return
     try:
-        from robolang.cli.main import run_app
+        if sys.argv[1:2] == ["check"]:
+            from robolang.cli.quick import run_app
+        else:
+            from robolang.cli.main import run_app
 
         run_app()
     except KeyboardInterrupt:

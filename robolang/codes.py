@@ -5,6 +5,7 @@ so ``robolang explain`` and the documentation generator need only this import. A
 meaning for ever; a message may be reworded. Called once, at import.
 """
 
+import robolang.run_codes  # noqa: F401 - registers 2xx, 50x and 53x
 import runtime.faults
 import runtime.tomlfile  # registers RBL311 and RBL6xx
 from runtime.faults import Code
@@ -28,8 +29,8 @@ _TEXT = (
     (
         "RBL108",
         "nested-too-deeply",
-        "Parentheses or signs are nested more than 100 deep.",
-        "Write the expression in several steps.",
+        "Parentheses, signs or blocks are nested more than 100 deep.",
+        "Write the expression in several steps, and inner blocks as a SUB.",
     ),
     (
         "RBL109",
@@ -53,7 +54,7 @@ _TEXT = (
         "RBL112",
         "unknown-instruction",
         "The line does not start with an instruction of the language.",
-        "The instructions are MOVE, LOAD, HAND ON, HAND OFF, WRIST and SEAM.",
+        "Start the line with an instruction such as MOVE, LOAD, HAND or IF, or with name = value.",
     ),
     ("RBL113", "line-number-duplicated", "Two lines have the same line number.", "Renumber one of them."),
     (
@@ -77,8 +78,8 @@ _TEXT = (
     (
         "RBL117",
         "not-in-this-edition",
-        "The word belongs to the language but this edition does not run it yet.",
-        "This edition runs MOVE, LOAD, HAND ON, HAND OFF, WRIST and SEAM.",
+        "The word belongs to the language but this edition does not run it; edition 1 runs all of them.",
+        "Update robolang; this version refuses nothing with it.",
     ),
     (
         "RBL118",
@@ -97,6 +98,18 @@ _TEXT = (
         "too-many-components",
         "WRIST HOLD names more than two components of the posture.",
         "Name one or two of TILT, ADVANCE and ROTATION.",
+    ),
+    (
+        "RBL190",
+        "unused-suppression",
+        "A noqa comment suppresses nothing, or names a code that is not found on its line.",
+        "Remove it; robolang check --fix does.",
+    ),
+    (
+        "RBL191",
+        "unknown-suppression",
+        "A noqa comment names something that is not a code.",
+        "Write noqa, or noqa: and whole codes as in noqa: RBL301.",
     ),
 )
 
@@ -206,6 +219,12 @@ _COMMAND = (
         "configuration-key",
         "A key of the configuration is unknown or given twice.",
         "Correct the spelling or remove the key.",
+    ),
+    (
+        "RBL710",
+        "rule-unknown",
+        "The configuration selects or ignores a rule that does not exist.",
+        "Give a code such as RBL301, the beginning of one such as RBL2, or a name; robolang rules lists them.",
     ),
     (
         "RBL900",

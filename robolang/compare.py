@@ -13,7 +13,7 @@ same tick:
 """
 
 import multiprocessing
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -21,11 +21,9 @@ from typing import Any
 import numpy as np
 
 from robolang.effects import Effect, SetPayload
-from robolang.interpreter import execute
-from robolang.nodes import Program
 from robolang.project import Project, load_project
 from robolang.result import StatementRun
-from robolang.session import Session
+from robolang.session import Alter, Session
 from runtime.frames import Array
 from runtime.units import DEG, MM
 
@@ -117,7 +115,7 @@ def compare(request: Request, variants: tuple[Variant, ...] = VARIANTS, jobs: in
 def run_variant(request: Request, variant: Variant) -> dict[str, Any]:
     """Run one variant and measure it."""
     project = request.project(variant)
-    session = Session(project, physics=request.physics, effects=_effects(variant, project.cell.robot.rated_payload))
+    session = Session(project, physics=request.physics, alter=_alter(variant, project.cell.robot.rated_payload))
     result = session.run()
     alarms: Any = result.report["alarms"]
     return {
@@ -130,15 +128,13 @@ def run_variant(request: Request, variant: Variant) -> dict[str, Any]:
     }
 
 
-def _effects(variant: Variant, rated: float) -> Callable[[Program], Iterator[Effect]]:
-    def changed(program: Program) -> Iterator[Effect]:
-        for effect in execute(program):
-            if not isinstance(effect, SetPayload) or variant.load == "as written":
-                yield effect
-            elif variant.load == "wrong":
-                yield replace(effect, mass_kg=wrong_mass(effect.mass_kg, rated))
+def _alter(variant: Variant, rated: float) -> Alter:
+    def altered(effect: Effect) -> Effect | None:
+        if not isinstance(effect, SetPayload) or variant.load == "as written":
+            return effect
+        return replace(effect, mass_kg=wrong_mass(effect.mass_kg, rated)) if variant.load == "wrong" else None
 
-    return changed
+    return altered
 
 
 def wrong_mass(mass: float, rated: float) -> float:

@@ -52,10 +52,30 @@ class Related:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Edit:
+    """One change of the text: what ``span`` covers becomes ``text``; an empty span is an insertion."""
+
+    span: Span
+    text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fix:
+    """A correction of a diagnostic: edits that do not overlap, and a title that says what they do.
+
+    ``safe``: there is only one thing the text can have meant, so a program may apply it without asking.
+    """
+
+    title: str
+    edits: tuple[Edit, ...]
+    safe: bool = True
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Diagnostic:
     """One problem of a program: registered code, severity, one-line message, place, what would help.
 
-    Without a hint the remedy of the code is given.
+    Without a hint the remedy of the code is given. ``fix`` is a correction that a tool can apply.
     """
 
     code: str
@@ -64,6 +84,7 @@ class Diagnostic:
     span: Span
     hint: str = ""
     related: tuple[Related, ...] = ()
+    fix: Fix | None = None
 
     def __post_init__(self) -> None:
         remedy = lookup(self.code).remedy  # KeyError: the code is not registered
@@ -94,6 +115,8 @@ def render(diagnostic: Diagnostic, source: Source) -> str:
     for other in diagnostic.related:
         lines += [f"  {line}" for line in _block(f"note: {other.message}", source, other.span)]
     lines.append(f"  help: {safe(diagnostic.hint)}")
+    if diagnostic.fix is not None:
+        lines.append(f"  fix: {safe(diagnostic.fix.title)}")
     return "\n".join(lines)
 
 

@@ -6,10 +6,13 @@ that every alarm, log row and progress line can name it.
 """
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
-from robolang.nodes import Hand, Load, Move, Seam, Wrist
+from robolang.nodes import Statement
+from robolang.places import Frame, Place
 from robolang.source import Span
+
+Way = Literal["line", "joint", "arc"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,30 +22,39 @@ class Origin:
     line: int
     number: int | None
     span: Span
+    node: Statement
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SetPayload(Origin):
-    """Declare all that is beyond the flange: centre of gravity in the flange frame, mm; mass, kg."""
+    """Declare all that is beyond the flange: centre of gravity in the flange frame, mm; mass, kg; inertia about the
+    centre (ixx, iyy, izz, ixy, ixz, iyz), kg m2. ``name``: in their place a load of the cell, by its key."""
 
-    node: Load
-    cog_mm: tuple[float, float, float]
-    mass_kg: float
+    cog_mm: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    mass_kg: float = 0.0
+    inertia_kg_m2: tuple[float, ...] = ()
+    name: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MoveTo(Origin):
-    """Move the tool point straight to a taught point, by its key; None where the move leaves a value open.
+    """Move the tool to a place; None where the move leaves a value open.
 
-    ``wrist`` and ``held`` are the mode and the components of ``SetWrist`` that hold for this move: those of its own
-    option, else of the WRIST statement before it; None and () when the program has given neither.
+    ``way``: straight, with all joints together, or on an arc over ``via``. ``speed_mm_s`` of the tool point and
+    ``speed_pct`` of the joints (``way`` joint), ``accel_pct``, ``time_s`` for all of the move, ``override_pct`` of
+    every speed. ``zone_mm``: radius within which it blends into the next one, 0: it stops. ``wrist`` and ``held`` are
+    the mode and the components of ``SetWrist`` that hold for this move; None and () when the program has given neither.
     """
 
-    node: Move
-    point: str
+    way: Way = "line"
+    target: Place
+    via: Place | None = None
     speed_mm_s: float | None = None
+    speed_pct: float | None = None
     accel_pct: float | None = None
     time_s: float | None = None
+    override_pct: float = 100.0
+    zone_mm: float = 0.0
     wrist: str | None = None
     held: tuple[str, ...] = ()
 
@@ -51,7 +63,6 @@ class MoveTo(Origin):
 class SetHand(Origin):
     """Close or open the hand, then wait; ``dwell_s`` None: the default of the hand."""
 
-    node: Hand
     closed: bool
     dwell_s: float | None = None
 
@@ -64,7 +75,6 @@ class SetWrist(Origin):
     ``"auto"`` with some of them.
     """
 
-    node: Wrist
     mode: str
     held: tuple[str, ...] = ()
 
@@ -73,8 +83,51 @@ class SetWrist(Origin):
 class SetSeam(Origin):
     """Superpose the deviation that a seam sensor of the cell measures, by its key; None: no more."""
 
-    node: Seam
     sensor: str | None
 
 
-Effect: TypeAlias = SetPayload | MoveTo | SetHand | SetWrist | SetSeam
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SetTool(Origin):
+    """Take another tool: a tool of the cell by its key, or a pose in the flange frame, mm and deg."""
+
+    tool: Frame
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SetOutput(Origin):
+    """Set an output; with ``seconds`` only for so long, while the program goes on."""
+
+    output: int
+    value: float
+    seconds: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pass(Origin):
+    """Let time pass, s; 0: at least one interpolation cycle, in which inputs may change."""
+
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Show(Origin):
+    """Show a line of text."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Drain(Origin):
+    """Let all motion end: what comes next reads where the robot is, an input or the time."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Halt(Origin):
+    """``STOP``: the program ends here, ``PAUSE``: it waits for the operator."""
+
+    word: str
+
+
+Effect: TypeAlias = (
+    SetPayload | MoveTo | SetHand | SetWrist | SetSeam | SetTool | SetOutput | Pass | Show | Drain | Halt
+)  # fmt: skip

@@ -1,116 +1,597 @@
 """The main program: one statement after another, each yielded as an effect.
 
 Fig 4 of the 1992 controller tests the instruction in the order MOVE (100), LOAD (104), HAND OFF (108), HAND ON
-(112) and then takes the next one. The four exclude one another, so dispatch on the type of the statement is the same
-program; the order of the tests below is kept all the same, and WRIST and SEAM follow. Nothing is computed ahead: the
-generator stands at the statement whose effect it yielded until the session asks for the next, which is when that
-statement is done.
+(112) and then takes the next one. The instructions exclude one another, so a table by the type of the statement is the
+same program. Nothing is computed ahead: the generator stands at the statement whose effect it yielded until the
+session asks for the next. A statement that reads where the robot is, an input or the time yields ``Drain`` first, so
+that what it reads is of this place in the program.
+
+Errors. A ``Fault`` of an expression, or one that the session throws into the generator where a request cannot be
+carried out (planning, timeouts), goes to the line that ON ERROR GOTO named, unless a handler runs already; ERR is then
+the number of its code. RESUME takes the statement again, RESUME NEXT the one after it. A latched alarm of the robot
+never comes here: it ends the run.
+
+Limits (counts, not wall clock): ``MAX_IDLE`` statements without one that takes time are RBL508, at the head of the
+loop; ``MAX_STEPS`` statements are RBL505; ``MAX_CALLS`` CALLs or GOSUBs within one another RBL504; ``MAX_SHOWN``
+characters of PRINT RBL506.
 """
 
-from collections.abc import Iterator
+import math
+from collections.abc import Callable, Collection, Generator
+from typing import Any
 
-from robolang.effects import Effect, MoveTo, SetHand, SetPayload, SetSeam, SetWrist
+from robolang.effects import (
+    Drain,
+    Effect,
+    Halt,
+    MoveTo,
+    Pass,
+    SetHand,
+    SetOutput,
+    SetPayload,
+    SetSeam,
+    SetTool,
+    SetWrist,
+    Show,
+)
+from robolang.evaluator import Evaluator, Nowhere, World, finite, shown
 from robolang.nodes import (
     Accel,
+    Approach,
+    Assign,
+    Block,
+    Call,
+    CallSub,
+    Case,
+    Component6,
+    Const,
+    Delay,
+    Depart,
+    Dim,
     Expression,
+    For,
     Hand,
     HandState,
+    Head,
+    If,
+    Jump,
     Line,
     Load,
+    LoadNamed,
     Move,
+    MoveC,
+    MoveJ,
+    Moving,
+    Name,
+    Next,
+    Node,
+    OnError,
+    Out,
+    Print,
     Program,
+    Pulse,
     Seam,
+    Setting,
     Speed,
+    Statement,
+    Sub,
+    Target,
     Time,
+    Unparsed,
+    Vector,
+    Wait,
+    Word,
     Wrist,
     WristMode,
-    constant,
+    Zone,
+    walk,
 )
+from robolang.places import Frame, Place, Shift
+from robolang.scope import Loop, Scope, Scopes, check_kind
+from robolang.source import Span
+from robolang.structure import Structure, structure_of
+from runtime.faults import Fault
+
+MAX_IDLE = 100_000
+MAX_STEPS = 10_000_000
+MAX_CALLS = 100
+MAX_SHOWN = 1_000_000
+MAX_ROUNDS = 1e15
+UNCAUGHT = frozenset({"RBL505", "RBL506", "RBL508"})
+"""Limits of a run: no ON ERROR catches them, a program that breaks one would go on for ever."""
+
+Run = Generator[Effect, None, int | None]
+"""What carries a statement out: yields its effects, returns the line to go to, None for the next."""
 
 
-def execute(program: Program) -> Iterator[Effect]:
-    """Yield the effects of a checked program in order.
+def _carried_out(found: Run | int | None) -> Run:
+    """Carry out a statement; one without effects has its next line at once."""
+    return (yield from found) if isinstance(found, Generator) else found
 
-    What a WRIST statement says holds for the moves that follow, and each of them carries it.
 
-    Raises ``ValueError`` at a statement with an error: such a program must not be run.
+class ProgramFault(Fault):
+    """A fault that no ON ERROR caught, at its statement: ``span``, and ``line`` as alarms name it."""
+
+    def __init__(self, fault: Fault, line: Line, span: Span) -> None:
+        super().__init__(fault.code, fault.message, fault.hint)
+        self.span = span
+        self.line = line.number if line.number is not None else line.source_line
+
+
+def execute(program: Program, world: World | None = None,
+            points: Collection[str] = ()) -> Generator[Effect, None, None]:  # fmt: skip
+    """Yield the effects of a checked program in order; ``points`` are the names of the taught ones.
+
+    What a WRIST statement or a setting says holds for the moves that follow, and each of them carries it.
+
+    Raises ``ValueError`` at a statement with an error: such a program must not be run. ``Fault`` where a statement has
+    no value, and where one was thrown in that no ON ERROR catches.
     """
-    setting: Wrist | None = None
-    for line in program.statements:
-        if isinstance(line.statement, Wrist):
-            setting = line.statement
-        yield _effect(line, setting)
+    return _Machine(program, world or Nowhere(), points).run()
 
 
-def _effect(line: Line, setting: Wrist | None) -> Effect:
-    statement = line.statement
-    if isinstance(statement, Move):
-        return _move(line, statement, setting)
-    if isinstance(statement, Load):
-        return _load(line, statement)
-    if isinstance(statement, Hand):
-        return _hand(line, statement)
-    if isinstance(statement, Wrist):
-        return _wrist(line, statement)
-    if isinstance(statement, Seam):
-        return _seam(line, statement)
-    raise ValueError(f"line {line.source_line} has an error and cannot be run")
+_READS = frozenset({"IN", "HERE", "TIMER", "DIST"})
 
 
-def _move(line: Line, node: Move, setting: Wrist | None) -> MoveTo:
-    values: dict[type, float] = {}
-    wrist = setting
-    for option in node.options:
-        if isinstance(option, Wrist):
-            wrist = option
+def reads_state(node: Node | None) -> bool:
+    """Return whether a statement or expression reads what changes while the robot moves."""
+    if node is None:
+        return False
+    return any(
+        (isinstance(each, Call) and each.name.key in _READS) or isinstance(each, Component6) for each in walk(node)
+    )
+
+
+class _Settings:
+    """What SPEED, ACCEL, WRIST and the like have set for the moves that follow."""
+
+    def __init__(self) -> None:
+        self.speed_mm_s: float | None = None
+        self.speed_pct: float | None = None
+        self.accel_pct: float | None = None
+        self.override_pct = 100.0
+        self.zone_mm = 0.0
+        self.wrist: Wrist | None = None
+
+
+class _Machine:
+    """A program that runs."""
+
+    def __init__(self, program: Program, world: World, points: Collection[str]) -> None:
+        self._lines = program.lines
+        self._structure: Structure = structure_of(program)
+        self._scopes = Scopes(frozenset(point.upper() for point in points))
+        self._values = Evaluator(self._scopes, world)
+        self._set = _Settings()
+        self._handler: int | None = None
+        self._failed: int | None = None
+        self._idle = self._steps = self._shown = self._loop = 0
+        self._world = world
+        self._reads: dict[int, bool] = {}
+
+    def run(self) -> Generator[Effect, None, None]:
+        """Yield the effects to the end of the program."""
+        at = 0
+        while 0 <= at < len(self._lines):
+            line = self._lines[at]
+            if line.statement is None:
+                at += 1
+                continue
+            try:
+                self._count(at)
+                jump = yield from self._statement(line, line.statement, at)
+            except Fault as fault:
+                if self._handler is None or self._failed is not None or fault.code in UNCAUGHT:
+                    raise self._located(fault, line) from None
+                self._failed, self._values.error = at, float(fault.code.removeprefix("RBL"))
+                jump = self._handler
+            at = at + 1 if jump is None else jump
+
+    def _located(self, fault: Fault, line: Line) -> ProgramFault:
+        """Return a fault that nothing caught at its statement, an idle loop at its head."""
+        if fault.code == "RBL508":
+            line = self._lines[self._loop]
+        return ProgramFault(fault, line, line.span if line.statement is None else line.statement.span)
+
+    def _count(self, at: int) -> None:
+        self._steps += 1
+        self._idle += 1
+        if self._steps > MAX_STEPS:
+            raise Fault("RBL505", f"more than {MAX_STEPS} statements")
+
+    def _looped(self, at: int, to: int) -> int:
+        """Return where a jump leads; ``Fault`` RBL508 when the program goes round and round without taking time."""
+        if to <= at and self._idle > MAX_IDLE:
+            self._loop = to
+            number = self._lines[to].number
+            where = f"line {number}" if number is not None else f"line {self._lines[to].source_line} of the file"
+            raise Fault("RBL508", f"the loop that begins at {where} has gone on for {MAX_IDLE} statements, none of "
+                        "which takes time")  # fmt: skip
+        return to
+
+    def _statement(self, line: Line, node: Statement, at: int) -> Run:
+        if isinstance(node, Unparsed):
+            raise ValueError(f"line {line.source_line} has an error and cannot be run")
+        if at not in self._reads:
+            reached = isinstance(node, Wait | Case) or (isinstance(node, Head) and node.word == "ELSEIF")
+            # WAIT always lets motion end; CASE and ELSEIF are asked by their head, and reached when the block is done
+            self._reads[at] = not reached and reads_state(node if not isinstance(node, If) else node.condition)
+        if self._reads[at]:
+            yield Drain(**self._origin(line, node))
+        return (yield from _carried_out(_DO[type(node)](self, line, node, at)))
+
+    def _origin(self, line: Line, node: Statement) -> dict[str, Any]:
+        return {"line": line.source_line, "number": line.number, "span": node.span, "node": node}
+
+    def _taking_time(self) -> None:
+        self._idle = 0
+
+    # --- motion ------------------------------------------------------------------------------------------------------
+
+    def _move(self, line: Line, node: Moving, at: int) -> Run:
+        self._taking_time()
+        values, wrist = self._options(node)
+        yield MoveTo(
+            **self._origin(line, node), way="joint" if isinstance(node, MoveJ) else "arc" if isinstance(node, MoveC)
+            else "line", target=self._target(node),
+            via=self._values.place(node.via) if isinstance(node, MoveC) else None,
+            wrist=None if wrist is None else _mode(wrist), held=() if wrist is None else _held(wrist),
+            override_pct=self._set.override_pct, **values,
+        )  # fmt: skip
+        return None
+
+    def _target(self, node: Moving) -> Place:
+        if isinstance(node, Depart):
+            return Place(last=True).shifted(_back(self._distance(node.distance)))
+        place = self._values.place(node.target)
+        return place.shifted(_back(self._distance(node.distance))) if isinstance(node, Approach) else place
+
+    def _distance(self, node: Expression) -> float:
+        distance = self._values.number(node)
+        if not 0.0 <= distance <= 1e5:
+            raise Fault("RBL404", f"a distance of {shown(distance)} mm is not between 0 and 100000 mm")
+        return distance
+
+    def _options(self, node: Moving) -> tuple[dict[str, Any], Wrist | None]:
+        """Return the values of a move: its options', else those that were set."""
+        joint, found, wrist = isinstance(node, MoveJ), self._set, self._set.wrist
+        speed: float | None = None
+        accel, zone, time = found.accel_pct, found.zone_mm, None
+        for option in node.options:
+            if isinstance(option, Wrist):
+                wrist = option
+            elif isinstance(option, Speed):
+                speed = self._values.number(option.value)
+            elif isinstance(option, Accel):
+                accel = self._values.number(option.value)
+            elif isinstance(option, Time):
+                time = self._values.number(option.value)
+            elif isinstance(option, Zone):
+                zone = 0.0 if option.value is None else self._values.number(option.value)
+        if not zone >= 0.0:
+            raise Fault("RBL415", f"a blend radius of {shown(zone)} mm is not 0 or more")
+        if time is None and speed is None:
+            speed = found.speed_pct if joint else found.speed_mm_s
+        return {
+            "speed_pct" if joint else "speed_mm_s": speed, "accel_pct": accel, "time_s": time, "zone_mm": zone,
+        }, wrist  # fmt: skip
+
+    def _load(self, line: Line, node: Load, at: int) -> Run:
+        cog, inertia = self._vector(node.cog), () if node.inertia is None else self._vector(node.inertia)
+        if len(cog) != 3 or len(inertia) not in (0, 6):
+            raise Fault("RBL403", "LOAD takes three coordinates of the centre of gravity, and six of an inertia")
+        yield SetPayload(**self._origin(line, node), cog_mm=(cog[0], cog[1], cog[2]), inertia_kg_m2=tuple(inertia),
+                         mass_kg=self._values.number(node.mass))  # fmt: skip
+        return None
+
+    def _vector(self, node: Vector) -> list[float]:
+        return [self._values.number(item) for item in node.items]
+
+    def _load_named(self, line: Line, node: LoadNamed, at: int) -> Run:
+        yield SetPayload(**self._origin(line, node), name=node.name.key)
+        return None
+
+    def _hand(self, line: Line, node: Hand, at: int) -> Run:
+        self._taking_time()
+        yield SetHand(**self._origin(line, node), closed=node.state is HandState.ON,
+                      dwell_s=None if node.dwell is None else self._values.number(node.dwell))  # fmt: skip
+        return None
+
+    def _wrist(self, line: Line, node: Wrist, at: int) -> Run:
+        self._set.wrist = node
+        yield SetWrist(**self._origin(line, node), mode=_mode(node), held=_held(node))
+        return None
+
+    def _seam(self, line: Line, node: Seam, at: int) -> Run:
+        yield SetSeam(**self._origin(line, node), sensor=None if node.sensor is None else node.sensor.key)
+        return None
+
+    def _setting(self, line: Line, node: Setting, at: int) -> Run:
+        assert node.value is not None
+        if node.word in ("TOOL", "FRAME"):
+            found = self._frame(node.value)
+            if node.word == "TOOL":
+                yield SetTool(**self._origin(line, node), tool=found)
+            else:
+                self._values.frame = found
+            return None
+        value = self._values.number(node.value)
+        low, high, unit, name = _SETTINGS[node.word]
+        if not (low < value <= high or (node.word == "ZONE" and value == 0.0)):
+            code = "RBL415" if node.word == "ZONE" else "RBL404"
+            bound = "0 or more" if node.word == "ZONE" else f"above 0 and at most {high:g} {unit}"
+            raise Fault(code, f"{node.word} is {shown(value)} {unit} and must be {bound}")
+        setattr(self._set, name, value)
+        return None
+
+    def _frame(self, node: Expression) -> Frame:
+        """Return the frame or tool that an expression names: a name of the cell, else a pose."""
+        if isinstance(node, Name) and self._scopes.value(node.key) is None:
+            return node.key
+        place, frame = self._values.place(node), self._values.frame
+        self._values.frame = ""
+        try:
+            plain = place.pose is not None and not (place.shifts or place.frame)
+            return place.pose if plain and place.pose is not None else self._values.six(place)
+        finally:
+            self._values.frame = frame
+
+    # --- values, inputs and outputs ----------------------------------------------------------------------------------
+
+    def _assign(self, line: Line, node: Assign, at: int) -> int | None:
+        value = self._values.value(node.value)
+        name = node.target.name if isinstance(node.target, Call) else node.target
+        if isinstance(node.target, Call):
+            self._scopes.put(name.key, self._values.whole(node.target.arguments[0], "the number of an element"), value)
         else:
-            values[type(option)] = _value(option.value, line)
-    return MoveTo(
-        line=line.source_line,
-        number=line.number,
-        span=node.span,
-        node=node,
-        point=node.target.key,
-        speed_mm_s=values.get(Speed),
-        accel_pct=values.get(Accel),
-        time_s=values.get(Time),
-        wrist=None if wrist is None else _mode(wrist),
-        held=() if wrist is None else _held(wrist),
-    )
+            self._scopes.assign(name.key, value)
+        return None
+
+    def _dim(self, line: Line, node: Dim, at: int) -> int | None:
+        self._scopes.make(node.name.key, self._values.whole(node.size, "the size of an array"))
+        return None
+
+    def _const(self, line: Line, node: Const, at: int) -> int | None:
+        self._scopes.fix(node.name.key, self._values.value(node.value))
+        return None
+
+    def _out(self, line: Line, node: Out, at: int) -> Run:
+        yield SetOutput(**self._origin(line, node), output=self._output(node.index),
+                        value=finite(self._values.number(node.value), "OUT"))  # fmt: skip
+        return None
+
+    def _pulse(self, line: Line, node: Pulse, at: int) -> Run:
+        yield SetOutput(**self._origin(line, node), output=self._output(node.index), value=1.0,
+                        seconds=self._seconds(node.seconds, "PULSE"))  # fmt: skip
+        return None
+
+    def _output(self, node: Expression) -> int:
+        number = self._values.whole(node, "the number of an output")
+        if not 1 <= number <= 1024:
+            raise Fault("RBL534", f"there is no output {number}: they are 1 to 1024")
+        return number
+
+    def _seconds(self, node: Expression, word: str) -> float:
+        seconds = self._values.number(node)
+        if not 0.0 <= seconds <= 86400.0:
+            raise Fault("RBL405", f"{word} of {shown(seconds)} s is not between 0 and 86400 s")
+        return seconds
+
+    def _delay(self, line: Line, node: Delay, at: int) -> Run:
+        seconds = self._seconds(node.seconds, "DELAY")
+        self._idle = 0 if seconds > 0.0 else self._idle
+        yield Pass(**self._origin(line, node), seconds=seconds)
+        return None
+
+    def _wait(self, line: Line, node: Wait, at: int) -> Run:
+        yield Drain(**self._origin(line, node))
+        timeout = math.inf if node.timeout is None else self._seconds(node.timeout, "TIMEOUT")
+        began = self._world.seconds()
+        while not self._values.true(node.condition):
+            if self._world.seconds() - began >= timeout - 1e-9:
+                if node.target is not None:
+                    return self._looped(at, self._line_of(node.target))
+                raise Fault("RBL503", f"WAIT has not come true within {shown(timeout)} s")
+            self._taking_time()
+            yield Pass(**self._origin(line, node), seconds=0.0)
+        return None
+
+    def _print(self, line: Line, node: Print, at: int) -> Run:
+        values = [self._values.value(item) for item in node.items]
+        text = "".join(self._shown_value(value) for value in values)
+        self._shown += len(text) + 1
+        if self._shown > MAX_SHOWN:
+            raise Fault("RBL506", f"more than {MAX_SHOWN} characters of PRINT")
+        yield Show(**self._origin(line, node), text=text)
+        return None
+
+    def _shown_value(self, value: object) -> str:
+        if isinstance(value, float):
+            return shown(value)
+        if isinstance(value, Place):
+            return f"({', '.join(f'{number:.3f}' for number in self._values.six(value))})"
+        return str(value)
+
+    # --- control -----------------------------------------------------------------------------------------------------
+
+    def _line_of(self, target: Target) -> int:
+        found = self._structure.line_of(target)
+        if found is None:
+            raise Fault("RBL533", "there is no such line")
+        return found
+
+    def _if(self, line: Line, node: If, at: int) -> Run:
+        chosen = node.then if self._values.true(node.condition) else node.otherwise
+        if chosen is None:
+            return None
+        if reads_state(chosen):
+            yield Drain(**self._origin(line, chosen))
+        return (yield from _carried_out(_DO[type(chosen)](self, line, chosen, at)))
+
+    def _head(self, line: Line, node: Head, at: int) -> Run:
+        structure = self._structure
+        if node.word == "ELSEIF":  # reached from above: the branch before it is done
+            return structure.end[at] + 1
+        if node.word == "WHILE":
+            return None if self._values.true(node.value) else structure.end[at] + 1
+        if node.word == "SELECT":
+            return (yield from self._case_of(line, node, at))
+        while not self._values.true(node.value):
+            at = structure.after[at]
+            following = self._lines[at].statement
+            if not isinstance(following, Head):  # ELSE, or ENDIF
+                break
+            if reads_state(following.value):
+                yield Drain(**self._origin(line, node))
+            node = following
+        return at + 1
+
+    def _case_of(self, line: Line, node: Head, at: int) -> Generator[Effect, None, int]:
+        chosen = self._values.value(node.value)
+        end = self._structure.end[at]
+        while at != end:
+            at = self._structure.after[at]
+            statement = self._lines[at].statement
+            if not isinstance(statement, Case):
+                break
+            if reads_state(statement):
+                yield Drain(**self._origin(line, node))
+            if any(self._values.value(value) == chosen for value in statement.values):
+                break
+        return at + 1
+
+    def _block(self, line: Line, node: Block | Case, at: int) -> int | None:
+        """Reach a line of a block from above: what was chosen is done."""
+        word = node.word if isinstance(node, Block) else "CASE"
+        if word == "WEND":
+            return self._looped(at, self._structure.after[at])
+        if word == "ENDSUB":
+            return self._leave()
+        return None if word in ("ENDIF", "ENDSELECT") else self._structure.end[at] + 1
+
+    def _for(self, line: Line, node: For, at: int) -> int | None:
+        first, last = self._values.number(node.first), self._values.number(node.last)
+        step = 1.0 if node.step is None else self._values.number(node.step)
+        if step == 0.0:
+            raise Fault("RBL205", "STEP is 0: the loop would never end")
+        rounds = math.floor(finite((last - first) / step, "FOR") + 1e-9) + 1
+        if rounds > MAX_ROUNDS:
+            raise Fault("RBL502", f"FOR would go round {rounds:g} times")
+        self._scopes.assign(node.variable.key, finite(first, "FOR"))
+        if rounds <= 0:
+            return self._structure.end[at] + 1
+        loops = self._scopes.here.loops
+        while any(loop.line == at for loop in loops):  # left by a GOTO before
+            loops.pop()
+        loops.append(Loop(line=at, variable=node.variable.key, rounds=rounds - 1, step=step))
+        return None
+
+    def _next(self, line: Line, node: Next, at: int) -> int | None:
+        head, loops = self._structure.after[at], self._scopes.here.loops
+        while loops and loops[-1].line != head:
+            loops.pop()
+        if not loops:
+            raise Fault("RBL533", "NEXT has no FOR that runs")
+        loop = loops[-1]
+        if loop.rounds == 0:
+            loops.pop()
+            return None
+        value = self._scopes.value(loop.variable)
+        if not isinstance(value, float):
+            raise Fault("RBL531", f"{loop.variable} counts a loop and is no number any more")
+        loop.rounds -= 1
+        self._scopes.assign(loop.variable, value + loop.step)
+        self._looped(at, head)
+        return head + 1
+
+    def _jump(self, line: Line, node: Jump, at: int) -> int | None:
+        to = self._line_of(node.target)
+        if node.word == "GOSUB":
+            returns = self._scopes.here.returns
+            self._check_depth(sum(len(scope.returns) for scope in self._scopes.stack))
+            returns.append(at + 1)
+        return self._looped(at, to)
+
+    def _check_depth(self, depth: int) -> None:
+        if depth >= MAX_CALLS:
+            raise Fault("RBL504", f"more than {MAX_CALLS} calls within one another")
+
+    def _sub(self, line: Line, node: Sub, at: int) -> int | None:
+        """Pass by a SUB: it runs when it is called."""
+        return self._structure.end[at] + 1
+
+    def _call_sub(self, line: Line, node: CallSub, at: int) -> int | None:
+        to = self._structure.subs.get(node.name.key)
+        sub = None if to is None else self._lines[to].statement
+        if to is None or not isinstance(sub, Sub) or len(sub.parameters) != len(node.arguments):
+            raise Fault("RBL533", f"there is no SUB {node.name.text} of {len(node.arguments)} parameters")
+        self._check_depth(len(self._scopes.stack) - 1)
+        values = [self._values.value(argument) for argument in node.arguments]
+        for parameter, value in zip(sub.parameters, values, strict=True):
+            check_kind(parameter.key, value)
+        self._looped(at, to)
+        self._scopes.stack.append(Scope(back=at + 1))
+        for parameter, value in zip(sub.parameters, values, strict=True):
+            self._scopes.here.values[parameter.key] = value
+        return to + 1
+
+    def _leave(self) -> int:
+        """Return from a SUB."""
+        if len(self._scopes.stack) == 1:
+            raise Fault("RBL533", "ENDSUB is reached without a CALL")
+        return self._scopes.stack.pop().back
+
+    def _word(self, line: Line, node: Word, at: int) -> Run:
+        word = node.word
+        if word == "RETURN":
+            if self._scopes.here.returns:
+                return self._scopes.here.returns.pop()
+            if len(self._scopes.stack) > 1:
+                return self._leave()
+            raise Fault("RBL533", "RETURN without GOSUB")
+        if word == "ON ERROR STOP":
+            self._handler = None
+        elif word.startswith("RESUME"):
+            if self._failed is None:
+                raise Fault("RBL533", "RESUME without an error that was caught")
+            back, self._failed = self._failed, None
+            return self._looped(at, back) if word == "RESUME" else back + 1
+        elif word == "END":
+            return len(self._lines)
+        else:
+            self._taking_time()
+            yield Halt(**self._origin(line, node), word=word)
+            return len(self._lines) if word == "STOP" else None
+        return None
+
+    def _on_error(self, line: Line, node: OnError, at: int) -> int | None:
+        self._handler, self._failed = self._line_of(node.target), None
+        return None
 
 
-def _load(line: Line, node: Load) -> SetPayload:
-    x, y, z = (_value(item, line) for item in (node.cog.x, node.cog.y, node.cog.z))
-    return SetPayload(
-        line=line.source_line,
-        number=line.number,
-        span=node.span,
-        node=node,
-        cog_mm=(x, y, z),
-        mass_kg=_value(node.mass, line),
-    )
+_SETTINGS = {
+    "SPEED": (0.0, 10_000.0, "mm/s", "speed_mm_s"),
+    "SPEEDJ": (0.0, 100.0, "%", "speed_pct"),
+    "ACCEL": (0.0, 100.0, "%", "accel_pct"),
+    "OVERRIDE": (0.0, 100.0, "%", "override_pct"),
+    "ZONE": (0.0, 1e5, "mm", "zone_mm"),
+}
+"""Of each setting: above what (a ZONE may be that) and up to what it may be, its unit, and what it sets."""
+
+_DO: dict[type, Callable[..., Run | int | None]] = {
+    Move: _Machine._move, MoveJ: _Machine._move, MoveC: _Machine._move, Approach: _Machine._move,
+    Depart: _Machine._move, Load: _Machine._load, LoadNamed: _Machine._load_named, Hand: _Machine._hand,
+    Wrist: _Machine._wrist, Seam: _Machine._seam, Setting: _Machine._setting, Assign: _Machine._assign,
+    Dim: _Machine._dim, Const: _Machine._const, Out: _Machine._out, Pulse: _Machine._pulse, Delay: _Machine._delay,
+    Wait: _Machine._wait, Print: _Machine._print, If: _Machine._if, Head: _Machine._head, Block: _Machine._block,
+    Case: _Machine._block, For: _Machine._for, Next: _Machine._next, Jump: _Machine._jump, Sub: _Machine._sub,
+    CallSub: _Machine._call_sub, Word: _Machine._word, OnError: _Machine._on_error,
+}  # fmt: skip
 
 
-def _hand(line: Line, node: Hand) -> SetHand:
-    return SetHand(
-        line=line.source_line,
-        number=line.number,
-        span=node.span,
-        node=node,
-        closed=node.state is HandState.ON,
-        dwell_s=None if node.dwell is None else _value(node.dwell, line),
-    )
-
-
-def _wrist(line: Line, node: Wrist) -> SetWrist:
-    return SetWrist(
-        line=line.source_line,
-        number=line.number,
-        span=node.span,
-        node=node,
-        mode=_mode(node),
-        held=_held(node),
-    )
+def _back(distance: float) -> Shift:
+    """Return the way back along the tool's approach axis, mm."""
+    return Shift(kind="tool", by=(0.0, 0.0, -distance, 0.0, 0.0, 0.0))
 
 
 def _mode(wrist: Wrist) -> str:
@@ -119,20 +600,3 @@ def _mode(wrist: Wrist) -> str:
 
 def _held(wrist: Wrist) -> tuple[str, ...]:
     return tuple(component.value for component in wrist.held)
-
-
-def _seam(line: Line, node: Seam) -> SetSeam:
-    return SetSeam(
-        line=line.source_line,
-        number=line.number,
-        span=node.span,
-        node=node,
-        sensor=None if node.sensor is None else node.sensor.key,
-    )
-
-
-def _value(expression: Expression, line: Line) -> float:
-    value = constant(expression)
-    if value is None:
-        raise ValueError(f"line {line.source_line} uses a name without a value and cannot be run")
-    return value

@@ -2,23 +2,47 @@
 
 An effect of the interpreter and the facts of the project (taught points, cell) give a motion command, a payload or a
 waiting time. Errors are ``Fault`` values with a code; the session adds the place in the program.
+
+A place (``robolang.places``) becomes a pose of the tool point in the world:
+
+    taught pose     X_world_frame X_pose, and where it was taught with another tool X inverse(X_taught) X_tool
+    taught joints   forward kinematics of them, with the tool in use; the move ends at these very joints
+    + (x, y, z)     the point shifted along the axes of the frame that was active
+    * (x, ..., rz)  X Trans(x, y, z) Rz Ry Rx: in the tool where it then is
 """
 
+import math
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
 
 from robolang.effects import MoveTo, SetHand, SetPayload
+from robolang.places import Frame, Place, Shift, Six
 from robolang.points import Point, PointStore
 from runtime.faults import Fault
-from runtime.frames import Array, inverse, pose_from_xyzrpy
-from runtime.motion.commands import Component, MoveLinear, Wrist
+from runtime.frames import Array, inverse, pose_from_xyzrpy, xyzrpy_from_pose
+from runtime.motion.commands import Component, MoveArc, MoveJoint, MoveLinear, Wrist
 from runtime.motion.speed import MAX_DURATION
 from runtime.plant.cell import CellSpec
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.payload import Payload, declared
 from runtime.units import DEG, MM, PERCENT
+
+Command = MoveLinear | MoveJoint | MoveArc
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Surroundings:
+    """What a place depends on: taught points, cell, kinematics, tool in use, and the joints q_last (n,) rad at which
+    the motion before ends."""
+
+    points: PointStore
+    cell: CellSpec
+    kinematics: Kinematics
+    X_flange_tool: Array
+    q_last: Array
 
 
 def pose_si(pose_mm_deg: tuple[float, ...]) -> Array:
@@ -26,47 +50,153 @@ def pose_si(pose_mm_deg: tuple[float, ...]) -> Array:
     return pose_from_xyzrpy(np.array(pose_mm_deg) * ([MM] * 3 + [DEG] * 3))
 
 
+def six_of(X: Array) -> Six:
+    """Return (x, y, z, rx, ry, rz) in mm and deg of a pose (4, 4)."""
+    x, y, z, rx, ry, rz = (xyzrpy_from_pose(X) / ([MM] * 3 + [DEG] * 3)).tolist()
+    return x, y, z, rx, ry, rz
+
+
 def payload(effect: SetPayload, cell: CellSpec) -> Payload:
-    """Return the payload of a LOAD; ``Fault`` RBL401, RBL402 or RBL403."""
-    return declared(effect.mass_kg, np.array(effect.cog_mm) * MM, cell.robot.rated_payload)
+    """Return the payload of a LOAD; ``Fault`` RBL305, RBL401, RBL402 or RBL403."""
+    if effect.name:
+        loads = {key.upper(): value for key, value in cell.loads.items()}
+        if effect.name not in loads:
+            known = ", ".join(sorted(cell.loads)) or "none"
+            raise Fault("RBL305", f"the cell has no load {effect.name} (known: {known})")
+        load = loads[effect.name]
+        return declared(load.mass, load.cog, cell.robot.rated_payload)
+    inertia = None
+    if effect.inertia_kg_m2:
+        xx, yy, zz, xy, xz, yz = effect.inertia_kg_m2
+        inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    return declared(effect.mass_kg, np.array(effect.cog_mm) * MM, cell.robot.rated_payload, inertia)
 
 
-def move(effect: MoveTo, points: PointStore, cell: CellSpec, kinematics: Kinematics) -> MoveLinear:
-    """Return the straight move of a MOVE; ``Fault`` RBL301 when its point is not taught."""
-    point = points.get(effect.point)
-    if point is None:
-        raise Fault("RBL301", f"point {effect.point} is not taught in {points.path}")
+def move(effect: MoveTo, around: Surroundings) -> Command:
+    """Return the motion command of a move; ``Fault`` RBL30x or RBL40x."""
+    goal = _goal(effect.target, around)
+    override = effect.override_pct * PERCENT
+    acceleration = 1.0 if effect.accel_pct is None else effect.accel_pct * PERCENT
+    duration = None if effect.time_s is None else effect.time_s / override
+    zone = effect.zone_mm * MM
+    if effect.way == "joint":
+        share = (100.0 if effect.speed_pct is None else effect.speed_pct) * PERCENT
+        if not 0.0 < share <= 1.0:
+            raise Fault("RBL404", f"SPEED in % is {share * 100.0:g} and must be above 0 and at most 100")
+        return MoveJoint(
+            q_end=goal.q_end, X_world_tool=goal.X, configuration=goal.configuration, turns=goal.turns,
+            speed=share * override, acceleration=acceleration, duration=duration, zone=zone,
+        )  # fmt: skip
+    speed = None if effect.speed_mm_s is None else effect.speed_mm_s * MM
+    if override < 1.0 and duration is None:
+        speed = (around.cell.robot.path.default_speed if speed is None else speed) * override
+    wrist, held = cast("Wrist | None", effect.wrist), cast("tuple[Component, ...]", effect.held)
+    if effect.way == "arc":
+        assert effect.via is not None
+        return MoveArc(
+            X_via=_goal(effect.via, around).X, X_world_tool=goal.X, q_end=goal.q_end,
+            configuration=goal.configuration, turns=goal.turns, wrist=wrist, speed=speed,
+            acceleration=acceleration, duration=duration, zone=zone,
+        )  # fmt: skip
     return MoveLinear(
-        X_world_tool=target(point, cell, kinematics),
-        q_end=None if point.joints is None else np.array(point.joints) * DEG,
-        configuration=point.configuration,
-        turns=point.turns,
-        wrist=cast("Wrist | None", effect.wrist),
-        held=cast("tuple[Component, ...]", effect.held),
-        speed=None if effect.speed_mm_s is None else effect.speed_mm_s * MM,
-        acceleration=1.0 if effect.accel_pct is None else effect.accel_pct * PERCENT,
-        duration=effect.time_s,
-    )
+        X_world_tool=goal.X, q_end=goal.q_end, configuration=goal.configuration, turns=goal.turns, wrist=wrist,
+        held=held, speed=speed, acceleration=acceleration, duration=duration, zone=zone,
+    )  # fmt: skip
+
+
+def components(place: Place, frame: Frame, around: Surroundings) -> Six:
+    """Return a place in a frame, mm and deg; ``Fault`` as of ``move``."""
+    return six_of(inverse(_frame(frame, around.cell)) @ _goal(place, around).X)
+
+
+def tool(choice: Frame, cell: CellSpec) -> Array:
+    """Return X_flange_tool (4, 4) of a TOOL: a tool of the cell or a pose; ``Fault`` RBL305."""
+    return _named(cell.tools, choice, "tool") if isinstance(choice, str) else pose_si(choice)
 
 
 def target(point: Point, cell: CellSpec, kinematics: Kinematics) -> Array:
-    """Return X_world_tool (4, 4) of a taught point; ``Fault`` RBL310 or RBL305 when the cell cannot place it.
+    """Return X_world_tool (4, 4) of a taught point with the hand's tool; ``Fault`` RBL305, RBL307."""
+    return _taught(point, Surroundings(points=PointStore(path=""), cell=cell, kinematics=kinematics,
+                                       X_flange_tool=cell.hand.X_flange_tool, q_last=cell.home))  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Goal:
+    """Where a move ends, and how where the point says so."""
+
+    X: Array
+    q_end: Array | None = None
+    configuration: tuple[str, ...] = ()
+    turns: tuple[int, ...] = ()
+
+
+def _goal(place: Place, around: Surroundings) -> _Goal:
+    goal = _base(place, around)
+    if not place.shifts:
+        return goal
+    X = goal.X
+    for shift in place.shifts:
+        X = _shifted(X, shift, around.cell)
+    return replace(goal, X=X, q_end=None, turns=())  # a shifted point may be reached with other angles
+
+
+def _base(place: Place, around: Surroundings) -> _Goal:
+    if place.point:
+        point = around.points.get(place.point)
+        if point is None:
+            raise Fault("RBL301", f"point {place.point} is not taught in {around.points.path}")
+        joints = None if point.joints is None else np.array(point.joints) * DEG
+        return _Goal(X=_taught(point, around), q_end=joints, configuration=point.configuration, turns=point.turns)
+    if place.joints is not None:
+        if len(place.joints) != around.cell.robot.n:
+            raise Fault("RBL307", f"JOINT has {len(place.joints)} values, the robot {around.cell.robot.n} axes")
+        q = np.array(place.joints) * DEG
+        return _Goal(X=_forward(q, around), q_end=q)
+    if place.last:
+        return _Goal(X=_forward(around.q_last, around))
+    assert place.pose is not None
+    return _Goal(X=_frame(place.frame, around.cell) @ pose_si(place.pose))
+
+
+def _forward(q: Array, around: Surroundings) -> Array:
+    return np.asarray(around.kinematics.forward(q) @ around.X_flange_tool)
+
+
+def _taught(point: Point, around: Surroundings) -> Array:
+    """Return X_world_tool of a taught point.
 
     A pose stands in its frame (the world without one) and belongs to the tool it was taught with; joint angles give
     the pose of the tool in use, and are where the move ends.
     """
+    cell = around.cell
     if point.joints is not None:
         if len(point.joints) != cell.robot.n:
             raise Fault("RBL307", f"point {point.name} has {len(point.joints)} joints, the robot {cell.robot.n}")
-        return np.asarray(kinematics.forward(np.array(point.joints) * DEG) @ cell.hand.X_flange_tool)
+        return _forward(np.array(point.joints) * DEG, around)
     assert point.pose is not None  # the store admits exactly one of the two
     X = pose_si(point.pose)
     if point.frame:
         X = _named(cell.frames, point.frame, f"frame of point {point.name}") @ X
     if point.tool:
         X_flange_taught = _named(cell.tools, point.tool, f"tool of point {point.name}")
-        X = X @ inverse(X_flange_taught) @ cell.hand.X_flange_tool
+        X = X @ inverse(X_flange_taught) @ around.X_flange_tool
     return np.asarray(X)
+
+
+def _shifted(X: Array, shift: Shift, cell: CellSpec) -> Array:
+    if not all(map(math.isfinite, shift.by)):
+        raise Fault("RBL502", "a way is not finite")
+    if shift.kind == "tool":
+        return np.asarray(X @ pose_si(shift.by))
+    found = np.array(X)
+    found[:3, 3] += _frame(shift.frame, cell)[:3, :3] @ (np.array(shift.by[:3]) * MM)
+    return found
+
+
+def _frame(frame: Frame, cell: CellSpec) -> Array:
+    if isinstance(frame, str):
+        return _named(cell.frames, frame, "frame") if frame else np.eye(4)
+    return pose_si(frame)
 
 
 def _named(table: Mapping[str, Array], name: str, what: str) -> Array:

@@ -16,6 +16,7 @@ from robolang.words import (
     INNER_WORDS,
     INSTRUCTIONS,
     KEYWORDS,
+    MOTIONS,
     OPTIONS,
     RESERVED,
     code_point,
@@ -29,9 +30,12 @@ from runtime.faults import lookup
 _END = frozenset({"$END", "COMMENT"})
 _OPTIONS = frozenset(OPTIONS)
 _HAND_WORDS = frozenset({"OPEN", "CLOSE", "GRASP", "GRIP", "RELEASE"})
-_SIGNS = {"LPAR": "'('", "RPAR": "')'", "_COMMA": "','", "$END": "the end of the line"}
+_SIGNS = {"RPAR": "')'", "EQ": "'='", "_COMMA": "','", "$END": "the end of the line"}
+_VALUE = frozenset({"NUMBER", "FUNCTION"})
+_OPERATORS = frozenset({"OR", "AND", "NOT", "MOD", "PLUS", "MINUS", "STAR", "SLASH", "CARET"})
 _LAST_WORD = re.compile(r"(?:[\w.$]+|[^\s\w])[ \t]*\Z")
 _QUOTE = 30
+_JOINED = {("END", "IF"): "ENDIF", ("END", "SELECT"): "ENDSELECT", ("END", "SUB"): "ENDSUB", ("ELSE", "IF"): "ELSEIF"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,7 +73,7 @@ def explain(found: Unexpected) -> Diagnostic:
         return Diagnostic(code="RBL114", message=message, span=found.span)
     if found.kind == "MALFORMED":
         return _malformed(found)
-    return _not_yet(found) or _unknown(found) or _unexpected(found)
+    return _unknown(found) or _unexpected(found)
 
 
 def suspicious(text: str, start: int) -> Diagnostic:
@@ -98,31 +102,14 @@ def _malformed(found: Unexpected) -> Diagnostic:
     return Diagnostic(code="RBL115", message=f"'{quote(text)}' is not a number", span=found.span, hint=hint)
 
 
-def _not_yet(found: Unexpected) -> Diagnostic | None:
-    """Return RBL117 for what the language has and this edition does not run."""
-    word = found.text.upper()
-    what = ""
-    if found.kind == "LATER" and (found.is_first or found.accepts & _OPTIONS or _takes_value(found)):
-        what = word
-    elif found.is_first and found.kind == "NAME" and found.after.lstrip().startswith("="):
-        what = f"assignment to {quote(found.text)}"
-    elif found.is_first and found.text == "*":
-        what = "a label"
-    elif found.is_first and word in ("SPEED", "ACCEL", "ON"):
-        what = f"{word} at the start of a line"
-    return Diagnostic(code="RBL117", message=f"{what} is not in this edition yet", span=found.span) if what else None
-
-
-def _takes_value(found: Unexpected) -> bool:
-    """Return whether a point or a value can stand here, which the language computes from words of its own, too."""
-    return "NAME" in found.accepts and found.instruction != "SEAM"
-
-
 def _unknown(found: Unexpected) -> Diagnostic | None:
-    if not (found.is_first and found.kind == "NAME"):
+    """Return RBL112 for a name that begins a statement and is not assigned to."""
+    word = _last_word(found.before)
+    if not ({"EQ", "LPAR"} <= found.accepts and "LESS" not in found.accepts and re.fullmatch(r"[^\W\d]\w*\$?", word)):
         return None
-    message = f"unknown instruction '{quote(found.text)}'"
-    return Diagnostic(code="RBL112", message=message, span=found.span, hint=instruction_hint(found.text))
+    start = found.span.start - len(found.before) + len(found.before.rstrip(" \t")) - len(word)
+    message = f"unknown instruction '{quote(word)}'"
+    return Diagnostic(code="RBL112", message=message, span=Span(start, start + len(word)), hint=instruction_hint(word))
 
 
 def _unexpected(found: Unexpected) -> Diagnostic:
@@ -138,14 +125,22 @@ def _expected(found: Unexpected) -> str:
     """Return accepted terminals in words, as in ``',' or the end of the line``."""
     if found.is_first:
         return "an instruction"
+    if "MOVE" in found.accepts:  # behind THEN and ELSE
+        return "an instruction or the end of the line" if "$END" in found.accepts else "an instruction"
     accepts, words = found.accepts, []
-    if "NUMBER" in accepts:
-        words.append("a number")
+    if accepts >= _VALUE:
+        words.append("a point" if _last_word(found.before).upper() in MOTIONS - {"DEPART"} else "a value")
+    elif "NUMBER" in accepts:
+        words.append("a line number or *LABEL" if "STAR" in accepts else "a number")
     elif "NAME" in accepts:
-        words.append("a sensor name" if found.instruction == "SEAM" else "a point name")
-    words += [word for word in INNER_WORDS if word in accepts]
-    words += [sign for kind, sign in _SIGNS.items() if kind in accepts]
-    return " or ".join([*([", ".join(words[:-1])] if words[:-1] else []), words[-1]])
+        words.append("a sensor name" if found.instruction == "SEAM" else "a name")
+    if "LPAR" in accepts and not accepts & {"$END", "LESS"} and not accepts >= _VALUE:
+        words.append("'('")
+    words += [word for word in INNER_WORDS if word in accepts and word not in _OPERATORS]
+    # behind a value '=' compares; where it is the only sign it assigns
+    signs = [sign for kind, sign in _SIGNS.items() if kind in accepts and not (kind == "EQ" and "LESS" in accepts)]
+    words += signs
+    return " or ".join([*([", ".join(words[:-1])] if words[:-1] else []), words[-1]]) if words else "something else"
 
 
 def _last_word(before: str) -> str:
@@ -167,7 +162,15 @@ def _hint(found: Unexpected) -> str:
     word = found.text.upper()
     if found.is_first:
         whole = found.kind == "NUMBER"
+        if word in RESERVED - KEYWORDS and found.after.lstrip().startswith("="):
+            return f"{word} is a word of the language and cannot be a name"
         return "a line number is a whole number" if whole else lookup("RBL112").remedy
+    if found.text == '"':
+        return 'a text ends with " on its line'
+    if joined := _JOINED.get((found.instruction, word)):
+        return f"did you mean {joined}?"
+    if "MOVE" in found.accepts and word in ("IF", "FOR", "WHILE", "SELECT"):
+        return f"write the {word} on a line of its own, and ENDIF below"
     if found.instruction == "HAND" and "ON" in found.accepts and word in _HAND_WORDS:
         return instruction_hint(word)
     if found.kind == "NAME" and (guess := near(word, found.accepts & KEYWORDS)):
@@ -176,6 +179,8 @@ def _hint(found: Unexpected) -> str:
         return f"write a comma before {word}"
     if "$END" in found.accepts and (word in INSTRUCTIONS or found.kind == "NAME"):
         return "write one instruction on each line"
+    if found.kind == "EQ" and found.instruction in RESERVED:
+        return f"{found.instruction} is a word of the language and cannot be a name"
     if "NAME" in found.accepts and word in RESERVED:
         return f"{word} is a word of the language and cannot be a name"
     return form_of("WRIST" if _last_word(found.before).upper() in ("WRIST", "HOLD") else found.instruction)
@@ -185,4 +190,4 @@ def _lacks_comma(found: Unexpected, word: str) -> bool:
     """Return whether a word would be right behind a comma: the next option, or the next component of a HOLD."""
     if word in COMPONENTS:
         return _last_word(found.before).upper() in COMPONENTS
-    return found.instruction == "MOVE" and word in _OPTIONS
+    return found.instruction in MOTIONS and word in _OPTIONS

@@ -1,40 +1,165 @@
-"""The motion that a program will make, planned without making it.
+"""The motion that a program will make, planned without making it: a rehearsal in the time that the plans say.
 
-Every statement is lowered and every MOVE planned from where the one before it ends, with the planner that the run
-uses. The first refusal ends the check: where the arm would be after it is not known.
+The program is executed as in a run, by the same interpreter, lowering and planner, with simulated inputs, on a clock
+that each statement moves on by what it takes: a move by its set-points, a HAND by its dwell, a DELAY by its time, all
+in whole interpolation cycles. Only servo and physics are missing, and with them the time in which an arm comes into
+position. A request that cannot be carried out goes to ON ERROR, as it would; one that nothing catches ends the
+rehearsal: where the arm would be after it is not known.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from robolang import lowering
 from robolang.diagnostics import Diagnostic
-from robolang.effects import MoveTo, SetHand, SetPayload, SetSeam
-from robolang.interpreter import execute
+from robolang.effects import Effect, Halt, MoveTo, Pass, SetHand, SetOutput, SetPayload, SetSeam, SetTool
+from robolang.interpreter import ProgramFault, execute
+from robolang.lowering import Command
 from robolang.project import Project
+from robolang.surroundings import RobotWorld
 from runtime.faults import Fault
-from runtime.motion.planner import LinePlanner
+from runtime.frames import Array
+from runtime.motion.chain import MotionPlanner
+from runtime.motion.commands import MoveLinear
+from runtime.motion.planner import LinePlan
 from runtime.robot.kinematics import Kinematics
+
+MAX_CHAIN = 200
+"""Most moves that blend into one another without a stop: a program that never stops is carried out nevertheless."""
+MAX_RUN_US = 1_800_000_000
+"""Longest run, us of simulated time: about a kilobyte of log is kept for every tick."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RehearsedMove:
+    """A move of the rehearsal: its effect and plan, and when it begins and ends, us."""
+
+    effect: MoveTo
+    plan: LinePlan
+    command: Command
+    begins_us: int
+    ends_us: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rehearsal:
+    """What a rehearsal found: ``moves`` in order, ``times_us`` by line of the file, ``total_us``, and the refusal that
+    ended it."""
+
+    moves: tuple[RehearsedMove, ...]
+    times_us: dict[int, int]
+    total_us: int
+    refused: tuple[Diagnostic, ...]
 
 
 def motion_check(project: Project) -> tuple[Diagnostic, ...]:
-    """Return what keeps a checked program from being carried out: RBL30x and RBL4xx at their statements."""
-    cell = project.cell
-    kinematics = Kinematics(cell.robot)
-    planner = LinePlanner(cell.robot, kinematics, project.profile)
-    q, tracked = np.array(cell.home), False
-    for effect in execute(project.program):
-        try:
-            if isinstance(effect, MoveTo):
-                command = replace(lowering.move(effect, project.points, cell, kinematics), tracked=tracked)
-                q = np.array(planner.plan(q, command, cell.hand.X_flange_tool).q[-1])
-            elif isinstance(effect, SetPayload):
-                lowering.payload(effect, cell)
-            elif isinstance(effect, SetHand):
-                lowering.dwell_s(effect, cell)
-            elif isinstance(effect, SetSeam):
-                tracked = effect.sensor is not None
-        except Fault as fault:
-            return (Diagnostic(code=fault.code, message=fault.message, span=effect.span, hint=fault.hint),)
-    return ()
+    """Return what keeps a checked program from being carried out: RBL30x, RBL4xx and RBL50x at their statements."""
+    return rehearse(project).refused
+
+
+def rehearse(project: Project) -> Rehearsal:
+    """Plan a checked program from its first statement to its last, or to what cannot be carried out."""
+    return _Rehearsal(project).run()
+
+
+class _Rehearsal:
+    """A rehearsal under way."""
+
+    def __init__(self, project: Project) -> None:
+        cell = project.cell
+        kinematics = Kinematics(cell.robot)
+        self._project, self._period_us = project, project.profile.period_us
+        self._planner = MotionPlanner(cell.robot, kinematics, project.profile)
+        self._now_us = 0
+        self._world = RobotWorld(project.points, cell, kinematics, lambda: self._now_us)
+        self._tracked = False
+        self._chain: list[tuple[MoveTo, Command, LinePlan]] = []
+        self._q_next: Array = np.array(cell.home)
+        self._moves: list[RehearsedMove] = []
+        self._times: dict[int, int] = {}
+
+    def run(self) -> Rehearsal:
+        """Rehearse to the end."""
+        project = self._project
+        program = execute(project.program, self._world, project.points.names)
+        fault: Fault | None = None
+        refused: tuple[Diagnostic, ...] = ()
+        while True:
+            try:
+                effect = next(program) if fault is None else program.throw(fault)
+            except StopIteration:
+                break
+            except ProgramFault as uncaught:
+                refused = (Diagnostic(code=uncaught.code, message=uncaught.message, span=uncaught.span,
+                                      hint=uncaught.hint),)  # fmt: skip
+                break
+            fault = None
+            try:
+                if not self._take(effect):
+                    break
+            except Fault as found:
+                fault = found
+        self._finish_motion()
+        return Rehearsal(moves=tuple(self._moves), times_us=self._times, total_us=self._now_us, refused=refused)
+
+    def _take(self, effect: Effect) -> bool:
+        if isinstance(effect, MoveTo):
+            self._move(effect)
+            return True
+        self._finish_motion()
+        if isinstance(effect, SetPayload):
+            lowering.payload(effect, self._project.cell)
+        elif isinstance(effect, SetHand):
+            seconds = lowering.dwell_s(effect, self._project.cell)
+            self._spend(effect, -(-round(seconds * 1e6) // self._period_us))
+        elif isinstance(effect, Pass):
+            self._spend(effect, max(1, -(-round(effect.seconds * 1e6) // self._period_us)))
+        elif isinstance(effect, SetSeam):
+            self._tracked = effect.sensor is not None
+        elif isinstance(effect, SetTool):
+            self._world.X_flange_tool = lowering.tool(effect.tool, self._project.cell)
+        elif isinstance(effect, SetOutput):
+            self._world.set_output(effect.output, effect.value, effect.seconds)
+        return not (isinstance(effect, Halt) and effect.word == "STOP")
+
+    def _spend(self, effect: Effect, cycles: int) -> None:
+        spent = cycles * self._period_us
+        self._times[effect.line] = self._times.get(effect.line, 0) + spent
+        self._now_us += spent
+        if self._now_us >= MAX_RUN_US:
+            raise Fault("RBL509", f"the run would last {MAX_RUN_US / 1e6:g} s of simulated time and is not over")
+
+    def _move(self, effect: MoveTo) -> None:
+        self._world.q_last = self._q_next
+        command = lowering.move(effect, self._world.around)
+        if self._tracked:
+            if type(command) is not MoveLinear:
+                raise Fault("RBL412", "a seam sensor is followed on straight moves only")
+            command = replace(command, tracked=True, zone=0.0)
+        plan = self._planner.plan(self._q_next, command, self._world.X_flange_tool)
+        self._q_next = np.array(plan.q[-1])
+        self._chain.append((effect, command, plan))
+        if not command.zone > 0.0 or len(plan.q) == 1 or len(self._chain) >= MAX_CHAIN:
+            self._finish_motion()
+
+    def _finish_motion(self) -> None:
+        """Let the moves that are kept pass: they are blended, and the command needs two cycles more to come to rest."""
+        if not self._chain:
+            return
+        chain, self._chain = self._chain, []
+        joined = self._planner.join([plan for *_, plan in chain], [command.zone for _, command, _ in chain],
+                                    self._world.X_flange_tool)  # fmt: skip
+        begins = self._now_us
+        for (effect, command, plan), part in zip(chain, joined.parts, strict=True):
+            rest = REST_CYCLES if len(joined.q) > 1 else 1  # a move to where the arm stands takes a cycle all the same
+            self._spend(effect, part.last - part.first + (rest if part is joined.parts[-1] else 0))
+            self._moves.append(RehearsedMove(effect=effect, plan=plan, command=command, begins_us=begins,
+                                             ends_us=self._now_us))  # fmt: skip
+            begins = self._now_us
+        self._world.q_last = self._q_next
+
+
+REST_CYCLES = 4
+"""Cycles from the last set-point of a move to where the fine interpolator stands still, and the program goes on."""
+

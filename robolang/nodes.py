@@ -7,7 +7,8 @@ kept, they are the gaps between the ``source_line`` of neighbours.
 """
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields
 from enum import Enum
 from typing import TypeAlias
 
@@ -32,6 +33,13 @@ class Number(Node):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Text(Node):
+    """A literal between double quotes, ``value`` without them."""
+
+    value: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Name(Node):
     """The name of a point, a sensor or a value; ``key`` is the spelling that is compared and looked up."""
 
@@ -49,21 +57,56 @@ class Negate(Node):
     operand: "Expression"
 
 
-Expression: TypeAlias = Number | Name | Negate
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Not(Node):
+    """``NOT operand``."""
+
+    operand: "Expression"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Chain(Node):
+    """Operands of one precedence with the signs between them: ``first rest[0] rest[1] ...``; flat, however long.
+
+    Signs are ``OR AND = <> < > <= >= + - * / MOD ^``. From the left, but ``^``, whose base is what stands left of it.
+    """
+
+    first: "Expression"
+    rest: tuple[tuple[str, "Expression"], ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Call(Node):
+    """A function of the language, or an element of an array: ``ABS(x)``, ``POSE(...)``, ``HERE``, ``a(3)``.
+
+    ``name.key`` says which; a word such as HERE or TIMER has no arguments.
+    """
+
+    name: Name
+    arguments: tuple["Expression", ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Component6(Node):
+    """``base.X`` to ``base.RZ``: a component of a pose, mm or deg."""
+
+    base: "Expression"
+    name: Name
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Vector(Node):
-    """``(x, y, z)``."""
+    """``(x, y, z)``, or six values: a way and a turn."""
 
-    x: Expression
-    y: Expression
-    z: Expression
+    items: tuple["Expression", ...]
+
+
+Expression: TypeAlias = Number | Text | Name | Negate | Not | Chain | Call | Component6 | Vector
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Speed(Node):
-    """Option ``SPEED v``: speed of the tool point, mm/s."""
+    """Option ``SPEED v``: speed of the tool point, mm/s; of a MOVEJ, % of the joints' limits."""
 
     value: Expression
 
@@ -80,6 +123,13 @@ class Time(Node):
     """Option ``TIME t``: duration of the move, s."""
 
     value: Expression
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Zone(Node):
+    """Option ``ZONE r``: radius within which the move blends into the next one, mm; ``FINE`` is None: it stops."""
+
+    value: Expression | None
 
 
 class WristMode(Enum):
@@ -114,23 +164,66 @@ class Wrist(Node):
             object.__setattr__(self, "held_spans", (NOWHERE,) * len(self.held))
 
 
-Option: TypeAlias = Speed | Accel | Time | Wrist
+Option: TypeAlias = Speed | Accel | Time | Zone | Wrist
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Move(Node):
     """``MOVE target {, option}``: straight line of the tool point."""
 
-    target: Name
+    target: Expression
+    options: tuple[Option, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MoveJ(Node):
+    """``MOVEJ target {, option}``: all joints start and end together."""
+
+    target: Expression
+    options: tuple[Option, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MoveC(Node):
+    """``MOVEC via, target {, option}``: arc of the tool point."""
+
+    via: Expression
+    target: Expression
+    options: tuple[Option, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Approach(Node):
+    """``APPROACH target, d {, option}``: straight to d mm before the target, against the tool's approach axis."""
+
+    target: Expression
+    distance: Expression
+    options: tuple[Option, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Depart(Node):
+    """``DEPART d {, option}``: straight back by d mm along the tool's approach axis."""
+
+    distance: Expression
     options: tuple[Option, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Load(Node):
-    """``LOAD (x, y, z), m``: centre of gravity (mm, flange frame) and mass (kg) beyond the flange."""
+    """``LOAD (x, y, z), m [, (ixx, iyy, izz, ixy, ixz, iyz)]``: centre of gravity (mm, flange frame), mass (kg) and
+    inertia about the centre (kg m2) beyond the flange."""
 
     cog: Vector
     mass: Expression
+    inertia: Vector | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoadNamed(Node):
+    """``LOAD name``: a load of the cell file."""
+
+    name: Name
 
 
 class HandState(Enum):
@@ -156,13 +249,194 @@ class Seam(Node):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Setting(Node):
+    """``SPEED v``, ``SPEEDJ p``, ``ACCEL p``, ``OVERRIDE p``, ``ZONE r``, ``TOOL t`` or ``FRAME f``: until changed.
+
+    ``word`` is the first word in capitals; ``FINE`` alone is ZONE with value None.
+    """
+
+    word: str
+    value: Expression | None
+
+
+# --- values, inputs and outputs --------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Assign(Node):
+    """``x = e``, ``s$ = e``, ``P10 = pose``, ``a(n) = e``."""
+
+    target: Name | Call
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Dim(Node):
+    """``DIM a(n)``: elements 0 to n."""
+
+    name: Name
+    size: Expression
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Const(Node):
+    """``CONST k = e``."""
+
+    name: Name
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Out(Node):
+    """``OUT(n) = e``."""
+
+    index: Expression
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pulse(Node):
+    """``PULSE n, t``: output n on for t seconds, while the program goes on."""
+
+    index: Expression
+    seconds: Expression
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Delay(Node):
+    """``DELAY t``."""
+
+    seconds: Expression
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Target(Node):
+    """Where to go: a line number, or the key of ``*LABEL``; the other is None."""
+
+    number: int | None = None
+    label: Name | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wait(Node):
+    """``WAIT cond [, TIMEOUT t [, GOTO target]]``."""
+
+    condition: Expression
+    timeout: Expression | None = None
+    target: Target | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Print(Node):
+    """``PRINT e; e``."""
+
+    items: tuple[Expression, ...]
+
+
+# --- control ---------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class If(Node):
+    """``IF c THEN s [ELSE s]`` on one line."""
+
+    condition: Expression
+    then: "Statement"
+    otherwise: "Statement | None" = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Block(Node):
+    """A line that begins, divides or ends a block and has no values of its own.
+
+    ``word`` is ``ELSE``, ``ENDIF``, ``WEND``, ``CASE ELSE``, ``ENDSELECT``, ``ENDSUB``.
+    """
+
+    word: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Head(Node):
+    """A line that begins or divides a block with a value: ``word`` is ``IF``, ``ELSEIF``, ``WHILE`` or ``SELECT``."""
+
+    word: str
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case(Node):
+    """``CASE e {, e}``."""
+
+    values: tuple[Expression, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class For(Node):
+    """``FOR v = a TO b [STEP s]``."""
+
+    variable: Name
+    first: Expression
+    last: Expression
+    step: Expression | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Next(Node):
+    """``NEXT [v]``."""
+
+    variable: Name | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Jump(Node):
+    """``GOTO target`` or ``GOSUB target``: ``word``."""
+
+    word: str
+    target: Target
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sub(Node):
+    """``SUB name [(a, b)]``: the subroutine's lines follow, to ENDSUB; parameters and locals are its own."""
+
+    name: Name
+    parameters: tuple[Name, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CallSub(Node):
+    """``CALL name [(e, e)]``."""
+
+    name: Name
+    arguments: tuple[Expression, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Word(Node):
+    """Words alone: ``RETURN``, ``END``, ``STOP``, ``PAUSE``, ``RESUME``, ``RESUME NEXT``, ``ON ERROR STOP``."""
+
+    word: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OnError(Node):
+    """``ON ERROR GOTO *L``."""
+
+    target: Target
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Unparsed(Node):
     """A statement that has an error; a program that contains one does not run."""
 
     text: str
 
 
-Statement: TypeAlias = Move | Load | Hand | Wrist | Seam | Unparsed
+Moving: TypeAlias = Move | MoveJ | MoveC | Approach | Depart
+Statement: TypeAlias = (
+    Moving | Load | LoadNamed | Hand | Wrist | Seam | Setting | Assign | Dim | Const | Out | Pulse | Delay | Wait
+    | Print | If | Block | Head | Case | For | Next | Jump | Sub | CallSub | Word | OnError | Unparsed
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -174,9 +448,10 @@ class Comment(Node):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Line(Node):
-    """``[number] [statement] [comment]``; ``source_line`` is 1-based."""
+    """``[number] [*label] [statement] [comment]``; ``source_line`` is 1-based."""
 
     number: int | None = None
+    label: Name | None = None
     statement: Statement | None = None
     comment: Comment | None = None
     source_line: int = field(default=1, compare=False)
@@ -205,7 +480,7 @@ _CONSTANTS = {"NAN": math.nan, "INF": math.inf}
 
 
 def constant(expression: Expression) -> float | None:
-    """Return the value of an expression that needs no variable; None when it needs one.
+    """Return the value of an expression of signs and numbers alone; None when it needs more.
 
     ``NAN`` and ``INF`` are names that the text may contain; the checker refuses them wherever they stand.
     """
@@ -214,5 +489,36 @@ def constant(expression: Expression) -> float | None:
         sign, expression = -sign, expression.operand
     if isinstance(expression, Number):
         return sign * expression.value
-    value = _CONSTANTS.get(expression.key)
+    value = _CONSTANTS.get(expression.key) if isinstance(expression, Name) else None
     return None if value is None else sign * value
+
+
+_NAMES: dict[type, tuple[str, ...]] = {}
+
+
+def _names(kind: type[Node]) -> tuple[str, ...]:
+    """Return the fields of a kind of node that may hold nodes."""
+    if kind not in _NAMES:
+        _NAMES[kind] = tuple(item.name for item in fields(kind) if item.name not in ("span", "text", "key"))
+    return _NAMES[kind]
+
+
+def children(node: Node) -> Iterator[Node]:
+    """Yield the nodes right below a node, in the order of the text."""
+    for name in _names(type(node)):
+        value = getattr(node, name)
+        if isinstance(value, Node):
+            yield value
+        elif isinstance(value, tuple):
+            for each in value:
+                parts = each if isinstance(each, tuple) else (each,)
+                yield from (part for part in parts if isinstance(part, Node))
+
+
+def walk(node: Node) -> Iterator[Node]:
+    """Yield a node and everything below it; without recursion, however deep the tree is."""
+    stack = [node]
+    while stack:
+        found = stack.pop()
+        yield found
+        stack.extend(reversed(list(children(found))))

@@ -1,7 +1,7 @@
 """Parser: program text to syntax tree and diagnostics, in time linear in the text.
 
 Grammar: ``grammar.lark`` (LALR(1)) for what follows the line number of a line,
-``line = [digits] [statement] [comment]``. Lines are parsed one by one, so an error costs exactly its own line,
+``line = [digits] [*label] [statement] [comment]``. Lines are parsed one by one, so an error costs exactly its own line,
 and every line is looked at first for what would make parsing it unsafe: hidden characters, nesting, length. The
 tree is built while the parser reduces, without a visitor, so its depth is bounded by ``MAX_DEPTH`` and
 nothing recurses.
@@ -12,14 +12,14 @@ cached on disk: that cache would be unpickled from a place others may write to.
 
 import math
 import re
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from lark import Lark, Token, Transformer, UnexpectedToken, v_args
+from lark import Lark, Token, UnexpectedToken
 
 from robolang import nodes
+from robolang.builder import Parsed, builder, span_of
 from robolang.diagnostics import HIDDEN, MAX_DIAGNOSTICS, Diagnostic, Severity, in_order
 from robolang.mistakes import Unexpected, explain, quote, suspicious
 from robolang.source import MAX_BYTES, Source, Span
@@ -32,6 +32,7 @@ MAX_NUMBER_DIGITS = 9
 
 _HEAD = re.compile(r"[ \t]*+(?:([0-9]++)(?![\w.]))?[ \t]*+")
 _COMMENT = re.compile(r"'|(?<!\w)REM(?!\w)", re.IGNORECASE)
+_NOT = re.compile(r"(?<!\w)NOT(?!\w)", re.IGNORECASE)
 _LINE_END = re.compile(r"\r\n?|\n")
 
 
@@ -87,7 +88,7 @@ def _parse_line(text: str, span: Span, row: int) -> tuple[nodes.Line, Diagnostic
     digits = head[1]
     number = int(digits) if digits and len(digits) <= MAX_NUMBER_DIGITS else None
     code, base = text[head.end() :], span.start + head.end()
-    parsed: _Parsed | Diagnostic | None = _refusal(text, span.start)
+    parsed: Parsed | Diagnostic | None = _refusal(text, span.start)
     number_span = Span(span.start + head.start(1), span.start + head.end(1)) if digits else nodes.NOWHERE
     if parsed is None and digits and number is None:
         message = f"the line number {quote(digits)} has more than {MAX_NUMBER_DIGITS} digits"
@@ -96,13 +97,10 @@ def _parse_line(text: str, span: Span, row: int) -> tuple[nodes.Line, Diagnostic
         parsed = _parse_statement(code, base)
     problem = parsed if isinstance(parsed, Diagnostic) else None
     if isinstance(parsed, Diagnostic):
-        parsed = nodes.Unparsed(text=code, span=Span(base, span.end)), None
-    line = nodes.Line(number=number, statement=parsed[0], comment=parsed[1], source_line=row, span=span,
-                      number_span=number_span)  # fmt: skip
+        parsed = None, nodes.Unparsed(text=code, span=Span(base, span.end)), None
+    line = nodes.Line(number=number, label=parsed[0], statement=parsed[1], comment=parsed[2], source_line=row,
+                      span=span, number_span=number_span)  # fmt: skip
     return line, problem
-
-
-_Parsed = tuple[nodes.Statement | None, nodes.Comment | None]
 
 
 def _refusal(text: str, base: int) -> Diagnostic | None:
@@ -124,7 +122,9 @@ def _refusal(text: str, base: int) -> Diagnostic | None:
 
 
 def _too_deep(code: str) -> int | None:
-    """Return the offset of the parenthesis or sign that is nested too deeply."""
+    """Return the offset of the parenthesis, sign or NOT that is nested too deeply."""
+    if len(nots := list(_NOT.finditer(code))) > MAX_DEPTH:
+        return nots[MAX_DEPTH].start()
     if code.count("(") + code.count("-") + code.count("+") <= MAX_DEPTH:
         return None
     depth = signs = 0
@@ -139,12 +139,12 @@ def _too_deep(code: str) -> int | None:
     return None
 
 
-def _parse_statement(code: str, base: int) -> _Parsed | Diagnostic:
+def _parse_statement(code: str, base: int) -> Parsed | Diagnostic:
     """Parse what follows the line number; ``base`` is its offset in the source."""
     if not code:
-        return None, None
+        return None, None, None
     if code[0] == "'":
-        return None, nodes.Comment(text=code.rstrip(), span=Span(base, base + len(code.rstrip())))
+        return None, None, nodes.Comment(text=code.rstrip(), span=Span(base, base + len(code.rstrip())))
     session = _parser().parse_interactive(code, start="start")
     token = None
     try:
@@ -152,7 +152,7 @@ def _parse_statement(code: str, base: int) -> _Parsed | Diagnostic:
         for token in session.iter_parse():
             token.start_pos = base + (token.start_pos or 0)
             token.end_pos = base + (token.end_pos or 0)
-        result: _Parsed = session.feed_eof(token)  # type: ignore[no-untyped-call]
+        result: Parsed = session.feed_eof(token)  # type: ignore[no-untyped-call]
     except UnexpectedToken as error:
         accepts: set[str] = session.accepts()  # type: ignore[no-untyped-call]
         return explain(_unexpected(error.token, accepts, code, base))
@@ -161,19 +161,14 @@ def _parse_statement(code: str, base: int) -> _Parsed | Diagnostic:
 
 def _unexpected(token: Token, accepts: set[str], code: str, base: int) -> Unexpected:
     if token.type in ("$END", "COMMENT"):
-        start = len(code if token.type == "$END" else code[: _span(token).start - base])
+        start = len(code if token.type == "$END" else code[: span_of(token).start - base])
         end = start = len(code[:start].rstrip(" \t"))
     else:
-        start, end = _span(token).start - base, _span(token).end - base
+        start, end = span_of(token).start - base, span_of(token).end - base
     span = Span(base + start, base + end)
     return Unexpected(
         kind=token.type, text=str(token), span=span, accepts=accepts, before=code[:start], after=code[end:]
     )
-
-
-def _span(token: Token) -> Span:
-    assert token.start_pos is not None and token.end_pos is not None
-    return Span(token.start_pos, token.end_pos)
 
 
 def _classify(token: Token) -> Token:
@@ -199,89 +194,8 @@ def _parser() -> Lark:
         parser="lalr",
         lexer="basic",
         start=["start", "refused"],
-        transformer=_Builder(),
+        transformer=builder(),
         lexer_callbacks=callbacks,
     )
 
 
-@v_args(inline=True)
-class _Builder(Transformer[Token, nodes.Node]):
-    """One method for each rule of the grammar, called when the rule is reduced."""
-
-    def start(self, statement: nodes.Statement | None, comment: Token | None) -> _Parsed:
-        if comment is None:
-            return statement, None
-        text, at = comment.rstrip(), _span(comment).start
-        return statement, nodes.Comment(text=text, span=Span(at, at + len(text)))
-
-    def move(self, word: Token, target: nodes.Name, *parts: nodes.Option | list[Token] | Token) -> nodes.Move:
-        options = _options(parts)
-        end = options[-1].span.end if options else target.span.end
-        return nodes.Move(target=target, options=options, span=Span(_span(word).start, end))
-
-    def load(self, word: Token, cog: nodes.Vector, mass: nodes.Expression) -> nodes.Load:
-        return nodes.Load(cog=cog, mass=mass, span=Span(_span(word).start, mass.span.end))
-
-    def hand(self, word: Token, state: Token, dwell: nodes.Expression | None) -> nodes.Hand:
-        end = _span(state).end if dwell is None else dwell.span.end
-        return nodes.Hand(state=nodes.HandState[state.type], dwell=dwell, span=Span(_span(word).start, end))
-
-    def wrist(self, word: Token, mode: Token) -> nodes.Wrist:
-        return nodes.Wrist(mode=nodes.WristMode[mode.type], span=Span(_span(word).start, _span(mode).end))
-
-    def hold(self, *words: Token) -> list[Token]:
-        return list(words)
-
-    def holding(self, hold: list[Token], *more: Token) -> nodes.Wrist:
-        return _holding([*hold, *more])
-
-    def seam(self, word: Token, state: Token, sensor: nodes.Name | None = None) -> nodes.Seam:
-        end = _span(state).end if sensor is None else sensor.span.end
-        return nodes.Seam(sensor=sensor, span=Span(_span(word).start, end))
-
-    def speed(self, word: Token, value: nodes.Expression) -> nodes.Speed:
-        return nodes.Speed(value=value, span=Span(_span(word).start, value.span.end))
-
-    def accel(self, word: Token, value: nodes.Expression) -> nodes.Accel:
-        return nodes.Accel(value=value, span=Span(_span(word).start, value.span.end))
-
-    def time(self, word: Token, value: nodes.Expression) -> nodes.Time:
-        return nodes.Time(value=value, span=Span(_span(word).start, value.span.end))
-
-    def vector(self, left: Token, x: nodes.Expression, y: nodes.Expression, z: nodes.Expression,
-               right: Token) -> nodes.Vector:  # fmt: skip
-        return nodes.Vector(x=x, y=y, z=z, span=Span(_span(left).start, _span(right).end))
-
-    def negate(self, sign: Token, operand: nodes.Expression) -> nodes.Negate:
-        return nodes.Negate(operand=operand, span=Span(_span(sign).start, operand.span.end))
-
-    def number(self, token: Token) -> nodes.Number:
-        return nodes.Number(value=float(token), text=str(token), span=_span(token))
-
-    def name(self, token: Token) -> nodes.Name:
-        return nodes.Name(text=str(token), span=_span(token))
-
-
-def _options(parts: Iterable[nodes.Option | list[Token] | Token]) -> tuple[nodes.Option, ...]:
-    """Return the options of a move, each WRIST HOLD with the components that follow it."""
-    found: list[nodes.Option | list[Token]] = []
-    hold: list[Token] = []
-    for part in parts:
-        if isinstance(part, Token):
-            hold.append(part)
-            continue
-        if isinstance(part, list):
-            hold = part
-        found.append(part)
-    return tuple(_holding(part) if isinstance(part, list) else part for part in found)
-
-
-def _holding(words: list[Token]) -> nodes.Wrist:
-    """Return the node of ``WRIST HOLD c {, c}``, given as its words."""
-    held = words[2:]
-    return nodes.Wrist(
-        mode=nodes.WristMode.HOLD,
-        held=tuple(nodes.Component[word.type] for word in held),
-        held_spans=tuple(map(_span, held)),
-        span=Span(_span(words[0]).start, _span(words[-1]).end),
-    )

@@ -1,73 +1,270 @@
-"""Canonical text of the tree: keywords in capitals, one space between words, names as the user spelt them.
+"""Canonical text of the tree: keywords in capitals, names and numbers as spelt, one space between words.
 
-What is printed parses back to an equal tree. Used for live progress (``describe``) and, later, by the
-formatter.
+What is printed parses back to an equal tree. Parentheses stand where the grammar needs them and nowhere else: an
+operand is put into them when its level is lower than the lowest that its place can hold. The levels are the rules of
+``grammar.lark`` from the loosest to the tightest, ``OR AND NOT = + * MOD -x ^``; a chain is flat, so an operand of the
+chain's own level came from parentheses and keeps them, in front as well: ``(a - b) - c`` is another tree than
+``a - b - c``. An exponent is an operand with signs before it, so ``2^-x`` stands as it is and ``2^-(x^3)`` needs them.
+
+Expressions are printed with a stack and not by recursion: parentheses in one another, at most 100, may hold ten levels
+each. Used for progress, logs and pulse tables (``describe``), and by the formatter.
 """
 
-from robolang.nodes import (
-    Accel,
-    Expression,
-    Hand,
-    Line,
-    Load,
-    Move,
-    Name,
-    Negate,
-    Number,
-    Option,
-    Program,
-    Seam,
-    Speed,
-    Statement,
-    Wrist,
+from typing import TypeAlias, assert_never
+
+from robolang import nodes
+from robolang.nodes import Expression, Option, Statement
+from robolang.words import FUNCTIONS, VALUES
+
+_OR, _AND, _NOT, _COMPARE, _SUM, _PRODUCT, _MOD, _SIGNED, _POWER, _EXPONENT, _OPERAND = range(11)
+_SIGNS = {
+    "OR": _OR, "AND": _AND, **dict.fromkeys(("=", "<>", "<", ">", "<=", ">="), _COMPARE),
+    "+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT, "MOD": _MOD, "^": _POWER,
+}  # fmt: skip
+_OPERAND_OF = {_OR: _AND, _AND: _NOT, _COMPARE: _SUM, _SUM: _PRODUCT, _PRODUCT: _MOD, _MOD: _SIGNED, _POWER: _OPERAND}
+"""The lowest level of an operand of a chain, by the level of the chain."""
+_WORDS = FUNCTIONS | VALUES
+
+_Piece: TypeAlias = str | tuple[Expression, int]
+"""Text, or an expression with the lowest level that its place can hold."""
+
+_Payload: TypeAlias = nodes.Load | nodes.LoadNamed | nodes.Hand | nodes.Wrist | nodes.Seam | nodes.Setting
+_Data: TypeAlias = (
+    nodes.Assign | nodes.Dim | nodes.Const | nodes.Out | nodes.Pulse | nodes.Delay | nodes.Wait | nodes.Print
 )
+_Control: TypeAlias = (
+    nodes.If | nodes.Block | nodes.Head | nodes.Case | nodes.For | nodes.Next | nodes.Jump | nodes.Sub | nodes.CallSub
+    | nodes.Word | nodes.OnError
+)  # fmt: skip
+
+
+def print_program(program: nodes.Program) -> str:
+    """Return the lines of a program, each with a line end; without indentation, and blank lines are not kept."""
+    return "".join(f"{print_line(line)}\n" for line in program.lines)
+
+
+def print_line(line: nodes.Line) -> str:
+    """Return one line as canonical text without a line end."""
+    number = [] if line.number is None else [str(line.number)]
+    comment = [] if line.comment is None else [line.comment.text]
+    return " ".join([*number, *filter(None, [print_code(line)]), *comment])
+
+
+def print_code(line: nodes.Line) -> str:
+    """Return the label and the statement of a line; ``""`` when it has neither."""
+    label = [] if line.label is None else [f"*{line.label.text}"]
+    statement = [] if line.statement is None else [describe(line.statement)]
+    return " ".join([*label, *statement])
 
 
 def describe(statement: Statement) -> str:
     """Return a statement as canonical text, such as ``MOVE P1, SPEED 200``."""
-    if isinstance(statement, Move):
-        return ", ".join([f"MOVE {statement.target.text}", *map(_option, statement.options)])
-    if isinstance(statement, Load):
-        cog = ", ".join(map(_expression, (statement.cog.x, statement.cog.y, statement.cog.z)))
-        return f"LOAD ({cog}), {_expression(statement.mass)}"
-    if isinstance(statement, Hand):
-        dwell = "" if statement.dwell is None else f", {_expression(statement.dwell)}"
-        return f"HAND {statement.state.value}{dwell}"
-    if isinstance(statement, Wrist):
-        return _wrist(statement)
-    if isinstance(statement, Seam):
-        return "SEAM OFF" if statement.sensor is None else f"SEAM ON, {statement.sensor.text}"
-    return statement.text
+    match statement:
+        case nodes.Move() | nodes.MoveJ() | nodes.MoveC() | nodes.Approach() | nodes.Depart():
+            return ", ".join([_moving(statement), *map(_option, statement.options)])
+        case nodes.Load() | nodes.LoadNamed() | nodes.Hand() | nodes.Wrist() | nodes.Seam() | nodes.Setting():
+            return _payload(statement)
+        case nodes.Unparsed():
+            return statement.text
+        case (
+            nodes.Assign() | nodes.Dim() | nodes.Const() | nodes.Out() | nodes.Pulse() | nodes.Delay() | nodes.Wait()
+            | nodes.Print()
+        ):  # fmt: skip
+            return _data(statement)
+        case _:
+            return _control(statement)
 
 
-def print_line(line: Line) -> str:
-    """Return one line as canonical text without a line end."""
-    number = [] if line.number is None else [str(line.number)]
-    statement = [] if line.statement is None else [describe(line.statement)]
-    comment = [] if line.comment is None else [line.comment.text]
-    return " ".join([*number, *statement, *comment])
-
-
-def print_program(program: Program) -> str:
-    """Return the lines of a program, each with a line end; blank lines are not kept."""
-    return "".join(f"{print_line(line)}\n" for line in program.lines)
+def _moving(node: nodes.Moving) -> str:
+    match node:
+        case nodes.Move():
+            return f"MOVE {print_expression(node.target)}"
+        case nodes.MoveJ():
+            return f"MOVEJ {print_expression(node.target)}"
+        case nodes.MoveC():
+            return f"MOVEC {_comma(node.via, node.target)}"
+        case nodes.Approach():
+            return f"APPROACH {_comma(node.target, node.distance)}"
+        case nodes.Depart():
+            return f"DEPART {print_expression(node.distance)}"
+        case _:
+            assert_never(node)
 
 
 def _option(option: Option) -> str:
-    if isinstance(option, Wrist):
-        return _wrist(option)
-    word = "SPEED" if isinstance(option, Speed) else "ACCEL" if isinstance(option, Accel) else "TIME"
-    return f"{word} {_expression(option.value)}"
+    match option:
+        case nodes.Speed():
+            return f"SPEED {print_expression(option.value)}"
+        case nodes.Accel():
+            return f"ACCEL {print_expression(option.value)}"
+        case nodes.Time():
+            return f"TIME {print_expression(option.value)}"
+        case nodes.Zone():
+            return "FINE" if option.value is None else f"ZONE {print_expression(option.value)}"
+        case nodes.Wrist():
+            return _wrist(option)
+        case _:
+            assert_never(option)
 
 
-def _wrist(wrist: Wrist) -> str:
+def _payload(node: _Payload) -> str:
+    match node:
+        case nodes.Load():
+            return f"LOAD {_comma(node.cog, node.mass, node.inertia)}"
+        case nodes.LoadNamed():
+            return f"LOAD {node.name.text}"
+        case nodes.Hand():
+            return f"HAND {node.state.value}{_optional(', ', node.dwell)}"
+        case nodes.Wrist():
+            return _wrist(node)
+        case nodes.Seam():
+            return "SEAM OFF" if node.sensor is None else f"SEAM ON, {node.sensor.text}"
+        case nodes.Setting():
+            return "FINE" if node.value is None else f"{node.word} {print_expression(node.value)}"
+        case _:
+            assert_never(node)
+
+
+def _data(node: _Data) -> str:
+    match node:
+        case nodes.Assign():
+            return f"{print_expression(node.target)} = {print_expression(node.value)}"
+        case nodes.Dim():
+            return f"DIM {node.name.text}({print_expression(node.size)})"
+        case nodes.Const():
+            return f"CONST {node.name.text} = {print_expression(node.value)}"
+        case nodes.Out():
+            return f"OUT({print_expression(node.index)}) = {print_expression(node.value)}"
+        case nodes.Pulse():
+            return f"PULSE {_comma(node.index, node.seconds)}"
+        case nodes.Delay():
+            return f"DELAY {print_expression(node.seconds)}"
+        case nodes.Wait():
+            goto = "" if node.target is None else f", GOTO {_target(node.target)}"
+            return f"WAIT {print_expression(node.condition)}{_optional(', TIMEOUT ', node.timeout)}{goto}"
+        case nodes.Print():
+            return f"PRINT {'; '.join(map(print_expression, node.items))}".rstrip()
+        case _:
+            assert_never(node)
+
+
+def _control(node: _Control) -> str:
+    match node:
+        case nodes.If():
+            otherwise = "" if node.otherwise is None else f" ELSE {describe(node.otherwise)}"
+            return f"IF {print_expression(node.condition)} THEN {describe(node.then)}{otherwise}"
+        case nodes.Block() | nodes.Word():
+            return node.word
+        case nodes.Head():
+            then = " THEN" if node.word in ("IF", "ELSEIF") else ""
+            return f"{node.word} {print_expression(node.value)}{then}"
+        case nodes.Case():
+            return f"CASE {_comma(*node.values)}"
+        case nodes.For():
+            limits = f"{print_expression(node.first)} TO {print_expression(node.last)}"
+            return f"FOR {node.variable.text} = {limits}{_optional(' STEP ', node.step)}"
+        case nodes.Next():
+            return f"NEXT{_optional(' ', node.variable)}"
+        case nodes.Jump():
+            return f"{node.word} {_target(node.target)}"
+        case nodes.Sub():
+            return f"SUB {node.name.text}{_bracketed(*node.parameters)}"
+        case nodes.CallSub():
+            return f"CALL {node.name.text}{_bracketed(*node.arguments)}"
+        case nodes.OnError():
+            return f"ON ERROR GOTO {_target(node.target)}"
+        case _:
+            assert_never(node)
+
+
+def _wrist(wrist: nodes.Wrist) -> str:
     held = f" {', '.join(component.value for component in wrist.held)}" if wrist.held else ""
     return f"WRIST {wrist.mode.value}{held}"
 
 
-def _expression(expression: Expression) -> str:
-    signs = 0
-    while isinstance(expression, Negate):
-        signs, expression = signs + 1, expression.operand
-    assert isinstance(expression, Number | Name)
-    return "-" * signs + expression.text
+def _target(target: nodes.Target) -> str:
+    return str(target.number) if target.label is None else f"*{target.label.text}"
+
+
+def _optional(before: str, value: Expression | None) -> str:
+    return "" if value is None else f"{before}{print_expression(value)}"
+
+
+def _comma(*values: Expression | None) -> str:
+    return ", ".join(print_expression(value) for value in values if value is not None)
+
+
+def _bracketed(*values: Expression) -> str:
+    return f"({_comma(*values)})" if values else ""
+
+
+# --- expressions -----------------------------------------------------------------------------------------------------
+
+
+def print_expression(expression: Expression) -> str:
+    """Return an expression as canonical text, such as ``-(a - b)^2 MOD 3``; in time linear in its size."""
+    found: list[str] = []
+    stack: list[_Piece] = [(expression, _OR)]
+    while stack:
+        piece = stack.pop()
+        if isinstance(piece, str):
+            found.append(piece)
+            continue
+        node, lowest = piece
+        if _level(node) < lowest and not (lowest == _EXPONENT and isinstance(node, nodes.Negate)):
+            stack += [")", (node, _OR), "("]
+        else:
+            stack.extend(reversed(_pieces(node, lowest)))
+    return "".join(found)
+
+
+def _level(node: Expression) -> int:
+    match node:
+        case nodes.Chain():
+            return _SIGNS[node.rest[0][0]]
+        case nodes.Not():
+            return _NOT
+        case nodes.Negate():
+            return _SIGNED
+        case _:
+            return _OPERAND
+
+
+def _pieces(node: Expression, lowest: int) -> list[_Piece]:
+    """Return what an expression consists of, in the order of the text."""
+    match node:
+        case nodes.Number() | nodes.Name():
+            return [node.text]
+        case nodes.Text():
+            return [f'"{node.value}"']
+        case nodes.Not():
+            return ["NOT ", (node.operand, _NOT)]
+        case nodes.Negate():
+            return ["-", (node.operand, _EXPONENT if lowest == _EXPONENT else _SIGNED)]
+        case nodes.Chain():
+            return _chain(node)
+        case nodes.Call():
+            word = node.name.key if node.name.key in _WORDS else node.name.text
+            return [word, *_list(node.arguments)] if node.arguments else [word]
+        case nodes.Component6():
+            return [(node.base, _OPERAND), f".{node.name.key}"]
+        case nodes.Vector():
+            return _list(node.items)
+        case _:
+            assert_never(node)
+
+
+def _chain(node: nodes.Chain) -> list[_Piece]:
+    level = _level(node)
+    operand = _OPERAND_OF[level]
+    pieces: list[_Piece] = [(node.first, operand)]
+    for sign, value in node.rest:
+        pieces += ["^", (value, _EXPONENT)] if level == _POWER else [f" {sign} ", (value, operand)]
+    return pieces
+
+
+def _list(items: tuple[Expression, ...]) -> list[_Piece]:
+    pieces: list[_Piece] = ["("]
+    for index, item in enumerate(items):
+        pieces += [", ", (item, _OR)] if index else [(item, _OR)]
+    return [*pieces, ")"]

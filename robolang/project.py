@@ -90,7 +90,9 @@ def load_project(path: Path | str, cell: Path | str | None = None, robot: str | 
     used = cell_spec.robot
     points = taught_points(where, builtin=cell_path is None, robot=used.name, axes=used.n)
     parsed = parse(source)
-    found = check(parsed.program, points=points.names, rated_payload_kg=used.rated_payload, sensors=cell_spec.sensors)
+    found = check(parsed.program, points=points.names, rated_payload_kg=used.rated_payload, sensors=cell_spec.sensors,
+                  tools=cell_spec.tools, frames=cell_spec.frames, loads=cell_spec.loads,
+                  inputs=cell_spec.inputs)  # fmt: skip
     return Project(
         source=source,
         program=parsed.program,

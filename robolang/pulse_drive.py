@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from robolang.session import MAX_RUN_US
+from robolang.motion_check import MAX_RUN_US
 from robolang.trial_motion import quintic
 from runtime.controller import Controller
 from runtime.faults import Alarm, Fault

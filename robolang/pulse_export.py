@@ -1,13 +1,14 @@
 """A program as positioning tables for a PLC: one for each move and channel, markers between them, a manifest.
 
-MOVE becomes tables (document 004, ``runtime.pulses``). LOAD, HAND and WRIST cannot be in one: LOAD and HAND become
-markers in the sequence, WRIST is in the moves that it governs. What depends on a sensor (SEAM) or asks of a mechanism
-what it has no joint for is refused at its place in the program. Everything is made in memory, then the folder is
-written whole or not at all (docs/pulses.md has the files).
+MOVE becomes tables (document 004, ``runtime.pulses``). LOAD, HAND, WAIT, OUT and the like cannot be in one: they become
+markers in the sequence; WRIST is in the moves that it governs. Loops and variables are carried out here. What depends
+on a sensor or an input, or asks of a mechanism what it has no joint for, is refused at its place in the program.
+Everything is made in memory, then the folder is written whole or not at all (docs/pulses.md has the files).
 """
 
 import json
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,11 +16,14 @@ import numpy as np
 
 from robolang import lowering
 from robolang.diagnostics import Diagnostic
-from robolang.effects import Effect, MoveTo, SetHand, SetPayload, SetSeam
-from robolang.interpreter import execute
+from robolang.effects import Drain, Effect, MoveTo, SetHand, SetPayload, SetSeam, SetTool, SetWrist
+from robolang.interpreter import ProgramFault, execute
+from robolang.lowering import Surroundings
+from robolang.nodes import Delay, Number, Wait
 from robolang.printer import describe
 from robolang.project import Project
 from runtime.faults import Fault
+from runtime.frames import Array
 from runtime.motion.commands import MoveLinear
 from runtime.pulses import f174, mechanism
 from runtime.pulses.channels import Channel, ChannelFile, channels_of, default_channels, motor_pulse, read_channel_file
@@ -94,15 +98,14 @@ def export(project: Project, request: ExportRequest) -> Export:
     ``Fault`` or ``FileFault`` for channel and mechanism files that cannot be used.
     """
     machine, channels = equipment(project, request)
-    effects = list(execute(project.program))
     stand, start = machine.home, counted(machine.home.q, channels)
     first, placed = start, False
     sequence: list[ExportedMove | Effect] = []
     files: dict[str, str] = {}
-    for effect in effects:
+    for effect in _effects(project):
         try:
             if isinstance(effect, MoveTo):
-                command = _command(effect, project, machine)
+                command = _command(effect, project, machine, stand.q)
                 if not placed:
                     machine, placed = machine.placed(command.X_world_tool[:3, 3]), True
                 pulses = plan_move(machine, stand, command, channels, start, request.step_s)
@@ -156,13 +159,44 @@ def _channel_file(name: str | None) -> tuple[ChannelFile | None, str]:
     return read_channel_file(Path(name)), ""
 
 
-def _command(effect: MoveTo, project: Project, machine: Machine) -> MoveLinear:
-    point = project.points.get(effect.point)
+def _effects(project: Project) -> Iterator[Effect]:
+    """Yield the effects of a program in which nothing depends on a run; a WAIT is passed, for it becomes a marker."""
+    waiting = {id(line.statement) for line in project.program.lines if isinstance(line.statement, Wait)}
+    passed = tuple(
+        replace(line, statement=Delay(seconds=Number(value=0.0, text="0"), span=line.statement.span))
+        if line.statement is not None and id(line.statement) in waiting
+        else line
+        for line in project.program.lines
+    )
+    texts = {line.source_line: line.statement for line in project.program.lines}
+    try:
+        for effect in execute(replace(project.program, lines=passed), points=project.points.names):
+            original = texts[effect.line]
+            yield replace(effect, node=original) if isinstance(original, Wait) else effect
+    except ProgramFault as fault:
+        code = "RBL431" if fault.code == "RBL532" else fault.code
+        hint = fault.hint if code == fault.code else ""
+        found = Diagnostic(code=code, message=fault.message, span=fault.span, hint=hint)
+        raise NotExportableError(found) from None
+
+
+def _command(effect: MoveTo, project: Project, machine: Machine, q: Array) -> MoveLinear:
+    point = project.points.get(effect.target.point)
+    if effect.way != "line" or effect.zone_mm > 0.0:
+        what = "does not stop at its end (ZONE)" if effect.way == "line" else "is not straight"
+        raise Fault("RBL431", f"the move {what}; tables hold straight moves from rest to rest", "write MOVE and FINE")
     if not isinstance(machine, RobotArm) and point is not None and point.joints is not None:
         raise Fault("RBL431", f"{point.name} is taught as joint angles of {project.cell.robot.name}, which the "
                     f"{machine.name} has not: teach its pose")  # fmt: skip
     kinematics = machine.kinematics if isinstance(machine, RobotArm) else _kinematics(project)
-    return lowering.move(effect, project.points, project.cell, kinematics)
+    if not isinstance(machine, RobotArm):
+        if effect.target.last:
+            raise Fault("RBL431", "DEPART goes by the tool's axis, which this machine does not tell: teach a point")
+        q = project.cell.home
+    command = lowering.move(effect, Surroundings(points=project.points, cell=project.cell, kinematics=kinematics,
+                                                 X_flange_tool=project.cell.hand.X_flange_tool, q_last=q))  # fmt: skip
+    assert isinstance(command, MoveLinear)
+    return command
 
 
 def _kinematics(project: Project) -> Any:
@@ -180,7 +214,9 @@ def _marked(effect: Effect, project: Project) -> bool:
         lowering.payload(effect, project.cell)
     elif isinstance(effect, SetHand):
         lowering.dwell_s(effect, project.cell)
-    return isinstance(effect, SetPayload | SetHand)
+    elif isinstance(effect, SetTool):
+        raise Fault("RBL431", "another tool cannot be taken in the middle of an export")
+    return not isinstance(effect, SetSeam | SetWrist | Drain)
 
 
 Named = tuple[str, str]
@@ -245,9 +281,10 @@ def _entry(item: ExportedMove | Effect, found: Export, project: Project) -> dict
         payload = lowering.payload(item, project.cell)
         cog = [float(x) for x in np.round(payload.cog / MM, 9)]
         return {"kind": "marker", **head, "load": {"mass_kg": payload.mass, "cog_mm": cog}}
-    assert isinstance(item, SetHand)
-    return {"kind": "marker", **head, "hand": "on" if item.closed else "off",
-            "dwell_s": lowering.dwell_s(item, project.cell)}  # fmt: skip
+    if isinstance(item, SetHand):
+        return {"kind": "marker", **head, "hand": "on" if item.closed else "off",
+                "dwell_s": lowering.dwell_s(item, project.cell)}  # fmt: skip
+    return {"kind": "marker", **head, "other": type(item.node).__name__.lower()}
 
 
 def summary(move: ExportedMove, found: Export) -> dict[str, Any]:

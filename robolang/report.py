@@ -36,6 +36,7 @@ def build_report(record: RunRecord, log: dict[str, Array], wall_s: float) -> dic
         "statements": [_statement(run, measures, controller.profile.tick_us) for run in record.statements],
         "dynamics": _dynamics(record),
         "payload_history": record.payloads,
+        "printed": [{"time_s": time_s, "text": text} for time_s, text in record.shown],
         "objects": {
             name: {"pose_mm_deg": pose_mm_deg(X)} for name, X in sorted(controller.plant.parts().items())
         },

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from robolang.project import Project
 from runtime.controller import Controller
 from runtime.frames import Array
-from runtime.motion.path import LinePath
+from runtime.motion.path import Path
 from runtime.motion.planner import WristChange
 from runtime.motion.seam import SeamTracker
 
@@ -23,7 +23,7 @@ class StatementRun:
     text: str
     first_tick: int
     end_tick: int = 0
-    path: LinePath | None = None
+    path: Path | None = None
     planned_s: float | None = None
     wrist: WristChange | None = None
     seam: SeamTracker | None = None
@@ -43,10 +43,12 @@ class RunResult:
 
 @dataclass(slots=True, kw_only=True)
 class RunRecord:
-    """A run as it goes on; ``payloads`` are the rows of ``payload_history`` in the report."""
+    """A run as it goes on; ``payloads`` are the rows of ``payload_history`` in the report, ``shown`` what PRINT showed:
+    time s and text."""
 
     project: Project
     controller: Controller
     physics: bool
     statements: list[StatementRun] = field(default_factory=list)
     payloads: list[dict[str, object]] = field(default_factory=list)
+    shown: list[tuple[float, str]] = field(default_factory=list)

@@ -13,13 +13,29 @@ import numpy as np
 
 from robolang import lowering
 from robolang.diagnostics import Diagnostic, render
-from robolang.effects import Effect, MoveTo, SetHand, SetPayload, SetSeam
-from robolang.interpreter import execute
-from robolang.nodes import Program
+from robolang.effects import (
+    Drain,
+    Effect,
+    Halt,
+    MoveTo,
+    Pass,
+    SetHand,
+    SetOutput,
+    SetPayload,
+    SetSeam,
+    SetTool,
+    SetWrist,
+    Show,
+)
+from robolang.interpreter import ProgramFault, execute
+from robolang.lowering import Command
+from robolang.motion_check import MAX_CHAIN, MAX_RUN_US, motion_check
+from robolang.nodes import Wait
 from robolang.printer import describe
 from robolang.project import Project, load_project
 from robolang.report import build_report
 from robolang.result import RunRecord, RunResult, StatementRun
+from robolang.surroundings import RobotWorld
 from runtime.clock import PacedClock, VirtualClock, wall_s
 from runtime.controller import Controller
 from runtime.faults import Fault
@@ -44,28 +60,27 @@ class ProgramError(Exception):
 Progress = Callable[[StatementRun, int], None]
 """Told of the running statement and the simulated time in us: at its start, and every few cycles."""
 
-Effects = Callable[[Program], Iterator[Effect]]
-"""Yields the effects of a program: the interpreter, or one that changes what the program declares (``compare``)."""
+Alter = Callable[[Effect], Effect | None]
+"""Changes what a program asks for before it is carried out, None: leaves it out (``compare``)."""
 
 LAMPS = ("", "WRIST", "WRIST HOLD")
 """What the lamp shows by ``wrist_mode``."""
 
 _PROGRESS_CYCLES = 25
 
-MAX_RUN_US = 1_800_000_000
-"""Longest run, us of simulated time: about a kilobyte of log is kept for every tick."""
-
 
 class Session:
     """One run of one project."""
 
     def __init__(self, project: Project, *, physics: bool = True, realtime: bool = False,
-                 progress: Progress | None = None, effects: Effects = execute) -> None:  # fmt: skip
+                 progress: Progress | None = None, alter: Alter | None = None,
+                 show: Callable[[str], None] | None = None) -> None:  # fmt: skip
         if not project.ok:
             raise ProgramError(project, project.diagnostics)
         self.project = project
-        self._effects = effects
+        self._alter = alter or (lambda effect: effect)
         self._progress = progress or (lambda statement, time_us: None)
+        self._show = show or (lambda text: None)
         self._stop_requested = self._halt_requested = False
         self._tracker: SeamTracker | None = None
         self.running = False
@@ -83,6 +98,8 @@ class Session:
             cell.robot, make_plant(project, physics), profile, cell.hand.X_flange_tool, clock, self._kinematics
         )
         self.record = RunRecord(project=project, controller=self.controller, physics=physics)
+        self.world = RobotWorld(project.points, cell, self._kinematics, lambda: self.controller.time_us)
+        self._chain: list[tuple[MoveTo, Command]] = []
 
     def request_stop(self) -> None:
         """Ask the run for a controlled stop from the next cycle on; safe to call from a signal handler."""
@@ -96,38 +113,154 @@ class Session:
         """Execute the program to its end, a fault or a stop; the log is complete in every case."""
         started = wall_s()
         self.running = True
-        for effect in self._effects(self.project.program):
-            if not self._run_statement(effect):
-                break
+        self._run_program()
         self.running = False
         log = self.controller.recorder.signals(self.controller.tool_poses)
         report = build_report(self.record, log, wall_s() - started)
         return RunResult(ok=not self.controller.alarms, report=report, log=log)
 
+    def _run_program(self) -> None:
+        """Take one effect after another; a request that cannot be carried out goes back to the program (ON ERROR)."""
+        program = execute(self.project.program, self.world, self.project.points.names)
+        fault: Fault | None = None
+        while True:
+            try:
+                effect = next(program) if fault is None else program.throw(fault)
+            except StopIteration:
+                self._finish_motion()
+                return
+            except ProgramFault as uncaught:
+                if self._finish_motion():
+                    self._end_with(uncaught)
+                return
+            fault = None
+            altered = self._alter(effect)
+            if altered is None:
+                continue
+            try:
+                if not self._take(altered):
+                    return
+            except Fault as refused:
+                if self.controller.alarms:
+                    return
+                fault = refused
+
+    def _end_with(self, fault: ProgramFault) -> None:
+        self.controller.line = fault.line
+        self.controller.alarm(fault.code, fault.message)
+        self._come_to_rest()
+
+    def _take(self, effect: Effect) -> bool:
+        """Carry out an effect, or keep a move that the next one may blend into; False when the run is over."""
+        if isinstance(effect, MoveTo):
+            return self._move(effect)
+        if isinstance(effect, SetWrist):
+            return self._run_statement(effect)
+        if not self._finish_motion():
+            return False
+        if isinstance(effect, Drain):
+            return True
+        return self._run_statement(effect) and not (isinstance(effect, Halt) and effect.word == "STOP")
+
+    # --- motion ------------------------------------------------------------------------------------------------------
+
+    def _move(self, effect: MoveTo) -> bool:
+        """Plan a move where the one before ends; it runs at once, or with the next one where it has a zone."""
+        self.controller.line = _number(effect)
+        command = _without_zone(lowering.move(effect, self.world.around), self._tracker is not None)
+        if self._chain or command.zone > 0.0:  # refused here, where the program can answer, and not when it runs
+            plan = self.controller.rehearse(self.world.q_last, command)
+            self.world.q_last = plan.q[-1]
+            self._chain.append((effect, command))
+            goes_on = command.zone > 0.0 and len(plan.q) > 1 and len(self._chain) < MAX_CHAIN
+            return True if goes_on else self._finish_motion()
+        self._chain.append((effect, command))
+        return self._finish_motion()
+
+    def _finish_motion(self) -> bool:
+        """Run the moves that are kept; False when the run is over."""
+        if not self._chain:
+            return not self.controller.alarms
+        chain, self._chain = self._chain, []
+        self.controller.line = _number(chain[0][0])
+        plan = self.controller.move_chain([command for _, command in chain])
+        runs = [self._begin(effect) for effect, _ in chain]
+        for run, part in zip(runs, plan.parts, strict=True):
+            run.path, run.notes = part.path, [*run.notes, *part.notes]
+            run.planned_s = part.planned_s
+            run.wrist, run.seam = part.wrist, self._tracker
+        self._cycles(self._follow(runs), runs[0])
+        self.world.q_last = np.array(self.controller.areas.ina)
+        for run in runs:
+            run.end_tick = run.end_tick or self.controller.recorder.tick
+        return not self.controller.alarms
+
+    def _begin(self, effect: Effect) -> StatementRun:
+        run = StatementRun(line=effect.line, number=effect.number, text=describe(effect.node),
+                           first_tick=self.controller.recorder.tick)  # fmt: skip
+        self.record.statements.append(run)
+        return run
+
+    def _begin_again(self, effect: Effect) -> StatementRun | None:
+        """Return the record of a WAIT that goes on: each of its cycles is an effect."""
+        last = self.record.statements[-1] if self.record.statements else None
+        goes_on = isinstance(effect.node, Wait) and last is not None and last.end_tick == self.controller.recorder.tick
+        return last if goes_on and last is not None and last.text == describe(effect.node) else None
+
+    def _follow(self, runs: list[StatementRun]) -> Iterator[None]:
+        """Yield once for every cycle of a chain of moves, until the arm is in position."""
+        controller, profile = self.controller, self.project.profile
+        self._progress(runs[0], controller.time_us)
+        lost = 0 if runs[0].seam is None else runs[0].seam.lost
+        current = 0
+        if not controller.moving:  # it is there already; a loop of such moves takes time all the same
+            yield
+        while controller.moving:
+            yield
+            while current < controller.chain_index:
+                runs[current].end_tick = runs[current + 1].first_tick = controller.recorder.tick
+                current += 1
+                controller.line = runs[current].line if runs[current].number is None else runs[current].number or 0
+                self._progress(runs[current], controller.time_us)
+            run = runs[current]
+            run.lamp = LAMPS[controller.wrist_mode]
+            run.lost = 0 if run.seam is None else run.seam.lost - lost
+            if controller.recorder.cycle % _PROGRESS_CYCLES == 0:
+                self._progress(run, controller.time_us)
+        run, waited_us = runs[-1], 0
+        while not controller.position_error <= profile.in_position:
+            if waited_us >= profile.settle_timeout_us:
+                error = np.degrees(controller.position_error)
+                run.notes.append(f"RBL523 not in position: {error:.3f} deg left after {waited_us / 1e6:g} s")
+                return
+            waited_us += profile.period_us
+            yield
+
+    # --- everything else ---------------------------------------------------------------------------------------------
+
     def _run_statement(self, effect: Effect) -> bool:
         controller = self.controller
-        run = StatementRun(
-            line=effect.line, number=effect.number, text=describe(effect.node), first_tick=controller.recorder.tick
-        )
-        self.record.statements.append(run)
-        controller.line = effect.number if effect.number is not None else effect.line
+        controller.line = _number(effect)
+        run = self._begin_again(effect) or self._begin(effect)
         self._progress(run, controller.time_us)
-        try:
-            for _ in self._carry_out(effect, run):
-                if self._stop_requested or not controller.cycle() or controller.alarms:
-                    break
-                if controller.time_us >= MAX_RUN_US:
-                    controller.alarm("RBL509", f"the run has lasted {MAX_RUN_US / 1e6:g} s of simulated time")
-                if controller.recorder.cycle % _PROGRESS_CYCLES == 0:
-                    self._progress(run, controller.time_us)
-        except Fault as fault:
-            controller.alarm(fault.code, fault.message)
+        self._cycles(self._carry_out(effect, run), run)
+        run.end_tick = controller.recorder.tick
+        return not controller.alarms
+
+    def _cycles(self, each: Iterator[None], run: StatementRun) -> None:
+        """Run one cycle for every step; stop the arm when it was asked for or an alarm has been raised."""
+        controller = self.controller
+        for _ in each:
+            if self._stop_requested or not controller.cycle() or controller.alarms:
+                break
+            if controller.time_us >= MAX_RUN_US:
+                controller.alarm("RBL509", f"the run has lasted {MAX_RUN_US / 1e6:g} s of simulated time")
+            if controller.recorder.cycle % _PROGRESS_CYCLES == 0 and run.path is None:
+                self._progress(run, controller.time_us)
         if self._stop_requested and not controller.alarms:
             controller.alarm("RBL530", "the run was stopped from outside")
         if controller.alarms:
             self._come_to_rest()
-        run.end_tick = controller.recorder.tick
-        return not controller.alarms
 
     def _come_to_rest(self) -> None:
         """Let the controlled stop run to its end, unless it has to end at once."""
@@ -141,12 +274,28 @@ class Session:
         """Start an effect and yield once for every cycle it needs."""
         if isinstance(effect, SetPayload):
             self._load(effect)
-        elif isinstance(effect, MoveTo):
-            yield from self._move(effect, run)
         elif isinstance(effect, SetHand):
             yield from self._hand(effect, run)
         elif isinstance(effect, SetSeam):
             self._seam(effect)
+        elif isinstance(effect, SetTool):
+            self.world.X_flange_tool = lowering.tool(effect.tool, self.project.cell)
+            self.controller.use_tool(self.world.X_flange_tool)
+        elif isinstance(effect, SetOutput):
+            self.world.set_output(effect.output, effect.value, effect.seconds)
+        elif isinstance(effect, Pass):
+            yield from self._pass(effect.seconds)
+        elif isinstance(effect, Show):
+            self.record.shown.append((self.controller.time_us / 1_000_000, effect.text))
+            self._show(effect.text)
+        elif isinstance(effect, Halt):
+            stops = effect.word == "STOP"
+            run.notes.append("the program stops here" if stops else "nobody is there to wait for: goes on")
+
+    def _pass(self, seconds: float) -> Iterator[None]:
+        """Let time pass, at least one cycle."""
+        for _ in range(max(1, -(-round(seconds * 1e6) // self.project.profile.period_us))):
+            yield
 
     def _load(self, effect: SetPayload) -> None:
         payload = lowering.payload(effect, self.project.cell)
@@ -169,28 +318,6 @@ class Session:
             self._tracker = SeamTracker(effect.sensor, spec.limits, self.project.profile.period_s, read)
         self.controller.seam(self._tracker)
 
-    def _move(self, effect: MoveTo, run: StatementRun) -> Iterator[None]:
-        controller, profile = self.controller, self.project.profile
-        command = lowering.move(effect, self.project.points, self.project.cell, self._kinematics)
-        plan = controller.move(command)
-        run.path = plan.path
-        run.planned_s = (len(plan.q) - 1) * profile.period_us / 1_000_000
-        run.notes += plan.notes
-        run.wrist, run.seam = plan.wrist, self._tracker
-        lost = 0 if run.seam is None else run.seam.lost
-        while controller.moving:
-            yield
-            run.lamp = LAMPS[controller.wrist_mode]
-            run.lost = 0 if run.seam is None else run.seam.lost - lost
-        waited_us = 0
-        while not controller.position_error <= profile.in_position:
-            if waited_us >= profile.settle_timeout_us:
-                error = np.degrees(controller.position_error)
-                run.notes.append(f"RBL523 not in position: {error:.3f} deg left after {waited_us / 1e6:g} s")
-                return
-            waited_us += profile.period_us
-            yield
-
     def _hand(self, effect: SetHand, run: StatementRun) -> Iterator[None]:
         self.controller.hand(effect.closed)
         wait_us = round(lowering.dwell_s(effect, self.project.cell) * 1e6)
@@ -199,6 +326,16 @@ class Session:
         holding = self.controller.plant.hand().holding
         if effect.closed:
             run.notes.append(f"holds '{holding}'" if holding else "closed on nothing")
+
+
+def _number(effect: Effect) -> int:
+    """Return the number by which alarms and the log name a statement."""
+    return effect.line if effect.number is None else effect.number
+
+
+def _without_zone(command: Command, tracked: bool) -> Command:
+    """Return a command that stops where a seam is followed: nothing blends there."""
+    return replace(command, zone=0.0) if tracked and command.zone > 0.0 else command
 
 
 def make_plant(project: Project, physics: bool) -> Plant:
@@ -224,8 +361,6 @@ def run(program: Path | str, *, cell: Path | str | None = None, robot: str | Non
     Raises ``ProgramError`` when the program has errors or a move cannot be planned, ``FileFault`` or ``Fault`` when a
     file cannot be used: in all these cases nothing has moved. A fault while running gives ``ok = False``.
     """
-    from robolang.motion_check import motion_check
-
     project = load_project(program, cell, robot, servo)
     if not project.ok:
         raise ProgramError(project, project.diagnostics)

@@ -85,10 +85,18 @@ def read_program(path: str | os.PathLike[str]) -> Source:
     all of it is read), RBL104 not UTF-8 text (placed at the first bad byte).
     """
     name = os.fspath(path)
-    return Source(name, _decode(name, _read_bytes(name)))
+    return decode_program(name, read_bytes(name))
 
 
-def _read_bytes(name: str) -> bytes:
+def decode_program(name: str, raw: bytes) -> Source:
+    """Return the program that bytes are the text of, a byte order mark removed; ``FileFault`` RBL106, RBL104."""
+    if len(raw) > MAX_BYTES:
+        _fail("RBL106", f"{name} has {len(raw)} bytes, more than {MAX_BYTES}", path=name)
+    return Source(name, _decode(name, raw))
+
+
+def read_bytes(name: str) -> bytes:
+    """Return the bytes of a program file, at most ``MAX_BYTES``; ``FileFault`` RBL701, RBL702, RBL106."""
     try:
         handle = os.open(name, os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC)
     except FileNotFoundError:

@@ -1,7 +1,6 @@
 """The vocabulary of the language, and characters and words that are easily taken for it.
 
-``KEYWORDS`` are read by this edition; ``LATER`` are the other words of edition 1 (docs: the language
-reference), reserved from the start so that no program breaks when they arrive. ``look_alike`` follows the
+``KEYWORDS``, ``FUNCTIONS`` and ``VALUES`` cannot be names. ``look_alike`` follows the
 idea of Unicode report 39, restricted to what can be mistaken for a character that the language reads.
 """
 
@@ -10,33 +9,73 @@ import re
 import unicodedata
 from collections.abc import Iterable
 
-INSTRUCTIONS = frozenset({"MOVE", "LOAD", "HAND", "WRIST", "SEAM"})
-OPTIONS = ("SPEED", "ACCEL", "TIME", "WRIST")
+_INSTRUCTIONS = """
+    MOVE MOVEJ MOVEC APPROACH DEPART LOAD HAND WRIST SEAM SPEED SPEEDJ ACCEL OVERRIDE ZONE TOOL FRAME OUT WAIT DELAY
+    PULSE DIM CONST IF ELSEIF ELSE ENDIF FOR NEXT WHILE WEND SELECT CASE ENDSELECT GOTO GOSUB RETURN SUB ENDSUB CALL
+    END STOP PAUSE RESUME PRINT
+"""
+INSTRUCTIONS = frozenset(_INSTRUCTIONS.split())
+OPTIONS = ("SPEED", "ACCEL", "TIME", "ZONE", "FINE", "WRIST")
+MOTIONS = frozenset({"MOVE", "MOVEJ", "MOVEC", "APPROACH", "DEPART"})
 COMPONENTS = ("TILT", "ADVANCE", "ROTATION")
-INNER_WORDS = ("ON", "OFF", *OPTIONS, "KEEP", "AUTO", "HOLD", *COMPONENTS)
+_BETWEEN = ("TIMEOUT", "GOTO", "STOP", "THEN", "ELSE", "TO", "STEP", "CASE", "NEXT", "ERROR")
+_SIGN_WORDS = ("NOT", "AND", "OR", "MOD")
+INNER_WORDS = ("ON", "OFF", *OPTIONS, "KEEP", "AUTO", "HOLD", *COMPONENTS, *_BETWEEN, *_SIGN_WORDS)
 """Words that stand behind an instruction, in the order in which messages list them."""
 KEYWORDS = INSTRUCTIONS | frozenset(INNER_WORDS)
-_LATER_INSTRUCTIONS = """
-    MOVEJ MOVEC APPROACH DEPART SPEEDJ OVERRIDE ZONE TOOL FRAME OUT WAIT DELAY PULSE DIM CONST
-    IF ELSEIF ELSE ENDIF FOR NEXT WHILE WEND SELECT CASE ENDSELECT GOTO GOSUB RETURN SUB ENDSUB CALL END STOP
-    PAUSE RESUME PRINT
-"""
-_LATER_WORDS = """
-    FINE IN TIMEOUT THEN TO STEP ERROR ERR POSE JOINT HERE DIST AND OR NOT MOD
-    ABS SGN INT ROUND SQR SIN COS TAN ATN2 MIN MAX DEG RAD STR$ VAL LEN TIMER
-"""
+VALUES = frozenset({"HERE", "TIMER", "ERR"})
+"""Words that are a value by themselves."""
+_OF_ONE = "ABS SGN INT SQR SIN COS TAN DEG RAD STR$ VAL LEN IN"
+ARGUMENTS = {
+    **dict.fromkeys(_OF_ONE.split(), (1, 1)), "ATN2": (2, 2), "DIST": (2, 2), "MIN": (1, 100), "MAX": (1, 100),
+    "ROUND": (1, 2), "POSE": (6, 6), "JOINT": (2, 7),
+}  # fmt: skip
+"""Functions of the language, with how many arguments each takes: the fewest and the most."""
+FUNCTIONS = frozenset(ARGUMENTS)
 _FORMS = {
-    "MOVE": "MOVE point [, SPEED mm/s] [, ACCEL %] [, TIME s] [, WRIST mode]",
-    "LOAD": "LOAD (x, y, z), mass",
+    "MOVE": "MOVE point [, SPEED mm/s] [, ACCEL %] [, TIME s] [, ZONE mm] [, WRIST mode]",
+    "MOVEJ": "MOVEJ point [, SPEED %] [, ACCEL %] [, TIME s] [, ZONE mm]",
+    "MOVEC": "MOVEC via, point [, SPEED mm/s] [, ACCEL %] [, TIME s] [, ZONE mm]",
+    "APPROACH": "APPROACH point, mm [, SPEED mm/s] [, ZONE mm]",
+    "DEPART": "DEPART mm [, SPEED mm/s] [, ZONE mm]",
+    "LOAD": "LOAD (x, y, z), mass [, (ixx, iyy, izz, ixy, ixz, iyz)] or LOAD name",
     "HAND": "HAND ON [, s] or HAND OFF [, s]",
     "WRIST": "WRIST KEEP, WRIST AUTO or WRIST HOLD component [, component]",
     "SEAM": "SEAM ON, sensor or SEAM OFF",
+    "OUT": "OUT(n) = value",
+    "WAIT": "WAIT condition [, TIMEOUT s [, GOTO target]]",
+    "DELAY": "DELAY s",
+    "PULSE": "PULSE n, s",
+    "DIM": "DIM a(n)",
+    "CONST": "CONST k = value",
+    "IF": "IF condition THEN statement [ELSE statement], or IF condition with ENDIF below",
+    "FOR": "FOR v = a TO b [STEP s]",
+    "SELECT": "SELECT value",
+    "GOTO": "GOTO line or GOTO *LABEL",
+    "GOSUB": "GOSUB line or GOSUB *LABEL",
+    "SUB": "SUB name [(a, b)]",
+    "CALL": "CALL name [(value, value)]",
+    "ELSEIF": "ELSEIF condition",
+    "WHILE": "WHILE condition",
+    "CASE": "CASE value [, value] or CASE ELSE",
+    "NEXT": "NEXT [variable]",
+    "PRINT": "PRINT [value; value]",
+    "SPEED": "SPEED mm/s",
+    "SPEEDJ": "SPEEDJ %",
+    "ACCEL": "ACCEL %",
+    "OVERRIDE": "OVERRIDE %",
+    "ZONE": "ZONE mm",
+    "TOOL": "TOOL name or TOOL pose",
+    "FRAME": "FRAME name or FRAME pose",
+    "RESUME": "RESUME or RESUME NEXT",
+    "ON": "ON ERROR GOTO *LABEL or ON ERROR STOP",
 }
-LATER_INSTRUCTIONS = frozenset(_LATER_INSTRUCTIONS.split())
-LATER = LATER_INSTRUCTIONS | frozenset(_LATER_WORDS.split())
-RESERVED = KEYWORDS | LATER | {"REM", "NAN", "INF"}
+RESERVED = KEYWORDS | FUNCTIONS | VALUES | {"REM", "NAN", "INF"}
 
-_PHRASES = {"HAND ON", "HAND OFF", "WRIST KEEP", "WRIST AUTO", "WRIST HOLD", "SEAM ON", "SEAM OFF"}
+_PHRASES = {
+    "ON ERROR GOTO", "ON ERROR STOP", "RESUME NEXT", "CASE ELSE", "HAND ON", "HAND OFF", "WRIST KEEP", "WRIST AUTO",
+    "WRIST HOLD", "SEAM ON", "SEAM OFF",
+}  # fmt: skip
 _OTHER_LANGUAGES = {
     "CLOSE": "HAND ON closes the hand",
     "GRASP": "HAND ON closes the hand",
@@ -49,6 +88,9 @@ _OTHER_LANGUAGES = {
     "PAYLOAD": "LOAD (x, y, z), mass declares the payload",
 }
 
+MAX_CHOICES = 300
+"""Among more names than this nothing is suggested."""
+
 _FAMILIAR = {
     **dict(zip("АВЕІЈКМНОРЅСТУХҮԌ", "ABEIJKMHOPSCTYXYG", strict=True)),  # Cyrillic
     **dict(zip("аеіјорѕсухԁԛԝ", "aeijopscyxdqw", strict=True)),
@@ -58,11 +100,13 @@ _FAMILIAR = {
 
 
 def kind_of(word: str) -> str | None:
-    """Return the terminal of a word: itself for a keyword, ``LATER`` for a later one, None for a name."""
+    """Return the terminal of a word: itself for a keyword, FUNCTION or VALUE for what has a value, None for a name."""
     upper = word.upper()
     if upper in KEYWORDS:
         return upper
-    return "LATER" if upper in LATER else None
+    if upper in FUNCTIONS:
+        return "FUNCTION"
+    return "VALUE" if upper in VALUES else None
 
 
 def look_alike(character: str) -> str:
@@ -78,9 +122,10 @@ def code_point(character: str) -> str:
 
 def near(word: str, choices: Iterable[str], cutoff: float = 0.6) -> str:
     """Return the choice that resembles the word most, ignoring case, or ``""``."""
-    if len(word) > 40:
+    names = list(choices)
+    if len(word) > 40 or len(names) > MAX_CHOICES:  # each comparison costs: a check must stay linear
         return ""
-    by_key = {choice.upper(): choice for choice in sorted(choices)}
+    by_key = {choice.upper(): choice for choice in sorted(names)}
     found = difflib.get_close_matches(word.upper(), by_key, n=1, cutoff=cutoff)
     return by_key[found[0]] if found else ""
 
@@ -91,7 +136,7 @@ def instruction_hint(word: str) -> str:
         return known
     if joined := re.fullmatch(r"(MOVE|LOAD|HAND)(\w*\d)", word.upper()):
         return f"leave a space: {joined[1]} {joined[2]}"
-    guess = near(word, INSTRUCTIONS | LATER_INSTRUCTIONS | _PHRASES)
+    guess = near(word, INSTRUCTIONS | _PHRASES)
     return f"did you mean {guess}?" if guess else ""
 
 

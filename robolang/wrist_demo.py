@@ -200,11 +200,12 @@ def run(robot: RobotSpec, trial: Trial) -> Run:
     if not np.isfinite(q).all():
         place = 100 * s[int(np.argmin(np.isfinite(q).all(axis=1)))]
         raise Fault("RBL412", f"{robot.name} has no joint angles at {place:.1f} % of {trial.move}, {trial.condition}")
-    taken = line.arm.kinematics.forward(q) @ X_FLANGE_TOOL
+    taken, path = line.arm.kinematics.forward(q) @ X_FLANGE_TOOL, line.path
+    assert isinstance(path, LinePath)
     return Run(
         trial=trial, t=frozen(s * DURATION_S), q=frozen(q), q_end=frozen(q_end), switch=switch, axis=axis,
         posture=frozen(rotation_angles(planned[:, :3, :3], taken[:, :3, :3])),
-        components=frozen(_components(line.path, planned, taken)),
+        components=frozen(_components(path, planned, taken)),
         off_path=frozen(np.linalg.norm(taken[:, :3, 3] - planned[:, :3, 3], axis=1)),
     )  # fmt: skip
 

@@ -15,7 +15,7 @@ the brakes; 0 at once. From then on ``cycle`` does nothing and returns False, un
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -25,12 +25,13 @@ from runtime.clock import Clock, VirtualClock
 from runtime.dynamics.equations import axis_gravity, axis_row
 from runtime.dynamics.source import InertiaRows
 from runtime.dynamics.task import StepCosts, dynamics_task
-from runtime.faults import Alarm, lookup
+from runtime.faults import Alarm, Fault, lookup
 from runtime.frames import Array
-from runtime.motion.commands import MoveLinear
+from runtime.motion.chain import ChainFault, ChainPlan, MotionPlanner
+from runtime.motion.commands import Command, MoveLinear
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.interpolator import Interpolator
-from runtime.motion.planner import FOLLOWS, LinePlan, LinePlanner
+from runtime.motion.planner import FOLLOWS, LinePlan
 from runtime.motion.seam import SeamTracker
 from runtime.motion.stop import stopping_rows
 from runtime.plant.plant import Plant
@@ -98,8 +99,12 @@ class Controller:
         self._hold(q)
         self.processor = IdleProcessor(self._dynamics)
         self.recorder = Recorder(spec.n, profile.ticks_per_cycle, profile.tick_us, plant.q_link)
-        self._planner = LinePlanner(spec, self.kinematics, profile)
+        self._planner = MotionPlanner(spec, self.kinematics, profile)
+        self._override = 1.0
         self._tracker: SeamTracker | None = None
+        self._waiting: list[tuple[LinePlan, MoveLinear]] = []  # under the tracker a move begins where the last one led
+        self._before = 0  # moves of a row before those that the interpolator has
+        self._lines: tuple[int, ...] = ()
         self.wrist_mode = FOLLOWS
         """Whether the wrist follows the path at the set-point in INA, or goes its own way (``runtime.motion.planner``).
         """
@@ -163,24 +168,78 @@ class Controller:
         self.plant.close_hand(closed)
         self._supervisor.hand_moves()
 
-    def move(self, command: MoveLinear) -> LinePlan:
-        """Plan a straight move from the commanded position and start it; ``Fault`` RBL4xx before anything moves."""
+    def move(self, command: Command) -> LinePlan:
+        """Plan a move from the commanded position and start it; ``Fault`` RBL4xx before anything moves."""
+        return self.move_chain([command]).parts[0].plan
+
+    def move_chain(self, commands: Sequence[Command], lines: Sequence[int] = ()) -> ChainPlan:
+        """Plan moves in a row, blended where they have zones, and start them; ``ChainFault`` RBL4xx before any moves.
+
+        ``lines``, one for each: ``line`` becomes that of a move when its rows begin, in the middle of a blend. Under a
+        seam sensor moves are straight and do not blend: zones are taken as 0.
+        """
         self._refuse_while_latched()
+        if lines and len(lines) != len(commands):
+            raise ValueError(f"{len(commands)} moves have {len(lines)} lines")
         here, tracker = np.array(self.areas.ina), self._tracker
         if tracker is None:
-            plan = self._planner.plan(here, command, self.X_flange_tool)
-            self._interpolator.start(plan)
-            return plan
-        command = replace(command, tracked=True)
-        q_from = here if tracker.q_calculated is None else tracker.q_calculated
-        plan = self._planner.plan(q_from, command, self.X_flange_tool)
-        seam = self._planner.tracked(plan, command, q_from, here, tracker, self.X_flange_tool)
-        self._interpolator.start(plan, seam)
-        return plan
+            chain = self._planner.chain(here, commands, self.X_flange_tool, self._override)
+            self._interpolator.start(chain)
+        else:
+            tracked = [_tracked(command, index) for index, command in enumerate(commands)]
+            q_from = here if tracker.q_calculated is None else tracker.q_calculated
+            chain = self._planner.chain(q_from, tracked, self.X_flange_tool, self._override)
+            if self._interpolator.busy:
+                raise RuntimeError("a move is running")
+            self._waiting = [(part.plan, command) for part, command in zip(chain.parts, tracked, strict=True)]
+        self._before, self._lines = 0 if tracker is None else -1, tuple(lines)
+        self._start_waiting()
+        self._name_line()
+        return chain
+
+    def _start_waiting(self) -> None:
+        """Start the next move under the tracker, if one waits and none runs: from where the seam has led the arm."""
+        tracker, lines = self._tracker, self._planner.lines
+        while tracker is not None and self._waiting and not self._interpolator.busy:
+            plan, command = self._waiting.pop(0)
+            here = np.array(self.areas.ina)
+            q_from = here if tracker.q_calculated is None else tracker.q_calculated
+            self._interpolator.start(plan, lines.tracked(plan, command, q_from, here, tracker, self.X_flange_tool))
+            self._before += 1
+
+    def _name_line(self) -> None:
+        if self._lines:
+            self.line = self._lines[self.chain_index]
+
+    @property
+    def override(self) -> float:
+        """Share in (0, 1] of every speed, for moves that are planned from now on; accelerations stay."""
+        return self._override
+
+    @override.setter
+    def override(self, share: float) -> None:
+        if not (0.0 < share <= 1.0):
+            raise Fault("RBL404", f"OVERRIDE in % is {share * 100.0:g} and must be above 0 and at most 100")
+        self._override = share
+
+    def rehearse(self, q_start: Array, command: Command) -> LinePlan:
+        """Return the plan of a motion from q_start (n,) rad, without starting it; ``Fault`` RBL4xx."""
+        if isinstance(command, MoveLinear) and self._tracker is not None:
+            command = replace(command, tracked=True)
+        return self._planner.plan(q_start, command, self.X_flange_tool, self._override)
+
+    @property
+    def chain_index(self) -> int:
+        """Which move of the row the set-point in INA belongs to, from 0; the last one when all have been sent."""
+        return self._before + self._interpolator.command
+
+    def use_tool(self, X_flange_tool: Array) -> None:
+        """TOOL: the tool point of the moves that follow, X_flange_tool (4, 4)."""
+        self.X_flange_tool = X_flange_tool
 
     def seam(self, tracker: SeamTracker | None) -> None:
         """SEAM ON: the moves that follow go where the tracker's sensor sees the seam; None, SEAM OFF, ends that."""
-        self._tracker = tracker
+        self._tracker, self._waiting = tracker, []
 
     @property
     def seam_deviation(self) -> Array:
@@ -228,7 +287,7 @@ class Controller:
     @property
     def moving(self) -> bool:
         """Whether set-points are left to send or the command has not come to rest; never with the brakes on."""
-        return not self.halted and (self._interpolator.busy or not self._fine.settled)
+        return not self.halted and (self._interpolator.busy or bool(self._waiting) or not self._fine.settled)
 
     @property
     def position_error(self) -> float:
@@ -257,8 +316,10 @@ class Controller:
         if motion is None:
             return False
         foreground_us = 0
+        self._start_waiting()
         if self._interpolator.busy:
             areas.ina = self._interpolator.next()
+            self._name_line()
             foreground_us = profile.interpolation_cost_us
             self.wrist_mode = self._interpolator.mode
             fault = self._interpolator.fault
@@ -362,6 +423,7 @@ class Controller:
     def halt(self) -> None:
         """Stop at once (category 0): the brakes hold the arm from this tick on."""
         self._interpolator.drop()
+        self._waiting = []
         self.wrist_mode = FOLLOWS
         self.halted = True
 
@@ -382,9 +444,17 @@ class Controller:
 
     def _stop_by(self, alarm: Alarm) -> None:
         self.alarms.append(alarm)
+        self._waiting = []
         if alarm.category == 0:
             self.halt()
         elif len(self.alarms) == 1:
             self._rest_us = 0
             limits = self.spec.per_axis("limits", "speed"), self.spec.per_axis("limits", "acceleration")
             self._interpolator.stop(lambda rows, at, whole: stopping_rows(rows, at, self._fine, *limits, whole))
+
+
+def _tracked(command: Command, index: int) -> MoveLinear:
+    """Return a move of a row as it is planned under a seam sensor; ``ChainFault`` RBL412 where it is not straight."""
+    if not isinstance(command, MoveLinear):
+        raise ChainFault(Fault("RBL412", "a seam sensor is followed on straight moves only"), index)
+    return replace(command, tracked=True, zone=0.0)

@@ -6,6 +6,7 @@ them: what was meant for it is dropped.
 """
 
 import errno
+import io
 import os
 import sys
 from collections.abc import Iterator
@@ -75,6 +76,12 @@ def reported() -> Iterator[None]:
         raise typer.Exit(say(Fault("RBL706", message))) from None
     except Exception as error:
         raise typer.Exit(_internal(error)) from None
+
+
+def escape_what_a_terminal_lacks() -> None:
+    """Let stdout escape letters that its encoding lacks, as stderr does: excerpts of programs hold them."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")
 
 
 def _internal(error: Exception) -> int:

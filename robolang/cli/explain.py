@@ -9,6 +9,7 @@ from robolang.cli.errors import reported
 from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
+    from robolang.cli.console import Console
     from runtime.faults import Code
 
 
@@ -62,6 +63,23 @@ def _print(entry: "Code") -> None:
     console = Console()
     for text in (f"{entry.code} {entry.name}", "", entry.meaning, "", f"What to do: {entry.remedy}"):
         console.print(text)
+    _print_page(entry.code, console)
+
+
+def _print_page(code: str, console: "Console") -> None:
+    """Print what the page of a rule adds, for a code that has one."""
+    from robolang.lint.registry import rule
+
+    known = rule(code)
+    if known is None:
+        return
+    console.print(f"\nWhy it matters: {known.why}")
+    for heading, program in (("Example", known.example), ("Instead", known.instead)):
+        console.print(f"\n{heading}:\n")
+        for line in program.splitlines():
+            console.print(f"    {line}", soft_wrap=True)
+    if known.fix:
+        console.print(f"\nrobolang check --fix: {known.fix}")
 
 
 def _print_all(entries: "list[Code]") -> None:

@@ -3,8 +3,6 @@
 Nothing heavy is imported: numpy, pinocchio and mujoco come in inside the commands that need them.
 """
 
-import io
-import sys
 from typing import Annotated
 
 import typer
@@ -15,16 +13,21 @@ from robolang.cli import (
     config,
     explain,
     export,
+    fmt,
     identify,
     inertia,
     kin,
+    renumber,
     replay_pulses,
     robot,
+    rules,
     run,
     step,
+    test,
     weigh,
     wrist_demo,
 )
+from robolang.cli.errors import escape_what_a_terminal_lacks
 
 app = typer.Typer(
     name="robolang",
@@ -41,7 +44,11 @@ app.command("identify")(identify.identify)
 app.command("weigh")(weigh.weigh)
 app.command("wrist-demo")(wrist_demo.wrist_demo)
 app.command("replay-pulses")(replay_pulses.replay_pulses)
+app.command("test")(test.test)
 app.command("check")(check.check)
+app.command("fmt")(fmt.fmt)
+app.command("renumber")(renumber.renumber)
+app.command("rules")(rules.rules)
 app.command("explain")(explain.explain)
 app.add_typer(config.app, name="config")
 app.add_typer(export.app, name="export")
@@ -60,7 +67,5 @@ def options(
 
 def run_app() -> None:
     """Run the command line and leave the process."""
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        # an excerpt of a program may hold letters that the terminal's encoding lacks: escape them, as stderr does
-        sys.stdout.reconfigure(errors="backslashreplace")
+    escape_what_a_terminal_lacks()
     app()

@@ -56,7 +56,7 @@ def run(
         from robolang.session import Session
 
         with _progress(quiet) as progress:
-            session = Session(project, physics=not no_physics, realtime=realtime, progress=progress)
+            session = Session(project, physics=not no_physics, realtime=realtime, progress=progress, show=_show)
             with _signals(session) as stopped:  # until the files are written: a signal must not cut them off
                 result = session.run()
                 code = _write(result, report, log)
@@ -70,6 +70,14 @@ def run(
         code = 128 + stopped[0]
     if code or not result.ok:
         raise typer.Exit(code or MOTION)
+
+
+def _show(text: str) -> None:
+    """Show what the program prints, as it prints it."""
+    from robolang.diagnostics import safe
+
+    with reader_may_leave():
+        typer.echo(safe(text))
 
 
 def _check_outputs(program: str, report: Path | None, log: Path | None) -> None:

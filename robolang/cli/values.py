@@ -10,29 +10,15 @@ from typing import TYPE_CHECKING, NoReturn
 
 import typer
 
+from robolang.cli.usage import OptionValueError as OptionValueError
+
 if TYPE_CHECKING:
     from runtime.frames import Array
     from runtime.robot.payload import Payload
     from runtime.robot.spec import RobotSpec
 
-OPTION_VALUE = "RBL703"
 PAYLOAD = ("mass kg", "x mm", "y mm", "z mm")
 MAX_ABS = 1e9
-
-
-class OptionValueError(typer.BadParameter):
-    """A usage error that carries a code; ``position`` is the number in a list, from 1, or None for all of it."""
-
-    def __init__(self, option: str, message: str, position: int | None = None) -> None:
-        self.code = OPTION_VALUE
-        self.option = option
-        self.position = position
-        where = option if position is None else f"{option}, number {position}"
-        super().__init__(f"{self.code} {where}: {message}")
-
-    def format_message(self) -> str:
-        """Return the message as it stands; it names its option already."""
-        return self.message
 
 
 def numbers(text: str, *, option: str, names: tuple[str, ...]) -> tuple[float, ...]:

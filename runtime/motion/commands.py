@@ -1,7 +1,16 @@
-"""Motion requests as the controller takes them: SI, frozen, complete."""
+"""Motion requests as the controller takes them: SI, frozen, complete.
 
+Three kinds: straight (``MoveLinear``), on an arc (``MoveArc``), all joints together (``MoveJoint``). Of every kind:
+``duration`` s from start to stop (None: as fast as speed and limits allow); ``zone`` m, the radius about its end within
+which it may go over into the next move of a chain (``runtime.motion.blend``), 0: it stops there; ``q_end`` (n,) rad,
+the taught joint angles of the end, turns and all, None where only its pose is taught, with the words of
+``configuration`` and the ``turns`` of the joints as far as they are. What the robot cannot do is refused by the planner
+(RBL4xx); a zone that is none, and a joint move to nowhere, are misuse and raise ``ValueError``.
+"""
+
+import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeAlias
 
 from runtime.frames import Array
 from runtime.robot.opw import Branch
@@ -16,14 +25,12 @@ Wrist = Literal["auto", "keep"]
 class MoveLinear:
     """Move the tool point straight to ``X_world_tool`` (4, 4), orientation about one axis (JPH06190750A Fig 6).
 
-    ``speed`` m/s of the tool point (None: the robot's default), ``acceleration`` fraction of the robot's in (0, 1],
-    ``duration`` s from start to stop (None: as fast as speed and limits allow).
+    ``speed`` m/s of the tool point (None: the robot's default), ``acceleration`` fraction of the robot's in (0, 1].
 
-    ``q_end`` (n,) rad: the taught joint angles of the end, turns and all; None where only its pose is taught, with the
-    words of ``configuration`` and the ``turns`` of the joints as far as they are. ``wrist`` (None: as the profile
-    says): ``auto`` may leave the posture of the path to end as taught, ``keep`` never does, and keeps the sign of J5.
-    ``held`` components of the posture change as little as they can while it is left. ``tracked``: a seam sensor will
-    shift the path as it goes, so once the wrist has left its posture it does not return to it before the end.
+    ``wrist`` (None: as the profile says): ``auto`` may leave the posture of the path to end as taught, ``keep`` never
+    does, and keeps the sign of J5. ``held`` components of the posture change as little as they can while it is left.
+    ``tracked``: a seam sensor will shift the path as it goes, so once the wrist has left its posture it does not return
+    to it before the end.
     """
 
     X_world_tool: Array
@@ -36,6 +43,69 @@ class MoveLinear:
     wrist: Wrist | None = None
     held: tuple[Component, ...] = ()
     tracked: bool = False
+    zone: float = 0.0
+
+    def __post_init__(self) -> None:
+        _check_zone(self.zone)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MoveArc:
+    """Move the tool point on a circle over the place of ``X_via`` (4, 4) to ``X_world_tool`` (4, 4).
+
+    The orientation turns about one axis from that of the start to that of the end, in proportion to the way along the
+    arc; *that of the via point is not used*. Everything else is as of ``MoveLinear``; ``held`` components are counted
+    from the tangent.
+    """
+
+    X_via: Array
+    X_world_tool: Array
+    speed: float | None = None
+    acceleration: float = 1.0
+    duration: float | None = None
+    q_end: Array | None = None
+    configuration: tuple[str, ...] = ()
+    turns: tuple[int, ...] = ()
+    wrist: Wrist | None = None
+    held: tuple[Component, ...] = ()
+    zone: float = 0.0
+
+    def __post_init__(self) -> None:
+        _check_zone(self.zone)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MoveJoint:
+    """Turn all joints together to ``q_end`` (n,) rad, each in proportion to its way; the tool goes where that takes it.
+
+    Where ``q_end`` is None, to the solution of ``X_world_tool`` (4, 4) that fits ``configuration`` and ``turns`` and is
+    reached first. ``speed`` and ``acceleration`` are shares of the joints' limits in (0, 1] (``speed`` None: 1).
+    """
+
+    X_world_tool: Array | None = None
+    q_end: Array | None = None
+    speed: float | None = None
+    acceleration: float = 1.0
+    duration: float | None = None
+    configuration: tuple[str, ...] = ()
+    turns: tuple[int, ...] = ()
+    zone: float = 0.0
+
+    def __post_init__(self) -> None:
+        _check_zone(self.zone)
+        if self.q_end is None and self.X_world_tool is None:
+            raise ValueError("a joint move needs joint angles or a pose to go to")
+
+
+PathMove: TypeAlias = MoveLinear | MoveArc
+"""A move whose tool point has a path of its own."""
+
+Command: TypeAlias = MoveLinear | MoveArc | MoveJoint
+
+
+def _check_zone(zone: float) -> None:
+    if not (0.0 <= zone < math.inf):
+        raise ValueError(f"a zone of {zone} m is not a radius")
 
 
 def in_configuration(branch: Branch, words: tuple[str, ...]) -> bool:

@@ -118,6 +118,17 @@ class FineInterpolator:
         moving = np.abs(windows @ self._weights[ticks:].T)  # (segments, n, 2 ticks)
         return moving[..., :ticks].max(axis=(0, 2)), moving[..., ticks:].max(axis=(0, 2))
 
+    def extremes(self, setpoints: Array) -> tuple[Array, Array, Array, Array]:
+        """Return lowest and highest position, largest speed and acceleration, each (n,), inside a motion that goes on.
+
+        Measured at the ticks from the second of the set-points (N, n), N at least 4, to the last but one.
+        """
+        windows = np.lib.stride_tricks.sliding_window_view(setpoints, 4, axis=0)  # (segments, n, 4)
+        found, ticks = windows @ self._weights.T, self.ticks  # (segments, n, 3 ticks)
+        q, moving = found[..., :ticks], np.abs(found[..., ticks:])
+        speed, acceleration = moving[..., :ticks].max(axis=(0, 2)), moving[..., ticks:].max(axis=(0, 2))
+        return q.min(axis=(0, 2)), q.max(axis=(0, 2)), speed, acceleration
+
     def continue_(self, setpoints: Array) -> Array:
         """Return (3, (N - 1) * ticks, n) for set-points (N, n) of which the first three are already in the pipeline.
 

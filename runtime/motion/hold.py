@@ -7,8 +7,10 @@ the travel, Y = X x gravity, Z = X x Y, the tool's posture is (Rx, Ry, Rz) = (ti
     (104) B  = [Xm Ym Zm]' R_base_tool                        B = Rz(Rz) Ry(Ry) Rx(Rx)
     (105) Rx = atan2(B32, B33)   (106) Ry = atan2(-B31, hypot(B11, B21))   (107) Rz = atan2(B21, B11)
 
-Travel is vertical: Ym is the base's Y. In every cycle each wrist axis has ``CANDIDATES`` angles between where the
-straight way (S8) would take it and what its speed allows, never past the end angle:
+Travel is vertical: Ym is the base's Y. On an arc the travel is the tangent, and the frame turns with it.
+
+In every cycle each wrist axis has ``CANDIDATES`` angles between where the straight way (S8) would take it and what its
+speed allows, never past the end angle:
 
     S82   cand_k(m) = lin_k + sgn(theta_ke - lin_k) min(|theta_ke - lin_k|, room_k) m/(M - 1),   m = 0 .. M - 1
           room_k = max(theta_kd - |V_k|, 0) dt
@@ -30,7 +32,7 @@ import numpy as np
 
 from runtime.frames import Array, frozen
 from runtime.motion.commands import Component
-from runtime.motion.path import LinePath
+from runtime.motion.path import ArcPath, Path
 from runtime.robot.frozen_wrist import WRIST_AXES, FrozenWrist, Side
 from runtime.robot.kinematics import Kinematics
 
@@ -52,23 +54,34 @@ def weld_line_frame(travel: Array) -> Array:
     return np.stack([X, Y, np.cross(X, Y)], axis=1)
 
 
+def frames_along(path: Path, s: Array) -> Array:
+    """Return R_base_line of a path at s (N,): (3, 3) where it is one for all of it, else (N, 3, 3)."""
+    if isinstance(path, ArcPath):
+        return np.stack([weld_line_frame(travel) for travel in path.travel(s)])
+    return weld_line_frame(path.X_end[:3, 3] - path.X_start[:3, 3])
+
+
 def posture_components(R_base_line: Array, R_base_tool: Array) -> Array:
     """Return (tilt, advance, rotation) (..., 3) rad of postures (..., 3, 3), eqs (104) to (107)."""
-    B = R_base_line.T @ R_base_tool
+    B = np.swapaxes(R_base_line, -1, -2) @ R_base_tool
     return np.stack([np.arctan2(B[..., 2, 1], B[..., 2, 2]),
                      np.arctan2(-B[..., 2, 0], np.hypot(B[..., 0, 0], B[..., 1, 0])),
                      np.arctan2(B[..., 1, 0], B[..., 0, 0])], axis=-1)  # fmt: skip
 
 
-def component_deviation(path: LinePath, R_planned: Array, R_base_tool: Array) -> Array:
-    """Return by how much tilt, advance and rotation (N, 3) of a path's postures and those taken differ, rad."""
-    frame = weld_line_frame(path.X_end[:3, 3] - path.X_start[:3, 3])
-    off = posture_components(frame, R_base_tool) - posture_components(frame, R_planned)
+def component_deviation(path: Path, s: Array, R_planned: Array, R_base_tool: Array) -> Array:
+    """Return by how much tilt, advance and rotation (N, 3) of a path's postures at s (N,) and those taken differ, rad.
+    """
+    frames = frames_along(path, s)
+    off = posture_components(frames, R_base_tool) - posture_components(frames, R_planned)
     return np.abs(off - 2.0 * np.pi * np.round(off / (2.0 * np.pi)))
 
 
 class Suppression:
-    """Chooses wrist angles cycle by cycle, S81 to S85, for one arm, tool and direction of travel."""
+    """Chooses wrist angles cycle by cycle, S81 to S85, for one arm, tool and direction of travel (3,).
+
+    ``way`` may be given other weld-line frames than that of the one direction.
+    """
 
     def __init__(self, kinematics: Kinematics, X_flange_tool: Array, travel: Array, held: tuple[Component, ...],
                  speed: Array) -> None:  # fmt: skip
@@ -79,13 +92,16 @@ class Suppression:
         self._speed = speed
         self._shares = np.array(list(itertools.product(np.linspace(0.0, 1.0, CANDIDATES), repeat=WRIST_AXES)))
 
-    def way(self, q_switch: Array, end: Array, s: Array, p_base_tool: Array, R_path: Array, period_s: float) -> Array:
+    def way(self, q_switch: Array, end: Array, s: Array, p_base_tool: Array, R_path: Array, period_s: float,
+            R_base_line: Array | None = None) -> Array:  # fmt: skip
         """Return the wrist angles (N, 3) at the samples after a switch at joint angles q_switch (n,), rad.
 
         ``end`` (3,): taught wrist angles; s (N + 1,): path parameter at the switch and at the samples, ``period_s``
-        apart; p_base_tool (N, 3) m and R_path (N, 3, 3): the path at the samples.
+        apart; p_base_tool (N, 3) m and R_path (N, 3, 3): the path at the samples; R_base_line (N, 3, 3): the weld-line
+        frames there (None: that of the travel).
         """
-        wanted = posture_components(self._R_base_line, R_path)
+        frames = np.broadcast_to(self._R_base_line if R_base_line is None else R_base_line, R_path.shape)
+        wanted = posture_components(frames, R_path)
         side = self._frozen.side_of(q_switch)
         q, chosen = q_switch, np.empty((len(p_base_tool), WRIST_AXES))
         for k, place in enumerate(p_base_tool):
@@ -95,7 +111,7 @@ class Suppression:
             left = end - straight
             candidates = straight + self._shares * (np.sign(left) * np.minimum(np.abs(left), room))
             rows = self._solved(place, candidates, q, side)
-            q = rows[self._best(rows, wanted[k])]
+            q = rows[self._best(rows, frames[k], wanted[k])]
             chosen[k] = q[-WRIST_AXES:]
         return chosen
 
@@ -104,9 +120,9 @@ class Suppression:
             return self._frozen.solve(np.broadcast_to(place, (len(candidates), 3)), candidates, q_before, side)
         return np.concatenate([self._frozen.solve(place[None], one[None], q_before, side) for one in candidates])
 
-    def _best(self, rows: Array, wanted: Array) -> int:
+    def _best(self, rows: Array, R_base_line: Array, wanted: Array) -> int:
         R = (self._kinematics.forward(rows) @ self._X_flange_tool)[:, :3, :3]
-        off = (posture_components(self._R_base_line, R) - wanted)[:, self._chosen]
+        off = (posture_components(R_base_line, R) - wanted)[:, self._chosen]
         off -= 2.0 * np.pi * np.round(off / (2.0 * np.pi))
         cost = (off**2).sum(axis=1)
         return int(np.nanargmin(cost)) if np.isfinite(cost).any() else 0  # candidate 0 is the straight way
@@ -135,7 +151,7 @@ class WristTable:
         return np.asarray(np.where(at[:, None] >= last, self.values[-1], inside))
 
 
-def held_way(suppression: Suppression, path: LinePath, q_switch: Array, slope: Array, end: Array, s_switch: float,
+def held_way(suppression: Suppression, path: Path, q_switch: Array, slope: Array, end: Array, s_switch: float,
              rate: float, window: float) -> WristTable:  # fmt: skip
     """Return a way from joint angles q_switch (n,) to ``end`` (3,) that holds components and can be executed.
 
@@ -146,7 +162,8 @@ def held_way(suppression: Suppression, path: LinePath, q_switch: Array, slope: A
     s = np.linspace(s_switch, 1.0, STEPS + 1)
     X = path.poses(s[1:])
     period_s = (1.0 - s_switch) / STEPS / rate
-    chosen = suppression.way(q_switch, end, s, X[:, :3, 3], X[:, :3, :3], period_s)
+    frames = frames_along(path, s[1:]) if isinstance(path, ArcPath) else None
+    chosen = suppression.way(q_switch, end, s, X[:, :3, 3], X[:, :3, :3], period_s, frames)
     start = q_switch[-WRIST_AXES:]
     width = max(1, round(window * STEPS / 2.0))
     reach = 2 * width

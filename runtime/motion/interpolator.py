@@ -12,26 +12,29 @@ import numpy as np
 
 from runtime.faults import Fault
 from runtime.frames import Array
+from runtime.motion.chain import ChainPlan
 from runtime.motion.planner import EXCEPTION, FOLLOWS, LinePlan
 from runtime.motion.seam import SeamMove
 
 
 class Interpolator:
-    """Hands out the set-points of one move at a time."""
+    """Hands out the set-points of one move at a time, or of moves in a row."""
 
     def __init__(self) -> None:
         self._rows: Array | None = None
         self._modes: list[int] = []
+        self._commands: list[int] = []
         self._seam: SeamMove | None = None
         self._n = 0
         self.fault: Fault | None = None
         """What the last set-point has to stop the arm for: a seam that cannot be followed."""
 
-    def start(self, plan: LinePlan, seam: SeamMove | None = None) -> None:
+    def start(self, plan: LinePlan | ChainPlan, seam: SeamMove | None = None) -> None:
         """Begin a move, with ``seam`` point by point; ``RuntimeError`` when another one still runs."""
         if self.busy:
             raise RuntimeError("a move is running")
         self._rows, self._modes, self._seam, self.fault = plan.q, plan.modes.tolist(), seam, None
+        self._commands = plan.command.tolist() if isinstance(plan, ChainPlan) else [0] * len(plan.q)
         if seam is not None:
             self._rows = np.array(plan.q)  # the plan's rows are those without deviation; each is replaced in its turn
             self._rows[0] = seam.here
@@ -45,11 +48,16 @@ class Interpolator:
                 rest, whole = self._seam.rest(self._n + 1)
                 rows, self._seam = np.concatenate([reached, rest]), None
             self._rows = np.concatenate([reached, stopping(rows, self._n, whole)])
-            self._modes = [mode] * len(self._rows)
+            self._modes, self._commands = [mode] * len(self._rows), [self.command] * len(self._rows)
 
     def drop(self) -> None:
         """Forget the move: no set-point is left to send."""
         self._rows = self._seam = self.fault = None
+
+    @property
+    def command(self) -> int:
+        """Number of the move, in a row of moves, that the last set-point belongs to; of a stop, where it began."""
+        return self._commands[self._n] if self._commands else 0
 
     @property
     def busy(self) -> bool:

@@ -1,20 +1,48 @@
-"""The path of a straight move: position on a line, orientation by one of two laws.
+r"""The path of the tool point: a line or an arc; orientation by one of two laws.
 
-    T(s) = [ R(s) , p_start + s (p_end - p_start) ; 0 1 ],   s in [0, 1]
+    T(s) = [ R(s) , p(s) ; 0 1 ],   s in [0, 1]
+    line   p(s) = p_start + s (p_end - p_start)
+    arc    p(s) = p_start + r sin(a) t - 2 r sin^2(a/2) u,   a = s phi
+
     axis   R(s) = Rot(k, s Theta) R_start          about the rotation principal axis: JPH06190750A Fig 6, 200 to 208
     rpy    R(s) = Rz Ry Rx of (rx, ry, rz)(s)      the three angles of a taught pose, each linear over its shorter way:
-                                                   CN103429397A, S1
+                                                   CN103429397A, S1; on lines only
 
 ``axis`` turns about one fixed axis at a constant rate, whatever frame the angles are counted in; ``rpy`` depends on the
 frame and may swing far where RY is near 90 deg. Both end exactly as taught.
+
+An arc lies on the circle through its start, a via point and its end: u points from the centre to the start, t along the
+circle there. The form above does not subtract the large coordinates of a far centre. The normal
+
+    n = (p_via - p_start) x (p_end - p_start) / |..|,    t = n x u
+
+makes the way from the start over the via point to the end a positive turn about it, so phi in (0, 2 pi) needs no case
+for arcs over half a turn. The orientation of the via point is not used. Three points define no circle where two of them
+are one or all are on a line: refused (RBL416) when their triangle is flatter than ``FLATTEST``.
 """
 
+import math
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
+from runtime.faults import Code, Fault, register
 from runtime.frames import Array, frozen, pose, principal_axis, rotation_about, rotation_from_rpy, rpy_from_rotation
 from runtime.profile import PostureLaw
+from runtime.units import MM
+
+register(
+    Code(
+        code="RBL416",
+        name="arc-undefined",
+        meaning="Start, via point and end of an arc do not lie on one circle: two are one, or they are in line.",
+        remedy="Teach the via point well off the straight line from start to end, or use MOVE.",
+    ),
+)
+
+FLATTEST = 1e-6
+"""Least height of the triangle of start, via point and end over its longest side, m."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,6 +72,16 @@ class LinePath:
             angle = max(angle, float(np.abs(rpy[1]).sum()))  # no turning rate is above this over the way
         return cls(X_start=frozen(X_start), X_end=frozen(X_end), axis=frozen(axis), angle=angle, length=length, rpy=rpy)
 
+    @property
+    def name(self) -> str:
+        """What people call it."""
+        return "straight path"
+
+    @property
+    def move(self) -> str:
+        """What people call a move on it."""
+        return "straight move"
+
     def poses(self, s: Array) -> Array:
         """Return the poses (N, 4, 4) at path parameters s (N,) in [0, 1]."""
         if self.rpy is None:
@@ -64,3 +102,95 @@ class LinePath:
         if self.length > 0.0:
             along = np.clip((points - start) @ (end - start) / self.length**2, 0.0, 1.0)
         return np.asarray(np.linalg.norm(points - (start + along[:, None] * (end - start)), axis=1))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArcPath:
+    """An arc of ``radius`` m about ``centre`` (3,): ``sweep`` phi rad from ``outward`` u (3,) towards ``along`` t (3,).
+
+    ``length`` m is that of the arc, ``angle`` rad about ``axis`` (3,) what the tool turns. Else as ``LinePath``.
+    """
+
+    X_start: Array
+    X_end: Array
+    axis: Array
+    angle: float
+    length: float
+    centre: Array
+    outward: Array
+    along: Array
+    sweep: float
+    radius: float
+    rpy: None = None
+
+    @classmethod
+    def through(cls, X_start: Array, X_via: Array, X_end: Array) -> "ArcPath":
+        """Return the arc from one pose (4, 4) over the place of a second to a third; ``Fault`` RBL416."""
+        start, via, end = (X[:3, 3] for X in (X_start, X_via, X_end))
+        _check_points(start, via, end)
+        first, last = via - start, end - start
+        normal = np.cross(first, last)
+        twice_area = float(np.linalg.norm(normal))
+        # where the perpendicular bisectors of both sides meet
+        to_centre = np.cross(last @ last * first - first @ first * last, -normal) / (2.0 * twice_area**2)
+        radius = float(np.linalg.norm(to_centre))
+        outward = -to_centre / radius
+        along = np.cross(normal / twice_area, outward)
+        # tangent and chord are half the arc apart
+        sweep = 2.0 * math.atan2(float(-(last @ outward)), float(last @ along))
+        axis, angle = principal_axis(X_start[:3, :3], X_end[:3, :3])
+        return cls(
+            X_start=frozen(X_start), X_end=frozen(X_end), axis=frozen(axis), angle=angle, length=radius * sweep,
+            centre=frozen(start + to_centre), outward=frozen(outward), along=frozen(along), sweep=sweep, radius=radius,
+        )  # fmt: skip
+
+    @property
+    def name(self) -> str:
+        """What people call it."""
+        return "arc"
+
+    @property
+    def move(self) -> str:
+        """What people call a move on it."""
+        return "move on an arc"
+
+    def poses(self, s: Array) -> Array:
+        """Return the poses (N, 4, 4) at path parameters s (N,) in [0, 1]."""
+        return pose(self.points(s), rotation_about(self.axis, s * self.angle) @ self.X_start[:3, :3])
+
+    def points(self, s: Array) -> Array:
+        """Return the places (N, 3) m of the tool point at path parameters s (N,)."""
+        a = (s * self.sweep)[:, None]
+        off = np.sin(a) * self.along - 2.0 * np.sin(0.5 * a) ** 2 * self.outward
+        return np.asarray(self.X_start[:3, 3] + self.radius * off)
+
+    def travel(self, s: Array) -> Array:
+        """Return the unit tangents (N, 3) at path parameters s (N,)."""
+        a = (s * self.sweep)[:, None]
+        return np.asarray(np.cos(a) * self.along - np.sin(a) * self.outward)
+
+    def deviation(self, points: Array) -> Array:
+        """Return the distance (N,) m of points (N, 3) from the arc, its ends included."""
+        off = points - self.centre
+        x, y = off @ self.outward, off @ self.along
+        on_circle = np.hypot(np.hypot(x, y) - self.radius, off @ np.cross(self.outward, self.along))
+        to_ends = [np.linalg.norm(points - X[:3, 3], axis=1) for X in (self.X_start, self.X_end)]
+        beside = np.mod(np.arctan2(y, x), 2.0 * math.pi) <= self.sweep
+        return np.asarray(np.where(beside, on_circle, np.minimum(*to_ends)))
+
+
+Path: TypeAlias = LinePath | ArcPath
+
+
+def _check_points(start: Array, via: Array, end: Array) -> None:
+    """Refuse points through which there is no circle; ``Fault`` RBL416."""
+    sides = {"start and via point": via - start, "via point and end": end - via, "start and end": end - start}
+    lengths = {name: float(np.linalg.norm(side)) for name, side in sides.items()}
+    for name, length in lengths.items():
+        if not length >= FLATTEST:
+            raise Fault("RBL416", f"{name} of the arc are {length / MM:.4f} mm apart: a circle takes at least "
+                        f"{FLATTEST / MM:g} mm")  # fmt: skip
+    height = float(np.linalg.norm(np.cross(via - start, end - start))) / max(lengths.values())
+    if not height >= FLATTEST:
+        raise Fault("RBL416", f"start, via point and end of the arc are within {height / MM:.4f} mm of one straight "
+                    f"line: a circle takes at least {FLATTEST / MM:g} mm")  # fmt: skip

@@ -1,14 +1,23 @@
-"""Planning a straight move: every set-point computed and checked before the first one is sent.
+"""Planning a move along a path: every set-point computed and checked before the first one is sent.
 
-The path is sampled where the interpolator will send it, every 8 ms, and solved for the joints: in the arm configuration
-it starts in, with the wrist leaving the posture of the path where it has to (``wrist_planner``). It is refused when a
-sample is out of reach (RBL410), outside a joint's range (RBL411) or cannot be passed (RBL412). Joint speeds and
-accelerations are then measured where the servo sees them, at every tick of the fine interpolation. Where they pass the
-robot's limits the whole profile is slowed by one factor, ``k = max(speed ratio, sqrt(acceleration ratio))``, and
-sampled again, until it holds them: the path stays, the time grows, and the plan says by how much and because of which
-axis. What was checked is what runs: the interpolator hands out these very rows (docs/decisions/0002).
+The path, a line or an arc, is sampled where the interpolator will send it, every 8 ms, and solved for the joints: in
+the arm configuration it starts in, with the wrist leaving the posture of the path where it has to (``wrist_planner``).
+It is refused when a sample is out of reach (RBL410), outside a joint's range (RBL411) or cannot be passed (RBL412), and
+slowed as a whole until every joint keeps its limits (``pacing``). What was checked is what runs: the interpolator hands
+out these very rows (docs/decisions/0002).
+
+On an arc of radius r the tool point is accelerated towards the centre as well, by v^2 / r. Its speed is held to
+
+    v^2 / r <= ACROSS a,    v^3 / r^2 <= j
+
+and what v^2 / r leaves of the path's acceleration limit a is for gaining and losing speed: sqrt(a^2 - (v^2 / r)^2).
+
+An *override* o in (0, 1] is a share of every speed: of the tool point, of its turning, of the joints; TIME t becomes
+t / o. Accelerations stay. The way of the wrist is chosen as for o = 1, so a program that is tried at a low speed takes
+the same way through space as later.
 """
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -18,14 +27,14 @@ from numpy.typing import NDArray
 
 from runtime.faults import Fault
 from runtime.frames import Array, frozen
-from runtime.motion.commands import Component, MoveLinear
-from runtime.motion.fine import FineInterpolator
-from runtime.motion.path import LinePath
+from runtime.motion.commands import Component, MoveArc, MoveLinear, PathMove
+from runtime.motion.pacing import Pace, Slowdown
+from runtime.motion.path import ArcPath, LinePath, Path
 from runtime.motion.seam import SeamMove, SeamTracker
-from runtime.motion.solver import MOST_SLOWDOWN, Arm, LineSolver, WristSolver
+from runtime.motion.solver import Arm, LineSolver, WristSolver
 from runtime.motion.speed import MAX_DURATION, SpeedLimits, bound, profile
 from runtime.motion.wrist import CONDITIONS, SAME_ANGLES, Condition
-from runtime.motion.wrist_planner import Choice, Solver, choose, ends, explained, posture_deviation
+from runtime.motion.wrist_planner import Choice, choose, ends, explained, posture_deviation
 from runtime.profile import Profile
 from runtime.robot.frozen_wrist import MAIN_AXES, WRIST_AXES
 from runtime.robot.kinematics import Kinematics
@@ -41,19 +50,8 @@ MOST_SAMPLES = 2000
 NOTHING_TO_DO = 1e-9
 """A path shorter than this, m and rad, is none."""
 
-_MARGIN = 1.0 + 1e-6
-_ROUNDS = 12
-_WELL_USED = 0.99
-"""A slowed move is slow enough; when it also uses this much of the ruling limit it is not too slow either."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Slowdown:
-    """Why and by how much a move was stretched: ``factor`` of time, the ruling axis (0-based), what it passed."""
-
-    factor: float
-    axis: int
-    quantity: str
+ACROSS = 0.8
+"""Largest share of the path's acceleration that an arc may take to turn the speed; 0.6 of it are then left along."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,18 +77,20 @@ class WristChange:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LinePlan:
-    """A planned straight move: joint set-points ``q`` (N + 1, n) rad, from the start to the end, 8 ms apart.
+    """A planned move: joint set-points ``q`` (N + 1, n) rad, from the start to the end, 8 ms apart.
 
-    ``s`` (N + 1,) path parameter of each, ``slowdown`` None when the move runs as asked, ``wrist`` None when the tool
-    keeps the posture of the path, ``notes`` for people.
+    ``path`` of the tool point, None where the joints go their own way; ``s`` (N + 1,) path parameter of each row.
+    ``slowdown`` None when the move runs as asked, ``wrist`` None when the tool keeps the posture of the path, ``notes``
+    for people, ``acceleration`` the share of the robot's that was asked for.
     """
 
-    path: LinePath
+    path: Path | None
     s: Array
     q: Array
     slowdown: Slowdown | None
     wrist: WristChange | None = None
     notes: tuple[str, ...]
+    acceleration: float = 1.0
 
     @property
     def modes(self) -> NDArray[np.int8]:
@@ -103,12 +103,12 @@ class LinePlan:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LineWay:
-    """The curve of a straight move in joint space, and what bounds its path parameter; ``limits`` None: already there.
+    """The curve of a move along a path in joint space; ``limits`` of its path parameter, None: already there.
 
     ``line`` keeps the posture of the path, ``choice`` is how the move really goes.
     """
 
-    path: LinePath
+    path: Path
     line: LineSolver
     limits: SpeedLimits | None
     choice: Choice
@@ -126,45 +126,52 @@ class LineWay:
         except Fault as fault:
             if self.choice.trigger is None or self.choice.switch is None:
                 raise
-            raise explained(fault, self.choice.trigger) from None
+            raise explained(fault, self.path, self.choice.trigger) from None
 
 
 class LinePlanner:
-    """Plans straight moves of the flange frame for one robot under one controller profile."""
+    """Plans moves along lines and arcs for one robot under one controller profile."""
 
     def __init__(self, spec: RobotSpec, kinematics: Kinematics, profile: Profile) -> None:
         self._spec = spec
         self._kinematics = kinematics
         self._profile = profile
-        self._fine = FineInterpolator(profile.ticks_per_cycle, profile.period_s, np.zeros(spec.n))
-        self._speed = spec.per_axis("limits", "speed")
-        self._acceleration = spec.per_axis("limits", "acceleration")
+        self._pace = Pace.of(spec, profile)
 
-    def plan(self, q_start: Array, command: MoveLinear, X_flange_tool: Array) -> LinePlan:
-        """Return the plan of a move from joint angles q_start (n,) rad; ``Fault`` RBL404, 410, 411 or 412.
+    def plan(self, q_start: Array, command: PathMove, X_flange_tool: Array, override: float = 1.0) -> LinePlan:
+        """Return the plan of a move from joint angles q_start (n,) rad; ``Fault`` RBL404, 410, 411, 412 or 416.
 
-        ``X_flange_tool`` (4, 4) is the tool whose point moves.
+        ``X_flange_tool`` (4, 4) is the tool whose point moves, ``override`` in (0, 1] a share of every speed.
         """
         way = self.way(q_start, command, X_flange_tool)
         if way.limits is None:
             return LinePlan(path=way.path, s=np.ones(1), q=frozen([q_start]), slowdown=None, notes=("already there",))
+        pace = self._pace.overridden(override)
+        duration = None if command.duration is None else command.duration / override
         with way.explaining():
-            s, q, slowdown = self._within_limits(way.choice.solver, way.limits, command.duration)
+            s, q, slowdown = pace.within_limits(way.choice.solver, way.limits.overridden(override), duration)
         wrist = _wrist_change(way.choice, way.line, s, q, command.held)
-        notes = self._notes(s, slowdown, command) + _wrist_notes(wrist) + _kept_notes(command, q)
-        return LinePlan(path=way.path, s=frozen(s), q=frozen(q), slowdown=slowdown, wrist=wrist, notes=notes)
+        notes = pace.slow_note(slowdown, len(s) - 1) + pace.time_note(duration, len(s) - 1)
+        notes += _wrist_notes(wrist) + _kept_notes(command, q)
+        return LinePlan(path=way.path, s=frozen(s), q=frozen(q), slowdown=slowdown, wrist=wrist, notes=notes,
+                        acceleration=command.acceleration)  # fmt: skip
 
-    def way(self, q_start: Array, command: MoveLinear, X_flange_tool: Array) -> LineWay:
+    def way(self, q_start: Array, command: PathMove, X_flange_tool: Array) -> LineWay:
         """Return the curve of a move, at any path parameter, and its limits; arguments and faults of ``plan``."""
         X_start = self._kinematics.forward(q_start) @ X_flange_tool
-        path = LinePath.between(X_start, command.X_world_tool, self._profile.wrist.posture)
+        path = self._path(X_start, command)
         turn = 0.0 if command.q_end is None else float(np.abs(command.q_end - q_start).max())
-        arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=self._fine, X_flange_tool=X_flange_tool)
+        arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=self._pace.fine, X_flange_tool=X_flange_tool)
         line = LineSolver(arm, path, q_start)
         if max(path.length, path.angle, turn) < NOTHING_TO_DO:
             return LineWay(path=path, line=line, limits=None, choice=Choice(solver=line))
         limits = speed_limits(path, command, self._spec.path, self._profile, turn)
         return LineWay(path=path, line=line, limits=limits, choice=self._choose(line, limits, command))
+
+    def _path(self, X_start: Array, command: PathMove) -> Path:
+        if isinstance(command, MoveArc):
+            return ArcPath.through(X_start, command.X_via, command.X_world_tool)
+        return LinePath.between(X_start, command.X_world_tool, self._profile.wrist.posture)
 
     def tracked(self, plan: LinePlan, command: MoveLinear, q_from: Array, q_here: Array, tracker: SeamTracker,
                 X_flange_tool: Array) -> SeamMove:  # fmt: skip
@@ -172,7 +179,8 @@ class LinePlanner:
 
         q_from (n,) is where its calculated path begins, q_here (n,) where the arm really is, rad.
         """
-        arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=self._fine, X_flange_tool=X_flange_tool)
+        assert plan.path is not None  # a straight move has one
+        arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=self._pace.fine, X_flange_tool=X_flange_tool)
         options, wrist = self._profile.wrist, plan.wrist
         if (command.wrist or options.mode) == "keep" or self._spec.n != MAIN_AXES + WRIST_AXES:
             options = options.only()
@@ -181,7 +189,7 @@ class LinePlanner:
         return SeamMove(LineSolver(arm, plan.path, q_from), plan.s, q_here, plan.q[-1],
                         None if wrist is None else wrist.row, tracker, options, self._profile.period_s)  # fmt: skip
 
-    def _choose(self, line: LineSolver, limits: SpeedLimits, command: MoveLinear) -> Choice:
+    def _choose(self, line: LineSolver, limits: SpeedLimits, command: PathMove) -> Choice:
         """Return how the move goes through the wrist: to the taught end angles, or to any that its point leaves open.
         """
         options = self._profile.wrist
@@ -195,9 +203,10 @@ class LinePlanner:
         q[0] = line.q_start
         taught = command.q_end is not None or bool(command.configuration or command.turns)
         most = options.most_deviation if taught else options.untaught_deviation
+        tracked = isinstance(command, MoveLinear) and command.tracked
 
         def excess(q: Array) -> tuple[float, int, str]:
-            ratio, axis, quantity = self._excess(q)
+            ratio, axis, quantity = self._pace.excess(q)
             return ratio / every, axis, quantity
 
         best: Choice | None = None
@@ -205,7 +214,7 @@ class LinePlanner:
         for q_end in ends(line, q, command):
             try:
                 choice = choose(line, s, q, q_end, period_s, options, excess, most,
-                                None if command.tracked else command.held)  # fmt: skip
+                                None if tracked else command.held)  # fmt: skip
             except Fault as fault:
                 first = first or fault
                 continue
@@ -216,59 +225,6 @@ class LinePlanner:
         if best is None and first is not None:
             raise first
         return best or Choice(solver=line)  # no end to go to: the path itself says where it is lost
-
-    def _within_limits(
-        self, solver: Solver, limits: SpeedLimits, duration: float | None
-    ) -> tuple[Array, Array, Slowdown | None]:
-        period_s = self._profile.period_s
-        s = profile(limits, period_s, duration)
-        asked = len(s) - 1
-        fastest = len(profile(limits, period_s)) - 1 if duration is not None else asked
-        too_fast, found, worst = 0, None, (0, "")  # most cycles that were too few; the plan that holds
-        for _ in range(_ROUNDS):
-            q = solver.joints(s)
-            ratio, axis, quantity = self._excess(q)
-            cycles = len(s) - 1
-            if ratio <= 1.0:
-                found = s, q
-                if cycles == asked or ratio > _WELL_USED:
-                    break
-            else:
-                too_fast, worst = cycles, (axis, quantity)
-                if cycles * ratio > MOST_SLOWDOWN * asked:
-                    solver.refuse_singular(s, q, axis)
-            wanted = max(cycles * ratio * _MARGIN, too_fast + 1)
-            if found is not None and wanted >= len(found[0]) - 1:
-                break
-            s = profile(limits.slowed(wanted / fastest), period_s, duration)
-            while len(s) - 1 <= too_fast:  # a slower profile may round to the same cycles
-                wanted += 1.0
-                s = profile(limits.slowed(wanted / fastest), period_s, duration)
-        if found is None:
-            solver.refuse_singular(s, solver.joints(s), worst[0])
-        factor = (len(found[0]) - 1) / asked
-        return *found, Slowdown(factor=factor, axis=worst[0], quantity=worst[1]) if factor > 1.0 else None
-
-    def _excess(self, q: Array) -> tuple[float, int, str]:
-        """Return (time factor needed, axis, quantity) of the worst violation at the servo ticks; <= 1 is none."""
-        dq, ddq = self._fine.peaks(q)
-        ratios = np.stack([dq / self._speed, np.sqrt(ddq / self._acceleration)])
-        kind, axis = np.unravel_index(int(np.argmax(ratios)), ratios.shape)
-        return float(ratios[kind, axis]), int(axis), ("speed", "acceleration")[kind]
-
-    def _notes(self, s: Array, slowdown: Slowdown | None, command: MoveLinear) -> tuple[str, ...]:
-        notes = []
-        seconds = (len(s) - 1) * self._profile.period_s
-        if slowdown is not None:
-            limit = (self._speed if slowdown.quantity == "speed" else self._acceleration)[slowdown.axis] / DEG
-            unit = "deg/s" if slowdown.quantity == "speed" else "deg/s2"
-            notes.append(
-                f"slowed {slowdown.factor:.2f} times to {seconds:.3f} s: J{slowdown.axis + 1} {slowdown.quantity} "
-                f"is limited to {limit:g} {unit}"
-            )
-        if command.duration is not None and seconds > command.duration + self._profile.period_s:
-            notes.append(f"TIME {command.duration:g} s is too short, the move takes {seconds:.3f} s")
-        return tuple(notes)
 
 
 def _wrist_change(choice: Choice, line: LineSolver, s: Array, q: Array,
@@ -302,7 +258,7 @@ def _wrist_notes(wrist: WristChange | None) -> tuple[str, ...]:
     )
 
 
-def _kept_notes(command: MoveLinear, q: Array) -> tuple[str, ...]:
+def _kept_notes(command: PathMove, q: Array) -> tuple[str, ...]:
     """Return what a move that keeps its wrist leaves undone: the taught angles at which it does not end."""
     if command.q_end is None:
         return ()
@@ -313,7 +269,7 @@ def _kept_notes(command: MoveLinear, q: Array) -> tuple[str, ...]:
             f"{command.q_end[axis] / DEG:.1f} deg",)  # fmt: skip
 
 
-def speed_limits(path: LinePath, command: MoveLinear, robot: PathLimits, profile: Profile,
+def speed_limits(path: Path, command: PathMove, robot: PathLimits, profile: Profile,
                  wrist_way: float = 0.0) -> SpeedLimits:  # fmt: skip
     """Return the bounds of the path parameter for a command; ``Fault`` RBL404 when it asks for the impossible.
 
@@ -330,7 +286,11 @@ def speed_limits(path: LinePath, command: MoveLinear, robot: PathLimits, profile
         if not (0.0 < value <= most * (1.0 + 1e-12)):
             raise Fault("RBL404", f"{name} is {value:g} and must be above 0 and at most {most:g}")
     share = command.acceleration
-    position = (path.length, speed, robot.acceleration * share, robot.jerk * share)
+    acceleration, jerk = robot.acceleration * share, robot.jerk * share
+    if isinstance(path, ArcPath):
+        speed = min(speed, math.sqrt(ACROSS * acceleration * path.radius), math.cbrt(jerk * path.radius**2))
+        acceleration = math.sqrt(acceleration**2 - (speed**2 / path.radius) ** 2)
+    position = (path.length, speed, acceleration, jerk)
     turning = (robot.rotation_speed, robot.rotation_acceleration * share, robot.rotation_jerk * share)
     angle = path.angle if max(path.length, path.angle) >= NOTHING_TO_DO else wrist_way
     return bound([position, (angle, *turning)], profile.speed_shape)

@@ -1,4 +1,4 @@
-"""Joint angles along a straight path: in the posture of the path, or with the wrist going its own way from a switch on.
+"""Joint angles along a path: in the posture of the path, or with the wrist going its own way from a switch on.
 
 ``LineSolver`` keeps the arm configuration of the start and meets every pose of the path. ``WristSolver`` does the same
 up to a switch; from there the wrist follows a ``WristLaw`` and the main axes put the tool point on the path
@@ -17,7 +17,7 @@ from runtime.faults import Fault
 from runtime.frames import Array, inverse
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.hold import WristTable
-from runtime.motion.path import LinePath
+from runtime.motion.path import Path
 from runtime.motion.wrist import SAME_ANGLES, WristLaw
 from runtime.robot.frozen_wrist import FrozenWrist
 from runtime.robot.kinematics import Kinematics
@@ -49,7 +49,7 @@ class LineSolver:
     """Joint angles along one path in one arm configuration: that of q_start (n,), or with ``to_end`` that of its end.
     """
 
-    def __init__(self, arm: Arm, path: LinePath, q_start: Array, *, to_end: bool = False) -> None:
+    def __init__(self, arm: Arm, path: Path, q_start: Array, *, to_end: bool = False) -> None:
         self.arm, self.path, self.q_start = arm, path, q_start
         self._X_tool_flange = inverse(arm.X_flange_tool)
         self.branch: Branch = arm.kinematics.branch_of(q_start)
@@ -114,8 +114,8 @@ class LineSolver:
         """Raise ``Fault`` RBL412 where axis moves most between two samples."""
         raise Fault(
             "RBL412",
-            f"at {100 * _steepest(s, q, axis):.1f} % of the straight path J{axis + 1} would have to turn too fast: it "
-            f"passes a singularity, or its end needs another configuration than {self.branch}",
+            f"at {100 * _steepest(s, q, axis):.1f} % of the {self.path.name} J{axis + 1} would have to turn too fast: "
+            f"it passes a singularity, or its end needs another configuration than {self.branch}",
         )
 
 
@@ -152,14 +152,14 @@ class WristSolver:
         if lost.any():
             raise Fault(
                 "RBL412",
-                f"at {100 * s[int(np.argmax(lost))]:.1f} % of the straight path the wrist on its way to its end angles "
-                f"takes the tool point out of reach of the main axes",
+                f"at {100 * s[int(np.argmax(lost))]:.1f} % of the {self._line.path.name} the wrist on its way to its "
+                f"end angles takes the tool point out of reach of the main axes",
             )
         jumps = np.abs(np.diff(q, axis=0))
         step, axis = np.unravel_index(int(np.argmax(jumps)), jumps.shape)
         if len(jumps) > 4 and not jumps[step, axis] <= JUMP:
-            raise Fault("RBL412", f"at {100 * s[step]:.1f} % of the straight path J{axis + 1} would have to change the "
-                        "arm configuration")  # fmt: skip
+            raise Fault("RBL412", f"at {100 * s[step]:.1f} % of the {self._line.path.name} J{axis + 1} would have to "
+                        "change the arm configuration")  # fmt: skip
         off = np.abs(q[-1] - self._q_end)
         if not off.max() <= SAME_ANGLES:
             worst = int(np.argmax(off))
@@ -173,8 +173,8 @@ class WristSolver:
         """Raise ``Fault`` RBL412 where axis moves most between two samples."""
         raise Fault(
             "RBL412",
-            f"at {100 * _steepest(s, q, axis):.1f} % of the straight path J{axis + 1} would have to turn too fast "
-            "while the wrist goes to its end angles",
+            f"at {100 * _steepest(s, q, axis):.1f} % of the {self._line.path.name} J{axis + 1} would have to turn too "
+            "fast while the wrist goes to its end angles",
         )
 
 

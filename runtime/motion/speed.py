@@ -7,7 +7,7 @@ exactly at the end.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import ruckig
@@ -33,6 +33,10 @@ class SpeedLimits:
         return SpeedLimits(
             speed=self.speed / factor, acceleration=self.acceleration / factor**2, jerk=self.jerk / factor**3
         )
+
+    def overridden(self, override: float) -> "SpeedLimits":
+        """Return the limits at a share ``override`` of the speed; acceleration and jerk stay."""
+        return self if override == 1.0 else replace(self, speed=self.speed * override)
 
 
 def bound(extents: list[tuple[float, float, float, float]], shape: SpeedShape) -> SpeedLimits:

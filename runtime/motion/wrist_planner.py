@@ -1,4 +1,4 @@
-"""Choosing the way of a straight move through the wrist: the document's switch, then its remedies, then a refusal.
+"""Choosing the way of a move along a path through the wrist: the document's switch, then its remedies, then a refusal.
 
 The whole move is tried before it starts, on the 8 ms samples and at every servo tick. So what CN103429397A leaves to
 chance shows while the arm stands still: no solution of the main axes (H1), another arm configuration at the end (H2), a
@@ -25,8 +25,9 @@ import numpy as np
 
 from runtime.faults import Fault
 from runtime.frames import Array, inverse, rotation_angles
-from runtime.motion.commands import Component, MoveLinear, in_configuration
+from runtime.motion.commands import Component, MoveJoint, PathMove, in_configuration
 from runtime.motion.hold import COMPONENTS, Suppression, component_deviation, held_way
+from runtime.motion.path import Path
 from runtime.motion.solver import MOST_SLOWDOWN, LineSolver, WristSolver
 from runtime.motion.wrist import (
     CONDITIONS,
@@ -39,7 +40,7 @@ from runtime.motion.wrist import (
 )
 from runtime.profile import WristOptions
 from runtime.robot.frozen_wrist import WRIST_AXES
-from runtime.robot.kinematics import LIMIT_ROUNDING
+from runtime.robot.kinematics import LIMIT_ROUNDING, Kinematics
 from runtime.robot.spec import RobotSpec
 from runtime.units import DEG
 
@@ -93,11 +94,11 @@ class Choice:
     held: tuple[Component, ...] = ()
 
 
-def ends(line: LineSolver, q: Array, command: MoveLinear) -> Iterator[Array]:
+def ends(line: LineSolver, q: Array, command: PathMove) -> Iterator[Array]:
     """Yield the joint angles (n,) at which a move may end: the taught ones, or those that its point leaves open.
 
     q (N + 1, n): the path in the configuration of its start.
-    Of a taught pose the end in the configuration of the start comes first, then the others that a straight move can
+    Of a taught pose the end in the configuration of the start comes first, then the others that such a move can
     reach, arm and elbow as they are, those first to which the wrist turns least; none where the pose is out of reach.
     ``Fault`` RBL412 when the point names another arm or elbow, or turns that no solution has.
     """
@@ -105,38 +106,41 @@ def ends(line: LineSolver, q: Array, command: MoveLinear) -> Iterator[Array]:
     if command.q_end is not None:
         there = arm.kinematics.branch_of(command.q_end)
         if (there.arm, there.elbow) != (line.branch.arm, line.branch.elbow):
-            raise Fault("RBL412", f"the end is taught {there}, the move starts {line.branch}: a straight move cannot "
-                        "change the configuration of the arm", "Teach the end in the arm configuration of the start, "
-                        "or go there over a via point; WRIST KEEP ends in the configuration of the start.")  # fmt: skip
+            raise Fault("RBL412", f"the end is taught {there}, the move starts {line.branch}: a {line.path.move} "
+                        "cannot change the configuration of the arm", "Teach the end in the arm configuration of the "
+                        "start, or go there over a via point; WRIST KEEP ends in the configuration of the "
+                        "start.")  # fmt: skip
         yield np.array(command.q_end)
         return
     kept = bool(np.isfinite(q[-1]).all())
-    wanted = kept and _as_taught(line, q[-1], command)
+    wanted = kept and as_taught(arm.kinematics, q[-1], command)
     if wanted:
         yield q[-1]  # nearly always the one that is taken: the others are not looked for before they are asked for
     X_end = line.path.X_end @ inverse(arm.X_flange_tool)
     turns = command.turns[: arm.kinematics.n]
-    others = [_turned(each.q, turns) for each in arm.kinematics.solutions(X_end, line.q_start)
+    others = [turned(each.q, turns) for each in arm.kinematics.solutions(X_end, line.q_start)
               if (each.branch.arm, each.branch.elbow) == (line.branch.arm, line.branch.elbow)]  # fmt: skip
     others = [end for end in others if arm.kinematics.limit_margin(end) >= -LIMIT_ROUNDING]
     others.sort(key=lambda end: float(np.abs(end - line.q_start)[-WRIST_AXES:].max()))
-    fitting = [end for end in others if _as_taught(line, end, command)]
+    fitting = [end for end in others if as_taught(arm.kinematics, end, command)]
     yield from fitting
     if (kept or others) and not wanted and not fitting:
         words = " ".join(command.configuration) or f"with turns {list(command.turns)}"
-        raise Fault("RBL412", f"the end is taught {words}, the move starts {line.branch}: no straight move reaches it")
+        raise Fault("RBL412", f"the end is taught {words}, the move starts {line.branch}: no {line.path.move} reaches "
+                    "it")  # fmt: skip
 
 
-def _turned(q: Array, turns: tuple[int, ...]) -> Array:
+def turned(q: Array, turns: tuple[int, ...]) -> Array:
     """Return joint angles (n,) with as many whole turns on each joint as a point asks for."""
     count = len(turns)
     within = q[:count] - 2.0 * np.pi * np.round(q[:count] / (2.0 * np.pi))
     return np.concatenate([within + 2.0 * np.pi * np.array(turns), q[count:]])
 
 
-def _as_taught(line: LineSolver, q: Array, command: MoveLinear) -> bool:
+def as_taught(kinematics: Kinematics, q: Array, command: PathMove | MoveJoint) -> bool:
+    """Return whether joint angles (n,) have the configuration and the turns that the end of a move is taught with."""
     turns = np.round(q / (2.0 * np.pi))[: len(command.turns)]
-    fits = in_configuration(line.arm.kinematics.branch_of(q), command.configuration)
+    fits = in_configuration(kinematics.branch_of(q), command.configuration)
     return fits and bool((turns == np.array(command.turns[: len(q)])).all())
 
 
@@ -196,7 +200,7 @@ def posture_deviation(line: LineSolver, s: Array, q: Array, held: tuple[Componen
     planned = line.planned(s)[:, :3, :3]
     if not held or line.path.length < SHORTEST_TRAVEL:
         return float(rotation_angles(planned, R).max())
-    return float(component_deviation(line.path, planned, R)[:, [COMPONENTS.index(each) for each in held]].max())
+    return float(component_deviation(line.path, s, planned, R)[:, [COMPONENTS.index(each) for each in held]].max())
 
 
 def wrist_limits(spec: RobotSpec, options: WristOptions) -> WristLimits:
@@ -330,16 +334,16 @@ def _refusal(line: LineSolver, trigger: Trigger | None, arrives: bool, failures:
             return failures[0]
         return Fault("RBL412", f"the end needs another wrist configuration than {line.branch}, and no condition of the "
                      "profile lets the wrist change")  # fmt: skip
-    return explained(failures[0], trigger, len(failures) - 1, hint)
+    return explained(failures[0], line.path, trigger, len(failures) - 1, hint)
 
 
-def explained(fault: Fault, trigger: Trigger, others: int = 0, hint: str = "") -> Fault:
+def explained(fault: Fault, path: Path, trigger: Trigger, others: int = 0, hint: str = "") -> Fault:
     """Return the refusal of a way through the wrist with the reason why the wrist has to go at all."""
     axis = "" if trigger.axis is None else f" of J{trigger.axis + 1}"
     tried = f", nor from {others} other switches" if others else ""
     return Fault(
         fault.code if fault.code == "RBL411" else "RBL412",
-        f"the wrist has to change on this straight move ({trigger.condition}, {CONDITIONS[trigger.condition]}{axis}, "
+        f"the wrist has to change on this {path.move} ({trigger.condition}, {CONDITIONS[trigger.condition]}{axis}, "
         f"at {100 * trigger.share:.1f} % of the path) and cannot from there{tried}: {fault.message}",
         hint or fault.hint,
     )

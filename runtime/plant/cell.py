@@ -17,6 +17,7 @@ import numpy as np
 
 from runtime.frames import Array, frozen, pose_from_xyzrpy
 from runtime.plant.seam_sensor import SensorSpec, read_sensor
+from runtime.plant.signals import InputSpec, read_inputs
 from runtime.robot.importer import ROBOT_ENDINGS, load_file
 from runtime.robot.loader import library, load_builtin
 from runtime.robot.spec import RobotSpec
@@ -83,8 +84,8 @@ class LoadSpec:
 class CellSpec:
     """A cell in SI: robot, home joints (n,) rad, hand, parts, obstacles and the names a program may use.
 
-    ``tools`` are poses X_flange_tool, ``frames`` poses X_world_frame (4, 4), ``sensors`` seam sensors. ``controller``
-    is the unread table of the controller profile (None: the file has none).
+    ``tools`` are poses X_flange_tool, ``frames`` poses X_world_frame (4, 4), ``sensors`` seam sensors, ``inputs`` what
+    each input does. ``controller`` is the unread table of the controller profile (None: the file has none).
     """
 
     robot: RobotSpec
@@ -96,6 +97,7 @@ class CellSpec:
     tools: Mapping[str, Array]
     frames: Mapping[str, Array]
     sensors: Mapping[str, SensorSpec]
+    inputs: Mapping[int, InputSpec]
     controller: Table | None
 
 
@@ -126,6 +128,7 @@ def parse_cell(source: Source, folder: Path | None = None) -> CellSpec:
         tools=MappingProxyType({name: _only_pose(item) for name, item in _named(table, "tools").items()}),
         frames=MappingProxyType({name: _only_pose(item) for name, item in _named(table, "frames").items()}),
         sensors=MappingProxyType({name: read_sensor(item, folder) for name, item in _named(table, "sensors").items()}),
+        inputs=MappingProxyType(read_inputs(table.named_tables("inputs"))),
         controller=table.table("controller") if "controller" in table else None,
     )
     table.done()

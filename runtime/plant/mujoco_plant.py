@@ -199,6 +199,23 @@ class MujocoPlant:
                 touches.append(Touch(names=(first, second), force=float(wrench[0])))
         return touches
 
+    def touching(self, q: Array) -> tuple[str, str] | None:
+        """Return what of the arm would be in the floor or in an obstacle at joint angles q (n,) rad, and in which.
+
+        Nothing moves by itself: for a plant that stands for the cell's shapes and is not run. Parts are passed over.
+        """
+        self._qpos[self._motors] = q
+        mujoco.mj_kinematics(self._model, self._data)
+        mujoco.mj_collision(self._model, self._data)
+        for index in range(self._data.ncon):
+            contact = self._data.contact[index]
+            if contact.dist < -CLEARANCE:
+                first, second = (str(self._model.geom(geom).name) for geom in contact.geom)
+                for fixed, moving in ((first, second), (second, first)):
+                    if _is_fixed(fixed) and not _is_fixed(moving) and not moving.startswith("part:"):
+                        return moving, fixed
+        return None
+
     def parts(self) -> dict[str, Array]:
         """Return the pose X_world_part (4, 4) of every part by name."""
         return {name: _pose(self._last_qpos[at : at + 7]) for name, at in self._part_address.items()}
@@ -212,6 +229,12 @@ class MujocoPlant:
 
 
 _mj_step = mujoco.mj_step
+CLEARANCE = 1e-4
+"""Shapes that meet by less than this touch, m."""
+
+
+def _is_fixed(name: str) -> bool:
+    return name == "floor" or name.startswith("obstacle:")
 
 
 def _addresses(model: Any, joints: list[str]) -> Any:

@@ -162,8 +162,11 @@ def _place(table: Object) -> tuple[int, int | None, str]:
 
 def _marker(table: Object) -> Marker:
     line, number, text = _place(table)
-    if ("load" in table) == ("hand" in table):
-        table.fail("load", "and 'hand': a marker has one of the two")
+    if sum(key in table for key in ("load", "hand", "other")) != 1:
+        table.fail("load", "or 'hand' or 'other': a marker has one of the three")
+    if "other" in table:  # what the PLC does by itself: an input that it waits for, an output
+        table.text("other")
+        return Marker(line=line, number=number, text=text)
     if "load" in table:
         load = table.child("load")
         cog = frozen(np.array(load.numbers("cog_mm", 3)) * MM)

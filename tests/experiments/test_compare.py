@@ -62,14 +62,14 @@ def test_an_omitted_load_leaves_a_droop_and_never_settles(rows):
 
 
 def test_a_wrong_load_never_changes_the_commanded_path():
-    from robolang.compare import _effects
+    from robolang.compare import _alter
 
     request = Request(program=PROGRAM, physics=False)
     plans = []
     for variant in VARIANTS:
         if variant.name in ("scheduled", "load-omitted", "load-wrong"):
             project = request.project(variant)
-            session = Session(project, physics=False, effects=_effects(variant, project.cell.robot.rated_payload))
+            session = Session(project, physics=False, alter=_alter(variant, project.cell.robot.rated_payload))
             log = session.run().log
             for run in session.record.statements:
                 if run.path is not None:

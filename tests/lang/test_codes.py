@@ -18,7 +18,24 @@ def test_every_code_is_complete():
 
 @pytest.mark.parametrize(
     "code",
-    ["RBL103", "RBL120", "RBL201", "RBL301", "RBL306", "RBL311", "RBL401", "RBL601", "RBL701", "RBL900"],
+    [
+        "RBL103",
+        "RBL120",
+        "RBL201",
+        "RBL202",
+        "RBL220",
+        "RBL301",
+        "RBL306",
+        "RBL311",
+        "RBL401",
+        "RBL415",
+        "RBL501",
+        "RBL508",
+        "RBL534",
+        "RBL601",
+        "RBL701",
+        "RBL900",
+    ],
 )
 def test_one_import_fills_the_registry(code):
     assert lookup(code).code == code
@@ -31,3 +48,8 @@ def test_the_front_end_imports_nothing_heavy():
         "assert not heavy, heavy"
     )
     assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
+
+
+def test_no_remedy_says_that_the_language_is_smaller_than_it_is():
+    for code in ("RBL112", "RBL117"):
+        assert "WRIST and SEAM" not in lookup(code).remedy

@@ -27,7 +27,7 @@ from robolang.nodes import (
 from robolang.parser import MAX_DEPTH, MAX_LINE, parse
 from robolang.printer import describe
 from robolang.source import Span
-from robolang.words import KEYWORDS, LATER
+from robolang.words import FUNCTIONS, KEYWORDS, VALUES
 from tests.lang.helpers import only, parse_found, parsed, source
 
 WRIST_FORM = "WRIST KEEP, WRIST AUTO or WRIST HOLD component [, component]"
@@ -43,7 +43,7 @@ def number(text):
 
 
 def test_the_four_instructions():
-    cog = Vector(x=number("0"), y=Negate(operand=number("1.5")), z=number("60"))
+    cog = Vector(items=(number("0"), Negate(operand=number("1.5")), number("60")))
     assert statement("LOAD (0, -1.5, +60), .8") == Load(cog=cog, mass=number(".8"))
     assert statement("MOVE P1") == Move(target=Name(text="P1"))
     assert statement("HAND ON") == Hand(state=HandState.ON)
@@ -113,7 +113,8 @@ def test_wrist_and_seam_have_one_canonical_text(text):
 
 def test_no_word_is_of_this_edition_and_of_a_later_one():
     assert {"WRIST", "SEAM", "KEEP", "AUTO", "HOLD", "TILT", "ADVANCE", "ROTATION"} <= KEYWORDS
-    assert not KEYWORDS & LATER
+    assert not KEYWORDS & FUNCTIONS
+    assert not (KEYWORDS | FUNCTIONS) & VALUES
 
 
 def conflicts(grammar, caplog):
@@ -206,7 +207,7 @@ def test_line_ends(end):
         ("MOVE", ("RBL111", 1, 5, 0)),
         ("MOVE  ' go", ("RBL111", 1, 5, 0)),
         ("MOVE P1 P2", ("RBL111", 1, 9, 2)),
-        ("MOVE 5", ("RBL111", 1, 6, 1)),
+        ("MOVE )", ("RBL111", 1, 6, 1)),
         ("MOVE P1,", ("RBL111", 1, 9, 0)),
         ("MOVE P1, SPED 3", ("RBL111", 1, 10, 4)),
         ("MOVE P1, SPEED", ("RBL111", 1, 15, 0)),
@@ -215,7 +216,7 @@ def test_line_ends(end):
         ("HAND", ("RBL111", 1, 5, 0)),
         ("HAND ON 3", ("RBL111", 1, 9, 1)),
         ("LOAD 1", ("RBL111", 1, 6, 1)),
-        ("LOAD (0, 0), 1", ("RBL111", 1, 11, 1)),
+        ("LOAD (0), 1", ("RBL111", 1, 8, 1)),
         ("LOAD (0, 0, 60)", ("RBL111", 1, 16, 0)),
         ("LOAD (0, 0, 60), ", ("RBL111", 1, 17, 0)),
         ("WRIST", ("RBL111", 1, 6, 0)),
@@ -267,13 +268,6 @@ def test_line_ends(end):
         ("HAND ON, 0x1F", ("RBL115", 1, 10, 4)),
         ("LOAD (0, 0, 60), 800g", ("RBL115", 1, 18, 4)),
         ("10MOVE P1", ("RBL115", 1, 1, 6)),
-        ("MOVEJ P1", ("RBL117", 1, 1, 5)),
-        ("10 delay 3", ("RBL117", 1, 4, 5)),
-        ("MOVE P1, ZONE 5", ("RBL117", 1, 10, 4)),
-        ("MOVE HERE", ("RBL117", 1, 6, 4)),
-        ("X = 5", ("RBL117", 1, 1, 1)),
-        ("*LOOP", ("RBL117", 1, 1, 1)),
-        ("SPEED 200", ("RBL117", 1, 1, 5)),
         ("МOVE P1", ("RBL103", 1, 1, 1)),
         ("MOVЕ P1", ("RBL103", 1, 4, 1)),
         ("MOVE Р1", ("RBL103", 1, 6, 1)),
@@ -295,15 +289,23 @@ def test_bad_lines(text, found):
 @pytest.mark.parametrize(
     ("text", "message", "hint"),
     [
-        ("MOVE", "expected a point name after MOVE", "the form is MOVE"),
+        ("MOVE", "expected a point after MOVE", "the form is MOVE"),
         ("MOVE P1 P2", "expected ',' or the end of the line after P1, not P2", "one instruction on each line"),
         ("MOVE P1 SPEED 3", "expected ',' or the end of the line after P1, not SPEED", "a comma before SPEED"),
-        ("MOVE P1, SPED 3", "expected SPEED, ACCEL, TIME or WRIST after ',', not SPED", "did you mean SPEED?"),
-        ("MOVE P1, FREE", "expected SPEED, ACCEL, TIME or WRIST after ',', not FREE", "[, WRIST mode]"),
-        ("MOVE P1, WRST KEEP", "expected SPEED, ACCEL, TIME or WRIST after ',', not WRST", "did you mean WRIST?"),
+        (
+            "MOVE P1, SPED 3",
+            "expected SPEED, ACCEL, TIME, ZONE, FINE or WRIST after ',', not SPED",
+            "did you mean SPEED?",
+        ),
+        ("MOVE P1, FREE", "expected SPEED, ACCEL, TIME, ZONE, FINE or WRIST after ',', not FREE", "[, WRIST mode]"),
+        (
+            "MOVE P1, WRST KEEP",
+            "expected SPEED, ACCEL, TIME, ZONE, FINE or WRIST after ',', not WRST",
+            "did you mean WRIST?",
+        ),
         ("MOVE P1 WRIST KEEP", "expected ',' or the end of the line after P1, not WRIST", "a comma before WRIST"),
         ("HAND ON WRIST KEEP", "expected ',' or the end of the line after ON, not WRIST", "one instruction on each"),
-        ("MOVE TILT", "expected a point name after MOVE, not TILT", "TILT is a word of the language and cannot be a"),
+        ("MOVE TILT", "expected a point after MOVE, not TILT", "TILT is a word of the language and cannot be a"),
         ("wrist", "expected KEEP, AUTO or HOLD after WRIST", f"the form is {WRIST_FORM}"),
         ("WRIST FREE", "expected KEEP, AUTO or HOLD after WRIST, not FREE", f"the form is {WRIST_FORM}"),
         ("WRIST KEPT", "expected KEEP, AUTO or HOLD after WRIST, not KEPT", "did you mean KEEP?"),
@@ -318,7 +320,7 @@ def test_bad_lines(text, found):
         ("MOVE P1, WRIST HOLD 5", "expected TILT, ADVANCE or ROTATION after HOLD, not 5", f"the form is {WRIST_FORM}"),
         (
             "MOVE P1, WRIST HOLD TILT, ADVNCE",
-            "expected SPEED, ACCEL, TIME, WRIST, TILT, ADVANCE or ROTATION after ',', not ADVNCE",
+            "expected SPEED, ACCEL, TIME, ZONE, FINE, WRIST, TILT, ADVANCE or ROTATION after ',', not ADVNCE",
             "did you mean ADVANCE?",
         ),
         ("MOVE P1, WRIST HOLD TILT SPEED 5", "expected ',' or the end of the line after TILT, not SPEED", "a comma"),
@@ -333,21 +335,38 @@ def test_bad_lines(text, found):
         ("WRITS KEEP", "unknown instruction 'WRITS'", "did you mean WRIST?"),
         ("WRISTKEEP", "unknown instruction 'WRISTKEEP'", "did you mean WRIST KEEP?"),
         ("SEAMOFF", "unknown instruction 'SEAMOFF'", "did you mean SEAM OFF?"),
-        ("MOVE P1, SPEED", "expected a number after SPEED", "the form is MOVE"),
-        ("MOVE LOAD", "expected a point name after MOVE, not LOAD", "cannot be a name"),
+        ("MOVE P1, SPEED", "expected a value after SPEED", "the form is MOVE"),
+        ("MOVE LOAD", "expected a point after MOVE, not LOAD", "cannot be a name"),
         ("hand", "expected ON or OFF after HAND", "the form is HAND"),
         ("HAND OPEN", "expected ON or OFF after HAND, not OPEN", "HAND OFF opens the hand"),
         ("HAND ONN", "expected ON or OFF after HAND, not ONN", "did you mean ON?"),
-        ("LOAD 1", "expected '(' after LOAD, not 1", "the form is LOAD (x, y, z), mass"),
-        ("LOAD(0, 0 SPEED", "expected ',' after 0, not SPEED", "the form is LOAD (x, y, z), mass"),
+        ("LOAD 1", "expected a name or '(' after LOAD, not 1", "the form is LOAD (x, y, z), mass"),
+        ("LOAD(0, 0 SPEED", "expected ')' or ',' after 0, not SPEED", "the form is LOAD (x, y, z), mass"),
         ("10.5 MOVE P1", "expected an instruction, not 10.5", "whole number"),
         ("MOV P1", "unknown instruction 'MOV'", "did you mean MOVE?"),
         ("HANDON", "unknown instruction 'HANDON'", "did you mean HAND ON?"),
         ("movep1", "unknown instruction 'movep1'", "leave a space: MOVE P1"),
         ("OPEN", "unknown instruction 'OPEN'", "HAND OFF opens the hand"),
-        ("QQQQ", "unknown instruction 'QQQQ'", "are MOVE, LOAD, HAND ON, HAND OFF, WRIST and SEAM"),
-        ("MOVEJ P1", "MOVEJ is not in this edition yet", "runs MOVE, LOAD, HAND ON, HAND OFF, WRIST and SEAM"),
-        ("X = 5", "assignment to X is not in this edition yet", "MOVE, LOAD"),
+        ("QQQQ", "unknown instruction 'QQQQ'", "such as MOVE, LOAD, HAND or IF, or with name = value"),
+        ("X = ", "expected a value after '='", ""),
+        ("X", "unknown instruction 'X'", "or with name = value"),
+        ("abs = 5", "expected an instruction, not abs", "ABS is a word of the language and cannot be a name"),
+        ("move = 5", "expected a point after MOVE, not '='", "MOVE is a word of the language and cannot be a name"),
+        ("END IF", "expected the end of the line after END, not IF", "did you mean ENDIF?"),
+        ("ELSE IF x", "expected the end of the line after ELSE, not IF", "did you mean ELSEIF?"),
+        ("DEPART", "expected a value after DEPART", "the form is DEPART mm"),
+        ("MOVEC P1 P2", "expected ',' after P1, not P2", "the form is MOVEC via, point"),
+        ("WAIT x, 5", "expected TIMEOUT after ',', not 5", "the form is WAIT condition [, TIMEOUT s [, GOTO target]]"),
+        ("GOTO L", "expected a line number or *LABEL after GOTO, not L", "the form is GOTO line or GOTO *LABEL"),
+        ("FOR i = 1", "expected TO after 1", "the form is FOR v = a TO b [STEP s]"),
+        ("WHILE", "expected a value after WHILE", "the form is WHILE condition"),
+        ('x = "abc', "expected a value after '=', not '\"'", 'a text ends with "'),
+        (
+            "IF 1 THEN IF 2 THEN MOVE P1",
+            "expected an instruction or the end of the line after THEN, not IF",
+            "on a line",
+        ),
+        ("IF 1 THEN MOVE P1 ELSE", "expected an instruction after ELSE", "the form is IF condition THEN statement"),
         ("HAND ON, 1_000", "'1_000' is not a number", "write 1000"),
         ("LOAD (0, 0, 60), 800g", "'800g' is not a number", "masses in kg"),
         ("10MOVE P1", "'10MOVE' is not a number", "leave a space"),
@@ -370,8 +389,8 @@ def test_comments_may_hold_any_script():
 
 
 def test_several_errors_in_one_pass():
-    text = "10 MOV P1\n20 MOVE P1\n30 MOVE\n40 HAND ON\n50 LOAD (1, 2), 3\n"
-    assert parse_found(text) == [("RBL112", 1, 4, 3), ("RBL111", 3, 8, 0), ("RBL111", 5, 14, 1)]
+    text = "10 MOV P1\n20 MOVE P1\n30 MOVE\n40 HAND ON\n50 LOAD (1), 3\n"
+    assert parse_found(text) == [("RBL112", 1, 4, 3), ("RBL111", 3, 8, 0), ("RBL111", 5, 11, 1)]
     program = parse(source(text)).program
     assert [line.number for line in program.lines] == [10, 20, 30, 40, 50]
     assert isinstance(program.lines[1].statement, Move)
@@ -435,3 +454,130 @@ def test_the_listing_of_1992():
     kinds = [type(line.statement) for line in program.statements]
     assert kinds == [Load, Hand, Move, Hand, Load, Move, Move, Hand, Load, Move, Move]
     assert [line.number for line in program.statements] == list(range(10, 111, 10))
+
+
+# --- the whole language ----------------------------------------------------------------------------------------------
+
+FORMS = [
+    ("MOVE P1 + (0, 0, 5), ZONE 5, FINE", "Move"),
+    ("MOVEJ HERE, SPEED 5", "MoveJ"),
+    ("MOVEC P1, P2", "MoveC"),
+    ("MOVEC P1, P2, TIME 5, WRIST HOLD TILT, ADVANCE", "MoveC"),
+    ("APPROACH P1, 50", "Approach"),
+    ("APPROACH P1, d * 2, SPEED 5", "Approach"),
+    ("DEPART 50", "Depart"),
+    ("DEPART 50, FINE", "Depart"),
+    ("LOAD (0, 0, 0), 1, (1, 2, 3, 4, 5, 6)", "Load"),
+    ("LOAD part", "LoadNamed"),
+    ("SPEED 5", "Setting"),
+    ("SPEEDJ 5", "Setting"),
+    ("ACCEL 5", "Setting"),
+    ("OVERRIDE 5", "Setting"),
+    ("ZONE 5", "Setting"),
+    ("TOOL gun", "Setting"),
+    ("FRAME POSE(1, 2, 3, 4, 5, 6)", "Setting"),
+    ("OUT(1) = 1", "Out"),
+    ("PULSE 1, 0.5", "Pulse"),
+    ("DELAY 1", "Delay"),
+    ("WAIT IN(1) = 1", "Wait"),
+    ("WAIT IN(1) = 1, TIMEOUT 5", "Wait"),
+    ("WAIT IN(1) = 1, TIMEOUT 5, GOTO *L", "Wait"),
+    ("WAIT IN(1) = 1, TIMEOUT 5, GOTO 100", "Wait"),
+    ("x = 1", "Assign"),
+    ('s$ = "a"', "Assign"),
+    ("a(i + 1) = 1", "Assign"),
+    ("DIM a(10)", "Dim"),
+    ("CONST k = 1", "Const"),
+    ("IF x THEN END", "If"),
+    ("IF x THEN GOTO 10 ELSE y = 1", "If"),
+    ("IF x THEN", "Head"),
+    ("IF x", "Head"),
+    ("ELSEIF x THEN", "Head"),
+    ("ELSEIF x", "Head"),
+    ("WHILE x", "Head"),
+    ("SELECT x", "Head"),
+    ("SELECT CASE x", "Head"),
+    ("ELSE", "Block"),
+    ("ENDIF", "Block"),
+    ("WEND", "Block"),
+    ("CASE ELSE", "Block"),
+    ("ENDSELECT", "Block"),
+    ("ENDSUB", "Block"),
+    ("CASE 1", "Case"),
+    ("CASE 1, 2 + 3", "Case"),
+    ("FOR i = 1 TO 5", "For"),
+    ("FOR i = 1 TO 5 STEP -1", "For"),
+    ("NEXT", "Next"),
+    ("NEXT i", "Next"),
+    ("GOTO 10", "Jump"),
+    ("GOTO *L", "Jump"),
+    ("GOSUB 10", "Jump"),
+    ("SUB s", "Sub"),
+    ("SUB s()", "Sub"),
+    ("SUB s(a, b$)", "Sub"),
+    ("CALL s", "CallSub"),
+    ("CALL s()", "CallSub"),
+    ("CALL s(1, x + 2)", "CallSub"),
+    *((word, "Word") for word in ("RETURN", "END", "STOP", "PAUSE", "RESUME", "RESUME NEXT", "ON ERROR STOP")),
+    ("ON ERROR GOTO *L", "OnError"),
+    ("ON ERROR GOTO 10", "OnError"),
+    ("PRINT", "Print"),
+    ("PRINT 1", "Print"),
+    ('PRINT "a"; x; P1.X;', "Print"),
+]
+
+
+@pytest.mark.parametrize(("text", "kind"), FORMS, ids=[text for text, _ in FORMS])
+def test_every_form_of_a_statement(text, kind):
+    found = statement(text)
+    assert type(found).__name__ == kind
+    assert source(text).slice(found.span) == text.removesuffix(";")
+    assert statement(text.lower()) == found or '"' in text
+    (line,) = parsed(f"10 *top {text} ' x").lines
+    assert (line.number, line.label.key, line.statement, line.comment.text) == (10, "TOP", found, "' x")
+    if kind in ("Block", "Case", "Head", "For", "Next", "Sub", "If"):
+        assert parse_found(f"IF 1 THEN {text}")[0][0] == "RBL111"
+    else:
+        assert type(statement(f"IF 1 THEN {text} ELSE {text}").otherwise).__name__ == kind
+
+
+def test_optional_parts_are_told_apart():
+    assert len({statement(text) for text in ("WAIT x", "WAIT x, TIMEOUT 5", "WAIT x, TIMEOUT 5, GOTO 1")}) == 3
+    assert len({statement(text) for text in ("IF x THEN END", "IF x THEN END ELSE END", "IF x")}) == 3
+    assert len({statement(text) for text in ("FOR i = 1 TO 2", "FOR i = 1 TO 2 STEP 1", "FOR j = 1 TO 2")}) == 3
+    assert len({statement(text) for text in ("RESUME", "RESUME NEXT", "NEXT", "NEXT i", "RETURN")}) == 5
+    assert len({statement(text) for text in ("MOVE P1", "MOVE P1, FINE", "MOVE P1, ZONE 0", "MOVEJ P1")}) == 4
+    assert len({statement(text) for text in ("GOTO 1", "GOTO 2", "GOSUB 1", "GOTO *L")}) == 4
+    assert statement("SUB s") == statement("SUB s()")
+    assert statement("IF x THEN") == statement("IF x")
+    assert statement("SELECT CASE x") == statement("SELECT x")
+    assert [name.key for name in statement("SUB s(a, b$)").parameters] == ["A", "B$"]
+    assert statement("GOTO 0010").target.number == 10
+
+
+@pytest.mark.parametrize(
+    ("text", "label", "kind"),
+    [("*A", "A", None), ("*a_1 MOVE P1", "A_1", Move), ("* A ' x", "A", None), ("10 *A HAND ON", "A", Hand)],
+)
+def test_labels(text, label, kind):
+    (line,) = parsed(text).lines
+    assert line.label.key == label
+    assert (line.statement if kind is None else type(line.statement)) is kind
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["*", "*5", "*MOVE", "*A *B", "IF x THEN IF y THEN END", "IF x THEN FOR i = 1 TO 2", "IF x THEN END ELSE",
+     "x = 1 = 2 = 3", "x == 1", "x = 1 +", "x = (1", "x = ()", "x = ABS", "x = ABS()", "x = P1.", "x = P1.5", "x =",
+     'x = "a', "1 = x", "HERE = 5", "FOR abs = 1 TO 2", "GOTO x", "GOTO", "CALL s(", "CALL s(1,)", "SUB s(1)",
+     "SUB s(a,)", "WAIT x, GOTO 5", "WAIT x, TIMEOUT", "CASE", "CASE 1,", "PRINT 1, 2", "PRINT ;", "PRINT 1 2",
+     "OUT 1 = 2", "OUT(1)", "DIM a", "DIM a(1, 2)", "CONST k", "RESUME 5", "ON ERROR", "ON x GOTO 5", "FINE",
+     "END IF", "MOVE P1, ZONE", "MOVEC P1", "APPROACH P1", "DEPART", "TIME 5", "HOLD TILT", "NEXT 5", "x = NOT",
+     "x = 1 MOD", "x = 2 ^", "x = (1, )", "x = a.b.c"],
+)  # fmt: skip
+def test_what_is_no_statement(text):
+    ((code, line, column, length),) = parse_found(text)
+    assert (code, line) == ("RBL111", 1)
+    assert 1 <= column <= len(text) + 1
+    assert column + length <= len(text) + 1
+    assert only(text).hint

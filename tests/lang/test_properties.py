@@ -1,101 +1,241 @@
 """Properties over all programs and all texts."""
 
 import sys
+from dataclasses import replace
+from itertools import islice
+from typing import get_args
 
-from hypothesis import example, given, settings
+import pytest
+from hypothesis import Phase, example, given, settings
 from hypothesis import strategies as st
 
+from robolang import nodes, printer
 from robolang.checker import check
-from robolang.diagnostics import render, to_json
+from robolang.diagnostics import has_errors, render, to_json
+from robolang.formatter import format_source
 from robolang.interpreter import execute
-from robolang.nodes import (
-    Accel,
-    Comment,
-    Component,
-    Hand,
-    HandState,
-    Line,
-    Load,
-    Move,
-    Name,
-    Negate,
-    Number,
-    Program,
-    Seam,
-    Speed,
-    Time,
-    Unparsed,
-    Vector,
-    Wrist,
-    WristMode,
-)
+from robolang.nodes import Unparsed
 from robolang.parser import parse
 from robolang.printer import print_program
+from robolang.renumber import remove_numbers, renumber
 from robolang.source import read_program
-from robolang.words import RESERVED
+from robolang.structure import targets
+from runtime.faults import Fault, lookup
 from runtime.tomlfile import FileFault
+from tests.lang import generator
+from tests.lang.generator import expressions, jumping_programs, programs, texts, written_badly
 from tests.lang.helpers import source
 
 
-def make(kind, **parts):
-    return st.builds(kind, **parts)
-
-
-literals = st.one_of(
-    st.integers(0, 10**6).map(str),
-    st.floats(0, 1e300, allow_nan=False).map(repr),
-    st.sampled_from([".5", "5.", "1E3", "1e-3", "00", "3.25E+2"]),
-)
-numbers = literals.map(lambda text: Number(value=float(text), text=text))
-names = (
-    st.from_regex(r"[A-Za-z_][A-Za-z0-9_]{0,8}", fullmatch=True)
-    .filter(lambda text: text.upper() not in RESERVED)
-    .map(lambda text: Name(text=text))
-)
-expressions = st.recursive(numbers | names, lambda inner: make(Negate, operand=inner), max_leaves=4)
-vectors = make(Vector, x=expressions, y=expressions, z=expressions)
-wrists = st.one_of(
-    make(Wrist, mode=st.sampled_from([WristMode.KEEP, WristMode.AUTO])),
-    make(
-        Wrist,
-        mode=st.just(WristMode.HOLD),
-        held=st.lists(st.sampled_from(Component), min_size=1, max_size=4).map(tuple),
-    ),
-)
-options = st.one_of(*(make(kind, value=expressions) for kind in (Speed, Accel, Time)), wrists)
-statements = st.one_of(
-    make(Move, target=names, options=st.lists(options, max_size=4).map(tuple)),
-    make(Load, cog=vectors, mass=expressions),
-    make(Hand, state=st.sampled_from(HandState), dwell=st.none() | expressions),
-    wrists,
-    make(Seam, sensor=st.none() | names),
-)
-comments = st.text(st.characters(categories=["L", "N", "P", "S", "Zs"]), max_size=20).map(
-    lambda text: Comment(text=f"'{text}".rstrip())
-)
-lines = make(
-    Line,
-    number=st.none() | st.integers(0, 999_999_999),
-    statement=st.none() | statements,
-    comment=st.none() | comments,
-).filter(lambda line: (line.number, line.statement, line.comment) != (None, None, None))
-programs = st.lists(lines, max_size=8).map(lambda found: Program(source_path="p", lines=tuple(found)))
-
-fragments = st.sampled_from(
-    ["MOVE", "move ", "LOAD", "HAND ", "ON", "OFF", "P1", "P2 ", "SPEED", "TIME", ",", "(", ")", "-", "+", "1", ".5",
-     "1E999", "1_0", "'", "REM ", "\n", "\r\n", "\r", "\t", " ", "10 ", "МOVE", "\u202e", "\x00", "=", "*", "MOVEJ",
-     "WRIST ", "KEEP", "HOLD ", "TILT", "ADVANCE", "SEAM "]
-)  # fmt: skip
-texts = st.text(max_size=200) | st.lists(fragments, max_size=60).map("".join)
+def test_the_generator_makes_every_kind_of_node():
+    assert set(generator.EXPRESSIONS) == set(get_args(nodes.Expression))
+    assert set(generator.OPTIONS) == set(get_args(nodes.Option))
+    assert set(generator.STATEMENTS) == set(get_args(nodes.Statement)) - {Unparsed}
 
 
 @given(programs)
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=300, deadline=None)
 def test_what_is_printed_parses_back_to_the_same_tree(program):
     result = parse(source(print_program(program)))
     assert result.diagnostics == ()
     assert result.program == program
     assert print_program(result.program) == print_program(program)
+
+
+# --- the formatter ---------------------------------------------------------------------------------------------------
+
+
+def canonical(program):
+    """The tree with REM in capitals, the only thing in it that the formatter changes."""
+    lines = [
+        line if line.comment is None or line.comment.text.startswith("'")
+        else replace(line, comment=nodes.Comment(text=f"REM{line.comment.text[3:]}"))
+        for line in program.lines
+    ]  # fmt: skip
+    return replace(program, lines=tuple(lines))
+
+
+def assert_formatted_well(text):
+    """Format a text; what comes out has its tree and its comments, and is a fixed point."""
+    before = parse(source(text))
+    found = format_source(source(text))
+    after = parse(source(found.text))
+    assert canonical(after.program) == canonical(before.program)
+    assert canonical(after.program).comments == canonical(before.program).comments
+    assert found.changed == (found.text != text)
+    assert found.diagnostics == before.diagnostics
+    again = format_source(source(found.text))
+    assert again.text == found.text
+    assert not again.changed
+    return found.text
+
+
+@given(programs.flatmap(lambda program: written_badly(print_program(program))))
+@settings(max_examples=300, deadline=None)
+def test_formatting_is_done_once_and_keeps_the_tree_and_the_comments(text):
+    before = parse(source(text))
+    assert not has_errors(before.diagnostics)
+    found = assert_formatted_well(text)
+    assert found == "" or found.endswith(("\n", "\r"))
+    assert not found.endswith(("\n\n", "\r\r", "\r\n\r\n")) or "fmt: off" in text
+
+
+@given(programs, st.data())
+@settings(max_examples=150, deadline=None)
+def test_one_tree_has_one_layout(program, data):
+    kept = [replace(line, comment=None) for line in program.lines]
+    program = replace(program, lines=tuple(line for line in kept if line != nodes.Line()))
+    clean = print_program(program)
+    badly = data.draw(written_badly(clean))
+    spelt = format_source(source(badly)).text.upper().split()
+    assert spelt == format_source(source(clean)).text.upper().split()
+
+
+@given(texts)
+@settings(max_examples=300, deadline=None)
+@example("\ud800")
+@example("\ufeffMOVE P1")
+@example("GOTO 1.5\r  goto 1.5 'x")
+@example("x=1 'a\n\n\n\n \n")
+@example("' fmt: off\n x=1\n\n\n\n\n")
+def test_any_text_is_formatted_without_harm(text):
+    assert_formatted_well(text)
+
+
+# --- line numbers ----------------------------------------------------------------------------------------------------
+
+
+def without_numbers(program):
+    """The tree with every line number and every target that is one replaced by the line that it names."""
+    index = {line.number: at for at, line in enumerate(program.lines) if line.number is not None}
+
+    def led(statement):
+        if isinstance(statement, nodes.Jump | nodes.OnError | nodes.Wait) and statement.target is not None:
+            number = statement.target.number
+            return statement if number is None else replace(statement, target=nodes.Target(number=index[number]))
+        if isinstance(statement, nodes.If):
+            return replace(statement, then=led(statement.then), otherwise=led(statement.otherwise))
+        return statement
+
+    return [replace(line, number=None, statement=led(line.statement)) for line in program.lines]
+
+
+@given(jumping_programs().flatmap(lambda program: written_badly(print_program(program))), st.integers(0, 500),
+       st.integers(1, 70))  # fmt: skip
+@settings(max_examples=200, deadline=None)
+def test_new_line_numbers_change_nothing_else(text, start, step):
+    before = parse(source(text)).program
+    found = renumber(source(text), start=start, step=step)
+    after = parse(source(found.text)).program
+    assert not has_errors(found.diagnostics)
+    assert without_numbers(after) == without_numbers(before)
+    counted = [line.number for line in after.lines if line.number is not None]
+    assert counted == list(range(start, start + step * len(counted), step))
+    assert all((line.number is None) == (line.label is line.statement is None and was.number is None)
+               for line, was in zip(after.lines, before.lines, strict=True))  # fmt: skip
+    again = renumber(source(found.text), start=start, step=step)
+    assert (again.text, again.changed, again.lines, again.targets) == (found.text, False, 0, 0)
+
+
+@given(jumping_programs().flatmap(lambda program: written_badly(print_program(program))))
+@settings(max_examples=100, deadline=None)
+def test_numbers_are_removed_where_nothing_leads(text):
+    before = parse(source(text)).program
+    found = remove_numbers(source(text))
+    after = parse(source(found.text)).program
+    named = {target.number for line in before.lines for target in targets(line.statement)} - {None}
+    assert {line.number for line in after.lines} - {None} == named
+    empty = nodes.Line()
+    expected = [replace(line, number=line.number if line.number in named else None) for line in before.lines]
+    assert list(after.lines) == [line for line in expected if line != empty]
+
+
+@given(texts)
+@settings(max_examples=200, deadline=None)
+def test_any_text_is_renumbered_or_left_alone(text):
+    for found in (renumber(source(text)), remove_numbers(source(text))):
+        if has_errors(found.diagnostics):
+            assert (found.text, found.changed) == (text, False)
+        else:
+            assert not has_errors(parse(source(found.text)).diagnostics)
+
+
+# --- what a program does ---------------------------------------------------------------------------------------------
+
+PROGRAM = """\
+10 LOAD (0, 0, 60), 0.8 ' hand only
+20 CONST rows = 3
+DIM made(9)
+WRIST HOLD TILT, ROTATION
+FOR r = 0 TO rows - 1
+FOR c = 4 TO 0 STEP -(3 - (2 - 1))
+x = 100 - (r * 60 - (c - 10)) / 2 MOD 7
+IF NOT x < 95 AND c <> 2 THEN GOSUB *Place ELSE PRINT "not "; r; c; -2^2; (-2)^2; 2^3^2; 2^(3^2)
+NEXT c
+SELECT r - (1 - r)
+CASE -1, 3
+MOVE P1 + (0, 0, x), SPEED 100, ZONE 5
+CASE ELSE
+MOVEJ P2 * (0, 0, -r - -1), SPEED 50
+ENDSELECT
+NEXT
+CALL Back(20, P1)
+WHILE made(4) < 3
+made(4) = made(4) + 1
+IF made(4) = 2 THEN
+HAND OFF, 0.25
+ELSEIF made(4) = 3 THEN
+OUT(3) = made(4) = 3
+ELSE
+DELAY 0.5
+ENDIF
+WEND
+ON ERROR GOTO 900
+PRINT 1 / (rows - 3)
+END
+*Place APPROACH P3 + (r, c, 0), 50
+MOVE P3 + (r, c, 0), FINE, WRIST HOLD ADVANCE
+DEPART 50
+RETURN
+900 PRINT "error "; ERR REM caught
+RESUME NEXT
+SUB Back(d, p)
+MOVE p + (0, 0, d), SPEED d * 10
+ENDSUB
+"""
+
+
+POINTS = ("P1", "P2", "P3")
+
+
+def carried_out(program, most=2000):
+    """The effects of a program, as many as that, and the code of the fault that ended it."""
+    found = []
+    try:
+        found.extend(islice(execute(program, points=POINTS), most))
+    except Fault as fault:
+        return found, fault.code
+    return found, None
+
+
+def trace(text):
+    """What a program does, without where it stands in the file."""
+    program = parse(source(text)).program
+    assert check(program) == ()
+    effects, fault = carried_out(program)
+    return [replace(effect, line=0, span=nodes.NOWHERE) for effect in effects], fault
+
+
+@given(written_badly(PROGRAM))
+@settings(max_examples=50, deadline=None)
+def test_formatting_changes_nothing_that_a_program_does(text):
+    done, fault = trace(PROGRAM)
+    assert (len(done) > 20, fault) == (True, None)
+    assert trace(text) == (done, fault)
+    assert trace(format_source(source(text)).text) == (done, fault)
+
+
+# --- any text --------------------------------------------------------------------------------------------------------
 
 
 @given(texts)
@@ -120,11 +260,18 @@ def test_any_text_gives_a_tree_and_located_diagnostics(text):
 
 @given(texts)
 @settings(max_examples=150, deadline=None)
-def test_a_program_without_errors_runs_to_its_end(text):
+@example("x = 1\nWHILE x < 9\nx = x + 1\nWEND\nMOVE P1")
+@example("FOR i = 1 TO 3\nSPEED i\nMOVE P1 + (i, 0, 0)\nNEXT")
+def test_a_program_without_errors_runs_to_its_end_or_to_a_fault(text):
     program = parse(source(text)).program
     if any(isinstance(line.statement, Unparsed) for line in program.lines) or check(program):
         return
-    assert len(list(execute(program))) == len(program.statements)
+    lines = {line.source_line: line for line in program.statements}
+    effects, fault = carried_out(program)
+    for effect in effects:
+        assert lines[effect.line].number == effect.number
+        assert source(text).slice(effect.span)
+    assert fault is None or lookup(fault)
 
 
 @given(st.binary(max_size=200))
@@ -133,13 +280,47 @@ def test_any_bytes_are_text_or_a_fault(tmp_path_factory, raw):
     path = tmp_path_factory.getbasetemp() / "any.rbl"
     path.write_bytes(raw)
     try:
-        parse(read_program(path))
+        format_source(read_program(path))
     except FileFault as fault:
         assert fault.code == "RBL104"
 
 
-def calls(text):
-    """The number of Python calls that parsing a text takes; a measure that does not depend on the machine."""
+# --- what a broken printer would do ----------------------------------------------------------------------------------
+
+DEFECTS = {
+    "a - (b - c) as a - b - c": {printer._SUM: printer._SUM},
+    "a / (b / c) as a / b / c": {printer._PRODUCT: printer._PRODUCT},
+    "(a + b) * c as a + b * c": {printer._PRODUCT: printer._SUM},
+    "(a = b) = c as a = b = c": {printer._COMPARE: printer._COMPARE},
+    "a OR (b OR c) as a OR b OR c": {printer._OR: printer._OR},
+    "a AND (b OR c) as a AND b OR c": {printer._AND: printer._OR},
+    "a MOD (b * c) as a MOD b * c": {printer._MOD: printer._PRODUCT},
+    "(-a)^b as -a^b": {printer._POWER: printer._SIGNED},
+    "(a^b)^c as a^b^c": {printer._POWER: printer._POWER},
+}
+
+
+@pytest.mark.parametrize("defect", DEFECTS)
+def test_a_printer_without_these_parentheses_is_caught(defect, monkeypatch):
+    @given(expressions)
+    @settings(max_examples=3000, deadline=None, database=None, derandomize=True, phases=[Phase.generate],
+              report_multiple_bugs=False)  # fmt: skip
+    def printed_and_parsed(value):
+        line = nodes.Line(statement=nodes.Delay(seconds=value))
+        result = parse(source(printer.print_line(line)))
+        assert result.program.lines == (line,)
+
+    for level, lowest in DEFECTS[defect].items():
+        monkeypatch.setitem(printer._OPERAND_OF, level, lowest)
+    with pytest.raises(AssertionError):
+        printed_and_parsed()
+
+
+# --- time ------------------------------------------------------------------------------------------------------------
+
+
+def calls(work, text):
+    """The number of Python calls that some work on a text takes; a measure that does not depend on the machine."""
     where, count = source(text), 0
 
     def step(frame, event, argument):
@@ -149,20 +330,26 @@ def calls(text):
     before = sys.getprofile()
     sys.setprofile(step)
     try:
-        parse(where)
+        work(where)
     finally:
         sys.setprofile(before)
     return count
 
 
-def test_work_grows_with_the_text_and_not_faster():
+SHAPES = ("10 MOVE P1, SPEED 200 ' x\n", "LOAD (1, -2, 3), 4\n", "'\n", "\n", "MOVE " + "-" * 90 + "\n", "1_0 \n",
+          "MOVE P1, WRIST HOLD TILT, ADVANCE, TIME 2\n", "WRIST HOLD TILT\n", "SEAM ON, s\n", "IF x\n", "NEXT\n",
+          "IF x\nFOR i = 1 TO 2\n", "WHILE 1\nENDIF\n", "CASE 1\n", "x = (((1 + 2) * 3)^4 MOD 5)\n", "PRINT x; y ' z\n",
+          "IF x THEN GOSUB *L ELSE MOVE P1 + (1, 2, 3)\n", "' fmt: off\n", "x = 1 '" + "long " * 20 + "\n")  # fmt: skip
+REPEATED = (("MOVE P1", ", SPEED 1"), ("MOVE P1", ", WRIST HOLD TILT"), ("MOVE P1, WRIST HOLD TILT", ", TILT"),
+            ("WRIST HOLD TILT", ", TILT"), ("x = 1", " + 1"), ("x = 2", "^2"), ("CASE 1", ", 1"), ("PRINT 1", "; 1"),
+            ("x = MAX(1", ", 1"))  # fmt: skip
+
+
+@pytest.mark.parametrize("work", [parse, format_source, renumber])
+def test_work_grows_with_the_text_and_not_faster(work):
     parse(source("MOVE P1"))
-    shapes = ["10 MOVE P1, SPEED 200 ' x\n", "LOAD (1, -2, 3), 4\n", "'\n", "\n", "MOVE " + "-" * 90 + "\n", "1_0 \n",
-              "MOVE P1, WRIST HOLD TILT, ADVANCE, TIME 2\n", "WRIST HOLD TILT\n", "SEAM ON, s\n"]  # fmt: skip
-    for shape in shapes:
-        small, large = calls(shape * 100), calls(shape * 200)
+    for shape in SHAPES:
+        small, large = calls(work, shape * 100), calls(work, shape * 200)
         assert large <= 2.1 * small + 100, shape
-    repeated = [("MOVE P1", ", SPEED 1"), ("MOVE P1", ", WRIST HOLD TILT"), ("MOVE P1, WRIST HOLD TILT", ", TILT"),
-                ("WRIST HOLD TILT", ", TILT")]  # fmt: skip
-    for start, more in repeated:
-        assert calls(start + more * 200) <= 2.1 * calls(start + more * 100) + 100, more
+    for start, more in REPEATED:
+        assert calls(work, start + more * 200) <= 2.1 * calls(work, start + more * 100) + 100, more

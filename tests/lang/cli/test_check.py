@@ -53,18 +53,34 @@ def test_a_warning_is_printed_and_exit_code_0():
         (("none.rbl", "good.rbl"), 2),
         (("bad.rbl", "none.rbl", "bad.rbl"), 2),
         (("binary.rbl", "good.rbl"), 1),
-        ((".", "good.rbl"), 2),
+        (("pipe.rbl", "good.rbl"), 2),
     ],
 )
-def test_every_file_is_checked_and_the_worst_gives_the_exit_code(names, code):
+def test_every_file_is_checked_and_the_worst_gives_the_exit_code(names, code, folder):
+    os.mkfifo(folder / "pipe.rbl")
     result = robolang("check", *names, code=code)
-    assert result.stdout.count("bad.rbl:1:4: error RBL112") == names.count("bad.rbl")
-    for name, said in (("none.rbl", "RBL701"), ("binary.rbl", "RBL104"), (".", "RBL702")):
+    assert result.stdout.count("bad.rbl:1:4: error RBL112") == ("bad.rbl" in names)
+    for name, said in (("none.rbl", "RBL701"), ("binary.rbl", "RBL104"), ("pipe.rbl", "RBL702")):
         assert (f"{name}:1:1: error {said}" in result.stderr) == (name in names)
 
 
-def test_no_program_is_a_usage_error():
-    assert "Missing argument" in robolang("check", code=2).stderr
+def test_without_a_path_it_is_the_working_folder(folder):
+    (folder / "deep").mkdir()
+    (folder / "deep" / "more.rbl").write_text("MOV P2\n")
+    result = robolang("check", code=1)
+    assert [line for line in result.stdout.splitlines() if "RBL112" in line] == [
+        "bad.rbl:1:4: error RBL112 unknown instruction 'MOV'",
+        "deep/more.rbl:1:1: error RBL112 unknown instruction 'MOV'",
+    ]
+    assert "binary.rbl:1:1: error RBL104" in result.stderr
+    assert robolang("check", ".", code=1).stdout == result.stdout
+    assert places(robolang("check", "deep", code=1).stdout) == [(1, 1, "RBL112")]
+
+
+def test_a_folder_without_programs_is_said(folder):
+    (folder / "none").mkdir()
+    result = robolang("check", "none")
+    assert (result.stdout, result.stderr) == ("", "no programs (*.rbl) in none\n")
 
 
 def test_points_are_those_that_a_run_would_use(folder):
@@ -86,6 +102,13 @@ def test_points_that_cannot_be_read_are_a_configuration_error(folder, link):
     result = robolang("check", "good.rbl", "bad.rbl", code=2)
     assert ("RBL302" if link else "good.points.toml:3:1: error RBL307") in result.stderr
     assert "RBL112" in result.stdout
+
+
+def test_a_text_is_checked_without_points_that_cannot_be_read(folder):
+    (folder / "bad.points.toml").write_text("schema = 1\n[points.P1]\npose = [1, 2, 3]\n")
+    (folder / "bad.rbl").write_text("10 MOVE P9\n20 MOV P1\n")
+    result = robolang("check", "bad.rbl", code=2)
+    assert places(result.stdout) == [(2, 4, "RBL112")]
 
 
 def modules_after(*words):

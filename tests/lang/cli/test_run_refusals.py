@@ -27,7 +27,7 @@ def refused(name, *words, code):
 
 BAD_TEXT = [
     ("10 MOV P1", (1, 4, "RBL112"), "did you mean MOVE?"),
-    ("10 FROB P1", (1, 4, "RBL112"), "MOVE, LOAD, HAND ON, HAND OFF, WRIST and SEAM"),
+    ("10 FROB P1", (1, 4, "RBL112"), "such as MOVE, LOAD, HAND or IF, or with name = value"),
     ("10 HAND OM", (1, 9, "RBL111"), ""),
     ("10 LOAD (0, 0, 60), -1", (1, 21, "RBL401"), "zero or more"),
     ("10 LOAD (0, 0, 60), 1E999", (1, 21, "RBL114"), "ordinary size"),

@@ -14,7 +14,7 @@ from tests.lang.cli.commands import dry, robolang
 
 REPORT_KEYS = {
     "program", "robot", "ok", "physics", "servo", "sim_time_s", "wall_time_s", "realtime_factor", "cycles",
-    "overruns", "statements", "dynamics", "payload_history", "objects", "alarms",
+    "overruns", "statements", "dynamics", "payload_history", "printed", "objects", "alarms",
     "warnings",
 }  # fmt: skip
 STATEMENT_KEYS = {

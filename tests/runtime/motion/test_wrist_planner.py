@@ -108,7 +108,8 @@ def test_held_components_change_less_than_the_free_ones():
 
     def off(found: LinePlan) -> np.ndarray:
         taken = (KINEMATICS.forward(found.q) @ TOOL)[:, :3, :3]
-        return np.degrees(component_deviation(found.path, found.path.poses(found.s)[:, :3, :3], taken).max(axis=0))
+        planned = found.path.poses(found.s)[:, :3, :3]
+        return np.degrees(component_deviation(found.path, found.s, planned, taken).max(axis=0))
 
     options = WristOptions(posture="rpy")
     free = off(plan(E2, options))

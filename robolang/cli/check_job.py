@@ -1,0 +1,206 @@
+"""What ``robolang check`` does once its options are known: read, check, correct, print, judge.
+
+The report goes to stdout or a file; what concerns the work itself goes to stderr: files that cannot be used, what was
+fixed. With ``--fix`` a program from stdin goes to stdout, corrected, and its report to stderr.
+"""
+
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import typer
+
+from robolang.cli.errors import DIAGNOSTICS, reader_may_leave, say
+from robolang.cli.rewrite import Loaded, load, store, unified
+from robolang.diagnostics import Diagnostic, Severity, has_errors, in_order, safe
+from robolang.lint.apply import fix_all
+from robolang.lint.engine import Checked, check_source
+from robolang.lint.files import STANDARD_INPUT, programs
+from robolang.lint.selection import Layer, Selection
+from robolang.lint.settings import Settings
+from robolang.lint.suppress import add_later
+from robolang.lint.watch import watch
+from robolang.output import render
+from robolang.source import Source, read_bytes
+from runtime.faults import Fault, lookup
+
+_ROOTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Job:
+    """The options of ``robolang check``, checked."""
+
+    paths: tuple[str, ...]
+    layer: Layer
+    form: str
+    output: Path | None
+    stdin_name: str
+    fix: bool
+    diff: bool
+    statistics: bool
+    strict: bool
+    exit_zero: bool
+    motion: bool = False
+    max_cycle_s: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Outcome:
+    """A program as it was read, what was found after its fixes, and how often each code was fixed."""
+
+    checked: Checked
+    before: Loaded
+    fixed: dict[str, int] = field(default_factory=dict)
+    table: str = ""
+
+
+def watched(job: Job) -> int:
+    """Check now and whenever something changes, until Ctrl-C; return the last exit code."""
+
+    def again() -> int:
+        try:
+            code = run_once(job)
+        except Fault as fault:
+            code = say(fault)
+        typer.echo("watching; Ctrl-C ends", err=True)
+        return code
+
+    return watch(job.paths, again)
+
+
+def run_once(job: Job) -> int:
+    """Check everything once, print the report and return the exit code; ``Fault`` for a wrong configuration."""
+    if job.output is not None:
+        from robolang.storage import check_writable
+
+        check_writable(job.output)
+    settings = Settings()
+    names = programs(job.paths)
+    if not names:
+        typer.echo(f"no programs (*.rbl) in {safe(', '.join(job.paths))}", err=True)
+    outcomes = [_examined(name, job, settings) for name in names]
+    if job.fix and not job.diff:
+        outcomes = [_written(outcome) for outcome in outcomes]
+    if job.motion:
+        outcomes = [_planned(outcome, job, settings) for outcome in outcomes]
+    _print(job, outcomes)
+    worst = max([0, *(say(fault) for outcome in outcomes for fault in outcome.checked.faults)])
+    return max(worst, _judged(job, outcomes))
+
+
+def _examined(name: str, job: Job, settings: Settings) -> _Outcome:
+    """Return what was found in one program and what its fixes make of it; nothing is written."""
+    shown = job.stdin_name if name == STANDARD_INPUT else name
+    try:
+        loaded = load(name, shown)
+    except Fault as fault:
+        nothing = Source(shown, "")
+        return _Outcome(checked=Checked(source=nothing, faults=(fault,)),
+                        before=Loaded(name=name, mark=b"", source=nothing))  # fmt: skip
+    selection = Selection(layers=(settings.layer(Path(shown).parent), job.layer))
+    checked = check_source(loaded.source, selection)
+    if not (job.fix or job.diff) or not any(item.fix is not None and item.fix.safe for item in checked.diagnostics):
+        return _Outcome(checked=checked, before=loaded)
+    seen = {loaded.source.text: checked}
+
+    def found(source: Source) -> tuple[Diagnostic, ...]:
+        if source.text not in seen:
+            seen[source.text] = check_source(source, selection)
+        return seen[source.text].diagnostics
+
+    fixed = fix_all(loaded.source, found)
+    found(fixed.source)
+    return _Outcome(checked=seen[fixed.source.text], before=loaded, fixed=dict(fixed.counts))
+
+
+def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
+    """Add what the motion of a program without errors shows, and the table of what its lines take."""
+    checked = outcome.checked
+    if checked.faults or has_errors(checked.diagnostics) or outcome.before.name == STANDARD_INPUT:
+        return outcome
+    from robolang.cli.check_motion import planned
+
+    selection = Selection(layers=(settings.layer(Path(checked.source.path).parent), job.layer))
+    try:
+        found, table = planned(checked.source.path, job.max_cycle_s)
+    except Fault as fault:
+        return replace(outcome, checked=replace(checked, faults=(*checked.faults, fault)))
+    diagnostics = in_order(filter(selection.keeps, add_later(checked.source, checked.diagnostics, found)))
+    return replace(outcome, checked=replace(checked, diagnostics=diagnostics), table=table)
+
+
+def _written(outcome: _Outcome) -> _Outcome:
+    """Write a corrected program back, and say what was fixed; a file that cannot be written is a fault more."""
+    before, after = outcome.before, outcome.checked.source
+    try:
+        if outcome.fixed and before.name != STANDARD_INPUT:
+            _still(before)
+        if outcome.fixed or before.name == STANDARD_INPUT:
+            store(before.name, before.mark, after.text)
+    except Fault as fault:
+        checked = replace(outcome.checked, faults=(*outcome.checked.faults, fault))
+        return replace(outcome, checked=checked, fixed={})
+    if outcome.fixed:
+        said = ", ".join(f"{count} x {code} {lookup(code).name}" for code, count in outcome.fixed.items())
+        typer.echo(f"{safe(after.path)}: fixed {said}", err=True)
+    return outcome
+
+
+def _still(loaded: Loaded) -> None:
+    """Raise ``Fault`` RBL706 when a file is not what was read any more; somebody is writing it."""
+    try:
+        same = read_bytes(loaded.name) == loaded.mark + loaded.source.text.encode()
+    except Fault:
+        same = False
+    if not same:
+        raise Fault("RBL706", f"{loaded.name} has changed since it was checked", "Check it again.")
+
+
+def _print(job: Job, outcomes: Sequence[_Outcome]) -> None:
+    """Print the report, or with ``--diff`` the changes."""
+    results = [outcome.checked for outcome in outcomes]
+    if job.diff:
+        text = "".join(line for outcome in outcomes for line in _change(outcome))
+    elif job.statistics:
+        from robolang.output import statistics
+
+        text = statistics.render(results, as_json=job.form == "json")
+    else:
+        text = render(job.form, results, _root())
+        if job.form in ("full", "concise"):
+            text += "".join(outcome.table for outcome in outcomes)
+    if job.output is not None:
+        from robolang.storage import write_atomic
+
+        write_atomic(job.output, lambda stream: stream.write(text.encode("utf-8", "backslashreplace")))
+        return
+    with reader_may_leave():
+        typer.echo(text, nl=False, err=job.fix and not job.diff and STANDARD_INPUT in job.paths)
+
+
+def _change(outcome: _Outcome) -> Iterator[str]:
+    before, after = outcome.before.source, outcome.checked.source
+    return unified(before.path, before.text, after.text)
+
+
+def _root() -> Path:
+    """Return the folder that files are named from: the checkout of the CI service around us, else the working one."""
+    here = Path.cwd()
+    for variable in _ROOTS:
+        checkout = os.environ.get(variable)
+        if checkout and here.is_relative_to(checkout):
+            return Path(checkout)
+    return here
+
+
+def _judged(job: Job, outcomes: Sequence[_Outcome]) -> int:
+    """Return the exit code for what was found."""
+    if job.exit_zero:
+        return 0
+    if job.diff:
+        return DIAGNOSTICS if any(outcome.fixed for outcome in outcomes) else 0
+    found = [item for outcome in outcomes for item in outcome.checked.diagnostics]
+    warned = job.strict and any(item.severity is Severity.WARNING for item in found)
+    return DIAGNOSTICS if warned or has_errors(found) else 0

@@ -1,0 +1,46 @@
+"""The motion part of ``robolang check --motion``: findings of a rehearsal, and a table of what each line takes.
+
+Imported where it is asked for: it needs numpy, pinocchio and mujoco, which checking a text does not.
+"""
+
+from robolang.diagnostics import Diagnostic, safe
+from robolang.motion_check import Rehearsal, rehearse
+from robolang.motion_findings import LineTime, findings, line_times
+from robolang.project import Project, load_project
+
+_STATEMENT = 30
+
+
+def planned(program: str, max_cycle_s: float | None) -> tuple[tuple[Diagnostic, ...], str]:
+    """Return the findings in the motion of a program and the table of its times; ``Fault`` for files beside it.
+
+    What the cell makes an error of the text (a load, a tool or an input that it does not have) is among them.
+    """
+    project = load_project(program)
+    if not project.ok:
+        return project.diagnostics, ""
+    rehearsal = rehearse(project)
+    return findings(project, rehearsal, max_cycle_s), _table(project, rehearsal)
+
+
+def _table(project: Project, rehearsal: Rehearsal) -> str:
+    rows = line_times(project, rehearsal)
+    lines = [
+        f"{safe(project.source.path)} on {project.cell.robot.name}, planned without physics",
+        f"{'line':>5}  {'statement':<{_STATEMENT}} {'times':>5} {'time, s':>8} {'way, mm':>8} {'fastest':>11} "
+        f"{'to range':>9}",
+        *(_row(row) for row in rows),
+        f"{'':>5}  {'total':<{_STATEMENT}} {'':>5} {rehearsal.total_us / 1e6:8.3f}",
+    ]
+    return "\n".join(line.rstrip() for line in lines) + "\n"
+
+
+def _row(row: LineTime) -> str:
+    text = safe(row.text)
+    text = text if len(text) <= _STATEMENT else f"{text[: _STATEMENT - 1]}…"
+    way = "" if row.length_mm is None else f"{row.length_mm:.1f}"
+    fastest = "" if row.speed_pct is None else f"{row.joint} {row.speed_pct:4.0f} %"
+    margin = "" if row.margin_deg is None else f"{row.margin_deg:.1f} deg"
+    number = row.line if row.number is None else row.number
+    return (f"{number:>5}  {text:<{_STATEMENT}} {row.count:>5} {row.seconds:8.3f} {way:>8} {fastest:>11} "
+            f"{margin:>9}")  # fmt: skip

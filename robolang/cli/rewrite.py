@@ -1,0 +1,162 @@
+"""What the commands that change program files share: reading one, showing what would change, writing it back.
+
+``-`` stands for the standard input and output. A byte order mark and the permissions of a file stay as they are, and
+the file is replaced whole or not at all. Imports no numpy, pinocchio or mujoco.
+"""
+
+import re
+import stat
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from robolang.diagnostics import has_errors, render, safe
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from robolang.diagnostics import Diagnostic
+    from robolang.source import Source
+
+STDIO = "-"
+CHANGES, BROKEN = 1, 2
+"""Exit codes: something would change; a program cannot be read or has errors, and is left alone."""
+
+_MARK = b"\xef\xbb\xbf"
+_CONTEXT = 3
+_LINE = re.compile(r"[^\r\n]*(?:\r\n?|\n)|[^\r\n]+")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Loaded:
+    """A program with the name the user gave it, and the byte order mark that it began with, if any."""
+
+    name: str
+    mark: bytes
+    source: "Source"
+
+
+def load(name: str, shown: str = "<stdin>") -> Loaded:
+    """Read a program, that of ``-`` under the name ``shown``; ``FileFault`` RBL701, RBL702, RBL104, RBL106."""
+    from robolang.source import decode_program, read_bytes
+
+    raw, shown = (_standard_input(), shown) if name == STDIO else (read_bytes(name), name)
+    mark = _MARK if raw.startswith(_MARK) else b""
+    return Loaded(name=name, mark=mark, source=decode_program(shown, raw))
+
+
+def _standard_input() -> bytes:
+    """Return what a program can hold of the standard input, and one byte more."""
+    from robolang.source import MAX_BYTES
+    from runtime.faults import Fault
+
+    if sys.stdin is None:
+        raise Fault("RBL702", "there is no standard input")
+    try:
+        return sys.stdin.buffer.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise Fault("RBL702", f"cannot read the standard input: {error.strerror}") from None
+
+
+def store(name: str, mark: bytes, text: str) -> None:
+    """Write a program to a file, in place of the one of that name, or to the standard output; ``Fault`` RBL706."""
+    from robolang.storage import write_atomic
+
+    raw = mark + text.encode("utf-8")
+    if name == STDIO:
+        typer.echo(raw, nl=False)
+        return
+    path = Path(name)
+    mode = stat.S_IMODE(path.stat().st_mode) if path.is_file() else None
+    write_atomic(path, lambda stream: stream.write(raw))
+    if mode is not None:
+        path.chmod(mode)
+
+
+def broken(loaded: Loaded, diagnostics: "Iterable[Diagnostic]") -> bool:
+    """Return whether there is an error among the diagnostics; they are printed to stderr then."""
+    found = tuple(diagnostics)
+    if not has_errors(found):
+        return False
+    for item in found:
+        typer.echo(render(item, loaded.source), err=True)
+    return True
+
+
+def show(loaded: Loaded, text: str) -> None:
+    """Print what would change as a unified diff, in the bytes of the file."""
+    typer.echo("".join(unified(loaded.source.path, loaded.source.text, text)).encode("utf-8"), nl=False)
+
+
+# --- a unified diff --------------------------------------------------------------------------------------------------
+
+
+def unified(name: str, old: str, new: str) -> Iterator[str]:
+    """Yield the lines of a unified diff of two texts, of which the second has some blank lines fewer and none moved.
+
+    Lines are paired as they come, so the time is linear, where a search for common lines may take the square of it.
+    """
+    pairs = list(_pairs(_LINE.findall(old), _LINE.findall(new)))
+    changed = [index for index, (before, after) in enumerate(pairs) if before != after]
+    if changed:
+        yield f"--- {safe(name)}\n+++ {safe(name)}\n"
+    dropped = counted = 0
+    for first, last in _hunks(changed, len(pairs)):
+        dropped += sum(after is None for _, after in pairs[counted:first])
+        counted, hunk = first, pairs[first:last]
+        kept = sum(after is not None for _, after in hunk)
+        yield f"@@ -{_range(first, len(hunk))} +{_range(first - dropped, kept)} @@\n"
+        yield from _body(hunk)
+
+
+def _pairs(old: list[str], new: list[str]) -> Iterator[tuple[str, str | None]]:
+    """Yield each old line with the new one in its place; a blank line without one was dropped."""
+    at = 0
+    for line in old:
+        other = new[at] if at < len(new) else None
+        if other is None or (not line.strip() and other.strip()):
+            yield line, None
+        else:
+            yield line, other
+            at += 1
+
+
+def _hunks(changed: list[int], count: int) -> Iterator[tuple[int, int]]:
+    """Yield the ranges of lines that are shown: the changed ones with three more on either side."""
+    ranges: list[list[int]] = []
+    for index in changed:
+        if ranges and index - ranges[-1][1] <= 2 * _CONTEXT + 1:
+            ranges[-1][1] = index
+        else:
+            ranges.append([index, index])
+    for first, last in ranges:
+        yield max(0, first - _CONTEXT), min(count, last + _CONTEXT + 1)
+
+
+def _range(before: int, count: int) -> str:
+    """Return the place of a hunk behind ``before`` lines; of an empty one, that of the line above."""
+    start = before + 1 if count else before
+    return str(start) if count == 1 else f"{start},{count}"
+
+
+def _body(hunk: list[tuple[str, str | None]]) -> Iterator[str]:
+    added: list[str] = []
+    for before, after in hunk:
+        if before == after:
+            yield from added
+            added = []
+            yield _line(" ", before)
+            continue
+        yield _line("-", before)
+        if after is not None:
+            added.append(_line("+", after))
+    yield from added
+
+
+def _line(sign: str, line: str) -> str:
+    missing = "" if line.endswith(("\n", "\r")) else "\\ No newline at end of file\n"
+    return f"{sign}{line.removesuffix(chr(10))}\n{missing}"

@@ -1,0 +1,61 @@
+"""``robolang rules``: everything that ``robolang check`` can find, as a table or as JSON."""
+
+import json
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from robolang.cli.errors import reader_may_leave, reported
+
+if TYPE_CHECKING:
+    from runtime.faults import Code
+
+
+def rules(
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON array, with the text of each page.")] = False,
+) -> None:
+    """List the rules of robolang check; robolang explain CODE prints one of them."""
+    from robolang.lint.registry import codes
+
+    with reported(), reader_may_leave():
+        if as_json:
+            typer.echo(json.dumps([_as_json(entry) for entry in codes()], indent=2))
+        else:
+            _print(codes())
+
+
+def _as_json(entry: "Code") -> dict[str, Any]:
+    """Return a rule as plain JSON types; what only a page says is null for a rule that has none."""
+    from robolang.lint.registry import rule
+
+    known = rule(entry.code)
+    return {
+        "code": entry.code,
+        "name": entry.name,
+        "meaning": entry.meaning,
+        "remedy": entry.remedy,
+        "severity": None if known is None else known.severity.value,
+        "why": None if known is None else known.why,
+        "example": None if known is None else known.example,
+        "instead": None if known is None else known.instead,
+        "fix": None if known is None or not known.fix else known.fix,
+        "found_by": None if known is None else "run" if known.by_run else "check",
+    }
+
+
+def _print(entries: "list[Code]") -> None:
+    from rich import box
+    from rich.table import Table
+
+    from robolang.cli.console import Console
+    from robolang.lint.registry import rule
+
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+    for heading in ("code", "name", "severity", "fix"):
+        table.add_column(heading, no_wrap=True)
+    table.add_column("meaning", overflow="fold")
+    for entry in entries:
+        known = rule(entry.code)
+        severity, fix = ("", "") if known is None else (known.severity.value, "yes" if known.fix else "")
+        table.add_row(entry.code, entry.name, severity, fix, entry.meaning)
+    Console().print(table)

@@ -1,0 +1,227 @@
+"""The formatter: one layout for all programs, which changes nothing that a program means or says.
+
+Every line becomes ``number *LABEL statement  ' comment`` in the canonical text of ``printer``:
+
+- Line numbers stand to the left in a column as wide as the widest of them. A line without one leaves the column blank;
+  a comment outside of all blocks stands at the margin.
+- The inside of IF, FOR, WHILE, SELECT, CASE and SUB is indented by two spaces, as far as ``MAX_INDENT``.
+- A comment behind a statement is two spaces away from it, and comments of lines that follow one another stand in one
+  column. A blank line, a line of its own for a comment and a line that is kept end such a group, and so does a comment
+  that the common column would push beyond ``MAX_WIDTH``.
+- At most two blank lines in a row, none at the end; the line end is that of the first line.
+
+Kept as it is: a line that does not parse, one that would become too long for the language, and what stands between
+``' fmt: off`` and ``' fmt: on``, each on a line of its own. A text that would outgrow the language is not changed.
+
+The result is a fixed point and has the same tree and the same comments (REM is capitalised). One pass over the lines
+after parsing, so the time is linear in the text. Blocks are matched by their words alone and leniently: a closing word
+without its head moves nothing, since ``structure`` says what is wrong with it.
+"""
+
+import re
+from collections import Counter
+from dataclasses import dataclass, field
+
+from robolang.diagnostics import Diagnostic
+from robolang.nodes import Comment, Line, Program, Unparsed
+from robolang.parser import MAX_LINE, parse
+from robolang.printer import print_code
+from robolang.source import MAX_BYTES, Source, Span
+from robolang.structure import targets, word_of
+
+INDENT = "  "
+MAX_INDENT = 20
+"""Levels that are indented; a program in deeper blocks would be nothing but blanks."""
+MAX_WIDTH = 100
+MAX_BLANK = 2
+
+_LINE_END = re.compile(r"\r\n?|\n")
+_SWITCH = re.compile(r"(?:'|REM\b)[ \t]*fmt:[ \t]*(off|on)", re.IGNORECASE)
+_CLOSES = {"ENDIF": "IF", "NEXT": "FOR", "WEND": "WHILE", "ENDSELECT": "SELECT", "ENDSUB": "SUB"}
+_DIVIDES = {"ELSEIF": "IF", "ELSE": "IF", "CASE": "SELECT", "CASE ELSE": "SELECT"}
+_HEADS = frozenset(_CLOSES.values())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FormatResult:
+    """The formatted text, whether it differs, and the diagnostics of the parser: of the lines that were kept.
+
+    With an error among them a command leaves the file alone.
+    """
+
+    text: str
+    changed: bool
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def format_source(source: Source) -> FormatResult:
+    """Format a program; any text gives a result, nothing is raised."""
+    parsed = parse(source)
+    if any(item.code == "RBL106" for item in parsed.diagnostics):
+        return FormatResult(text=source.text, changed=False, diagnostics=parsed.diagnostics)
+    rows = _rows(source, parsed.program)
+    _align(rows)
+    end = line_end(source.text)
+    text = "".join(f"{row.text}{end}" for row in rows)
+    if (problem := outgrown(text)) is not None:
+        return FormatResult(text=source.text, changed=False, diagnostics=(problem, *parsed.diagnostics))
+    return FormatResult(text=text, changed=text != source.text, diagnostics=parsed.diagnostics)
+
+
+def line_end(text: str) -> str:
+    """Return how the first line of a text ends; LF when it has one line only."""
+    found = _LINE_END.search(text)
+    return found[0] if found else "\n"
+
+
+def outgrown(text: str) -> Diagnostic | None:
+    """Return RBL106 for a text that was made from a program and is too large to be one."""
+    size = len(text.encode("utf-8", "surrogatepass"))
+    if size <= MAX_BYTES:
+        return None
+    message = f"written anew, the program would have {size} bytes, more than {MAX_BYTES}"
+    return Diagnostic(code="RBL106", message=message, span=Span(0, 0))
+
+
+# --- lines -----------------------------------------------------------------------------------------------------------
+
+
+@dataclass(slots=True)
+class _Row:
+    """A line of the result: what stands before its comment, and the comment.
+
+    ``ends_group``: comments above and below it do not share a column.
+    """
+
+    code: str
+    comment: str = ""
+    ends_group: bool = False
+
+    @property
+    def text(self) -> str:
+        return f"{self.code}{INDENT}{self.comment}" if self.comment else self.code
+
+
+def _rows(source: Source, program: Program) -> list[_Row]:
+    """Return the lines of the result, with comments two spaces behind their statements."""
+    lines = {line.source_line: line for line in program.lines}
+    width = max((len(str(line.number)) for line in program.lines if line.number is not None), default=0)
+    rows: list[_Row] = []
+    blocks, blank, on = _Blocks(), 0, True
+    for number, span in enumerate(_line_spans(source), start=1):
+        text, line = source.slice(span), lines.get(number)
+        switch = None if line is None else _switch(line)
+        depth = 0 if line is None else blocks.enter(word_of(line.statement))
+        kept = not on and switch is None
+        blank = 0 if kept or text.strip(" \t") else blank + 1
+        on = on if switch is None else switch
+        if blank <= MAX_BLANK:
+            row = None if kept else _Row("", ends_group=True) if blank else _row(line, depth, width)
+            rows.append(_Row(text, ends_group=True) if row is None else row)
+    if blank:
+        del rows[-min(blank, MAX_BLANK) :]
+    return rows
+
+
+def _line_spans(source: Source) -> tuple[Span, ...]:
+    """Return the places of the lines; behind the last line end there is none."""
+    spans = source.line_spans
+    return spans if spans[-1].start < spans[-1].end else spans[:-1]
+
+
+def _switch(line: Line) -> bool | None:
+    """Return whether a line of its own switches the formatter on or off; None when it does neither."""
+    if line.comment is None or line.label is not None or line.statement is not None:
+        return None
+    found = _SWITCH.fullmatch(line.comment.text)
+    return found[1].lower() == "on" if found else None
+
+
+def _row(line: Line | None, depth: int, width: int) -> _Row | None:
+    """Return a line in its layout; None when it has to stay as it is."""
+    if line is None or isinstance(line.statement, Unparsed) or _names_no_line(line):
+        return None
+    code, comment = print_code(line), "" if line.comment is None else _comment(line.comment)
+    alone = not code
+    number = "" if line.number is None else str(line.number)
+    column = width + 1 if width and (number or code or depth) else 0
+    margin = number.ljust(column) + INDENT * min(depth, MAX_INDENT)
+    row = _Row(f"{margin}{comment}".rstrip(), ends_group=True) if alone else _Row(f"{margin}{code}", comment)
+    return row if len(row.text) <= MAX_LINE else None
+
+
+def _names_no_line(line: Line) -> bool:
+    """Return whether a target is spelt in a way that the tree does not tell, such as ``GOTO 1.5``."""
+    return any(target.number is not None and target.number < 0 for target in targets(line.statement))
+
+
+def _comment(comment: Comment) -> str:
+    return comment.text if comment.text.startswith("'") else f"REM{comment.text[3:]}"
+
+
+# --- blocks ----------------------------------------------------------------------------------------------------------
+
+
+@dataclass(slots=True)
+class _Blocks:
+    """The blocks that are open, by the words of their heads; a CASE is one inside its SELECT.
+
+    ``count`` says whether a head is among them without a search, so that any text takes linear time.
+    """
+
+    stack: list[str] = field(default_factory=list)
+    count: Counter[str] = field(default_factory=Counter)
+
+    def enter(self, word: str) -> int:
+        """Return the depth of a line that takes part in a block with ``word``, and note what it opens and closes."""
+        head = _DIVIDES.get(word)
+        if head is not None and self._close(head):
+            if head == "SELECT":
+                self._open(head)
+            self._open("CASE" if head == "SELECT" else head)
+            return len(self.stack) - 1
+        self._close(_CLOSES.get(word, ""))
+        if word not in _HEADS:
+            return len(self.stack)
+        self._open(word)
+        return len(self.stack) - 1
+
+    def _open(self, word: str) -> None:
+        self.stack.append(word)
+        self.count[word] += 1
+
+    def _close(self, word: str) -> bool:
+        """Close the innermost block of a head, and all inside it; False when there is none."""
+        if not self.count[word]:
+            return False
+        while True:
+            closed = self.stack.pop()
+            self.count[closed] -= 1
+            if closed == word:
+                return True
+
+
+# --- comments behind statements --------------------------------------------------------------------------------------
+
+
+def _align(rows: list[_Row]) -> None:
+    """Put the comments of lines that follow one another into one column."""
+    group: list[_Row] = []
+    width = longest = 0
+    for row in rows:
+        if row.comment:
+            both = max(width, len(row.code)), max(longest, len(row.comment))
+            if group and sum(both) + len(INDENT) > MAX_WIDTH:
+                _pad(group, width)
+                group, both = [], (len(row.code), len(row.comment))
+            group.append(row)
+            width, longest = both
+        elif row.ends_group:
+            _pad(group, width)
+            group, width, longest = [], 0, 0
+    _pad(group, width)
+
+
+def _pad(group: list[_Row], width: int) -> None:
+    for row in group:
+        row.code = row.code.ljust(width)

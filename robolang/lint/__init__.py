@@ -1,0 +1,1 @@
+"""The linter behind ``robolang check``: rules and their pages, selection, suppression, fixes. Imports no numerics."""

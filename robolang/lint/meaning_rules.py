@@ -1,0 +1,131 @@
+"""Rules RBL2xx: the meaning of a program."""
+
+from robolang.diagnostics import Severity
+from robolang.lint.registry import Rule
+
+RULES = (
+    Rule(
+        code="RBL201",
+        severity=Severity.WARNING,
+        why="A program without an instruction runs and ends at once. In a production line that looks like success.",
+        bad="' the second shift writes this one\n",
+        good="' the second shift writes this one\n10 MOVE P1\n",
+    ),
+    Rule(
+        code="RBL202",
+        why="The jump has nowhere to go. It is found here and not in the night when the condition holds for the first "
+        "time.",
+        bad="10 IF IN(1) THEN GOTO *DONE\n20 MOVE P1\n30 *DON MOVE P2\n",
+        good="10 IF IN(1) THEN GOTO *DONE\n20 MOVE P1\n30 *DONE MOVE P2\n",
+    ),
+    Rule(
+        code="RBL203",
+        why="A name that stands for two places stands for neither: a jump or a call could mean the other one.",
+        bad="10 *PICK MOVE P1\n20 *PICK MOVE P2\n30 IF IN(1) THEN GOTO *PICK\n",
+        good="10 *PICK MOVE P1\n20 *PLACE MOVE P2\n30 IF IN(1) THEN GOTO *PICK\n",
+        line=2,
+    ),
+    Rule(
+        code="RBL204",
+        why="A loop that is entered in its middle has counted nothing, and its NEXT has nothing to go on from. Into a "
+        "SUB leads CALL, since nothing else gives its parameters values.",
+        bad="10 IF IN(1) THEN GOTO 30\n20 FOR I = 1 TO 3\n30 MOVE P1\n40 NEXT\n",
+        good="10 IF IN(1) THEN GOTO 20\n20 FOR I = 1 TO 3\n30 MOVE P1\n40 NEXT\n",
+    ),
+    Rule(
+        code="RBL205",
+        why="The variable would stand still and the arm repeat its moves until somebody stops it.",
+        bad="10 FOR I = 1 TO 3 STEP 0\n20 MOVE P1\n30 MOVE P2\n40 NEXT\n",
+        good="10 FOR I = 1 TO 3\n20 MOVE P1\n30 MOVE P2\n40 NEXT\n",
+    ),
+    Rule(
+        code="RBL206",
+        severity=Severity.WARNING,
+        why="A tenth is no binary number. The rounds are counted once, at the start; the variable is added up and is a "
+        "little beside its value at the end.",
+        bad="10 FOR X = 0 TO 1 STEP 0.1\n20 MOVE P1 + (0, 0, X)\n30 NEXT\n",
+        good="10 FOR I = 0 TO 10\n20 MOVE P1 + (0, 0, I / 10)\n30 NEXT\n",
+    ),
+    Rule(
+        code="RBL209",
+        why="The calculation fails at every run, whatever the variables hold.",
+        bad="10 DELAY 1 / 0\n",
+        good="10 DELAY 1 / 2\n",
+    ),
+    Rule(
+        code="RBL211",
+        why="Where a block ends decides what is repeated and what is skipped. That is not guessed.",
+        bad="10 FOR I = 1 TO 3\n20 MOVE P1\n30 MOVE P2\n",
+        good="10 FOR I = 1 TO 3\n20 MOVE P1\n30 MOVE P2\n40 NEXT\n",
+    ),
+    Rule(
+        code="RBL212",
+        why="The end of a block that was never opened: the line of its head is missing or misspelt, and everything "
+        "above it runs once, without a condition.",
+        bad="10 MOVE P1\n20 MOVE P2\n30 NEXT\n",
+        good="10 FOR I = 1 TO 3\n20 MOVE P1\n25 MOVE P2\n30 NEXT\n",
+        line=3,
+    ),
+    Rule(
+        code="RBL213",
+        why="There is nothing to call. It is found before the arm moves, not in the middle of the work.",
+        bad="10 CALL PICK\n20 END\n30 SUB PICKUP\n40 MOVE P1\n50 HAND ON\n60 ENDSUB\n",
+        good="10 CALL PICKUP\n20 END\n30 SUB PICKUP\n40 MOVE P1\n50 HAND ON\n60 ENDSUB\n",
+    ),
+    Rule(
+        code="RBL214",
+        why="A parameter without a value has no sensible one, and a value too many was meant for something.",
+        bad="10 CALL LIFT(50)\n20 END\n30 SUB LIFT(H, T)\n40 DEPART H, TIME T\n50 ENDSUB\n",
+        good="10 CALL LIFT(50, 2)\n20 END\n30 SUB LIFT(H, T)\n40 DEPART H, TIME T\n50 ENDSUB\n",
+    ),
+    Rule(
+        code="RBL215",
+        why="A misspelt name would otherwise be a new variable that nobody has given a value.",
+        bad="10 DWELL = 0.5\n20 DELAY DWEL\n",
+        good="10 DWELL = 0.5\n20 DELAY DWELL\n",
+        line=2,
+    ),
+    Rule(
+        code="RBL216",
+        why="Whoever wrote CONST relies on the value everywhere below. A second one would hold for some lines only.",
+        bad="10 CONST HEIGHT = 50\n20 HEIGHT = 60\n30 DEPART HEIGHT\n",
+        good="10 CONST HEIGHT = 60\n30 DEPART HEIGHT\n",
+        line=2,
+    ),
+    Rule(
+        code="RBL217",
+        why="A text is not taken for the number that it looks like, and a pose is six numbers. The line would fail at "
+        "every run.",
+        bad='10 DELAY "2"\n',
+        good="10 DELAY 2\n",
+    ),
+    Rule(
+        code="RBL218",
+        why="A pose consists of X, Y, Z in mm and RX, RY, RZ in degrees. Other letters mean other angles on other "
+        "controllers.",
+        bad="10 PRINT P1.W\n",
+        good="10 PRINT P1.RX\n",
+    ),
+    Rule(
+        code="RBL219",
+        why="A SUB is there whether or not the program comes by. Inside a block it looks as if the block decided.",
+        bad="10 IF IN(1) THEN\n20 SUB LIFT\n30 DEPART 50\n40 ENDSUB\n50 ENDIF\n60 CALL LIFT\n",
+        good="10 IF IN(1) THEN\n20 CALL LIFT\n30 ENDIF\n40 END\n50 SUB LIFT\n60 DEPART 50\n70 ENDSUB\n",
+        line=2,
+    ),
+    Rule(
+        code="RBL220",
+        why="A place with two values could be any of three. Nothing is put in the gap.",
+        bad="10 LOAD (0, 60), 0.8\n",
+        good="10 LOAD (0, 0, 60), 0.8\n",
+    ),
+    Rule(
+        code="RBL221",
+        severity=Severity.WARNING,
+        why="The line looks like part of the work and never is: a condition in front of the jump has been lost, or the "
+        "line is left over.",
+        bad="10 *AGAIN MOVE P1\n20 GOTO *AGAIN\n30 MOVE P2\n",
+        good="10 *AGAIN MOVE P1\n20 IF IN(1) THEN GOTO *AGAIN\n30 MOVE P2\n",
+        line=3,
+    ),
+)

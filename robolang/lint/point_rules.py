@@ -1,0 +1,80 @@
+"""Rules RBL3xx: taught points and the names of the cell."""
+
+from robolang.lint.registry import Rule
+
+RULES = (
+    Rule(
+        code="RBL301",
+        why="There is nowhere to go: the name is misspelt, or nobody has taught the point yet. The program does not "
+        "run, since half a program leaves the arm somewhere in the middle.",
+        bad="10 MOVE P1\n20 MOVE P12\n",
+        good="10 MOVE P1\n20 MOVE P2\n",
+        line=2,
+    ),
+    Rule(
+        code="RBL303",
+        why="Half a points file would send the arm to half of the points. Nothing of a damaged one is used.",
+        bad="schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0\n",
+        good="schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\n",
+        line=3,
+        points=True,
+    ),
+    Rule(
+        code="RBL304",
+        why="A newer version may have written what this one would leave out or read otherwise, such as a frame. The "
+        "file is neither used nor changed.",
+        bad="schema = 2\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\n",
+        good="schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\n",
+        points=True,
+    ),
+    Rule(
+        code="RBL305",
+        why="Every target after it depends on the tool or the frame. With one that the cell does not have, the arm "
+        "would go somewhere that nobody has taught.",
+        bad="10 TOOL GRIPER\n20 MOVE P1\n",
+        good="10 TOOL GRIPPER\n20 MOVE P1\n",
+        by_run=True,
+    ),
+    Rule(
+        code="RBL306",
+        why="A seam cannot be followed with a sensor that is not there; the arm would weld beside it.",
+        bad="10 SEAM ON, LASR\n20 MOVE P1\n30 SEAM OFF\n",
+        good="10 SEAM ON, LASER\n20 MOVE P1\n30 SEAM OFF\n",
+        by_run=True,
+    ),
+    Rule(
+        code="RBL307",
+        why="With three values the tool could arrive in any orientation, and with five angles one joint could stand "
+        "anywhere.",
+        bad="schema = 1\n[points.P1]\npose = [450, -150, 200]\n",
+        good="schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\n",
+        line=3,
+        points=True,
+    ),
+    Rule(
+        code="RBL308",
+        why="A misspelt key is not read, and the point would silently be another one: here in the world in place of "
+        "the table.",
+        bad='schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\nframme = "TABLE"\n',
+        good='schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\nframe = "TABLE"\n',
+        line=4,
+        points=True,
+    ),
+    Rule(
+        code="RBL309",
+        why="A point half a kilometre away is a slip of the unit or of a comma.",
+        bad="schema = 1\n[points.P1]\npose = [450000, -150, 200, 180, 0, 90]\n",
+        good="schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\n",
+        line=3,
+        points=True,
+    ),
+    Rule(
+        code="RBL310",
+        why="The same joint angles are another place on another arm, and the same place may be out of its reach.",
+        bad='schema = 1\nrobot = "irb2400"\n[points.P1]\njoints = [0, 45, 180, 0, 45, 0]\n',
+        good='schema = 1\nrobot = "puma560"\n[points.P1]\njoints = [0, 45, 180, 0, 45, 0]\n',
+        line=2,
+        by_run=True,
+        points=True,
+    ),
+)

@@ -1,0 +1,103 @@
+"""The rules of ``robolang check``: what is known of a code beyond its name, meaning and remedy.
+
+Code, name, meaning and remedy are in the registry of ``runtime.faults``; here is what a page of documentation needs
+besides: why the finding matters, a program that has it, the same program without it, and what ``--fix`` does. A code
+without an entry is a rule all the same: it can be selected, ignored and suppressed, and its page is short. One module
+holds the entries of one group of a hundred codes; a new one is a ``Rule`` in its list and, after
+``python -m robolang.lint.pages``, a page.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+from types import MappingProxyType
+
+import robolang.codes  # noqa: F401 - fills the registry of codes
+from robolang.diagnostics import Severity
+from runtime.faults import Code, all_codes, lookup
+
+_MOST_LINES = 20
+
+CHECKED = ("RBL1", "RBL2", "RBL3", "RBL40", "RBL415", "RBL534")
+"""Beginnings of the codes that reading and checking a program can find."""
+
+
+OF_THE_CELL = frozenset({"RBL305", "RBL306", "RBL402", "RBL534"})
+"""Codes that need the cell, at least in part: reading the text alone does not find all of them."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rule:
+    """What a page says of one code.
+
+    ``bad`` is a program that yields the code at 1-based ``line`` and nowhere else, ``good`` its correction. ``shown``
+    is printed in place of a ``bad`` that cannot be: too long, or with invisible characters; a byte that is not UTF-8
+    is written as its surrogate, ``\\udcb0`` for B0. ``fix`` says what ``--fix`` does; empty: there is none.
+    ``by_run``: the finding needs the cell, which ``robolang run`` reads and ``robolang check`` does not. ``points``:
+    ``bad`` and ``good`` are the points file ``pick.points.toml`` beside a program.
+    """
+
+    code: str
+    severity: Severity = Severity.ERROR
+    why: str
+    bad: str
+    good: str
+    line: int = 1
+    shown: str = ""
+    fix: str = ""
+    by_run: bool = False
+    points: bool = False
+
+    @property
+    def entry(self) -> Code:
+        """Name, meaning and remedy of the code."""
+        return lookup(self.code)
+
+    @property
+    def example(self) -> str:
+        """The program that has the finding, as it is printed: without a line end at its end."""
+        return _printed(self.shown or self.bad)
+
+    @property
+    def instead(self) -> str:
+        """Its correction, as it is printed."""
+        return _printed(self.good)
+
+
+def _printed(program: str) -> str:
+    """Return the lines of a program with one kind of line end, of many the first."""
+    lines = program.splitlines()
+    return "\n".join(lines if len(lines) <= _MOST_LINES else [*lines[:2], "' and so on"])
+
+
+def is_rule(code: str) -> bool:
+    """Return whether checking a program can find a code."""
+    return code.startswith(CHECKED)
+
+
+def is_looked_for(code: str) -> bool:
+    """Return whether a check of text and points alone finds a code wherever it is; else its absence says nothing."""
+    return is_rule(code) and code not in OF_THE_CELL
+
+
+def codes() -> list[Code]:
+    """Return every code that checking a program can find, in numeric order, with or without a page."""
+    return [entry for entry in all_codes() if is_rule(entry.code)]
+
+
+@cache
+def rules() -> MappingProxyType[str, Rule]:
+    """Return the rules that have a page, by code in numeric order; ``ValueError`` for a code with two."""
+    from robolang.lint import meaning_rules, motion_rules, point_rules, run_rules, text_rules
+
+    found: dict[str, Rule] = {}
+    for module in (text_rules, meaning_rules, point_rules, motion_rules, run_rules):
+        for rule in module.RULES:
+            if rule.code in found:
+                raise ValueError(f"{rule.code} has two pages")
+            found[rule.code] = rule
+    return MappingProxyType({code: found[code] for code in sorted(found)})
+
+
+def rule(code: str) -> Rule | None:
+    """Return the page of a code; None when it has none."""
+    return rules().get(code)

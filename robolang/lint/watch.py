@@ -1,0 +1,55 @@
+"""Doing something again whenever a file changes: programs, what stands beside them, and the configuration above.
+
+Files are looked at every ``PERIOD_S``, new ones in a folder included. A file counts as changed when its time, size or
+identity is another. ``rounds`` and ``sleep`` are there for tests.
+"""
+
+import os
+import time
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from robolang.lint.files import STANDARD_INPUT, programs
+from robolang.lint.settings import files_above
+
+PERIOD_S = 0.2
+
+Stamp = tuple[int, int, int] | None
+
+
+def watch(paths: Iterable[str], check: Callable[[], int], *, rounds: int | None = None,
+          sleep: Callable[[float], object] = time.sleep) -> int:  # fmt: skip
+    """Call ``check`` now and after every change, until Ctrl-C or after ``rounds`` looks; return its last answer."""
+    named = list(paths)
+    seen, code, looks = stamps(named), 0, 0
+    try:
+        code = check()
+        while rounds is None or looks < rounds:
+            looks += 1
+            sleep(PERIOD_S)
+            now = stamps(named)
+            if now != seen:
+                seen = now
+                code = check()
+    except KeyboardInterrupt:
+        return code
+    return code
+
+
+def stamps(paths: Iterable[str]) -> dict[str, Stamp]:
+    """Return what tells whether anything has changed that a check of these paths reads; None: not there."""
+    found = [name for name in programs(paths) if name != STANDARD_INPUT and "\0" not in name]
+    folders = {Path(name).parent for name in found} | {Path(name) for name in paths if os.path.isdir(name)}  # noqa: PTH112
+    files = {str(path) for folder in folders for path in (folder / "cell.toml", *files_above(folder))}
+    for name in found:
+        beside = (Path(name).with_suffix(ending) for ending in (".points.toml", ".cell.toml"))
+        files.update((name, *map(str, beside)))
+    return {name: _stamp(name) for name in sorted(files)}
+
+
+def _stamp(name: str) -> Stamp:
+    try:
+        info = os.stat(name)  # noqa: PTH116
+    except OSError:
+        return None
+    return info.st_mtime_ns, info.st_size, info.st_ino

@@ -1,0 +1,42 @@
+"""Workflow commands of GitHub Actions, which become annotations of the changed lines.
+
+``::error title=robolang (RBL112),file=..,line=..,col=..,endLine=..,endColumn=..::message%0Ahelp``. In the message
+``%``, CR and LF are escaped, in a property ``:`` and ``,`` as well.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from robolang.diagnostics import Severity, safe
+from robolang.lint.engine import Checked
+from robolang.output.finding import Finding, findings, relative
+
+_COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}
+
+
+def render(results: Sequence[Checked], root: Path) -> str:
+    """Return one command for each finding."""
+    return "".join(f"{_command(item, root)}\n" for item in findings(results))
+
+
+def _command(item: Finding, root: Path) -> str:
+    region = item.region
+    properties = {
+        "title": f"robolang ({item.code})",
+        "file": relative(item.path, root),
+        "line": region.line,
+        "col": region.column,
+        "endLine": region.end_line,
+        "endColumn": region.end_column,
+    }
+    said = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
+    text = f"{safe(item.path)}:{region.line}:{region.column}: {item.code} {item.message}\nhelp: {item.hint}"
+    return f"::{_COMMANDS[item.severity]} {said}::{_data(text)}"
+
+
+def _data(text: str) -> str:
+    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+def _property(text: str) -> str:
+    return _data(text).replace(":", "%3A").replace(",", "%2C")

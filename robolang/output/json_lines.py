@@ -1,0 +1,14 @@
+"""One JSON object on each line, with the keys of the form ``json``: for tools that read as it comes."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+from robolang.lint.engine import Checked
+from robolang.output.finding import findings
+from robolang.output.json_array import as_json
+
+
+def render(results: Sequence[Checked], root: Path) -> str:
+    """Return the lines."""
+    return "".join(f"{json.dumps(as_json(item))}\n" for item in findings(results))

@@ -1,0 +1,209 @@
+"""Codes of programs that run and of their structure: expressions, control, inputs and outputs (2xx, 415, 50x, 53x).
+
+Registered at import, as those of ``robolang.codes``, which imports this module.
+"""
+
+from runtime.faults import Code, register
+
+register(
+    Code(
+        code="RBL202",
+        name="target-undefined",
+        meaning="A jump leads to a line number or a label that there is not.",
+        remedy="Correct it, or write the label *NAME at the start of a line.",
+    ),
+    Code(
+        code="RBL203",
+        name="defined-twice",
+        meaning="A label or a SUB is defined twice.",
+        remedy="Rename one of them.",
+    ),
+    Code(
+        code="RBL204",
+        name="jump-into-block",
+        meaning="A jump leads into a loop, a branch or a SUB that it is not in.",
+        remedy="Jump to the head of the block, or use GOSUB or CALL.",
+    ),
+    Code(
+        code="RBL205",
+        name="step-zero",
+        meaning="FOR has STEP 0 and would never end.",
+        remedy="Give another STEP.",
+    ),
+    Code(
+        code="RBL206",
+        name="step-fraction",
+        meaning="FOR has a STEP that is no whole number: its variable gathers rounding errors, the number of rounds "
+        "does not.",
+        remedy="Count with whole numbers and multiply inside.",
+    ),
+    Code(
+        code="RBL209",
+        name="no-value-at-all",
+        meaning="A calculation of numbers alone has no result, such as 1 / 0.",
+        remedy="Correct the numbers.",
+    ),
+    Code(
+        code="RBL211",
+        name="block-not-closed",
+        meaning="An IF, FOR, WHILE, SELECT or SUB has no end.",
+        remedy="Write ENDIF, NEXT, WEND, ENDSELECT or ENDSUB below it.",
+    ),
+    Code(
+        code="RBL212",
+        name="block-without-head",
+        meaning="A line that divides or ends a block has no head above it.",
+        remedy="Write the head, or remove the line; blocks are closed in the order in which they were opened.",
+    ),
+    Code(
+        code="RBL213",
+        name="sub-undefined",
+        meaning="CALL names a SUB that there is not.",
+        remedy="Correct the name, or write the SUB.",
+    ),
+    Code(
+        code="RBL214",
+        name="argument-count",
+        meaning="A CALL or a function has another number of arguments than it takes.",
+        remedy="Give as many as the message says.",
+    ),
+    Code(
+        code="RBL215",
+        name="name-undefined",
+        meaning="A name is used that nothing assigns and that is no taught point.",
+        remedy="Correct the name, assign a value, or teach the point.",
+    ),
+    Code(
+        code="RBL216",
+        name="constant-assigned",
+        meaning="A value is assigned to a name that CONST fixed.",
+        remedy="Use another name.",
+    ),
+    Code(
+        code="RBL217",
+        name="kind-mismatch",
+        meaning="A number, a text or a pose stands where another is needed.",
+        remedy="Use STR$ and VAL between numbers and texts; P.X and its like are the numbers of a pose.",
+    ),
+    Code(
+        code="RBL218",
+        name="component-unknown",
+        meaning="A pose has no component of that name.",
+        remedy="They are X, Y, Z, RX, RY and RZ.",
+    ),
+    Code(
+        code="RBL219",
+        name="sub-inside-block",
+        meaning="A SUB stands inside a block.",
+        remedy="Put it behind the main program.",
+    ),
+    Code(
+        code="RBL220",
+        name="value-count",
+        meaning="Parentheses hold another number of values than is needed there.",
+        remedy="A place has three values, a way and a turn or an inertia six.",
+    ),
+    Code(
+        code="RBL221",
+        name="unreachable",
+        meaning="A line can never run: the one above it leaves for good, and no jump leads here.",
+        remedy="Remove it, or give it the label that a jump names.",
+    ),
+    Code(
+        code="RBL415",
+        name="blend-radius-negative",
+        meaning="The radius of a blend is below 0.",
+        remedy="Give 0 or more, or FINE to stop.",
+    ),
+    Code(
+        code="RBL421",
+        name="collision-ahead",
+        meaning="A move would lead the arm or the hand into an obstacle of the cell or into the ground.",
+        remedy="Go there over a via point, from another side, or move the obstacle in the cell file to where it is.",
+    ),
+    Code(
+        code="RBL422",
+        name="near-joint-limit",
+        meaning="A move brings a joint close to the end of its range.",
+        remedy="Teach the point in another configuration, or a little further off.",
+    ),
+    Code(
+        code="RBL423",
+        name="cycle-too-long",
+        meaning="A program takes longer than it was allowed to.",
+        remedy="Look where the time goes in the table of robolang check --motion: speeds, zones, dwells.",
+    ),
+    Code(
+        code="RBL501",
+        name="division-by-zero",
+        meaning="A program divided by zero.",
+        remedy="Test the divisor first, or catch it with ON ERROR.",
+    ),
+    Code(
+        code="RBL502",
+        name="no-number",
+        meaning="A calculation has no finite result: a root or a power of what has none, or a number that grew too "
+        "large.",
+        remedy="Test the value first, or catch it with ON ERROR.",
+    ),
+    Code(
+        code="RBL506",
+        name="too-much-text",
+        meaning="A text that a program made, or all that it has printed, is too long.",
+        remedy="Print less, or in a shorter loop.",
+    ),
+    Code(
+        code="RBL507",
+        name="no-such-element",
+        meaning="An array has no element of that number, or is too large.",
+        remedy="Give DIM the largest number that is used; elements count from 0.",
+    ),
+    Code(
+        code="RBL531",
+        name="value-of-other-kind",
+        meaning="A number, a text or a pose stands where another is needed.",
+        remedy="Use STR$ and VAL between numbers and texts; P.X and its like are the numbers of a pose.",
+    ),
+    Code(
+        code="RBL532",
+        name="name-without-value",
+        meaning="A name is used before anything was assigned to it.",
+        remedy="Assign a value first, teach the point, or correct the name.",
+    ),
+    Code(
+        code="RBL503",
+        name="wait-timed-out",
+        meaning="A WAIT had not come true when its TIMEOUT ended.",
+        remedy="Look at the input, give more time, or say with GOTO or ON ERROR where to go on.",
+    ),
+    Code(
+        code="RBL504",
+        name="calls-too-deep",
+        meaning="Subroutines call one another too deeply.",
+        remedy="A GOSUB must come back with RETURN; a SUB that calls itself must come to an end.",
+    ),
+    Code(
+        code="RBL505",
+        name="too-many-statements",
+        meaning="A run has carried out more statements than is allowed.",
+        remedy="Look for a loop that does not end.",
+    ),
+    Code(
+        code="RBL508",
+        name="idle-loop",
+        meaning="A loop goes round without a statement that takes time.",
+        remedy="Put a DELAY, a WAIT or a move into it, or end it.",
+    ),
+    Code(
+        code="RBL533",
+        name="nowhere-to-return",
+        meaning="RETURN, RESUME or NEXT has nothing that it belongs to.",
+        remedy="RETURN ends a GOSUB, RESUME an error handler, NEXT a FOR; keep GOTO from leading there.",
+    ),
+    Code(
+        code="RBL534",
+        name="no-such-signal",
+        meaning="An input or output has a number that the cell does not have.",
+        remedy="Give a number of the cell's [inputs] or 1 to 1024 for an output.",
+    ),
+)

@@ -1,0 +1,264 @@
+"""Structure: which lines belong together, and where every jump leads.
+
+The parser reads lines one by one; here blocks are matched (IF to ENDIF, FOR to NEXT, WHILE to WEND, SELECT to
+ENDSELECT, SUB to ENDSUB), line numbers and labels are looked up, and jumps that cannot be are found. The interpreter
+goes by the tables, so nothing is searched while a program runs. One pass over the lines with a stack of open blocks:
+linear in the text. Places are indices into ``Program.lines``.
+
+A block is left by GOTO freely and entered by its head only: a jump to a line inside a block that the jump is not in
+itself is RBL204, since a NEXT without its FOR has nothing to count.
+"""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from robolang.diagnostics import Diagnostic, Related
+from robolang.nodes import (
+    Block,
+    Case,
+    For,
+    Head,
+    If,
+    Jump,
+    Line,
+    Next,
+    OnError,
+    Program,
+    Statement,
+    Sub,
+    Target,
+    Unparsed,
+    Wait,
+)
+from robolang.source import Span
+from robolang.words import KEYWORDS, near
+
+_CLOSES = {"ENDIF": "IF", "WEND": "WHILE", "ENDSELECT": "SELECT", "ENDSUB": "SUB", "NEXT": "FOR"}
+_CLOSED_BY = {head: word for word, head in _CLOSES.items()}
+MAX_BLOCKS = 100
+"""Deepest nesting of blocks."""
+_DIVIDES = {"ELSEIF": "IF", "ELSE": "IF", "CASE": "SELECT", "CASE ELSE": "SELECT"}
+
+
+_WORDS = frozenset(_CLOSES) | frozenset(_CLOSED_BY) | {"ELSEIF", "ELSE", "CASE"}
+_FIRST = re.compile(r"[ \t]*(?:\*\w+[ \t]+)?([A-Za-z]+)")
+_SPLIT_END = re.compile(r"\bEND[ \t]+(?=(?:IF|SELECT|SUB)\b)", re.IGNORECASE)
+_ONE_LINE = re.compile(r"\bTHEN\b[ \t]*[^ \t']", re.IGNORECASE)
+
+
+@dataclass(slots=True)
+class Structure:
+    """The tables of a program; places are indices into its lines.
+
+    ``after``: of a line of a block the next one of the same block, and of its last one the first (IF -> ELSEIF -> ELSE
+    -> ENDIF -> IF). ``end``: of every line of a block the closing one. ``numbers`` and ``labels`` give the line of a
+    target; ``subs`` that of SUB by name. ``owner``: line of the SUB that a line is in. ``inside``: heads of the blocks
+    that a line is in, outermost first.
+    """
+
+    after: dict[int, int] = field(default_factory=dict)
+    end: dict[int, int] = field(default_factory=dict)
+    numbers: dict[int, int] = field(default_factory=dict)
+    labels: dict[str, int] = field(default_factory=dict)
+    subs: dict[str, int] = field(default_factory=dict)
+    owner: dict[int, int] = field(default_factory=dict)
+    inside: list[tuple[int, ...]] = field(default_factory=list)
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+
+    def line_of(self, target: Target) -> int | None:
+        """Return the line that a target names; None where there is none."""
+        if target.label is not None:
+            return self.labels.get(target.label.key)
+        return self.numbers.get(target.number if target.number is not None else -1)
+
+
+def word_of(statement: Statement | None) -> str:
+    """Return the word by which a statement takes part in a block, or ``""``."""
+    if isinstance(statement, Head | Block):
+        return statement.word
+    for kind, word in ((For, "FOR"), (Next, "NEXT"), (Sub, "SUB"), (Case, "CASE")):
+        if isinstance(statement, kind):
+            return word
+    return ""
+
+
+def structure_of(program: Program) -> Structure:
+    """Return the tables of a program, with what is wrong in ``diagnostics``."""
+    found = Structure()
+    _names(program, found)
+    _blocks(program, found)
+    for index, line in enumerate(program.lines):
+        for target in targets(line.statement):
+            _check_jump(program, found, index, target)
+    return found
+
+
+def targets(statement: Statement | None) -> Iterator[Target]:
+    """Yield the places that a statement may jump to."""
+    if isinstance(statement, Jump | OnError | Wait):
+        if statement.target is not None:
+            yield statement.target
+    elif isinstance(statement, If):
+        yield from targets(statement.then)
+        yield from targets(statement.otherwise)
+
+
+def _names(program: Program, found: Structure) -> None:
+    """Look up line numbers, labels and subroutines; of equal ones the first counts."""
+    for index, line in enumerate(program.lines):
+        if line.number is not None:
+            found.numbers.setdefault(line.number, index)
+        if line.label is not None:
+            _define(found, found.labels, line.label.key, index, line.label.span, f"label *{line.label.text}", program)
+        if isinstance(line.statement, Sub):
+            name = line.statement.name
+            _define(found, found.subs, name.key, index, name.span, f"SUB {name.text}", program)
+
+
+def _define(found: Structure, table: dict[str, int], key: str, index: int, span: Span, what: str,
+            program: Program) -> None:  # fmt: skip
+    if key in table:
+        first = _span_of(program.lines[table[key]], is_label=table is found.labels)
+        related = (Related(span=first, message="first defined here"),)
+        found.diagnostics.append(Diagnostic(code="RBL203", message=f"{what} is defined twice", span=span,
+                                            related=related))  # fmt: skip
+    table.setdefault(key, index)
+
+
+def _span_of(line: Line, *, is_label: bool) -> Span:
+    if is_label and line.label is not None:
+        return line.label.span
+    assert isinstance(line.statement, Sub)
+    return line.statement.name.span
+
+
+@dataclass(slots=True)
+class _Open:
+    """A block that is not closed yet: its head's word, and the lines of it so far."""
+
+    word: str
+    lines: list[int]
+    last: bool = False
+
+
+def _blocks(program: Program, found: Structure) -> None:
+    """Match heads with what divides and closes them."""
+    stack: list[_Open] = []
+    for index, line in enumerate(program.lines):
+        word = _block_word(line.statement)
+        closes = word in _CLOSES or word in _DIVIDES
+        found.inside.append(tuple(block.lines[0] for block in (stack[:-1] if closes else stack)))
+        owner = next((block.lines[0] for block in stack if block.word == "SUB"), None)
+        if owner is not None:
+            found.owner[index] = owner
+        if not word or line.statement is None:
+            continue
+        if word in _CLOSED_BY:
+            if len(stack) >= MAX_BLOCKS:
+                _too_deep(found, program, index, word)
+                return
+            if word == "SUB" and stack:
+                _wrong(found, "RBL219", "a SUB stands outside of every block", line, program, stack[-1])
+            stack.append(_Open(word=word, lines=[index]))
+        else:
+            _continue(program, found, stack, index, word)
+    for block in stack:
+        _not_closed(program, found, block)
+
+
+def _block_word(statement: Statement | None) -> str:
+    """Return the word by which a line takes part in a block; of one with an error, the one that it seems to be."""
+    if not isinstance(statement, Unparsed):
+        return word_of(statement)
+    text = _SPLIT_END.sub("END", statement.text)
+    first = _FIRST.match(text)
+    if first and first[1].upper() in KEYWORDS - _WORDS:
+        return ""
+    word = near(first[1], _WORDS, cutoff=0.75) if first else ""
+    if word == "IF" and (_ONE_LINE.search(statement.text) or first is None or first[1].upper() != "IF"):
+        return ""
+    return "CASE ELSE" if word == "CASE" and "ELSE" in statement.text.upper() else word
+
+
+def _too_deep(found: Structure, program: Program, index: int, word: str) -> None:
+    """Report a block that is nested too deeply; the lines from it on belong to none, so tables stay linear."""
+    statement = program.lines[index].statement
+    assert statement is not None
+    message = f"this {word} is inside of {MAX_BLOCKS} blocks; no more are possible"
+    found.diagnostics.append(Diagnostic(code="RBL108", message=message, span=statement.span))
+    found.inside.extend(() for _ in range(len(program.lines) - len(found.inside)))
+
+
+def _continue(program: Program, found: Structure, stack: list[_Open], index: int, word: str) -> None:
+    """Take a line that divides or closes a block."""
+    line = program.lines[index]
+    head = _CLOSES.get(word) or _DIVIDES[word]
+    _give_up_inner(program, found, stack, head)
+    if not stack or stack[-1].word != head:
+        _wrong(found, "RBL212", f"{word} has no {head} above it", line, program, stack[-1] if stack else None)
+        return
+    block = stack[-1]
+    if word in ("ELSE", "ELSEIF", "CASE", "CASE ELSE"):
+        if block.last:
+            _wrong(found, "RBL212", f"{word} comes after the ELSE of its block", line, program, block)
+        block.last = block.last or word in ("ELSE", "CASE ELSE")
+        block.lines.append(index)
+        return
+    statement, opener = line.statement, program.lines[block.lines[0]].statement
+    named = statement.variable if isinstance(statement, Next) else None
+    if named is not None and isinstance(opener, For) and named.key != opener.variable.key:
+        _wrong(found, "RBL212", f"NEXT {named.text} closes FOR {opener.variable.text}", line, program, block)
+    block.lines.append(index)
+    stack.pop()
+    for here, there in zip(block.lines, [*block.lines[1:], block.lines[0]], strict=True):
+        found.after[here], found.end[here] = there, index
+
+
+def _give_up_inner(program: Program, found: Structure, stack: list[_Open], head: str) -> None:
+    """Report the open blocks above the one that a line belongs to, so that one missing end is one mistake."""
+    words = [block.word for block in stack]
+    inner = words[len(words) - words[::-1].index("SUB") :] if "SUB" in words and head != "SUB" else words
+    if head in inner:
+        while stack[-1].word != head:
+            _not_closed(program, found, stack.pop())
+
+
+def _not_closed(program: Program, found: Structure, block: _Open) -> None:
+    head = program.lines[block.lines[0]]
+    assert head.statement is not None
+    message = f"{block.word} has no {_CLOSED_BY[block.word]}"
+    found.diagnostics.append(Diagnostic(code="RBL211", message=message, span=head.statement.span))
+
+
+def _wrong(found: Structure, code: str, message: str, line: Line, program: Program, block: _Open | None) -> None:
+    assert line.statement is not None
+    related: tuple[Related, ...] = ()
+    if block is not None:
+        head = program.lines[block.lines[0]].statement
+        assert head is not None
+        related = (Related(span=head.span, message=f"{block.word} begins here"),)
+    found.diagnostics.append(Diagnostic(code=code, message=message, span=line.statement.span, related=related))
+
+
+def _check_jump(program: Program, found: Structure, index: int, target: Target) -> None:
+    where = found.line_of(target)
+    if where is None:
+        name = f"*{target.label.text}" if target.label is not None else f"line {target.number}"
+        name = name if target.number != -1 else "a line number that is not whole"
+        found.diagnostics.append(Diagnostic(code="RBL202", message=f"there is no {name} to go to", span=target.span))
+        return
+    if found.owner.get(where) != found.owner.get(index) and program.lines[where].statement is not None:
+        inside = where in found.owner
+        message = f"the target is {'in a' if inside else 'outside of the'} SUB that the jump is {'not ' * inside}in"
+        found.diagnostics.append(Diagnostic(code="RBL204", message=message, span=target.span))
+        return
+    here = set(found.inside[index]) | {index}
+    for head in found.inside[where]:
+        statement = program.lines[head].statement
+        if head not in here and head in found.end and isinstance(statement, For | Head):
+            word = word_of(statement)
+            related = (Related(span=statement.span, message=f"{word} begins here"),)
+            message = f"the target is inside a {word} that the jump is not in"
+            found.diagnostics.append(Diagnostic(code="RBL204", message=message, span=target.span, related=related))
+            return

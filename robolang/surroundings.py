@@ -1,0 +1,55 @@
+"""What a running program reads of the robot and the cell: inputs, time, where it is, poses as numbers.
+
+``RobotWorld`` is the ``World`` of the evaluator. It reads and changes nothing: the session has let all motion end
+before (``Drain``). Time is that of the clock that it is given, so a rehearsal without a controller has one as well.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from robolang import lowering
+from robolang.lowering import Surroundings
+from robolang.places import Frame, Place, Six
+from robolang.points import PointStore
+from runtime.frames import Array
+from runtime.plant.cell import CellSpec
+from runtime.plant.signals import Signals
+from runtime.robot.kinematics import Kinematics
+
+
+class RobotWorld:
+    """The world of one run: ``q_last`` (n,) rad is where the motion before ends, ``X_flange_tool`` the tool in use."""
+
+    def __init__(self, points: PointStore, cell: CellSpec, kinematics: Kinematics, now_us: Callable[[], int]) -> None:
+        self._points, self._cell, self._kinematics, self._now_us = points, cell, kinematics, now_us
+        self.signals = Signals(cell.inputs)
+        self.q_last: Array = np.array(cell.home)
+        self.X_flange_tool: Array = cell.hand.X_flange_tool
+
+    @property
+    def around(self) -> Surroundings:
+        """What a place depends on, as it is now."""
+        return Surroundings(points=self._points, cell=self._cell, kinematics=self._kinematics, q_last=self.q_last,
+                            X_flange_tool=self.X_flange_tool)  # fmt: skip
+
+    def input(self, number: int) -> float:
+        """Return the state of an input; ``Fault`` RBL534."""
+        return self.signals.input(number, self._now_us())
+
+    def seconds(self) -> float:
+        """Return the time since the program began, s."""
+        return self._now_us() / 1_000_000
+
+    def here(self) -> Six:
+        """Return where the tool is commanded to be, mm and deg in the world."""
+        return lowering.six_of(self._kinematics.forward(self.q_last) @ self.X_flange_tool)
+
+    def components(self, place: Place, frame: Frame) -> Six:
+        """Return a place in a frame, mm and deg."""
+        return lowering.components(place, frame, self.around)
+
+    def set_output(self, output: int, value: float, seconds: float | None) -> None:
+        """Set an output now, for ``seconds`` or for good."""
+        now = self._now_us()
+        self.signals.set(output, value, now, None if seconds is None else now + round(seconds * 1e6))

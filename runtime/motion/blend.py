@@ -1,0 +1,173 @@
+"""Blending two moves at the corner between them: one accelerates while the other brakes, and nothing stops.
+
+The last m cycles of a move A and the first m of a move B, which begins where A ends, run at the same time. They are
+superposed in joint space, row by row:
+
+    q(i) = q_A(N_A - m + i) + q_B(i) - q_B(0),   i = 0 .. m
+
+So i = 0 is a row of A and i = m a row of B: before and after, both are exactly as planned, and the whole takes m cycles
+less. m is the largest number for which, in all of these cycles,
+
+    zone           every tool point is within the zone's radius of the corner
+    joints         position, speed and acceleration of every joint keep its limits at every servo tick
+    tool           the tool point is not faster than in A's second and B's first half alone; it is not accelerated more,
+                   and the tool does not turn faster, than there or than the robot's paths may
+    room           m is at most half the cycles of either move, so that two blends never meet
+
+Without the rule for the tool two slow moves in line would pass the corner at the sum of their speeds, since their
+braking distance is far less than the zone. Jerk is not looked at: that of the tool point may be the sum of that of both
+moves. m shrinks to 0, where the arm stops at the corner, rather than fail.
+It is looked for by halving. Whether m holds is not strictly monotonic in m, so every candidate is verified as a whole,
+and of those that held the largest is taken; a larger one may have been missed. About ten looks of 0.2 ms.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from runtime.frames import Array, rotation_angles
+from runtime.motion.pacing import Pace
+from runtime.motion.solver import RANGE_TOLERANCE, Arm
+
+_SLACK = 1.0 + 1e-9
+_TOOL_SLACK = 1.0 + 1e-6
+_NOTHING = 1e-12
+"""Differences of positions below this are rounding, m and rad."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Corner:
+    """What became of a corner: its ``radius`` as asked for, m, and ``cycles`` in which both moves run (0: it stops).
+
+    ``reach`` m: how far from the corner the tool leaves or joins the paths, at most; ``deviation`` m: by how much it
+    misses the corner.
+    """
+
+    radius: float
+    cycles: int = 0
+    reach: float = 0.0
+    deviation: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Tool:
+    """How fast a tool moves between rows, largest values: m and rad per cycle, m per cycle squared."""
+
+    speed: float
+    turning: float
+    acceleration: float
+
+    @classmethod
+    def of(cls, X: Array) -> "_Tool":
+        """Return what poses (N, 4, 4) of one cycle after the other, N at least 3, show."""
+        steps = np.diff(X[:, :3, 3], axis=0)
+        return cls(speed=_longest(steps), acceleration=_longest(np.diff(steps, axis=0)),
+                   turning=float(rotation_angles(X[:-1, :3, :3], X[1:, :3, :3]).max()))  # fmt: skip
+
+    def within(self, most: "_Tool") -> bool:
+        """Return whether nothing is larger than in another."""
+        pairs = ((self.speed, most.speed), (self.turning, most.turning), (self.acceleration, most.acceleration))
+        return all(value <= limit * _TOOL_SLACK + _NOTHING for value, limit in pairs)
+
+    @classmethod
+    def most(cls, *those: "_Tool") -> "_Tool":
+        """Return the largest value of each kind."""
+        return cls(speed=max(each.speed for each in those), turning=max(each.turning for each in those),
+                   acceleration=max(each.acceleration for each in those))  # fmt: skip
+
+
+def overlapped(a: Array, b: Array, m: int) -> Array:
+    """Return rows a (N_A + 1, n) and b (N_B + 1, n), which begin where a ends, with m cycles run at the same time."""
+    end = len(a) - 1
+    return np.concatenate([a[: end - m + 1], a[end - m + 1 : end] + (b[1:m] - b[0]), b[max(m, 1) :]])
+
+
+def blend(a: Array, b: Array, halves: tuple[int, int], zone: float, arm: Arm, pace: Pace,
+          acceleration: float, turning: float) -> tuple[Array, Corner]:  # fmt: skip
+    """Return rows a (N_A + 1, n) of a motion joined with b (N_B + 1, n), which begin where a ends, and the corner.
+
+    ``halves``: cycles of the second half of a's last move and of the first half of b; ``zone`` m; rad. Limits of the
+    joints are those of ``pace``; ``acceleration`` m/s2 of the tool point and ``turning`` rad/s of the tool are what
+    they may have in any case.
+    """
+    if not (zone > 0.0 and min(halves) > 0):
+        return overlapped(a, b, 0), Corner(radius=zone)
+    before, after = _poses(arm, a[-halves[0] - 1 :]), _poses(arm, b[: halves[1] + 1])
+    corner = after[0, :3, 3]
+    room = min(_inside(before[::-1], corner, zone), _inside(after, corner, zone))
+    if room == 0:
+        return overlapped(a, b, 0), Corner(radius=zone)
+    # one row more to either side: what is accelerated from rest, and to it
+    allowed = _Tool.most(
+        _Tool.of(np.concatenate([before, before[-1:]])), _Tool.of(np.concatenate([after[:1], after])),
+        _Tool(speed=0.0, turning=turning * pace.period_s, acceleration=acceleration * pace.period_s**2),
+    )  # fmt: skip
+
+    def holds(m: int) -> bool:
+        rows = _around(a, b, m)
+        if not _joints_hold(rows, arm, pace):
+            return False
+        X = _poses(arm, rows)
+        return bool((_distances(X[2:-2], corner) <= zone).all()) and _Tool.of(X).within(allowed)
+
+    m = _largest(room, holds)
+    joined = overlapped(a, b, m)
+    if m == 0:
+        return joined, Corner(radius=zone)
+    points = _poses(arm, joined[len(a) - 1 - m : len(a)])[:, :3, 3]
+    return joined, Corner(radius=zone, cycles=m, reach=float(np.linalg.norm(points - corner, axis=1).max()),
+                          deviation=_passed(points, corner))  # fmt: skip
+
+
+def _largest(most: int, holds: Callable[[int], bool]) -> int:
+    """Return a number up to ``most`` that holds, 0 where none is found: the largest, where that is monotonic."""
+    good, bad, m = 0, most + 1, most
+    while bad - good > 1:
+        if holds(m):
+            good = m
+        else:
+            bad = m
+        m = (good + bad) // 2
+    return good
+
+
+def _around(a: Array, b: Array, m: int) -> Array:
+    """Return the rows of a blend with two of a before it and two of b behind it, at rest where there are no more."""
+    end = len(a) - 1
+    before = a[np.maximum(np.arange(end - m - 2, end - m + 1), 0)]
+    after = b[np.minimum(np.arange(m, m + 3), len(b) - 1)]
+    return np.concatenate([before, a[end - m + 1 : end] + (b[1:m] - b[0]), after])
+
+
+def _joints_hold(rows: Array, arm: Arm, pace: Pace) -> bool:
+    lowest, highest, speed, acceleration = pace.fine.extremes(rows)
+    inside = (lowest >= arm.spec.lower - RANGE_TOLERANCE) & (highest <= arm.spec.upper + RANGE_TOLERANCE)
+    slow = (speed <= pace.speed * _SLACK) & (acceleration <= pace.acceleration * _SLACK)
+    return bool((inside & slow).all())
+
+
+def _inside(X: Array, corner: Array, zone: float) -> int:
+    """Return how many of the poses (N + 1, 4, 4) after the first are in the zone, one after the other."""
+    out = _distances(X, corner) > zone
+    return int(np.argmax(out)) - 1 if out.any() else len(X) - 1
+
+
+def _poses(arm: Arm, q: Array) -> Array:
+    return np.asarray(arm.kinematics.forward(q) @ arm.X_flange_tool)
+
+
+def _distances(X: Array, corner: Array) -> Array:
+    return np.asarray(np.linalg.norm(X[:, :3, 3] - corner, axis=1))
+
+
+def _longest(vectors: Array) -> float:
+    return float(np.linalg.norm(vectors, axis=1).max())
+
+
+def _passed(points: Array, corner: Array) -> float:
+    """Return the least distance of the corner from the way through points (N, 3)."""
+    steps, off = np.diff(points, axis=0), corner - points[:-1]
+    squares = np.maximum((steps**2).sum(axis=1), _NOTHING**2)
+    share = np.clip((steps * off).sum(axis=1) / squares, 0.0, 1.0)
+    return float(np.linalg.norm(off - share[:, None] * steps, axis=1).min())

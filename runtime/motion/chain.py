@@ -1,0 +1,158 @@
+"""Moves in a row: each planned where the one before ends, neighbours blended within the zone of the corner.
+
+``MotionPlanner`` is the planner of every kind of move, alone (``plan``) or in a row (``chain``). A row is planned move
+by move as if each stopped, so what is refused does not depend on zones; then neighbours are blended from the first
+corner to the last (``blend``), and what comes out is one sequence of rows. Where no zone is asked for, the rows are
+those of the plans to the last bit. A row in the middle of a blend belongs to both moves; for the log and the lamp it is
+counted to the first of them up to the middle, then to the second.
+
+Called by the controller before anything moves, and by the rehearsal of a program.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.faults import Fault
+from runtime.frames import Array, frozen
+from runtime.motion.blend import Corner, blend
+from runtime.motion.commands import Command, MoveJoint
+from runtime.motion.joint_planner import JointPlanner
+from runtime.motion.pacing import Pace
+from runtime.motion.path import Path
+from runtime.motion.planner import LinePlan, LinePlanner, WristChange
+from runtime.motion.solver import Arm
+from runtime.profile import Profile
+from runtime.robot.kinematics import Kinematics
+from runtime.robot.spec import RobotSpec
+
+
+class ChainFault(Fault):
+    """A refusal of the move number ``index`` (from 0) of a row."""
+
+    def __init__(self, fault: Fault, index: int) -> None:
+        super().__init__(fault.code, fault.message, fault.hint)
+        self.index = index
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Part:
+    """One move of a chain: its own plan, and the rows ``first`` (not included) to ``last`` of the chain that are its.
+
+    It takes the cycles between them; the first row of a chain is where it starts. ``offset`` is the row of the chain at
+    which row 0 of the plan lies.
+    """
+
+    plan: LinePlan
+    first: int
+    last: int
+    offset: int
+    period_s: float
+
+    @property
+    def path(self) -> Path | None:
+        """Path of the tool point, None where the joints go their own way."""
+        return self.plan.path
+
+    @property
+    def wrist(self) -> WristChange | None:
+        """What the plan does with the wrist."""
+        return self.plan.wrist
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Notes for people."""
+        return self.plan.notes
+
+    @property
+    def planned_s(self) -> float:
+        """Time of the part, s."""
+        return (self.last - self.first) * self.period_s
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChainPlan:
+    """Joint set-points ``q`` (N + 1, n) rad of moves in a row, 8 ms apart.
+
+    ``modes`` (N + 1,) is ``wrist_mode`` of every set-point and ``command`` (N + 1,) the number of the move that it
+    belongs to, the last one at the last; ``corners`` lie between the ``parts``.
+    """
+
+    q: Array
+    modes: NDArray[np.int8]
+    command: NDArray[np.int32]
+    parts: tuple[Part, ...]
+    corners: tuple[Corner, ...]
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Notes of all moves, for people."""
+        return tuple(note for part in self.parts for note in part.notes)
+
+
+class MotionPlanner:
+    """Plans any move of one robot under one controller profile, alone or in a row."""
+
+    def __init__(self, spec: RobotSpec, kinematics: Kinematics, profile: Profile) -> None:
+        self.lines = LinePlanner(spec, kinematics, profile)
+        """Plans moves that have a path."""
+        self.joints = JointPlanner(spec, kinematics, profile)
+        """Plans those that have none."""
+        self._spec, self._kinematics = spec, kinematics
+        self._pace = Pace.of(spec, profile)
+
+    def plan(self, q_start: Array, command: Command, X_flange_tool: Array, override: float = 1.0) -> LinePlan:
+        """Return the plan of one move from joint angles q_start (n,) rad; ``Fault`` RBL404, 410, 411, 412 or 416.
+
+        ``X_flange_tool`` (4, 4) is the tool whose point moves, ``override`` in (0, 1] a share of every speed.
+        """
+        if isinstance(command, MoveJoint):
+            return self.joints.plan(q_start, command, X_flange_tool, override)
+        return self.lines.plan(q_start, command, X_flange_tool, override)
+
+    def chain(self, q_start: Array, commands: Sequence[Command], X_flange_tool: Array,
+              override: float = 1.0) -> ChainPlan:  # fmt: skip
+        """Return the plan of moves in a row from q_start (n,) rad; ``ChainFault`` names the first that is refused."""
+        plans: list[LinePlan] = []
+        for index, command in enumerate(commands):
+            try:
+                plans.append(self.plan(plans[-1].q[-1] if plans else q_start, command, X_flange_tool, override))
+            except Fault as fault:
+                raise ChainFault(fault, index) from None
+        return self.join(plans, [command.zone for command in commands], X_flange_tool, override)
+
+    def join(self, plans: Sequence[LinePlan], zones: Sequence[float], X_flange_tool: Array,
+             override: float = 1.0) -> ChainPlan:  # fmt: skip
+        """Return moves, each planned from the end of the one before, blended in the zones (m) at their ends.
+
+        The last one stops, whatever its zone is. ``override`` is that of the plans.
+        """
+        if not plans:
+            raise ValueError("a chain has at least one move")
+        pace = self._pace.overridden(override)
+        arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=pace.fine, X_flange_tool=X_flange_tool)
+        q, modes = plans[0].q, plans[0].modes
+        offsets, lasts, corners = [0], [], []
+        for before, after, zone in zip(plans, plans[1:], zones, strict=False):
+            halves = (len(before.q) - 1) // 2, (len(after.q) - 1) // 2
+            end = len(q) - 1
+            acceleration = self._spec.path.acceleration * max(before.acceleration, after.acceleration)
+            turning = self._spec.path.rotation_speed * override
+            q, corner = blend(q, after.q, halves, zone, arm, pace, acceleration, turning)
+            middle = end - corner.cycles + corner.cycles // 2
+            offsets.append(end - corner.cycles)
+            lasts.append(middle)
+            modes = np.concatenate([modes[: middle + 1], after.modes[middle + 1 - offsets[-1] :]])
+            corners.append(corner)
+        lasts.append(len(q) - 1)
+        parts = tuple(
+            Part(plan=plan, first=first, last=last, offset=offset, period_s=pace.period_s)
+            for plan, first, last, offset in zip(plans, [0, *lasts], lasts, offsets, strict=False)
+        )
+        command = np.repeat(np.arange(len(parts), dtype=np.int32), [part.last - part.first for part in parts])
+        command = np.concatenate([command[:1], command]) if len(command) else np.zeros(1, dtype=np.int32)
+        command[-1] = len(parts) - 1  # also where the last moves have nothing to do
+        return ChainPlan(q=q if len(plans) == 1 else frozen(q), modes=modes, command=command, parts=parts,
+                         corners=tuple(corners))  # fmt: skip

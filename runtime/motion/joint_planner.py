@@ -1,0 +1,154 @@
+"""Planning a joint move: all joints start and end together, each in proportion to its own way.
+
+    q(s) = q_start + s (q_end - q_start),   s in [0, 1]
+
+With d_i the way of joint i, and v_i, a_i what the move may use of its limits, s is bound by the joint that needs most:
+
+    ds/dt <= min v_i / d_i,    d2s/dt2 <= min a_i / d_i,    d3s/dt3 <= min a_i / (RISE_S d_i)
+
+Robot files have no jerk limit of joints: an acceleration builds up in ``RISE_S``, as on the paths of the built-in
+robots (30 m/s3 to 3 m/s2). Fine interpolation makes the acceleration at the servo ticks a little larger than that of s
+(3 % with a jerk limit, more on the corners of a trapezoid). So that this does not cost speed, the accelerations of s
+are eased by it first; what is then still too fast is slowed as every move (``pacing``).
+
+Where only a pose is given, its solutions are those of all configurations, each joint turned into its range. Of those
+that fit what the point is taught with, the one is taken to which the slowest joint gets soonest. Refused: no solution
+(RBL410), none in the ranges (RBL411), none as taught (RBL412). Called by ``runtime.motion.chain``; rad, s.
+"""
+
+from dataclasses import replace
+from typing import NoReturn
+
+import numpy as np
+
+from runtime.faults import Fault
+from runtime.frames import Array, frozen, inverse
+from runtime.motion.commands import MoveJoint
+from runtime.motion.pacing import Pace
+from runtime.motion.planner import NOTHING_TO_DO, LinePlan
+from runtime.motion.solver import RANGE_TOLERANCE, Arm, check_range
+from runtime.motion.speed import MAX_DURATION, SpeedLimits, bound, profile
+from runtime.motion.wrist_planner import as_taught, turned
+from runtime.profile import Profile
+from runtime.robot.kinematics import LIMIT_ROUNDING, Kinematics
+from runtime.robot.spec import RobotSpec
+from runtime.units import DEG, MM
+
+RISE_S = 0.1
+"""Time in which the acceleration of a joint builds up, s."""
+
+_EASINGS = 3
+_MARGIN = 1.0 + 1e-6
+
+
+class JointWay:
+    """The straight way in joint space from q_start (n,) to q_end (n,) rad."""
+
+    def __init__(self, arm: Arm, q_start: Array, q_end: Array) -> None:
+        self._arm, self._q_start, self._q_end = arm, q_start, q_end
+
+    def joints(self, s: Array) -> Array:
+        """Return q (N + 1, n) at s (N + 1,) from 0 to 1; ``Fault`` RBL411."""
+        q = self._q_start + s[:, None] * (self._q_end - self._q_start)
+        q[0], q[-1] = self._q_start, self._q_end
+        check_range(self._arm, s, q)
+        return q
+
+    def refuse_singular(self, s: Array, q: Array, axis: int) -> NoReturn:
+        """Raise ``Fault``: a joint move has no singularity, so this is a move that no profile fits."""
+        raise Fault("RBL404", f"no speed profile of the joint move keeps the limits of J{axis + 1}")
+
+
+class JointPlanner:
+    """Plans joint moves for one robot under one controller profile."""
+
+    def __init__(self, spec: RobotSpec, kinematics: Kinematics, profile: Profile) -> None:
+        self._spec, self._kinematics, self._profile = spec, kinematics, profile
+        self._pace = Pace.of(spec, profile)
+
+    def plan(self, q_start: Array, command: MoveJoint, X_flange_tool: Array, override: float = 1.0) -> LinePlan:
+        """Return the plan of a move from joint angles q_start (n,) rad; ``Fault`` RBL404, 410, 411 or 412.
+
+        ``X_flange_tool`` (4, 4) is the tool that is put at the pose, ``override`` in (0, 1] a share of every speed.
+        """
+        share = _share(command)
+        q_end = self.end(q_start, command, X_flange_tool)
+        way = np.abs(q_end - q_start)
+        if way.max() < NOTHING_TO_DO:
+            return LinePlan(path=None, s=np.ones(1), q=frozen([q_start]), slowdown=None, notes=("already there",))
+        pace = self._pace.overridden(override)
+        duration = None if command.duration is None else command.duration / override
+        arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=pace.fine, X_flange_tool=X_flange_tool)
+        curve, limits = JointWay(arm, q_start, q_end), self._limits(way, share, command.acceleration)
+        limits = self._eased(curve, limits.overridden(override), duration)
+        s, q, slowdown = pace.within_limits(curve, limits, duration)
+        notes = pace.time_note(duration, len(s) - 1)
+        return LinePlan(path=None, s=frozen(s), q=frozen(q), slowdown=slowdown, notes=notes,
+                        acceleration=command.acceleration)  # fmt: skip
+
+    def end(self, q_start: Array, command: MoveJoint, X_flange_tool: Array) -> Array:
+        """Return the joint angles (n,) at which a move from q_start (n,) ends; ``Fault`` RBL410, 411 or 412."""
+        if command.q_end is not None:
+            q_end = np.array(command.q_end, dtype=np.float64)
+            self._check_end(q_end)
+            return q_end
+        assert command.X_world_tool is not None  # a command has at least one of the two
+        found = self._solutions(command.X_world_tool @ inverse(X_flange_tool), q_start, command)
+        return min(found, key=lambda q: float((np.abs(q - q_start) / self._pace.speed).max()))
+
+    def _solutions(self, X_world_flange: Array, q_start: Array, command: MoveJoint) -> list[Array]:
+        kinematics = self._kinematics
+        assert command.X_world_tool is not None
+        point = f"the point ({', '.join(f'{each:.1f}' for each in command.X_world_tool[:3, 3] / MM)}) mm"
+        solutions = kinematics.solutions(X_world_flange, q_start)
+        if not solutions:
+            raise Fault("RBL410", f"{point} is out of reach of {self._spec.name}")
+        found = [turned(each.q, command.turns[: kinematics.n]) for each in solutions]
+        fitting = [q for q in found if as_taught(kinematics, q, command)]
+        if not fitting:
+            words = " ".join(command.configuration)
+            there = ", ".join(str(each.branch) for each in solutions)
+            raise Fault("RBL412", f"{point} cannot be reached {words}, only {there}",
+                        "Teach the point in a configuration that it can be reached in.")  # fmt: skip
+        inside = [q for q in fitting if kinematics.limit_margin(q) >= -LIMIT_ROUNDING]
+        if not inside:
+            self._check_end(max(fitting, key=lambda q: float(kinematics.limit_margin(q))))
+        return inside
+
+    def _check_end(self, q_end: Array) -> None:
+        """Refuse an end outside the range of a joint; ``Fault`` RBL411."""
+        excess = np.maximum(self._spec.lower - q_end, q_end - self._spec.upper)
+        axis = int(np.argmax(excess))
+        if not excess[axis] <= RANGE_TOLERANCE:
+            limits, beyond = self._spec.axes[axis].limits, excess[axis] / DEG
+            limit = limits.lower if q_end[axis] < limits.lower else limits.upper
+            raise Fault("RBL411", f"J{axis + 1} would pass its limit of {limit / DEG:g} deg by {beyond:.4g} deg, at "
+                        "the end of the move")  # fmt: skip
+
+    def _limits(self, way: Array, speed: float, acceleration: float) -> SpeedLimits:
+        most = self._pace.acceleration * acceleration
+        each = np.stack([way, self._pace.speed * speed, most, most / RISE_S], axis=1)
+        return bound([(d, v, a, j) for d, v, a, j in each.tolist()], self._profile.speed_shape)
+
+    def _eased(self, curve: JointWay, limits: SpeedLimits, duration: float | None) -> SpeedLimits:
+        """Return limits with which fine interpolation does not pass the joints' accelerations."""
+        for _ in range(_EASINGS):
+            _, ddq = self._pace.fine.peaks(curve.joints(profile(limits, self._pace.period_s, duration)))
+            ratio = float((ddq / self._pace.acceleration).max()) * _MARGIN
+            if not ratio > _MARGIN:
+                break
+            limits = replace(limits, acceleration=limits.acceleration / ratio, jerk=limits.jerk / ratio)
+        return limits
+
+
+def _share(command: MoveJoint) -> float:
+    """Return the share of the joints' speeds that a move asks for; ``Fault`` RBL404 for what is none."""
+    speed = 1.0 if command.speed is None else command.speed
+    for name, value, most in (
+        ("SPEED in %", speed * 100.0, 100.0),
+        ("ACCEL in %", command.acceleration * 100.0, 100.0),
+        ("TIME in s", command.duration if command.duration is not None else 1.0, MAX_DURATION),
+    ):
+        if not (0.0 < value <= most * (1.0 + 1e-12)):
+            raise Fault("RBL404", f"{name} is {value:g} and must be above 0 and at most {most:g}")
+    return 1.0 if command.duration is not None else speed

@@ -1,0 +1,103 @@
+"""Inputs and outputs of a cell, simulated: what an input does is written in the cell file.
+
+::
+
+    [inputs.1]
+    changes = [[0, 0], [1.5, 1]]     # from 1.5 s after the program began on it is 1
+    [inputs.2]
+    follows = 3                      # output 3, half a second later
+    delay_s = 0.5
+
+An input without a word in the file is not there. Outputs are numbered 1 to 1024 and are 0 until a program sets them;
+one that PULSE set goes back to 0 by itself. Times are integers of microseconds on the controller's clock.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from runtime.faults import Fault
+from runtime.tomlfile import Table
+
+MOST = 1024
+LONGEST_S = 86_400.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class InputSpec:
+    """An input: its ``changes`` (us, state) in order, or the output that it ``follows`` after ``delay_us``."""
+
+    changes: tuple[tuple[int, float], ...] = ()
+    follows: int | None = None
+    delay_us: int = 0
+
+
+def read_input(table: Table) -> InputSpec:
+    """Read one ``[inputs.N]``; ``FileFault`` at what is wrong."""
+    if "follows" in table:
+        found = InputSpec(follows=table.integer("follows", low=1, high=MOST),
+                          delay_us=round(table.number("delay_s", 0.0, low=0.0, high=LONGEST_S) * 1e6))  # fmt: skip
+        table.done()
+        return found
+    changes: list[tuple[int, float]] = []
+    for pair in table.raw_list("changes"):
+        row = Table(table.source, {"changes": pair}, table.keys)
+        seconds, state = row.numbers("changes", 2)
+        if not 0.0 <= seconds <= LONGEST_S or (changes and round(seconds * 1e6) <= changes[-1][0]):
+            table.fail("RBL605", f"the times of '{table.name('changes')}' must rise from 0 on", key="changes")
+        changes.append((round(seconds * 1e6), state))
+    if not changes:
+        table.fail("RBL608", f"'{table.name()}' needs 'changes' or 'follows'")
+    table.done()
+    return InputSpec(changes=tuple(changes))
+
+
+def read_inputs(tables: Mapping[str, Table]) -> dict[int, InputSpec]:
+    """Read all inputs of a cell by number."""
+    found: dict[int, InputSpec] = {}
+    for name, table in tables.items():
+        if not (name.isdecimal() and 1 <= int(name[:9]) <= MOST and str(int(name)) == name):
+            table.fail("RBL605", f"an input is a number from 1 to {MOST}, not '{name[:20]}'")
+        found[int(name)] = read_input(table)
+    return found
+
+
+class Signals:
+    """The signals of one run."""
+
+    def __init__(self, inputs: Mapping[int, InputSpec]) -> None:
+        self._inputs = inputs
+        self._history: dict[int, list[tuple[int, float]]] = {}
+
+    def set(self, output: int, value: float, now_us: int, off_us: int | None = None) -> None:
+        """Set an output from ``now_us`` on, and back to 0 at ``off_us``."""
+        rows = self._history.setdefault(output, [])
+        while rows and rows[-1][0] >= now_us:  # a pulse that would still have ended
+            rows.pop()
+        rows.append((now_us, value))
+        if off_us is not None:
+            rows.append((off_us, 0.0))
+
+    def output(self, number: int, now_us: int) -> float:
+        """Return the state of an output."""
+        return _at(self._history.get(number, ()), now_us)
+
+    def input(self, number: int, now_us: int) -> float:
+        """Return the state of an input; ``Fault`` RBL534 when the cell has none of that number."""
+        spec = self._inputs.get(number)
+        if spec is None:
+            known = ", ".join(map(str, sorted(self._inputs))) or "none"
+            raise Fault("RBL534", f"the cell has no input {number} (known: {known})",
+                        f"write [inputs.{number}] into the cell file")  # fmt: skip
+        if spec.follows is not None:
+            return _at(self._history.get(spec.follows, ()), now_us - spec.delay_us)
+        return _at(spec.changes, now_us)
+
+
+def _at(rows: tuple[tuple[int, float], ...] | list[tuple[int, float]], now_us: int) -> float:
+    """Return the state of the last row that is not later than ``now_us``; 0 before the first."""
+    state = 0.0
+    for begins, value in rows:
+        if begins > now_us:
+            break
+        state = value
+    return state

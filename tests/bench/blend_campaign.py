@@ -1,0 +1,123 @@
+"""Random chains of moves with random zones, and what must be true of every one: ``make blend-campaign``.
+
+    fault     a chain whose moves can be planned one by one is blended without an error
+    limits    speed and acceleration of every joint within its limits at every servo tick of the whole chain
+    zone      where the tool is off the path of its own move, it is within the radius of a corner
+    time      a blended chain is not longer than one that stops at every corner
+    ends      the chain begins and ends where its moves do
+"""
+
+import argparse
+from collections import Counter
+
+import numpy as np
+
+from runtime.faults import Fault
+from runtime.frames import pose, rotation_about
+from runtime.motion.chain import MotionPlanner
+from runtime.motion.commands import MoveArc, MoveJoint, MoveLinear
+from runtime.motion.fine import FineInterpolator
+from runtime.profile import Profile
+from runtime.robot.kinematics import Kinematics
+from runtime.robot.loader import load_builtin
+
+ROBOTS = ("puma560", "irb2400", "manutec_r3")
+TOOL = pose([0.0, 0.0, 0.1])
+ON_PATH = 2e-6
+"""A tool point nearer to the path than this is on it, m."""
+
+
+def random_command(rng, X, zone):
+    """Return a move of up to 0.25 m from a tool pose."""
+    way = rng.normal(size=3)
+    target = X.copy()
+    target[:3, 3] += way / np.linalg.norm(way) * rng.uniform(0.01, 0.25)
+    k = rng.normal(size=3)
+    target[:3, :3] = rotation_about(k / np.linalg.norm(k), rng.uniform(0.0, 0.4)) @ X[:3, :3]
+    kind = rng.integers(3)
+    if kind == 0:
+        return MoveJoint(X_world_tool=target, speed=float(rng.uniform(0.1, 1.0)), zone=zone)
+    speed = float(rng.uniform(0.05, 0.8))
+    if kind == 1:
+        return MoveLinear(X_world_tool=target, speed=speed, zone=zone)
+    via = target.copy()
+    side = np.cross(way, rng.normal(size=3))
+    via[:3, 3] = 0.5 * (X[:3, 3] + target[:3, 3]) + side / np.linalg.norm(side) * rng.uniform(0.01, 0.1)
+    return MoveArc(X_via=via, X_world_tool=target, speed=speed, zone=zone)
+
+
+def random_chain(rng, planner, spec, kinematics, moves):
+    """Return a start and commands that can be planned one by one."""
+    while True:
+        q = rng.uniform(spec.lower + 0.3, spec.upper - 0.3)
+        start, commands = q, []
+        try:
+            for _ in range(moves):
+                zone = float(rng.choice([0.0, 0.001, 0.01, 0.03, 0.2]))
+                command = random_command(rng, kinematics.forward(q) @ TOOL, zone)
+                q = planner.plan(q, command, TOOL).q[-1]
+                commands.append(command)
+        except Fault:
+            continue
+        return start, commands
+
+
+def examine(spec, kinematics, planner, start, commands, count):
+    """Blend a chain and count what is wrong with it; return how much of the time it saves."""
+    try:
+        chain = planner.chain(start, commands, TOOL)
+    except Fault:
+        count["fault"] += 1
+        return 0.0
+    fine = FineInterpolator(8, 8e-3, chain.q[0])
+    _, dq, ddq = fine.expand(chain.q)
+    count["limits"] += int((np.abs(dq).max(axis=0) > spec.per_axis("limits", "speed") * (1 + 1e-6)).any())
+    count["limits"] += int((np.abs(ddq).max(axis=0) > spec.per_axis("limits", "acceleration") * (1 + 1e-6)).any())
+    count["ends"] += int((chain.q[0] != start).any() or (chain.q[-1] != chain.parts[-1].plan.q[-1]).any())
+    points = (kinematics.forward(chain.q) @ TOOL)[:, :3, 3]
+    corners = [(kinematics.forward(part.plan.q[-1]) @ TOOL)[:3, 3] for part in chain.parts[:-1]]
+    for part in chain.parts:
+        rows = points[part.first : part.last + 1]
+        own = part.plan.path
+        if own is not None:
+            off = own.deviation(rows) > ON_PATH
+            near = np.zeros(len(rows), dtype=bool)
+            for corner, place in zip(chain.corners, corners, strict=True):
+                near |= np.linalg.norm(rows - place, axis=1) <= corner.radius + ON_PATH
+            count["zone"] += int((off & ~near).any())
+    alone = sum(len(part.plan.q) - 1 for part in chain.parts)
+    count["time"] += int(len(chain.q) - 1 > alone)
+    count["chains"] += 1
+    count["corners"] += sum(corner.radius > 0.0 for corner in chain.corners)
+    count["blended"] += sum(corner.cycles > 0 for corner in chain.corners)
+    return 1.0 - (len(chain.q) - 1) / alone
+
+
+def campaign(robot, chains, seed=5, moves=5):
+    """Return what was counted on a robot, and the mean share of time that blending saves."""
+    spec = load_builtin(robot)
+    kinematics = Kinematics(spec)
+    planner = MotionPlanner(spec, kinematics, Profile())
+    rng, count, saved = np.random.default_rng(seed), Counter(), []
+    for _ in range(chains):
+        saved.append(examine(spec, kinematics, planner, *random_chain(rng, planner, spec, kinematics, moves), count))
+    return count, float(np.mean(saved))
+
+
+BROKEN = ("fault", "limits", "zone", "time", "ends")
+
+
+def main():
+    """Print the counts."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--chains", type=int, default=500)
+    arguments = parser.parse_args()
+    print("robot        chains  corners with a zone  blended  saved, %  broken")
+    for robot in ROBOTS:
+        count, saved = campaign(robot, arguments.chains)
+        print(f"{robot:<12} {count['chains']:6d} {count['corners']:20d} {count['blended']:8d} {100 * saved:9.1f}  "
+              f"{ {name: count[name] for name in BROKEN} }")  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()

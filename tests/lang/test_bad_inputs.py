@@ -1,0 +1,253 @@
+"""Bad texts and what each gets: the rows A1 to A62 of the promises, and R11, R13, R16, R20 (docs of the project)."""
+
+import ast
+import random
+import time
+from pathlib import Path
+
+import pytest
+
+from robolang import effects, evaluator, interpreter, scope
+from robolang.checker import check
+from robolang.interpreter import ProgramFault, execute
+from robolang.parser import parse
+from robolang.source import Source, decode_program
+from robolang.words import FUNCTIONS, VALUES
+from runtime.faults import Fault
+from tests.lang.helpers import places
+
+POINTS = ("P1", "P2")
+
+
+def problems(text, points=POINTS):
+    """Code, line, column and length of all that reading and checking find."""
+    where = Source("pick.rbl", text)
+    parsed = parse(where)
+    return sorted(places(text, (*parsed.diagnostics, *check(parsed.program, points=points, rated_payload_kg=2.5))),
+                  key=lambda item: item[1:])  # fmt: skip
+
+
+GOLDEN = [
+    ("A1", "", [("RBL201", 1, 1, 0)]),
+    ("A2", "' a\nREM b\n", [("RBL201", 1, 1, 0)]),
+    ("A6", "MOVE P1\rMOVE P9\r", [("RBL301", 2, 6, 2)]),
+    ("A7", "MOVE P1\r\nMOVE P1\nMOVE P9", [("RBL110", 2, 8, 0), ("RBL301", 3, 6, 2)]),
+    ("A8", "MOVE P1 ' \u202e", [("RBL103", 1, 11, 1)]),
+    ("A9", "МОVE P1", [("RBL103", 1, 1, 1)]),
+    ("A12", "' " + "x" * 10_000_000, [("RBL106", 1, 1, 0), ("RBL201", 1, 1, 0)]),
+    ("A12 short", "x = " + "1" * 20_000, [("RBL105", 1, 10_001, 10_004)]),
+    ("A16", "x = " + "(" * 100_000, [("RBL108", 1, 105, 1)]),
+    ("A17", "x = " + "-" * 100_000 + "1", [("RBL108", 1, 105, 1)]),
+    ("A17 NOT", "x = " + "NOT " * 100_000 + "1", [("RBL108", 1, 405, 1)]),
+    ("A18 lines", "IF 1 THEN\n" * 10_000, [("RBL108", 101, 1, 9)]),
+    ("A18", "IF 1 THEN " * 900 + "END", [("RBL111", 1, 11, 2)]),
+    ("A18 long", "IF 1 THEN " * 10_000 + "END", [("RBL105", 1, 10_001, 90_003)]),
+    ("A19", "x = " + "1+" * 100_000 + "1", [("RBL109", 1, 1, 200_005)]),
+    ("A19 short", "x = " + "1+" * 1000 + "1", []),
+    ("A20", "MOVE", [("RBL111", 1, 5, 0)]),
+    ("A21", "MOVE P1 P2", [("RBL111", 1, 9, 2)]),
+    ("A22", "MOV P1", [("RBL112", 1, 1, 3)]),
+    ("A24", "x = 3E99999", [("RBL114", 1, 5, 7)]),
+    ("A25", "x = " + "7" * 5000, [("RBL114", 1, 5, 5000)]),
+    ("A26", "x = 1_000", [("RBL115", 1, 5, 5)]),
+    ("A30", "IF 1 THEN GOTO *A\nGOTO 70", [("RBL202", 1, 16, 2), ("RBL202", 2, 6, 2)]),
+    ("A31", "*A\n*A DELAY 1", [("RBL203", 2, 1, 2)]),
+    ("A32", "GOTO 20\nFOR i = 1 TO 2\n20 NEXT\n30 FOR j = 1 TO 2\n40 DELAY 1\n50 NEXT\nGOTO 40", [("RBL204", 7, 6, 2)]),
+    ("A33", "FOR i = 1 TO 2 STEP 0\nNEXT", [("RBL205", 1, 21, 1)]),
+    ("A34", "FOR i = 1 TO 2 STEP 0.1\nNEXT", [("RBL206", 1, 21, 3)]),
+    ("A37", "x = 1 / 0", [("RBL209", 1, 5, 5)]),
+    ("A39", "x = SQR(-1)", [("RBL209", 1, 5, 7)]),
+    ("A39 other", "x = SQRT(-1)", [("RBL215", 1, 5, 4)]),
+    ("A40", "x = 1E308 * 10", [("RBL209", 1, 5, 10)]),
+    ("A43", "LOAD (0, 0, 0), -1", [("RBL401", 1, 17, 2)]),
+    ("A44", "LOAD (0, 0, 0), NAN\nLOAD (0, 0, 0), NAN * 2", [("RBL401", 1, 17, 3), ("RBL209", 2, 17, 7)]),
+    ("A45", "LOAD (0, 0, 0), 5", [("RBL402", 1, 17, 1)]),
+    ("A46", "LOAD (0, 0, 2001), 1", [("RBL403", 1, 6, 12)]),
+    ("A47", "MOVE P1, SPEED 0\nMOVE P1, SPEED -5", [("RBL404", 1, 16, 1), ("RBL404", 2, 16, 2)]),
+    ("A48", "DELAY -1\nDELAY 1E12\nHAND ON, -1", [("RBL405", 1, 7, 2), ("RBL405", 2, 7, 4), ("RBL405", 3, 10, 2)]),
+    ("A56", "MOVE P1, ZONE -5", [("RBL415", 1, 15, 2)]),
+    ("A61", "PRINT \"{0.__class__}\"", []),
+    ("A62", "__import__ = 5\nPRINT __import__", []),
+    ("A62 alone", "__import__", [("RBL112", 1, 1, 10)]),
+    ("A62 called", "x = __import__(\"os\")", [("RBL215", 1, 5, 10)]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "expected"), [row[1:] for row in GOLDEN], ids=[row[0] for row in GOLDEN])
+def test_golden(text, expected):
+    found = problems(text)
+    assert found == expected
+
+
+def test_a_byte_order_mark_and_bytes_that_are_no_text():
+    assert problems(decode_program("p", b"\xef\xbb\xbfMOVE P9").text) == [("RBL301", 1, 6, 2)]
+    for raw, code in ((b"\xff", "RBL104"), (b"MOVE\0", "RBL104"), (b" " * 1_000_001, "RBL106")):
+        with pytest.raises(Fault, match=code):
+            decode_program("p", raw)
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "line"),
+    [
+        ("10 x = 0\n20 y = 1 / x", "RBL501", 20),
+        ("10 x = -1\n20 y = SQR(x)", "RBL502", 20),
+        ("10 x = 1E308\n20 y = x * 10", "RBL502", 20),
+        ("10 WHILE 1\n20 WEND", "RBL508", 10),
+        ("10 GOTO 20\n20 GOTO 10", "RBL508", 10),
+    ],
+    ids=["A38", "A39", "A40", "A57", "A58"],
+)
+def test_golden_of_a_run(text, code, line):
+    assert problems(text) == []
+    with pytest.raises(ProgramFault) as caught:
+        list(execute(parse(Source("p", text)).program))
+    assert (caught.value.code, caught.value.line) == (code, line)
+
+
+# --- R11: nesting ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "(" * 100_000, "x = " + "(" * 100_000, "-" * 100_000, "x = " + "NOT " * 100_000, "IF 1 THEN\n" * 20_000,
+        "IF 1 THEN " * 90_000, "WHILE 1\n" * 20_000, "SUB a\n" * 20_000, "SELECT 1\nCASE 1\n" * 10_000,
+        "x = " + "ABS(" * 100_000, "x = " + "a(" * 100_000, "MOVE P1" + " * (0, 0, 1" * 50_000, "ELSE\n" * 20_000,
+        "x = " + "2 ^ " * 100_000, "x = 1" + " = 1" * 100_000, "*L\n" * 20_000, "x" * 900_000,
+        "\n".join(f"GOTO {n}" for n in range(20_000)), "\n".join(f"x{n} = y{n}" for n in range(20_000)),
+    ],
+    ids=lambda text: text[:12],
+)  # fmt: skip
+def test_the_deepest_and_longest_texts_are_bounded(text):
+    assert len(text) <= 1_000_000
+    problems("MOVE P1")  # the table of the grammar is made once
+    began = time.process_time()
+    assert problems(text)
+    assert time.process_time() - began < 20.0 * len(text) / 1e6 + 0.5
+
+
+@pytest.mark.parametrize("text", ["(", "-", "+", "NOT ", "ABS(", "- (", "(-"])
+def test_one_line_of_any_depth_takes_less_than_a_second(text):
+    began = time.process_time()
+    assert [item[0] for item in problems("x = " + text * 100_000)] == ["RBL108"]
+    assert time.process_time() - began < 1.0
+
+
+# --- R13: one typo ---------------------------------------------------------------------------------------------------
+
+GOOD = """10 CONST height = 50
+20 DIM part(4)
+30 count = 0
+40 speed1 = 200
+50 LOAD (0, 0, 60), 0.8
+60 HAND OFF
+70 SPEED speed1
+80 ACCEL 50
+90 ON ERROR GOTO *FAIL
+100 FOR i = 1 TO 4 STEP 1
+110 APPROACH P1, height, SPEED 100
+120 MOVE P1, SPEED 50, FINE
+130 HAND ON, 0.5
+140 IF count > 3 THEN GOTO *DONE
+150 LOAD (0, 0, 95), 2.3
+160 DEPART height
+170 MOVE P2 + (0, 0, height), ZONE 10
+180 part(i) = P2.Z + count * 2
+190 SELECT i
+200 CASE 1, 2
+210 MOVE P2, WRIST HOLD TILT
+220 CASE ELSE
+230 MOVEJ P2, SPEED 30
+240 ENDSELECT
+250 HAND OFF
+260 LOAD (0, 0, 60), 0.8
+270 count = count + 1
+280 NEXT i
+290 WHILE count > 0
+300 CALL blink(count, 0.2)
+310 count = count - 1
+320 WEND
+330 *DONE PRINT "done"; count; STR$(speed1)
+340 END
+350 *FAIL PRINT ERR
+360 RESUME NEXT
+370 SUB blink(n, t)
+380 PULSE n, t
+390 DELAY t
+400 ENDSUB"""
+PLANTED = "\n410 MOVE P77"
+
+
+def typo(line, chance):
+    """A line with one character left out, doubled, exchanged or changed, not in the line number."""
+    at = chance.randrange(len(line.split()[0]) + 1, len(line))
+    how = chance.randrange(4)
+    if how == 0:
+        return line[:at] + line[at + 1 :]
+    if how == 1:
+        return line[:at] + line[at] + line[at:]
+    if how == 2:
+        return line[:at] + line[at : at + 2][::-1] + line[at + 2 :]
+    return line[:at] + chance.choice("abcxyz019 ,(+") + line[at + 1 :]
+
+
+def test_the_good_program_is_good():
+    assert problems(GOOD) == []
+    assert len(GOOD.splitlines()) == 40
+
+
+def test_one_typo_costs_few_diagnostics_and_hides_nothing_behind_it():
+    chance = random.Random(1992)
+    extra = []
+    lines = GOOD.splitlines()
+    for index in range(len(lines)):
+        for _ in range(20):
+            changed = "\n".join([*lines[:index], typo(lines[index], chance), *lines[index + 1 :]]) + PLANTED
+            found = problems(changed)
+            assert ("RBL301", 41, 10, 3) in found, changed
+            errors = [item for item in found if item[0] != "RBL116"]
+            assert len(errors) - 1 <= 3 or _defines(lines[index]), (lines[index], changed.splitlines()[index], errors)
+            extra.append(len(errors) - 1)
+    assert sorted(extra)[len(extra) // 2] <= 1
+    assert sum(count > 0 for count in extra) > len(extra) / 2  # the typos are real ones
+
+
+def _defines(line):
+    """Whether other lines depend on the name that a line defines, so that each of them is an error when it is gone."""
+    return any(word in line for word in ("CONST", "DIM", "count = 0", "speed1 =", "SUB blink", "FOR i", "SELECT i"))
+
+
+# --- R20: what a program can do --------------------------------------------------------------------------------------
+
+
+def test_the_effects_and_functions_of_a_program_are_these():
+    kinds = {kind.__name__ for kind in effects.Origin.__subclasses__()}
+    assert kinds == {
+        "SetPayload", "MoveTo", "SetHand", "SetWrist", "SetSeam", "SetTool", "SetOutput", "Pass", "Show",
+        "Drain", "Halt",
+    }  # fmt: skip
+    numbers, others = "ABS SGN INT ROUND SQR SIN COS TAN ATN2 MIN MAX DEG RAD", "STR$ VAL LEN IN DIST POSE JOINT"
+    assert set(f"{numbers} {others}".split()) == FUNCTIONS
+    assert set(VALUES) == {"HERE", "TIMER", "ERR"}
+
+
+FORBIDDEN = {"open", "eval", "exec", "compile", "__import__", "os", "io", "sys", "subprocess", "socket", "pathlib",
+             "importlib", "shutil", "pickle", "ctypes", "input", "breakpoint", "globals",
+             "Path"}  # fmt: skip
+
+
+@pytest.mark.parametrize("module", [evaluator, interpreter, scope], ids=lambda module: module.__name__)
+def test_what_runs_a_program_cannot_reach_files_processes_or_python(module):
+    tree = ast.parse(Path(module.__file__).read_text(encoding="utf-8"))
+    called = {node.func.id for node in ast.walk(tree) if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
+    imported = {alias.name.partition(".")[0] for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)
+                for alias in node.names}  # fmt: skip
+    imported |= {(node.module or "").partition(".")[0] for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+    assert not (called | imported) & FORBIDDEN
+
+
+def test_a_name_of_the_evaluator_is_no_function_of_the_language():
+    for name in ("_do_in", "do_in", "chain", "call_", "__class__", "name"):
+        assert problems(f"x = {name}(1)")[0][0] == "RBL215"
+        with pytest.raises(ProgramFault, match="no array"):
+            list(execute(parse(Source("p", f"x = {name}(1)")).program))

@@ -1,0 +1,141 @@
+"""Every rule has a page whose example is true."""
+
+import pytest
+
+from robolang.checker import check
+from robolang.diagnostics import Severity
+from robolang.lint import meaning_rules, motion_rules, point_rules, run_rules, text_rules
+from robolang.lint.apply import fix_all
+from robolang.lint.engine import check_source, lint
+from robolang.lint.registry import OF_THE_CELL, codes, is_looked_for, rule, rules
+from robolang.parser import parse
+from robolang.points import load_points
+from robolang.source import Source, read_program
+from runtime.faults import Fault, lookup
+from tests.lint.helpers import POINTS
+
+WITHOUT_PAGE = frozenset(
+    {"RBL117"}  # nothing is refused with it any more
+    | {"RBL302", "RBL311"}  # TODO: files that are not there or are none, which no example can show
+)
+"""Codes that checking can find and that have no page yet: it may only get shorter."""
+
+RULES = list(rules().values())
+WITH_FIX = [item for item in RULES if item.fix]
+
+
+def name(item):
+    return item.code
+
+
+def points_fault(text, item, folder):
+    """``(code, line)`` of what is wrong with the points file of an example; None when nothing is."""
+    (folder / "pick.rbl").write_text("MOVE P1\n")
+    (folder / "pick.points.toml").write_text(text)
+    if item.by_run:
+        try:
+            load_points(folder / "pick.points.toml", robot="puma560", axes=6)
+        except Fault as fault:
+            return fault.code, fault.line
+        return None
+    result = check_source(read_program(folder / "pick.rbl"))
+    assert result.diagnostics == ()
+    return next(((fault.code, fault.line) for fault in result.faults), None)
+
+
+def examine(text, item):
+    """``(code, line, severity)`` of everything found in a program of an example."""
+    source = Source("pick.rbl", text)
+    if item.by_run:
+        parsed = parse(source)
+        found = check(parsed.program, points=POINTS, rated_payload_kg=2.5, sensors=["LASER"], tools=["GRIPPER"])
+        found = (*parsed.diagnostics, *found)
+    else:
+        found = lint(source, points=POINTS)
+    return [(one.code, source.place(one.span.start).line, one.severity) for one in found]
+
+
+def test_only_known_codes_lack_a_page():
+    missing = {entry.code for entry in codes() if rule(entry.code) is None}
+    assert missing == WITHOUT_PAGE, "write a Rule in robolang/lint, then: python -m robolang.lint.pages"
+
+
+def test_every_page_is_of_a_code_that_checking_can_find():
+    assert set(rules()) <= {entry.code for entry in codes()}
+
+
+def test_what_only_a_run_finds_needs_the_cell():
+    of_points = {item.code for item in RULES if item.points}
+    assert {item.code for item in RULES if item.by_run} - of_points <= OF_THE_CELL
+    assert not any(is_looked_for(code) for code in OF_THE_CELL | {"RBL412"})
+    assert is_looked_for("RBL301")
+
+
+def test_a_code_without_a_page_is_a_rule_all_the_same():
+    assert rule("RBL302") is None
+    assert "RBL302" in {entry.code for entry in codes()}
+
+
+@pytest.mark.parametrize("item", RULES, ids=name)
+def test_an_example_yields_its_code_at_its_line_and_nowhere_else(item, tmp_path):
+    if item.code == "RBL104":
+        (tmp_path / "pick.rbl").write_bytes(item.bad.encode("utf-8", "surrogateescape"))
+        with pytest.raises(Fault) as caught:
+            read_program(tmp_path / "pick.rbl")
+        assert (caught.value.code, caught.value.line) == ("RBL104", item.line)
+        return
+    if item.points:
+        assert points_fault(item.bad, item, tmp_path) == (item.code, item.line)
+        return
+    found = examine(item.bad, item)
+    assert {code for code, line, _ in found if line == item.line} == {item.code}
+    assert {line for code, line, _ in found if code == item.code} == {item.line}
+    assert {severity for code, _, severity in found if code == item.code} == {item.severity}
+
+
+@pytest.mark.parametrize("item", RULES, ids=name)
+def test_the_corrected_example_has_no_finding(item, tmp_path):
+    if item.points:
+        assert points_fault(item.good, item, tmp_path) is None
+    else:
+        assert examine(item.good, item) == []
+
+
+@pytest.mark.parametrize("item", WITH_FIX, ids=name)
+def test_a_fix_that_is_promised_makes_the_correction_of_the_example(item):
+    fixed = fix_all(Source("pick.rbl", item.bad), lambda source: lint(source, points=POINTS))
+    assert fixed.counts == {item.code: 1}
+    assert fixed.source.text == item.good
+
+
+@pytest.mark.parametrize("item", [item for item in RULES if not item.fix], ids=name)
+def test_a_rule_without_a_fix_has_none(item):
+    if item.code != "RBL104" and not item.points:
+        assert all(found.fix is None for found in lint(Source("pick.rbl", item.bad), points=POINTS))
+
+
+@pytest.mark.parametrize("item", RULES, ids=name)
+def test_the_texts_are_sentences(item):
+    for text in filter(None, (item.why, item.fix)):
+        assert text[0].isupper()
+        assert text.endswith(".")
+    assert len(item.why) > 60
+    assert isinstance(item.severity, Severity)
+    assert item.entry == lookup(item.code)
+    assert item.bad != item.good
+    assert max(map(len, (item.shown or item.bad).splitlines())) <= 76
+
+
+def test_rules_stand_in_the_module_of_their_group():
+    for module, first in ((text_rules, "1"), (meaning_rules, "2"), (point_rules, "3"), (motion_rules, "4"),
+                          (run_rules, "5")):  # fmt: skip
+        assert [item.code for item in module.RULES] == sorted(item.code for item in module.RULES)
+        assert {item.code[3] for item in module.RULES} == {first}
+    assert list(rules()) == sorted(rules())
+
+
+def test_an_example_that_is_a_file_is_checked_like_any_other(tmp_path):
+    path = tmp_path / "pick.rbl"
+    path.write_text(rules()["RBL301"].bad)
+    result = check_source(read_program(path))
+    assert [item.code for item in result.diagnostics] == ["RBL301"]

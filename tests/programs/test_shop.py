@@ -1,0 +1,106 @@
+"""The programs of programs/shop on MuJoCo: what they do to the parts, what they print, how long they take."""
+
+import re
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from robolang.motion_check import rehearse
+from robolang.project import load_project
+from robolang.session import Session
+
+ROOT = Path(__file__).parents[2] / "programs"
+SHOP = sorted(path.stem for path in (ROOT / "shop").glob("*.rbl"))
+ALL = sorted(str(path.relative_to(ROOT)) for path in ROOT.rglob("*.rbl"))
+
+
+@cache
+def run(name):
+    project = load_project(ROOT / name)
+    session = Session(project)
+    return session, session.run()
+
+
+def printed(name):
+    return [entry["text"] for entry in run(f"shop/{name}.rbl")[1].report["printed"]]
+
+
+def place(name, part):
+    return np.array(run(f"shop/{name}.rbl")[1].report["objects"][part]["pose_mm_deg"][:3])
+
+
+def test_there_are_at_least_ten_programs():
+    assert len(ALL) >= 10
+    assert set(SHOP) == {"dispense", "inspect", "palletise", "recover", "sort", "tend"}
+
+
+@pytest.mark.parametrize("name", SHOP)
+def test_a_program_is_clean_and_runs_to_its_end_without_an_alarm_or_a_warning(name):
+    session, result = run(f"shop/{name}.rbl")
+    assert session.project.diagnostics == ()
+    assert result.ok, result.report["alarms"]
+    assert result.report["warnings"] == []
+    notes = [note for entry in result.report["statements"] for note in entry["notes"]]
+    assert not [note for note in notes if "RBL523" in note]
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_the_rehearsal_takes_as_long_as_the_run(name):
+    """To one cycle, as the issue of the rehearsal asks; under a seam sensor the path, and with it the end, moves."""
+    session, result = run(name)
+    planned = rehearse(session.project)
+    assert planned.refused == ()
+    assert planned.total_us == pytest.approx(result.report["sim_time_s"] * 1e6, abs=8000.0)
+
+
+def test_parts_are_put_on_the_pallet():
+    (line,) = printed("palletise")
+    assert float(re.fullmatch(r"put down 2 parts in ([\d.]+) s", line)[1]) == pytest.approx(
+        run("shop/palletise.rbl")[1].report["sim_time_s"]
+    )
+    for k, part in enumerate(("part_1", "part_2")):
+        assert place("palletise", part) == pytest.approx([400.0 + 100.0 * k, 150.0, 640.0], abs=0.5)
+
+
+def test_parts_are_sorted_by_their_kind():
+    assert printed("sort") == ["left", "right"]
+    assert place("sort", "part_1") == pytest.approx([420.0, 120.0, 640.0], abs=0.5)
+    assert place("sort", "part_2") == pytest.approx([540.0, 120.0, 640.0], abs=0.5)
+
+
+def test_the_machine_is_tended_with_its_handshake():
+    session, _ = run("shop/tend.rbl")
+    history = session.world.signals._history
+    (start, _), (end, _) = history[1]
+    assert (end - start) / 1e6 == pytest.approx(0.8, abs=0.02)  # output 1 until input 2 has followed it
+    assert (history[2][1][0] - history[2][0][0]) / 1e6 == pytest.approx(0.2)
+    assert re.fullmatch(r"one part in 1[01](\.\d)? s", printed("tend")[0])
+    assert place("tend", "part_1") == pytest.approx([400.0, -220.0, 640.0], abs=0.5)
+
+
+def test_a_bead_is_laid_without_a_stop():
+    """From the valve's opening to its closing the nozzle never stands, and stays within the zones of its corners."""
+    session, result = run("shop/dispense.rbl")
+    opened, closed = (at for at, _ in session.world.signals._history[5])
+    log = result.log
+    t = log["t"] * 1e6
+    X = session.controller.tool_poses(log["q_cmd"])[:, :3, 3]
+    bead = (t > opened + 400e3) & (t < closed - 400e3)
+    speed = np.linalg.norm(np.diff(X[bead], axis=0), axis=1) / session.project.profile.tick_s
+    assert speed.min() > 0.02
+    assert speed.max() < 0.125
+    assert printed("dispense")[0].startswith("bead of 526 mm in ")
+
+
+def test_stations_are_looked_at_from_four_sides():
+    assert printed("inspect") == ["12 pictures from 3 stations, the last at 441 mm from home"]
+
+
+def test_what_goes_wrong_is_answered():
+    lines = printed("recover")
+    assert lines == ["cannot go there (RBL410)", "no signal", "error RBL501", "3 faults answered"]
+    statements = run("shop/recover.rbl")[1].report["statements"]
+    waits = [entry for entry in statements if entry["text"].startswith("WAIT")]
+    assert [entry["duration_s"] for entry in waits] == [pytest.approx(0.5, abs=0.009)]

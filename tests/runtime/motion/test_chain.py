@@ -1,0 +1,267 @@
+"""Moves in a row: blended within zones and joint limits, never refused for it, and without zones as they were."""
+
+import math
+
+import numpy as np
+import pytest
+
+from runtime.faults import Fault
+from runtime.frames import pose, rotation_about
+from runtime.motion.blend import overlapped
+from runtime.motion.chain import ChainFault, ChainPlan
+from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
+from runtime.motion.planner import EXCEPTION, LinePlanner
+from tests.runtime.motion.motions import (
+    ROBOTS,
+    TOOL,
+    Bench,
+    bench,
+    blends_broken,
+    limits_broken,
+    off_path,
+    random_chain,
+)
+
+CHAINS, MOVES = 34, 5
+
+
+def by(robot: Bench, *steps, zone: float = 0.0, **options) -> list[Command]:
+    """Lines one after the other from home, each ``steps`` (3,) m further."""
+    X, commands = robot.tool(robot.home()), []
+    for step in steps:
+        X = pose(X[:3, 3] + np.array(step), X[:3, :3])
+        commands.append(MoveLinear(X_world_tool=X, zone=zone, **options))
+    return commands
+
+
+def chain(robot: Bench, commands: list[Command], override: float = 1.0) -> ChainPlan:
+    return robot.planner.chain(robot.home(), commands, TOOL, override)
+
+
+def speeds(robot: Bench, q: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(np.diff(robot.tool(q)[:, :3, 3], axis=0), axis=1) / robot.profile.period_s
+
+
+RIGHT_ANGLE = ((0.0, 0.15, 0.0), (0.0, 0.0, 0.15))
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_random_chains_keep_every_limit_leave_paths_only_in_zones_and_take_no_longer(name):
+    robot, random = bench(name), np.random.default_rng(4)
+    blended = 0
+    for _ in range(CHAINS):
+        start, commands = random_chain(robot, random, MOVES)
+        found = robot.planner.chain(start, commands, TOOL)
+        assert limits_broken(robot, found.q) == []
+        assert blends_broken(robot, found, commands) == []
+        assert len(found.q) - 1 <= sum(len(part.plan.q) - 1 for part in found.parts)
+        for corner, command in zip(found.corners, commands, strict=False):
+            assert corner.deviation <= corner.reach <= corner.radius == command.zone
+            blended += corner.cycles > 0
+        np.testing.assert_array_equal(found.q[0], start)
+        np.testing.assert_array_equal(found.q[-1], found.parts[-1].plan.q[-1])
+    assert blended > 0.7 * CHAINS * (MOVES - 1)
+
+
+def test_a_blend_that_leaves_its_zone_or_a_limit_would_be_noticed():
+    """The checks of this file, on rows that are wrong."""
+    robot = bench("puma560")
+    commands = by(robot, *RIGHT_ANGLE, zone=0.05, speed=0.5)
+    found = chain(robot, commands)
+    assert found.corners[0].cycles > 5
+    tight = [MoveLinear(X_world_tool=each.X_world_tool, zone=0.5 * found.corners[0].reach) for each in commands]
+    assert blends_broken(robot, found, tight) == ["path of move 0 left outside the zone",
+                                                  "path of move 1 left outside the zone"]  # fmt: skip
+    a, b = (part.plan.q for part in found.parts)
+    fast = robot.planner.chain(robot.home(), [MoveJoint(q_end=robot.home() + 0.4), MoveJoint(q_end=robot.home())], TOOL)
+    a, b = (part.plan.q for part in fast.parts)
+    broken = limits_broken(robot, overlapped(a, b, len(a) // 2))
+    assert "acceleration" in broken
+    assert "acceleration by differences" in broken
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_without_zones_the_rows_are_those_of_the_plans_to_the_last_bit(name):
+    robot, random = bench(name), np.random.default_rng(6)
+    lines = LinePlanner(robot.spec, robot.kinematics, robot.profile)
+    for _ in range(5):
+        start, commands = random_chain(robot, random, 3)
+        stops = [type(command)(**{**{f: getattr(command, f) for f in command.__slots__}, "zone": 0.0})
+                 for command in commands]  # fmt: skip
+        found = robot.planner.chain(start, stops, TOOL)
+        q, rows = start, [start[None]]
+        for command in stops:
+            plan = robot.planner.plan(q, command, TOOL)
+            rows.append(plan.q[1:])
+            q = plan.q[-1]
+        assert found.q.tobytes() == np.concatenate(rows).tobytes()
+        assert [corner.cycles for corner in found.corners] == [0, 0]
+        alone = next((each for each in commands if not isinstance(each, MoveJoint)), None)
+        if alone is commands[0]:  # a zone at the end of the last move asks for nothing
+            single = robot.planner.chain(start, [alone], TOOL)
+            assert single.q.tobytes() == lines.plan(start, alone, TOOL).q.tobytes()
+
+
+@pytest.mark.parametrize("zone", [0.002, 0.01, 0.05])
+def test_a_corner_is_cut_within_its_zone_and_the_time_saved_grows_with_it(zone):
+    robot = bench("irb2400")
+    found = chain(robot, by(robot, *RIGHT_ANGLE, zone=zone, speed=0.4))
+    (corner,) = found.corners
+    assert 0.3 * zone < corner.reach <= zone
+    assert 0.0 < corner.deviation < corner.reach / math.sqrt(2.0) + 1e-9
+    assert len(found.q) == sum(len(part.plan.q) - 1 for part in found.parts) + 1 - corner.cycles
+    smaller = chain(robot, by(robot, *RIGHT_ANGLE, zone=0.5 * zone, speed=0.4))
+    assert smaller.corners[0].cycles < corner.cycles or zone == 0.05  # there acceleration and turning rule
+    points = robot.tool(found.q)[:, :3, 3]
+    middle = robot.tool(found.parts[0].plan.q[-1])[:3, 3]
+    assert np.linalg.norm(points - middle, axis=1).min() == pytest.approx(corner.deviation, abs=1e-3)
+
+
+@pytest.mark.parametrize("speed", [0.05, 0.1, 0.5])
+@pytest.mark.parametrize("step", [(0.0, 0.15, 0.0), (0.0, 0.0, 0.15), (0.0, -0.15, 0.0)])
+def test_the_tool_is_never_faster_in_a_blend_than_on_its_ways(speed, step):
+    """In line, round a corner and straight back; a slow move brakes on a fraction of its zone."""
+    robot = bench("irb2400")
+    found = chain(robot, by(robot, (0.0, 0.15, 0.0), step, zone=0.06, speed=speed))
+    assert speeds(robot, found.q).max() <= speed * (1 + 1e-6)
+    assert found.corners[0].cycles > 0
+
+
+def test_in_line_the_tool_hardly_slows_down():
+    robot = bench("irb2400")
+    found = chain(robot, by(robot, *[(0.0, 0.1, 0.0)] * 3, zone=0.05, speed=0.2))
+    for corner, part in zip(found.corners, found.parts, strict=False):
+        middle = speeds(robot, found.q[part.last - 3 : part.last + 3])
+        assert middle.min() > 0.9 * 0.2
+        assert corner.deviation < 1e-5  # between two lines in space the sum of joint angles is not one of them
+    assert limits_broken(robot, found.q) == []
+
+
+def test_two_blends_never_meet_and_half_a_move_is_the_most_that_one_takes():
+    robot = bench("irb2400")
+    found = chain(robot, by(robot, (0.0, 0.02, 0.0), (0.0, 0.0, 0.02), (0.0, -0.02, 0.0), zone=0.08, speed=1.0))
+    cycles = [len(part.plan.q) - 1 for part in found.parts]
+    assert found.corners[0].cycles + found.corners[1].cycles <= cycles[1]
+    assert found.corners[0].cycles == found.corners[1].cycles >= cycles[1] // 2 - 1
+    assert limits_broken(robot, found.q) == []
+
+
+def test_rows_commands_and_modes_belong_together():
+    robot = bench("puma560")
+    found = chain(robot, by(robot, *RIGHT_ANGLE, (0.0, -0.1, 0.0), zone=0.03, speed=0.4))
+    assert (np.diff(found.command) >= 0).all()
+    assert found.parts[0].first == 0
+    assert found.parts[-1].last == len(found.q) - 1
+    for index, (part, after) in enumerate(zip(found.parts, found.parts[1:], strict=False)):
+        assert part.last == after.first
+        overlap = part.offset + len(part.plan.q) - 1 - after.offset
+        assert overlap == found.corners[index].cycles
+        assert after.first - after.offset in (overlap // 2, overlap - overlap // 2)  # the middle of the blend
+        rows = np.flatnonzero(found.command == index)
+        assert (rows[0] == 0 or rows[0] == part.first + 1, rows[-1]) == (True, part.last)
+        plain = slice(after.offset + overlap, found.parts[index + 1].offset + len(after.plan.q) - 1 - (
+            found.corners[index + 1].cycles if index + 1 < len(found.corners) else 0) + 1)  # fmt: skip
+        own = found.q[plain]
+        np.testing.assert_array_equal(own, after.plan.q[overlap : overlap + len(own)])
+        assert len(off_path(robot, found, part, index)[0]) > 0
+    assert sum(part.planned_s for part in found.parts) == pytest.approx((len(found.q) - 1) * robot.profile.period_s)
+
+
+def test_wrist_modes_of_a_blended_chain_are_those_of_the_plans():
+    """A line whose wrist goes to other end angles, then one that keeps them."""
+    robot = bench("irb2400")
+    start, end = np.radians([-20, 10, 30, 10, 65, -15]), np.radians([0, -10, 45, -55, -65, 85])
+    first = MoveLinear(X_world_tool=robot.tool(end), q_end=end, speed=0.3, zone=0.05)
+    X = robot.tool(end)
+    second = MoveLinear(X_world_tool=pose(X[:3, 3] + [0.0, 0.0, 0.05], X[:3, :3]), speed=0.3)
+    found = robot.planner.chain(start, [first, second], TOOL)
+    plan, part = found.parts[0].plan, found.parts[0]
+    assert plan.wrist is not None
+    np.testing.assert_array_equal(found.modes[: part.last + 1], plan.modes[: part.last + 1])
+    assert (found.modes == EXCEPTION).any()
+    assert (found.modes[part.last + 1 :] == found.parts[1].plan.modes[-1]).all()
+    assert len(found.modes) == len(found.command) == len(found.q)
+    assert limits_broken(robot, found.q) == []
+
+
+def test_a_move_with_nothing_to_do_ends_a_blend_and_counts_as_a_move():
+    robot = bench("puma560")
+    first, second = by(robot, *RIGHT_ANGLE, zone=0.03, speed=0.4)
+    found = chain(robot, [first, first, second, second])
+    assert [corner.cycles for corner in found.corners] == [0, 0, 0]
+    assert [part.planned_s > 0.0 for part in found.parts] == [True, False, True, False]
+    assert found.command[-1] == 3
+    assert found.notes == ("already there", "already there")
+    nothing = robot.planner.chain(robot.home(), [MoveJoint(q_end=robot.home())] * 2, TOOL)
+    assert (len(nothing.q), nothing.command.tolist()) == (1, [1])
+
+
+def test_the_move_that_is_refused_is_named():
+    robot = bench("puma560")
+    commands = by(robot, (0.0, 0.1, 0.0), (0.0, 0.0, 0.1), (3.0, 0.0, 0.0), zone=0.02)
+    with pytest.raises(ChainFault, match="RBL410") as caught:
+        chain(robot, commands)
+    assert caught.value.index == 2
+    assert isinstance(caught.value, Fault)
+    with pytest.raises(ChainFault, match="RBL416") as caught:
+        chain(robot, [commands[0], MoveArc(X_via=commands[0].X_world_tool, X_world_tool=commands[1].X_world_tool)])
+    assert caught.value.index == 1
+    with pytest.raises(ValueError, match="at least one"):
+        chain(robot, [])
+
+
+@pytest.mark.parametrize("override", [0.1, 0.5])
+def test_an_override_scales_every_speed_and_takes_the_same_way(override):
+    """A line, a turn on the spot, a joint move, an arc, and a line that changes its wrist."""
+    robot = bench("irb2400")
+    q, J1 = robot.home(), 1.5 * np.eye(6)[0]
+    X = robot.tool(q)
+    turned = pose(X[:3, 3], rotation_about([0.0, 0.0, 1.0], 1.0) @ X[:3, :3])
+    aside = pose(X[:3, 3] + [0.0, 0.3, 0.0], X[:3, :3])
+    for command in (MoveLinear(X_world_tool=aside), MoveLinear(X_world_tool=turned), MoveJoint(q_end=q + J1),
+                    MoveArc(X_via=pose(X[:3, 3] + [0.0, 0.1, 0.1]), X_world_tool=aside)):  # fmt: skip
+        whole, part = (robot.planner.plan(q, command, TOOL, each) for each in (1.0, override))
+        assert limits_broken(robot, part.q, override) == []
+        asked = robot.speed[0] / 1.5 if isinstance(command, MoveJoint) else robot.planner.lines.way(
+            q, command, TOOL).limits.speed  # fmt: skip
+        assert 0.95 < np.diff(part.s).max() / robot.profile.period_s / (override * asked) <= 1.0 + 1e-6
+        assert len(part.q) > len(whole.q)
+    change = np.radians([0, -10, 45, -55, -65, 85])
+    command = MoveLinear(X_world_tool=robot.tool(change), q_end=change, speed=0.3)
+    whole, part = (robot.planner.plan(np.radians([-20, 10, 30, 10, 65, -15]), command, TOOL, each)
+                   for each in (1.0, override))  # fmt: skip
+    assert part.wrist is not None
+    assert part.wrist.condition == whole.wrist.condition
+    assert part.wrist.share == pytest.approx(whole.wrist.share, abs=0.02)
+    timed = robot.planner.plan(q, MoveLinear(X_world_tool=aside, duration=1.0), TOOL, override)
+    assert (len(timed.q) - 1) * robot.profile.period_s == pytest.approx(1.0 / override, abs=0.008)
+
+
+def test_a_chain_under_an_override_blends_within_the_lower_speeds():
+    robot = bench("irb2400")
+    commands = by(robot, *RIGHT_ANGLE, zone=0.05, speed=0.4)
+    found = chain(robot, commands, 0.3)
+    assert found.corners[0].cycles > 0
+    assert limits_broken(robot, found.q, 0.3) == []
+    assert speeds(robot, found.q).max() <= 0.3 * 0.4 * (1 + 1e-6)
+
+
+@pytest.mark.parametrize("kinds", ["joint joint", "line joint", "joint arc", "arc line"])
+def test_all_kinds_blend_with_each_other(kinds):
+    robot = bench("puma560")
+    q, X = robot.home(), robot.tool(robot.home())
+    middle, end = (pose(X[:3, 3] + np.array(step), X[:3, :3]) for step in ((0.0, 0.15, 0.05), (0.0, 0.2, -0.1)))
+
+    def move(kind: str, X_here: np.ndarray, X_end: np.ndarray) -> Command:
+        if kind == "arc":
+            via = pose(0.5 * (X_here + X_end)[:3, 3] + [0.03, 0.0, 0.0])
+            return MoveArc(X_via=via, X_world_tool=X_end, zone=0.04, speed=0.3)
+        return MoveJoint(X_world_tool=X_end, zone=0.04, speed=0.5) if kind == "joint" else MoveLinear(
+            X_world_tool=X_end, zone=0.04, speed=0.3)  # fmt: skip
+
+    first, second = kinds.split()
+    commands = [move(first, X, middle), move(second, middle, end)]
+    found = robot.planner.chain(q, commands, TOOL)
+    assert found.corners[0].cycles > 4
+    assert limits_broken(robot, found.q) == []
+    assert blends_broken(robot, found, commands) == []

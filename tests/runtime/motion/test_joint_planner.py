@@ -1,0 +1,165 @@
+"""Joint moves: synchronised, straight in joint space, at the limits and never beyond, to the solution meant."""
+
+import math
+
+import numpy as np
+import pytest
+
+from runtime.faults import Fault
+from runtime.frames import inverse
+from runtime.motion.commands import MoveJoint
+from runtime.motion.planner import FOLLOWS, LinePlan
+from tests.runtime.motion.motions import ROBOTS, TOOL, bench, limits_broken
+
+DEG = math.pi / 180.0
+
+
+def ways(name: str) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Moves of one joint, of all, short, long."""
+    spec, random = bench(name).spec, np.random.default_rng(1)
+    found = []
+    for share in (0.01, 0.1, 0.5, 0.95):
+        start, end = random.uniform(spec.lower, spec.upper, (2, spec.n))
+        found.append((start, start + share * (end - start)))
+    found.append((bench(name).home(), bench(name).home() + np.eye(spec.n)[2] * 0.4))
+    return found
+
+
+def plan(name: str, start: np.ndarray, shape: str = "jerk", override: float = 1.0, **options) -> LinePlan:
+    return bench(name, shape).planner.plan(start, MoveJoint(**options), TOOL, override)
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("shape", ["jerk", "trapezoid"])
+@pytest.mark.parametrize("options", [{}, {"speed": 0.3, "acceleration": 0.5}, {"duration": 2.5}])
+def test_all_joints_start_and_end_together_and_go_straight_in_joint_space(name, shape, options):
+    for start, end in ways(name):
+        found = plan(name, start, shape, q_end=end, **options)
+        np.testing.assert_array_equal(found.q[0], start)
+        np.testing.assert_array_equal(found.q[-1], end)
+        shares = (found.q - start)[:, np.abs(end - start) > 1e-9] / (end - start)[np.abs(end - start) > 1e-9]
+        np.testing.assert_allclose(shares, np.broadcast_to(found.s[:, None], shares.shape), atol=1e-9)
+        assert (np.diff(found.s) > 0.0).all()
+        assert limits_broken(bench(name, shape), found.q) == []
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_a_long_move_reaches_the_speed_limit_of_the_slowest_joint_to_one_per_cent(name):
+    robot = bench(name)
+    start, end = (robot.spec.lower + share * (robot.spec.upper - robot.spec.lower) for share in (0.05, 0.95))
+    _, dq, ddq = np.abs(robot.at_the_servo(plan(name, start, q_end=end).q)).max(axis=1)
+    assert (dq / robot.speed).max() > 0.99
+    assert (ddq / robot.acceleration).max() > 0.9
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5])
+def test_speed_acceleration_and_override_are_shares_of_the_limits(share):
+    robot = bench("puma560")
+    start, end = (robot.spec.lower + part * (robot.spec.upper - robot.spec.lower) for part in (0.1, 0.9))
+    for options in ({"speed": share}, {"override": share}):
+        _, dq, _ = np.abs(robot.at_the_servo(plan("puma560", start, q_end=end, **options).q)).max(axis=1)
+        assert (dq / robot.speed).max() == pytest.approx(share, rel=0.01)
+    _, _, ddq = np.abs(robot.at_the_servo(plan("puma560", start, q_end=end, acceleration=share).q)).max(axis=1)
+    assert (ddq / robot.acceleration).max() == pytest.approx(share, rel=0.06)
+    fast, slow = (np.abs(robot.at_the_servo(plan("puma560", start, q_end=end, override=o).q)[2]).max(axis=0)
+                  for o in (1.0, share))  # fmt: skip
+    assert (slow / fast).min() > 1.4 * share  # an override leaves the acceleration as it is, but for its time to rise
+
+
+def test_time_is_kept_or_said_to_be_too_short():
+    robot = bench("irb2400")
+    q = robot.home()
+    found = plan("irb2400", q, q_end=q + 0.2, duration=3.0)
+    assert (len(found.q) - 1) * robot.profile.period_s == pytest.approx(3.0)
+    assert found.notes == ()
+    short = plan("irb2400", q, q_end=q + 0.2, duration=0.1)
+    assert short.notes[0].startswith("TIME 0.1 s is too short, the move takes 0.")
+    assert (len(plan("irb2400", q, q_end=q + 0.2, duration=3.0, override=0.5).q) - 1) == 750
+
+
+def test_a_move_to_where_the_arm_stands_needs_no_cycle_and_has_no_path():
+    q = bench("puma560").home()
+    found = plan("puma560", q, q_end=q)
+    assert (len(found.q), found.notes, found.path, found.wrist) == (1, ("already there",), None, None)
+    assert (plan("puma560", q, q_end=q + 0.1).modes == FOLLOWS).all()
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_a_pose_is_reached_with_the_solution_that_takes_least_time(name):
+    """Against all solutions of all whole turns, listed without the planner."""
+    robot, random = bench(name), np.random.default_rng(2)
+    spec = robot.spec
+    for _ in range(40):
+        start, meant = random.uniform(spec.lower, spec.upper, (2, spec.n))
+        X = robot.tool(meant)
+        found = robot.planner.joints.end(start, MoveJoint(X_world_tool=X), TOOL)
+        np.testing.assert_allclose(robot.tool(found), X, atol=1e-9)
+        best = math.inf
+        for solution in robot.kinematics.solutions(X @ inverse(TOOL), start):
+            for turns in np.ndindex(*([3] * spec.n)):
+                q = solution.q + 2.0 * np.pi * (np.array(turns) - 1)
+                if (q >= spec.lower).all() and (q <= spec.upper).all():
+                    best = min(best, float((np.abs(q - start) / robot.speed).max()))
+        assert float((np.abs(found - start) / robot.speed).max()) == pytest.approx(best, abs=1e-9)
+
+
+def test_configuration_and_turns_of_a_taught_point_are_kept():
+    robot = bench("irb2400")
+    q = robot.home()
+    X = robot.tool(q)
+    here = robot.kinematics.branch_of(q)
+    near = robot.planner.joints.end(q, MoveJoint(X_world_tool=X), TOOL)
+    np.testing.assert_allclose(near, q, atol=1e-9)
+    flipped = "FLIP" if "NOFLIP" in str(here) else "NOFLIP"
+    other = robot.planner.joints.end(q, MoveJoint(X_world_tool=X, configuration=(flipped,)), TOOL)
+    assert str(robot.kinematics.branch_of(other)).split()[2] == flipped
+    np.testing.assert_allclose(robot.tool(other), X, atol=1e-9)
+    turned = robot.planner.joints.end(q, MoveJoint(X_world_tool=X, configuration=tuple(str(here).split()),
+                                                             turns=(0, 0, 0, 0, 0, 1)), TOOL)  # fmt: skip
+    np.testing.assert_allclose(turned - q, [0.0, 0.0, 0.0, 0.0, 0.0, 2.0 * np.pi], atol=1e-9)
+    joints = robot.planner.joints.end(q, MoveJoint(X_world_tool=X, q_end=q + 0.1), TOOL)
+    np.testing.assert_array_equal(joints, q + 0.1)  # joint angles say more than a pose
+
+
+def refusal(name: str, start: np.ndarray, **options) -> Fault:
+    with pytest.raises(Fault) as caught:
+        plan(name, start, **options)
+    return caught.value
+
+
+def test_refusals_name_what_is_wrong():
+    robot = bench("puma560")
+    q = robot.home()
+    far = robot.tool(q).copy()
+    far[0, 3] += 3.0
+    fault = refusal("puma560", q, X_world_tool=far)
+    assert fault.code == "RBL410"
+    assert "is out of reach of puma560" in fault.message
+    beyond = q.copy()
+    beyond[0] = 170.0 * DEG
+    fault = refusal("puma560", q, q_end=beyond)
+    assert fault.code == "RBL411"
+    assert "J1 would pass its limit of 160 deg by 10 deg" in fault.message
+    assert refusal("puma560", q, q_end=q * np.nan).code == "RBL411"
+    fault = refusal("puma560", q, X_world_tool=robot.tool(q), configuration=("LEFTY", "UPSIDE"))
+    assert (fault.code, "cannot be reached LEFTY UPSIDE" in fault.message) == ("RBL412", True)
+    fault = refusal("puma560", q, X_world_tool=robot.tool(q), turns=(1,))
+    assert (fault.code, "J1 would pass its limit" in fault.message) == ("RBL411", True)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{"speed": 0.0}, {"speed": 1.01}, {"speed": math.nan}, {"acceleration": 0.0}, {"acceleration": 2.0},
+     {"duration": 0.0}, {"duration": math.inf}, {"duration": 601.0}],
+)  # fmt: skip
+def test_impossible_options_are_refused(options):
+    q = bench("puma560").home()
+    assert refusal("puma560", q, q_end=q + 0.1, **options).code == "RBL404"
+
+
+def test_a_move_to_nowhere_and_a_zone_that_is_none_are_misuse():
+    with pytest.raises(ValueError, match="joint angles or a pose"):
+        MoveJoint()
+    for zone in (-1e-9, math.nan, math.inf):
+        with pytest.raises(ValueError, match="zone"):
+            MoveJoint(q_end=np.zeros(6), zone=zone)
