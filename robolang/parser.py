@@ -31,6 +31,7 @@ MAX_OPERATORS = 1000
 MAX_NUMBER_DIGITS = 9
 
 _HEAD = re.compile(r"[ \t]*+(?:([0-9]++)(?![\w.]))?[ \t]*+")
+_STRING = re.compile(r'"[^"\r\n]*+"')
 _COMMENT = re.compile(r"'|(?<!\w)REM(?!\w)", re.IGNORECASE)
 _NOT = re.compile(r"(?<!\w)NOT(?!\w)", re.IGNORECASE)
 _LINE_END = re.compile(r"\r\n?|\n")
@@ -107,8 +108,9 @@ def _refusal(text: str, base: int) -> Diagnostic | None:
     """Return why a line is not parsed at all; None when it may be."""
     if not (text.isascii() and text.isprintable()) and (hidden := HIDDEN.search(text)):
         return suspicious(hidden[0], base + hidden.start())
-    comment = _COMMENT.search(text) if len(text) > MAX_DEPTH else None
-    code = text[: comment.start()] if comment else text
+    plain = _STRING.sub(lambda found: " " * len(found[0]), text) if '"' in text else text
+    comment = _COMMENT.search(plain) if len(text) > MAX_DEPTH else None
+    code = plain[: comment.start()] if comment else plain
     if (at := _too_deep(code)) is not None:
         message = f"more than {MAX_DEPTH} parentheses or signs inside one another"
         return Diagnostic(code="RBL108", message=message, span=Span(base + at, base + at + 1))

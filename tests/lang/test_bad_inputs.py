@@ -251,3 +251,12 @@ def test_a_name_of_the_evaluator_is_no_function_of_the_language():
         assert problems(f"x = {name}(1)")[0][0] == "RBL215"
         with pytest.raises(ProgramFault, match="no array"):
             list(execute(parse(Source("p", f"x = {name}(1)")).program))
+
+
+def test_a_quote_inside_a_text_hides_nothing_from_the_limits():
+    """A ' or REM between double quotes begins no comment, and what stands between them is no operator."""
+    quote = 'x$ = "\'" + STR$(' + "-(" * 1600 + "1" + ")" * 1601
+    word = 'x$ = "REM " + STR$(' + "(" * 500 + "1" + ")" * 501
+    for text in (quote, word):
+        assert [item.code for item in parse(Source("p.rbl", text)).diagnostics] == ["RBL108"]
+    assert parse(Source("p.rbl", 'PRINT "' + "(" * 300 + " not " * 200 + "-" * 1500 + '"')).diagnostics == ()

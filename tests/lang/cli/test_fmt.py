@@ -63,9 +63,9 @@ def test_nothing_to_format_is_said(folder):
 
 def test_check_writes_nothing(folder):
     result = robolang("fmt", "--check", code=1)
-    assert result.stdout == "would reformat bad.rbl\n1 file would be reformatted, 1 file as it should be\n"
+    assert result.stdout == "would reformat bad.rbl\n1 file would be reformatted, 1 file already formatted\n"
     assert (folder / "bad.rbl").read_text() == BAD
-    assert robolang("fmt", "--check", "good.rbl").stdout == "1 file as it should be\n"
+    assert robolang("fmt", "--check", "good.rbl").stdout == "1 file already formatted\n"
 
 
 def test_diff_prints_what_would_change(folder):
@@ -73,7 +73,7 @@ def test_diff_prints_what_would_change(folder):
     assert result.stdout == (
         "--- bad.rbl\n+++ bad.rbl\n@@ -1,2 +1,2 @@\n-move p1 'x\n-hand  on'y\n+MOVE p1  'x\n+HAND ON  'y\n"
     )
-    assert result.stderr == "1 file would be reformatted, 1 file as it should be\n"
+    assert result.stderr == "1 file would be reformatted, 1 file already formatted\n"
     assert (folder / "bad.rbl").read_text() == BAD
     assert robolang("fmt", "--diff", "good.rbl").stdout == ""
 
