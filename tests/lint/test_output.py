@@ -19,18 +19,18 @@ from runtime.faults import Fault, lookup
 from runtime.tomlfile import FileFault
 from tests.lint.helpers import checked
 
-ROOT = Path("/work/repo")
+ROOT = Path("/srv/repo")
 BAD = "10 MOVE P1\r\n10 MOVE P9\n30 LOAD (0, 0, 60), -1\n"
 """RBL110 info with a fix, RBL113 with a note, RBL301 and RBL401 errors."""
 CODES = ["RBL110", "RBL113", "RBL301", "RBL401"]
-LOST = FileFault("RBL307", "one, two", "write six", path="/work/repo/cell/pick.points.toml", line=3, column=2,
+LOST = FileFault("RBL307", "one, two", "write six", path="/srv/repo/cell/pick.points.toml", line=3, column=2,
                  excerpt="pose = [1]")  # fmt: skip
 
 
 @pytest.fixture
 def results():
-    return [checked(BAD, "/work/repo/cell/pick.rbl"), checked("MOVE P1\n", "/work/repo/good.rbl"),
-            checked("", "/work/repo/cell/empty.rbl", faults=[LOST])]  # fmt: skip
+    return [checked(BAD, "/srv/repo/cell/pick.rbl"), checked("MOVE P1\n", "/srv/repo/good.rbl"),
+            checked("", "/srv/repo/cell/empty.rbl", faults=[LOST])]  # fmt: skip
 
 
 def read(form, results, root=ROOT):
@@ -77,11 +77,11 @@ def test_full_is_every_finding_with_its_excerpt(results):
 def test_concise_is_one_line_for_each(results):
     lines = read("concise", results).splitlines()
     assert [line.split()[:3] for line in lines] == [
-        ["/work/repo/cell/pick.rbl:2:1:", "error", "RBL113"],
-        ["/work/repo/cell/pick.rbl:2:9:", "error", "RBL301"],
-        ["/work/repo/cell/pick.rbl:2:11:", "info", "RBL110"],
-        ["/work/repo/cell/pick.rbl:3:21:", "error", "RBL401"],
-        ["/work/repo/cell/empty.rbl:1:1:", "warning", "RBL201"],
+        ["/srv/repo/cell/pick.rbl:2:1:", "error", "RBL113"],
+        ["/srv/repo/cell/pick.rbl:2:9:", "error", "RBL301"],
+        ["/srv/repo/cell/pick.rbl:2:11:", "info", "RBL110"],
+        ["/srv/repo/cell/pick.rbl:3:21:", "error", "RBL401"],
+        ["/srv/repo/cell/empty.rbl:1:1:", "warning", "RBL201"],
     ]
     assert [line.endswith(" [*]") for line in lines] == [False, False, True, False, False]
 
@@ -110,7 +110,7 @@ def test_json_has_plain_objects_with_ranges(results):
     assert ends["fix"]["safe"] is True
     assert ends["fix"]["edits"][0] == {"line": 2, "column": 11, "end_line": 3, "end_column": 1, "text": "\r\n"}
     (fault,) = [item for item in found if item["code"] == "RBL307"]
-    assert (fault["file"], fault["line"], fault["column"]) == ("/work/repo/cell/pick.points.toml", 3, 2)
+    assert (fault["file"], fault["line"], fault["column"]) == ("/srv/repo/cell/pick.points.toml", 3, 2)
     assert {item["severity"] for item in found} == {"error", "warning", "info"}
 
 
@@ -134,7 +134,7 @@ def test_github_commands(results):
 
 
 def test_github_escapes_what_would_end_a_command():
-    text = render("github", [checked("MOVE P9\n", "/work/repo/a,b:c%\nd.rbl")], ROOT)
+    text = render("github", [checked("MOVE P9\n", "/srv/repo/a,b:c%\nd.rbl")], ROOT)
     assert "file=a%2Cb%3Ac%25%0Ad.rbl,line=1," in text
     assert text.count("\n") == 1
 
@@ -155,7 +155,7 @@ def test_gitlab_issues(results):
     assert len({issue["fingerprint"] for issue in issues}) == len(issues)
 
 
-def marks(text, path="/work/repo/cell/pick.rbl", root=ROOT):
+def marks(text, path="/srv/repo/cell/pick.rbl", root=ROOT):
     found = findings([checked(text, path)])
     return dict(zip([item.code for item in found], fingerprints(found, root), strict=True))
 
@@ -170,7 +170,7 @@ def test_fingerprints_survive_edits_elsewhere():
 def test_fingerprints_are_of_the_path_below_the_root():
     text = "MOVE P9\n"
     assert marks(text) == marks(text, "/elsewhere/cell/pick.rbl", Path("/elsewhere"))
-    assert marks(text) != marks(text, "/work/repo/pick.rbl")
+    assert marks(text) != marks(text, "/srv/repo/pick.rbl")
 
 
 def test_equal_lines_have_different_fingerprints():
@@ -284,7 +284,7 @@ def test_sarif_fixes_and_related_places(results):
 
 @pytest.mark.parametrize("name", ["a b.rbl", "ä,%#?.rbl", "c:d.rbl", "\udcff.rbl"])
 def test_sarif_uris_are_escaped(name):
-    log = json.loads(render("sarif", [checked("MOVE P9\n", f"/work/repo/{name}")], ROOT))
+    log = json.loads(render("sarif", [checked("MOVE P9\n", f"/srv/repo/{name}")], ROOT))
     uri = log["runs"][0]["results"][0]["locations"][0]["physicalLocation"]["artifactLocation"]["uri"]
     uri_is_relative(uri)
     assert uri.isascii()
@@ -309,7 +309,7 @@ def test_a_fault_without_a_place_is_at_the_start_of_its_program():
 
 @pytest.mark.parametrize(
     ("path", "shown"),
-    [("/work/repo/a/b.rbl", "a/b.rbl"), ("/work/other/b.rbl", "../other/b.rbl"), ("-", "-"), ("a\0b", "a\0b")],
+    [("/srv/repo/a/b.rbl", "a/b.rbl"), ("/work/other/b.rbl", "../other/b.rbl"), ("-", "-"), ("a\0b", "a\0b")],
 )
 def test_paths_are_relative_to_the_root(path, shown):
     assert relative(path, ROOT) == shown
