@@ -139,6 +139,7 @@ def _print(found: "Export", out: Path) -> None:
 
     from robolang.cli.console import Console
     from robolang.diagnostics import safe
+    from robolang.pulse_export import ExportedMove
 
     plain, console = _plain(found, out), Console()
     moves, markers = plain["moves"], plain["markers"]
@@ -154,10 +155,10 @@ def _print(found: "Export", out: Path) -> None:
     title = f"{found.machine.name}: pulse tables in steps of {found.request.step_s * 1e3:g} ms"
     console.print(safe(title), soft_wrap=True)
     by_move = table("line", "statement", "steps", "time, s", "mm/s", "raised", "tables", "off, mm")
-    rows = [(entry["line"], _move_row(entry)) for entry in moves]
-    rows += [(entry["line"], (_number(entry), safe(entry["text"]))) for entry in markers]
-    for _, row in sorted(rows, key=lambda item: item[0]):
-        by_move.add_row(*row)
+    move_rows = map(_move_row, moves)
+    marker_rows = ((_number(entry), safe(entry["text"])) for entry in markers)
+    for item in found.sequence:
+        by_move.add_row(*next(move_rows if isinstance(item, ExportedMove) else marker_rows))
     console.print(by_move)
     by_channel = table("channel", "one pulse", "lowest Hz", "largest Hz", "raised", "tables", "debt, pulses")
     for k, channel in enumerate(found.channels):

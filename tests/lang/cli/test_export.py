@@ -281,6 +281,14 @@ def test_an_arm_that_changes_its_wrist_is_exported_with_it(tmp_path):
     assert np.abs(turned["J4"]) * 0.00225 > 60.0
 
 
+def test_a_loop_is_shown_in_the_order_that_it_runs(tmp_path):
+    program = tmp_path / "loop.rbl"
+    program.write_text("FOR n = 0 TO 1\nHAND ON\nHAND OFF\nNEXT\n", "utf-8")
+    shown = robolang("export", "pulses", program, "-o", tmp_path / "x").stdout
+    hands = [line.split()[2] for line in shown.splitlines() if "HAND" in line]
+    assert hands == ["ON", "OFF", "ON", "OFF"]
+
+
 def test_nothing_heavy_is_imported_for_help():
     result = shell("export", "pulses", "--help")
     assert result.returncode == 0
