@@ -1,0 +1,59 @@
+"""Values that a text alone gives: expressions of numbers, worked out before anything runs."""
+
+from collections.abc import Iterator
+from typing import NoReturn
+
+from robolang.diagnostics import Diagnostic
+from robolang.evaluator import Evaluator, Nowhere
+from robolang.nodes import Expression, Name, Negate, Number, Text, constant
+from robolang.places import Value
+from runtime.faults import Fault
+
+
+class _NoNames:
+    """Names without values: what needs one is not constant."""
+
+    def value(self, key: str) -> Value | None:
+        if key in ("NAN", "INF"):
+            return None
+        raise _VariableError
+
+    def element(self, key: str, index: int) -> Value | None:
+        raise _VariableError
+
+
+class _VariableError(Exception):
+    """A value that depends on a name."""
+
+
+class _Static(Nowhere):
+    def _refuse(self, what: str) -> NoReturn:
+        raise _VariableError
+
+
+_EVALUATOR = Evaluator(_NoNames(), _Static())
+
+
+def fixed(node: Expression) -> float | None:
+    """Return the value of an expression of numbers alone; None when it needs more or has none."""
+    value = constant(node)
+    if value is not None or isinstance(node, Number | Name | Negate):
+        return value
+    try:
+        found = _EVALUATOR.value(node)
+    except (_VariableError, Fault):
+        return None
+    return found if isinstance(found, float) else None
+
+
+def no_value(node: Expression) -> Iterator[Diagnostic]:
+    """Report what has no value whatever the variables are: 1 / 0, SQR(-1)."""
+    if isinstance(node, Number | Name | Text | Negate):
+        return
+    try:
+        _EVALUATOR.value(node)
+    except _VariableError:
+        return
+    except Fault as fault:
+        if fault.code in ("RBL501", "RBL502"):
+            yield Diagnostic(code="RBL209", message=f"this has no value: {fault.message}", span=node.span)

@@ -1,0 +1,81 @@
+"""Names: what the cell and the points file have, what a program defines, and what a wrong one was meant to be."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from robolang.diagnostics import Diagnostic
+from robolang.nodes import Assign, Const, Dim, For, If, Name, Program, Statement, Sub
+from robolang.source import Span
+from robolang.words import near
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Facts:
+    """What is known of the cell; None: not known, not checked. Names in any case."""
+
+    points: frozenset[str] | None = None
+    rated_payload_kg: float | None = None
+    sensors: frozenset[str] | None = None
+    tools: frozenset[str] | None = None
+    frames: frozenset[str] | None = None
+    loads: frozenset[str] | None = None
+    inputs: frozenset[int] | None = None
+
+
+@dataclass(slots=True)
+class Defined:
+    """Names that a program gives values: variables, arrays, constants, and subroutines with their parameters."""
+
+    values: set[str] = field(default_factory=set)
+    arrays: set[str] = field(default_factory=set)
+    constants: dict[str, Span] = field(default_factory=dict)
+    subs: dict[str, Sub] = field(default_factory=dict)
+
+    @staticmethod
+    def of(program: Program) -> "Defined":
+        """Return what the statements of a program define, wherever they stand."""
+        found = Defined()
+        for line in program.statements:
+            assert line.statement is not None
+            found._take(line.statement)
+        return found
+
+    def _take(self, node: Statement) -> None:
+        if isinstance(node, If):
+            for part in (node.then, node.otherwise):
+                if part is not None:
+                    self._take(part)
+        elif isinstance(node, Assign) and isinstance(node.target, Name):
+            self.values.add(node.target.key)
+        elif isinstance(node, For):
+            self.values.add(node.variable.key)
+        elif isinstance(node, Const):
+            self.values.add(node.name.key)
+            self.constants.setdefault(node.name.key, node.name.span)
+        elif isinstance(node, Dim):
+            self.arrays.add(node.name.key)
+        elif isinstance(node, Sub):
+            self.subs.setdefault(node.name.key, node)
+            self.values.update(parameter.key for parameter in node.parameters)
+
+
+def of_cell(name: Name, known: frozenset[str] | None, what: str) -> Iterator[Diagnostic]:
+    """Report a name of something that the cell does not have (RBL305); ``known`` None: not known."""
+    if known is not None and name.key not in known:
+        hint = names_hint(name, known, known=f"{what}s", none=f"the cell has no {what}")
+        yield Diagnostic(code="RBL305", message=f"the cell has no {what} {name.text}", span=name.span, hint=hint)
+
+
+def hint_for(name: Name, names: frozenset[str]) -> str:
+    """Return which of ``names`` was probably meant, or ``""``."""
+    guess = near(name.key, names)
+    return f"did you mean {guess}?" if guess else ""
+
+
+def names_hint(name: Name, names: frozenset[str], *, known: str, none: str) -> str:
+    """Return what a name that is not among ``names`` was probably meant to be, or which there are, or ``""``."""
+    if guess := hint_for(name, names):
+        return guess
+    if not names:
+        return none
+    return f"{known}: {', '.join(sorted(names))}" if len(names) <= 10 else ""

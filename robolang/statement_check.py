@@ -1,0 +1,359 @@
+"""Statements: values out of range, options that contradict, names of the cell that are none, and wrong arguments.
+
+Every limit is written so that NaN fails it. Limits of the robot's own (reach, joints, speed) belong to the planner;
+here are those that hold for every robot, and what the arm may carry.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+
+from robolang.constants import fixed
+from robolang.diagnostics import Diagnostic, Related, Severity
+from robolang.expression_check import ExpressionCheck
+from robolang.names import Defined, Facts, names_hint, of_cell
+from robolang.nodes import (
+    Accel,
+    Approach,
+    Assign,
+    Call,
+    CallSub,
+    Chain,
+    Component,
+    Component6,
+    Const,
+    Delay,
+    Depart,
+    Dim,
+    Expression,
+    For,
+    Hand,
+    Head,
+    If,
+    Load,
+    LoadNamed,
+    Move,
+    MoveC,
+    MoveJ,
+    Moving,
+    Name,
+    Negate,
+    Node,
+    Not,
+    Number,
+    Option,
+    Out,
+    Pulse,
+    Seam,
+    Setting,
+    Speed,
+    Statement,
+    Text,
+    Time,
+    Vector,
+    Wait,
+    Wrist,
+    Zone,
+)
+from robolang.source import Span
+
+MAX_COG_MM = 2000.0
+MAX_SPEED_MM_S = 10_000.0
+MAX_ACCEL_PCT = 100.0
+MAX_SECONDS = 600.0
+MAX_WAIT_S = 86_400.0
+MAX_HELD = 2
+MAX_OUTPUT = 1024
+
+
+class StatementCheck:
+    """Checks the statements of a program one by one; ``defined`` are its names, ``facts`` those of its cell."""
+
+    def __init__(self, facts: Facts, defined: Defined) -> None:
+        self._facts, self._defined = facts, defined
+        self._expressions = ExpressionCheck(facts, defined)
+
+    def check(self, node: Statement) -> Iterator[Diagnostic]:
+        """Report what is wrong in a statement and in its branches."""
+        if isinstance(node, If):
+            yield from self._expressions.must_be(node.condition, "a number")
+            yield from self._expressions.check(node.condition)
+            for part in (node.then, node.otherwise):
+                if part is not None:
+                    yield from self.check(part)
+            return
+        rule = _RULES.get(type(node))
+        if rule is not None:
+            yield from rule(self, node)
+        yield from self._names(node)
+
+    def _names(self, node: Statement) -> Iterator[Diagnostic]:
+        """Check every expression of a statement that is not a place for a name of another sort."""
+        if isinstance(node, Setting) and node.word in ("TOOL", "FRAME") and isinstance(node.value, Name):
+            return
+        for part in _expressions(node):
+            yield from self._expressions.check(part)
+
+    # --- motion ------------------------------------------------------------------------------------------------------
+
+    def _moving(self, node: Moving) -> Iterator[Diagnostic]:
+        for target in ([node.via] if isinstance(node, MoveC) else []) + (
+            [] if isinstance(node, Depart) else [node.target]
+        ):
+            yield from self._place(target)
+        if isinstance(node, Approach | Depart):
+            yield from self._in_range(node.distance, node.distance, 0.0, 1e5, "a distance", "mm", "RBL404")
+        seen: dict[type, Option] = {}
+        for option in node.options:
+            word = type(option).__name__.upper()
+            if earlier := seen.get(type(option)):
+                yield _twice(word, option.span, earlier.span)
+            seen.setdefault(type(option), option)
+            yield from self._option(option, word, joint=isinstance(node, MoveJ))
+        if Speed in seen and Time in seen:
+            message = "TIME fixes how long the move takes, so SPEED cannot be given too"
+            related = (Related(span=seen[Time].span, message="TIME is given here"),)
+            yield Diagnostic(code="RBL119", message=message, span=seen[Speed].span, related=related)
+
+    def _place(self, node: Expression) -> Iterator[Diagnostic]:
+        points = self._facts.points
+        if isinstance(node, Name) and node.key not in self._defined.values:
+            if points is not None and node.key not in points:
+                hint = names_hint(node, points, known="taught", none="no point is taught")
+                yield Diagnostic(code="RBL301", message=f"point {node.text} is not taught", span=node.span, hint=hint)
+            return
+        kind = self._expressions.kind(node)
+        if kind is not None and kind != "a pose":
+            yield Diagnostic(code="RBL217", message=f"{kind} stands where a point is needed", span=node.span)
+
+    def _option(self, option: Option, word: str, *, joint: bool) -> Iterator[Diagnostic]:
+        if isinstance(option, Wrist):
+            yield from self._wrist(option)
+        elif isinstance(option, Zone):
+            if option.value is not None:
+                yield from self._radius(option.value)
+        else:
+            high, unit = _range(option, joint=joint)
+            yield from self._above(option.value, high, word, unit)
+
+    def _above(self, node: Expression, high: float, word: str, unit: str) -> Iterator[Diagnostic]:
+        yield from self._expressions.must_be(node, "a number")
+        value = fixed(node)
+        if value is not None and not 0.0 < value <= high:
+            message = f"{word} is {value:g} {unit} and must be above 0 and at most {high:g} {unit}"
+            yield Diagnostic(code="RBL404", message=message, span=node.span)
+
+    def _radius(self, node: Expression) -> Iterator[Diagnostic]:
+        yield from self._expressions.must_be(node, "a number")
+        value = fixed(node)
+        if value is not None and not 0.0 <= value <= 1e5:
+            message = f"a blend radius of {value:g} mm is not 0 or more"
+            yield Diagnostic(code="RBL415", message=message, span=node.span)
+
+    def _in_range(self, node: Expression, place: Node, low: float, high: float, what: str, unit: str,
+                  code: str) -> Iterator[Diagnostic]:  # fmt: skip
+        yield from self._expressions.must_be(node, "a number")
+        value = fixed(node)
+        if value is not None and not low <= value <= high:
+            message = f"{what} of {value:g} {unit} is not between {low:g} {unit} and {high:g} {unit}"
+            yield Diagnostic(code=code, message=message, span=place.span)
+
+    def _wrist(self, node: Wrist) -> Iterator[Diagnostic]:
+        seen: dict[Component, Span] = {}
+        for component, place in zip(node.held, node.held_spans, strict=True):
+            if first := seen.get(component):
+                yield _twice(component.value, place, first)
+            elif len(seen) >= MAX_HELD:
+                message = f"{component.value} is one too many: the wrist can hold at most two components"
+                yield Diagnostic(code="RBL120", message=message, span=place)
+            seen.setdefault(component, place)
+
+    def _seam(self, node: Seam) -> Iterator[Diagnostic]:
+        sensor = node.sensor
+        if sensor is not None and self._facts.sensors is not None and sensor.key not in self._facts.sensors:
+            hint = names_hint(sensor, self._facts.sensors, known="seam sensors", none="the cell has no seam sensor")
+            message = f"the cell has no seam sensor {sensor.text}"
+            yield Diagnostic(code="RBL306", message=message, span=sensor.span, hint=hint)
+
+    def _setting(self, node: Setting) -> Iterator[Diagnostic]:
+        assert node.value is not None
+        if node.word in ("TOOL", "FRAME"):
+            names = self._facts.tools if node.word == "TOOL" else self._facts.frames
+            if isinstance(node.value, Name):
+                if node.value.key not in self._defined.values | (self._facts.points or frozenset()):
+                    yield from of_cell(node.value, names, node.word.lower())
+            else:
+                yield from self._expressions.must_be(node.value, "a pose")
+        elif node.word == "ZONE":
+            yield from self._radius(node.value)
+        else:
+            high, unit = (MAX_SPEED_MM_S, "mm/s") if node.word == "SPEED" else (100.0, "%")
+            yield from self._above(node.value, high, node.word, unit)
+
+    # --- payload and hand --------------------------------------------------------------------------------------------
+
+    def _load(self, node: Load) -> Iterator[Diagnostic]:
+        for vector, count in ((node.cog, 3), (node.inertia, 6)):
+            if vector is not None and len(vector.items) != count:
+                message = f"{count} values stand in these parentheses, not {len(vector.items)}"
+                yield Diagnostic(code="RBL220", message=message, span=vector.span)
+                return
+        for part in (*node.cog.items, node.mass, *(node.inertia.items if node.inertia else ())):
+            yield from self._expressions.must_be(part, "a number")
+        mass = fixed(node.mass)
+        if mass is not None:
+            yield from _mass(mass, node.mass, self._facts)
+        cog = [value for value in map(fixed, node.cog.items) if value is not None]
+        if len(cog) == 3:
+            yield from _centre(cog, mass, node.cog)
+
+    def _load_named(self, node: LoadNamed) -> Iterator[Diagnostic]:
+        yield from of_cell(node.name, self._facts.loads, "load")
+
+    def _hand(self, node: Hand) -> Iterator[Diagnostic]:
+        if node.dwell is not None:
+            yield from self._in_range(node.dwell, node.dwell, 0.0, MAX_SECONDS, "a wait", "s", "RBL405")
+
+    # --- values and control ------------------------------------------------------------------------------------------
+
+    def _assign(self, node: Assign) -> Iterator[Diagnostic]:
+        name = node.target.name if isinstance(node.target, Call) else node.target
+        if name.key in self._defined.constants:
+            related = (Related(span=self._defined.constants[name.key], message="fixed here"),)
+            yield Diagnostic(code="RBL216", message=f"{name.text} is a constant", span=name.span, related=related)
+        yield from self._fits(name, node.value)
+        if isinstance(node.target, Call) and name.key not in self._defined.arrays:
+            message = f"there is no array {name.text}"
+            yield Diagnostic(code="RBL215", message=message, span=name.span, hint=f"DIM {name.text}(n) makes one")
+
+    def _fits(self, name: Name, value: Expression) -> Iterator[Diagnostic]:
+        """Report a value of another kind than a name holds."""
+        kind = self._expressions.kind(value)
+        if kind is not None and (kind == "a text") is not name.key.endswith("$"):
+            message = f"{kind} is assigned to {name.text}; names that end in $ hold texts, and only they do"
+            yield Diagnostic(code="RBL217", message=message, span=value.span)
+
+    def _const(self, node: Const) -> Iterator[Diagnostic]:
+        yield from self._fits(node.name, node.value)
+
+    def _dim(self, node: Dim) -> Iterator[Diagnostic]:
+        yield from self._expressions.must_be(node.size, "a number")
+
+    def _head(self, node: Head) -> Iterator[Diagnostic]:
+        if node.word != "SELECT":
+            yield from self._expressions.must_be(node.value, "a number")
+
+    def _out(self, node: Out | Pulse) -> Iterator[Diagnostic]:
+        yield from self._expressions.must_be(node.index, "a number")
+        number = fixed(node.index)
+        if number is not None and not (number == math.floor(number) and 1 <= number <= MAX_OUTPUT):
+            message = f"there is no output {number:g}: they are 1 to {MAX_OUTPUT}"
+            yield Diagnostic(code="RBL534", message=message, span=node.index.span)
+        if isinstance(node, Pulse):
+            yield from self._in_range(node.seconds, node.seconds, 0.0, MAX_WAIT_S, "a pulse", "s", "RBL405")
+        else:
+            yield from self._expressions.must_be(node.value, "a number")
+
+    def _delay(self, node: Delay) -> Iterator[Diagnostic]:
+        yield from self._in_range(node.seconds, node.seconds, 0.0, MAX_WAIT_S, "a delay", "s", "RBL405")
+
+    def _wait(self, node: Wait) -> Iterator[Diagnostic]:
+        yield from self._expressions.must_be(node.condition, "a number")
+        if node.timeout is not None:
+            yield from self._in_range(node.timeout, node.timeout, 0.0, MAX_WAIT_S, "a time-out", "s", "RBL405")
+
+    def _for(self, node: For) -> Iterator[Diagnostic]:
+        if node.variable.key in self._defined.constants:
+            message = f"{node.variable.text} is a constant"
+            yield Diagnostic(code="RBL216", message=message, span=node.variable.span)
+        yield from self._fits(node.variable, node.first)
+        for limit in (node.first, node.last, node.step):
+            if limit is not None:
+                yield from self._expressions.must_be(limit, "a number")
+        if node.step is None:
+            return
+        step = fixed(node.step)
+        if step == 0.0:
+            yield Diagnostic(code="RBL205", message="STEP is 0: the loop would never end", span=node.step.span)
+        elif step is not None and step != math.floor(step):
+            yield Diagnostic(code="RBL206", severity=Severity.WARNING, span=node.step.span,
+                             message=f"the rounds of STEP {step:g} are counted at the start, and "
+                             f"{node.variable.text} gathers rounding errors")  # fmt: skip
+
+    def _call_sub(self, node: CallSub) -> Iterator[Diagnostic]:
+        sub = self._defined.subs.get(node.name.key)
+        if sub is None:
+            hint = names_hint(node.name, frozenset(self._defined.subs), known="subroutines", none="there is no SUB")
+            yield Diagnostic(code="RBL213", message=f"there is no SUB {node.name.text}", span=node.name.span, hint=hint)
+        elif len(sub.parameters) != len(node.arguments):
+            related = (Related(span=sub.span, message="defined here"),)
+            message = f"SUB {sub.name.text} takes {len(sub.parameters)} values, not {len(node.arguments)}"
+            yield Diagnostic(code="RBL214", message=message, span=node.span, related=related)
+
+
+_Check = StatementCheck
+_RULES: dict[type, Callable[..., Iterator[Diagnostic]]] = {
+    Move: _Check._moving, MoveJ: _Check._moving, MoveC: _Check._moving, Approach: _Check._moving,
+    Depart: _Check._moving, Load: _Check._load, LoadNamed: _Check._load_named, Hand: _Check._hand,
+    Wrist: _Check._wrist, Seam: _Check._seam, Setting: _Check._setting, Assign: _Check._assign,
+    Out: _Check._out, Pulse: _Check._out, Delay: _Check._delay, Wait: _Check._wait,
+    For: _Check._for, CallSub: _Check._call_sub, Const: _Check._const, Dim: _Check._dim,
+    Head: _Check._head,
+}  # fmt: skip
+_NAMED_FIELDS = {"name", "variable", "sensor", "parameters", "label", "then", "otherwise"}
+
+
+def _expressions(node: Statement) -> Iterator[Expression]:
+    """Yield the expressions of a statement, its options' among them; not the names that it defines or that name
+    something of the cell, nor a bare point, which ``_place`` looks at."""
+    if isinstance(node, Moving) and not isinstance(node, Depart) and not isinstance(node.target, Name):
+        yield node.target
+    if isinstance(node, MoveC) and not isinstance(node.via, Name):
+        yield node.via
+    if isinstance(node, Moving):
+        yield from (option.value for option in node.options
+                    if isinstance(option, Speed | Accel | Time | Zone) and option.value is not None)  # fmt: skip
+    for name in type(node).__dataclass_fields__:
+        if name in _NAMED_FIELDS or (isinstance(node, Moving) and name in ("target", "via", "options")):
+            continue
+        value = getattr(node, name)
+        if isinstance(node, Assign) and name == "target":
+            yield from value.arguments if isinstance(value, Call) else ()
+            continue
+        for each in value if isinstance(value, tuple) else (value,):
+            if isinstance(each, _EXPRESSIONS):
+                yield from each.items if isinstance(each, Vector) and isinstance(node, Load) else (each,)
+
+
+_EXPRESSIONS = (Number, Text, Name, Negate, Not, Chain, Call, Component6, Vector)
+
+
+def _twice(word: str, place: Span, first: Span) -> Diagnostic:
+    related = (Related(span=first, message="first given here"),)
+    return Diagnostic(code="RBL118", message=f"{word} is given twice", span=place, related=related)
+
+
+def _range(option: Speed | Accel | Time, *, joint: bool) -> tuple[float, str]:
+    if isinstance(option, Speed):
+        return (100.0, "%") if joint else (MAX_SPEED_MM_S, "mm/s")
+    return (MAX_ACCEL_PCT, "%") if isinstance(option, Accel) else (MAX_SECONDS, "s")
+
+
+def _mass(mass: float, place: Expression, facts: Facts) -> Iterator[Diagnostic]:
+    if not (mass >= 0.0 and math.isfinite(mass)):
+        message = f"a payload of {mass:g} kg is not a mass"
+        yield Diagnostic(code="RBL401", message=message, span=place.span)
+    elif facts.rated_payload_kg is not None and not mass <= facts.rated_payload_kg:
+        grams = mass / 1000.0 <= facts.rated_payload_kg and mass >= 50.0
+        hint = f"LOAD takes kg: {mass:g} g is {mass / 1000.0:g} kg" if grams else ""
+        message = f"a payload of {mass:g} kg is more than the {facts.rated_payload_kg:g} kg the robot is rated for"
+        yield Diagnostic(code="RBL402", message=message, span=place.span, hint=hint)
+
+
+def _centre(cog: list[float], mass: float | None, place: Node) -> Iterator[Diagnostic]:
+    distance = math.hypot(*cog)
+    shown = ", ".join(f"{value:g}" for value in cog)
+    if not all(map(math.isfinite, cog)):
+        yield Diagnostic(code="RBL403", message=f"the centre of gravity ({shown}) mm is not a place", span=place.span)
+    elif mass != 0.0 and not distance <= MAX_COG_MM:
+        message = f"the centre of gravity is {distance:g} mm from the flange, more than {MAX_COG_MM:g} mm"
+        yield Diagnostic(code="RBL403", message=message, span=place.span)
