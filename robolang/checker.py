@@ -4,18 +4,22 @@ Every limit is written so that NaN fails it. Limits of the robot's own (reach, j
 and are found before the move that breaks them; here are the limits that hold for every robot, and the facts of
 the cell that need no kinematics: its names (taught points, sensors, tools, frames, loads, inputs) and what the arm may
 carry. Values of numbers alone are worked out (``evaluator``), so ``SPEED 2 * 50`` is checked like ``SPEED 100``; what
-depends on a variable is checked when it runs. Blocks and jumps are ``structure``'s. Time is linear in the program.
+depends on a variable is checked when it runs. Blocks and jumps are ``structure``'s, what the order of statements shows
+is ``flow_check``'s, names that nothing reads are ``usage_check``'s: both look at programs without errors only, in which
+one mistake does not look like many. Time is linear in the program.
 """
 
 from collections.abc import Collection, Iterator
 from itertools import chain, islice
 
-from robolang.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related, Severity, in_order
+from robolang.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related, Severity, has_errors, in_order
+from robolang.flow_check import flow_check
 from robolang.names import Defined, Facts
-from robolang.nodes import Jump, Line, Program, Word
+from robolang.nodes import Line, Program, Unparsed
 from robolang.source import Span
 from robolang.statement_check import StatementCheck
-from robolang.structure import Structure, structure_of, targets, word_of
+from robolang.structure import structure_of
+from robolang.usage_check import usage_check
 
 
 def check(program: Program, *, points: Collection[str] | None = None, rated_payload_kg: float | None = None,
@@ -35,8 +39,10 @@ def check(program: Program, *, points: Collection[str] | None = None, rated_payl
         frames=_keys(frames), loads=_keys(loads), inputs=None if inputs is None else frozenset(inputs),
     )  # fmt: skip
     structure = structure_of(program)
-    found = chain(_line_numbers(program), _emptiness(program), structure.diagnostics, _unreachable(program, structure),
-                  _statements(program, facts))  # fmt: skip
+    found = list(islice(chain(_line_numbers(program), _emptiness(program), structure.diagnostics,
+                              _statements(program, facts)), MAX_DIAGNOSTICS + 1))  # fmt: skip
+    if not has_errors(found) and not any(isinstance(line.statement, Unparsed) for line in program.statements):
+        found += chain(flow_check(program, structure), usage_check(program))
     return in_order(islice(found, MAX_DIAGNOSTICS + 1))
 
 
@@ -80,22 +86,3 @@ def _line_numbers(program: Program) -> Iterator[Diagnostic]:
             yield Diagnostic(code="RBL116", severity=Severity.WARNING, message=message, span=line.number_span)
         first.setdefault(line.number, line)
         previous = line.number
-
-
-_LEAVES = ("GOTO", "END", "STOP", "RETURN", "RESUME", "RESUME NEXT")
-
-
-def _unreachable(program: Program, structure: Structure) -> Iterator[Diagnostic]:
-    """Report the first of the lines that nothing leads to: behind a jump, and no jump's target."""
-    reached = {structure.line_of(target) for line in program.lines for target in targets(line.statement)}
-    left = ""
-    for index, line in enumerate(program.lines):
-        if index in reached:  # a label may stand on a line of its own
-            left = ""
-        if line.statement is None:
-            continue
-        if left and not word_of(line.statement):
-            yield Diagnostic(code="RBL221", severity=Severity.WARNING, span=line.statement.span,
-                             message=f"nothing leads here: {left} stands above, and no jump has this line as target")
-        word = line.statement.word if isinstance(line.statement, Jump | Word) else ""
-        left = word if word in _LEAVES else ""

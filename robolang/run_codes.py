@@ -1,4 +1,4 @@
-"""Codes of programs that run and of their structure: expressions, control, inputs and outputs (2xx, 415, 50x, 53x).
+"""Codes of programs that run and of what checking them finds: expressions, control, flow, motion, inputs and outputs.
 
 Registered at import, as those of ``robolang.codes``, which imports this module.
 """
@@ -108,6 +108,60 @@ register(
         name="unreachable",
         meaning="A line can never run: the one above it leaves for good, and no jump leads here.",
         remedy="Remove it, or give it the label that a jump names.",
+    ),
+    Code(
+        code="RBL222",
+        name="sub-unused",
+        meaning="A SUB is never called.",
+        remedy="Call it, or remove it.",
+    ),
+    Code(
+        code="RBL223",
+        name="wait-without-timeout",
+        meaning="A WAIT has no TIMEOUT: where its signal never comes, the program stands there for ever.",
+        remedy="Add TIMEOUT t, and GOTO or ON ERROR for what to do then.",
+    ),
+    Code(
+        code="RBL224",
+        name="point-unused",
+        meaning="A taught point is not named in the program.",
+        remedy="Remove it from the points file, or use it.",
+    ),
+    Code(
+        code="RBL225",
+        name="value-unused",
+        meaning="A value is assigned and nothing reads it.",
+        remedy="Correct the name, use the value, or remove it.",
+    ),
+    Code(
+        code="RBL226",
+        name="speed-unset",
+        meaning="A move runs at a speed that the program has not set, though it sets one for others.",
+        remedy="Set SPEED or SPEEDJ before the first move, or give the move a SPEED or TIME.",
+    ),
+    Code(
+        code="RBL227",
+        name="tool-unset",
+        meaning="A move runs before the program has set its TOOL.",
+        remedy="Set TOOL before the first move.",
+    ),
+    Code(
+        code="RBL228",
+        name="load-missing",
+        meaning="The hand has grasped or let go, and the arm moves on without a LOAD.",
+        remedy="Write LOAD with what the arm carries from there on, behind the HAND.",
+    ),
+    Code(
+        code="RBL229",
+        name="load-in-blend",
+        meaning="A LOAD stands between two moves that would blend: the arm stops for it.",
+        remedy="Put the LOAD where the arm stands, behind the HAND, or end the move before it with FINE.",
+    ),
+    Code(
+        code="RBL413",
+        name="blend-at-the-end",
+        meaning="A move has a ZONE, and no move follows that it could blend into.",
+        remedy="Give it FINE or no ZONE; the arm stops there in any case.",
     ),
     Code(
         code="RBL415",

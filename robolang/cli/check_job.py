@@ -15,7 +15,7 @@ from robolang.cli.errors import DIAGNOSTICS, reader_may_leave, say
 from robolang.cli.rewrite import Loaded, load, store, unified
 from robolang.diagnostics import Diagnostic, Severity, has_errors, in_order, safe
 from robolang.lint.apply import fix_all
-from robolang.lint.engine import Checked, check_source
+from robolang.lint.engine import Checked, check_points, check_source
 from robolang.lint.files import STANDARD_INPUT, programs
 from robolang.lint.selection import Layer, Selection
 from robolang.lint.settings import Settings
@@ -48,10 +48,11 @@ class Job:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Outcome:
-    """A program as it was read, what was found after its fixes, and how often each code was fixed."""
+    """A program as it was read, what was found after its fixes and in its points, how often each code was fixed."""
 
     checked: Checked
     before: Loaded
+    points: Checked | None = None
     fixed: dict[str, int] = field(default_factory=dict)
     table: str = ""
 
@@ -83,6 +84,7 @@ def run_once(job: Job) -> int:
     outcomes = [_examined(name, job, settings) for name in names]
     if job.fix and not job.diff:
         outcomes = [_written(outcome) for outcome in outcomes]
+    outcomes = [replace(outcome, points=_points(outcome, job, settings)) for outcome in outcomes]
     if job.motion:
         outcomes = [_planned(outcome, job, settings) for outcome in outcomes]
     _print(job, outcomes)
@@ -99,7 +101,7 @@ def _examined(name: str, job: Job, settings: Settings) -> _Outcome:
         nothing = Source(shown, "")
         return _Outcome(checked=Checked(source=nothing, faults=(fault,)),
                         before=Loaded(name=name, mark=b"", source=nothing))  # fmt: skip
-    selection = Selection(layers=(settings.layer(Path(shown).parent), job.layer))
+    selection = _selection(shown, job, settings)
     checked = check_source(loaded.source, selection)
     if not (job.fix or job.diff) or not any(item.fix is not None and item.fix.safe for item in checked.diagnostics):
         return _Outcome(checked=checked, before=loaded)
@@ -115,6 +117,18 @@ def _examined(name: str, job: Job, settings: Settings) -> _Outcome:
     return _Outcome(checked=seen[fixed.source.text], before=loaded, fixed=dict(fixed.counts))
 
 
+def _points(outcome: _Outcome, job: Job, settings: Settings) -> Checked | None:
+    """Return what was found in the points file of a program."""
+    if outcome.before.name == STANDARD_INPUT:
+        return None
+    return check_points(outcome.checked, _selection(outcome.checked.source.path, job, settings))
+
+
+def _selection(program: str, job: Job, settings: Settings) -> Selection:
+    """Return what is reported of a program: by the settings of its folder, then by the options."""
+    return Selection(layers=(settings.layer(Path(program).parent), job.layer))
+
+
 def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
     """Add what the motion of a program without errors shows, and the table of what its lines take."""
     checked = outcome.checked
@@ -122,7 +136,7 @@ def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
         return outcome
     from robolang.cli.check_motion import planned
 
-    selection = Selection(layers=(settings.layer(Path(checked.source.path).parent), job.layer))
+    selection = _selection(checked.source.path, job, settings)
     try:
         found, table = planned(checked.source.path, job.max_cycle_s)
     except Fault as fault:
@@ -160,7 +174,7 @@ def _still(loaded: Loaded) -> None:
 
 def _print(job: Job, outcomes: Sequence[_Outcome]) -> None:
     """Print the report, or with ``--diff`` the changes."""
-    results = [outcome.checked for outcome in outcomes]
+    results = list(_results(outcomes))
     if job.diff:
         text = "".join(line for outcome in outcomes for line in _change(outcome))
     elif job.statistics:
@@ -178,6 +192,14 @@ def _print(job: Job, outcomes: Sequence[_Outcome]) -> None:
         return
     with reader_may_leave():
         typer.echo(text, nl=False, err=job.fix and not job.diff and STANDARD_INPUT in job.paths)
+
+
+def _results(outcomes: Sequence[_Outcome]) -> Iterator[Checked]:
+    """Yield what was found file by file, a program's points behind it."""
+    for outcome in outcomes:
+        yield outcome.checked
+        if outcome.points is not None:
+            yield outcome.points
 
 
 def _change(outcome: _Outcome) -> Iterator[str]:
@@ -201,6 +223,6 @@ def _judged(job: Job, outcomes: Sequence[_Outcome]) -> int:
         return 0
     if job.diff:
         return DIAGNOSTICS if any(outcome.fixed for outcome in outcomes) else 0
-    found = [item for outcome in outcomes for item in outcome.checked.diagnostics]
+    found = [item for result in _results(outcomes) for item in result.diagnostics]
     warned = job.strict and any(item.severity is Severity.WARNING for item in found)
     return DIAGNOSTICS if warned or has_errors(found) else 0

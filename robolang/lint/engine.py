@@ -4,19 +4,23 @@ The same list is what an editor shows. A file that cannot be used is a fault bes
 that cannot be read the text is checked all the same, without the names of its points.
 """
 
+import os
 from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
 from robolang.beside import cell_beside, taught_points
 from robolang.checker import check
-from robolang.diagnostics import Diagnostic, in_order
+from robolang.diagnostics import Diagnostic, Severity, in_order
 from robolang.lint.fixes import with_fix
-from robolang.lint.selection import Selection
+from robolang.lint.selection import Selection, is_syntax_error
 from robolang.lint.suppress import suppress
 from robolang.parser import parse
-from robolang.source import Source
+from robolang.points import load_points
+from robolang.source import Source, Span
+from robolang.usage_check import named
 from runtime.faults import Fault
+from runtime.tomlfile import locate, read_source
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,3 +60,28 @@ def check_source(source: Source, selection: Selection | None = None) -> Checked:
         return Checked(source=source, diagnostics=found, faults=(fault,))
     return Checked(source=source, diagnostics=lint(source, points=points, selection=selection))
 
+
+
+def check_points(checked: Checked, selection: Selection | None = None) -> Checked | None:
+    """Return what was found in the points file beside a checked program (RBL224); None: it has none, or is not read.
+
+    A program that does not parse may name points where nothing can be read: then nothing is said.
+    """
+    where = Path(checked.source.path).with_suffix(".points.toml")
+    if checked.faults or any(map(is_syntax_error, checked.diagnostics)) or not os.path.lexists(where):
+        return None
+    try:
+        store, source = load_points(where), Source(str(where), read_source(where).text)
+    except Fault:  # it has just been written to: the next check says what is wrong
+        return None
+    names = named(parse(checked.source).program)
+    unused = (_unused(point.name, source) for key, point in store.points.items() if key not in names)
+    found = in_order(item for item in unused if selection is None or selection.keeps(item))
+    return Checked(source=source, diagnostics=found) if found else None
+
+
+def _unused(name: str, source: Source) -> Diagnostic:
+    line, column = locate(source.text, ("points", name))
+    whole = source.line_spans[line - 1]
+    return Diagnostic(code="RBL224", severity=Severity.WARNING, span=Span(whole.start + column - 1, whole.end),
+                      message=f"point {name} is taught and the program does not name it")  # fmt: skip

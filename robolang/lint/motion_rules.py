@@ -1,5 +1,6 @@
 """Rules RBL4xx: payloads, speeds, times and blends that no robot can follow."""
 
+from robolang.diagnostics import Severity
 from robolang.lint.registry import Rule
 
 RULES = (
@@ -37,6 +38,14 @@ RULES = (
         why="Nobody waits a negative time, and ten minutes in one line are a slip of the unit: times are in seconds.",
         bad="10 HAND ON, -1\n",
         good="10 HAND ON, 1\n",
+    ),
+    Rule(
+        code="RBL413",
+        severity=Severity.WARNING,
+        why="The corner that was to be cut is none: behind it the arm stops for something else. Either a move is "
+        "missing, or whoever reads the program is led to expect a motion without a stop.",
+        bad="10 MOVE P1, ZONE 20\n20 HAND ON\n",
+        good="10 MOVE P1\n20 HAND ON\n",
     ),
     Rule(
         code="RBL415",

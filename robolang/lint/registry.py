@@ -17,7 +17,7 @@ from runtime.faults import Code, all_codes, lookup
 
 _MOST_LINES = 20
 
-CHECKED = ("RBL1", "RBL2", "RBL3", "RBL40", "RBL415", "RBL534")
+CHECKED = ("RBL1", "RBL2", "RBL3", "RBL40", "RBL413", "RBL415", "RBL534")
 """Beginnings of the codes that reading and checking a program can find."""
 
 

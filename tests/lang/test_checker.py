@@ -13,8 +13,9 @@ def first(text, **facts):
 
 
 def test_a_good_program_has_nothing():
-    text = "10 LOAD (0, 0, 60), 0.8\n20 MOVE p1, SPEED 200, ACCEL 100\n30 HAND ON, 0\n40 MOVE P2, TIME 600"
-    text += "\n50 WRIST HOLD TILT, ADVANCE\n60 SEAM ON, torch\n70 MOVE P1, WRIST HOLD ROTATION, TILT\n80 SEAM OFF"
+    text = "10 LOAD (0, 0, 60), 0.8\n20 MOVE p1, SPEED 200, ACCEL 100\n30 HAND ON, 0\n35 LOAD PART"
+    text += "\n40 MOVE P2, TIME 600\n50 WRIST HOLD TILT, ADVANCE\n60 SEAM ON, torch"
+    text += "\n70 MOVE P1, WRIST HOLD ROTATION, TILT, SPEED 9\n80 SEAM OFF"
     assert checked(text, points=("P1", "p2"), rated=2.5, sensors=("Torch",)) == []
 
 
@@ -283,8 +284,8 @@ def found(text):
         ("LOAD prt", [("RBL305", 1, 6, 3)]),
         ("SEAM ON, arc", [("RBL306", 1, 10, 3)]),
         ("MOVEC P8, P9", [("RBL301", 1, 7, 2), ("RBL301", 1, 11, 2)]),
-        ("END\nx = 1\n*L\ny = 2\nGOTO *L", [("RBL221", 2, 1, 5)]),
-        ("GOTO *L\n\n*L\n' x\ny = 2", []),
+        ("END\nPRINT 1\n*L\nPRINT 2\nGOTO *L", [("RBL221", 2, 1, 7)]),
+        ("GOTO *L\n\n*L\n' x\nPRINT 2", []),
         ("SPEED 2 * 5000.5", [("RBL404", 1, 7, 10)]),
         ("SPEED 0\nSPEEDJ 101", [("RBL404", 1, 7, 1), ("RBL404", 2, 8, 3)]),
         ("ACCEL -1\nOVERRIDE 100.5", [("RBL404", 1, 7, 2), ("RBL404", 2, 10, 5)]),
@@ -312,12 +313,12 @@ def test_what_is_wrong_with_what_it_means(text, expected):
     [
         'x = 1\ny = x + P1.X + IN(2) + TIMER + ERR\nPRINT y; "a" + STR$(y)',
         "P9 = P1 + (0, 0, x)\nx = 2\nMOVE P9\nMOVE (P9 + (0, 0, 1)) * (0, 0, 0, 90, 0, 0)",
-        "DIM a(3)\nDIM b$(2)\na(1) = 2\nb$(0) = STR$(a(1))\nMOVE a(2)",
+        "DIM a(3)\nDIM b$(2)\na(1) = 2\nb$(0) = STR$(a(1))\nPRINT b$(1)\nMOVE a(2)",
         'CALL s(1, "a")\nSUB s(n, t$)\nPRINT n; t$\nENDSUB',
         "TOOL GUN\nTOOL POSE(0, 0, 1, 0, 0, 0)\nFRAME Bench\nFRAME P1\nLOAD PART",
         "ZONE 0\nSPEED 10000\nSPEEDJ 100\nACCEL 100\nOVERRIDE 100\nDELAY 86400\nPULSE 1024, 0\nOUT(1) = 5",
         "FOR i = 1 TO 2 STEP -2\nNEXT",
-        "x = 0\ny = 1 / x",
+        "x = 0\nPRINT 1 / x",
         "IF P1 = P2 THEN END",
         "MOVE JOINT(1, 2, 3, 4, 5, 6), FINE\nDEPART 5\nAPPROACH HERE, 0",
     ],
@@ -328,7 +329,7 @@ def test_good_programs_of_the_whole_language(text):
 
 
 def test_what_is_not_known_is_not_checked():
-    text = "MOVE P9\nx = y + P9.X + IN(77)\nTOOL t\nFRAME f\nLOAD l\nSEAM ON, s\nMOVE x"
+    text = "TOOL t\nMOVE P9\nx = y + P9.X + IN(77)\nFRAME f\nLOAD l\nSEAM ON, s\nMOVE x"
     assert checked(text) == []
 
 

@@ -6,7 +6,7 @@ from robolang.checker import check
 from robolang.diagnostics import Severity
 from robolang.lint import meaning_rules, motion_rules, point_rules, run_rules, text_rules
 from robolang.lint.apply import fix_all
-from robolang.lint.engine import check_source, lint
+from robolang.lint.engine import check_points, check_source, lint
 from robolang.lint.registry import OF_THE_CELL, codes, is_looked_for, rule, rules
 from robolang.parser import parse
 from robolang.points import load_points
@@ -40,6 +40,9 @@ def points_fault(text, item, folder):
         return None
     result = check_source(read_program(folder / "pick.rbl"))
     assert result.diagnostics == ()
+    if (in_points := check_points(result)) is not None:
+        (only,) = in_points.diagnostics
+        return only.code, in_points.source.place(only.span.start).line
     return next(((fault.code, fault.line) for fault in result.faults), None)
 
 

@@ -253,3 +253,31 @@ def test_other_commands_are_not_imported(folder):
         assert f"'robolang.{name}'" not in done.stderr
     for name in ("rich", "numpy"):
         assert f"'{name}'" not in done.stderr
+
+
+# --- points that nothing names ---------------------------------------------------------------------------------------
+
+
+POINTS = """schema = 1
+[points.P1]
+pose = [450, -150, 200, 180, 0, 90]
+[points.Old]
+joints = [0, 45, 180, 0, 45, 0]
+"""
+
+
+def test_a_point_that_the_program_does_not_name_is_found_in_the_points_file(folder):
+    (folder / "bad.rbl").write_text("MOVE P1\n")
+    (folder / "bad.points.toml").write_text(POINTS)
+    said = robolang("check").stdout
+    assert "bad.points.toml:4:1: warning RBL224 point Old is taught and the program does not name it" in said
+    assert codes("--strict") == ["RBL224"]
+    assert codes("--ignore", "RBL224", code=0) == []
+    (item,) = json.loads(robolang("check", "--output-format", "json").stdout)
+    assert (item["file"], item["line"], item["code"]) == ("bad.points.toml", 4, "RBL224")
+
+
+def test_points_are_not_counted_while_the_program_cannot_be_read_whole(folder):
+    (folder / "bad.rbl").write_text("MOVE P1\nMOV OLD\n")
+    (folder / "bad.points.toml").write_text(POINTS)
+    assert codes() == ["RBL112"]

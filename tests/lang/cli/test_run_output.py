@@ -18,21 +18,21 @@ LONG = "100 MOVE P1, SPEED 123.456789, ACCEL 12.345678901"
 def program(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     path = tmp_path / "p.rbl"
-    path.write_text("10 LOAD (0, 0, 60), 0.8\n20 HAND ON\n30 MOVE P5\n")
+    path.write_text("10 HAND ON\n20 LOAD (0, 0, 60), 0.8\n30 MOVE P5\n")
     return path
 
 
 def test_progress_goes_to_stderr_and_the_table_to_stdout(program):
     result = dry("p.rbl")
     assert [line.split(None, 2)[2] for line in result.stderr.splitlines()] == [
-        "line 10   LOAD (0, 0, 60), 0.8",
-        "line 20   HAND ON",
+        "line 10   HAND ON",
+        "line 20   LOAD (0, 0, 60), 0.8",
         "line 30   MOVE P5",
     ]
     rows = [line.split()[0] for line in result.stdout.splitlines() if re.match(r" +\d+ ", line)]
     assert rows == ["10", "20", "30"]
     assert result.stdout.startswith("p.rbl on puma560\n")
-    assert "line 20: closed on nothing" in result.stdout
+    assert "line 10: closed on nothing" in result.stdout
 
 
 def test_quiet_prints_nothing(program):
@@ -103,7 +103,7 @@ def test_an_alarm_is_located_at_its_statement(program, monkeypatch):
 
     monkeypatch.setattr(Session, "run", stopped)
     result = dry("p.rbl", "--report", "r.json", code=3)
-    assert "p.rbl:1:4: error RBL530 at 0.000 s: the run was stopped from outside\n   1 | 10 LOAD" in result.stderr
+    assert "p.rbl:1:4: error RBL530 at 0.000 s: the run was stopped from outside\n   1 | 10 HAND ON" in result.stderr
     assert '"code": "RBL530"' in (program.parent / "r.json").read_text()
 
 

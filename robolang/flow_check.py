@@ -1,0 +1,245 @@
+"""What the order of statements shows: lines that cannot run, loads not declared, speeds and tools not set, lost blends.
+
+Each rule is a fact that ``flow`` follows through the program, and what is reported where it ends badly:
+
+    RBL221, RBL222   a line or a SUB that nothing leads to
+    RBL226, RBL227   a move before SPEED, SPEEDJ or TOOL, in a program that sets one elsewhere
+    RBL228           a move behind a HAND that grasped or let go, with no LOAD between them
+    RBL229           a LOAD where one move would blend into the next: the arm stops for it
+    RBL413           a ZONE of a move behind which the arm stops anyway
+
+Called for programs without errors.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from robolang.constants import fixed
+from robolang.diagnostics import Diagnostic, Related, Severity
+from robolang.flow import Ways, facts_before, ways_of
+from robolang.nodes import (
+    Approach,
+    Delay,
+    Depart,
+    Hand,
+    HandState,
+    If,
+    Load,
+    LoadNamed,
+    Move,
+    MoveC,
+    MoveJ,
+    Moving,
+    Out,
+    Print,
+    Program,
+    Pulse,
+    Seam,
+    Setting,
+    Speed,
+    Statement,
+    Sub,
+    Time,
+    Wait,
+    Word,
+    Zone,
+)
+from robolang.source import Span
+from robolang.structure import Structure, word_of
+
+_STOPS = (Load, LoadNamed, Hand, Seam, Out, Pulse, Delay, Wait, Print)
+"""Statements before which the arm comes to rest, besides TOOL, PAUSE and the end."""
+_MOVES = (Move, MoveJ, MoveC, Approach, Depart)
+
+
+def flow_check(program: Program, structure: Structure) -> Iterator[Diagnostic]:
+    """Report what the order of the statements of a program shows, as warnings."""
+    ways = ways_of(program, structure)
+    for rule in (_unreachable, _speeds, _tools, _loads, _corners):
+        yield from rule(program, structure, ways)
+
+
+def _warn(code: str, span: Span, message: str, related: tuple[Related, ...] = (), hint: str = "") -> Diagnostic:
+    return Diagnostic(code=code, severity=Severity.WARNING, span=span, message=message, related=related, hint=hint)
+
+
+def _parts(program: Program) -> Iterator[tuple[int, Statement]]:
+    """Yield every statement with its line, those of a one-line IF one by one."""
+    for index, line in enumerate(program.lines):
+        todo = [] if line.statement is None else [line.statement]
+        while todo:
+            node = todo.pop()
+            if isinstance(node, If):
+                todo += [part for part in (node.then, node.otherwise) if part is not None]
+            yield index, node
+
+
+# --- lines that cannot run -------------------------------------------------------------------------------------------
+
+
+def _unreachable(program: Program, structure: Structure, ways: Ways) -> Iterator[Diagnostic]:
+    """Report SUBs that nothing calls, and the first of each run of other lines that nothing leads to."""
+    before = facts_before(ways, True, lambda at, node, fact: (fact,))
+    if before is None:
+        return
+    said = False
+    for index, line in enumerate(program.lines):
+        node = line.statement
+        if isinstance(node, Sub):
+            said = not before[index + 1]
+            if said:
+                yield _warn("RBL222", node.name.span, f"nothing calls SUB {node.name.text}")
+        elif node is None or before[index]:
+            said = said and node is None
+        elif not said and not word_of(node) and not (isinstance(node, Word) and node.word in ("END", "STOP")):
+            yield _warn("RBL221", node.span, "this line can never run: nothing leads here")
+            said = True
+
+
+# --- speeds and tools ------------------------------------------------------------------------------------------------
+
+
+def _speeds(program: Program, structure: Structure, ways: Ways) -> Iterator[Diagnostic]:
+    """Report the first straight move, and the first joint move, that can run before its speed was set."""
+    parts = [node for _, node in _parts(program)]
+    for word, joint, default in (("SPEED", False, "the robot's default"), ("SPEEDJ", True, "full speed")):
+        moves = [node for node in parts if isinstance(node, _MOVES) and isinstance(node, MoveJ) is joint]
+        said = any(isinstance(node, Setting) and node.word == word for node in parts)
+        if not said and not any(isinstance(option, Speed) for node in moves for option in node.options):
+            continue
+        unset = _before_setting(ways, word, {node.span for node in moves if not _has(node, Speed, Time)})
+        if unset:
+            more = f", and {len(unset) - 1} more moves" if len(unset) > 1 else ""
+            yield _warn("RBL226", unset[0].span, f"no {word} is set where this move runs{more}: it goes at {default}")
+
+
+def _tools(program: Program, structure: Structure, ways: Ways) -> Iterator[Diagnostic]:
+    """Report the first move that can run before the tool was set, in a program that sets one."""
+    if any(isinstance(node, Setting) and node.word == "TOOL" for _, node in _parts(program)):
+        unset = _before_setting(ways, "TOOL", {node.span for _, node in _parts(program) if isinstance(node, _MOVES)})
+        if unset:
+            message = "TOOL is set elsewhere but not where this move runs: it goes with the hand's own tool point"
+            yield _warn("RBL227", unset[0].span, message)
+
+
+def _before_setting(ways: Ways, word: str, moves: set[Span]) -> list[Statement]:
+    """Return those of the moves that can run before a setting was made, by place."""
+    found: dict[Span, Statement] = {}
+
+    def step(at: int, node: Statement, is_set: bool) -> tuple[bool]:
+        if isinstance(node, Setting) and node.word == word:
+            return (True,)
+        if not is_set and node.span in moves:
+            found[node.span] = node
+        return (is_set,)
+
+    if facts_before(ways, False, step) is None:
+        return []
+    return [found[span] for span in sorted(found, key=lambda span: span.start)]
+
+
+def _has(node: Moving, *kinds: type) -> bool:
+    return any(isinstance(option, kinds) for option in node.options)
+
+
+# --- loads -----------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Hold:
+    """Whether the hand is closed, and the HAND since which no LOAD has come; None: there is none."""
+
+    closed: bool = False
+    pending: Hand | None = None
+
+
+def _loads(program: Program, structure: Structure, ways: Ways) -> Iterator[Diagnostic]:
+    """Report every HAND that changes what is held and is followed by a move before a LOAD."""
+    found: dict[Span, tuple[Hand, Moving]] = {}
+
+    def step(at: int, node: Statement, hold: _Hold) -> tuple[_Hold]:
+        if isinstance(node, Hand) and (node.state is HandState.ON) is not hold.closed:
+            return (_Hold(not hold.closed, node),)
+        if isinstance(node, Load | LoadNamed):
+            return (_Hold(hold.closed),)
+        if isinstance(node, _MOVES) and hold.pending is not None:
+            found.setdefault(hold.pending.span, (hold.pending, node))
+            return (_Hold(hold.closed),)
+        return (hold,)
+
+    if facts_before(ways, _Hold(), step) is None:
+        return
+    for hand, move in found.values():
+        does = "grasps" if hand.state is HandState.ON else "lets go"
+        related = (Related(span=move.span, message="the arm moves here"),)
+        yield _warn("RBL228", hand.span, f"the hand {does} and the arm moves on without a LOAD: the controller goes on "
+                    "computing with the load before", related)  # fmt: skip
+
+
+# --- blends ----------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Corner:
+    """Whether ZONE is set, and the move whose end may be passed without a stop; None: the arm stands."""
+
+    zone: bool = False
+    move: Moving | None = None
+
+
+@dataclass(slots=True)
+class _Corners:
+    """What became of the corners: moves that blended on some way, those that did not, and LOADs within."""
+
+    used: set[Span] = field(default_factory=set)
+    lost: dict[Span, tuple[Moving, Statement | None]] = field(default_factory=dict)
+    loads: dict[Span, Moving] = field(default_factory=dict)
+
+    def step(self, at: int, node: Statement, corner: _Corner) -> tuple[_Corner]:
+        """Follow one statement."""
+        if isinstance(node, _MOVES):
+            if corner.move is not None:
+                self.used.add(corner.move.span)
+            return (_Corner(corner.zone, node if _blends(node, corner.zone) else None),)
+        if isinstance(node, Setting) and node.word == "ZONE":
+            return (_Corner(node.value is not None and fixed(node.value) != 0.0, corner.move),)
+        if not _stops(node) or corner.move is None:
+            return (corner,)
+        if isinstance(node, Load | LoadNamed):
+            self.loads[node.span] = corner.move
+        elif _has(corner.move, Zone):
+            self.lost[corner.move.span] = corner.move, node
+        return (_Corner(corner.zone),)
+
+
+def _blends(node: Moving, is_set: bool) -> bool:
+    for option in node.options:
+        if isinstance(option, Zone):
+            return option.value is not None and fixed(option.value) != 0.0
+    return is_set
+
+
+def _stops(node: Statement) -> bool:
+    if isinstance(node, Setting):
+        return node.word == "TOOL"
+    return isinstance(node, _STOPS) or (isinstance(node, Word) and node.word in ("PAUSE", "STOP", "END"))
+
+
+def _corners(program: Program, structure: Structure, ways: Ways) -> Iterator[Diagnostic]:
+    """Report ZONEs of moves that nothing blends into, and LOADs that keep moves from blending."""
+    corners = _Corners()
+    before = facts_before(ways, _Corner(), corners.step)
+    if before is None:
+        return
+    for corner in before[-1]:  # the program ends behind its last line
+        if corner.move is not None and _has(corner.move, Zone):
+            corners.lost.setdefault(corner.move.span, (corner.move, None))
+    for span, (move, stop) in corners.lost.items():
+        if span not in corners.used:
+            zone = next(option for option in move.options if isinstance(option, Zone))
+            related = () if stop is None else (Related(span=stop.span, message="the arm comes to rest for this"),)
+            yield _warn("RBL413", zone.span, "no move follows that this one could blend into: it stops", related)
+    for span, move in corners.loads.items():
+        related = (Related(span=move.span, message="the move that would blend"),)
+        yield _warn("RBL229", span, "the arm stops for this LOAD, where the move before it would blend into the next",
+                    related)  # fmt: skip

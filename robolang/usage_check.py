@@ -1,0 +1,82 @@
+"""What is never used, and what may never end: values that nothing reads, and WAITs without a TIMEOUT.
+
+Taught points that nothing names are found with ``named``; their finding stands in the points file (``lint.engine``).
+"""
+
+from collections.abc import Iterator
+
+from robolang.diagnostics import Diagnostic, Severity
+from robolang.nodes import Assign, Call, Const, Dim, If, Name, Node, Program, Statement, Wait, walk
+from robolang.words import near
+
+
+def usage_check(program: Program) -> Iterator[Diagnostic]:
+    """Report WAITs without a TIMEOUT (RBL223), and values and arrays that nothing reads (RBL225), as warnings.
+
+    Called for programs without errors.
+    """
+    for line in program.statements:
+        for node in _statements(line.statement):
+            if isinstance(node, Wait) and node.timeout is None:
+                yield Diagnostic(code="RBL223", severity=Severity.WARNING, span=node.span,
+                                 message="this WAIT has no TIMEOUT: where its signal never comes, the program stands "
+                                 "here for ever")  # fmt: skip
+    yield from _unread(program)
+
+
+def _unread(program: Program) -> Iterator[Diagnostic]:
+    given: dict[str, Name] = {}
+    read: set[str] = set()
+    for line in program.statements:
+        for node in _statements(line.statement):
+            name = _gives(node)
+            if name is not None:
+                given.setdefault(name.key, name)
+            read.update(_reads(node))
+    for key, name in given.items():
+        if key not in read:
+            guess = near(key, read)
+            yield Diagnostic(code="RBL225", severity=Severity.WARNING, span=name.span,
+                             message=f"nothing reads {name.text}", hint=f"did you mean {guess}?" if guess else "")
+
+
+def named(program: Program) -> frozenset[str]:
+    """Return the names that a program reads, in capitals."""
+    return frozenset(key for line in program.statements for node in _statements(line.statement) for key in _reads(node))
+
+
+def _statements(node: Statement | None) -> Iterator[Statement]:
+    if isinstance(node, If):
+        yield node
+        yield from _statements(node.then)
+        yield from _statements(node.otherwise)
+    elif node is not None:
+        yield node
+
+
+def _gives(node: Statement) -> Name | None:
+    """Return the name that a statement gives a value, an array's among them; not that of a FOR, which counts."""
+    if isinstance(node, Assign):
+        return node.target if isinstance(node.target, Name) else None
+    return node.name if isinstance(node, Const | Dim) else None
+
+
+def _reads(node: Statement) -> Iterator[str]:
+    """Yield the names that a statement reads; a value that only goes into itself, as in N = N + 1, is not read."""
+    if isinstance(node, If):
+        yield from _keys(node.condition)
+    elif isinstance(node, Assign):
+        own = "" if isinstance(node.target, Call) else node.target.key
+        yield from (key for key in _keys(node.value) if key != own)
+        if isinstance(node.target, Call):
+            yield from (key for argument in node.target.arguments for key in _keys(argument))
+    elif isinstance(node, Const):
+        yield from _keys(node.value)
+    elif isinstance(node, Dim):
+        yield from _keys(node.size)
+    else:
+        yield from _keys(node)
+
+
+def _keys(node: Node) -> Iterator[str]:
+    return (each.key for each in walk(node) if isinstance(each, Name))

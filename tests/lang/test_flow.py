@@ -1,0 +1,60 @@
+"""What holds before a line: facts follow the ways that the interpreter takes, and no others."""
+
+import pytest
+
+from robolang.flow import MAX_FACTS, facts_before, ways_of
+from robolang.nodes import Print
+from robolang.structure import structure_of
+from tests.lang.helpers import parsed
+
+
+def lines_before(text):
+    """Line by line, and behind the last: the sets of numbers of PRINTs that can have come last."""
+    program = parsed(text)
+    ways = ways_of(program, structure_of(program))
+    return facts_before(ways, 0, lambda at, node, fact: (at + 1 if isinstance(node, Print) else fact,))
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("PRINT 1\nPRINT 2", [{0}, {1}, {2}]),
+        ("IF x THEN PRINT 1 ELSE PRINT 2\nEND", [{0}, {1}, set()]),
+        ("IF x THEN PRINT 1\nEND", [{0}, {0, 1}, set()]),
+        ("IF x THEN\nPRINT 1\nELSE\nPRINT 2\nENDIF", [{0}, {0}, {2}, {0}, {4}, {2, 4}]),
+        ("IF x THEN\nPRINT 1\nELSEIF y THEN\nPRINT 2\nENDIF", [{0}, {0}, {2}, {0}, {0, 4}, {0, 2, 4}]),
+        ("SELECT CASE x\nCASE 1\nPRINT 1\nCASE 2\nPRINT 2\nENDSELECT",
+         [{0}, set(), {0}, {3}, {0}, {0, 5}, {0, 3, 5}]),
+        ("SELECT CASE x\nCASE 1\nPRINT 1\nCASE ELSE\nPRINT 2\nENDSELECT", [{0}, set(), {0}, {3}, {0}, {5}, {3, 5}]),
+        ("WHILE x\nPRINT 1\nWEND", [{0, 2}, {0, 2}, {2}, {0, 2}]),
+        ("WHILE 1\nPRINT 1\nWEND", [{0, 2}, {0, 2}, {2}, set()]),
+        ("FOR i = 1 TO 3\nPRINT 1\nNEXT", [{0}, {0, 2}, {2}, {2}]),
+        ("FOR i = 1 TO n\nPRINT 1\nNEXT", [{0}, {0, 2}, {2}, {0, 2}]),
+        ("FOR i = 3 TO 1\nPRINT 1\nNEXT", [{0}, {0, 2}, {2}, {0, 2}]),
+        ("GOTO *L\nPRINT 1\n*L PRINT 2", [{0}, set(), {0}, {3}]),
+        ("WAIT x, TIMEOUT 1, GOTO *L\nPRINT 1\n*L\nEND", [{0}, {0}, {0, 2}, {0, 2}, set()]),
+        ("ON ERROR GOTO *L\nEND\n*L\nRESUME NEXT", [{0}, {0}, {0}, {0}, set()]),
+        ("STOP\nPRINT 1", [{0}, set(), set()]),
+    ],
+)
+def test_facts_follow_the_ways_through_a_program(text, expected):
+    assert lines_before(text) == expected
+
+
+def test_what_returns_from_a_subroutine_goes_back_to_its_own_caller():
+    text = "CALL s\nPRINT 1\nCALL s\nEND\nSUB s\nIF x THEN RETURN\nENDSUB"
+    assert lines_before(text) == [{0}, {0}, {2}, {2}, set(), {0, 2}, {0, 2}, set()]
+
+
+def test_gosub_comes_back_too_and_may_call_itself():
+    text = "GOSUB *A\nPRINT 1\nGOSUB *A\nEND\n*A\nIF x THEN GOSUB *A\nRETURN"
+    assert lines_before(text) == [{0}, {0}, {2}, {2}, {0, 2}, {0, 2}, {0, 2}, set()]
+
+
+def test_a_subroutine_that_prints_tells_its_callers():
+    assert lines_before("CALL s\nCALL s\nEND\nSUB s\nPRINT 1\nENDSUB") == [{0}, {5}, {5}, set(), {0, 5}, {5}, set()]
+
+
+def test_too_many_facts_are_given_up():
+    text = "*L\n" + "IF x THEN PRINT 1\n" * (MAX_FACTS + 2) + "GOTO *L"
+    assert lines_before(text) is None
