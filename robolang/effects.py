@@ -6,9 +6,9 @@ that every alarm, log row and progress line can name it.
 """
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
-from robolang.nodes import Statement
+from robolang.nodes import Line, Statement
 from robolang.places import Frame, Place
 from robolang.source import Span
 
@@ -131,3 +131,8 @@ class Halt(Origin):
 Effect: TypeAlias = (
     SetPayload | MoveTo | SetHand | SetWrist | SetSeam | SetTool | SetOutput | Pass | Show | Drain | Halt
 )  # fmt: skip
+
+
+def origin(line: Line, node: Statement) -> dict[str, Any]:
+    """Return the fields of ``Origin`` for a statement, or a part of one, of a line."""
+    return {"line": line.source_line, "number": line.number, "span": node.span, "node": node}

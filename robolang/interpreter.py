@@ -18,26 +18,11 @@ characters of PRINT RBL506.
 
 import math
 from collections.abc import Callable, Collection, Generator
-from typing import Any
 
-from robolang.effects import (
-    Drain,
-    Effect,
-    Halt,
-    MoveTo,
-    Pass,
-    SetHand,
-    SetOutput,
-    SetPayload,
-    SetSeam,
-    SetTool,
-    SetWrist,
-    Show,
-)
+from robolang.actions import ACTIONS, Action, Actions, seconds
+from robolang.effects import Drain, Effect, Halt, Pass, Show, origin
 from robolang.evaluator import Evaluator, Nowhere, World, finite, shown
 from robolang.nodes import (
-    Accel,
-    Approach,
     Assign,
     Block,
     Call,
@@ -46,50 +31,30 @@ from robolang.nodes import (
     Component6,
     Const,
     Delay,
-    Depart,
     Dim,
-    Expression,
     For,
     Hand,
-    HandState,
     Head,
     If,
     Jump,
     Line,
-    Load,
-    LoadNamed,
-    Move,
-    MoveC,
-    MoveJ,
     Moving,
-    Name,
     Next,
-    Node,
     OnError,
-    Out,
     Print,
     Program,
-    Pulse,
-    Seam,
-    Setting,
-    Speed,
     Statement,
     Sub,
     Target,
-    Time,
     Unparsed,
-    Vector,
     Wait,
     Word,
-    Wrist,
-    WristMode,
-    Zone,
-    walk,
 )
-from robolang.places import Frame, Place, Shift
+from robolang.places import Place
 from robolang.scope import Loop, Scope, Scopes, check_kind
 from robolang.source import Span
 from robolang.structure import Structure, structure_of
+from robolang.tree import Node, walk
 from runtime.faults import Fault
 
 MAX_IDLE = 100_000
@@ -142,18 +107,6 @@ def reads_state(node: Node | None) -> bool:
     )
 
 
-class _Settings:
-    """What SPEED, ACCEL, WRIST and the like have set for the moves that follow."""
-
-    def __init__(self) -> None:
-        self.speed_mm_s: float | None = None
-        self.speed_pct: float | None = None
-        self.accel_pct: float | None = None
-        self.override_pct = 100.0
-        self.zone_mm = 0.0
-        self.wrist: Wrist | None = None
-
-
 class _Machine:
     """A program that runs."""
 
@@ -162,7 +115,7 @@ class _Machine:
         self._structure: Structure = structure_of(program)
         self._scopes = Scopes(frozenset(point.upper() for point in points))
         self._values = Evaluator(self._scopes, world)
-        self._set = _Settings()
+        self._actions = Actions(self._values, self._scopes)
         self._handler: int | None = None
         self._failed: int | None = None
         self._idle = self._steps = self._shown = self._loop = 0
@@ -217,126 +170,21 @@ class _Machine:
             # WAIT always lets motion end; CASE and ELSEIF are asked by their head, and reached when the block is done
             self._reads[at] = not reached and reads_state(node if not isinstance(node, If) else node.condition)
         if self._reads[at]:
-            yield Drain(**self._origin(line, node))
+            yield Drain(**origin(line, node))
         return (yield from _carried_out(_DO[type(node)](self, line, node, at)))
-
-    def _origin(self, line: Line, node: Statement) -> dict[str, Any]:
-        return {"line": line.source_line, "number": line.number, "span": node.span, "node": node}
 
     def _taking_time(self) -> None:
         self._idle = 0
 
-    # --- motion ------------------------------------------------------------------------------------------------------
-
-    def _move(self, line: Line, node: Moving, at: int) -> Run:
-        self._taking_time()
-        values, wrist = self._options(node)
-        yield MoveTo(
-            **self._origin(line, node), way="joint" if isinstance(node, MoveJ) else "arc" if isinstance(node, MoveC)
-            else "line", target=self._target(node),
-            via=self._values.place(node.via) if isinstance(node, MoveC) else None,
-            wrist=None if wrist is None else _mode(wrist), held=() if wrist is None else _held(wrist),
-            override_pct=self._set.override_pct, **values,
-        )  # fmt: skip
+    def _act(self, line: Line, node: Action, at: int) -> Run:
+        if isinstance(node, Moving | Hand):
+            self._taking_time()
+        effect = self._actions.effect(line, node)
+        if effect is not None:
+            yield effect
         return None
 
-    def _target(self, node: Moving) -> Place:
-        if isinstance(node, Depart):
-            return Place(last=True).shifted(_back(self._distance(node.distance)))
-        place = self._values.place(node.target)
-        return place.shifted(_back(self._distance(node.distance))) if isinstance(node, Approach) else place
-
-    def _distance(self, node: Expression) -> float:
-        distance = self._values.number(node)
-        if not 0.0 <= distance <= 1e5:
-            raise Fault("RBL404", f"a distance of {shown(distance)} mm is not between 0 and 100000 mm")
-        return distance
-
-    def _options(self, node: Moving) -> tuple[dict[str, Any], Wrist | None]:
-        """Return the values of a move: its options', else those that were set."""
-        joint, found, wrist = isinstance(node, MoveJ), self._set, self._set.wrist
-        speed: float | None = None
-        accel, zone, time = found.accel_pct, found.zone_mm, None
-        for option in node.options:
-            if isinstance(option, Wrist):
-                wrist = option
-            elif isinstance(option, Speed):
-                speed = self._values.number(option.value)
-            elif isinstance(option, Accel):
-                accel = self._values.number(option.value)
-            elif isinstance(option, Time):
-                time = self._values.number(option.value)
-            elif isinstance(option, Zone):
-                zone = 0.0 if option.value is None else self._values.number(option.value)
-        if not zone >= 0.0:
-            raise Fault("RBL415", f"a blend radius of {shown(zone)} mm is not 0 or more")
-        if time is None and speed is None:
-            speed = found.speed_pct if joint else found.speed_mm_s
-        return {
-            "speed_pct" if joint else "speed_mm_s": speed, "accel_pct": accel, "time_s": time, "zone_mm": zone,
-        }, wrist  # fmt: skip
-
-    def _load(self, line: Line, node: Load, at: int) -> Run:
-        cog, inertia = self._vector(node.cog), () if node.inertia is None else self._vector(node.inertia)
-        if len(cog) != 3 or len(inertia) not in (0, 6):
-            raise Fault("RBL403", "LOAD takes three coordinates of the centre of gravity, and six of an inertia")
-        yield SetPayload(**self._origin(line, node), cog_mm=(cog[0], cog[1], cog[2]), inertia_kg_m2=tuple(inertia),
-                         mass_kg=self._values.number(node.mass))  # fmt: skip
-        return None
-
-    def _vector(self, node: Vector) -> list[float]:
-        return [self._values.number(item) for item in node.items]
-
-    def _load_named(self, line: Line, node: LoadNamed, at: int) -> Run:
-        yield SetPayload(**self._origin(line, node), name=node.name.key)
-        return None
-
-    def _hand(self, line: Line, node: Hand, at: int) -> Run:
-        self._taking_time()
-        yield SetHand(**self._origin(line, node), closed=node.state is HandState.ON,
-                      dwell_s=None if node.dwell is None else self._values.number(node.dwell))  # fmt: skip
-        return None
-
-    def _wrist(self, line: Line, node: Wrist, at: int) -> Run:
-        self._set.wrist = node
-        yield SetWrist(**self._origin(line, node), mode=_mode(node), held=_held(node))
-        return None
-
-    def _seam(self, line: Line, node: Seam, at: int) -> Run:
-        yield SetSeam(**self._origin(line, node), sensor=None if node.sensor is None else node.sensor.key)
-        return None
-
-    def _setting(self, line: Line, node: Setting, at: int) -> Run:
-        assert node.value is not None
-        if node.word in ("TOOL", "FRAME"):
-            found = self._frame(node.value)
-            if node.word == "TOOL":
-                yield SetTool(**self._origin(line, node), tool=found)
-            else:
-                self._values.frame = found
-            return None
-        value = self._values.number(node.value)
-        low, high, unit, name = _SETTINGS[node.word]
-        if not (low < value <= high or (node.word == "ZONE" and value == 0.0)):
-            code = "RBL415" if node.word == "ZONE" else "RBL404"
-            bound = "0 or more" if node.word == "ZONE" else f"above 0 and at most {high:g} {unit}"
-            raise Fault(code, f"{node.word} is {shown(value)} {unit} and must be {bound}")
-        setattr(self._set, name, value)
-        return None
-
-    def _frame(self, node: Expression) -> Frame:
-        """Return the frame or tool that an expression names: a name of the cell, else a pose."""
-        if isinstance(node, Name) and self._scopes.value(node.key) is None:
-            return node.key
-        place, frame = self._values.place(node), self._values.frame
-        self._values.frame = ""
-        try:
-            plain = place.pose is not None and not (place.shifts or place.frame)
-            return place.pose if plain and place.pose is not None else self._values.six(place)
-        finally:
-            self._values.frame = frame
-
-    # --- values, inputs and outputs ----------------------------------------------------------------------------------
+    # --- values, inputs and time -------------------------------------------------------------------------------------
 
     def _assign(self, line: Line, node: Assign, at: int) -> int | None:
         value = self._values.value(node.value)
@@ -355,37 +203,15 @@ class _Machine:
         self._scopes.fix(node.name.key, self._values.value(node.value))
         return None
 
-    def _out(self, line: Line, node: Out, at: int) -> Run:
-        yield SetOutput(**self._origin(line, node), output=self._output(node.index),
-                        value=finite(self._values.number(node.value), "OUT"))  # fmt: skip
-        return None
-
-    def _pulse(self, line: Line, node: Pulse, at: int) -> Run:
-        yield SetOutput(**self._origin(line, node), output=self._output(node.index), value=1.0,
-                        seconds=self._seconds(node.seconds, "PULSE"))  # fmt: skip
-        return None
-
-    def _output(self, node: Expression) -> int:
-        number = self._values.whole(node, "the number of an output")
-        if not 1 <= number <= 1024:
-            raise Fault("RBL534", f"there is no output {number}: they are 1 to 1024")
-        return number
-
-    def _seconds(self, node: Expression, word: str) -> float:
-        seconds = self._values.number(node)
-        if not 0.0 <= seconds <= 86400.0:
-            raise Fault("RBL405", f"{word} of {shown(seconds)} s is not between 0 and 86400 s")
-        return seconds
-
     def _delay(self, line: Line, node: Delay, at: int) -> Run:
-        seconds = self._seconds(node.seconds, "DELAY")
-        self._idle = 0 if seconds > 0.0 else self._idle
-        yield Pass(**self._origin(line, node), seconds=seconds)
+        time = seconds(self._values, node.seconds, "DELAY")
+        self._idle = 0 if time > 0.0 else self._idle
+        yield Pass(**origin(line, node), seconds=time)
         return None
 
     def _wait(self, line: Line, node: Wait, at: int) -> Run:
-        yield Drain(**self._origin(line, node))
-        timeout = math.inf if node.timeout is None else self._seconds(node.timeout, "TIMEOUT")
+        yield Drain(**origin(line, node))
+        timeout = math.inf if node.timeout is None else seconds(self._values, node.timeout, "TIMEOUT")
         began = self._world.seconds()
         while not self._values.true(node.condition):
             if self._world.seconds() - began >= timeout - 1e-9:
@@ -393,7 +219,7 @@ class _Machine:
                     return self._looped(at, self._line_of(node.target))
                 raise Fault("RBL503", f"WAIT has not come true within {shown(timeout)} s")
             self._taking_time()
-            yield Pass(**self._origin(line, node), seconds=0.0)
+            yield Pass(**origin(line, node), seconds=0.0)
         return None
 
     def _print(self, line: Line, node: Print, at: int) -> Run:
@@ -402,7 +228,7 @@ class _Machine:
         self._shown += len(text) + 1
         if self._shown > MAX_SHOWN:
             raise Fault("RBL506", f"more than {MAX_SHOWN} characters of PRINT")
-        yield Show(**self._origin(line, node), text=text)
+        yield Show(**origin(line, node), text=text)
         return None
 
     def _shown_value(self, value: object) -> str:
@@ -425,7 +251,7 @@ class _Machine:
         if chosen is None:
             return None
         if reads_state(chosen):
-            yield Drain(**self._origin(line, chosen))
+            yield Drain(**origin(line, chosen))
         return (yield from _carried_out(_DO[type(chosen)](self, line, chosen, at)))
 
     def _head(self, line: Line, node: Head, at: int) -> Run:
@@ -442,7 +268,7 @@ class _Machine:
             if not isinstance(following, Head):  # ELSE, or ENDIF
                 break
             if reads_state(following.value):
-                yield Drain(**self._origin(line, node))
+                yield Drain(**origin(line, node))
             node = following
         return at + 1
 
@@ -455,7 +281,7 @@ class _Machine:
             if not isinstance(statement, Case):
                 break
             if reads_state(statement):
-                yield Drain(**self._origin(line, node))
+                yield Drain(**origin(line, node))
             if any(self._values.value(value) == chosen for value in statement.values):
                 break
         return at + 1
@@ -560,7 +386,7 @@ class _Machine:
             return len(self._lines)
         else:
             self._taking_time()
-            yield Halt(**self._origin(line, node), word=word)
+            yield Halt(**origin(line, node), word=word)
             return len(self._lines) if word == "STOP" else None
         return None
 
@@ -569,34 +395,10 @@ class _Machine:
         return None
 
 
-_SETTINGS = {
-    "SPEED": (0.0, 10_000.0, "mm/s", "speed_mm_s"),
-    "SPEEDJ": (0.0, 100.0, "%", "speed_pct"),
-    "ACCEL": (0.0, 100.0, "%", "accel_pct"),
-    "OVERRIDE": (0.0, 100.0, "%", "override_pct"),
-    "ZONE": (0.0, 1e5, "mm", "zone_mm"),
-}
-"""Of each setting: above what (a ZONE may be that) and up to what it may be, its unit, and what it sets."""
-
 _DO: dict[type, Callable[..., Run | int | None]] = {
-    Move: _Machine._move, MoveJ: _Machine._move, MoveC: _Machine._move, Approach: _Machine._move,
-    Depart: _Machine._move, Load: _Machine._load, LoadNamed: _Machine._load_named, Hand: _Machine._hand,
-    Wrist: _Machine._wrist, Seam: _Machine._seam, Setting: _Machine._setting, Assign: _Machine._assign,
-    Dim: _Machine._dim, Const: _Machine._const, Out: _Machine._out, Pulse: _Machine._pulse, Delay: _Machine._delay,
+    **dict.fromkeys(ACTIONS, _Machine._act),
+    Assign: _Machine._assign, Dim: _Machine._dim, Const: _Machine._const, Delay: _Machine._delay,
     Wait: _Machine._wait, Print: _Machine._print, If: _Machine._if, Head: _Machine._head, Block: _Machine._block,
     Case: _Machine._block, For: _Machine._for, Next: _Machine._next, Jump: _Machine._jump, Sub: _Machine._sub,
     CallSub: _Machine._call_sub, Word: _Machine._word, OnError: _Machine._on_error,
 }  # fmt: skip
-
-
-def _back(distance: float) -> Shift:
-    """Return the way back along the tool's approach axis, mm."""
-    return Shift(kind="tool", by=(0.0, 0.0, -distance, 0.0, 0.0, 0.0))
-
-
-def _mode(wrist: Wrist) -> str:
-    return "keep" if wrist.mode is WristMode.KEEP else "auto"
-
-
-def _held(wrist: Wrist) -> tuple[str, ...]:
-    return tuple(component.value for component in wrist.held)

@@ -7,21 +7,14 @@ kept, they are the gaps between the ``source_line`` of neighbours.
 """
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import TypeAlias
 
 from robolang.source import Span
-
-NOWHERE = Span(0, 0)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Node:
-    """Anything with a place in the text."""
-
-    span: Span = field(default=NOWHERE, compare=False, repr=False)
+from robolang.tree import NOWHERE as NOWHERE
+from robolang.tree import Node as Node
+from robolang.tree import walk as walk
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -491,34 +484,3 @@ def constant(expression: Expression) -> float | None:
         return sign * expression.value
     value = _CONSTANTS.get(expression.key) if isinstance(expression, Name) else None
     return None if value is None else sign * value
-
-
-_NAMES: dict[type, tuple[str, ...]] = {}
-
-
-def _names(kind: type[Node]) -> tuple[str, ...]:
-    """Return the fields of a kind of node that may hold nodes."""
-    if kind not in _NAMES:
-        _NAMES[kind] = tuple(item.name for item in fields(kind) if item.name not in ("span", "text", "key"))
-    return _NAMES[kind]
-
-
-def children(node: Node) -> Iterator[Node]:
-    """Yield the nodes right below a node, in the order of the text."""
-    for name in _names(type(node)):
-        value = getattr(node, name)
-        if isinstance(value, Node):
-            yield value
-        elif isinstance(value, tuple):
-            for each in value:
-                parts = each if isinstance(each, tuple) else (each,)
-                yield from (part for part in parts if isinstance(part, Node))
-
-
-def walk(node: Node) -> Iterator[Node]:
-    """Yield a node and everything below it; without recursion, however deep the tree is."""
-    stack = [node]
-    while stack:
-        found = stack.pop()
-        yield found
-        stack.extend(reversed(list(children(found))))

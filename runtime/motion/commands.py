@@ -22,60 +22,61 @@ Wrist = Literal["auto", "keep"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MoveLinear:
-    """Move the tool point straight to ``X_world_tool`` (4, 4), orientation about one axis (JPH06190750A Fig 6).
+class Motion:
+    """What every move may be told. ``acceleration`` is a share of the robot's in (0, 1]; ``speed`` None: its default.
+    """
 
-    ``speed`` m/s of the tool point (None: the robot's default), ``acceleration`` fraction of the robot's in (0, 1].
+    speed: float | None = None
+    acceleration: float = 1.0
+    duration: float | None = None
+    q_end: Array | None = None
+    configuration: tuple[str, ...] = ()
+    turns: tuple[int, ...] = ()
+    zone: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (0.0 <= self.zone < math.inf):
+            raise ValueError(f"a zone of {self.zone} m is not a radius")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PathMotion(Motion):
+    """A move whose tool point has a path of its own; ``speed`` in m/s along it.
 
     ``wrist`` (None: as the profile says): ``auto`` may leave the posture of the path to end as taught, ``keep`` never
     does, and keeps the sign of J5. ``held`` components of the posture change as little as they can while it is left.
+    """
+
+    wrist: Wrist | None = None
+    held: tuple[Component, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MoveLinear(PathMotion):
+    """Move the tool point straight to ``X_world_tool`` (4, 4), orientation about one axis (JPH06190750A Fig 6).
+
     ``tracked``: a seam sensor will shift the path as it goes, so once the wrist has left its posture it does not return
     to it before the end.
     """
 
     X_world_tool: Array
-    speed: float | None = None
-    acceleration: float = 1.0
-    duration: float | None = None
-    q_end: Array | None = None
-    configuration: tuple[str, ...] = ()
-    turns: tuple[int, ...] = ()
-    wrist: Wrist | None = None
-    held: tuple[Component, ...] = ()
     tracked: bool = False
-    zone: float = 0.0
-
-    def __post_init__(self) -> None:
-        _check_zone(self.zone)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MoveArc:
+class MoveArc(PathMotion):
     """Move the tool point on a circle over the place of ``X_via`` (4, 4) to ``X_world_tool`` (4, 4).
 
     The orientation turns about one axis from that of the start to that of the end, in proportion to the way along the
-    arc; *that of the via point is not used*. Everything else is as of ``MoveLinear``; ``held`` components are counted
-    from the tangent.
+    arc; *that of the via point is not used*. ``held`` components are counted from the tangent.
     """
 
     X_via: Array
     X_world_tool: Array
-    speed: float | None = None
-    acceleration: float = 1.0
-    duration: float | None = None
-    q_end: Array | None = None
-    configuration: tuple[str, ...] = ()
-    turns: tuple[int, ...] = ()
-    wrist: Wrist | None = None
-    held: tuple[Component, ...] = ()
-    zone: float = 0.0
-
-    def __post_init__(self) -> None:
-        _check_zone(self.zone)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MoveJoint:
+class MoveJoint(Motion):
     """Turn all joints together to ``q_end`` (n,) rad, each in proportion to its way; the tool goes where that takes it.
 
     Where ``q_end`` is None, to the solution of ``X_world_tool`` (4, 4) that fits ``configuration`` and ``turns`` and is
@@ -83,16 +84,9 @@ class MoveJoint:
     """
 
     X_world_tool: Array | None = None
-    q_end: Array | None = None
-    speed: float | None = None
-    acceleration: float = 1.0
-    duration: float | None = None
-    configuration: tuple[str, ...] = ()
-    turns: tuple[int, ...] = ()
-    zone: float = 0.0
 
     def __post_init__(self) -> None:
-        _check_zone(self.zone)
+        Motion.__post_init__(self)
         if self.q_end is None and self.X_world_tool is None:
             raise ValueError("a joint move needs joint angles or a pose to go to")
 
@@ -101,11 +95,6 @@ PathMove: TypeAlias = MoveLinear | MoveArc
 """A move whose tool point has a path of its own."""
 
 Command: TypeAlias = MoveLinear | MoveArc | MoveJoint
-
-
-def _check_zone(zone: float) -> None:
-    if not (0.0 <= zone < math.inf):
-        raise ValueError(f"a zone of {zone} m is not a radius")
 
 
 def in_configuration(branch: Branch, words: tuple[str, ...]) -> bool:

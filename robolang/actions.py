@@ -1,0 +1,229 @@
+"""Statements that act: each asks one thing of the robot or its cell, and becomes one effect.
+
+Moves, payload, hand, wrist, seam, tool and outputs, and the settings that hold for the moves which follow: SPEED,
+SPEEDJ, ACCEL, OVERRIDE, ZONE and FRAME have no effect of their own, every move carries what they have set. An option of
+a move wins over what was set, for this move. Called by the interpreter when it reaches the statement; expressions are
+evaluated then, in the units of the text.
+"""
+
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+from robolang import effects
+from robolang.effects import Effect, origin
+from robolang.evaluator import Evaluator, finite, shown
+from robolang.nodes import (
+    Accel,
+    Approach,
+    Depart,
+    Expression,
+    Hand,
+    HandState,
+    Line,
+    Load,
+    LoadNamed,
+    Move,
+    MoveC,
+    MoveJ,
+    Moving,
+    Name,
+    Out,
+    Pulse,
+    Seam,
+    Setting,
+    Speed,
+    Time,
+    Vector,
+    Wrist,
+    WristMode,
+    Zone,
+)
+from robolang.places import Frame, Place, Shift
+from robolang.scope import Scopes
+from runtime.faults import Fault
+
+Action: TypeAlias = Moving | Load | LoadNamed | Hand | Wrist | Seam | Setting | Out | Pulse
+
+_SETTINGS = {
+    "SPEED": (0.0, 10_000.0, "mm/s", "speed_mm_s"),
+    "SPEEDJ": (0.0, 100.0, "%", "speed_pct"),
+    "ACCEL": (0.0, 100.0, "%", "accel_pct"),
+    "OVERRIDE": (0.0, 100.0, "%", "override_pct"),
+    "ZONE": (0.0, 1e5, "mm", "zone_mm"),
+}
+"""Of each setting: above what (a ZONE may be that) and up to what it may be, its unit, and what it sets."""
+
+
+class _Settings:
+    """What SPEED, ACCEL, WRIST and the like have set for the moves that follow."""
+
+    def __init__(self) -> None:
+        self.speed_mm_s: float | None = None
+        self.speed_pct: float | None = None
+        self.accel_pct: float | None = None
+        self.override_pct = 100.0
+        self.zone_mm = 0.0
+        self.wrist: Wrist | None = None
+
+
+class Actions:
+    """Turns the statements that act into effects, and keeps what the settings have set."""
+
+    def __init__(self, values: Evaluator, scopes: Scopes) -> None:
+        self._values, self._scopes = values, scopes
+        self._set = _Settings()
+
+    def effect(self, line: Line, node: Action) -> Effect | None:
+        """Return what a statement asks for, None for a setting; ``Fault`` where it has no value or is out of range."""
+        return _EFFECT[type(node)](self, line, node)
+
+    # --- motion ------------------------------------------------------------------------------------------------------
+
+    def _move(self, line: Line, node: Moving) -> Effect:
+        values, wrist = self._options(node)
+        return effects.MoveTo(
+            **origin(line, node), way="joint" if isinstance(node, MoveJ) else "arc" if isinstance(node, MoveC)
+            else "line", target=self._target(node),
+            via=self._values.place(node.via) if isinstance(node, MoveC) else None,
+            wrist=None if wrist is None else _mode(wrist), held=() if wrist is None else _held(wrist),
+            override_pct=self._set.override_pct, **values,
+        )  # fmt: skip
+
+    def _target(self, node: Moving) -> Place:
+        if isinstance(node, Depart):
+            return Place(last=True).shifted(_back(self._distance(node.distance)))
+        place = self._values.place(node.target)
+        return place.shifted(_back(self._distance(node.distance))) if isinstance(node, Approach) else place
+
+    def _distance(self, node: Expression) -> float:
+        distance = self._values.number(node)
+        if not 0.0 <= distance <= 1e5:
+            raise Fault("RBL404", f"a distance of {shown(distance)} mm is not between 0 and 100000 mm")
+        return distance
+
+    def _options(self, node: Moving) -> tuple[dict[str, Any], Wrist | None]:
+        """Return the values of a move: its options', else those that were set."""
+        joint, found, wrist = isinstance(node, MoveJ), self._set, self._set.wrist
+        speed: float | None = None
+        accel, zone, time = found.accel_pct, found.zone_mm, None
+        for option in node.options:
+            if isinstance(option, Wrist):
+                wrist = option
+            elif isinstance(option, Speed):
+                speed = self._values.number(option.value)
+            elif isinstance(option, Accel):
+                accel = self._values.number(option.value)
+            elif isinstance(option, Time):
+                time = self._values.number(option.value)
+            elif isinstance(option, Zone):
+                zone = 0.0 if option.value is None else self._values.number(option.value)
+        if not zone >= 0.0:
+            raise Fault("RBL415", f"a blend radius of {shown(zone)} mm is not 0 or more")
+        if time is None and speed is None:
+            speed = found.speed_pct if joint else found.speed_mm_s
+        return {
+            "speed_pct" if joint else "speed_mm_s": speed, "accel_pct": accel, "time_s": time, "zone_mm": zone,
+        }, wrist  # fmt: skip
+
+    # --- payload, hand, wrist, seam ----------------------------------------------------------------------------------
+
+    def _load(self, line: Line, node: Load) -> Effect:
+        cog, inertia = self._vector(node.cog), () if node.inertia is None else self._vector(node.inertia)
+        if len(cog) != 3 or len(inertia) not in (0, 6):
+            raise Fault("RBL403", "LOAD takes three coordinates of the centre of gravity, and six of an inertia")
+        return effects.SetPayload(**origin(line, node), cog_mm=(cog[0], cog[1], cog[2]), inertia_kg_m2=tuple(inertia),
+                                  mass_kg=self._values.number(node.mass))  # fmt: skip
+
+    def _vector(self, node: Vector) -> list[float]:
+        return [self._values.number(item) for item in node.items]
+
+    def _load_named(self, line: Line, node: LoadNamed) -> Effect:
+        return effects.SetPayload(**origin(line, node), name=node.name.key)
+
+    def _hand(self, line: Line, node: Hand) -> Effect:
+        return effects.SetHand(**origin(line, node), closed=node.state is HandState.ON,
+                               dwell_s=None if node.dwell is None else self._values.number(node.dwell))  # fmt: skip
+
+    def _wrist(self, line: Line, node: Wrist) -> Effect:
+        self._set.wrist = node
+        return effects.SetWrist(**origin(line, node), mode=_mode(node), held=_held(node))
+
+    def _seam(self, line: Line, node: Seam) -> Effect:
+        return effects.SetSeam(**origin(line, node), sensor=None if node.sensor is None else node.sensor.key)
+
+    # --- settings ----------------------------------------------------------------------------------------------------
+
+    def _setting(self, line: Line, node: Setting) -> Effect | None:
+        assert node.value is not None
+        if node.word == "TOOL":
+            return effects.SetTool(**origin(line, node), tool=self._frame(node.value))
+        if node.word == "FRAME":
+            self._values.frame = self._frame(node.value)
+            return None
+        value = self._values.number(node.value)
+        low, high, unit, name = _SETTINGS[node.word]
+        if not (low < value <= high or (node.word == "ZONE" and value == 0.0)):
+            code = "RBL415" if node.word == "ZONE" else "RBL404"
+            bound = "0 or more" if node.word == "ZONE" else f"above 0 and at most {high:g} {unit}"
+            raise Fault(code, f"{node.word} is {shown(value)} {unit} and must be {bound}")
+        setattr(self._set, name, value)
+        return None
+
+    def _frame(self, node: Expression) -> Frame:
+        """Return the frame or tool that an expression names: a name of the cell, else a pose."""
+        if isinstance(node, Name) and self._scopes.value(node.key) is None:
+            return node.key
+        place, frame = self._values.place(node), self._values.frame
+        self._values.frame = ""
+        try:
+            plain = place.pose is not None and not (place.shifts or place.frame)
+            return place.pose if plain and place.pose is not None else self._values.six(place)
+        finally:
+            self._values.frame = frame
+
+    # --- outputs -----------------------------------------------------------------------------------------------------
+
+    def _out(self, line: Line, node: Out) -> Effect:
+        return effects.SetOutput(**origin(line, node), output=self._output(node.index),
+                                 value=finite(self._values.number(node.value), "OUT"))  # fmt: skip
+
+    def _pulse(self, line: Line, node: Pulse) -> Effect:
+        return effects.SetOutput(**origin(line, node), output=self._output(node.index), value=1.0,
+                                 seconds=seconds(self._values, node.seconds, "PULSE"))  # fmt: skip
+
+    def _output(self, node: Expression) -> int:
+        number = self._values.whole(node, "the number of an output")
+        if not 1 <= number <= 1024:
+            raise Fault("RBL534", f"there is no output {number}: they are 1 to 1024")
+        return number
+
+
+_EFFECT: dict[type, Callable[..., Effect | None]] = {
+    Move: Actions._move, MoveJ: Actions._move, MoveC: Actions._move, Approach: Actions._move, Depart: Actions._move,
+    Load: Actions._load, LoadNamed: Actions._load_named, Hand: Actions._hand, Wrist: Actions._wrist,
+    Seam: Actions._seam, Setting: Actions._setting, Out: Actions._out, Pulse: Actions._pulse,
+}  # fmt: skip
+
+ACTIONS = tuple(_EFFECT)
+"""The kinds of statements that ``Actions.effect`` takes."""
+
+
+def seconds(values: Evaluator, node: Expression, word: str) -> float:
+    """Return a time to wait, s; ``Fault`` RBL405 unless it is between 0 and a day."""
+    found = values.number(node)
+    if not 0.0 <= found <= 86400.0:
+        raise Fault("RBL405", f"{word} of {shown(found)} s is not between 0 and 86400 s")
+    return found
+
+
+def _back(distance: float) -> Shift:
+    """Return the way back along the tool's approach axis, mm."""
+    return Shift(kind="tool", by=(0.0, 0.0, -distance, 0.0, 0.0, 0.0))
+
+
+def _mode(wrist: Wrist) -> str:
+    return "keep" if wrist.mode is WristMode.KEEP else "auto"
+
+
+def _held(wrist: Wrist) -> tuple[str, ...]:
+    return tuple(component.value for component in wrist.held)
