@@ -4,6 +4,8 @@ import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
+X_TABLE, Y_TABLE = "00_line30_X.csv", "01_line30_Y.csv"
+"""Tables of ``staircase``."""
 HEADER = "control,frequency_hz,target_pulses,steps"
 
 
@@ -29,6 +31,12 @@ def csv(table):
 
 def pose(x=0.0, y=0.0, z=0.0, turn=((1, 0, 0), (0, 1, 0), (0, 0, 1))):
     return [[*row, at] for row, at in zip(turn, (x, y, z), strict=True)] + [[0, 0, 0, 1]]
+
+
+TURN_X = ((1, 0, 0), (0, 0, -1), (0, 1, 0))
+ARM = {"kind": "arm", "name": "two", "placements": [pose(), pose(0.4, turn=TURN_X)],
+       "X_last_flange": pose(0.3, turn=TURN_X), "X_flange_tool": pose(0.0, 0.1, 0.0)}  # fmt: skip
+"""A mechanism of two axes in the plane, the second one lying down."""
 
 
 @dataclass
