@@ -77,7 +77,7 @@ def move(effect: MoveTo, around: Surroundings) -> Command:
     goal = _goal(effect.target, around)
     override = effect.override_pct * PERCENT
     acceleration = 1.0 if effect.accel_pct is None else effect.accel_pct * PERCENT
-    duration = None if effect.time_s is None else effect.time_s / override
+    duration = effect.time_s
     zone = effect.zone_mm * MM
     if effect.way == "joint":
         share = (100.0 if effect.speed_pct is None else effect.speed_pct) * PERCENT
@@ -85,22 +85,20 @@ def move(effect: MoveTo, around: Surroundings) -> Command:
             raise Fault("RBL404", f"SPEED in % is {share * 100.0:g} and must be above 0 and at most 100")
         return MoveJoint(
             q_end=goal.q_end, X_world_tool=goal.X, configuration=goal.configuration, turns=goal.turns,
-            speed=share * override, acceleration=acceleration, duration=duration, zone=zone,
+            speed=share, acceleration=acceleration, duration=duration, zone=zone, override=override,
         )  # fmt: skip
     speed = None if effect.speed_mm_s is None else effect.speed_mm_s * MM
-    if override < 1.0 and duration is None:
-        speed = (around.cell.robot.path.default_speed if speed is None else speed) * override
     wrist, held = cast("Wrist | None", effect.wrist), cast("tuple[Component, ...]", effect.held)
     if effect.way == "arc":
         assert effect.via is not None
         return MoveArc(
             X_via=_goal(effect.via, around).X, X_world_tool=goal.X, q_end=goal.q_end,
             configuration=goal.configuration, turns=goal.turns, wrist=wrist, speed=speed,
-            acceleration=acceleration, duration=duration, zone=zone,
+            acceleration=acceleration, duration=duration, zone=zone, override=override,
         )  # fmt: skip
     return MoveLinear(
         X_world_tool=goal.X, q_end=goal.q_end, configuration=goal.configuration, turns=goal.turns, wrist=wrist,
-        held=held, speed=speed, acceleration=acceleration, duration=duration, zone=zone,
+        held=held, speed=speed, acceleration=acceleration, duration=duration, zone=zone, override=override,
     )  # fmt: skip
 
 

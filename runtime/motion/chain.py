@@ -3,8 +3,10 @@
 ``MotionPlanner`` is the planner of every kind of move, alone (``plan``) or in a row (``chain``). A row is planned move
 by move as if each stopped, so what is refused does not depend on zones; then neighbours are blended from the first
 corner to the last (``blend``), and what comes out is one sequence of rows. Where no zone is asked for, the rows are
-those of the plans to the last bit. A row in the middle of a blend belongs to both moves; for the log and the lamp it is
-counted to the first of them up to the middle, then to the second.
+those of the plans to the last bit. Where two moves have different overrides, the smaller one holds while both run.
+
+A row in the middle of a blend belongs to both moves; for the log and the lamp it is counted to the first of them up to
+the middle, then to the second.
 
 Called by the controller before anything moves, and by the rehearsal of a program.
 """
@@ -106,7 +108,8 @@ class MotionPlanner:
     def plan(self, q_start: Array, command: Command, X_flange_tool: Array, override: float = 1.0) -> LinePlan:
         """Return the plan of one move from joint angles q_start (n,) rad; ``Fault`` RBL404, 410, 411, 412 or 416.
 
-        ``X_flange_tool`` (4, 4) is the tool whose point moves, ``override`` in (0, 1] a share of every speed.
+        ``X_flange_tool`` (4, 4) is the tool whose point moves, ``override`` in (0, 1] a share of every speed
+        beside the command's own.
         """
         if isinstance(command, MoveJoint):
             return self.joints.plan(q_start, command, X_flange_tool, override)
@@ -121,26 +124,25 @@ class MotionPlanner:
                 plans.append(self.plan(plans[-1].q[-1] if plans else q_start, command, X_flange_tool, override))
             except Fault as fault:
                 raise ChainFault(fault, index) from None
-        return self.join(plans, [command.zone for command in commands], X_flange_tool, override)
+        return self.join(plans, [command.zone for command in commands], X_flange_tool)
 
-    def join(self, plans: Sequence[LinePlan], zones: Sequence[float], X_flange_tool: Array,
-             override: float = 1.0) -> ChainPlan:  # fmt: skip
+    def join(self, plans: Sequence[LinePlan], zones: Sequence[float], X_flange_tool: Array) -> ChainPlan:
         """Return moves, each planned from the end of the one before, blended in the zones (m) at their ends.
 
-        The last one stops, whatever its zone is. ``override`` is that of the plans.
+        The last one stops, whatever its zone is.
         """
         if not plans:
             raise ValueError("a chain has at least one move")
-        pace = self._pace.overridden(override)
-        arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=pace.fine, X_flange_tool=X_flange_tool)
+        arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=self._pace.fine, X_flange_tool=X_flange_tool)
         q, modes = plans[0].q, plans[0].modes
         offsets, lasts, corners = [0], [], []
         for before, after, zone in zip(plans, plans[1:], zones, strict=False):
             halves = (len(before.q) - 1) // 2, (len(after.q) - 1) // 2
             end = len(q) - 1
             acceleration = self._spec.path.acceleration * max(before.acceleration, after.acceleration)
+            override = min(before.override, after.override)
             turning = self._spec.path.rotation_speed * override
-            q, corner = blend(q, after.q, halves, zone, arm, pace, acceleration, turning)
+            q, corner = blend(q, after.q, halves, zone, arm, self._pace.overridden(override), acceleration, turning)
             middle = end - corner.cycles + corner.cycles // 2
             offsets.append(end - corner.cycles)
             lasts.append(middle)
@@ -148,7 +150,7 @@ class MotionPlanner:
             corners.append(corner)
         lasts.append(len(q) - 1)
         parts = tuple(
-            Part(plan=plan, first=first, last=last, offset=offset, period_s=pace.period_s)
+            Part(plan=plan, first=first, last=last, offset=offset, period_s=self._pace.period_s)
             for plan, first, last, offset in zip(plans, [0, *lasts], lasts, offsets, strict=False)
         )
         command = np.repeat(np.arange(len(parts), dtype=np.int32), [part.last - part.first for part in parts])

@@ -5,7 +5,7 @@ Three kinds: straight (``MoveLinear``), on an arc (``MoveArc``), all joints toge
 which it may go over into the next move of a chain (``runtime.motion.blend``), 0: it stops there; ``q_end`` (n,) rad,
 the taught joint angles of the end, turns and all, None where only its pose is taught, with the words of
 ``configuration`` and the ``turns`` of the joints as far as they are. What the robot cannot do is refused by the planner
-(RBL4xx); a zone that is none, and a joint move to nowhere, are misuse and raise ``ValueError``.
+(RBL4xx); a zone or an override that is none, and a joint move to nowhere, are misuse and raise ``ValueError``.
 """
 
 import math
@@ -24,6 +24,8 @@ Wrist = Literal["auto", "keep"]
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Motion:
     """What every move may be told. ``acceleration`` is a share of the robot's in (0, 1]; ``speed`` None: its default.
+
+    ``override`` in (0, 1] is a share of every speed, those of the limits included (``runtime.motion.planner``).
     """
 
     speed: float | None = None
@@ -33,8 +35,11 @@ class Motion:
     configuration: tuple[str, ...] = ()
     turns: tuple[int, ...] = ()
     zone: float = 0.0
+    override: float = 1.0
 
     def __post_init__(self) -> None:
+        if not (0.0 < self.override <= 1.0):
+            raise ValueError(f"an override of {self.override} is not a share in (0, 1]")
         if not (0.0 <= self.zone < math.inf):
             raise ValueError(f"a zone of {self.zone} m is not a radius")
 

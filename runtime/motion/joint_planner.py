@@ -69,13 +69,15 @@ class JointPlanner:
     def plan(self, q_start: Array, command: MoveJoint, X_flange_tool: Array, override: float = 1.0) -> LinePlan:
         """Return the plan of a move from joint angles q_start (n,) rad; ``Fault`` RBL404, 410, 411 or 412.
 
-        ``X_flange_tool`` (4, 4) is the tool that is put at the pose, ``override`` in (0, 1] a share of every speed.
+        ``X_flange_tool`` (4, 4) is the tool that is put at the pose, ``override`` in (0, 1] a share of every speed
+        beside the command's own.
         """
         share = _share(command)
         q_end = self.end(q_start, command, X_flange_tool)
         way = np.abs(q_end - q_start)
         if way.max() < NOTHING_TO_DO:
             return LinePlan(path=None, s=np.ones(1), q=frozen([q_start]), slowdown=None, notes=("already there",))
+        override *= command.override
         pace = self._pace.overridden(override)
         duration = None if command.duration is None else command.duration / override
         arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=pace.fine, X_flange_tool=X_flange_tool)
@@ -84,7 +86,7 @@ class JointPlanner:
         s, q, slowdown = pace.within_limits(curve, limits, duration)
         notes = pace.time_note(duration, len(s) - 1)
         return LinePlan(path=None, s=frozen(s), q=frozen(q), slowdown=slowdown, notes=notes,
-                        acceleration=command.acceleration)  # fmt: skip
+                        acceleration=command.acceleration, override=override)  # fmt: skip
 
     def end(self, q_start: Array, command: MoveJoint, X_flange_tool: Array) -> Array:
         """Return the joint angles (n,) at which a move from q_start (n,) ends; ``Fault`` RBL410, 411 or 412."""

@@ -49,12 +49,14 @@ class Curve(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pace:
-    """What bounds the timing: ``fine`` measures, ``speed`` rad/s and ``acceleration`` rad/s2 (n,) are the limits."""
+    """What bounds the timing: ``fine`` measures, ``speed`` rad/s and ``acceleration`` rad/s2 (n,) are the limits, at a
+    share ``override`` of all speeds."""
 
     fine: FineInterpolator
     speed: Array
     acceleration: Array
     period_s: float
+    override: float = 1.0
 
     @classmethod
     def of(cls, spec: RobotSpec, profile: Profile) -> "Pace":
@@ -67,7 +69,8 @@ class Pace:
 
     def overridden(self, override: float) -> "Pace":
         """Return the pace at a share ``override`` of all speeds."""
-        return self if override == 1.0 else replace(self, speed=self.speed * override)
+        return self if override == 1.0 else replace(
+            self, speed=self.speed * override, override=self.override * override)  # fmt: skip
 
     def excess(self, q: Array) -> tuple[float, int, str]:
         """Return (time factor needed, axis, quantity) of the worst violation at the servo ticks; <= 1 is none."""
@@ -118,8 +121,9 @@ class Pace:
             return ()
         limit = (self.speed if slowdown.quantity == "speed" else self.acceleration)[slowdown.axis] / DEG
         unit = "deg/s" if slowdown.quantity == "speed" else "deg/s2"
+        under = f" under OVERRIDE {100.0 * self.override:g}" if self.override < 1.0 and unit == "deg/s" else ""
         return (f"slowed {slowdown.factor:.2f} times to {cycles * self.period_s:.3f} s: J{slowdown.axis + 1} "
-                f"{slowdown.quantity} is limited to {limit:g} {unit}",)  # fmt: skip
+                f"{slowdown.quantity} is limited to {limit:g} {unit}{under}",)  # fmt: skip
 
     def time_note(self, duration: float | None, cycles: int) -> tuple[str, ...]:
         """Return what to say of a move that takes longer than the time asked for."""

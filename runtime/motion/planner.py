@@ -12,9 +12,10 @@ On an arc of radius r the tool point is accelerated towards the centre as well, 
 
 and what v^2 / r leaves of the path's acceleration limit a is for gaining and losing speed: sqrt(a^2 - (v^2 / r)^2).
 
-An *override* o in (0, 1] is a share of every speed: of the tool point, of its turning, of the joints; TIME t becomes
-t / o. Accelerations stay. The way of the wrist is chosen as for o = 1, so a program that is tried at a low speed takes
-the same way through space as later.
+An *override* o in (0, 1] is a share of every speed: of the tool point, of its turning, of the joints, whether it was
+asked for or is a limit; TIME t becomes t / o. Accelerations stay. A command has one of its own, the planner may be
+given another one for all moves, and the product counts. The way of the wrist is chosen as for o = 1, so a program that
+is tried at a low speed takes the same way through space as later.
 """
 
 import math
@@ -81,7 +82,7 @@ class LinePlan:
 
     ``path`` of the tool point, None where the joints go their own way; ``s`` (N + 1,) path parameter of each row.
     ``slowdown`` None when the move runs as asked, ``wrist`` None when the tool keeps the posture of the path, ``notes``
-    for people, ``acceleration`` the share of the robot's that was asked for.
+    for people, ``acceleration`` the share of the robot's that was asked for, ``override`` the share of all speeds.
     """
 
     path: Path | None
@@ -91,6 +92,7 @@ class LinePlan:
     wrist: WristChange | None = None
     notes: tuple[str, ...]
     acceleration: float = 1.0
+    override: float = 1.0
 
     @property
     def modes(self) -> NDArray[np.int8]:
@@ -141,11 +143,13 @@ class LinePlanner:
     def plan(self, q_start: Array, command: PathMove, X_flange_tool: Array, override: float = 1.0) -> LinePlan:
         """Return the plan of a move from joint angles q_start (n,) rad; ``Fault`` RBL404, 410, 411, 412 or 416.
 
-        ``X_flange_tool`` (4, 4) is the tool whose point moves, ``override`` in (0, 1] a share of every speed.
+        ``X_flange_tool`` (4, 4) is the tool whose point moves, ``override`` in (0, 1] a share of every speed
+        beside the command's own.
         """
         way = self.way(q_start, command, X_flange_tool)
         if way.limits is None:
             return LinePlan(path=way.path, s=np.ones(1), q=frozen([q_start]), slowdown=None, notes=("already there",))
+        override *= command.override
         pace = self._pace.overridden(override)
         duration = None if command.duration is None else command.duration / override
         with way.explaining():
@@ -154,7 +158,7 @@ class LinePlanner:
         notes = pace.slow_note(slowdown, len(s) - 1) + pace.time_note(duration, len(s) - 1)
         notes += _wrist_notes(wrist) + _kept_notes(command, q)
         return LinePlan(path=way.path, s=frozen(s), q=frozen(q), slowdown=slowdown, wrist=wrist, notes=notes,
-                        acceleration=command.acceleration)  # fmt: skip
+                        acceleration=command.acceleration, override=override)  # fmt: skip
 
     def way(self, q_start: Array, command: PathMove, X_flange_tool: Array) -> LineWay:
         """Return the curve of a move, at any path parameter, and its limits; arguments and faults of ``plan``."""

@@ -5,8 +5,9 @@
 
 The line and its joint values are the machine's ``Way``: for a robot arm that is the curve that a run takes, wrist and
 all. Speed and ramp come from the same limits as a run's, T0 = V / a; where a joint's speed or acceleration would be
-passed the whole profile is slowed, as the planner of a run does. A channel's highest frequency is not slowed for: it is
-refused with the speed that fits, so that nobody finds a program slower than he wrote it.
+passed the whole profile is slowed, as the planner of a run does; an override is a share of every speed there too. A
+channel's highest frequency is not slowed for: it is refused with the speed that fits, so that nobody finds a program
+slower than he wrote it.
 """
 
 import math
@@ -85,13 +86,14 @@ def plan_move(machine: Machine, stand: Stand, command: MoveLinear, channels: tup
         none = Emission(steps=nothing[:, 0], raised=0, debt=0, settled=0, rule="none")
         return _measured(machine, way, None, stand.q[None], start, nothing, (none,) * len(channels), 1.0,
                          ("already there",), channels)  # fmt: skip
-    limits, notes = _timed(way.limits, command.duration)
-    steps, q, slowed, ruling = _within_limits(machine, way, limits, step_s)
+    override = command.override
+    limits, notes = _timed(way.limits.overridden(override), command.duration and command.duration / override)
+    steps, q, slowed, ruling = _within_limits(machine, way, limits, step_s, override)
     if slowed > 1.0:
         notes += (f"slowed {slowed:.2f} times to {steps.seconds:.3f} s: limits of {ruling}",)
     pulses = _counted(q, channels)
     wanted = np.diff(np.vstack([start, pulses[1:]]), axis=0)
-    _check_frequency(machine, way, limits.slowed(slowed), channels, wanted, steps)
+    _check_frequency(machine, way, limits.slowed(slowed), channels, wanted, steps, override)
     emitted = tuple(
         emit(np.ascontiguousarray(wanted[:, k]), least_step(channel.min_hz, step_s), most_pulses(channel, step_s))
         for k, channel in enumerate(channels)
@@ -139,14 +141,14 @@ def _steps(limits: SpeedLimits, step_s: float) -> EqualTimeSteps:
     return EqualTimeSteps.of(1.0, speed, speed / limits.acceleration, step_s)
 
 
-def _within_limits(machine: Machine, way: Way, limits: SpeedLimits,
-                   step_s: float) -> tuple[EqualTimeSteps, Array, float, str]:  # fmt: skip
+def _within_limits(machine: Machine, way: Way, limits: SpeedLimits, step_s: float,
+                   override: float) -> tuple[EqualTimeSteps, Array, float, str]:  # fmt: skip
     """Return the steps, their joint values, the factor of time that the joints needed, and which of them ruled."""
     slowed, ruling = 1.0, ""
     for _ in range(_ROUNDS):
         steps = _steps(limits.slowed(slowed), step_s)
         q = way.joints(steps.distances())
-        factor, name = _excess(machine, q, step_s)
+        factor, name = _excess(machine, q, step_s, override)
         if factor <= 1.0:
             return steps, q, slowed, ruling
         slowed, ruling = slowed * factor * _MARGIN, name
@@ -155,11 +157,11 @@ def _within_limits(machine: Machine, way: Way, limits: SpeedLimits,
     raise Fault("RBL412", f"no speed keeps the limits of {ruling} on this straight path: it passes a singularity")
 
 
-def _excess(machine: Machine, q: Array, step_s: float) -> tuple[float, str]:
+def _excess(machine: Machine, q: Array, step_s: float, override: float) -> tuple[float, str]:
     """Return by which factor of time the steps are too fast for the joints (1 and less: not at all), and for which."""
     dq = np.diff(q, axis=0)
     ddq = np.diff(dq, axis=0, prepend=0.0, append=0.0)
-    speed = np.abs(dq).max(axis=0) / step_s / [joint.speed for joint in machine.joints]
+    speed = np.abs(dq).max(axis=0) / step_s / [joint.speed * override for joint in machine.joints]
     acceleration = np.abs(ddq).max(axis=0) / step_s**2 / [joint.acceleration for joint in machine.joints]
     ratios = np.stack([speed, np.sqrt(acceleration)])
     kind, k = np.unravel_index(int(np.argmax(ratios)), ratios.shape)
@@ -167,8 +169,8 @@ def _excess(machine: Machine, q: Array, step_s: float) -> tuple[float, str]:
 
 
 def _check_frequency(machine: Machine, way: Way, limits: SpeedLimits, channels: tuple[Channel, ...], wanted: Pulses,
-                     steps: EqualTimeSteps) -> None:  # fmt: skip
-    """Refuse a step that wants more pulses than its channel can give, with a speed at which none does."""
+                     steps: EqualTimeSteps, override: float) -> None:  # fmt: skip
+    """Refuse a step that wants more pulses than its channel can give, with a SPEED or TIME at which none does."""
     most = np.array([most_pulses(channel, steps.step_s) for channel in channels])
     ratios = np.abs(wanted) / most
     if ratios.max() <= 1.0:
@@ -178,7 +180,7 @@ def _check_frequency(machine: Machine, way: Way, limits: SpeedLimits, channels: 
     share = 100.0 * float(steps.distances()[row])
     fits = _fitting(way, limits, channels, most, steps.step_s, float(ratios.max()))
     speed = fits.speed * way.length / MM
-    what = f"SPEED {_down(speed):g}" if speed > 0.0 else f"TIME {fits.seconds:.3f}"
+    what = f"SPEED {_down(speed / override):g}" if speed > 0.0 else f"TIME {fits.seconds * override:.3f}"
     raise Fault("RBL430", f"{channel.joint.name} of the {machine.name} needs {needed:.0f} Hz at {share:.1f} % of the "
                 f"path, its channel gives {channel.max_hz:.0f} Hz at most", f"{what} would fit")  # fmt: skip
 

@@ -53,12 +53,12 @@ def test_units(around):
     assert isinstance(command("MOVEC P1, P2", around), MoveArc)
 
 
-def test_override_slows_every_way_of_saying_how_fast(around):
-    assert command("OVERRIDE 50\nMOVE P1, SPEED 200", around).speed == pytest.approx(0.1)
-    assert command("OVERRIDE 50\nMOVE P1, TIME 3", around).duration == pytest.approx(6.0)
-    assert command("OVERRIDE 50\nMOVEJ P1, SPEED 20", around).speed == pytest.approx(0.1)
-    assert command("OVERRIDE 50\nMOVE P1", around).speed == pytest.approx(around.cell.robot.path.default_speed / 2)
-    assert command("OVERRIDE 50\nMOVEJ P1", around).speed == pytest.approx(0.5)
+@pytest.mark.parametrize("move", ["MOVE P1, SPEED 200", "MOVE P1, TIME 3", "MOVE P1", "MOVEJ P1, SPEED 20", "MOVEJ P1",
+                                  "MOVEC P1, P2", "APPROACH P1, 50", "DEPART 50, TIME 2"])  # fmt: skip
+def test_an_override_is_left_to_the_planner(around, move):
+    whole, half = (command(f"{lead}{move}", around) for lead in ("", "OVERRIDE 50\n"))
+    assert (whole.override, half.override) == (1.0, 0.5)
+    assert (whole.speed, whole.duration) == (half.speed, half.duration)
 
 
 def test_a_pose_is_where_it_says(around):

@@ -265,3 +265,32 @@ def test_all_kinds_blend_with_each_other(kinds):
     assert found.corners[0].cycles > 4
     assert limits_broken(robot, found.q) == []
     assert blends_broken(robot, found, commands) == []
+
+
+@pytest.mark.parametrize("overrides", [(1.0, 0.3), (0.3, 1.0), (0.3, 0.3)])
+@pytest.mark.parametrize("kind", ["line", "joint"])
+def test_where_overrides_differ_the_smaller_one_holds_in_the_blend(kind, overrides):
+    robot = bench("irb2400")
+    q = robot.home()
+    ends = (q + 0.6 * np.eye(6)[0], q + 0.6 * np.eye(6)[0] + 0.5 * np.eye(6)[1])
+    commands: list[Command] = [
+        MoveJoint(q_end=end, zone=0.1, override=share) if kind == "joint"
+        else MoveLinear(X_world_tool=robot.tool(end), zone=0.1, speed=1.0, override=share)
+        for end, share in zip(ends, overrides, strict=True)
+    ]  # fmt: skip
+    found = robot.planner.chain(q, commands, TOOL)
+    assert found.corners[0].cycles > 0
+    assert limits_broken(robot, found.q) == []
+    dq = np.abs(np.diff(found.q, axis=0)) / robot.profile.period_s / robot.speed
+    after, before = found.parts[1].offset, found.parts[0].offset + len(found.parts[0].plan.q) - 1
+    own = (dq[:after], dq[after:before], dq[before:])
+    for rows, share in zip(own, (overrides[0], min(overrides), overrides[1]), strict=True):
+        assert rows.max() <= share * (1 + 1e-6)
+    twice = robot.planner.chain(q, commands, TOOL, 0.5)  # and another one for all of them
+    assert [part.plan.override for part in twice.parts] == [0.5 * share for share in overrides]
+
+
+@pytest.mark.parametrize("override", [0.0, -0.1, 1.001, math.nan])
+def test_an_override_that_is_no_share_is_misuse(override):
+    with pytest.raises(ValueError, match="is not a share"):
+        MoveJoint(q_end=np.zeros(6), override=override)

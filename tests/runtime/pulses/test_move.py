@@ -83,6 +83,21 @@ def test_a_frequency_too_high_names_a_speed_that_fits():
         move(max_hz=6000.0, speed=1.1 * speed * MM)
 
 
+def test_under_an_override_the_speed_and_time_that_fit_are_those_to_write():
+    def refused(**options):
+        with pytest.raises(Fault) as caught:
+            move(override=0.5, max_hz=3000.0, **options)
+        return caught.value.hint
+
+    speed = float(re.search(r"SPEED ([\d.]+) would fit", refused())[1])
+    assert 60.0 < speed < 71.0
+    found, _ = move(override=0.5, max_hz=3000.0, speed=speed * MM)
+    assert max(found.highest_hz(0.01)) <= 3000
+    with pytest.raises(Fault):
+        move(override=0.5, max_hz=3000.0, speed=1.1 * speed * MM)
+    assert move(override=0.5, duration=5.0)[0].count * 0.01 == pytest.approx(10.0, abs=0.011)
+
+
 def test_time_is_the_whole_of_the_move():
     found, _ = move(duration=5.0)
     assert found.count * 0.01 == pytest.approx(5.0, abs=0.011)
