@@ -7,9 +7,9 @@ session asks for the next. A statement that reads where the robot is, an input o
 that what it reads is of this place in the program.
 
 Errors. A ``Fault`` of an expression, or one that the session throws into the generator where a request cannot be
-carried out (planning, timeouts), goes to the line that ON ERROR GOTO named, unless a handler runs already; ERR is then
-the number of its code. RESUME takes the statement again, RESUME NEXT the one after it. A latched alarm of the robot
-never comes here: it ends the run.
+carried out (planning, timeouts), goes to the line that ON ERROR GOTO named (``scope``), unless that handler runs
+already; ERR is then the number of its code. RESUME takes the statement again, RESUME NEXT the one after it. A latched
+alarm of the robot never comes here: it ends the run.
 
 Limits (counts, not wall clock): ``MAX_IDLE`` statements without one that takes time are RBL508, at the head of the
 loop; ``MAX_STEPS`` statements are RBL505; ``MAX_CALLS`` CALLs or GOSUBs within one another RBL504; ``MAX_SHOWN``
@@ -51,7 +51,7 @@ from robolang.nodes import (
     Word,
 )
 from robolang.places import Place
-from robolang.scope import Loop, Scope, Scopes, check_kind
+from robolang.scope import STOPS, Loop, Scope, Scopes, check_kind
 from robolang.source import Span
 from robolang.structure import Structure, structure_of
 from robolang.tree import Node, walk
@@ -62,7 +62,7 @@ MAX_STEPS = 10_000_000
 MAX_CALLS = 100
 MAX_SHOWN = 1_000_000
 MAX_ROUNDS = 1e15
-UNCAUGHT = frozenset({"RBL505", "RBL506", "RBL508"})
+UNCAUGHT = frozenset({"RBL505", "RBL506", "RBL508", "RBL509"})
 """Limits of a run: no ON ERROR catches them, a program that breaks one would go on for ever."""
 
 Run = Generator[Effect, None, int | None]
@@ -116,8 +116,6 @@ class _Machine:
         self._scopes = Scopes(frozenset(point.upper() for point in points))
         self._values = Evaluator(self._scopes, world)
         self._actions = Actions(self._values, self._scopes)
-        self._handler: int | None = None
-        self._failed: int | None = None
         self._idle = self._steps = self._shown = self._loop = 0
         self._world = world
         self._reads: dict[int, bool] = {}
@@ -134,11 +132,21 @@ class _Machine:
                 self._count(at)
                 jump = yield from self._statement(line, line.statement, at)
             except Fault as fault:
-                if self._handler is None or self._failed is not None or fault.code in UNCAUGHT:
-                    raise self._located(fault, line) from None
-                self._failed, self._values.error = at, float(fault.code.removeprefix("RBL"))
-                jump = self._handler
+                try:
+                    jump = self._caught(fault, at)
+                except Fault as uncaught:
+                    raise self._located(uncaught, line) from None
             at = at + 1 if jump is None else jump
+
+    def _caught(self, fault: Fault, at: int) -> int:
+        """Return the line of the handler that deals with a fault; ``Fault``, the same one, where none does."""
+        if fault.code in UNCAUGHT:
+            raise fault
+        handler = self._scopes.catch(at)
+        if handler is None:
+            raise fault
+        self._values.error = float(fault.code.removeprefix("RBL"))
+        return self._looped(at, handler)
 
     def _located(self, fault: Fault, line: Line) -> ProgramFault:
         """Return a fault that nothing caught at its statement, an idle loop at its head."""
@@ -177,11 +185,11 @@ class _Machine:
         self._idle = 0
 
     def _act(self, line: Line, node: Action, at: int) -> Run:
-        if isinstance(node, Moving | Hand):
-            self._taking_time()
         effect = self._actions.effect(line, node)
         if effect is not None:
             yield effect
+        if isinstance(node, Moving | Hand):  # one that is refused takes no time
+            self._taking_time()
         return None
 
     # --- values, inputs and time -------------------------------------------------------------------------------------
@@ -370,18 +378,19 @@ class _Machine:
     def _word(self, line: Line, node: Word, at: int) -> Run:
         word = node.word
         if word == "RETURN":
-            if self._scopes.here.returns:
-                return self._scopes.here.returns.pop()
+            back = self._scopes.go_back()
+            if back is not None:
+                return back
             if len(self._scopes.stack) > 1:
                 return self._leave()
             raise Fault("RBL533", "RETURN without GOSUB")
         if word == "ON ERROR STOP":
-            self._handler = None
+            self._scopes.on_error(STOPS)
         elif word.startswith("RESUME"):
-            if self._failed is None:
+            failed = self._scopes.resume()
+            if failed is None:
                 raise Fault("RBL533", "RESUME without an error that was caught")
-            back, self._failed = self._failed, None
-            return self._looped(at, back) if word == "RESUME" else back + 1
+            return self._looped(at, failed if word == "RESUME" else failed + 1)
         elif word == "END":
             return len(self._lines)
         else:
@@ -391,7 +400,7 @@ class _Machine:
         return None
 
     def _on_error(self, line: Line, node: OnError, at: int) -> int | None:
-        self._handler, self._failed = self._line_of(node.target), None
+        self._scopes.on_error(self._line_of(node.target))
         return None
 
 

@@ -3,6 +3,11 @@
 The main program has one scope, every CALL one of its own with the parameters in it. A name is looked up in the scope of
 the running SUB, then in that of the main program, then among the taught points; an assignment goes to the running
 scope, so a SUB cannot change what its caller has.
+
+ON ERROR belongs to the scope that says it. Of an error the innermost scope decides that has said it: the CALLs inside
+of that scope are given up, and the GOSUBs that it has begun since, so what a handler leaves behind does not pile up.
+RESUME goes back to where that scope was: the statement that failed, its GOSUBs open again, or the CALL in which it
+failed.
 """
 
 from dataclasses import dataclass, field
@@ -25,9 +30,25 @@ class Loop:
     step: float
 
 
+STOPS = -1
+"""In place of a handler's line: ON ERROR STOP."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Failure:
+    """An error that a handler deals with: the line to go back to, and the GOSUBs that were open there."""
+
+    line: int
+    returns: tuple[int, ...]
+
+
 @dataclass(slots=True)
 class Scope:
-    """Names of the main program or of one CALL; ``back``: the line to go on at after it."""
+    """Names of the main program or of one CALL; ``back``: the line to go on at after it.
+
+    ``handler``: line of its ON ERROR, ``STOPS``, or None where it has said nothing; ``gosubs``: how many of ``returns``
+    stay when the handler is reached; ``failure``: what the handler deals with, None when it does not run.
+    """
 
     back: int = -1
     values: dict[str, Value] = field(default_factory=dict)
@@ -35,6 +56,9 @@ class Scope:
     constants: set[str] = field(default_factory=set)
     loops: list[Loop] = field(default_factory=list)
     returns: list[int] = field(default_factory=list)
+    handler: int | None = None
+    gosubs: int = 0
+    failure: Failure | None = None
 
 
 class Scopes:
@@ -48,6 +72,43 @@ class Scopes:
     def here(self) -> Scope:
         """The scope that runs."""
         return self.stack[-1]
+
+    # --- GOSUB and ON ERROR ------------------------------------------------------------------------------------------
+
+    def go_back(self) -> int | None:
+        """Return the line at which the last GOSUB of the running scope goes on, and end it; None without one."""
+        here = self.here
+        line = here.returns.pop() if here.returns else None
+        here.gosubs = min(here.gosubs, len(here.returns))
+        return line
+
+    def on_error(self, handler: int) -> None:
+        """Let a line of the running scope deal with errors, or ``STOPS``; a handler that runs is at its end."""
+        here = self.here
+        here.handler, here.gosubs, here.failure = handler, len(here.returns), None
+
+    def catch(self, line: int) -> int | None:
+        """Return the line of the handler of an error on a line, and give up what it leaves; None: it ends the run."""
+        index = next((k for k in reversed(range(len(self.stack))) if self.stack[k].handler is not None), 0)
+        scope = self.stack[index]
+        if scope.handler in (None, STOPS) or scope.failure is not None:
+            return None
+        inner = self.stack[index + 1 :]
+        del self.stack[index + 1 :]
+        scope.failure = Failure(line=inner[0].back - 1 if inner else line, returns=tuple(scope.returns))
+        del scope.returns[scope.gosubs :]
+        return scope.handler
+
+    def resume(self) -> int | None:
+        """Return the line that failed and let the handler be at its end; None when none runs in the running scope."""
+        here = self.here
+        failure, here.failure = here.failure, None
+        if failure is None:
+            return None
+        here.returns[:] = failure.returns
+        return failure.line
+
+    # --- names -------------------------------------------------------------------------------------------------------
 
     def value(self, key: str) -> Value | None:
         """Return the value of a name, None when it has none."""

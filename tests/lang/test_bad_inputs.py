@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from robolang import effects, evaluator, interpreter, scope
+from robolang import actions, effects, evaluator, interpreter, scope
 from robolang.checker import check
 from robolang.interpreter import ProgramFault, execute
 from robolang.parser import parse
@@ -236,7 +236,7 @@ FORBIDDEN = {"open", "eval", "exec", "compile", "__import__", "os", "io", "sys",
              "Path"}  # fmt: skip
 
 
-@pytest.mark.parametrize("module", [evaluator, interpreter, scope], ids=lambda module: module.__name__)
+@pytest.mark.parametrize("module", [actions, evaluator, interpreter, scope], ids=lambda module: module.__name__)
 def test_what_runs_a_program_cannot_reach_files_processes_or_python(module):
     tree = ast.parse(Path(module.__file__).read_text(encoding="utf-8"))
     called = {node.func.id for node in ast.walk(tree) if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}

@@ -3,20 +3,16 @@ from pathlib import Path
 import pytest
 
 from robolang import interpreter
-from robolang.effects import Drain, MoveTo, Pass, SetHand, SetPayload, SetSeam, SetWrist, Show
-from robolang.evaluator import Nowhere
+from robolang.effects import Drain, MoveTo, Pass, SetHand, SetPayload, SetSeam, SetWrist
 from robolang.interpreter import MAX_CALLS, ProgramFault, execute
 from robolang.parser import parse
 from robolang.places import Place, Shift
 from robolang.printer import describe
 from robolang.source import Span
-from runtime.faults import Fault
 from tests.lang.helpers import parsed, source
+from tests.lang.running import POINTS, World, fault, ran, shows
 
 LISTING = Path(__file__).parents[2] / "programs" / "pick_and_place.rbl"
-
-POINTS = ("P1", "P2", "P3", "P4", "P5", "A", "B")
-
 
 def test_the_listing_in_order():
     program = parsed(LISTING.read_text(encoding="utf-8"))
@@ -105,49 +101,6 @@ def test_a_name_without_a_value_is_a_fault_at_its_statement():
 
 
 # --- the whole language ----------------------------------------------------------------------------------------------
-
-
-class World(Nowhere):
-    """Inputs and a clock that the test turns; where the robot is follows nothing."""
-
-    def __init__(self):
-        self.inputs, self.time = {1: 0.0}, 0.0
-
-    def input(self, number):
-        if number not in self.inputs:
-            raise Fault("RBL534", f"no input {number}")
-        return self.inputs[number]
-
-    def seconds(self):
-        return self.time
-
-    def here(self):
-        return 1.0, 2.0, 3.0, 4.0, 5.0, 6.0
-
-    def components(self, place, frame):
-        return place.pose or (10.0, 20.0, 30.0, 0.0, 0.0, 0.0)
-
-
-def ran(text, world=None):
-    """All effects of a program; time passes as it asks for, a WAIT in steps of 8 ms."""
-    world = world or World()
-    found = []
-    for effect in execute(parsed(text), world, POINTS):
-        found.append(effect)
-        if isinstance(effect, Pass):
-            world.time += effect.seconds or 0.008
-    return found
-
-
-def shows(text, world=None):
-    """What a program prints."""
-    return [effect.text for effect in ran(text, world) if isinstance(effect, Show)]
-
-
-def fault(text, world=None):
-    with pytest.raises(ProgramFault) as caught:
-        ran(text, world)
-    return caught.value
 
 
 def without_origin(effect):
@@ -364,66 +317,6 @@ def test_what_is_printed_is_bounded(monkeypatch):
     monkeypatch.setattr(interpreter, "MAX_SHOWN", 10)
     assert shows('PRINT "1234"\nPRINT "1234"') == ["1234", "1234"]
     assert fault('PRINT "1234"\nPRINT "12345"').code == "RBL506"
-
-
-# --- errors ----------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("text", "printed"),
-    [
-        ("ON ERROR GOTO *H\nx = 1 / n\nPRINT \"after\"; x\nEND\n*H PRINT ERR\nn = 2\nRESUME", "501 after0.5"),
-        ("ON ERROR GOTO *H\nx = SQR(n - 1)\nPRINT \"after\"\nEND\n*H PRINT ERR\nRESUME NEXT", "502 after"),
-        ("ON ERROR GOTO *H\nIF 1 / n THEN PRINT 1\nPRINT \"after\"\nEND\n*H RESUME NEXT", "after"),
-        ("ON ERROR GOTO *H\nCALL f\nPRINT \"after\"\nEND\n*H PRINT y\nRESUME NEXT\n"
-         "SUB f\ny = 7\nx = 1 / n\nPRINT y\nENDSUB",
-         "7 7 after"),
-        ("ON ERROR GOTO *H\nFOR i = 1 TO 2\nx = 1 / n\nNEXT\nEND\n*H PRINT i\nRESUME NEXT", "1 2"),
-        ("PRINT ERR", "0"),
-    ],
-)  # fmt: skip
-def test_errors_are_caught(text, printed):
-    assert " ".join(shows("n = 0\n" + text)) == printed
-
-
-def test_an_error_inside_the_handler_is_not_caught():
-    found = fault("n = 0\nON ERROR GOTO *H\nx = 1 / n\nEND\n*H x = SQR(n - 1)\nRESUME")
-    assert (found.code, found.line) == ("RBL502", 5)
-
-
-def test_on_error_stop_and_a_new_handler():
-    assert fault("n = 0\nON ERROR GOTO *H\nON ERROR STOP\nx = 1 / n\n*H END").line == 4
-    text = 'n = 0\nON ERROR GOTO *H\nx = 1 / n\n*H ON ERROR GOTO *K\nx = 1 / n\n*K PRINT "k"'
-    assert shows(text) == ["k"]
-
-
-def thrown(text, code="RBL410"):
-    """What a program prints when its first move is refused by the session."""
-    program = execute(parsed(text), World(), POINTS)
-    found, effect = [], next(program, None)
-    refused = False
-    while effect is not None:
-        if isinstance(effect, Show):
-            found.append(effect.text)
-        if isinstance(effect, MoveTo) and not refused:
-            refused = True
-            effect = program.throw(Fault(code, "no"))
-            continue
-        if isinstance(effect, MoveTo):
-            found.append(effect.target.point)
-        effect = next(program, None)
-    return found
-
-
-def test_a_refusal_of_the_session_is_caught_where_the_move_stands():
-    text = "ON ERROR GOTO *H\nMOVE P1\nMOVE P2\nEND\n*H PRINT ERR\n"
-    assert thrown(text + "RESUME") == ["410", "P1", "P2"]
-    assert thrown(text + "RESUME NEXT") == ["410", "P2"]
-    assert thrown(text + "MOVE A") == ["410", "A"]
-    assert thrown("ON ERROR GOTO *H\nIF 1 THEN MOVE P1\nMOVE P2\nEND\n*H RESUME NEXT") == ["P2"]
-    with pytest.raises(ProgramFault) as caught:
-        thrown("' x\nMOVE P1")
-    assert (caught.value.code, caught.value.line, caught.value.span) == ("RBL410", 2, Span(4, 11))
 
 
 # --- inputs and time -------------------------------------------------------------------------------------------------
