@@ -12,8 +12,9 @@ already; ERR is then the number of its code. RESUME takes the statement again, R
 alarm of the robot never comes here: it ends the run.
 
 Limits (counts, not wall clock): ``MAX_IDLE`` statements without one that takes time are RBL508, at the head of the
-loop; ``MAX_STEPS`` statements are RBL505; ``MAX_CALLS`` CALLs or GOSUBs within one another RBL504; ``MAX_SHOWN``
-characters of PRINT RBL506.
+loop; ``MAX_STEPS`` statements are RBL505; ``MAX_CALLS`` CALLs or GOSUBs within one another RBL504, as are
+``MAX_LOOPS`` FORs that were begun and left in one scope; ``MAX_SHOWN`` characters of PRINT RBL506. Memory is counted by
+``scope``, the length of one text and the size of one array by ``evaluator``.
 """
 
 import math
@@ -51,7 +52,7 @@ from robolang.nodes import (
     Word,
 )
 from robolang.places import Place
-from robolang.scope import STOPS, Loop, Scope, Scopes, check_kind
+from robolang.scope import STOPS, Loop, Scopes
 from robolang.source import Span
 from robolang.structure import Structure, structure_of
 from robolang.tree import Node, walk
@@ -60,6 +61,7 @@ from runtime.faults import Fault
 MAX_IDLE = 100_000
 MAX_STEPS = 10_000_000
 MAX_CALLS = 100
+MAX_LOOPS = 10_000
 MAX_SHOWN = 1_000_000
 MAX_ROUNDS = 1e15
 UNCAUGHT = frozenset({"RBL505", "RBL506", "RBL508", "RBL509"})
@@ -317,6 +319,8 @@ class _Machine:
         loops = self._scopes.here.loops
         while any(loop.line == at for loop in loops):  # left by a GOTO before
             loops.pop()
+        if len(loops) >= MAX_LOOPS:
+            raise Fault("RBL504", f"more than {MAX_LOOPS} FORs have been begun and not ended")
         loops.append(Loop(line=at, variable=node.variable.key, rounds=rounds - 1, step=step))
         return None
 
@@ -361,19 +365,17 @@ class _Machine:
             raise Fault("RBL533", f"there is no SUB {node.name.text} of {len(node.arguments)} parameters")
         self._check_depth(len(self._scopes.stack) - 1)
         values = [self._values.value(argument) for argument in node.arguments]
-        for parameter, value in zip(sub.parameters, values, strict=True):
-            check_kind(parameter.key, value)
         self._looped(at, to)
-        self._scopes.stack.append(Scope(back=at + 1))
-        for parameter, value in zip(sub.parameters, values, strict=True):
-            self._scopes.here.values[parameter.key] = value
+        named = zip((parameter.key for parameter in sub.parameters), values, strict=True)
+        self._scopes.enter(at + 1, dict(named))
         return to + 1
 
     def _leave(self) -> int:
         """Return from a SUB."""
-        if len(self._scopes.stack) == 1:
+        back = self._scopes.leave()
+        if back is None:
             raise Fault("RBL533", "ENDSUB is reached without a CALL")
-        return self._scopes.stack.pop().back
+        return back
 
     def _word(self, line: Line, node: Word, at: int) -> Run:
         word = node.word

@@ -203,13 +203,13 @@ register(
     Code(
         code="RBL506",
         name="too-much-text",
-        meaning="A text that a program made, or all that it has printed, is too long.",
-        remedy="Print less, or in a shorter loop.",
+        meaning="A text that a program made, all texts that it keeps, or all that it has printed, is too long.",
+        remedy="Print less or in a shorter loop, and keep no more than is used.",
     ),
     Code(
         code="RBL507",
         name="no-such-element",
-        meaning="An array has no element of that number, or is too large.",
+        meaning="An array has no element of that number, or it or all arrays and names together are too large.",
         remedy="Give DIM the largest number that is used; elements count from 0.",
     ),
     Code(
@@ -233,7 +233,7 @@ register(
     Code(
         code="RBL504",
         name="calls-too-deep",
-        meaning="Subroutines call one another too deeply.",
+        meaning="Subroutines call one another too deeply, or too many FORs have been left and not ended.",
         remedy="A GOSUB must come back with RETURN; a SUB that calls itself must come to an end.",
     ),
     Code(

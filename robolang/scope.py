@@ -8,8 +8,12 @@ ON ERROR belongs to the scope that says it. Of an error the innermost scope deci
 of that scope are given up, and the GOSUBs that it has begun since, so what a handler leaves behind does not pile up.
 RESUME goes back to where that scope was: the statement that failed, its GOSUBs open again, or the CALL in which it
 failed.
+
+Memory is counted where it is given out, and comes back when a SUB ends: names and elements of arrays (``MAX_CELLS``,
+RBL507), and what texts and the ways behind poses hold beyond that (``MAX_TEXTS``, RBL506).
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from robolang.evaluator import MAX_ELEMENTS
@@ -17,7 +21,11 @@ from robolang.places import Place, Value, kind_of
 from runtime.faults import Fault
 
 MAX_CELLS = 1_000_000
-"""Most elements of all arrays together."""
+"""Most elements of all arrays and names with a value together."""
+MAX_TEXTS = 10_000_000
+"""Most characters of all texts that names and arrays hold."""
+WAY = 32
+"""As many characters a way behind a pose counts."""
 
 
 @dataclass(slots=True)
@@ -47,7 +55,8 @@ class Scope:
     """Names of the main program or of one CALL; ``back``: the line to go on at after it.
 
     ``handler``: line of its ON ERROR, ``STOPS``, or None where it has said nothing; ``gosubs``: how many of ``returns``
-    stay when the handler is reached; ``failure``: what the handler deals with, None when it does not run.
+    stay when the handler is reached; ``failure``: what the handler deals with, None when it does not run. ``cells`` and
+    ``texts`` are what the scope has of ``MAX_CELLS`` and ``MAX_TEXTS``.
     """
 
     back: int = -1
@@ -59,6 +68,8 @@ class Scope:
     handler: int | None = None
     gosubs: int = 0
     failure: Failure | None = None
+    cells: int = 0
+    texts: int = 0
 
 
 class Scopes:
@@ -73,7 +84,20 @@ class Scopes:
         """The scope that runs."""
         return self.stack[-1]
 
-    # --- GOSUB and ON ERROR ------------------------------------------------------------------------------------------
+    # --- CALL, GOSUB and ON ERROR -------------------------------------------------------------------------------------
+
+    def enter(self, back: int, values: Mapping[str, Value]) -> None:
+        """Begin a SUB with its parameters, to go on at a line after it; ``Fault`` RBL506, RBL507, RBL531."""
+        for key, value in values.items():
+            check_kind(key, value)
+        scope = Scope(back=back)
+        self._charge(scope, len(values), sum(map(characters, values.values())))
+        scope.values.update(values)
+        self.stack.append(scope)
+
+    def leave(self) -> int | None:
+        """Return the line at which the CALL of the running scope goes on, and end it; None in the main program."""
+        return self.stack.pop().back if len(self.stack) > 1 else None
 
     def go_back(self) -> int | None:
         """Return the line at which the last GOSUB of the running scope goes on, and end it; None without one."""
@@ -119,51 +143,79 @@ class Scopes:
 
     def element(self, key: str, index: int) -> Value | None:
         """Return an element of an array, None when there is no such array; ``Fault`` RBL507."""
-        array = self._array(key)
-        return None if array is None else array[self._checked(key, array, index)]
+        scope = self._owner(key)
+        if scope is None:
+            return None
+        array = scope.arrays[key]
+        return array[self._checked(key, array, index)]
 
     def assign(self, key: str, value: Value) -> None:
         """Give a name of the running scope a value; ``Fault`` RBL531 for a constant and for another kind of value."""
         check_kind(key, value)
         if key in self.here.constants or key in self.stack[0].constants:
             raise Fault("RBL531", f"{key} is a constant and keeps its value")
-        self.here.values[key] = value
+        self._store(key, value)
 
     def fix(self, key: str, value: Value) -> None:
-        """Give a name a value that stays; the same CONST may be run again."""
-        self.here.constants.discard(key)
-        self.assign(key, value)
-        self.here.constants.add(key)
+        """Give a name a value that stays; the same CONST may be run again. ``Fault`` as of ``assign``."""
+        if key in self.here.constants:
+            check_kind(key, value)
+            self._store(key, value)
+        else:
+            self.assign(key, value)
+            self.here.constants.add(key)
+
+    def _store(self, key: str, value: Value) -> None:
+        here = self.here
+        old = here.values.get(key)
+        if not (isinstance(old, float) and isinstance(value, float)):  # a number in place of a number is most of them
+            self._charge(here, int(old is None), characters(value) - characters(old))
+        here.values[key] = value
 
     def make(self, key: str, largest: int) -> None:
         """Make an array of elements 0 to ``largest``, all 0 or empty; ``Fault`` RBL507."""
         if not 0 <= largest < MAX_ELEMENTS:
             raise Fault("RBL507", f"an array of {largest + 1} elements: 1 to {MAX_ELEMENTS} are possible")
-        others = sum(len(array) for scope in self.stack for name, array in scope.arrays.items()
-                     if not (scope is self.here and name == key))  # fmt: skip
-        if others + largest + 1 > MAX_CELLS:
-            raise Fault("RBL507", f"all arrays together would have more than {MAX_CELLS} elements")
+        here = self.here
+        old = here.arrays.get(key, [])
+        self._charge(here, largest + 1 - len(old), -sum(map(characters, old)))
         empty: Value = "" if key.endswith("$") else 0.0
-        self.here.arrays[key] = [empty] * (largest + 1)
+        here.arrays[key] = [empty] * (largest + 1)
 
     def put(self, key: str, index: int, value: Value) -> None:
         """Give an element of an array a value; ``Fault`` RBL507, RBL532."""
         check_kind(key, value)
-        array = self._array(key)
-        if array is None:
+        scope = self._owner(key)
+        if scope is None:
             raise Fault("RBL532", f"there is no array {key}: DIM {key}(n) makes one")
-        array[self._checked(key, array, index)] = value
+        array = scope.arrays[key]
+        index = self._checked(key, array, index)
+        self._charge(scope, 0, characters(value) - characters(array[index]))
+        array[index] = value
 
-    def _array(self, key: str) -> list[Value] | None:
-        for scope in (self.stack[-1], self.stack[0]):
-            if key in scope.arrays:
-                return scope.arrays[key]
-        return None
+    def _owner(self, key: str) -> Scope | None:
+        """Return the scope whose array a name means."""
+        return next((scope for scope in (self.stack[-1], self.stack[0]) if key in scope.arrays), None)
 
     def _checked(self, key: str, array: list[Value], index: int) -> int:
         if not 0 <= index < len(array):
             raise Fault("RBL507", f"{key} has the elements 0 to {len(array) - 1}, no {index}")
         return index
+
+    def _charge(self, scope: Scope, cells: int, texts: int) -> None:
+        """Give a scope memory, or take it back; ``Fault`` RBL506 or RBL507 when all together would have too much."""
+        if cells > 0 and sum(each.cells for each in self.stack) + cells > MAX_CELLS:
+            raise Fault("RBL507", f"all arrays and names together would have more than {MAX_CELLS} elements")
+        if texts > 0 and sum(each.texts for each in self.stack) + texts > MAX_TEXTS:
+            raise Fault("RBL506", f"all texts together would have more than {MAX_TEXTS} characters; a way behind a pose"
+                        f" counts as {WAY}")  # fmt: skip
+        scope.cells += cells
+        scope.texts += texts
+
+
+def characters(value: Value | None) -> int:
+    """Return how many characters a value holds, or as many as its ways count."""
+    return len(value) if isinstance(value, str) else WAY * len(value.shifts) if isinstance(value, Place) else 0
 
 
 def check_kind(key: str, value: Value) -> None:

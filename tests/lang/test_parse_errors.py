@@ -8,7 +8,7 @@ from robolang.nodes import (
     Move,
     Unparsed,
 )
-from robolang.parser import MAX_DEPTH, MAX_LINE, parse
+from robolang.parser import MAX_DEPTH, MAX_LINE, MAX_NUMBER_DIGITS, MAX_OPERATORS, parse
 from robolang.source import Span
 from tests.lang.helpers import only, parse_found, parsed, source
 
@@ -244,7 +244,18 @@ def test_long_expression():
 
 def test_line_length_limit_is_exact():
     parsed("'" * MAX_LINE)
+    assert parse_found("'" * (MAX_LINE + 1)) == [("RBL105", 1, MAX_LINE + 1, 1)]
     assert parse_found("'" * (MAX_LINE + 3)) == [("RBL105", 1, MAX_LINE + 1, 3)]
+
+
+def test_operators_limit_is_exact():
+    parsed("HAND ON, " + "1+" * MAX_OPERATORS + "1")
+    assert parse_found("HAND ON, " + "1+" * (MAX_OPERATORS + 1) + "1")[0][0] == "RBL109"
+
+
+def test_line_number_limit_is_exact():
+    parsed(f"{10**MAX_NUMBER_DIGITS - 1} END")
+    assert parse_found(f"{10**MAX_NUMBER_DIGITS} END")[0][0] == "RBL114"
 
 
 def test_source_size_limit_is_exact():

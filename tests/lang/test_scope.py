@@ -2,8 +2,8 @@ import pytest
 
 import robolang.scope as scope_module
 from robolang.evaluator import MAX_ELEMENTS
-from robolang.places import Place
-from robolang.scope import Scope, Scopes
+from robolang.places import Place, Shift
+from robolang.scope import WAY, Scopes
 from runtime.faults import Fault
 
 
@@ -22,22 +22,25 @@ def test_a_name_is_looked_up_from_the_inside_to_the_points(names):
     assert (names.value("P1"), names.value("X")) == (Place(point="P1"), None)
     names.assign("X", 1.0)
     names.assign("P1", 5.0)
-    names.stack.append(Scope(values={"X": 2.0}))
+    names.enter(1, {"X": 2.0})
     assert (names.value("X"), names.value("P1")) == (2.0, 5.0)
     names.assign("P1", 7.0)
-    names.stack.append(Scope())
+    names.enter(1, {})
     assert (names.value("X"), names.value("P1")) == (1.0, 5.0)  # of the main program, not of the caller
-    names.stack.clear()
-    names.stack.append(Scope())
+    names.leave()
+    names.leave()
+    assert names.leave() is None
+    assert names.value("P1") == 5.0
+    names = Scopes(frozenset({"P1"}))
     assert names.value("P1") == Place(point="P1")
 
 
 def test_a_sub_cannot_change_what_its_caller_has(names):
     names.assign("X", 1.0)
-    names.stack.append(Scope())
+    names.enter(1, {})
     names.assign("X", 2.0)
     assert names.value("X") == 2.0
-    names.stack.pop()
+    assert names.leave() == 1
     assert names.value("X") == 1.0
 
 
@@ -46,7 +49,7 @@ def test_constants(names):
     names.fix("K", 2.0)
     assert names.value("K") == 2.0
     assert code(names.assign, "K", 3.0) == "RBL531"
-    names.stack.append(Scope())
+    names.enter(1, {})
     assert code(names.assign, "K", 3.0) == "RBL531"
     assert names.value("K") == 2.0
 
@@ -71,7 +74,7 @@ def test_arrays(names):
     for index in (-1, 3):
         assert code(names.element, "A", index) == "RBL507"
         assert code(names.put, "A", index, 1.0) == "RBL507"
-    names.stack.append(Scope())
+    names.enter(1, {})
     names.put("A", 0, 4.0)  # an array of the main program is one for all
     names.make("A", 0)
     assert (names.element("A", 0), names.stack[0].arrays["A"][0]) == (0.0, 4.0)
@@ -87,9 +90,62 @@ def test_the_size_of_an_array_is_bounded(names):
 def test_the_size_of_all_arrays_is_bounded(names, monkeypatch):
     monkeypatch.setattr(scope_module, "MAX_CELLS", 10)
     names.make("A", 4)
-    names.stack.append(Scope())
+    names.enter(1, {})
     names.make("B", 4)
     assert code(names.make, "C", 0) == "RBL507"
     names.make("B", 4)  # in place of itself
-    names.stack.pop()
+    assert names.leave() == 1
     names.make("C", 4)
+
+
+def test_names_count_as_elements(names, monkeypatch):
+    monkeypatch.setattr(scope_module, "MAX_CELLS", 4)
+    names.make("A", 1)
+    names.assign("X", 1.0)
+    names.enter(1, {"Y": 1.0})
+    names.assign("Y", 2.0)
+    assert code(names.assign, "Z", 1.0) == "RBL507"
+    assert code(names.enter, 1, {"Z": 1.0}) == "RBL507"
+    assert names.leave() == 1  # and gives back what the SUB had
+    names.fix("Z", 1.0)
+    assert code(names.fix, "W", 1.0) == "RBL507"
+
+
+def test_all_texts_together_are_bounded(names, monkeypatch):
+    monkeypatch.setattr(scope_module, "MAX_TEXTS", 10)
+    names.make("A$", 1)
+    names.put("A$", 0, "1234")
+    names.assign("S$", "123456")
+    for call in ((names.assign, "T$", "1"), (names.put, "A$", 1, "1"), (names.put, "A$", 0, "12345"),
+                 (names.fix, "K$", "1"), (names.enter, 1, {"P$": "1"}), (names.assign, "S$", "1234567")):  # fmt: skip
+        assert code(*call) == "RBL506"
+    assert (names.value("T$"), names.element("A$", 0), names.value("S$")) == (None, "1234", "123456")
+    names.assign("S$", "12345")
+    names.enter(1, {"P$": "1"})
+    names.put("A$", 0, "")  # of the main program
+    names.assign("Q$", "1234")
+    assert code(names.assign, "R$", "1") == "RBL506"
+    assert names.leave() == 1
+    names.make("A$", 0)
+    names.put("A$", 0, "12345")
+    assert code(names.assign, "T$", "1") == "RBL506"
+    names.make("A$", 0)
+    names.assign("T$", "12345")
+
+
+def test_ways_behind_poses_count_as_text(names, monkeypatch):
+    monkeypatch.setattr(scope_module, "MAX_TEXTS", 3 * WAY)
+    turn = Shift(kind="tool", by=(0.0, 0.0, 0.0, 1.0, 0.0, 0.0))
+    names.make("A", 1)
+    names.put("A", 0, Place(point="P1", shifts=(turn, turn)))
+    names.assign("P", Place(point="P1", shifts=(turn,)))
+    assert code(names.put, "A", 1, Place(point="P1", shifts=(turn,))) == "RBL506"
+    names.put("A", 1, Place(point="P1"))
+    names.put("A", 0, 1.0)
+    names.put("A", 1, Place(point="P1", shifts=(turn, turn)))
+
+
+def test_a_constant_stays_one_when_it_cannot_be_given_its_value(names):
+    names.fix("K", 1.0)
+    assert code(names.fix, "K", "a") == "RBL531"
+    assert code(names.assign, "K", 2.0) == "RBL531"

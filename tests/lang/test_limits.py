@@ -1,0 +1,86 @@
+"""Every limit of a run, at the limit and one beyond it; those of the text are in ``test_parse_errors``."""
+
+import pytest
+
+from robolang import interpreter, motion_check, session
+from robolang.evaluator import MAX_ELEMENTS, MAX_TEXT
+from robolang.interpreter import MAX_CALLS, MAX_ROUNDS
+from robolang.motion_check import rehearse
+from robolang.project import load_project
+from robolang.scope import MAX_CELLS, MAX_TEXTS
+from robolang.session import Session
+from tests.lang.running import fault, ran
+
+LONG = f't$ = "{"x" * (MAX_TEXT // 2)}"\nt$ = t$ + t$\n'
+FULL = LONG + f"DIM a$(2000)\nFOR i = 1 TO {MAX_TEXTS // MAX_TEXT - 1}\na$(i) = t$\nNEXT\n"
+ARRAYS = "".join(f"DIM a{k}({MAX_ELEMENTS - 1})\n" for k in range(MAX_CELLS // MAX_ELEMENTS - 1))
+
+
+@pytest.mark.parametrize(
+    ("code", "inside", "beyond"),
+    [
+        ("RBL506", LONG, LONG + 't$ = t$ + "x"'),
+        ("RBL506", FULL + 'b$ = ""', FULL + 'b$ = "x"'),
+        ("RBL506", FULL + 'a$(2) = ""\nb$ = t$', FULL + "CALL s(t$)\nSUB s(b$)\nENDSUB"),
+        ("RBL507", f"DIM a({MAX_ELEMENTS - 1})", f"DIM a({MAX_ELEMENTS})"),
+        ("RBL507", ARRAYS + f"DIM b({MAX_ELEMENTS - 2})\nx = 1", ARRAYS + f"DIM b({MAX_ELEMENTS - 1})\nx = 1"),
+        ("RBL502", f"FOR i = 1 TO {MAX_ROUNDS:.0f}\nEND\nNEXT", f"FOR i = 0 TO {MAX_ROUNDS:.0f}\nEND\nNEXT"),
+        ("RBL405", "DELAY 86400", "n = 86401\nDELAY n"),
+        ("RBL405", "PULSE 1, 86400", "n = 86401\nPULSE 1, n"),
+        ("RBL405", "WAIT 1, TIMEOUT 86400", "n = 86401\nWAIT 1, TIMEOUT n"),
+        ("RBL534", "n = 1024\nOUT(n) = 1", "n = 1025\nOUT(n) = 1"),
+    ],
+)  # fmt: skip
+def test_a_limit_of_values(code, inside, beyond):
+    ran(inside)
+    assert fault(beyond).code == code
+
+
+@pytest.mark.parametrize(
+    ("name", "code", "text"),
+    [
+        ("MAX_STEPS", "RBL505", "DELAY 1\n"),
+        ("MAX_SHOWN", "RBL506", "PRINT\n"),
+        ("MAX_LOOPS", "RBL504", "FOR i{} = 1 TO 2\nGOTO *L{}\nNEXT\n*L{}\n"),
+    ],
+)
+def test_a_limit_of_the_run(name, code, text, monkeypatch):
+    """Counts that take long to reach, with a smaller limit in their place."""
+    monkeypatch.setattr(interpreter, name, 20)
+    within, beyond = ("".join(text.format(k, k, k) for k in range(count)) for count in (20, 21))
+    ran(within)
+    assert fault(beyond).code == code
+
+
+def test_calls_and_gosubs():
+    recursive = "SUB f(n)\nIF n > 1 THEN CALL f(n - 1)\nENDSUB\n"
+    ran(f"CALL f({MAX_CALLS})\n{recursive}")
+    assert fault(f"CALL f({MAX_CALLS + 1})\n{recursive}").code == "RBL504"
+    chain = "".join(f"*S{k} GOSUB *S{k + 1}\nRETURN\n" for k in range(1, MAX_CALLS + 1))
+    ran(chain.replace("*S1 GOSUB *S2\nRETURN\n", "GOSUB *S2\nEND\n") + f"*S{MAX_CALLS + 1} RETURN\n")
+    assert fault(f"GOSUB *S1\nEND\n{chain}*S{MAX_CALLS + 1} RETURN\n").code == "RBL504"
+
+
+def in_a_cell(tmp_path, text):
+    path = tmp_path / "p.rbl"
+    path.write_text(text)
+    return load_project(path)
+
+
+@pytest.mark.parametrize(("seconds", "good"), [(0.392, True), (0.4, False)])
+def test_simulated_time(tmp_path, monkeypatch, seconds, good):
+    """A run and its rehearsal end at the same cycle; 0.4 s in place of half an hour."""
+    for module in (motion_check, session):
+        monkeypatch.setattr(module, "MAX_RUN_US", 400_000)
+    project = in_a_cell(tmp_path, f"DELAY {seconds}\n")
+    result = Session(project, physics=False).run()
+    assert [alarm["code"] for alarm in result.report["alarms"]] == ([] if good else ["RBL509"])
+    assert [item.code for item in rehearse(project).refused] == ([] if good else ["RBL509"])
+
+
+def test_no_handler_outlives_the_simulated_time(tmp_path, monkeypatch):
+    monkeypatch.setattr(motion_check, "MAX_RUN_US", 400_000)
+    project = in_a_cell(tmp_path, "ON ERROR GOTO *H\n*TOP DELAY 0.08\nGOTO *TOP\n*H RESUME NEXT\n")
+    found = rehearse(project)
+    assert [item.code for item in found.refused] == ["RBL509"]
+    assert found.total_us == 400_000
