@@ -123,7 +123,7 @@ class Drain(Origin):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Halt(Origin):
-    """``STOP``: the program ends here, ``PAUSE``: it waits for the operator."""
+    """``STOP``: the program ends here, ``PAUSE``: it would wait for an operator; a run notes it and goes on."""
 
     word: str
 
