@@ -154,7 +154,6 @@ class Actions:
     # --- settings ----------------------------------------------------------------------------------------------------
 
     def _setting(self, line: Line, node: Setting) -> Effect | None:
-        assert node.value is not None
         if node.word == "TOOL":
             return effects.SetTool(**origin(line, node), tool=self._frame(node.value))
         if node.word == "FRAME":

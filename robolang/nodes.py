@@ -245,11 +245,11 @@ class Seam(Node):
 class Setting(Node):
     """``SPEED v``, ``SPEEDJ p``, ``ACCEL p``, ``OVERRIDE p``, ``ZONE r``, ``TOOL t`` or ``FRAME f``: until changed.
 
-    ``word`` is the first word in capitals; ``FINE`` alone is ZONE with value None.
+    ``word`` is the first word in capitals. ``FINE`` is an option of a move only; ``ZONE 0`` sets the same.
     """
 
     word: str
-    value: Expression | None
+    value: Expression
 
 
 # --- values, inputs and outputs --------------------------------------------------------------------------------------

@@ -120,7 +120,7 @@ def _payload(node: _Payload) -> str:
         case nodes.Seam():
             return "SEAM OFF" if node.sensor is None else f"SEAM ON, {node.sensor.text}"
         case nodes.Setting():
-            return "FINE" if node.value is None else f"{node.word} {print_expression(node.value)}"
+            return f"{node.word} {print_expression(node.value)}"
         case _:
             assert_never(node)
 
