@@ -151,9 +151,10 @@ class _Rehearsal:
         joined = self._planner.join([plan for *_, plan in chain], [command.zone for _, command, _ in chain],
                                     self._world.X_flange_tool)  # fmt: skip
         begins = self._now_us
-        for (effect, command, plan), part in zip(chain, joined.parts, strict=True):
-            rest = REST_CYCLES if len(joined.q) > 1 else 1  # a move to where the arm stands takes a cycle all the same
-            self._spend(effect, part.last - part.first + (rest if part is joined.parts[-1] else 0))
+        cycles = np.bincount(joined.command, minlength=len(chain))  # one for each row that is sent, the first as well
+        cycles[-1] += REST_CYCLES - 1 if len(joined.q) > 1 else 0
+        for (effect, command, plan), spent in zip(chain, cycles.tolist(), strict=True):
+            self._spend(effect, spent)
             self._moves.append(RehearsedMove(effect=effect, plan=plan, command=command, begins_us=begins,
                                              ends_us=self._now_us))  # fmt: skip
             begins = self._now_us

@@ -55,6 +55,24 @@ def test_the_rehearsal_takes_as_long_as_the_run(name):
     assert planned.total_us == pytest.approx(result.report["sim_time_s"] * 1e6, abs=8000.0)
 
 
+@pytest.mark.parametrize("name", ALL)
+def test_every_move_begins_and_ends_as_rehearsed(name):
+    """In a chain as well, where one statement follows the other in the middle of a blend, and so does the log's line.
+
+    The end of a chain may come a cycle later, when the arm has yet to come into position.
+    """
+    session, result = run(name)
+    tick_us = session.project.profile.tick_us
+    ran = [each for each in session.record.statements if each.text.startswith(("MOVE", "APPROACH", "DEPART"))]
+    planned = rehearse(session.project).moves
+    assert [each.line for each in ran] == [move.effect.line for move in planned]
+    for each, move in zip(ran, planned, strict=True):
+        assert each.first_tick * tick_us == move.begins_us
+        assert each.end_tick * tick_us == pytest.approx(move.ends_us, abs=8000.0)
+        lines = result.log["line"][each.first_tick : each.end_tick]
+        assert (lines == (each.line if each.number is None else each.number)).all()
+
+
 def test_parts_are_put_on_the_pallet():
     (line,) = printed("palletise")
     assert float(re.fullmatch(r"put down 2 parts in ([\d.]+) s", line)[1]) == pytest.approx(
