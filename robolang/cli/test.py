@@ -99,16 +99,16 @@ def _run(file: Path, update: bool) -> "tuple[int, str, list[Verdict], float]":
 
 
 def _as_junit(suites: "list[tuple[str, list[Verdict], float]]") -> str:
-    from xml.sax.saxutils import quoteattr
+    from robolang.output.junit import quoted
 
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', "<testsuites>"]
     for name, verdicts, seconds in suites:
         failures = sum(not verdict.ok for verdict in verdicts)
-        counts = f'tests="{len(verdicts)}" failures="{failures}" time="{seconds:.3f}"'
-        lines.append(f"  <testsuite name={quoteattr(name)} {counts}>")
+        counts = f'tests="{len(verdicts)}" failures="{failures}" errors="0" time="{seconds:.3f}"'
+        lines.append(f"  <testsuite name={quoted(name)} {counts}>")
         for verdict in verdicts:
-            head = f"    <testcase classname={quoteattr(name)} name={quoteattr(verdict.name)}"
-            failure = f"><failure message={quoteattr(verdict.said)}/></testcase>"
+            head = f"    <testcase classname={quoted(name)} name={quoted(verdict.name)}"
+            failure = f"><failure message={quoted(verdict.said)}/></testcase>"
             lines.append(f"{head}{'/>' if verdict.ok else failure}")
         lines.append("  </testsuite>")
     return "\n".join([*lines, "</testsuites>", ""])

@@ -9,9 +9,6 @@ from pathlib import Path
 from robolang.lint.registry import Rule, codes, rule, rules
 from runtime.faults import Code, lookup
 
-URI = "urn:robolang:rule:"
-"""Where the page of a rule is found: the one place to change when the pages get an address of their own."""
-
 _INDEX = """\
 # Rules
 
@@ -23,11 +20,6 @@ These pages are generated: `python -m robolang.lint.pages`.
 | code | name | severity | fix |
 |---|---|---|---|
 """
-
-
-def uri_of(code: str) -> str:
-    """Return the absolute URI of the page of a code."""
-    return f"{URI}{code}"
 
 
 def page(code: str) -> str:

@@ -1,7 +1,8 @@
 """Workflow commands of GitHub Actions, which become annotations of the changed lines.
 
 ``::error title=robolang (RBL112),file=..,line=..,col=..,endLine=..,endColumn=..::message%0Ahelp``. In the message
-``%``, CR and LF are escaped, in a property ``:`` and ``,`` as well.
+``%``, CR and LF are escaped, in a property ``:`` and ``,`` as well. Columns are those of one line: of several lines the
+runner drops them.
 """
 
 from collections.abc import Sequence
@@ -9,7 +10,7 @@ from pathlib import Path
 
 from robolang.diagnostics import Severity, safe
 from robolang.lint.engine import Checked
-from robolang.output.finding import Finding, findings, relative
+from robolang.output.finding import Finding, Region, findings, relative
 
 _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}
 
@@ -24,14 +25,18 @@ def _command(item: Finding, root: Path) -> str:
     properties = {
         "title": f"robolang ({item.code})",
         "file": relative(item.path, root),
-        "line": region.line,
-        "col": region.column,
-        "endLine": region.end_line,
-        "endColumn": region.end_column,
+        **_lines(item.region),
     }
     said = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
     text = f"{safe(item.path)}:{region.line}:{region.column}: {item.code} {item.message}\nhelp: {item.hint}"
     return f"::{_COMMANDS[item.severity]} {said}::{_data(text)}"
+
+
+def _lines(region: Region) -> dict[str, int]:
+    """Return the properties that say where a region is."""
+    if region.line != region.end_line:
+        return {"line": region.line, "endLine": region.end_line}
+    return {"line": region.line, "col": region.column, "endLine": region.line, "endColumn": region.end_column}
 
 
 def _data(text: str) -> str:

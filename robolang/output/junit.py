@@ -1,7 +1,9 @@
 """JUnit XML: a test suite for each program, a failed test case for each finding.
 
 A program without findings is one case that passes, so that a report is never empty. An info fails nothing: it is the
-output of a case that passes. Times are left out, so that equal results give equal bytes.
+output of a case that passes. Times are left out, so that equal results give equal bytes. A case has no attributes but
+those that the schema of Jenkins knows, and its place in words: a reader that holds to the schema refuses a whole report
+for a ``line`` or a ``file``.
 """
 
 import re
@@ -32,7 +34,7 @@ def render(results: Sequence[Checked], root: Path) -> str:
 
 def _suite(result: Checked, root: Path) -> tuple[str, list[list[str]], int]:
     """Return the quoted name of a program, its cases as lines and how many of them fail."""
-    name = _quoted(relative(result.source.path, root))
+    name = quoted(relative(result.source.path, root))
     found = findings([result])
     if not found:
         return name, [[f'    <testcase name="robolang" classname={name}/>']], 0
@@ -42,16 +44,17 @@ def _suite(result: Checked, root: Path) -> tuple[str, list[list[str]], int]:
 def _case(item: Finding, root: Path) -> list[str]:
     region = item.region
     text = f"line {region.line}, column {region.column}: {item.message}"
-    name, path = _quoted(f"{item.code} {item.name}"), _quoted(relative(item.path, root))
-    head = f'    <testcase name={name} classname={path} file={path} line="{region.line}" column="{region.column}">'
+    name, path = quoted(f"{item.code} {item.name}"), quoted(relative(item.path, root))
+    head = f"    <testcase name={name} classname={path}>"
     body = escape(_legal(f"{text}\nhelp: {item.hint}"))
     if item.severity is Severity.INFO:
         return [head, f"      <system-out>{body}</system-out>", "    </testcase>"]
     kind = f'type="{item.severity.value}"'
-    return [head, f"      <failure message={_quoted(text)} {kind}>{body}</failure>", "    </testcase>"]
+    return [head, f"      <failure message={quoted(text)} {kind}>{body}</failure>", "    </testcase>"]
 
 
-def _quoted(text: str) -> str:
+def quoted(text: str) -> str:
+    """Return text as the value of an attribute, with its quotes; what XML cannot hold is replaced."""
     return quoteattr(_legal(text))
 
 

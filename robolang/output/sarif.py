@@ -1,7 +1,8 @@
 """SARIF 2.1.0 (OASIS), for code scanning.
 
-One run; its rules are those of the results, with the page of each as help. Uris are relative to the root of the
-repository, columns count characters, fingerprints survive edits elsewhere, fixes are replacements of regions.
+One run; its rules are those of the results, with the whole page of each as help: the pages have no address that a
+``helpUri`` could name. Uris are relative to the root of the repository, columns count characters, fingerprints survive
+edits elsewhere, fixes are replacements of regions.
 """
 
 import json
@@ -13,7 +14,7 @@ from urllib.parse import quote
 
 from robolang.diagnostics import Severity
 from robolang.lint.engine import Checked
-from robolang.lint.pages import page, uri_of
+from robolang.lint.pages import page
 from robolang.output.finding import Correction, Finding, Region, findings, fingerprints, relative
 from runtime.faults import lookup
 
@@ -45,7 +46,6 @@ def _rule(code: str, level: str) -> dict[str, Any]:
         "shortDescription": {"text": entry.meaning},
         "fullDescription": {"text": entry.meaning},
         "help": {"text": entry.remedy, "markdown": page(code)},
-        "helpUri": uri_of(code),
         "defaultConfiguration": {"level": level},
     }
 
@@ -56,7 +56,7 @@ def _result(item: Finding, index: int, fingerprint: str, root: Path) -> dict[str
         "ruleId": item.code,
         "ruleIndex": index,
         "level": _LEVELS[item.severity],
-        "message": {"text": f"{item.message}. {item.hint}"},
+        "message": {"text": f"{item.message}. Help: {item.hint}"},
         "locations": [where],
         "partialFingerprints": {"robolang/v1": fingerprint},
     }

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from robolang.lint.pages import index, page, pages, uri_of, without_page, write
+from robolang.lint.pages import index, page, pages, without_page, write
 from robolang.lint.registry import rules
 from runtime.faults import lookup
 
@@ -66,8 +66,3 @@ def test_the_command_writes_the_folder_that_is_named(tmp_path):
     )  # fmt: skip
     assert done.stdout == b""
     assert (tmp_path / "made" / "README.md").read_text("utf-8") == index()
-
-
-def test_the_address_of_a_page_is_an_absolute_uri():
-    assert uri_of("RBL103").partition(":")[0] in ("urn", "https")
-    assert uri_of("RBL103").endswith("RBL103")

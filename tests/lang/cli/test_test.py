@@ -72,6 +72,16 @@ def test_the_report_is_junit(tmp_path):
     (suite,) = ET.parse(report).getroot()
     assert (suite.get("tests"), suite.get("failures")) == ("2", "1")
     assert [case.find("failure") is None for case in suite] == [True, False]
+    assert set(suite.keys()) == {"name", "tests", "failures", "errors", "time"}  # those that its schema asks for
+    assert {name for case in suite for name in case.keys()} == {"classname", "name"}  # noqa: SIM118
+
+
+def test_the_report_is_xml_whatever_is_printed(tmp_path):
+    text = 'PRINT "a \x1b\ufffe <&"\n'
+    report = tmp_path / "report.xml"
+    robolang("test", copied(tmp_path, 'printed = ["b"]', text), "--junit", report, code=1)
+    (failure,) = ET.parse(report).getroot().iter("failure")
+    assert "a \ufffd\ufffd <&" in failure.get("message")
 
 
 def test_a_file_that_is_not_there_is_refused(tmp_path):
