@@ -1,12 +1,15 @@
 """Codes of the language: text (1xx), meaning (2xx), points (3xx), command line (7xx), internal (9xx).
 
-Importing this module fills the registry of ``runtime.faults`` completely, the runtime's own codes included,
-so ``robolang explain`` and the documentation generator need only this import. A code keeps its number and its
-meaning for ever; a message may be reworded. Called once, at import.
+Importing this module fills the registry of ``runtime.faults`` completely, the runtime's own codes included, and brings
+in no numerics, so ``robolang check``, ``explain`` and the documentation generator need only this import. A code keeps
+its number and its meaning for ever; a message may be reworded. Called once, at import.
 """
 
 import robolang.run_codes  # noqa: F401 - registers 2xx, 50x and 53x
 import runtime.faults
+import runtime.motion.codes
+import runtime.pulses.codes
+import runtime.robot.codes
 import runtime.tomlfile  # registers RBL311 and RBL6xx
 from runtime.faults import Code
 
@@ -74,12 +77,6 @@ _TEXT = (
         "line-number-order",
         "A line number is smaller than the one before it.",
         "Renumber the lines; they run in the order in which they are written.",
-    ),
-    (
-        "RBL117",
-        "not-in-this-edition",
-        "The word belongs to the language but this edition does not run it; edition 1 runs all of them.",
-        "Update robolang; this version refuses nothing with it.",
     ),
     (
         "RBL118",
@@ -219,6 +216,18 @@ _COMMAND = (
         "configuration-key",
         "A key of the configuration is unknown or given twice.",
         "Correct the spelling or remove the key.",
+    ),
+    (
+        "RBL708",
+        "robot-unknown",
+        "No built-in robot and no robot file has the given name.",
+        "Name a built-in robot or the path of a robot file ending in .toml, .urdf or .xml.",
+    ),
+    (
+        "RBL709",
+        "robot-does-not-fit-cell",
+        "The robot given on the command line has another number of axes than the cell's home position.",
+        "Give a cell file made for that robot with --cell.",
     ),
     (
         "RBL710",

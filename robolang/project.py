@@ -21,7 +21,7 @@ from robolang.parser import parse
 from robolang.points import PointStore
 from robolang.source import Source, read_program
 from runtime.dynamics.compensation import load_compensation
-from runtime.faults import Code, Fault, register
+from runtime.faults import Fault
 from runtime.frames import Array
 from runtime.plant.cell import CellSpec, load_cell, parse_cell
 from runtime.profile import Profile, ServoMode, Settings, load_profile_file, read_layer, read_options, settle
@@ -29,21 +29,6 @@ from runtime.robot import importer, loader
 from runtime.robot.spec import RobotSpec
 from runtime.tomlfile import Source as TomlSource
 from runtime.tomlfile import Table, inside
-
-register(
-    Code(
-        code="RBL708",
-        name="robot-unknown",
-        meaning="No built-in robot and no robot file has the given name.",
-        remedy="Name a built-in robot or the path of a robot file ending in .toml, .urdf or .xml.",
-    ),
-    Code(
-        code="RBL709",
-        name="robot-does-not-fit-cell",
-        meaning="The robot given on the command line has another number of axes than the cell's home position.",
-        remedy="Give a cell file made for that robot with --cell.",
-    ),
-)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -173,7 +173,16 @@ def read_source(path: Path, code: str = "RBL600") -> Source:
     try:
         return Source(str(path), raw.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
-        where.fail(code, f"{path} is not UTF-8 text (byte {error.start})")
+        _not_text(path, raw, error.start, code)
+
+
+def _not_text(path: Path, raw: bytes, start: int, code: str) -> NoReturn:
+    """Raise ``FileFault`` at a byte that is not UTF-8; ``start`` counts behind a byte order mark."""
+    body = raw.removeprefix(b"\xef\xbb\xbf")
+    before = body[:start].decode("utf-8").split("\n")
+    excerpt = lines_of(body.decode("utf-8", "replace"))[len(before) - 1]
+    message = f"{path} is not UTF-8 text (byte {start})"
+    raise FileFault(code, message, "", path=str(path), line=len(before), column=len(before[-1]) + 1, excerpt=excerpt)
 
 
 def load_table(source: Source, code: str = "RBL601") -> "Table":

@@ -20,12 +20,7 @@ def explain(
     ] = None,
 ) -> None:
     """Explain a code of a diagnostic, a fault or an alarm."""
-    import robolang.codes
-    import robolang.project  # noqa: F401 - and those of the files, with the runtime's
-    import runtime.pulses.exported
-    import runtime.pulses.f174
-    import runtime.pulses.mechanism
-    import runtime.pulses.move  # noqa: F401 - and those of pulse tables, which no run needs
+    import robolang.codes  # noqa: F401 - every code there is
     from runtime.faults import all_codes
 
     with reported():

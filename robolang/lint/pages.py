@@ -6,8 +6,8 @@ Everything on a page comes from the registries; nothing is written twice.
 import sys
 from pathlib import Path
 
-from robolang.lint.registry import Rule, codes, rule, rules
-from runtime.faults import Code, lookup
+from robolang.lint.registry import Rule, rule, rules
+from runtime.faults import lookup
 
 _INDEX = """\
 # Rules
@@ -47,11 +47,6 @@ def pages() -> dict[str, str]:
     return {"README.md": index(), **{f"{code}.md": page(code) for code in rules()}}
 
 
-def without_page() -> list[Code]:
-    """Return the codes that checking can find and that have no page yet."""
-    return [entry for entry in codes() if rule(entry.code) is None]
-
-
 def write(folder: Path) -> None:
     """Write every page, and remove those of rules that are gone."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -70,12 +65,13 @@ def _summary(known: Rule) -> str:
 
 
 def _story(known: Rule) -> list[str]:
+    place = f"{known.code} is found in line {known.line}{' of the points file' if known.points else ''}."
     return [
         "## Why it matters",
         known.why,
         "## Example",
         f"```text\n{known.example}\n```",
-        f"{known.code} is found in line {known.line}{' of the points file' if known.points else ''}.",
+        *([place] if known.line else []),
         "Instead:",
         f"```{'toml' if known.points else 'rbl'}\n{known.instead}\n```",
     ]

@@ -12,6 +12,15 @@ RULES = (
         line=2,
     ),
     Rule(
+        code="RBL302",
+        why="A link that leads nowhere says that there were points, on a drive that is not mounted or under a name "
+        "that has changed. Without the link the program would have no points, or those of the built-in cell.",
+        bad="pick.points.toml -> /mnt/taught/pick.points.toml      (nothing is there)\npick.rbl\n",
+        good="schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\n",
+        line=0,
+        points=True,
+    ),
+    Rule(
         code="RBL303",
         why="Half a points file would send the arm to half of the points. Nothing of a damaged one is used.",
         bad="schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0\n",
@@ -75,6 +84,17 @@ RULES = (
         good='schema = 1\nrobot = "puma560"\n[points.P1]\njoints = [0, 45, 180, 0, 45, 0]\n',
         line=2,
         by_run=True,
+        points=True,
+    ),
+    Rule(
+        code="RBL311",
+        why="A folder, a device, a link out of the project or bytes that are no text are not what somebody taught. "
+        "They are refused before they are read, so that a check neither waits for a pipe nor reads what is not its.",
+        bad='schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\ncomment = "turned by 90\udcb0"\n',
+        good='schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\ncomment = "turned by 90 deg"\n',
+        shown='schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\n'
+        'comment = "turned by 90\N{DEGREE SIGN}"      (the degree sign saved as Latin-1)\n',
+        line=4,
         points=True,
     ),
 )

@@ -33,7 +33,8 @@ class Rule:
     is printed in place of a ``bad`` that cannot be: too long, or with invisible characters; a byte that is not UTF-8
     is written as its surrogate, ``\\udcb0`` for B0. ``fix`` says what ``--fix`` does; empty: there is none.
     ``by_run``: the finding needs the cell, which ``robolang run`` reads and ``robolang check`` does not. ``points``:
-    ``bad`` and ``good`` are the points file ``pick.points.toml`` beside a program.
+    ``bad`` and ``good`` are the points file ``pick.points.toml`` beside a program; ``line`` 0: there is no such file,
+    and ``bad`` shows the folder.
     """
 
     code: str

@@ -27,19 +27,11 @@ from typing import TypeAlias
 
 import numpy as np
 
-from runtime.faults import Code, Fault, register
+import runtime.motion.codes  # noqa: F401 - registers what is raised here
+from runtime.faults import Fault
 from runtime.frames import Array, frozen, pose, principal_axis, rotation_about, rotation_from_rpy, rpy_from_rotation
 from runtime.profile import PostureLaw
 from runtime.units import MM
-
-register(
-    Code(
-        code="RBL416",
-        name="arc-undefined",
-        meaning="Start, via point and end of an arc do not lie on one circle: two are one, or they are in line.",
-        remedy="Teach the via point well off the straight line from start to end, or use MOVE.",
-    ),
-)
 
 FLATTEST = 1e-6
 """Least height of the triangle of start, via point and end over its longest side, m."""

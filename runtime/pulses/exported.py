@@ -17,51 +17,9 @@ from typing import Literal
 
 import numpy as np
 
-from runtime.faults import Code, register
+import runtime.pulses.codes  # noqa: F401 - registers what is raised here
 from runtime.frames import Array, frozen
 from runtime.units import DEG, MM
-
-register(
-    Code(
-        code="RBL630",
-        name="pulse-export-unreadable",
-        meaning="A folder of pulse tables, or a file in it, is missing, is not what such a folder holds or has a key "
-        "that is missing or of the wrong type.",
-        remedy="Name a folder that robolang export has written, or write it anew.",
-    ),
-    Code(
-        code="RBL631",
-        name="pulse-table-malformed",
-        meaning="A row of a pulse table is one that no pulse channel can carry out, or the table has no proper end.",
-        remedy="Write the folder anew with robolang export; tables are not to be edited.",
-    ),
-    Code(
-        code="RBL632",
-        name="pulse-table-out-of-step",
-        meaning="The channels of a move would not stay together: a row is not one time step long, a table does not go "
-        "on where the channel stood, or it has another number of steps than the move.",
-        remedy="Write the folder anew with robolang export; the tables of a folder belong together.",
-    ),
-    Code(
-        code="RBL633",
-        name="pulse-export-schema",
-        meaning="A folder of pulse tables was written by an older or newer version.",
-        remedy="Update robolang, or write the folder anew with robolang export.",
-    ),
-    Code(
-        code="RBL634",
-        name="pulse-robot-mismatch",
-        meaning="Pulse tables cannot drive the robot of the cell: they were written for another mechanism or tool, or "
-        "start outside the joint ranges.",
-        remedy="Give the cell that the program was exported with.",
-    ),
-    Code(
-        code="RBL635",
-        name="pulse-path-error",
-        meaning="Pulse tables lead the tool point further from a straight line than was allowed.",
-        remedy="Export with a finer pulse equivalent, a lower minimum frequency or another time step.",
-    ),
-)
 
 Kind = Literal["arm", "cartesian", "cylindrical", "scara"]
 Unit = Literal["deg", "mm"]

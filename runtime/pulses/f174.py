@@ -15,18 +15,10 @@ right only, and has no range to choose.
 
 from collections.abc import Sequence
 
-from runtime.faults import Code, Fault, register
+import runtime.pulses.codes  # noqa: F401 - registers what is raised here
+from runtime.faults import Fault
 from runtime.pulses.channels import Output
 from runtime.pulses.table import DataTable
-
-register(
-    Code(
-        code="RBL433",
-        name="plc-range",
-        meaning="A frequency or a target is outside what the data table of this PLC can hold.",
-        remedy="Change speed, step time or pulse equivalent, or export without the PLC's form (--plc none).",
-    ),
-)
 
 RANGES = ((2, 191, 100_000), (1, 48, 100_000), (0, 2, 9_800))
 QUARTER_DUTY_HZ = 50_000

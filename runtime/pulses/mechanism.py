@@ -33,23 +33,14 @@ from typing import Any, Literal
 
 import numpy as np
 
-from runtime.faults import Code, Fault, register
+import runtime.pulses.codes  # noqa: F401 - registers what is raised here
+from runtime.faults import Fault
 from runtime.frames import Array, frozen, principal_axis
 from runtime.motion.commands import MoveLinear
 from runtime.motion.speed import SpeedLimits, bound
 from runtime.pulses.machine import Joint, Stand
 from runtime.tomlfile import Source, Table, load_table, read_source
 from runtime.units import DEG, MM
-
-register(
-    Code(
-        code="RBL431",
-        name="not-exportable",
-        meaning="A statement cannot be put into pulse tables as it stands: it depends on a sensor, or asks of the "
-        "mechanism what it has no joint for.",
-        remedy="Change the statement as the message says, or export for another machine.",
-    ),
-)
 
 Kind = Literal["cartesian", "cylindrical", "scara"]
 ORDER: dict[str, tuple[str, ...]] = {

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runtime.faults import Code, Fault, register
+import runtime.pulses.codes  # noqa: F401 - registers what is raised here
+from runtime.faults import Fault
 from runtime.frames import Array
 from runtime.motion.commands import MoveLinear
 from runtime.motion.speed import MAX_DURATION, SpeedLimits
@@ -24,21 +25,6 @@ from runtime.pulses.emission import Emission, Pulses, emit, least_step
 from runtime.pulses.machine import Machine, Stand, Way
 from runtime.pulses.steps import EqualTimeSteps
 from runtime.units import MM
-
-register(
-    Code(
-        code="RBL430",
-        name="pulse-frequency-too-high",
-        meaning="A move needs a higher pulse frequency than its channel can give.",
-        remedy="Write the SPEED that the message names, or give the channel coarser pulses.",
-    ),
-    Code(
-        code="RBL432",
-        name="pulse-target-too-large",
-        meaning="A position is too far from zero to be counted in pulses of this size.",
-        remedy="Give the channel coarser pulses.",
-    ),
-)
 
 MOST_PULSES = 2**53
 _ROUNDS = 12

@@ -15,44 +15,11 @@ from pathlib import PurePosixPath, PureWindowsPath
 from typing import NoReturn
 from xml.parsers import expat
 
-from runtime.faults import Code, register
+import runtime.robot.codes  # noqa: F401 - registers what is raised here
 from runtime.tomlfile import MAX_ABS, FileFault, Source
 
 MAX_DEPTH = 100
 MAX_ELEMENTS = 50_000
-
-register(
-    Code(
-        code="RBL603",
-        name="includes-itself",
-        meaning="A robot file includes itself.",
-        remedy="Remove the include.",
-    ),
-    Code(
-        code="RBL611",
-        name="chain-not-serial",
-        meaning="The joints of a URDF or MJCF file form a loop or a branch; only one serial chain can be driven.",
-        remedy="Leave out grippers and closed linkages; the hand belongs in the cell file.",
-    ),
-    Code(
-        code="RBL612",
-        name="robot-file-too-deep",
-        meaning="A robot file is nested more deeply, or has more elements, than any arm needs.",
-        remedy="Give a file with the arm alone.",
-    ),
-    Code(
-        code="RBL614",
-        name="plugin-refused",
-        meaning="A robot file asks for a plugin; code named by a data file is never loaded.",
-        remedy="Remove the plugin element.",
-    ),
-    Code(
-        code="RBL621",
-        name="import-unsupported",
-        meaning="A URDF or MJCF file uses something that the import does not read; it is never guessed.",
-        remedy="Rewrite the element as docs/robots-import.md says, or give a robot file in TOML.",
-    ),
-)
 
 _TEXTS = frozenset(
     [

@@ -37,8 +37,7 @@ PREAMBLE = """\
 
 Every diagnostic, fault and alarm has a code. `robolang explain RBL412` prints one, `robolang explain` lists them. 1xx
 text, 2xx meaning, 3xx points, 4xx payload and motion, 5xx run, 6xx robot and cell files, 7xx command line and
-configuration, 9xx internal. A code keeps its number and its meaning; what a message says may change. Some codes are
-registered and not raised yet.
+configuration, 9xx internal. A code keeps its number and its meaning; what a message says may change.
 
 This page is generated: `python -m tests.arch.test_docs`.
 

@@ -57,7 +57,7 @@ def test_what_is_no_small_text_file_is_refused_without_waiting(tmp_path, make, s
     path = tmp_path / "f.toml"
     make(path)
     found = fault(read_source, path)
-    assert place(found) == ("RBL600", 1, 1)
+    assert place(found) == ("RBL600", *((2, 5) if "byte 10" in said else (1, 1)))
     assert found.path == str(path)
     assert said in found.message
     assert fault(read_source, path, "RBL311").code == "RBL311"

@@ -1,0 +1,12 @@
+"""Codes of motion, registered at import; the module imports nothing heavy, so that they are known without numerics."""
+
+from runtime.faults import Code, register
+
+register(
+    Code(
+        code="RBL416",
+        name="arc-undefined",
+        meaning="Start, via point and end of an arc do not lie on one circle: two are one, or they are in line.",
+        remedy="Teach the via point well off the straight line from start to end, or use MOVE.",
+    ),
+)
