@@ -170,7 +170,7 @@ def test_two_runs_give_the_same_bytes(tmp_path, result):
 def forgotten(folder: Path) -> Path:
     """Write the listing with line 50 left out and return its path."""
     path = folder / "forgotten.rbl"
-    path.write_text(re.sub(r"(?m)^50 LOAD.*$", "", PROGRAM.read_text()))
+    path.write_text(re.sub(r"(?m)^50 +LOAD.*$", "", PROGRAM.read_text()))
     return path
 
 

@@ -143,7 +143,7 @@ def test_what_a_table_cannot_carry_is_refused_at_its_place(tmp_path):
     result = robolang("export", "pulses", ROOT / "programs/wrist/seam.rbl", "-o", tmp_path / "x", code=3)
     assert [(line, code) for line, _, code in places(result.stderr)] == [(5, "RBL431")]
     assert not (tmp_path / "x").exists()
-    points = 'schema = 1\n[points.P1]\njoints = [0, 90, -180, 0, 45, 0]\n'
+    points = "schema = 1\n[points.P1]\njoints = [0, 90, -180, 0, 45, 0]\n"
     path = program(tmp_path, "10 MOVE P1\n", points)
     result = robolang("export", "pulses", path, "-o", tmp_path / "x", "--channels", "scara", code=3)
     assert "taught as joint angles" in result.stderr
