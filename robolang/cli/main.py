@@ -28,9 +28,11 @@ from robolang.cli import (
     wrist_demo,
 )
 from robolang.cli.errors import escape_what_a_terminal_lacks
+from robolang.cli.usage import CodedGroup
 
 app = typer.Typer(
     name="robolang",
+    cls=CodedGroup,
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,

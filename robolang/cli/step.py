@@ -14,6 +14,8 @@ from robolang.cli.values import OptionValueError, numbers
 if TYPE_CHECKING:
     from robolang.step import PlantName, StepRequest, StepResult
 
+MOST_S = 60.0
+"""Longest time after the step, s."""
 
 
 def step(
@@ -26,7 +28,7 @@ def step(
         str | None, typer.Option("--load", metavar="M,X,Y,Z", help="Declared by LOAD; default: what is carried.")
     ] = None,
     tool: Annotated[str, typer.Option("--tool", metavar="X,Y,Z", help="Tool point at the flange, mm.")] = "0,0,0",
-    seconds: Annotated[float, typer.Option("--seconds", min=0.2, max=60.0, help="Time after the step.")] = 1.5,
+    seconds: Annotated[float, typer.Option("--seconds", min=0.2, max=MOST_S, help="Time after the step.")] = 1.5,
     plant: Annotated[str, typer.Option("--plant", help="'rigid' ideal arm or 'mujoco'.")] = "rigid",
     drives: Annotated[
         str, typer.Option("--drives", help="'real' limits, current loop and encoder, or 'ideal' ones.")
@@ -66,6 +68,8 @@ def step(
         in_force = load_settings(spec, pose(tool_point, np.eye(3)), None, profile, options)
         if not (abs(size) <= 360.0):
             raise OptionValueError("--size", f"{size:g} is not between -360 and 360 deg")
+        if not seconds <= MOST_S:
+            raise OptionValueError("--seconds", f"{seconds:g} is not between 0.2 and {MOST_S:g} s")
         carried = values.payload(payload, "--payload", spec)
         values.note_overload(carried, "--payload", spec)
         declared = carried

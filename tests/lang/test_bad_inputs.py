@@ -63,6 +63,7 @@ GOLDEN = [
     ("A44", "LOAD (0, 0, 0), NAN\nLOAD (0, 0, 0), NAN * 2", [("RBL401", 1, 17, 3), ("RBL209", 2, 17, 7)]),
     ("A45", "LOAD (0, 0, 0), 5", [("RBL402", 1, 17, 1)]),
     ("A46", "LOAD (0, 0, 2001), 1", [("RBL403", 1, 6, 12)]),
+    ("A46 inertia", "LOAD (0, 0, 10), 1, (1, 1, 1, 0, 0)", [("RBL220", 1, 21, 15)]),
     ("A47", "MOVE P1, SPEED 0\nMOVE P1, SPEED -5", [("RBL404", 1, 16, 1), ("RBL404", 2, 16, 2)]),
     ("A48", "DELAY -1\nDELAY 1E12\nHAND ON, -1", [("RBL405", 1, 7, 2), ("RBL405", 2, 7, 4), ("RBL405", 3, 10, 2)]),
     ("A56", "MOVE P1, ZONE -5", [("RBL415", 1, 15, 2)]),
@@ -102,6 +103,21 @@ def test_golden_of_a_run(text, code, line):
     with pytest.raises(ProgramFault) as caught:
         list(execute(parse(Source("p", text)).program))
     assert (caught.value.code, caught.value.line) == (code, line)
+
+
+def printed(text):
+    """What a program prints."""
+    return [effect.text for effect in execute(parse(Source("p", text)).program) if isinstance(effect, effects.Show)]
+
+
+def test_the_rounds_of_a_loop_are_counted_when_it_begins():
+    """A34: ten tenths added up are less than 1, so a loop that adds them would go round once more or less."""
+    assert printed("n = 0\nFOR i = 0 TO 1 STEP 0.1\nn = n + 1\nNEXT\nPRINT n") == ["11"]
+
+
+def test_what_is_printed_is_no_template():
+    """A61."""
+    assert printed("PRINT \"{0.__class__}%s$(id)\"") == ["{0.__class__}%s$(id)"]
 
 
 # --- R11: nesting ----------------------------------------------------------------------------------------------------

@@ -79,7 +79,7 @@ DEFECTS = [
     (PICK, "50  LOAD (0, 0, 95), 2.3", "50  REM", "RBL228"),
     (PALLET, "  HAND ON\n  LOAD part\n", "  HAND ON\n", "RBL228"),
     (PALLET, "  HAND OFF\n  LOAD empty\n", "  HAND OFF\n", "RBL228"),
-    (SORT, "200 LOAD part", "200 REM", "RBL228"),
+    (SORT, "200   LOAD part", "200   REM", "RBL228"),
     (TEND, "90  LOAD part\n100 DEPART 100, ZONE 20", "90  DEPART 100\n100 LOAD part", "RBL228"),
     (PALLET, "MOVE PICK, SPEED 100\n  HAND ON\n  LOAD part", "HAND ON\n  LOAD part\n  MOVE PICK", "RBL413"),
     (TEND, "110 APPROACH CHUCK, 100, ZONE 20", "105 LOAD part\n110 APPROACH CHUCK, 100, ZONE 20", "RBL229"),
