@@ -1,9 +1,23 @@
 """Entry point of ``robolang`` and ``python -m robolang``.
 
 ``--version`` is answered here, before typer and rich are imported, and ``check`` goes without the other commands.
+``python -m`` puts the working folder before every other place that modules are imported from; it is taken out first, so
+that a ``lark.py`` beside the programs stays a file like any other.
 """
 
+import os
 import sys
+
+
+def _forget_working_folder() -> None:
+    """Import nothing from the working folder, unless robolang itself was found there."""
+    try:
+        here = os.getcwd()  # noqa: PTH109 - pathlib is not imported yet
+    except OSError:  # it is gone
+        return
+    home = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))  # noqa: PTH100, PTH120
+    if sys.path[:1] == [here] and here != home and not sys.flags.safe_path:
+        del sys.path[0]
 
 
 def main() -> None:
@@ -25,4 +39,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
+    _forget_working_folder()
     main()

@@ -1,0 +1,90 @@
+"""R20: a program cannot read or write files, open sockets, start processes or run Python.
+
+``watched`` runs it under an audit hook, which is told of each of these; every kind was seen to be noticed.
+"""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.lang.cli import watched
+from tests.lang.cli.commands import ROOT
+
+PROGRAMS = [ROOT / "programs/shop" / f"{name}.rbl" for name in ("palletise", "sort", "recover", "inspect")]
+HOSTILE = """\
+CONST greeting$ = "{0.__class__} %s $(id) `id` ../../etc/passwd file:///etc/passwd"
+DIM a(3)
+__import__ = 5
+eval = __import__ + 1
+PRINT greeting$; __import__; eval; LEN(greeting$)
+text$ = "__import__('os').system('id')"
+PRINT text$ + STR$(SQR(eval)); VAL("1E3"); ROUND(10 / 3, 3)
+ON ERROR GOTO *BAD
+x = VAL(text$)
+text$ = text$ + "/etc/passwd"
+x = VAL(text$)
+a(9) = 1
+x = 1 / (x * 0)
+MOVE P1 + (0, 0, 9000)
+ON ERROR STOP
+FOR i = 1 TO 3
+  CALL twice(i)
+NEXT i
+LOAD (0, 0, 60), 0.8
+MOVE P1, SPEED 500
+OUT(1) = 1
+PULSE 2, 0.1
+PRINT P1.X; HERE.Z; TIMER
+END
+*BAD
+PRINT "caught "; ERR
+x = 0
+RESUME NEXT
+SUB twice(n)
+  PRINT n * 2
+ENDSUB
+"""
+
+
+@pytest.fixture
+def program(tmp_path):
+    path = tmp_path / "job.rbl"
+    path.write_text(HOSTILE)
+    return path
+
+
+def events(*words):
+    done = subprocess.run([sys.executable, "-m", "tests.lang.cli.watched", *map(str, words)], cwd=ROOT,
+                          capture_output=True, text=True, timeout=120)  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return [tuple(event) for event in json.loads(done.stderr.splitlines()[-1])]
+
+
+@pytest.mark.parametrize("seed", watched.SEEDS)
+def test_what_is_promised_not_to_happen_is_noticed(program, seed):
+    kinds = {"os.open": "open", "eval": "compile", "socket.socket": "socket.__new__"}
+    found = {event for event, _ in events(program, seed)}
+    assert kinds.get(seed, seed) in found
+
+
+def test_a_program_that_tries_asks_python_for_nothing(program):
+    assert events(program) == []
+
+
+@pytest.mark.parametrize("path", PROGRAMS, ids=lambda path: path.stem)
+def test_programs_ask_python_for_nothing(path):
+    assert events(path) == []
+
+
+def test_a_whole_run_writes_its_log_and_its_report_and_nothing_else(program, tmp_path):
+    log, report = tmp_path / "run.npz", tmp_path / "run.json"
+    found = events("-", "run", "--no-physics", "--log", log, "--report", report, program)
+    assert {path.parent for path in tmp_path.iterdir()} == {tmp_path}
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["job.rbl", "run.json", "run.npz"]
+    assert [event for event, _ in found if event not in ("write", "os.rename", "os.remove")] == []
+    assert len([event for event, _ in found if event == "os.rename"]) == 2
+    for event, name in found:
+        assert Path(name).is_relative_to(tmp_path), (event, name)
