@@ -20,10 +20,12 @@ from robolang.project import Project
 from robolang.surroundings import RobotWorld
 from runtime.faults import Fault
 from runtime.frames import Array
+from runtime.motion.blend import Corner
 from runtime.motion.chain import MotionPlanner
 from runtime.motion.commands import MoveLinear
 from runtime.motion.planner import LinePlan
 from runtime.robot.kinematics import Kinematics
+from runtime.robot.payload import NO_PAYLOAD, Payload
 
 MAX_CHAIN = 200
 """Most moves that blend into one another without a stop: a program that never stops is carried out nevertheless."""
@@ -33,13 +35,26 @@ MAX_RUN_US = 1_800_000_000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RehearsedMove:
-    """A move of the rehearsal: its effect and plan, and when it begins and ends, us."""
+    """A move of the rehearsal: its effect and plan, and when it begins and ends, us.
+
+    ``q`` (K, n) rad are its set-points as they are carried out, blends included, row 0 of them row ``first`` of the
+    plan. ``payload`` is the one declared last, ``corner`` what became of the blend into the next move, None where it
+    stops.
+    """
 
     effect: MoveTo
     plan: LinePlan
     command: Command
     begins_us: int
     ends_us: int
+    q: Array
+    first: int
+    payload: Payload
+    corner: Corner | None
+
+    def share(self, row: int) -> float:
+        """Return how far the move has come at a row of ``q``, in % of its way."""
+        return 100.0 * float(self.plan.s[min(max(row + self.first, 0), len(self.plan.s) - 1)])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,6 +89,7 @@ class _Rehearsal:
         self._now_us = 0
         self._world = RobotWorld(project.points, cell, kinematics, lambda: self._now_us)
         self._tracked = False
+        self._payload = NO_PAYLOAD
         self._chain: list[tuple[MoveTo, Command, LinePlan]] = []
         self._q_next: Array = np.array(cell.home)
         self._moves: list[RehearsedMove] = []
@@ -109,7 +125,7 @@ class _Rehearsal:
             return True
         self._finish_motion()
         if isinstance(effect, SetPayload):
-            lowering.payload(effect, self._project.cell)
+            self._payload = lowering.payload(effect, self._project.cell)
         elif isinstance(effect, SetHand):
             seconds = lowering.dwell_s(effect, self._project.cell)
             self._spend(effect, -(-round(seconds * 1e6) // self._period_us))
@@ -153,10 +169,13 @@ class _Rehearsal:
         begins = self._now_us
         cycles = np.bincount(joined.command, minlength=len(chain))  # one for each row that is sent, the first as well
         cycles[-1] += REST_CYCLES - 1 if len(joined.q) > 1 else 0
-        for (effect, command, plan), spent in zip(chain, cycles.tolist(), strict=True):
+        each = zip(chain, joined.parts, [*joined.corners, None], cycles.tolist(), strict=True)
+        for (effect, command, plan), part, corner, spent in each:
             self._spend(effect, spent)
-            self._moves.append(RehearsedMove(effect=effect, plan=plan, command=command, begins_us=begins,
-                                             ends_us=self._now_us))  # fmt: skip
+            self._moves.append(RehearsedMove(
+                effect=effect, plan=plan, command=command, begins_us=begins, ends_us=self._now_us, corner=corner,
+                q=joined.q[part.first : part.last + 1], first=part.first - part.offset, payload=self._payload,
+            ))  # fmt: skip
             begins = self._now_us
         self._world.q_last = self._q_next
 

@@ -1,111 +1,207 @@
-"""What a rehearsal shows beyond refusals: collisions with the cell, joints at the end of their range, a cycle too long.
+"""What a rehearsal shows beyond refusals: every finding at its statement, with path fraction, joint, value and limit.
 
-Each set-point of a rehearsal, 8 ms apart, is looked at in the shapes that MuJoCo has of the cell, without physics: what
-of the arm would be in the floor or in an obstacle (RBL421). Parts are not looked at: which of them are where is for a
-run. A joint that comes nearer than ``NEAR`` to the end of its range is RBL422; a program that takes longer than it may
-is RBL423. Places are those of the statements.
+    RBL414   a zone that takes more than half of a move at its corner: the blend is smaller than asked for
+    RBL421   the arm or the hand in the floor or an obstacle of the cell
+    RBL422   a joint near the end of its range
+    RBL423   a program that takes longer than it may
+    RBL424   the arm in itself
+    RBL425, RBL426   moment or inertia of the payload about a wrist axis over what that may carry
+    RBL427   a path that comes near a singular posture
+    RBL428   a path on which the tool leaves its posture to change the wrist, where the program does not say so
+    RBL429   a move that takes far longer than the program asked for, and what rules it
+
+Looked at are the set-points as they are carried out, blends included, 8 ms apart, in the shapes that MuJoCo has of the
+cell, without physics. Parts are not looked at: which of them are where is for a run. Of one code there is one finding
+for a statement, the worst or the first on its way.
 """
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from robolang.diagnostics import Diagnostic, Severity
+from robolang.line_times import range_margin
 from robolang.motion_check import Rehearsal, RehearsedMove
-from robolang.printer import describe
 from robolang.project import Project
 from robolang.source import Span
+from runtime.frames import Array
+from runtime.motion.planner import FOLLOWS
 from runtime.plant.mujoco_plant import MujocoPlant
+from runtime.robot.kinematics import Kinematics
+from runtime.robot.load import ratings, wrist_load
+from runtime.robot.singularity import singularities
 from runtime.units import DEG, MM
 
 NEAR = 0.5 * DEG
 """A joint nearer than this to the end of its range is named, rad."""
+NEAR_SINGULAR = 2.0 * DEG
+"""A wrist or elbow nearer than this to a singular posture is named, rad."""
+NEAR_SHOULDER = 20.0 * MM
+"""The same for the wrist centre over axis 1, m."""
+SLOWED = 1.5
+"""A move that takes this many times as long as its programmed speed or time asks for is named."""
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LineTime:
-    """What a line of the program takes: how often it ran, its time s, its way mm, and the joint that is fastest on it,
-    by name and share of its speed limit in %."""
-
-    line: int
-    number: int | None
-    text: str
-    count: int
-    seconds: float
-    length_mm: float | None
-    joint: str
-    speed_pct: float | None
-    margin_deg: float | None
+Found = Iterator[Diagnostic]
 
 
 def findings(project: Project, rehearsal: Rehearsal, max_cycle_s: float | None = None) -> tuple[Diagnostic, ...]:
     """Return what is wrong with the motion of a program, one finding of a code for a statement."""
-    found = [*rehearsal.refused, *_collisions(project, rehearsal), *_near_limits(project, rehearsal)]
+    found: dict[tuple[str, Span], Diagnostic] = {(item.code, item.span): item for item in rehearsal.refused}
+    each = _Moves(project)
+    for check in (each.touches, each.folds, each.near_range, each.near_singular, each.wrist_changes, each.slowed):
+        for move in rehearsal.moves:
+            for item in check(move):
+                found.setdefault((item.code, item.span), item)
+    for item in (*_zones(rehearsal.moves), *_loads(project, rehearsal.moves)):
+        found.setdefault((item.code, item.span), item)
+    return (*found.values(), *_cycle(rehearsal, max_cycle_s))
+
+
+def _cycle(rehearsal: Rehearsal, most_s: float | None) -> Found:
     total = rehearsal.total_us / 1e6
-    if max_cycle_s is not None and not total <= max_cycle_s and not rehearsal.refused:
-        message = f"the program takes {total:.3f} s, {total - max_cycle_s:.3f} s more than {max_cycle_s:g} s"
-        found.append(Diagnostic(code="RBL423", message=message, span=Span(0, 0)))
-    return tuple(found)
+    if most_s is not None and not total <= most_s and not rehearsal.refused:
+        message = f"the program takes {total:.3f} s, {total - most_s:.3f} s more than {most_s:g} s"
+        yield Diagnostic(code="RBL423", message=message, span=Span(0, 0))
 
 
-def _collisions(project: Project, rehearsal: Rehearsal) -> list[Diagnostic]:
-    shapes = MujocoPlant(project.cell.robot, project.cell, project.profile.tick_s)
-    found: dict[Span, Diagnostic] = {}
-    for move in rehearsal.moves:
-        span = move.effect.span
-        if span in found:
-            continue
-        for row, q in enumerate(move.plan.q):
-            touch = shapes.touching(q)
-            if touch is not None:
-                share = 100.0 * float(move.plan.s[row])
-                message = f"at {share:.1f} % of the way {touch[0]} would be in {touch[1].removeprefix('obstacle:')}"
-                found[span] = Diagnostic(code="RBL421", message=message, span=span)
-                break
-    return list(found.values())
+def _at(code: str, move: RehearsedMove, message: str, severity: Severity = Severity.WARNING) -> Diagnostic:
+    return Diagnostic(code=code, severity=severity, message=message, span=move.effect.span)
 
 
-def _near_limits(project: Project, rehearsal: Rehearsal) -> list[Diagnostic]:
-    spec = project.cell.robot
-    found: dict[Span, Diagnostic] = {}
-    for move in rehearsal.moves:
-        margin, axis, row = _margin(move, spec.lower, spec.upper)
-        if margin < NEAR and move.effect.span not in found:
-            share, at = 100.0 * float(move.plan.s[row]), float(move.plan.q[row, axis]) / DEG
+class _Moves:
+    """Checks of one move by itself."""
+
+    def __init__(self, project: Project) -> None:
+        self._spec, self._period_s = project.cell.robot, project.profile.period_s
+        self._kinematics = Kinematics(self._spec)
+        self._shapes = MujocoPlant(self._spec, project.cell, project.profile.tick_s)
+
+    def touches(self, move: RehearsedMove) -> Found:
+        """Report the first obstacle that the arm would be in."""
+        yield from self._first(move, "RBL421", self._shapes.touching)
+
+    def folds(self, move: RehearsedMove) -> Found:
+        """Report the first of its links that the arm would be in."""
+        yield from self._first(move, "RBL424", self._shapes.folded)
+
+    def _first(self, move: RehearsedMove, code: str, meets: Callable[[Array], tuple[str, str] | None]) -> Found:
+        for row, q in enumerate(move.q):
+            if (pair := meets(q)) is not None:
+                what, where = pair[0], pair[1].removeprefix("obstacle:")
+                message = f"at {move.share(row):.1f} % of the way {what} would be in {where}"
+                yield _at(code, move, message, Severity.ERROR)
+                return
+
+    def near_range(self, move: RehearsedMove) -> Found:
+        """Report the joint that comes nearest to the end of its range."""
+        spec = self._spec
+        margin, axis, row = range_margin(move, spec.lower, spec.upper)
+        if not margin >= NEAR:
             ends = f"{spec.lower[axis] / DEG:g} to {spec.upper[axis] / DEG:g} deg"
-            message = (f"at {share:.1f} % of the way J{axis + 1} is at {at:.2f} deg, {margin / DEG:.2f} deg from an "
-                       f"end of its range {ends}")  # fmt: skip
-            found[move.effect.span] = Diagnostic(code="RBL422", severity=Severity.WARNING, message=message,
-                                                 span=move.effect.span)  # fmt: skip
-    return list(found.values())
+            at = float(move.q[row, axis]) / DEG
+            yield _at("RBL422", move, f"at {move.share(row):.1f} % of the way J{axis + 1} is at {at:.2f} deg, "
+                      f"{margin / DEG:.2f} deg from an end of its range {ends}")  # fmt: skip
+
+    def near_singular(self, move: RehearsedMove) -> Found:
+        """Report a path that comes near a singular posture, where the wrist is not on a way of its own."""
+        if move.plan.path is None or self._kinematics.opw is None:
+            return
+        follows = move.plan.modes == FOLLOWS
+        near = singularities(self._kinematics.opw, move.plan.q)
+        for name, values, least, unit, size in (
+            ("wrist is straight", near.wrist, NEAR_SINGULAR, "deg", DEG),
+            ("elbow is stretched or folded", near.elbow, NEAR_SINGULAR, "deg", DEG),
+            ("wrist centre is over axis 1", near.shoulder, NEAR_SHOULDER, "mm", MM),
+        ):
+            row = int(np.argmin(np.where(follows, values, np.inf)))
+            if not values[row] >= least:
+                yield _at("RBL427", move, f"at {100.0 * float(move.plan.s[row]):.1f} % of the way the arm is "
+                          f"{float(values[row]) / size:.2f} {unit} from where its {name}, which is singular; keep "
+                          f"{least / size:g} {unit} away")  # fmt: skip
+                return
+
+    def wrist_changes(self, move: RehearsedMove) -> Found:
+        """Report that the tool leaves its posture, where neither the move nor a setting says WRIST."""
+        change = move.plan.wrist
+        if change is not None and move.effect.wrist is None:
+            begins, ends = 100.0 * change.share, 100.0 * change.share_end
+            yield _at("RBL428", move, f"from {begins:.1f} % to {ends:.1f} % of the way the tool leaves its posture by "
+                      f"up to {change.deviation / DEG:.1f} deg, for the wrist to change (condition {change.condition})")
+
+    def slowed(self, move: RehearsedMove) -> Found:
+        """Report a move that takes far longer than the program asked for, and what rules it."""
+        slow, effect = move.plan.slowdown, move.effect
+        asked_s = effect.time_s
+        takes_s = (len(move.plan.q) - 1) * self._period_s
+        factor = takes_s / asked_s if asked_s else 1.0 if slow is None or effect.speed_mm_s is None else slow.factor
+        if not factor <= SLOWED:
+            ruled = "the path limits of the robot rule it"
+            if slow is not None:
+                limits = self._spec.axes[slow.axis].limits
+                value, unit = (limits.speed, "deg/s") if slow.quantity == "speed" else (limits.acceleration, "deg/s2")
+                ruled = f"J{slow.axis + 1} is at its {slow.quantity} limit of {value / DEG:g} {unit}"
+            yield _at("RBL429", move, f"takes {takes_s:.3f} s, {factor:.2f} times as long as asked for: {ruled}")
 
 
-def _margin(move: RehearsedMove, lower: object, upper: object) -> tuple[float, int, int]:
-    """Return the smallest distance of a joint from the ends of its range, rad, its axis and the row."""
-    inside = np.minimum(move.plan.q - np.asarray(lower), np.asarray(upper) - move.plan.q)
-    row, axis = np.unravel_index(int(np.argmin(inside)), inside.shape)
-    return float(inside[row, axis]), int(axis), int(row)
-
-
-def line_times(project: Project, rehearsal: Rehearsal) -> list[LineTime]:
-    """Return what each line takes, in the order of the file."""
-    spec = project.cell.robot
-    speed = spec.per_axis("limits", "speed")
-    rows = []
-    for line in project.program.statements:
-        if line.source_line not in rehearsal.times_us or line.statement is None:
+def _zones(moves: Sequence[RehearsedMove]) -> Found:
+    """Report zones that leave no room for the blends at both ends of a move."""
+    for move, after in pairwise(moves):
+        if move.corner is None or move.plan.path is None or after.plan.path is None:
             continue
-        moves = [move for move in rehearsal.moves if move.effect.line == line.source_line]
-        joint, share, margin, length = "", None, None, None
-        if moves:
-            shares = np.max([np.abs(np.diff(move.plan.q, axis=0)).max(axis=0, initial=0.0) for move in moves], axis=0)
-            shares = shares / project.profile.period_s / speed
-            joint, share = f"J{int(np.argmax(shares)) + 1}", 100.0 * float(shares.max())
-            margin = min(_margin(move, spec.lower, spec.upper)[0] for move in moves) / DEG
-            lengths = [move.plan.path.length for move in moves if move.plan.path is not None]
-            length = sum(lengths) / MM if lengths else None
-        rows.append(LineTime(
-            line=line.source_line, number=line.number, text=describe(line.statement), count=max(1, len(moves)),
-            seconds=rehearsal.times_us[line.source_line] / 1e6, length_mm=length, joint=joint, speed_pct=share,
-            margin_deg=margin,
-        ))  # fmt: skip
-    return rows
+        short, which = min((move.plan.path.length, "the way to"), (after.plan.path.length, "the way from"))
+        if short > 0.0 and not move.corner.radius <= 0.5 * short + 1e-9:
+            yield _at("RBL414", move, f"a zone of {move.corner.radius / MM:g} mm is more than half of {which} this "
+                      f"corner, {short / MM:.1f} mm: the blend begins and ends within "
+                      f"{move.corner.reach / MM:.1f} mm")  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoadShare:
+    """What a payload asks of an axis of the wrist (0-based) in its worst posture: its ``moment`` or ``inertia``.
+
+    ``given``: the robot file says the limit, else it is an estimate. ``move`` and ``row`` are where it is.
+    """
+
+    axis: int
+    what: str
+    value: float
+    limit: float
+    given: bool
+    move: RehearsedMove
+    row: int
+
+    @property
+    def unit(self) -> str:
+        """Unit of value and limit."""
+        return "N m" if self.what == "moment" else "kg m2"
+
+
+def worst_loads(project: Project, moves: Sequence[RehearsedMove]) -> list[LoadShare]:
+    """Return moments, then inertias of the last axes, each at the move with the worst posture."""
+    spec = project.cell.robot
+    kinematics, limits = Kinematics(spec), dict(zip(("moment", "inertia"), ratings(spec), strict=True))
+    worst: dict[tuple[str, int], LoadShare] = {}
+    for move in moves:
+        load = wrist_load(kinematics, move.q, move.payload)
+        for what, values in (("moment", load.moment), ("inertia", load.inertia)):
+            for k, row in enumerate(np.argmax(values, axis=0).tolist()):
+                value, axis = float(values[row, k]), load.first + k
+                if value > 0.0 and ((what, k) not in worst or value > worst[what, k].value):
+                    given = getattr(spec.axes[axis].limits, f"rated_{what}") is not None
+                    worst[what, k] = LoadShare(axis=axis, what=what, value=value, limit=float(limits[what][k]),
+                                               given=given, move=move, row=row)  # fmt: skip
+    return sorted(worst.values(), key=lambda share: (share.what != "moment", share.axis))
+
+
+def _loads(project: Project, moves: Sequence[RehearsedMove]) -> Found:
+    """Report each axis of the wrist that a payload overloads, at the move with the worst posture."""
+    for share in worst_loads(project, moves):
+        if not share.value <= share.limit:
+            code = "RBL425" if share.what == "moment" else "RBL426"
+            yield _at(code, share.move, f"at {share.move.share(share.row):.1f} % of the way the {share.what} of the "
+                      f"payload of {share.move.payload.mass:g} kg about J{share.axis + 1} is {share.value:.3g} "
+                      f"{share.unit}, {share.value - share.limit:.3g} more than "
+                      f"{'it is rated for' if share.given else 'its drive allows by estimate'}, {share.limit:.3g} "
+                      f"{share.unit}", Severity.ERROR if share.given else Severity.WARNING)  # fmt: skip

@@ -164,6 +164,12 @@ register(
         remedy="Give it FINE or no ZONE; the arm stops there in any case.",
     ),
     Code(
+        code="RBL414",
+        name="blends-overlap",
+        meaning="A ZONE takes more than half of a move at its corner: the blend is smaller than asked for.",
+        remedy="Make the zone smaller, or leave out a point between.",
+    ),
+    Code(
         code="RBL415",
         name="blend-radius-negative",
         meaning="The radius of a blend is below 0.",
@@ -186,6 +192,42 @@ register(
         name="cycle-too-long",
         meaning="A program takes longer than it was allowed to.",
         remedy="Look where the time goes in the table of robolang check --motion: speeds, zones, dwells.",
+    ),
+    Code(
+        code="RBL424",
+        name="arm-in-itself",
+        meaning="A move would lead the arm or the hand into one of its own links.",
+        remedy="Go there over a via point or in another configuration.",
+    ),
+    Code(
+        code="RBL425",
+        name="wrist-moment",
+        meaning="The weight of the payload has a moment about a wrist axis over what that may carry.",
+        remedy="Carry it nearer to the flange, carry less, hold it in another posture, or correct LOAD.",
+    ),
+    Code(
+        code="RBL426",
+        name="wrist-inertia",
+        meaning="The payload has an inertia about a wrist axis over what that may carry.",
+        remedy="Carry it nearer to the axis, carry less, or correct LOAD.",
+    ),
+    Code(
+        code="RBL427",
+        name="near-singularity",
+        meaning="A path comes near a singular posture, where joints must turn fast for small motions of the tool.",
+        remedy="Move the path or the work piece a little, tilt the tool, or go there with MOVEJ.",
+    ),
+    Code(
+        code="RBL428",
+        name="wrist-leaves-posture",
+        meaning="On a straight move or an arc the tool leaves its posture for a while, to change the wrist.",
+        remedy="Say WRIST AUTO or WRIST HOLD if that is meant; WRIST KEEP refuses or slows the move instead.",
+    ),
+    Code(
+        code="RBL429",
+        name="slower-than-asked",
+        meaning="A move takes far longer than the program asks for, since a limit of the robot rules it.",
+        remedy="Lower its SPEED, or move the path away from where the joint has to turn fast.",
     ),
     Code(
         code="RBL501",

@@ -4,11 +4,13 @@ Imported where it is asked for: it needs numpy, pinocchio and mujoco, which chec
 """
 
 from robolang.diagnostics import Diagnostic, safe
+from robolang.line_times import LineTime, line_times
 from robolang.motion_check import Rehearsal, rehearse
-from robolang.motion_findings import LineTime, findings, line_times
+from robolang.motion_findings import findings, worst_loads
 from robolang.project import Project, load_project
 
 _STATEMENT = 30
+_NOTHING = 5e-4
 
 
 def planned(program: str, max_cycle_s: float | None) -> tuple[tuple[Diagnostic, ...], str]:
@@ -28,11 +30,28 @@ def _table(project: Project, rehearsal: Rehearsal) -> str:
     lines = [
         f"{safe(project.source.path)} on {project.cell.robot.name}, planned without physics",
         f"{'line':>5}  {'statement':<{_STATEMENT}} {'times':>5} {'time, s':>8} {'way, mm':>8} {'fastest':>11} "
-        f"{'to range':>9}",
+        f"{'to range':>9} {'wrist':>9}",
         *(_row(row) for row in rows),
         f"{'':>5}  {'total':<{_STATEMENT}} {'':>5} {rehearsal.total_us / 1e6:8.3f}",
+        *_wrist(project, rehearsal),
     ]
     return "\n".join(line.rstrip() for line in lines) + "\n"
+
+
+def _wrist(project: Project, rehearsal: Rehearsal) -> list[str]:
+    """Return the lines that say what the payload asks of the wrist in its worst posture, and of what; ~ estimated."""
+    shares = worst_loads(project, rehearsal.moves)
+    lines = []
+    for what in ("moment", "inertia"):
+        said = [
+            f"J{share.axis + 1} {share.value if share.value >= _NOTHING else 0:.3g} of "
+            f"{'' if share.given else '~'}{share.limit:.3g}"
+            for share in shares if share.what == what
+        ]  # fmt: skip
+        if said:
+            unit = next(share.unit for share in shares if share.what == what)
+            lines.append(f"{what} of the payload at the wrist, worst posture: {', '.join(said)} {unit}")
+    return lines
 
 
 def _row(row: LineTime) -> str:
@@ -42,5 +61,6 @@ def _row(row: LineTime) -> str:
     fastest = "" if row.speed_pct is None else f"{row.joint} {row.speed_pct:4.0f} %"
     margin = "" if row.margin_deg is None else f"{row.margin_deg:.1f} deg"
     number = row.line if row.number is None else row.number
+    wrist = "" if row.wrist_deg is None else f"{row.wrist_deg:.1f} deg"
     return (f"{number:>5}  {text:<{_STATEMENT}} {row.count:>5} {row.seconds:8.3f} {way:>8} {fastest:>11} "
-            f"{margin:>9}")  # fmt: skip
+            f"{margin:>9} {wrist:>9}")  # fmt: skip

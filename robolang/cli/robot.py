@@ -48,7 +48,7 @@ def show(robot: Annotated[str, typer.Argument(help="Built-in robot, or a .toml, 
         spec = load_any_robot(robot)
         console = Console()
         console.print(safe(f"{spec.name}: {spec.title}, {spec.n} axes, rated payload {spec.rated_payload:g} kg"), "\n")
-        for table in (_limits(spec), _drives(spec), *_springs(spec), _loops(spec), _bodies(spec)):
+        for table in (_limits(spec), _wrist(spec), _drives(spec), *_springs(spec), _loops(spec), _bodies(spec)):
             console.print(table)
         for title, lines in (
             ("Corrections of published data", _corrections(spec)),
@@ -163,6 +163,20 @@ def _limits(spec: "RobotSpec") -> "Table":
             f"{limits.speed / DEG:g}",
             f"{limits.acceleration / DEG:g}",
             f"{limits.torque:g}",
+        )
+    return table
+
+
+def _wrist(spec: "RobotSpec") -> "Table":
+    from runtime.robot.load import WRIST_AXES, rated_inertia, rated_moment
+
+    table = _table("Payload at the wrist (~: estimated from the drive)", "moment\nN m", "inertia\nkg m2")
+    for index, axis in list(enumerate(spec.axes, start=1))[-WRIST_AXES:]:
+        moment, inertia = axis.limits.rated_moment, axis.limits.rated_inertia
+        table.add_row(
+            safe(f"J{index} {axis.name}"),
+            f"{'~' if moment is None else ''}{rated_moment(axis):.3g}",
+            f"{'~' if inertia is None else ''}{rated_inertia(axis):.3g}",
         )
     return table
 

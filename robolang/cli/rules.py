@@ -39,7 +39,7 @@ def _as_json(entry: "Code") -> dict[str, Any]:
         "example": None if known is None else known.example,
         "instead": None if known is None else known.instead,
         "fix": None if known is None or not known.fix else known.fix,
-        "found_by": None if known is None else "run" if known.by_run else "check",
+        "found_by": None if known is None else known.found_by,
     }
 
 

@@ -9,6 +9,8 @@ from pathlib import Path
 from robolang.lint.registry import Rule, rule, rules
 from runtime.faults import lookup
 
+_CELL = ", which reads the cell"
+
 _INDEX = """\
 # Rules
 
@@ -60,8 +62,7 @@ def write(folder: Path) -> None:
 
 def _summary(known: Rule) -> str:
     fix = "safe fix" if known.fix else "no fix"
-    found_by = "found by `robolang run`, which reads the cell" if known.by_run else "found by `robolang check`"
-    return f"{known.severity.value} · {fix} · {found_by}"
+    return f"{known.severity.value} · {fix} · found by `robolang {known.found_by}`{_CELL if known.by_run else ''}"
 
 
 def _story(known: Rule) -> list[str]:

@@ -21,6 +21,10 @@ CHECKED = ("RBL1", "RBL2", "RBL3", "RBL40", "RBL413", "RBL415", "RBL534")
 """Beginnings of the codes that reading and checking a program can find."""
 
 
+OF_THE_MOTION = frozenset({"RBL410", "RBL411", "RBL412", "RBL414", "RBL416", "RBL421", "RBL422", "RBL423", "RBL424",
+                           "RBL425", "RBL426", "RBL427", "RBL428", "RBL429"})  # fmt: skip
+"""Codes that only planning the motion finds: ``robolang check --motion``, and of refusals ``robolang run``."""
+
 OF_THE_CELL = frozenset({"RBL305", "RBL306", "RBL402", "RBL534"})
 """Codes that need the cell, at least in part: reading the text alone does not find all of them."""
 
@@ -32,9 +36,9 @@ class Rule:
     ``bad`` is a program that yields the code at 1-based ``line`` and nowhere else, ``good`` its correction. ``shown``
     is printed in place of a ``bad`` that cannot be: too long, or with invisible characters; a byte that is not UTF-8
     is written as its surrogate, ``\\udcb0`` for B0. ``fix`` says what ``--fix`` does; empty: there is none.
-    ``by_run``: the finding needs the cell, which ``robolang run`` reads and ``robolang check`` does not. ``points``:
-    ``bad`` and ``good`` are the points file ``pick.points.toml`` beside a program; ``line`` 0: there is no such file,
-    and ``bad`` shows the folder.
+    ``by_run``: the finding needs the cell, which ``robolang run`` reads and ``robolang check`` does not; ``motion``: it
+    needs the motion as well, in the built-in cell. ``points``: ``bad`` and ``good`` are the points file
+    ``pick.points.toml`` beside a program; ``line`` 0: there is no such file, and ``bad`` shows the folder.
     """
 
     code: str
@@ -46,7 +50,13 @@ class Rule:
     shown: str = ""
     fix: str = ""
     by_run: bool = False
+    motion: bool = False
     points: bool = False
+
+    @property
+    def found_by(self) -> str:
+        """Option and command with which a finding appears."""
+        return "check --motion" if self.motion else "run" if self.by_run else "check"
 
     @property
     def entry(self) -> Code:
@@ -71,13 +81,13 @@ def _printed(program: str) -> str:
 
 
 def is_rule(code: str) -> bool:
-    """Return whether checking a program can find a code."""
-    return code.startswith(CHECKED)
+    """Return whether checking a program can find a code, its motion included."""
+    return code.startswith(CHECKED) or code in OF_THE_MOTION
 
 
 def is_looked_for(code: str) -> bool:
     """Return whether a check of text and points alone finds a code wherever it is; else its absence says nothing."""
-    return is_rule(code) and code not in OF_THE_CELL
+    return code.startswith(CHECKED) and code not in OF_THE_CELL
 
 
 def codes() -> list[Code]:
@@ -88,10 +98,10 @@ def codes() -> list[Code]:
 @cache
 def rules() -> MappingProxyType[str, Rule]:
     """Return the rules that have a page, by code in numeric order; ``ValueError`` for a code with two."""
-    from robolang.lint import meaning_rules, motion_rules, point_rules, run_rules, text_rules
+    from robolang.lint import meaning_rules, motion_rules, planning_rules, point_rules, run_rules, text_rules
 
     found: dict[str, Rule] = {}
-    for module in (text_rules, meaning_rules, point_rules, motion_rules, run_rules):
+    for module in (text_rules, meaning_rules, point_rules, motion_rules, planning_rules, run_rules):
         for rule in module.RULES:
             if rule.code in found:
                 raise ValueError(f"{rule.code} has two pages")

@@ -17,6 +17,7 @@ torque (see ``mjcf``).
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, cast
 
 import mujoco
@@ -53,6 +54,7 @@ class MujocoPlant:
             raise ValueError(f"a tick of {tick_s} s")
         _keep_off_the_disk()
         self._n = n = spec.n
+        self._spec, self._home = spec, cell.home
         self._tick_s = tick_s
         self._substeps = physics_steps(spec, tick_s, MAX_PHYSICS_STEP)
         self._model: Any = mujoco.MjModel.from_xml_string(build_mjcf(spec, cell, timestep=tick_s / self._substeps))
@@ -216,6 +218,41 @@ class MujocoPlant:
                         return moving, fixed
         return None
 
+    def folded(self, q: Array) -> tuple[str, str] | None:
+        """Return what of the arm or the hand would be in another link at joint angles q (n,) rad, and in which.
+
+        Looked at as ``touching`` does, for the pairs of ``_pairs``.
+        """
+        self._qpos[self._motors] = q
+        mujoco.mj_kinematics(self._model, self._data)
+        for first, second in self._pairs:
+            if mujoco.mj_geomDistance(self._model, self._data, first, second, CLEARANCE, None) < -CLEARANCE:
+                return str(self._model.geom(second).name), str(self._model.geom(first).name)
+        return None
+
+    @cached_property
+    def _pairs(self) -> list[tuple[int, int]]:
+        """Pairs of shapes of the arm and the hand that may meet.
+
+        The shapes are coarse: links fewer than ``APART`` joints apart are kept off one another by the ranges of these
+        joints, and pairs that meet at home or in more than ``OFTEN`` of some postures say nothing.
+        """
+        spec = self._spec
+        rows = np.random.default_rng(0).uniform(spec.lower, spec.upper, (POSTURES, spec.n))
+        shapes = [(index, self._model.geom(index)) for index in range(self._model.ngeom)]
+        bodies = {f"link{axis + 1}": axis for axis in range(spec.n)}
+        names = [(index, str(shape.name)) for index, shape in shapes if _of_arm(str(shape.name))]
+        links = [(index, bodies.get(name, spec.n - 1)) for index, name in names]
+        pairs = [(a, b) for a, one in links for b, other in links if one + APART <= other]
+        met = np.zeros((POSTURES + 1, len(pairs)), dtype=bool)
+        for row, q in enumerate([self._home, *rows]):
+            self._qpos[self._motors] = q
+            mujoco.mj_kinematics(self._model, self._data)
+            met[row] = [mujoco.mj_geomDistance(self._model, self._data, a, b, CLEARANCE, None) < -CLEARANCE
+                        for a, b in pairs]  # fmt: skip
+        kept = ~met[0] & (met[1:].mean(axis=0) <= OFTEN)
+        return [pair for pair, keep in zip(pairs, kept, strict=True) if keep]
+
     def parts(self) -> dict[str, Array]:
         """Return the pose X_world_part (4, 4) of every part by name."""
         return {name: _pose(self._last_qpos[at : at + 7]) for name, at in self._part_address.items()}
@@ -231,6 +268,16 @@ class MujocoPlant:
 _mj_step = mujoco.mj_step
 CLEARANCE = 1e-4
 """Shapes that meet by less than this touch, m."""
+APART = 3
+"""Joints between two links from which on they are looked at; the hand counts as the last link."""
+POSTURES = 200
+"""Postures in which it is looked which shapes meet anyway."""
+OFTEN = 0.5
+"""Share of them from which on a pair says nothing."""
+
+
+def _of_arm(name: str) -> bool:
+    return name.startswith(("link", "palm", "pad_", "shank_"))
 
 
 def _is_fixed(name: str) -> bool:

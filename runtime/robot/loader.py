@@ -232,7 +232,15 @@ def limits(table: Table) -> Limits:
         speed=table.number("max_speed_deg_s", positive=True) * DEG,
         acceleration=table.number("max_acceleration_deg_s2", positive=True) * DEG,
         torque=table.number("max_torque_nm", positive=True),
+        rated_moment=_optional(table, "rated_moment_nm"),
+        rated_inertia=_optional(table, "rated_inertia_kg_m2"),
     )
+
+
+def _optional(table: Table, key: str) -> float | None:
+    """Return a number above 0, None where the file has none."""
+    table.ask(key)
+    return table.number(key, positive=True) if key in table else None
 
 
 def bandwidths(table: Table) -> Bandwidths:

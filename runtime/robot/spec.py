@@ -78,13 +78,19 @@ class Motor:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
-    """Joint limits: range rad, speed rad/s, acceleration rad/s2, torque N m (at the joint)."""
+    """Joint limits: range rad, speed rad/s, acceleration rad/s2, torque N m (at the joint).
+
+    ``rated_moment`` N m and ``rated_inertia`` kg m2 that a payload may have about the axis; None: not published
+    (``runtime.robot.load`` estimates them).
+    """
 
     lower: float
     upper: float
     speed: float
     acceleration: float
     torque: float
+    rated_moment: float | None = None
+    rated_inertia: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

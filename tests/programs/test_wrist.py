@@ -70,7 +70,7 @@ def copy(tmp_path: Path, name: str, *edits: tuple[str, str, str]) -> Path:
 
 def test_wrist_keep_as_a_statement_and_as_an_option(tmp_path):
     for new in ("15 WRIST KEEP\n20 MOVE P2", "20 MOVE P2, WRIST KEEP"):
-        copy(tmp_path, "e1", (".rbl", "20 MOVE P2", new))
+        copy(tmp_path, "e1", (".rbl", "20 MOVE P2", new), (".rbl", ", WRIST AUTO", ""))
         _, result = run("e1", folder=tmp_path, physics=False)
         assert np.degrees(result.log["q_plan"][-1, 3:]) == pytest.approx((125, 65, -95))
         assert not result.log["wrist_mode"].any()

@@ -27,8 +27,8 @@ def test_every_code_has_a_meaning_and_says_what_to_do(entry):
 @pytest.mark.parametrize(
     ("word", "near"),
     [
-        ("RBL4127", "RBL412"),
-        ("4127", "RBL412"),
+        ("RBL5111", "RBL511"),
+        ("5111", "RBL511"),
         ("RLB412", "RBL412"),
         ("wrist-singularty", "wrist-singularity"),
         ("joint-limits", "joint-limit"),

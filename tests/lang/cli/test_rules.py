@@ -46,7 +46,7 @@ def test_a_rule_is_explained_with_its_example(code):
 
 
 def test_a_code_without_a_page_is_explained_as_before():
-    assert "Why it matters" not in robolang("explain", "RBL412").stdout
+    assert "Why it matters" not in robolang("explain", "RBL511").stdout
 
 
 def test_listing_the_rules_needs_no_numerics():

@@ -108,7 +108,7 @@ def test_an_unknown_key_is_refused_with_a_suggestion() -> None:
     assert "friction" in fault.hint
 
 
-@pytest.mark.parametrize("table", ["", "home", "hand", "loads.hand", "tools.grip"])
+@pytest.mark.parametrize("table", ["", "home", "hand", "loads.empty", "tools.grip"])
 def test_every_table_rejects_keys_that_nobody_reads(table: str) -> None:
     text = cell_text()
     header = f"[{table}]\n" if table else "schema = 1\n"
@@ -172,6 +172,6 @@ def test_a_fault_in_the_robot_file_is_located_there(tmp_path: Path) -> None:
 
 
 def test_names_of_loads_do_not_tell_capitals_apart() -> None:
-    text = cell_text() + "\n[loads.Hand]\nmass_kg = 1\ncog_mm = [0, 0, 0]\n"
+    text = cell_text() + "\n[loads.Empty]\nmass_kg = 1\ncog_mm = [0, 0, 0]\n"
     fault = refused(text)
-    assert (fault.code, fault.line) == ("RBL610", line_of(text, "[loads.Hand]"))
+    assert (fault.code, fault.line) == ("RBL610", line_of(text, "[loads.Empty]"))

@@ -1,0 +1,71 @@
+"""What each line of a rehearsed program takes, and how near its moves come to the limits of the arm."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from robolang.motion_check import Rehearsal, RehearsedMove
+from robolang.printer import describe
+from robolang.project import Project
+from runtime.robot.kinematics import Kinematics
+from runtime.robot.singularity import singularities
+from runtime.robot.spec import OpwParameters
+from runtime.units import DEG, MM
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LineTime:
+    """What a line of the program takes: how often it ran, its time s, its way mm, and the joint that is fastest on it,
+    by name and share of its speed limit in %; ``margin_deg``: the least distance of a joint from the ends of its
+    range; ``wrist_deg``: how far the wrist is from straight, where it is singular, on a way of the tool."""
+
+    line: int
+    number: int | None
+    text: str
+    count: int
+    seconds: float
+    length_mm: float | None
+    joint: str
+    speed_pct: float | None
+    margin_deg: float | None
+    wrist_deg: float | None
+
+
+def line_times(project: Project, rehearsal: Rehearsal) -> list[LineTime]:
+    """Return what each line takes, in the order of the file."""
+    spec = project.cell.robot
+    speed = spec.per_axis("limits", "speed")
+    opw = Kinematics(spec).opw
+    rows = []
+    for line in project.program.statements:
+        if line.source_line not in rehearsal.times_us or line.statement is None:
+            continue
+        moves = [move for move in rehearsal.moves if move.effect.line == line.source_line]
+        joint, share, margin, length = "", None, None, None
+        if moves:
+            shares = np.max([np.abs(np.diff(move.q, axis=0)).max(axis=0, initial=0.0) for move in moves], axis=0)
+            shares = shares / project.profile.period_s / speed
+            joint, share = f"J{int(np.argmax(shares)) + 1}", 100.0 * float(shares.max())
+            margin = min(range_margin(move, spec.lower, spec.upper)[0] for move in moves) / DEG
+            lengths = [move.plan.path.length for move in moves if move.plan.path is not None]
+            length = sum(lengths) / MM if lengths else None
+        rows.append(LineTime(
+            line=line.source_line, number=line.number, text=describe(line.statement), count=max(1, len(moves)),
+            seconds=rehearsal.times_us[line.source_line] / 1e6, length_mm=length, joint=joint, speed_pct=share,
+            margin_deg=margin, wrist_deg=_wrist_deg(opw, moves),
+        ))  # fmt: skip
+    return rows
+
+
+def _wrist_deg(opw: OpwParameters | None, moves: list[RehearsedMove]) -> float | None:
+    paths = [move for move in moves if move.plan.path is not None]
+    if opw is None or not paths:
+        return None
+    return min(float(singularities(opw, move.q).wrist.min()) for move in paths) / DEG
+
+
+def range_margin(move: RehearsedMove, lower: object, upper: object) -> tuple[float, int, int]:
+    """Return the smallest distance of a joint from the ends of its range, rad, its axis and the row."""
+    inside = np.minimum(move.q - np.asarray(lower), np.asarray(upper) - move.q)
+    row, axis = np.unravel_index(int(np.argmin(inside)), inside.shape)
+    return float(inside[row, axis]), int(axis), int(row)

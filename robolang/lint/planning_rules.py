@@ -1,0 +1,130 @@
+"""Rules RBL41x and RBL42x that ``robolang check --motion`` finds: what the planned motion of a program shows.
+
+The examples run on the built-in cell.
+"""
+
+from robolang.diagnostics import Severity
+from robolang.lint.registry import Rule
+
+RULES = (
+    Rule(
+        code="RBL410",
+        why="The arm is not that long. On a robot the move starts and stops somewhere on the way; here nothing starts.",
+        bad="10 MOVE P1 + (900, 0, 0)\n",
+        good="10 MOVE P1 + (90, 0, 0)\n",
+        motion=True,
+    ),
+    Rule(
+        code="RBL411",
+        why="The place can be reached, but a joint would have to turn further than it can, at the end or on the way.",
+        bad="10 MOVEJ JOINT(0, 60, -190, 0, 110, 0)\n",
+        good="10 MOVEJ JOINT(0, 60, -190, 0, 90, 0)\n",
+        motion=True,
+    ),
+    Rule(
+        code="RBL412",
+        why="On the straight line J4 would have to turn by half a turn at once. A controller finds out when it is "
+        "there, and stops with the part in its hand.",
+        bad="10 MOVEJ JOINT(0, 60, -190, 20, -8, 0)\n20 MOVE JOINT(10, 60, -190, 20, 8, 0), WRIST KEEP\n",
+        good="10 MOVEJ JOINT(0, 60, -190, 20, -8, 0)\n20 MOVE JOINT(10, 60, -190, 20, 8, 0), WRIST AUTO\n",
+        line=2,
+        motion=True,
+    ),
+    Rule(
+        code="RBL414",
+        severity=Severity.WARNING,
+        why="Two blends cannot share a piece of way. The zone is made smaller without a word, and the corner is taken "
+        "closer and slower than the program says.",
+        bad="10 MOVE P5 + (0, 0, 40), ZONE 30\n20 MOVE P5 + (100, 0, 40)\n",
+        good="10 MOVE P5 + (0, 0, 40), ZONE 15\n20 MOVE P5 + (100, 0, 40)\n",
+        motion=True,
+    ),
+    Rule(
+        code="RBL416",
+        why="Through three points in a line goes no circle, and through two that coincide go many.",
+        bad="10 MOVEC P5 + (50, 0, 0), P5 + (100, 0, 0)\n",
+        good="10 MOVEC P5 + (50, 20, 0), P5 + (100, 0, 0)\n",
+        motion=True,
+    ),
+    Rule(
+        code="RBL421",
+        why="The joints and the path are possible, and a table is in the way. In the cell that is a broken hand.",
+        bad="10 MOVE P1 + (0, 0, -30)\n",
+        good="10 MOVE P1 + (0, 0, 30)\n",
+        motion=True,
+    ),
+    Rule(
+        code="RBL422",
+        severity=Severity.WARNING,
+        why="A place taught a little beside this one, or another tool, and the move is refused. Cables and hoses do "
+        "not like the end of a range either.",
+        bad="10 MOVEJ JOINT(0, 60, -190, 0, 99.8, 0)\n",
+        good="10 MOVEJ JOINT(0, 60, -190, 0, 90, 0)\n",
+        motion=True,
+    ),
+    Rule(
+        code="RBL423",
+        why="The cycle of a line is a promise. With --max-cycle a change that breaks it fails where it is made. The "
+        "example is allowed 3 s.",
+        bad="10 MOVE P2\n20 DELAY 5\n30 MOVE P5\n",
+        good="10 MOVE P2\n20 MOVE P5\n",
+        motion=True,
+    ),
+    Rule(
+        code="RBL424",
+        why="Ranges of single joints do not keep a folded arm out of itself. The shapes are coarse; where this is "
+        "found, a hand, a hose or a cable is in the way for certain.",
+        bad="10 MOVEJ JOINT(-60, 210, 25, -70, 65, -75)\n",
+        good="10 MOVEJ JOINT(-60, 180, 25, -70, 65, -75)\n",
+        motion=True,
+    ),
+    Rule(
+        code="RBL425",
+        severity=Severity.WARNING,
+        why="A mass below the rated one is too much for the wrist when it is far from the flange. The drive holds it "
+        "for a while, heats up and stops. Where the robot file has published ratings this is an error.",
+        bad="10 LOAD (450, 0, 60), 2.4\n20 MOVEJ JOINT(0, 60, -190, 0, 60, 0)\n",
+        good="10 LOAD (0, 0, 60), 2.4\n20 MOVEJ JOINT(0, 60, -190, 0, 60, 0)\n",
+        line=2,
+        motion=True,
+    ),
+    Rule(
+        code="RBL426",
+        severity=Severity.WARNING,
+        why="What is turned resists by its inertia, which grows with the square of its distance. The wrist swings past "
+        "its end, or its drive runs out of torque. Where the robot file has published ratings this is an error.",
+        bad="10 LOAD (0, 0, 60), 2.4, (0.2, 0.2, 0.2, 0, 0, 0)\n20 MOVE P2\n",
+        good="10 LOAD (0, 0, 60), 2.4, (0.02, 0.02, 0.02, 0, 0, 0)\n20 MOVE P2\n",
+        line=2,
+        motion=True,
+    ),
+    Rule(
+        code="RBL427",
+        severity=Severity.WARNING,
+        why="Near a singular posture the joints race for a small motion of the tool: the move is slow, rough, and with "
+        "a work piece a few millimetres off it is refused.",
+        bad="10 MOVEJ JOINT(0, 60, -190, 0, -1.5, 0)\n20 MOVE HERE + (20, 0, 0), WRIST KEEP\n",
+        good="10 MOVEJ JOINT(0, 60, -190, 0, -15, 0)\n20 MOVE HERE + (20, 0, 0), WRIST KEEP\n",
+        line=2,
+        motion=True,
+    ),
+    Rule(
+        code="RBL428",
+        severity=Severity.WARNING,
+        why="The tool point stays on its line while the tool tilts, to end as taught. For a gripper in free air that "
+        "is welcome; with a torch, or in a bore, it is not.",
+        bad="10 MOVEJ JOINT(0, 60, -190, 20, -8, 0)\n20 MOVE JOINT(10, 60, -190, 20, 8, 0)\n",
+        good="10 MOVEJ JOINT(0, 60, -190, 20, -8, 0)\n20 MOVE JOINT(10, 60, -190, 20, 8, 0), WRIST AUTO\n",
+        line=2,
+        motion=True,
+    ),
+    Rule(
+        code="RBL429",
+        severity=Severity.WARNING,
+        why="The cycle was reckoned with the speed in the program, and the arm does not have it. A bead or a weld laid "
+        "at another speed than programmed is another bead.",
+        bad="10 MOVE P2, TIME 0.3\n",
+        good="10 MOVE P2, TIME 1.5\n",
+        motion=True,
+    ),
+)
