@@ -208,6 +208,20 @@ def test_under_a_seam_sensor_a_chain_is_moves_one_after_the_other_without_blends
     assert np.abs(np.diff(sent, axis=0)).max() < 0.05  # nothing jumps where one move follows the other
 
 
+def test_under_a_seam_sensor_an_override_scales_the_speed():
+    times, fastest = [], []
+    for share in (1.0, 0.5):
+        robot = controller()
+        robot.seam(off())
+        robot.move(lines_of(robot, (0.0, 0.2, 0.0), override=share)[0])
+        run_out(robot)
+        way = robot.tool_poses(signals(robot)["q_plan"][::8])[:, 1, 3]
+        times.append(robot.time_us)
+        fastest.append(np.diff(way[60:-60]).max() / 8e-3)  # once the deviation of the start is made good
+    assert fastest == pytest.approx([0.1, 0.05], rel=0.02)
+    assert times[1] > 1.8 * times[0]
+
+
 def test_a_stop_under_a_seam_sensor_drops_the_moves_that_wait():
     robot = controller()
     robot.seam(off())
