@@ -21,6 +21,7 @@ import math
 from collections.abc import Callable, Collection, Generator
 
 from robolang.actions import ACTIONS, Action, Actions, seconds
+from robolang.branches import Decisions
 from robolang.effects import Drain, Effect, Halt, Pass, Show, origin
 from robolang.evaluator import Evaluator, Nowhere, World, finite, shown
 from robolang.nodes import (
@@ -33,6 +34,7 @@ from robolang.nodes import (
     Const,
     Delay,
     Dim,
+    Expression,
     For,
     Hand,
     Head,
@@ -86,15 +88,18 @@ class ProgramFault(Fault):
 
 
 def execute(program: Program, world: World | None = None,
-            points: Collection[str] = ()) -> Generator[Effect, None, None]:  # fmt: skip
+            points: Collection[str] = (), decisions: Decisions | None = None,
+            ) -> Generator[Effect, None, None]:  # fmt: skip
     """Yield the effects of a checked program in order; ``points`` are the names of the taught ones.
+
+    ``decisions`` is told which way each condition takes, and may change it.
 
     What a WRIST statement or a setting says holds for the moves that follow, and each of them carries it.
 
     Raises ``ValueError`` at a statement with an error: such a program must not be run. ``Fault`` where a statement has
     no value, and where one was thrown in that no ON ERROR catches.
     """
-    return _Machine(program, world or Nowhere(), points).run()
+    return _Machine(program, world or Nowhere(), points, decisions or Decisions()).run()
 
 
 _READS = frozenset({"IN", "HERE", "TIMER", "DIST"})
@@ -112,7 +117,8 @@ def reads_state(node: Node | None) -> bool:
 class _Machine:
     """A program that runs."""
 
-    def __init__(self, program: Program, world: World, points: Collection[str]) -> None:
+    def __init__(self, program: Program, world: World, points: Collection[str], decisions: Decisions) -> None:
+        self._decisions = decisions
         self._lines = program.lines
         self._structure: Structure = structure_of(program)
         self._scopes = Scopes(frozenset(point.upper() for point in points))
@@ -222,14 +228,17 @@ class _Machine:
     def _wait(self, line: Line, node: Wait, at: int) -> Run:
         yield Drain(**origin(line, node))
         timeout = math.inf if node.timeout is None else seconds(self._values, node.timeout, "TIMEOUT")
-        began = self._world.seconds()
-        while not self._values.true(node.condition):
-            if self._world.seconds() - began >= timeout - 1e-9:
+        began, place = self._world.seconds(), node.condition.span
+        forced = self._decisions.of_wait(place, endless=node.timeout is None)
+        while forced is not True and not (forced is None and self._values.true(node.condition)):
+            if forced is False or self._world.seconds() - began >= timeout - 1e-9:
+                self._decisions.took(place, False)
                 if node.target is not None:
                     return self._looped(at, self._line_of(node.target))
                 raise Fault("RBL503", f"WAIT has not come true within {shown(timeout)} s")
             self._taking_time()
             yield Pass(**origin(line, node), seconds=0.0)
+        self._decisions.took(place, True)
         return None
 
     def _print(self, line: Line, node: Print, at: int) -> Run:
@@ -257,22 +266,25 @@ class _Machine:
         return found
 
     def _if(self, line: Line, node: If, at: int) -> Run:
-        chosen = node.then if self._values.true(node.condition) else node.otherwise
+        chosen = node.then if self._is_true(node.condition) else node.otherwise
         if chosen is None:
             return None
         if reads_state(chosen):
             yield Drain(**origin(line, chosen))
         return (yield from _carried_out(_DO[type(chosen)](self, line, chosen, at)))
 
+    def _is_true(self, condition: Expression) -> bool:
+        return self._decisions.of(condition.span, self._values.true(condition))
+
     def _head(self, line: Line, node: Head, at: int) -> Run:
         structure = self._structure
         if node.word == "ELSEIF":  # reached from above: the branch before it is done
             return structure.end[at] + 1
         if node.word == "WHILE":
-            return None if self._values.true(node.value) else structure.end[at] + 1
+            return None if self._is_true(node.value) else structure.end[at] + 1
         if node.word == "SELECT":
             return (yield from self._case_of(line, node, at))
-        while not self._values.true(node.value):
+        while not self._is_true(node.value):
             at = structure.after[at]
             following = self._lines[at].statement
             if not isinstance(following, Head):  # ELSE, or ENDIF
@@ -292,7 +304,7 @@ class _Machine:
                 break
             if reads_state(statement):
                 yield Drain(**origin(line, node))
-            if any(self._values.value(value) == chosen for value in statement.values):
+            if self._decisions.of(statement.span, any(self._values.value(each) == chosen for each in statement.values)):
                 break
         return at + 1
 

@@ -7,21 +7,25 @@ position. A request that cannot be carried out goes to ON ERROR, as it would; on
 rehearsal: where the arm would be after it is not known.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
 from robolang import lowering
+from robolang.branches import Decisions
 from robolang.diagnostics import Diagnostic
 from robolang.effects import Effect, Halt, MoveTo, Pass, SetHand, SetOutput, SetPayload, SetSeam, SetTool
 from robolang.interpreter import ProgramFault, execute
 from robolang.lowering import Command
 from robolang.project import Project
+from robolang.source import Span
 from robolang.surroundings import RobotWorld
 from runtime.faults import Fault
 from runtime.frames import Array
 from runtime.motion.blend import Corner
-from runtime.motion.chain import MotionPlanner
+from runtime.motion.chain import ChainPlan, MotionPlanner
 from runtime.motion.commands import MoveLinear
 from runtime.motion.planner import LinePlan
 from runtime.robot.kinematics import Kinematics
@@ -31,6 +35,16 @@ MAX_CHAIN = 200
 """Most moves that blend into one another without a stop: a program that never stops is carried out nevertheless."""
 MAX_RUN_US = 1_800_000_000
 """Longest run, us of simulated time: about a kilobyte of log is kept for every tick."""
+
+
+class Planner(Protocol):
+    """What plans moves and joins them: ``runtime.motion.chain.MotionPlanner``."""
+
+    def plan(self, q_start: Array, command: Command, X_flange_tool: Array, /) -> LinePlan:
+        """Return the plan of one move; ``Fault`` where there is none."""
+
+    def join(self, plans: Sequence[LinePlan], zones: Sequence[float], X_flange_tool: Array, /) -> ChainPlan:
+        """Return moves blended in their zones."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,13 +73,14 @@ class RehearsedMove:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rehearsal:
-    """What a rehearsal found: ``moves`` in order, ``times_us`` by line of the file, ``total_us``, and the refusal that
-    ended it."""
+    """What a rehearsal found: ``moves`` in order, ``times_us`` by line of the file, ``total_us``, the refusal that
+    ended it, and the places of all moves that were ``tried``, with those that were refused and caught by ON ERROR."""
 
     moves: tuple[RehearsedMove, ...]
     times_us: dict[int, int]
     total_us: int
     refused: tuple[Diagnostic, ...]
+    tried: frozenset[Span]
 
 
 def motion_check(project: Project) -> tuple[Diagnostic, ...]:
@@ -73,19 +88,27 @@ def motion_check(project: Project) -> tuple[Diagnostic, ...]:
     return rehearse(project).refused
 
 
-def rehearse(project: Project) -> Rehearsal:
-    """Plan a checked program from its first statement to its last, or to what cannot be carried out."""
-    return _Rehearsal(project).run()
+def rehearse(project: Project, *, decisions: Decisions | None = None, planner: Planner | None = None,
+             most_us: int | None = None) -> Rehearsal:  # fmt: skip
+    """Plan a checked program from its first statement to its last, or to what cannot be carried out.
+
+    ``decisions`` may send conditions another way, ``planner`` may know plans already, ``most_us`` ends it earlier than
+    ``MAX_RUN_US``.
+    """
+    cell = project.cell
+    kinematics = Kinematics(cell.robot)
+    return _Rehearsal(project, kinematics, planner or MotionPlanner(cell.robot, kinematics, project.profile),
+                      decisions or Decisions(), MAX_RUN_US if most_us is None else most_us).run()  # fmt: skip
 
 
 class _Rehearsal:
     """A rehearsal under way."""
 
-    def __init__(self, project: Project) -> None:
+    def __init__(self, project: Project, kinematics: Kinematics, planner: Planner, decisions: Decisions,
+                 most_us: int) -> None:  # fmt: skip
         cell = project.cell
-        kinematics = Kinematics(cell.robot)
-        self._project, self._period_us = project, project.profile.period_us
-        self._planner = MotionPlanner(cell.robot, kinematics, project.profile)
+        self._project, self._period_us, self._planner = project, project.profile.period_us, planner
+        self._decisions, self._most_us = decisions, most_us
         self._now_us = 0
         self._world = RobotWorld(project.points, cell, kinematics, lambda: self._now_us)
         self._tracked = False
@@ -93,12 +116,13 @@ class _Rehearsal:
         self._chain: list[tuple[MoveTo, Command, LinePlan]] = []
         self._q_next: Array = np.array(cell.home)
         self._moves: list[RehearsedMove] = []
+        self._tried: set[Span] = set()
         self._times: dict[int, int] = {}
 
     def run(self) -> Rehearsal:
         """Rehearse to the end."""
         project = self._project
-        program = execute(project.program, self._world, project.points.names)
+        program = execute(project.program, self._world, project.points.names, self._decisions)
         fault: Fault | None = None
         refused: tuple[Diagnostic, ...] = ()
         while True:
@@ -117,7 +141,8 @@ class _Rehearsal:
             except Fault as found:
                 fault = found
         self._finish_motion()
-        return Rehearsal(moves=tuple(self._moves), times_us=self._times, total_us=self._now_us, refused=refused)
+        return Rehearsal(moves=tuple(self._moves), times_us=self._times, total_us=self._now_us, refused=refused,
+                         tried=frozenset(self._tried))  # fmt: skip
 
     def _take(self, effect: Effect) -> bool:
         if isinstance(effect, MoveTo):
@@ -143,10 +168,11 @@ class _Rehearsal:
         spent = cycles * self._period_us
         self._times[effect.line] = self._times.get(effect.line, 0) + spent
         self._now_us += spent
-        if self._now_us >= MAX_RUN_US:
-            raise Fault("RBL509", f"the run would last {MAX_RUN_US / 1e6:g} s of simulated time and is not over")
+        if self._now_us >= self._most_us:
+            raise Fault("RBL509", f"the run would last {self._most_us / 1e6:g} s of simulated time and is not over")
 
     def _move(self, effect: MoveTo) -> None:
+        self._tried.add(effect.span)
         self._world.q_last = self._q_next
         command = lowering.move(effect, self._world.around)
         if self._tracked:

@@ -16,12 +16,13 @@ for a statement, the worst or the first on its way.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
 from robolang.diagnostics import Diagnostic, Severity
+from robolang.exploration import Detour
 from robolang.line_times import range_margin
 from robolang.motion_check import Rehearsal, RehearsedMove
 from robolang.project import Project
@@ -46,17 +47,29 @@ SLOWED = 1.5
 Found = Iterator[Diagnostic]
 
 
-def findings(project: Project, rehearsal: Rehearsal, max_cycle_s: float | None = None) -> tuple[Diagnostic, ...]:
-    """Return what is wrong with the motion of a program, one finding of a code for a statement."""
-    found: dict[tuple[str, Span], Diagnostic] = {(item.code, item.span): item for item in rehearsal.refused}
-    each = _Moves(project)
-    for check in (each.touches, each.folds, each.near_range, each.near_singular, each.wrist_changes, each.slowed):
-        for move in rehearsal.moves:
-            for item in check(move):
-                found.setdefault((item.code, item.span), item)
-    for item in (*_zones(rehearsal.moves), *_loads(project, rehearsal.moves)):
-        found.setdefault((item.code, item.span), item)
+def findings(project: Project, rehearsal: Rehearsal, max_cycle_s: float | None = None,
+             detours: Sequence[Detour] = ()) -> tuple[Diagnostic, ...]:  # fmt: skip
+    """Return what is wrong with the motion of a program, one finding of a code for a statement.
+
+    Of ``detours`` it is what the rehearsal has not shown: errors of planning and what the moves show, with the way to
+    it. What stops a detour otherwise, such as a WAIT that times out, is what its program wants.
+    """
+    moves = _Moves(project)
+    found = {(item.code, item.span): item for item in (*rehearsal.refused, *moves.findings(rehearsal))}
+    for detour in detours:
+        refused = (item for item in detour.rehearsal.refused if item.code.startswith(("RBL3", "RBL4")))
+        for item in (*refused, *moves.findings(detour.rehearsal)):
+            told = replace(item, message=f"{item.message} ({_way(project, detour)})")
+            found.setdefault((item.code, item.span), told)
     return (*found.values(), *_cycle(rehearsal, max_cycle_s))
+
+
+def _way(project: Project, detour: Detour) -> str:
+    """Return the way of a detour in words."""
+    source = project.source
+    said = (f"if '{source.slice(place)}' in line {source.place(place.start).line} is {'true' if way else 'not true'}"
+            for place, way in detour.forced.items())  # fmt: skip
+    return " and ".join(said)
 
 
 def _cycle(rehearsal: Rehearsal, most_s: float | None) -> Found:
@@ -71,12 +84,32 @@ def _at(code: str, move: RehearsedMove, message: str, severity: Severity = Sever
 
 
 class _Moves:
-    """Checks of one move by itself."""
+    """Checks of the moves of rehearsals; what was looked at before is not looked at again."""
 
     def __init__(self, project: Project) -> None:
         self._spec, self._period_s = project.cell.robot, project.profile.period_s
         self._kinematics = Kinematics(self._spec)
         self._shapes = MujocoPlant(self._spec, project.cell, project.profile.tick_s)
+        self._project = project
+        self._seen: set[tuple[object, ...]] = set()
+
+    def findings(self, rehearsal: Rehearsal) -> Found:
+        """Yield what the moves of a rehearsal show, those of one check after those of another."""
+        new = [move for move in rehearsal.moves if self._is_new(move)]
+        for check in (self.touches, self.folds, self.near_range, self.near_singular, self.wrist_changes, self.slowed):
+            first: dict[Span, Diagnostic] = {}
+            for move in new:
+                if move.effect.span not in first:
+                    first.update((item.span, item) for item in check(move))
+            yield from first.values()
+        yield from _zones(rehearsal.moves)
+        yield from _loads(self._project, new)
+
+    def _is_new(self, move: RehearsedMove) -> bool:
+        key = (move.effect.span, move.q.tobytes(), id(move.payload))
+        known = key in self._seen
+        self._seen.add(key)
+        return not known
 
     def touches(self, move: RehearsedMove) -> Found:
         """Report the first obstacle that the arm would be in."""

@@ -4,8 +4,9 @@ Imported where it is asked for: it needs numpy, pinocchio and mujoco, which chec
 """
 
 from robolang.diagnostics import Diagnostic, safe
+from robolang.exploration import Exploration, explore
 from robolang.line_times import LineTime, line_times
-from robolang.motion_check import Rehearsal, rehearse
+from robolang.motion_check import Rehearsal
 from robolang.motion_findings import findings, worst_loads
 from robolang.project import Project, load_project
 
@@ -21,8 +22,9 @@ def planned(program: str, max_cycle_s: float | None) -> tuple[tuple[Diagnostic, 
     project = load_project(program)
     if not project.ok:
         return project.diagnostics, ""
-    rehearsal = rehearse(project)
-    return findings(project, rehearsal, max_cycle_s), _table(project, rehearsal)
+    explored = explore(project)
+    found = findings(project, explored.rehearsal, max_cycle_s, explored.detours)
+    return found, _table(project, explored.rehearsal) + _ways(project, explored)
 
 
 def _table(project: Project, rehearsal: Rehearsal) -> str:
@@ -36,6 +38,18 @@ def _table(project: Project, rehearsal: Rehearsal) -> str:
         *_wrist(project, rehearsal),
     ]
     return "\n".join(line.rstrip() for line in lines) + "\n"
+
+
+def _ways(project: Project, explored: Exploration) -> str:
+    """Return what to say of the ways through the program: how many were planned, and which moves on none of them."""
+    text = ""
+    if explored.detours:
+        ways = len(explored.detours)
+        text += f"and {ways} other way{'s' * (ways > 1)} through it, where inputs, time or errors decide\n"
+    if explored.missed:
+        lines = sorted({project.source.place(node.span.start).line for node in explored.missed})
+        text += f"not planned, since no way led there: the moves in line {', '.join(map(str, lines))}\n"
+    return text
 
 
 def _wrist(project: Project, rehearsal: Rehearsal) -> list[str]:

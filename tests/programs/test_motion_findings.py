@@ -109,7 +109,7 @@ def test_a_payload_that_overloads_the_wrist(tmp_path):
     assert found(tmp_path, HEAVY.format(0, 0.01, 0.01, 0.01), "RBL426") == []
     inertia = found(tmp_path, HEAVY.format(0, 0.2, 0.2, 0.2), "RBL426")
     assert [severity for *_, severity in inertia] == [Severity.WARNING]  # one for a statement, the first axis
-    assert "the inertia of the payload of 2.4 kg about J4 is 0.2" in inertia[0][1]
+    assert "the inertia of the payload of 2.4 kg about J6 is 0.2 kg m2, 0.0551 more than" in inertia[0][1]
 
 
 def test_published_ratings_make_it_an_error(tmp_path):

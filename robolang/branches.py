@@ -1,0 +1,136 @@
+"""Where a program may go another way than it did: conditions that depend on inputs, time or errors.
+
+A rehearsal sees one way through a program, that of the simulated inputs. ``Decisions`` lets a caller of the interpreter
+see which way each condition went, and send it the other way the first time that it is asked. Which conditions can go
+either way in the cell is ``open_conditions``: those that read an input, the time or the error, or a name that was given
+such a value somewhere. What depends on numbers of the program alone goes the way it goes.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from robolang.nodes import (
+    Assign,
+    Call,
+    CallSub,
+    Case,
+    Const,
+    Expression,
+    For,
+    Head,
+    If,
+    Name,
+    Program,
+    Statement,
+    Sub,
+    Wait,
+)
+from robolang.source import Span
+from robolang.tree import Node, walk
+
+_OUTSIDE = frozenset({"IN", "TIMER", "ERR"})
+
+
+class Decisions:
+    """The ways that conditions took in one run, by the place of the condition, and those that are to be forced.
+
+    ``forced``: a condition takes this way the first time. ``patient`` False: a WAIT without a TIMEOUT comes true at
+    once, where the way that was forced has left behind what it waits for.
+    """
+
+    def __init__(self, forced: Mapping[Span, bool] | None = None, *, patient: bool = True) -> None:
+        self._forced = dict(forced or {})
+        self._patient = patient
+        self.taken: dict[Span, set[bool]] = {}
+        """Ways that each condition took."""
+
+    def of(self, place: Span, value: bool) -> bool:
+        """Return the way that a condition takes, which has a value."""
+        return self.took(place, self._forced.pop(place, value))
+
+    def of_wait(self, place: Span, *, endless: bool) -> bool | None:
+        """Return the way that a WAIT is to take, True: it comes true, None: as the inputs say."""
+        return self._forced.pop(place, True if endless and not self._patient else None)
+
+    def took(self, place: Span, value: bool) -> bool:
+        """Note the way that a condition took, and return it."""
+        self.taken.setdefault(place, set()).add(value)
+        return value
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Condition:
+    """A condition: its ``place`` and source line, and whether it is that of a WAIT."""
+
+    place: Span
+    line: int
+    wait: bool = False
+
+
+def open_conditions(program: Program) -> dict[Span, Condition]:
+    """Return the conditions of a program that can go either way, by place."""
+    outside = _from_outside(program)
+    return {
+        place: Condition(place=place, line=line, wait=wait)
+        for place, line, wait, asked in _conditions(program)
+        if any(_is_outside(node, outside) for node in asked)
+    }
+
+
+def _conditions(program: Program) -> Iterator[tuple[Span, int, bool, tuple[Expression, ...]]]:
+    """Yield place, line, whether it is a WAIT that may time out, and what is asked, of every condition."""
+    selected: list[Expression] = []
+    for line in program.statements:
+        for node in _parts(line.statement):
+            if isinstance(node, If):
+                yield node.condition.span, line.source_line, False, (node.condition,)
+            elif isinstance(node, Wait) and node.timeout is not None:
+                yield node.condition.span, line.source_line, True, (node.condition,)
+            elif isinstance(node, Head) and node.word == "SELECT":
+                selected.append(node.value)
+            elif isinstance(node, Head):
+                yield node.value.span, line.source_line, False, (node.value,)
+            elif isinstance(node, Case):
+                yield node.span, line.source_line, False, (*node.values, *selected[-1:])
+            elif getattr(node, "word", "") == "ENDSELECT" and selected:
+                selected.pop()
+
+
+def _parts(node: Statement | None) -> Iterator[Statement]:
+    if node is None:
+        return
+    yield node
+    if isinstance(node, If):
+        yield from _parts(node.then)
+        yield from _parts(node.otherwise)
+
+
+def _from_outside(program: Program) -> frozenset[str]:
+    """Return the names that are given a value from outside somewhere, in capitals."""
+    given = list(_given(program))
+    found: set[str] = set()
+    while True:
+        more = {name for name, value in given if name not in found and _is_outside(value, found)}
+        if not more:
+            return frozenset(found)
+        found |= more
+
+
+def _given(program: Program) -> Iterator[tuple[str, Expression]]:
+    """Yield every name that is given a value, and the value; of an array its name."""
+    subs = {line.statement.name.key: line.statement for line in program.statements if isinstance(line.statement, Sub)}
+    for line in program.statements:
+        for node in _parts(line.statement):
+            if isinstance(node, Assign):
+                yield (node.target.name if isinstance(node.target, Call) else node.target).key, node.value
+            elif isinstance(node, Const):
+                yield node.name.key, node.value
+            elif isinstance(node, For):
+                yield from ((node.variable.key, limit) for limit in (node.first, node.last, node.step) if limit)
+            elif isinstance(node, CallSub) and node.name.key in subs:
+                parameters = subs[node.name.key].parameters
+                yield from zip((name.key for name in parameters), node.arguments, strict=False)
+
+
+def _is_outside(node: Node, names: frozenset[str] | set[str]) -> bool:
+    return any(isinstance(each, Name) and (each.key in _OUTSIDE or each.key in names) for each in walk(node))

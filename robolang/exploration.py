@@ -1,0 +1,127 @@
+"""Every way that a program may take in its cell, as far as conditions from outside decide it.
+
+The simulated inputs lead a rehearsal one way. From there each condition that can go the other way (``branches``) is
+sent there once, and the program rehearsed again; what is new behind it is sent its other ways in turn, until every such
+condition has gone both ways or ``MOST_DETOURS`` rehearsals are done. What a detour shows is possible in the cell as far
+as the program goes; that two conditions may exclude one another is not known here.
+
+Plans are remembered by what they depend on, so the part that a detour shares with another rehearsal costs nothing.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from robolang.branches import Decisions, open_conditions
+from robolang.lowering import Command
+from robolang.motion_check import Rehearsal, rehearse
+from robolang.nodes import If, Moving, Statement
+from robolang.project import Project
+from robolang.source import Span
+from runtime.faults import Fault
+from runtime.frames import Array
+from runtime.motion.chain import ChainPlan, MotionPlanner
+from runtime.motion.planner import LinePlan
+from runtime.robot.kinematics import Kinematics
+
+MOST_DETOURS = 60
+"""Most rehearsals besides the first."""
+DETOUR_US = 600_000_000
+"""Longest detour, us of simulated time: on its way inputs need not come as the cell simulates them."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Detour:
+    """A rehearsal in which conditions were sent another way: place of each and the way it took."""
+
+    rehearsal: Rehearsal
+    forced: Mapping[Span, bool]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Exploration:
+    """The rehearsal by the simulated inputs, the detours, and the moves of the program that none of them reached."""
+
+    rehearsal: Rehearsal
+    detours: tuple[Detour, ...]
+    missed: tuple[Moving, ...]
+
+
+def explore(project: Project) -> Exploration:
+    """Rehearse a checked program on every way that it may take."""
+    planner = _Remembering(project)
+    conditions = open_conditions(project.program)
+    decisions = Decisions()
+    first = rehearse(project, decisions=decisions, planner=planner)
+    gone = {(place, way) for place, ways in decisions.taken.items() for way in ways}
+    todo: list[dict[Span, bool]] = [{place: way} for place, way in _others(conditions, gone, decisions)]
+    detours: list[Detour] = []
+    while todo and len(detours) < MOST_DETOURS:
+        forced = todo.pop(0)
+        place, way = next(reversed(forced.items()))
+        if (place, way) in gone:
+            continue
+        gone.add((place, way))  # also where a fault keeps it from being asked
+        decisions = Decisions(forced, patient=False)
+        rehearsal = rehearse(project, decisions=decisions, planner=planner, most_us=DETOUR_US)
+        detours.append(Detour(rehearsal=rehearsal, forced=forced))
+        gone |= {(each, taken) for each, ways in decisions.taken.items() for taken in ways}
+        todo += [{**forced, other: turned} for other, turned in _others(conditions, gone, decisions)]
+    tried = first.tried.union(*(detour.rehearsal.tried for detour in detours))
+    missed = tuple(node for node in _moves(project) if node.span not in tried)
+    return Exploration(rehearsal=first, detours=tuple(detours), missed=missed)
+
+
+def _others(conditions: Mapping[Span, object], gone: set[tuple[Span, bool]],
+            decisions: Decisions) -> list[tuple[Span, bool]]:  # fmt: skip
+    """Return the ways that conditions of a rehearsal have not gone yet, in any."""
+    return [(place, way) for place in decisions.taken if place in conditions
+            for way in (True, False) if (place, way) not in gone]  # fmt: skip
+
+
+def _moves(project: Project) -> list[Moving]:
+    todo: list[Statement | None] = [line.statement for line in reversed(project.program.statements)]
+    found: list[Moving] = []
+    while todo:
+        node = todo.pop()
+        if isinstance(node, If):
+            todo += [node.otherwise, node.then]
+        elif isinstance(node, Moving):
+            found.append(node)
+    return found
+
+
+class _Remembering:
+    """A planner that plans nothing twice."""
+
+    def __init__(self, project: Project) -> None:
+        robot = project.cell.robot
+        self._planner = MotionPlanner(robot, Kinematics(robot), project.profile)
+        self._plans: dict[tuple[object, ...], LinePlan | Fault] = {}
+        self._chains: dict[tuple[object, ...], ChainPlan] = {}
+
+    def plan(self, q_start: Array, command: Command, X_flange_tool: Array, /) -> LinePlan:
+        """Return the plan of one move, as ``MotionPlanner.plan`` does."""
+        key = (q_start.tobytes(), *_key(command), X_flange_tool.tobytes())
+        if key not in self._plans:
+            try:
+                self._plans[key] = self._planner.plan(q_start, command, X_flange_tool)
+            except Fault as fault:
+                self._plans[key] = fault
+        found = self._plans[key]
+        if isinstance(found, Fault):
+            raise Fault(found.code, found.message, found.hint)
+        return found
+
+    def join(self, plans: Sequence[LinePlan], zones: Sequence[float], X_flange_tool: Array, /) -> ChainPlan:
+        """Return moves blended in their zones, as ``MotionPlanner.join`` does."""
+        key = (*(id(plan) for plan in plans), *zones, X_flange_tool.tobytes())  # plans are kept, so ids stay theirs
+        if key not in self._chains:
+            self._chains[key] = self._planner.join(plans, zones, X_flange_tool)
+        return self._chains[key]
+
+
+def _key(command: Command) -> tuple[object, ...]:
+    values = (getattr(command, field.name) for field in fields(command))
+    return (type(command), *(value.tobytes() if isinstance(value, np.ndarray) else value for value in values))
