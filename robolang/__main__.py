@@ -20,8 +20,19 @@ def _forget_working_folder() -> None:
         del sys.path[0]
 
 
+def _keep_others_from_it() -> None:
+    """Let no process that is started from here import from the working folder either.
+
+    ``compare`` starts some. MuJoCo's window library would start one at every import, to ask for its version; the
+    command line opens no window, so it is left out.
+    """
+    os.environ["PYTHONSAFEPATH"] = "1"
+    os.environ.setdefault("MUJOCO_GL", "disable")
+
+
 def main() -> None:
     """Run the command line."""
+    _keep_others_from_it()
     if sys.argv[1:] == ["--version"]:
         from robolang import __version__
 

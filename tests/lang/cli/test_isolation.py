@@ -1,5 +1,6 @@
 """R26: nothing beside a program is code. Modules planted in the working folder are not imported, programs not run."""
 
+import json
 import os
 import subprocess
 import sys
@@ -11,8 +12,8 @@ from tests.lang.cli.commands import ROOT
 
 SCRIPT = Path(sys.executable).with_name("robolang")
 NAMES = ("lark", "typer", "click", "rich", "numpy", "pinocchio", "mujoco", "ruckig", "tomllib", "tomlkit", "runtime",
-         "json", "difflib", "pathlib", "dataclasses", "typing", "tempfile", "unicodedata", "runpy", "sitecustomize",
-         "usercustomize")  # fmt: skip
+         "json", "ctypes", "struct", "multiprocessing", "encodings", "difflib", "pathlib", "dataclasses", "typing",
+         "tempfile", "unicodedata", "runpy", "sitecustomize", "usercustomize", "glfw")  # fmt: skip
 PROGRAM = "10 PRINT \"it ran\"\n20 MOVE P1\n30 WHILE 1\n40 WEND\n"
 
 
@@ -62,6 +63,17 @@ def test_nothing_is_imported_from_the_working_folder(folder, form, words):
     assert traces(folder) == []
     assert result.returncode in (0, 1, 3)
     assert "Traceback" not in result.stderr
+
+
+@pytest.mark.parametrize("form", ["script", "module"])
+def test_processes_that_a_command_starts_import_nothing_from_it(folder, form):
+    (folder / "job.rbl").write_text("MOVE P1\n")
+    before = [str(SCRIPT)] if form == "script" else [sys.executable, "-m", "robolang"]
+    words = ("compare", "--jobs", "2", "--no-physics", "--only", "scheduled,diagonal", "--json", "job.rbl")
+    result = done(folder, *before, *words)
+    assert traces(folder) == []
+    assert result.returncode in (0, 3), result.stderr
+    assert len(json.loads(result.stdout)["variants"]) == 2
 
 
 def test_a_check_executes_nothing(folder):

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from robolang.formatter import format_source
+from robolang.source import Source
 from tests.lang.cli import watched
 from tests.lang.cli.commands import ROOT
 
@@ -57,7 +59,8 @@ def program(tmp_path):
 
 
 def events(*words):
-    done = subprocess.run([sys.executable, "-m", "tests.lang.cli.watched", *map(str, words)], cwd=ROOT,
+    """What a process of ``watched`` saw; without the byte code that Python keeps of modules it imports first."""
+    done = subprocess.run([sys.executable, "-B", "-m", "tests.lang.cli.watched", *map(str, words)], cwd=ROOT,
                           capture_output=True, text=True, timeout=120)  # fmt: skip
     assert done.returncode == 0, done.stderr
     return [tuple(event) for event in json.loads(done.stderr.splitlines()[-1])]
@@ -77,6 +80,13 @@ def test_a_program_that_tries_asks_python_for_nothing(program):
 @pytest.mark.parametrize("path", PROGRAMS, ids=lambda path: path.stem)
 def test_programs_ask_python_for_nothing(path):
     assert events(path) == []
+
+
+@pytest.mark.parametrize("words", [("check",), ("check", "--motion"), ("fmt", "--check")], ids=" ".join)
+def test_a_check_writes_nothing_and_starts_nothing(program, words):
+    """R26, as far as Python is asked; the import of numpy and the like asks for no process either."""
+    program.write_text(format_source(Source("job.rbl", HOSTILE)).text)
+    assert events("-", *words, program) == []
 
 
 def test_a_whole_run_writes_its_log_and_its_report_and_nothing_else(program, tmp_path):
