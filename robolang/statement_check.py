@@ -205,6 +205,11 @@ class StatementCheck:
         cog = [value for value in map(fixed, node.cog.items) if value is not None]
         if len(cog) == 3:
             yield from _centre(cog, mass, node.cog)
+        if node.inertia is not None:
+            inertia = [value for value in map(fixed, node.inertia.items) if value is not None]
+            if len(inertia) == 6 and not _is_inertia(*inertia):
+                message = "no body has this inertia: no principal moment is negative or over the sum of the others"
+                yield Diagnostic(code="RBL403", message=message, span=node.inertia.span)
 
     def _load_named(self, node: LoadNamed) -> Iterator[Diagnostic]:
         yield from of_cell(node.name, self._facts.loads, "load")
@@ -357,3 +362,25 @@ def _centre(cog: list[float], mass: float | None, place: Node) -> Iterator[Diagn
     elif mass != 0.0 and not distance <= MAX_COG_MM:
         message = f"the centre of gravity is {distance:g} mm from the flange, more than {MAX_COG_MM:g} mm"
         yield Diagnostic(code="RBL403", message=message, span=place.span)
+
+
+def _is_inertia(xx: float, yy: float, zz: float, xy: float, xz: float, yz: float) -> bool:
+    """Return whether a body can have this inertia about its centre of gravity, kg m2, products as matrix elements.
+
+    It can if and only if E tr/2 - I, the second moments of its mass, has no negative principal minor (Wensing, Kim,
+    Slotine, "Linear matrix inequalities for physically consistent inertial parameter identification", 2018).
+    The planner asks the same of the principal moments, with less tolerance.
+    """
+    if not all(map(math.isfinite, (xx, yy, zz, xy, xz, yz))):
+        return False
+    half = (xx + yy + zz) / 2.0
+    a, b, c = half - xx, half - yy, half - zz
+    scale = max(map(abs, (xx, yy, zz, xy, xz, yz)))
+    ones = (a, b, c)
+    twos = (a * b - xy * xy, a * c - xz * xz, b * c - yz * yz)
+    three = a * twos[2] - b * xz * xz - c * xy * xy - 2.0 * xy * xz * yz
+    orders = ((1, ones), (2, twos), (3, (three,)))
+    return all(minor >= -_ROUNDING * scale**order for order, minors in orders for minor in minors)
+
+
+_ROUNDING = 1e-6

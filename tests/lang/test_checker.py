@@ -1,3 +1,4 @@
+import numpy as np
 import pytest
 
 from robolang.checker import check
@@ -347,3 +348,22 @@ def test_severity_and_the_other_place():
     assert source(text).slice(first(text).related[0].span) == "k"
     text = "CALL s(1)\nSUB s\nENDSUB"
     assert source(text).slice(first(text).related[0].span) == "SUB s"
+
+
+def test_an_inertia_is_a_body_s_or_not_as_its_principal_moments_say():
+    """Against the eigenvalues, for tensors of random bodies and such as are a little off."""
+    random = np.random.default_rng(18)
+    wrong = 0
+    for _ in range(400):
+        moments = random.uniform(0.0, 1.0, 3)
+        turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
+        tensor = turn @ np.diag(moments) @ turn.T
+        largest, rest = moments.max(), moments.sum() - moments.max()
+        if abs(largest - rest) < 1e-3:
+            continue
+        values = [tensor[i] for i in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
+        text = f"LOAD (0, 0, 0), 1, ({', '.join(f'{value:.12f}' for value in values)})"
+        found = [code for code, *_ in checked(text)]
+        assert found == (["RBL403"] if largest > rest else []), text
+        wrong += largest > rest
+    assert 50 < wrong < 350
