@@ -6,24 +6,20 @@ and every line is looked at first for what would make parsing it unsafe: hidden 
 tree is built while the parser reduces, without a visitor, so its depth is bounded by ``MAX_DEPTH`` and
 nothing recurses.
 
-Building the LALR table takes some 40 ms and happens once per process, at the first statement. It is not
-cached on disk: that cache would be unpickled from a place others may write to.
+The parser of a line is Lark's, with a table that is part of the package (``grammar``).
 """
 
-import math
 import re
 from dataclasses import dataclass
-from functools import cache
-from pathlib import Path
 
-from lark import Lark, Token, UnexpectedToken
+from lark import Token, UnexpectedToken
 
 from robolang import nodes
-from robolang.builder import Parsed, builder, span_of
+from robolang.builder import Parsed, span_of
 from robolang.diagnostics import HIDDEN, MAX_DIAGNOSTICS, Diagnostic, Severity, in_order
+from robolang.grammar import line_parser
 from robolang.mistakes import Unexpected, explain, quote, suspicious
 from robolang.source import MAX_BYTES, Source, Span
-from robolang.words import kind_of
 
 MAX_LINE = 10_000
 MAX_DEPTH = 100
@@ -147,7 +143,7 @@ def _parse_statement(code: str, base: int) -> Parsed | Diagnostic:
         return None, None, None
     if code[0] == "'":
         return None, None, nodes.Comment(text=code.rstrip(), span=Span(base, base + len(code.rstrip())))
-    session = _parser().parse_interactive(code, start="start")
+    session = line_parser().parse_interactive(code, start="start")
     token = None
     try:
         # The lexer sees one line; shifting its tokens here makes every place one of the source.
@@ -171,33 +167,3 @@ def _unexpected(token: Token, accepts: set[str], code: str, base: int) -> Unexpe
     return Unexpected(
         kind=token.type, text=str(token), span=span, accepts=accepts, before=code[:start], after=code[end:]
     )
-
-
-def _classify(token: Token) -> Token:
-    """Give a word, a number or a stray character its final kind (callback of the lexer)."""
-    kind: str | None = None
-    if not token.isascii():
-        kind = "SUSPICIOUS"
-    elif token.type == "NAME":
-        kind = kind_of(token)
-    elif token.type == "NUMBER" and not math.isfinite(float(token)):
-        kind = "HUGE"
-    if kind is not None:
-        token.type = kind
-    return token
-
-
-@cache
-def _parser() -> Lark:
-    grammar = Path(__file__).with_name("grammar.lark").read_text(encoding="utf-8")
-    callbacks = dict.fromkeys(("NAME", "NUMBER", "MALFORMED", "OTHER"), _classify)
-    return Lark(
-        grammar,
-        parser="lalr",
-        lexer="basic",
-        start=["start", "refused"],
-        transformer=builder(),
-        lexer_callbacks=callbacks,
-    )
-
-

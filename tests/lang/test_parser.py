@@ -6,7 +6,8 @@ from pathlib import Path
 import lark
 import pytest
 
-import robolang.parser as parser_module
+from robolang import grammar
+from robolang.grammar import line_parser
 from robolang.nodes import (
     Accel,
     Component,
@@ -122,7 +123,7 @@ def conflicts(grammar, caplog):
 
 
 def test_the_grammar_is_lalr_1_without_a_conflict(caplog):
-    assert conflicts(Path(parser_module.__file__).with_name("grammar.lark").read_text(encoding="utf-8"), caplog) == []
+    assert conflicts(Path(grammar.__file__).with_name("grammar.lark").read_text(encoding="utf-8"), caplog) == []
     assert conflicts('start: "m" ("," hold)*\nhold: "h" "c" ("," "c")*', caplog)
 
 
@@ -199,7 +200,7 @@ def test_line_ends(end):
 
 
 def test_one_parser_for_the_process():
-    assert parser_module._parser() is parser_module._parser()
+    assert line_parser() is line_parser()
 
 
 def test_the_listing_of_1992():

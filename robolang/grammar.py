@@ -1,0 +1,121 @@
+"""The parser of one line, as Lark makes it from ``grammar.lark``: its table is shipped, not made in every process.
+
+Making the LALR table takes a third of a check of a short program. ``grammar.json`` holds what Lark's own serializer
+gives of it, as plain data; Lark reads it back in a tenth of the time. Nothing in it is run, unlike Lark's cache, which
+is unpickled from a folder that others may write to. The form is that of one version of Lark: under another one the
+table is made from the grammar, as if the file were not there.
+
+``python -m robolang.grammar`` writes the file anew after a change of the grammar; a test says when that was forgotten
+(docs/decisions/0022).
+"""
+
+import json
+import math
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import lark
+from lark import Lark, Token
+from lark.grammar import Rule
+from lark.lexer import TerminalDef
+
+from robolang.builder import builder
+from robolang.words import kind_of
+
+TABLE = Path(__file__).with_name("grammar.json")
+_GRAMMAR = Path(__file__).with_name("grammar.lark")
+
+
+@cache
+def line_parser() -> Lark:
+    """Return the parser of what follows the line number; its values are the nodes that ``builder`` makes."""
+    found = _shipped()
+    return made() if found is None else found
+
+
+def made() -> Lark:
+    """Return the parser made from the grammar."""
+    return Lark(_GRAMMAR.read_text(encoding="utf-8"), parser="lalr", lexer="basic", start=["start", "refused"],
+                **_callbacks())  # fmt: skip
+
+
+def _shipped() -> Lark | None:
+    """Return the parser from its shipped table; None where there is none for this version of Lark."""
+    try:
+        content = json.loads(TABLE.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    if content.get("lark") != lark.__version__:
+        return None
+    data, memo = content["data"], _by_number(content["memo"])
+    table = data["parser"]["parser"]
+    table["tokens"] = _by_number(table["tokens"])
+    table["states"] = {state: _by_number(row) for state, row in _by_number(table["states"]).items()}
+    parser: Lark = Lark._load_from_dict(data, memo, **_callbacks())  # type: ignore[no-untyped-call]
+    return parser
+
+
+def serialized() -> str:
+    """Return the content of the shipped table."""
+    data, memo = made().memo_serialize([TerminalDef, Rule])
+    for name in _callbacks():
+        del data["options"][name]
+    data["parser"]["parser"] = _ordered(data["parser"]["parser"])
+    content = {"lark": lark.__version__, "data": data, "memo": memo}
+    return json.dumps(content, separators=(",", ":"), sort_keys=True) + "\n"
+
+
+def _ordered(table: dict[str, Any]) -> dict[str, Any]:
+    """Return a table with tokens numbered by name and states in the order in which they are reached from the starts.
+
+    Lark numbers both in an order that differs from process to process. A step of a row is (0, state to go to) or
+    (1, rule to reduce by).
+    """
+    tokens = sorted(table["tokens"].values())
+    rows = {state: {table["tokens"][token]: step for token, step in row.items()}
+            for state, row in table["states"].items()}  # fmt: skip
+    order = [table["start_states"][name] for name in sorted(table["start_states"])]
+    for state in order:  # grows while it is gone through
+        for _, (kind, to) in sorted(rows[state].items()):
+            if kind == 0 and to not in order:
+                order.append(to)
+    number = {state: index for index, state in enumerate(order)}
+    return {
+        "tokens": dict(enumerate(tokens)),
+        "states": {
+            number[state]: {tokens.index(token): (kind, number[to] if kind == 0 else to)
+                            for token, (kind, to) in row.items()}
+            for state, row in rows.items()
+        },
+        "start_states": {name: number[state] for name, state in table["start_states"].items()},
+        "end_states": {name: number[state] for name, state in table["end_states"].items()},
+    }  # fmt: skip
+
+
+def _by_number(table: dict[str, Any]) -> dict[int, Any]:
+    """Return a table whose keys were numbers before JSON made them texts."""
+    return {int(key): value for key, value in table.items()}
+
+
+def _callbacks() -> dict[str, Any]:
+    kinds = dict.fromkeys(("NAME", "NUMBER", "MALFORMED", "OTHER"), _classify)
+    return {"transformer": builder(), "lexer_callbacks": kinds}
+
+
+def _classify(token: Token) -> Token:
+    """Give a word, a number or a stray character its final kind (callback of the lexer)."""
+    kind: str | None = None
+    if not token.isascii():
+        kind = "SUSPICIOUS"
+    elif token.type == "NAME":
+        kind = kind_of(token)
+    elif token.type == "NUMBER" and not math.isfinite(float(token)):
+        kind = "HUGE"
+    if kind is not None:
+        token.type = kind
+    return token
+
+
+if __name__ == "__main__":
+    TABLE.write_text(serialized(), encoding="utf-8")
