@@ -18,7 +18,7 @@ speed allows, never past the end angle:
     S84   the one with the least sum of squares of the chosen components off those of the path; ties: nearest to S8
 
 All candidates lie between the straight way and the end angle, so the end angles are reached in time. The steps so
-chosen are within the speed limit and nothing else: they jump from one candidate to another. ``held_way`` therefore
+chosen are within the speed limit and nothing else: they jump from one candidate to another. ``held_ways`` therefore
 smooths what ``suppress`` chose before it is executed, see there.
 
 Source: CN103429397A (Kobe Steel), embodiment 4, whose text is lost past its equation numbers; the reconstruction is
@@ -26,6 +26,7 @@ that of docs/wrist.md. Angles rad.
 """
 
 import itertools
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -151,27 +152,33 @@ class WristTable:
         return np.asarray(np.where(at[:, None] >= last, self.values[-1], inside))
 
 
-def held_way(suppression: Suppression, path: Path, q_switch: Array, slope: Array, end: Array, s_switch: float,
-             rate: float, window: float) -> WristTable:  # fmt: skip
-    """Return a way from joint angles q_switch (n,) to ``end`` (3,) that holds components and can be executed.
+def held_ways(suppression: Suppression, path: Path, q_switch: Array, slope: Array, end: Array, s_switch: float,
+              rate: float, windows: Sequence[float]) -> Iterator[WristTable]:  # fmt: skip
+    """Yield ways from joint angles q_switch (n,) to ``end`` (3,) that hold components and can be executed.
 
-    ``suppress`` is run at the constant rate ds/dt = ``rate``, 1/s, over the rest of the path, and what it chose is
-    averaged twice over ``window`` (a share of that rest): a step of speed becomes a ramp. Before the switch the way
-    goes on with ``slope`` (3,) d theta / ds of the path, after the end it stands, so both ends are met.
+    ``suppress`` is run at the constant rate ds/dt = ``rate``, 1/s, over the rest of the path, once for all ways, and
+    what it chose is averaged twice over each window (a share of that rest): a step of speed becomes a ramp. Before the
+    switch the way goes on with ``slope`` (3,) d theta / ds of the path, after the end it stands, so both ends are met.
     """
     s = np.linspace(s_switch, 1.0, STEPS + 1)
     X = path.poses(s[1:])
     period_s = (1.0 - s_switch) / STEPS / rate
     frames = frames_along(path, s[1:]) if isinstance(path, ArcPath) else None
     chosen = suppression.way(q_switch, end, s, X[:, :3, 3], X[:, :3, :3], period_s, frames)
-    start = q_switch[-WRIST_AXES:]
+    for window in windows:
+        yield WristTable(s_switch=s_switch, values=_smoothed(chosen, q_switch[-WRIST_AXES:], end, window,
+                                                             slope * (1.0 - s_switch) / STEPS))  # fmt: skip
+
+
+def _smoothed(chosen: Array, start: Array, end: Array, window: float, step: Array) -> Array:
+    """Return chosen wrist angles (N, 3) averaged twice, from ``start`` (3,) on; ``step`` (3,): that of the path."""
     width = max(1, round(window * STEPS / 2.0))
     reach = 2 * width
-    before = start + np.arange(-reach, 0)[:, None] * (slope * (1.0 - s_switch) / STEPS)
+    before = start + np.arange(-reach, 0)[:, None] * step
     rows = np.concatenate([before, start[None], chosen, np.repeat(end[None], reach, axis=0)])
     ramp = np.convolve(np.ones(width), np.ones(width)) / width**2 if width > 1 else np.ones(1)
     smooth = np.stack([np.convolve(column, ramp, mode="same") for column in rows.T], axis=1)[reach:-reach]
     share = np.linspace(0.0, 1.0, STEPS + 1)[:, None]
     # averaging moves the ends a little
     smooth += (1.0 - share) ** 3 * (start - smooth[0]) + share**3 * (end - smooth[-1])
-    return WristTable(s_switch=s_switch, values=frozen(smooth))
+    return frozen(smooth)

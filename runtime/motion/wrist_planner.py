@@ -26,7 +26,7 @@ import numpy as np
 from runtime.faults import Fault
 from runtime.frames import Array, inverse, rotation_angles
 from runtime.motion.commands import Component, MoveJoint, PathMove, in_configuration
-from runtime.motion.hold import COMPONENTS, Suppression, component_deviation, held_way
+from runtime.motion.hold import COMPONENTS, Suppression, WristTable, component_deviation, held_ways
 from runtime.motion.path import Path
 from runtime.motion.solver import MOST_SLOWDOWN, LineSolver, WristSolver
 from runtime.motion.wrist import (
@@ -228,16 +228,21 @@ def _candidates(line: LineSolver, q: Array, s: Array, q_end: Array, trigger: Tri
         law = law_from(q, s, k, end, options.shape, width)
         return Choice(solver=WristSolver(line, law, q[k], q_end), trigger=trigger, switch=float(s[k]), remedy=remedy)
 
-    def holding(k: int, window: float, remedy: str = "") -> Iterator[Choice]:
+    ways: dict[int, Iterator[WristTable]] = {}
+
+    def holding(k: int, remedy: str = "") -> Iterator[Choice]:
+        """Yield the way from a sample in the next of ``HELD_WINDOWS``."""
         if suppression is not None:
-            slope = law_from(q, s, k, end, "linear").slope
-            way = held_way(suppression, line.path, q[k], slope, end, float(s[k]), rate, window)
+            if k not in ways:
+                slope = law_from(q, s, k, end, "linear").slope
+                ways[k] = held_ways(suppression, line.path, q[k], slope, end, float(s[k]), rate, HELD_WINDOWS)
+            way = next(ways[k])
             yield Choice(solver=WristSolver(line, way, q[k], q_end), trigger=trigger, switch=float(s[k]), remedy=remedy,
                          held=held or ())  # fmt: skip
 
     if trigger is not None:
         yield at(index, options.width)
-        yield from holding(index, HELD_WINDOWS[0])
+        yield from holding(index)
     if not options.remedies:
         return
     widths = (options.width, *SOFTER) if options.shape == "smooth" else (options.width,)
@@ -245,7 +250,7 @@ def _candidates(line: LineSolver, q: Array, s: Array, q_end: Array, trigger: Tri
     if trigger is not None:
         for width in widths[1:]:
             yield at(index, width, "softer start")
-        yield from holding(index, HELD_WINDOWS[1], "softer start")
+        yield from holding(index, "softer start")
     held_places = [share * s[index] for share in HELD_EARLIER]
     where = [(share * s[index], "earlier switch") for share in EARLIER]
     where += [(s[index] + share * (1.0 - s[index]), "later switch") for share in LATER]
@@ -257,8 +262,8 @@ def _candidates(line: LineSolver, q: Array, s: Array, q_end: Array, trigger: Tri
         for width in widths:
             yield at(k, width, remedy)
         if place in held_places:
-            for window in HELD_WINDOWS:
-                yield from holding(k, window, remedy)
+            for _ in HELD_WINDOWS:
+                yield from holding(k, remedy)
     if held is not None:
         yield from _windows(line, q, s, q_end, trigger)
     for j4, j5 in DETOURS:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runtime.frames import rotation_from_rpy
-from runtime.motion.hold import COMPONENTS, Suppression, held_way, posture_components, weld_line_frame
+from runtime.motion.hold import COMPONENTS, Suppression, held_ways, posture_components, weld_line_frame
 from runtime.motion.wrist import law_from
 from tests.runtime.motion.wrist_moves import E2, E3, FROZEN, KINEMATICS, SECONDS, TOOL, conventional, path_of
 
@@ -85,7 +85,7 @@ def test_the_way_that_is_executed_starts_on_the_path_ends_as_taught_and_has_no_j
     q, end = conventional(E2, s, path), np.radians(E2[1][3:])
     law = law_from(q, s, 160, end, "linear")
     chooser = Suppression(KINEMATICS, TOOL, path.X_end[:3, 3] - path.X_start[:3, 3], held, SPEED)
-    way = held_way(chooser, path, q[160], law.slope, end, law.s_switch, 1.0 / SECONDS, 0.15)
+    (way,) = held_ways(chooser, path, q[160], law.slope, end, law.s_switch, 1.0 / SECONDS, (0.15,))
     fine = np.linspace(law.s_switch, 1.0, 2001)
     angles = way.angles(fine)
     np.testing.assert_allclose(angles[[0, -1]], [q[160, 3:], end], atol=1e-12)
