@@ -8,6 +8,7 @@
 # make blend-campaign         random chains of moves with zones, counted
 # make pulse-campaign         random moves of four machines as pulse tables, counted
 # make wrist-campaign         random straight moves through the wrist, counted (minutes)
+# make large              time and memory of check and fmt on programs of 1 MB of every kind (minutes)
 # make measured   every other figure of docs/measured.md, printed
 
 PYTHON ?= python3
@@ -15,7 +16,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test gates bench measured plots fault-campaign supervision-campaign wrist-campaign pulse-campaign blend-campaign clean
+.PHONY: demo test gates bench measured plots fault-campaign supervision-campaign wrist-campaign pulse-campaign blend-campaign large clean
 
 demo: $(READY)
 	$(BIN)/robolang run programs/pick_and_place.rbl
@@ -58,6 +59,9 @@ pulse-campaign: $(READY)
 
 wrist-campaign: $(READY)
 	$(BIN)/python -m tests.bench.wrist_campaign
+
+large: $(READY)
+	$(BIN)/python -m tests.fuzz.large
 
 clean:
 	rm -rf $(VENV) out

@@ -5,6 +5,7 @@ place of its text. Called by ``parser`` alone.
 """
 
 from collections.abc import Iterable
+from sys import intern
 
 from lark import Token, Transformer, v_args
 
@@ -26,6 +27,8 @@ def span_of(token: Token) -> Span:
 
 def _over(first: Token | nodes.Node, last: Token | nodes.Node) -> Span:
     """Return the place from the start of one token or node to the end of another."""
+    if first is last:
+        return first.span if isinstance(first, nodes.Node) else span_of(first)
     start, end = (item.span if isinstance(item, nodes.Node) else span_of(item) for item in (first, last))
     return Span(start.start, end.end)
 
@@ -212,7 +215,7 @@ class _Builder(Transformer[Token, nodes.Node]):
         return nodes.Vector(items=tuple(items), span=_over(left, right))  # type: ignore[arg-type]
 
     def call(self, name: nodes.Name | Token, *parts: Expression | Token) -> nodes.Call:
-        word = name if isinstance(name, nodes.Name) else nodes.Name(text=str(name), span=span_of(name))
+        word = name if isinstance(name, nodes.Name) else nodes.Name(text=intern(str(name)), span=span_of(name))
         arguments = tuple(part for part in parts if isinstance(part, nodes.Node))
         return nodes.Call(name=word, arguments=arguments, span=_over(name, parts[-1] if parts else name))
 
@@ -220,13 +223,13 @@ class _Builder(Transformer[Token, nodes.Node]):
         return nodes.Component6(base=base, name=name, span=_over(base, name))
 
     def number(self, token: Token) -> nodes.Number:
-        return nodes.Number(value=float(token), text=str(token), span=span_of(token))
+        return nodes.Number(value=float(token), text=intern(str(token)), span=span_of(token))
 
     def text(self, token: Token) -> nodes.Text:
         return nodes.Text(value=str(token)[1:-1], span=span_of(token))
 
     def name(self, token: Token) -> nodes.Name:
-        return nodes.Name(text=str(token), span=span_of(token))
+        return nodes.Name(text=intern(str(token)), span=span_of(token))
 
 
 def builder() -> Transformer[Token, nodes.Node]:

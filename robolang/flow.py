@@ -10,7 +10,8 @@ Conditions are not decided, except a WHILE of a number that is not 0, which is l
 leads to its handler from where it stands. RESUME leads nowhere that is not reached anyway.
 
 Time is linear in lines times facts; a rule keeps its facts few, and ``MAX_FACTS`` of them before one line, or
-``MAX_STEPS`` for each line all in all, end the search: then nothing is said.
+``MAX_STEPS`` for each line all in all, end the search: then nothing is said. Neither is it of a program of more than
+``MAX_LINES`` lines, whose facts would take more memory than the program.
 """
 
 from collections import defaultdict
@@ -39,6 +40,7 @@ from robolang.structure import Structure
 
 MAX_FACTS = 16
 MAX_STEPS = 64
+MAX_LINES = 50_000
 
 Fact = TypeVar("Fact", bound=Hashable)
 Step = Callable[[int, Statement, Fact], Iterable[Fact]]

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 
 from robolang.constants import fixed
 from robolang.diagnostics import Diagnostic, Related, Severity
-from robolang.flow import Ways, facts_before, ways_of
+from robolang.flow import MAX_LINES, Ways, facts_before, ways_of
 from robolang.nodes import (
     Approach,
     Delay,
@@ -54,6 +54,8 @@ _MOVES = (Move, MoveJ, MoveC, Approach, Depart)
 
 def flow_check(program: Program, structure: Structure) -> Iterator[Diagnostic]:
     """Report what the order of the statements of a program shows, as warnings."""
+    if len(program.lines) > MAX_LINES:
+        return
     ways = ways_of(program, structure)
     for rule in (_unreachable, _speeds, _tools, _loads, _corners):
         yield from rule(program, structure, ways)

@@ -104,12 +104,15 @@ class _Row:
 
 def _rows(source: Source, program: Program) -> list[_Row]:
     """Return the lines of the result, with comments two spaces behind their statements."""
-    lines = {line.source_line: line for line in program.lines}
+    lines = iter(program.lines)
+    following = next(lines, None)
     width = max((len(str(line.number)) for line in program.lines if line.number is not None), default=0)
     rows: list[_Row] = []
     blocks, blank, on = _Blocks(), 0, True
     for number, span in enumerate(_line_spans(source), start=1):
-        text, line = source.slice(span), lines.get(number)
+        text, line = source.slice(span), None
+        if following is not None and following.source_line == number:
+            line, following = following, next(lines, None)
         switch = None if line is None else _switch(line)
         depth = 0 if line is None else blocks.enter(word_of(line.statement))
         kept = not on and switch is None

@@ -9,6 +9,7 @@ kept, they are the gaps between the ``source_line`` of neighbours.
 import math
 from dataclasses import dataclass, field
 from enum import Enum
+from sys import intern
 from typing import TypeAlias
 
 from robolang.source import Span
@@ -40,7 +41,8 @@ class Name(Node):
     key: str = field(init=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "key", self.text.upper())
+        upper = self.text.upper()
+        object.__setattr__(self, "key", self.text if upper == self.text else intern(upper))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -86,18 +86,23 @@ def _parse_line(text: str, span: Span, row: int) -> tuple[nodes.Line, Diagnostic
     number = int(digits) if digits and len(digits) <= MAX_NUMBER_DIGITS else None
     code, base = text[head.end() :], span.start + head.end()
     parsed: Parsed | Diagnostic | None = _refusal(text, span.start)
-    number_span = Span(span.start + head.start(1), span.start + head.end(1)) if digits else nodes.NOWHERE
+    number_span = _part(span, span.start + head.start(1), span.start + head.end(1)) if digits else nodes.NOWHERE
     if parsed is None and digits and number is None:
         message = f"the line number {quote(digits)} has more than {MAX_NUMBER_DIGITS} digits"
         parsed = Diagnostic(code="RBL114", message=message, span=number_span)
     if parsed is None:
-        parsed = _parse_statement(code, base)
+        parsed = _parse_statement(code, base, span)
     problem = parsed if isinstance(parsed, Diagnostic) else None
     if isinstance(parsed, Diagnostic):
-        parsed = None, nodes.Unparsed(text=code, span=Span(base, span.end)), None
+        parsed = None, nodes.Unparsed(text=code, span=_part(span, base, span.end)), None
     line = nodes.Line(number=number, label=parsed[0], statement=parsed[1], comment=parsed[2], source_line=row,
                       span=span, number_span=number_span)  # fmt: skip
     return line, problem
+
+
+def _part(line: Span, start: int, end: int) -> Span:
+    """Return a place in a line; the line's own where it is the whole line, which saves memory in long programs."""
+    return line if (start, end) == (line.start, line.end) else Span(start, end)
 
 
 def _refusal(text: str, base: int) -> Diagnostic | None:
@@ -137,12 +142,13 @@ def _too_deep(code: str) -> int | None:
     return None
 
 
-def _parse_statement(code: str, base: int) -> Parsed | Diagnostic:
-    """Parse what follows the line number; ``base`` is its offset in the source."""
+def _parse_statement(code: str, base: int, line: Span) -> Parsed | Diagnostic:
+    """Parse what follows the line number; ``base`` is its offset in the source, ``line`` the place of the line."""
     if not code:
         return None, None, None
     if code[0] == "'":
-        return None, None, nodes.Comment(text=code.rstrip(), span=Span(base, base + len(code.rstrip())))
+        text = code.rstrip()
+        return None, None, nodes.Comment(text=text, span=_part(line, base, base + len(text)))
     session = line_parser().parse_interactive(code, start="start")
     token = None
     try:

@@ -10,10 +10,11 @@ itself is RBL204, since a NEXT without its FOR has nothing to count.
 """
 
 import re
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from robolang.diagnostics import Diagnostic, Related
+from robolang.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related
 from robolang.nodes import (
     Block,
     Case,
@@ -65,6 +66,13 @@ class Structure:
     owner: dict[int, int] = field(default_factory=dict)
     inside: list[tuple[int, ...]] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
+    _counts: Counter[str] = field(default_factory=Counter)
+
+    def report(self, diagnostic: Diagnostic) -> None:
+        """Keep a diagnostic, unless there are more of its code than are ever listed."""
+        self._counts[diagnostic.code] += 1
+        if self._counts[diagnostic.code] <= MAX_DIAGNOSTICS + 1:
+            self.diagnostics.append(diagnostic)
 
     def line_of(self, target: Target) -> int | None:
         """Return the line that a target names; None where there is none."""
@@ -121,7 +129,7 @@ def _define(found: Structure, table: dict[str, int], key: str, index: int, span:
     if key in table:
         first = _span_of(program.lines[table[key]], is_label=table is found.labels)
         related = (Related(span=first, message="first defined here"),)
-        found.diagnostics.append(Diagnostic(code="RBL203", message=f"{what} is defined twice", span=span,
+        found.report(Diagnostic(code="RBL203", message=f"{what} is defined twice", span=span,
                                             related=related))  # fmt: skip
     table.setdefault(key, index)
 
@@ -186,7 +194,7 @@ def _too_deep(found: Structure, program: Program, index: int, word: str) -> None
     statement = program.lines[index].statement
     assert statement is not None
     message = f"this {word} is inside of {MAX_BLOCKS} blocks; no more are possible"
-    found.diagnostics.append(Diagnostic(code="RBL108", message=message, span=statement.span))
+    found.report(Diagnostic(code="RBL108", message=message, span=statement.span))
     found.inside.extend(() for _ in range(len(program.lines) - len(found.inside)))
 
 
@@ -228,7 +236,7 @@ def _not_closed(program: Program, found: Structure, block: _Open) -> None:
     head = program.lines[block.lines[0]]
     assert head.statement is not None
     message = f"{block.word} has no {_CLOSED_BY[block.word]}"
-    found.diagnostics.append(Diagnostic(code="RBL211", message=message, span=head.statement.span))
+    found.report(Diagnostic(code="RBL211", message=message, span=head.statement.span))
 
 
 def _wrong(found: Structure, code: str, message: str, line: Line, program: Program, block: _Open | None) -> None:
@@ -238,7 +246,7 @@ def _wrong(found: Structure, code: str, message: str, line: Line, program: Progr
         head = program.lines[block.lines[0]].statement
         assert head is not None
         related = (Related(span=head.span, message=f"{block.word} begins here"),)
-    found.diagnostics.append(Diagnostic(code=code, message=message, span=line.statement.span, related=related))
+    found.report(Diagnostic(code=code, message=message, span=line.statement.span, related=related))
 
 
 def _check_jump(program: Program, found: Structure, index: int, target: Target) -> None:
@@ -246,12 +254,12 @@ def _check_jump(program: Program, found: Structure, index: int, target: Target) 
     if where is None:
         name = f"*{target.label.text}" if target.label is not None else f"line {target.number}"
         name = name if target.number != -1 else "a line number that is not whole"
-        found.diagnostics.append(Diagnostic(code="RBL202", message=f"there is no {name} to go to", span=target.span))
+        found.report(Diagnostic(code="RBL202", message=f"there is no {name} to go to", span=target.span))
         return
     if found.owner.get(where) != found.owner.get(index) and program.lines[where].statement is not None:
         inside = where in found.owner
         message = f"the target is {'in a' if inside else 'outside of the'} SUB that the jump is {'not ' * inside}in"
-        found.diagnostics.append(Diagnostic(code="RBL204", message=message, span=target.span))
+        found.report(Diagnostic(code="RBL204", message=message, span=target.span))
         return
     here = set(found.inside[index]) | {index}
     for head in found.inside[where]:
@@ -260,5 +268,5 @@ def _check_jump(program: Program, found: Structure, index: int, target: Target) 
             word = word_of(statement)
             related = (Related(span=statement.span, message=f"{word} begins here"),)
             message = f"the target is inside a {word} that the jump is not in"
-            found.diagnostics.append(Diagnostic(code="RBL204", message=message, span=target.span, related=related))
+            found.report(Diagnostic(code="RBL204", message=message, span=target.span, related=related))
             return

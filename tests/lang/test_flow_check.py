@@ -2,6 +2,7 @@
 
 import pytest
 
+from robolang import flow_check
 from robolang.checker import check
 from tests.lang.helpers import checked, parsed
 
@@ -158,3 +159,12 @@ def test_what_is_never_used_and_what_may_never_end(text, expected):
 def test_a_value_that_nothing_reads_may_be_misspelt():
     (item,) = check(parsed("count = 0\ncuont = 1\nPRINT count"))
     assert (item.code, item.hint) == ("RBL225", "did you mean COUNT?")
+
+
+def test_a_program_of_more_lines_than_memory_is_for_gets_none_of_this(monkeypatch):
+    text = "END\nDELAY 1"
+    assert "RBL221" in [item.code for item in check(parsed(text))]
+    monkeypatch.setattr(flow_check, "MAX_LINES", 2)
+    assert "RBL221" in [item.code for item in check(parsed(text))]
+    monkeypatch.setattr(flow_check, "MAX_LINES", 1)
+    assert "RBL221" not in [item.code for item in check(parsed(text))]

@@ -2,7 +2,7 @@
 
 import pytest
 
-from robolang.diagnostics import Severity
+from robolang.diagnostics import MAX_DIAGNOSTICS, Severity
 from robolang.nodes import Unparsed
 from robolang.parser import parse
 from robolang.structure import MAX_BLOCKS, structure_of
@@ -139,3 +139,9 @@ def test_blocks_are_nested_to_a_bound(head, end):
     assert found(nested(MAX_BLOCKS)) == []
     assert found(nested(MAX_BLOCKS + 1)) == [("RBL108", MAX_BLOCKS + 1, 1, len(head))]
     assert found(nested(5_000)) == [("RBL108", MAX_BLOCKS + 1, 1, len(head))]
+
+
+def test_no_more_of_a_code_are_kept_than_are_listed():
+    text = "*A\n" * 3 * MAX_DIAGNOSTICS + "GOTO *B"
+    codes = [item.code for item in structure_of(parsed(text)).diagnostics]
+    assert (codes.count("RBL203"), codes.count("RBL202")) == (MAX_DIAGNOSTICS + 1, 1)
