@@ -8,6 +8,7 @@
 # make blend-campaign         random chains of moves with zones, counted
 # make pulse-campaign         random moves of four machines as pulse tables, counted
 # make wrist-campaign         random straight moves through the wrist, counted (minutes)
+# make fuzz               readers of programs, points and cells on made-up bytes, FUZZ_SECONDS of each target
 # make large              time and memory of check and fmt on programs of 1 MB of every kind (minutes)
 # make measured   every other figure of docs/measured.md, printed
 
@@ -16,7 +17,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test gates bench measured plots fault-campaign supervision-campaign wrist-campaign pulse-campaign blend-campaign large clean
+.PHONY: demo test gates bench measured plots fault-campaign supervision-campaign wrist-campaign pulse-campaign blend-campaign fuzz large clean
 
 demo: $(READY)
 	$(BIN)/robolang run programs/pick_and_place.rbl
@@ -59,6 +60,13 @@ pulse-campaign: $(READY)
 
 wrist-campaign: $(READY)
 	$(BIN)/python -m tests.bench.wrist_campaign
+
+FUZZ_SECONDS ?= 60
+FUZZ_TARGETS ?= lex parse check format points cell
+
+fuzz: $(READY)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev,fuzz]'
+	set -e; for target in $(FUZZ_TARGETS); do $(BIN)/python -m tests.fuzz.run $$target $(FUZZ_SECONDS); done
 
 large: $(READY)
 	$(BIN)/python -m tests.fuzz.large

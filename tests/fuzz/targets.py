@@ -1,0 +1,179 @@
+"""What is fuzzed: functions of bytes that raise ``AssertionError`` when a promise is broken, and nothing else ever.
+
+The promises are R10 and R12 to R14: whatever the bytes are, what comes is a diagnostic or a located fault with a
+registered code, in bounded time; places lie in the text; formatting is done once and keeps tree and comments.
+"""
+
+import re
+import time
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from tempfile import mkdtemp
+
+from robolang import checker, formatter, nodes
+from robolang.diagnostics import Severity, render, to_json
+from robolang.grammar import line_parser
+from robolang.lint import engine
+from robolang.parser import parse
+from robolang.points import load_points
+from robolang.source import Source, decode_program
+from robolang.words import KEYWORDS
+from runtime.faults import lookup
+from runtime.plant.cell import load_cell
+from runtime.tomlfile import FileFault
+
+SLOWEST_S = 5.0
+_NAME = "fuzz.rbl"
+_POINTS = ("P1", "P2", "P3")
+_LINE = re.compile(r"\r\n?|\n")
+_KINDS = KEYWORDS | {"FUNCTION", "VALUE", "SUSPICIOUS", "HUGE"} | {each.name for each in line_parser().terminals}
+_FOLDER = Path(mkdtemp(prefix="fuzz-"))
+
+
+def lex(data):
+    """Tokens are the text: nothing but blanks between them, each of a kind that the grammar knows."""
+    source = _program(data)
+    if source is None:
+        return
+    for span in source.line_spans:
+        line, at = source.slice(span), 0
+        for token in line_parser().parse_interactive(line, start="start").lexer_thread.lex(None):
+            assert token.type in _KINDS
+            assert at <= token.start_pos < token.end_pos
+            assert token == line[token.start_pos : token.end_pos]
+            assert not line[at : token.start_pos].strip(" \t")
+            at = token.end_pos
+        assert not line[at:].strip(" \t")
+
+
+def read(data):
+    """Parsing gives a tree in which each line with an error is one line with one error."""
+    source = _program(data)
+    if source is None:
+        return
+    found = parse(source)
+    _assert_located(source, found.diagnostics)
+    bad = [line for line in found.program.lines if isinstance(line.statement, nodes.Unparsed)]
+    errors = [item for item in found.diagnostics if item.severity is Severity.ERROR and item.code != "RBL107"]
+    assert len(bad) >= len(errors)
+    rows = [line.source_line for line in found.program.lines]
+    assert rows == sorted(set(rows))
+    for line in found.program.lines:
+        whole = source.line_spans[line.source_line - 1]
+        for part in (line, line.label, line.statement, line.comment):
+            for node in () if part is None else nodes.walk(part):
+                assert whole.start <= node.span.start <= node.span.end <= whole.end
+
+
+def check(data):
+    """All findings have a place, and with and without knowledge of the cell there are no others but findings."""
+    source = _program(data)
+    if source is None:
+        return
+    _assert_located(source, engine.lint(source, points=_POINTS))
+    program = parse(source).program
+    _assert_located(source, checker.check(program))
+    _assert_located(source, checker.check(program, points=_POINTS, rated_payload_kg=2.5, sensors=["TORCH"],
+                                          tools=["T1"], frames=["F1"], loads=["L1"], inputs=[1, 2]))  # fmt: skip
+
+
+def format(data):
+    """What is formatted has the tree and the comments of the text, and is a fixed point."""
+    source = _program(data)
+    if source is None:
+        return
+    before, found = parse(source), formatter.format_source(source)
+    assert found.changed == (found.text != source.text)
+    after = parse(Source(_NAME, found.text))
+    assert _canonical(after.program) == _canonical(before.program)
+    if found.changed:
+        again = formatter.format_source(Source(_NAME, found.text))
+        assert again.text == found.text
+        assert not again.changed
+
+
+def points(data):
+    """A points file is read or refused at a place in it."""
+    path = _FOLDER / "fuzz.points.toml"
+    path.write_bytes(data)
+    with _located(path, data):
+        load_points(path, robot="puma560", axes=6)
+
+
+def cell(data):
+    """A cell file is read or refused at a place in it."""
+    path = _FOLDER / "fuzz.cell.toml"
+    path.write_bytes(data)
+    with _located(path, data):
+        load_cell(path)
+
+
+TARGETS = {"lex": lex, "parse": read, "check": check, "format": format, "points": points, "cell": cell}
+SEEDS = {"points": "points", "cell": "cell"}
+"""The folder of the corpus for each target; ``program`` for the others."""
+
+
+def run(target, data):
+    """Give bytes to a target; ``AssertionError`` when a promise is broken, whatever else breaks included."""
+    began = time.process_time()
+    TARGETS[target](data)
+    assert time.process_time() - began < SLOWEST_S + 20e-6 * len(data)
+
+
+# --- oracles ---------------------------------------------------------------------------------------------------------
+
+
+def _program(data):
+    """The program that bytes are the text of; None when they are none, which must be said with a place."""
+    try:
+        return decode_program(_NAME, data)
+    except FileFault as fault:
+        assert fault.code in ("RBL104", "RBL106")
+        lines = _LINE.split(data.removeprefix(b"\xef\xbb\xbf").decode("utf-8", "replace"))
+        assert 1 <= fault.line <= len(lines)
+        assert 1 <= fault.column <= len(lines[fault.line - 1]) + 1
+        return None
+
+
+def _assert_located(source, diagnostics):
+    """Every diagnostic has a known code and places in the text, in each of its views."""
+    for item in diagnostics:
+        lookup(item.code)
+        assert item.message
+        assert item.hint
+        for span in (item.span, *(other.span for other in item.related)):
+            assert 0 <= span.start <= span.end <= len(source.text)
+        shown = render(item, source)
+        assert shown.startswith(f"{_NAME}:")
+        assert not re.search(r"[\x00-\x09\x0b-\x1f\x7f]", shown)
+        place = to_json(item, source)
+        lines = source.line_spans
+        assert 1 <= place["line"] <= place["end_line"] <= len(lines)
+        assert 1 <= place["column"] <= lines[place["line"] - 1].end - lines[place["line"] - 1].start + 1
+        assert place["code"] == item.code
+    assert list(diagnostics) == sorted(diagnostics, key=lambda item: (item.code == "RBL107", item.span, item.code))
+
+
+def _canonical(program):
+    """The tree with REM in capitals, which is all of it that the formatter changes."""
+    return [replace(line, comment=None if line.comment is None else nodes.Comment(text=_spelt(line.comment.text)))
+            for line in program.lines]  # fmt: skip
+
+
+def _spelt(comment):
+    return comment if comment.startswith("'") else f"REM{comment[3:]}"
+
+
+@contextmanager
+def _located(path, data):
+    try:
+        yield
+    except FileFault as fault:
+        lookup(fault.code)
+        assert fault.message
+        assert fault.hint
+        if fault.path == str(path):
+            lines = data.decode("utf-8-sig", "replace").split("\n")
+            assert 1 <= fault.line <= len(lines)
+            assert 1 <= fault.column <= len(lines[fault.line - 1]) + 1

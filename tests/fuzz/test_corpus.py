@@ -1,0 +1,23 @@
+"""Every input of the corpus keeps the promises of every target; each one that ever broke one is in it."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.fuzz import targets
+from tests.fuzz.targets import SEEDS, TARGETS
+
+FOLDER = Path(__file__).with_name("corpus")
+PROGRAMS = Path(__file__).parents[2] / "programs"
+CORPUS = [path for folder in (FOLDER, PROGRAMS) for path in sorted(folder.rglob("*")) if path.is_file()]
+
+
+@pytest.mark.parametrize("path", CORPUS, ids=lambda path: f"{path.parent.name}/{path.name}")
+def test_an_input_of_the_corpus_breaks_no_promise(path):
+    for target in TARGETS:
+        targets.run(target, path.read_bytes())
+
+
+def test_the_corpus_has_inputs_for_every_target():
+    for target in TARGETS:
+        assert len(list((FOLDER / SEEDS.get(target, "program")).iterdir())) >= 8
