@@ -51,7 +51,14 @@ def _keys(names: Collection[str] | None) -> frozenset[str] | None:
 
 
 def _statements(program: Program, facts: Facts) -> Iterator[Diagnostic]:
-    checks = StatementCheck(facts, Defined.of(program))
+    defined = Defined.of(program)
+    found = list(islice(_each_statement(program, StatementCheck(facts, defined)), MAX_DIAGNOSTICS + 1))
+    for code in ("RBL213", "RBL215"):
+        found = defined.missing.noted(found, code)
+    yield from found
+
+
+def _each_statement(program: Program, checks: StatementCheck) -> Iterator[Diagnostic]:
     for line in program.statements:
         assert line.statement is not None
         said: set[tuple[str, Span]] = set()  # two rules may look at one expression

@@ -63,7 +63,7 @@ class ExpressionCheck:
         if node.key in self._defined.values or node.key in ("NAN", "INF"):
             return
         points = self._facts.points
-        if points is not None and node.key not in points:
+        if points is not None and node.key not in points and self._defined.is_missing(node):
             message = f"{node.text} has no value: nothing assigns it, and it is no taught point"
             yield Diagnostic(code="RBL215", message=message, span=node.span, hint=hint_for(node, self._known))
 
@@ -84,6 +84,8 @@ class ExpressionCheck:
             if key == "IN":
                 yield from self._input(node.arguments[0])
         elif key not in self._defined.arrays:
+            if not self._defined.is_missing(node.name):
+                return
             guess = near(key, ARGUMENTS)
             hint = f"did you mean {guess}?" if guess else f"DIM {node.name.text}(n) makes an array"
             message = f"{node.name.text} is no array and no function"

@@ -1,12 +1,25 @@
-"""Names: what the cell and the points file have, what a program defines, and what a wrong one was meant to be."""
+"""Names: what the cell and the points file have, what a program defines, and what a wrong one was meant to be.
 
+A line with an error may have been a definition. Every name that it seems to define counts as defined, so that one typo
+in ``FOR i = 1 TO 4`` is not followed by a mistake for each use of i.
+"""
+
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from robolang.diagnostics import Diagnostic
-from robolang.nodes import Assign, Const, Dim, For, If, Name, Program, Statement, Sub
+from robolang.nodes import Assign, Const, Dim, For, If, Name, Program, Statement, Sub, Unparsed
+from robolang.repeats import Repeats
 from robolang.source import Span
-from robolang.words import near
+from robolang.words import KEYWORDS, RESERVED, near
+
+_DEFINING = ("CONST", "DIM", "FOR", "SUB")
+_LABEL = re.compile(r"[ \t]*\*[ \t]*\w*")
+_TEXTS = re.compile(r"\"[^\"]*\"?|'.*|(?<!\w)REM(?!\w).*", re.IGNORECASE)
+_FIRST = re.compile(r"[ \t]*(\w+)")
+_WORD = re.compile(r"(?<!\w)[A-Za-z]\w*+\$?")
+_ASSIGNED = re.compile(r"(?<!\w)([A-Za-z]\w*+\$?)[ \t]*(?:\([^()=]*\)[ \t]*)?=")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,12 +37,18 @@ class Facts:
 
 @dataclass(slots=True)
 class Defined:
-    """Names that a program gives values: variables, arrays, constants, and subroutines with their parameters."""
+    """Names that a program gives values: variables, arrays, constants, and subroutines with their parameters.
+
+    ``seeming`` are those that lines with an error seem to define, whatever they are used as; ``missing`` are the names
+    that are used and not defined.
+    """
 
     values: set[str] = field(default_factory=set)
     arrays: set[str] = field(default_factory=set)
     constants: dict[str, Span] = field(default_factory=dict)
     subs: dict[str, Sub] = field(default_factory=dict)
+    seeming: set[str] = field(default_factory=set)
+    missing: Repeats = field(default_factory=Repeats)
 
     @staticmethod
     def of(program: Program) -> "Defined":
@@ -39,6 +58,10 @@ class Defined:
             assert line.statement is not None
             found._take(line.statement)
         return found
+
+    def is_missing(self, name: Name) -> bool:
+        """Return whether a name that is not defined is to be said: at its first use."""
+        return name.key not in self.seeming and self.missing.is_first(name.key, name.span)
 
     def _take(self, node: Statement) -> None:
         if isinstance(node, If):
@@ -57,6 +80,25 @@ class Defined:
         elif isinstance(node, Sub):
             self.subs.setdefault(node.name.key, node)
             self.values.update(parameter.key for parameter in node.parameters)
+        elif isinstance(node, Unparsed):
+            found = seems_to_define(node.text)
+            self.seeming |= found
+            self.values |= found
+            self.arrays |= found
+
+
+def seems_to_define(text: str) -> frozenset[str]:
+    """Return the names, in capitals, that a statement with an error seems to give a value."""
+    plain = _TEXTS.sub(" ", _LABEL.sub(" ", text, count=1) if text.lstrip().startswith("*") else text)
+    words = [word.upper() for word in _WORD.findall(plain)]
+    begin = _FIRST.match(plain)
+    first = begin[1].upper() if begin else ""
+    for word in _DEFINING:
+        if first.startswith(word) and first != word:  # SUBf(x): the blank is missing
+            return frozenset({*words, first.removeprefix(word)}) - RESERVED
+    if first in _DEFINING or (first not in KEYWORDS and near(first, _DEFINING)):
+        return frozenset(words) - RESERVED
+    return frozenset(found[1].upper() for found in _ASSIGNED.finditer(plain)) - RESERVED
 
 
 def of_cell(name: Name, known: frozenset[str] | None, what: str) -> Iterator[Diagnostic]:

@@ -226,7 +226,8 @@ class StatementCheck:
             related = (Related(span=self._defined.constants[name.key], message="fixed here"),)
             yield Diagnostic(code="RBL216", message=f"{name.text} is a constant", span=name.span, related=related)
         yield from self._fits(name, node.value)
-        if isinstance(node.target, Call) and name.key not in self._defined.arrays:
+        is_element = isinstance(node.target, Call) and name.key not in self._defined.arrays
+        if is_element and self._defined.is_missing(name):
             message = f"there is no array {name.text}"
             yield Diagnostic(code="RBL215", message=message, span=name.span, hint=f"DIM {name.text}(n) makes one")
 
@@ -287,6 +288,8 @@ class StatementCheck:
     def _call_sub(self, node: CallSub) -> Iterator[Diagnostic]:
         sub = self._defined.subs.get(node.name.key)
         if sub is None:
+            if not self._defined.is_missing(node.name):
+                return
             hint = names_hint(node.name, frozenset(self._defined.subs), known="subroutines", none="there is no SUB")
             yield Diagnostic(code="RBL213", message=f"there is no SUB {node.name.text}", span=node.name.span, hint=hint)
         elif len(sub.parameters) != len(node.arguments):

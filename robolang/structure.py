@@ -32,6 +32,7 @@ from robolang.nodes import (
     Unparsed,
     Wait,
 )
+from robolang.repeats import Repeats
 from robolang.source import Span
 from robolang.words import KEYWORDS, near
 
@@ -42,9 +43,12 @@ MAX_BLOCKS = 100
 _DIVIDES = {"ELSEIF": "IF", "ELSE": "IF", "CASE": "SELECT", "CASE ELSE": "SELECT"}
 
 
+_LAST = frozenset({"ELSE", "CASE ELSE"})
 _WORDS = frozenset(_CLOSES) | frozenset(_CLOSED_BY) | {"ELSEIF", "ELSE", "CASE"}
 _FIRST = re.compile(r"[ \t]*(?:\*\w+[ \t]+)?([A-Za-z]+)")
 _SPLIT_END = re.compile(r"\bEND[ \t]+(?=(?:IF|SELECT|SUB)\b)", re.IGNORECASE)
+_LABEL = re.compile(r"[ \t]*\*[ \t]*([A-Za-z]\w*)")
+_RANGE = re.compile(r"\w[ \t]*=[^=]*\bTO\b", re.IGNORECASE)
 _ONE_LINE = re.compile(r"\bTHEN\b[ \t]*[^ \t']", re.IGNORECASE)
 
 
@@ -66,6 +70,7 @@ class Structure:
     owner: dict[int, int] = field(default_factory=dict)
     inside: list[tuple[int, ...]] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
+    missing: Repeats = field(default_factory=Repeats)
     _counts: Counter[str] = field(default_factory=Counter)
 
     def report(self, diagnostic: Diagnostic) -> None:
@@ -99,6 +104,7 @@ def structure_of(program: Program) -> Structure:
     for index, line in enumerate(program.lines):
         for target in targets(line.statement):
             _check_jump(program, found, index, target)
+    found.diagnostics = found.missing.noted(found.diagnostics, "RBL202")
     return found
 
 
@@ -122,6 +128,9 @@ def _names(program: Program, found: Structure) -> None:
         if isinstance(line.statement, Sub):
             name = line.statement.name
             _define(found, found.subs, name.key, index, name.span, f"SUB {name.text}", program)
+    for index, line in enumerate(program.lines):
+        if isinstance(line.statement, Unparsed) and (label := _LABEL.match(line.statement.text)):
+            found.labels.setdefault(label[1].upper(), index)
 
 
 def _define(found: Structure, table: dict[str, int], key: str, index: int, span: Span, what: str,
@@ -143,11 +152,15 @@ def _span_of(line: Line, *, is_label: bool) -> Span:
 
 @dataclass(slots=True)
 class _Open:
-    """A block that is not closed yet: its head's word, and the lines of it so far."""
+    """A block that is not closed yet: its head's word, and the lines of it so far.
+
+    ``guessed``: its head is missing, which is said; the lines that go with it are not mistakes of their own.
+    """
 
     word: str
     lines: list[int]
     last: bool = False
+    guessed: bool = False
 
 
 def _blocks(program: Program, found: Structure) -> None:
@@ -184,6 +197,8 @@ def _block_word(statement: Statement | None) -> str:
     if first and first[1].upper() in KEYWORDS - _WORDS:
         return ""
     word = near(first[1], _WORDS, cutoff=0.75) if first else ""
+    if not word and _RANGE.search(text):
+        return "FOR"
     if word == "IF" and (_ONE_LINE.search(statement.text) or first is None or first[1].upper() != "IF"):
         return ""
     return "CASE ELSE" if word == "CASE" and "ELSE" in statement.text.upper() else word
@@ -205,12 +220,14 @@ def _continue(program: Program, found: Structure, stack: list[_Open], index: int
     _give_up_inner(program, found, stack, head)
     if not stack or stack[-1].word != head:
         _wrong(found, "RBL212", f"{word} has no {head} above it", line, program, stack[-1] if stack else None)
+        if word in _DIVIDES:
+            stack.append(_Open(word=head, lines=[index], last=word in _LAST, guessed=True))
         return
     block = stack[-1]
-    if word in ("ELSE", "ELSEIF", "CASE", "CASE ELSE"):
+    if word in _DIVIDES:
         if block.last:
             _wrong(found, "RBL212", f"{word} comes after the ELSE of its block", line, program, block)
-        block.last = block.last or word in ("ELSE", "CASE ELSE")
+        block.last = block.last or word in _LAST
         block.lines.append(index)
         return
     statement, opener = line.statement, program.lines[block.lines[0]].statement
@@ -233,6 +250,8 @@ def _give_up_inner(program: Program, found: Structure, stack: list[_Open], head:
 
 
 def _not_closed(program: Program, found: Structure, block: _Open) -> None:
+    if block.guessed:
+        return
     head = program.lines[block.lines[0]]
     assert head.statement is not None
     message = f"{block.word} has no {_CLOSED_BY[block.word]}"
@@ -254,7 +273,9 @@ def _check_jump(program: Program, found: Structure, index: int, target: Target) 
     if where is None:
         name = f"*{target.label.text}" if target.label is not None else f"line {target.number}"
         name = name if target.number != -1 else "a line number that is not whole"
-        found.report(Diagnostic(code="RBL202", message=f"there is no {name} to go to", span=target.span))
+        cause = target.span if target.number == -1 else name.upper()
+        if found.missing.is_first(cause, target.span):
+            found.report(Diagnostic(code="RBL202", message=f"there is no {name} to go to", span=target.span))
         return
     if found.owner.get(where) != found.owner.get(index) and program.lines[where].statement is not None:
         inside = where in found.owner

@@ -78,8 +78,8 @@ def test_the_tables_of_a_program_with_every_block():
         ("GOTO 20\nFOR i = 1 TO 2\n20 DELAY 1", [("RBL211", 2, 1, 14)]),
         ("NEXT i", [("RBL212", 1, 1, 6)]),
         ("10 WEND", [("RBL212", 1, 4, 4)]),
-        ("ELSE\nELSEIF 1\nENDIF", [("RBL212", 1, 1, 4), ("RBL212", 2, 1, 8), ("RBL212", 3, 1, 5)]),
-        ("CASE 1\nCASE ELSE\nENDSELECT\nENDSUB", [("RBL212", n, 1, w) for n, w in ((1, 6), (2, 9), (3, 9), (4, 6))]),
+        ("ELSE\nELSEIF 1\nENDIF", [("RBL212", 1, 1, 4), ("RBL212", 2, 1, 8)]),
+        ("CASE 1\nCASE ELSE\nENDSELECT\nENDSUB", [("RBL212", n, 1, w) for n, w in ((1, 6), (4, 6))]),
         ("FOR i = 1 TO 2\nNEXT j", [("RBL212", 2, 1, 6)]),
         ("FOR i = 1 TO 2\nFOR j = 1 TO 2\nNEXT i\nNEXT j", [("RBL212", 3, 1, 6), ("RBL212", 4, 1, 6)]),
         ("IF 1 THEN\nELSE\nELSEIF 1\nENDIF", [("RBL212", 3, 1, 8)]),
@@ -145,3 +145,9 @@ def test_no_more_of_a_code_are_kept_than_are_listed():
     text = "*A\n" * 3 * MAX_DIAGNOSTICS + "GOTO *B"
     codes = [item.code for item in structure_of(parsed(text)).diagnostics]
     assert (codes.count("RBL203"), codes.count("RBL202")) == (MAX_DIAGNOSTICS + 1, 1)
+
+
+def test_what_belongs_to_a_missing_head_is_not_said_again():
+    assert found("FOR i = 1 TO 2\nCASE 1\nCASE 2\nCASE ELSE\nENDSELECT\nNEXT i") == [("RBL212", 2, 1, 6)]
+    assert found("FOR i = 1 TO 2\nCASE 1\nNEXT i") == [("RBL212", 2, 1, 6)]
+    assert [line for _, line, *_ in found("CASE 1\nWEND\nENDSELECT\nENDSELECT")] == [1, 2, 4]
