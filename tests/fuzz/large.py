@@ -17,6 +17,8 @@ SIZE = 1_000_000
 MOST_S = 20.0
 MOST_MB = 300.0
 MOST_RATIO = 2.3
+SHORT_S = 1.0
+"""Below that a ratio of times says nothing."""
 COMMANDS = {"check": ("check",), "fmt": ("fmt", "--check")}
 
 
@@ -109,7 +111,8 @@ def main():
                 whole, half = (measured(kind, command, folder, size) for size in (SIZE, SIZE // 2))
                 print(f"{kind:20s} {command:8s} {whole.cpu_s:6.2f} {whole.rss_mb:5.0f} {whole.code:4d} "
                       f"{whole.cpu_s / half.cpu_s:20.2f}", flush=True)  # fmt: skip
-                if not (whole.cpu_s <= MOST_S and whole.rss_mb <= MOST_MB and whole.code in (0, 1, 2)):
+                linear = whole.cpu_s < SHORT_S or whole.cpu_s / half.cpu_s <= MOST_RATIO
+                if not (linear and whole.cpu_s <= MOST_S and whole.rss_mb <= MOST_MB and whole.code in (0, 1, 2)):
                     bad.append(kind)
     sys.exit(f"over the limit: {', '.join(bad)}" if bad else 0)
 
