@@ -36,7 +36,7 @@ BAD_TEXT = [
     ("10 LOAD (0, 0, 60), 800", (1, 21, "RBL402"), "800 g is 0.8 kg"),
     ("10 LOAD (0, 0, 2001), 1", (1, 9, "RBL403"), "flange frame"),
     ("10 LOAD (0, 0, 1E200), 1", (1, 9, "RBL403"), "flange frame"),
-    ("10 LOAD (0, 0, 10), 1, (1, 1, 5, 0, 0, 0)", (1, 24, "RBL403"), "triangle inequality"),  # found by rehearsing
+    ("10 LOAD (0, 0, 10), 1, (1, 1, 5, 0, 0, 0)", (1, 24, "RBL403"), "triangle inequality"),
     ("10 MOVE P1\n20 MOVE P9", (2, 9, "RBL301"), "taught: P1, P2, P3, P4, P5"),
     ("10 MOVE P1, SPEED 0", (1, 19, "RBL404"), "SPEED in mm/s"),
     ("10 MOVE P1, SPEED 50\n20 MOVE P5, SPEED 5000", (2, 4, "RBL404"), "SPEED in mm/s"),  # the robot's
