@@ -7,7 +7,8 @@ position. A request that cannot be carried out goes to ON ERROR, as it would; on
 rehearsal: where the arm would be after it is not known.
 """
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -16,9 +17,10 @@ import numpy as np
 from robolang import lowering
 from robolang.branches import Decisions
 from robolang.diagnostics import Diagnostic
-from robolang.effects import Effect, Halt, MoveTo, Pass, SetHand, SetOutput, SetPayload, SetSeam, SetTool
+from robolang.effects import Drain, Effect, Halt, MoveTo, Pass, SetHand, SetOutput, SetPayload, SetSeam, SetTool
 from robolang.interpreter import ProgramFault, execute
 from robolang.lowering import Command
+from robolang.nodes import Delay, Wait
 from robolang.project import Project
 from robolang.source import Span
 from robolang.surroundings import RobotWorld
@@ -73,14 +75,18 @@ class RehearsedMove:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rehearsal:
-    """What a rehearsal found: ``moves`` in order, ``times_us`` by line of the file, ``total_us``, the refusal that
-    ended it, and the places of all moves that were ``tried``, with those that were refused and caught by ON ERROR."""
+    """What a rehearsal found: ``moves`` in order, ``total_us``, and the refusal that ended it.
+
+    ``times_us`` and ``runs`` give by line of the file what statements that take time took, and how often they ran;
+    ``tried`` the places of all moves that were asked for, those that were refused and caught by ON ERROR among them.
+    """
 
     moves: tuple[RehearsedMove, ...]
     times_us: dict[int, int]
     total_us: int
     refused: tuple[Diagnostic, ...]
     tried: frozenset[Span]
+    runs: Mapping[int, int]
 
 
 def motion_check(project: Project) -> tuple[Diagnostic, ...]:
@@ -117,6 +123,7 @@ class _Rehearsal:
         self._q_next: Array = np.array(cell.home)
         self._moves: list[RehearsedMove] = []
         self._tried: set[Span] = set()
+        self._runs: Counter[int] = Counter()
         self._times: dict[int, int] = {}
 
     def run(self) -> Rehearsal:
@@ -142,9 +149,14 @@ class _Rehearsal:
                 fault = found
         self._finish_motion()
         return Rehearsal(moves=tuple(self._moves), times_us=self._times, total_us=self._now_us, refused=refused,
-                         tried=frozenset(self._tried))  # fmt: skip
+                         tried=frozenset(self._tried), runs=dict(self._runs))  # fmt: skip
 
     def _take(self, effect: Effect) -> bool:
+        # a WAIT passes time cycle by cycle, but lets motion end once
+        if isinstance(effect, MoveTo | SetHand) or isinstance(effect.node, Delay) or (
+            isinstance(effect, Drain) and isinstance(effect.node, Wait)
+        ):
+            self._runs[effect.line] += 1
         if isinstance(effect, MoveTo):
             self._move(effect)
             return True

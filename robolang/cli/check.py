@@ -50,13 +50,16 @@ def check(
     max_cycle: Annotated[
         str | None, typer.Option("--max-cycle", metavar="TIME", help="With --motion: longest time, such as 12.5s.")
     ] = None,
+    times: Annotated[
+        str | None, typer.Option(metavar="FILE.json", help="With --motion: write the time of every line to this file.")
+    ] = None,
     watch: Annotated[bool, typer.Option("--watch", help="Check again whenever a file changes, until Ctrl-C.")] = False,
 ) -> None:
     """Check programs; exit code 1 when one has an error, 2 when one or its points cannot be read."""
     with reported():
         from robolang.cli.check_job import Job, run_once, watched
 
-        _refuse(paths or [], output_format, statistics, watch)
+        _refuse(paths or [], output_format, statistics, watch, times, motion)
         job = Job(
             paths=tuple(paths or ["."]),
             layer=_layer(select, ignore, extend_select),
@@ -70,13 +73,14 @@ def check(
             exit_zero=exit_zero,
             motion=motion,
             max_cycle_s=_seconds(max_cycle, motion),
+            times=None if times is None else Path(times),
         )
         worst = watched(job) if watch else run_once(job)
     if worst:
         raise typer.Exit(worst)
 
 
-def _refuse(paths: list[str], form: str, statistics: bool, watch: bool) -> None:
+def _refuse(paths: list[str], form: str, statistics: bool, watch: bool, times: str | None, motion: bool) -> None:
     """Raise ``OptionValueError`` for options that cannot be, alone or together."""
     from robolang.output import FORMS
 
@@ -84,6 +88,8 @@ def _refuse(paths: list[str], form: str, statistics: bool, watch: bool) -> None:
         raise OptionValueError("--output-format", f"there is no form '{form}'; known: {', '.join(FORMS)}")
     if statistics and form not in ("full", "concise", "json"):
         raise OptionValueError("--statistics", f"counts cannot be printed as {form}; full, concise and json can")
+    if times is not None and not motion:
+        raise OptionValueError("--times", "it needs --motion")
     if watch and "-" in paths:
         raise OptionValueError("--watch", "the standard input cannot be watched")
 

@@ -4,6 +4,7 @@ The report goes to stdout or a file; what concerns the work itself goes to stder
 fixed. With ``--fix`` a program from stdin goes to stdout, corrected, and its report to stderr.
 """
 
+import json
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -44,6 +45,7 @@ class Job:
     exit_zero: bool
     motion: bool = False
     max_cycle_s: float | None = None
+    times: Path | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,6 +57,7 @@ class _Outcome:
     points: Checked | None = None
     fixed: dict[str, int] = field(default_factory=dict)
     table: str = ""
+    times: dict[str, object] | None = None
 
 
 def watched(job: Job) -> int:
@@ -73,10 +76,11 @@ def watched(job: Job) -> int:
 
 def run_once(job: Job) -> int:
     """Check everything once, print the report and return the exit code; ``Fault`` for a wrong configuration."""
-    if job.output is not None:
-        from robolang.storage import check_writable
+    for path in (job.output, job.times):
+        if path is not None:
+            from robolang.storage import check_writable
 
-        check_writable(job.output)
+            check_writable(path)
     settings = Settings()
     names = programs(job.paths)
     if not names:
@@ -87,6 +91,8 @@ def run_once(job: Job) -> int:
     outcomes = [replace(outcome, points=_points(outcome, job, settings)) for outcome in outcomes]
     if job.motion:
         outcomes = [_planned(outcome, job, settings) for outcome in outcomes]
+    if job.times is not None:
+        _write_times(job.times, outcomes)
     _print(job, outcomes)
     worst = max([0, *(say(fault) for outcome in outcomes for fault in outcome.checked.faults)])
     return max(worst, _judged(job, outcomes))
@@ -138,11 +144,19 @@ def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
 
     selection = _selection(checked.source.path, job, settings)
     try:
-        found, table = planned(checked.source.path, job.max_cycle_s)
+        plan = planned(checked.source.path, job.max_cycle_s)
     except Fault as fault:
         return replace(outcome, checked=replace(checked, faults=(*checked.faults, fault)))
-    diagnostics = in_order(filter(selection.keeps, add_later(checked.source, checked.diagnostics, found)))
-    return replace(outcome, checked=replace(checked, diagnostics=diagnostics), table=table)
+    diagnostics = in_order(filter(selection.keeps, add_later(checked.source, checked.diagnostics, plan.diagnostics)))
+    return replace(outcome, checked=replace(checked, diagnostics=diagnostics), table=plan.table, times=plan.times)
+
+
+def _write_times(path: Path, outcomes: Sequence[_Outcome]) -> None:
+    """Write the times of the programs that were planned, as one JSON array."""
+    from robolang.storage import write_atomic
+
+    text = json.dumps([outcome.times for outcome in outcomes if outcome.times is not None], indent=2) + "\n"
+    write_atomic(path, lambda stream: stream.write(text.encode()))
 
 
 def _written(outcome: _Outcome) -> _Outcome:

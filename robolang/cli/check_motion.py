@@ -3,6 +3,9 @@
 Imported where it is asked for: it needs numpy, pinocchio and mujoco, which checking a text does not.
 """
 
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+
 from robolang.diagnostics import Diagnostic, safe
 from robolang.exploration import Exploration, explore
 from robolang.line_times import LineTime, line_times
@@ -14,21 +17,54 @@ _STATEMENT = 30
 _NOTHING = 5e-4
 
 
-def planned(program: str, max_cycle_s: float | None) -> tuple[tuple[Diagnostic, ...], str]:
-    """Return the findings in the motion of a program and the table of its times; ``Fault`` for files beside it.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Planned:
+    """The findings in the motion of a program, the table of its times for people, and the same as plain JSON types."""
+
+    diagnostics: tuple[Diagnostic, ...]
+    table: str = ""
+    times: dict[str, object] | None = None
+
+
+def planned(program: str, max_cycle_s: float | None) -> Planned:
+    """Return what planning the motion of a program shows; ``Fault`` for files beside it.
 
     What the cell makes an error of the text (a load, a tool or an input that it does not have) is among them.
     """
     project = load_project(program)
     if not project.ok:
-        return project.diagnostics, ""
+        return Planned(diagnostics=project.diagnostics)
     explored = explore(project)
     found = findings(project, explored.rehearsal, max_cycle_s, explored.detours)
-    return found, _table(project, explored.rehearsal) + _ways(project, explored)
+    rows = line_times(project, explored.rehearsal)
+    return Planned(
+        diagnostics=found,
+        table=_table(project, explored.rehearsal, rows) + _ways(project, explored),
+        times=_times(project, explored, rows),
+    )
 
 
-def _table(project: Project, rehearsal: Rehearsal) -> str:
-    rows = line_times(project, rehearsal)
+def _times(project: Project, explored: Exploration, rows: Sequence[LineTime]) -> dict[str, object]:
+    shares = worst_loads(project, explored.rehearsal.moves)
+    return {
+        "program": project.source.path,
+        "robot": project.cell.robot.name,
+        "total_s": explored.rehearsal.total_us / 1e6,
+        "complete": not explored.rehearsal.refused,
+        "lines": [asdict(row) for row in rows],
+        "payload": [{"joint": f"J{share.axis + 1}", share.what: share.value, "limit": share.limit, "unit": share.unit,
+                     "estimated": not share.given} for share in shares],
+        "other_ways": len(explored.detours),
+        "not_planned": _missed(project, explored),
+    }  # fmt: skip
+
+
+def _missed(project: Project, explored: Exploration) -> list[int]:
+    """Return the lines of moves that no way led to."""
+    return sorted({project.source.place(node.span.start).line for node in explored.missed})
+
+
+def _table(project: Project, rehearsal: Rehearsal, rows: Sequence[LineTime]) -> str:
     lines = [
         f"{safe(project.source.path)} on {project.cell.robot.name}, planned without physics",
         f"{'line':>5}  {'statement':<{_STATEMENT}} {'times':>5} {'time, s':>8} {'way, mm':>8} {'fastest':>11} "
@@ -47,8 +83,8 @@ def _ways(project: Project, explored: Exploration) -> str:
         ways = len(explored.detours)
         text += f"and {ways} other way{'s' * (ways > 1)} through it, where inputs, time or errors decide\n"
     if explored.missed:
-        lines = sorted({project.source.place(node.span.start).line for node in explored.missed})
-        text += f"not planned, since no way led there: the moves in line {', '.join(map(str, lines))}\n"
+        lines = ", ".join(map(str, _missed(project, explored)))
+        text += f"not planned, since no way led there: the moves in line {lines}\n"
     return text
 
 

@@ -1,5 +1,6 @@
 """Moves behind conditions that the simulated inputs do not meet are planned too, and said with the way to them."""
 
+import json
 from importlib import resources
 
 import pytest
@@ -109,3 +110,19 @@ def test_the_command_says_how_many_ways_there_were(found, tmp_path):
     said = robolang("check", "--motion", tmp_path / "p.rbl", "--output-format", "concise", code=1).stdout
     assert "and 1 other way through it, where inputs, time or errors decide\n" in said
     assert "not planned, since no way led there: the moves in line 4\n" in said
+
+
+def test_the_table_is_written_for_other_programs(found, tmp_path):
+    found("SPEED 200\nFOR i = 1 TO 3\nMOVE P2\nDELAY 0.1\nWAIT IN(2), TIMEOUT 2\nMOVE P5\nNEXT")
+    robolang("check", "--motion", tmp_path / "p.rbl", "--times", tmp_path / "t.json")
+    (times,) = json.loads((tmp_path / "t.json").read_text())
+    assert (times["robot"], times["complete"], times["other_ways"], times["not_planned"]) == ("puma560", True, 1, [])
+    lines = {row["line"]: row for row in times["lines"]}
+    assert [lines[line]["count"] for line in (3, 4, 6)] == [3, 3, 3]
+    assert lines[4]["seconds"] == pytest.approx(3 * 0.104)  # whole cycles of 8 ms
+    assert times["total_s"] == pytest.approx(sum(row["seconds"] for row in times["lines"]))
+    assert lines[3]["length_mm"] == pytest.approx(3 * 220.0, rel=1e-6)
+
+
+def test_times_need_the_motion(tmp_path):
+    assert "--times" in robolang("check", "--times", tmp_path / "t.json", code=2).stderr
