@@ -6,7 +6,9 @@ fixed. With ``--fix`` a program from stdin goes to stdout, corrected, and its re
 
 import json
 import os
+import sys
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -90,7 +92,8 @@ def run_once(job: Job) -> int:
         outcomes = [_written(outcome) for outcome in outcomes]
     outcomes = [replace(outcome, points=_points(outcome, job, settings)) for outcome in outcomes]
     if job.motion:
-        outcomes = [_planned(outcome, job, settings) for outcome in outcomes]
+        with _told(outcomes) as told:
+            outcomes = [_planned(outcome, job, settings) for outcome in told]
     if job.times is not None:
         _write_times(job.times, outcomes)
     _print(job, outcomes)
@@ -159,6 +162,23 @@ def _write_times(path: Path, outcomes: Sequence[_Outcome]) -> None:
     write_atomic(path, lambda stream: stream.write(text.encode()))
 
 
+@contextmanager
+def _told(outcomes: Sequence[_Outcome]) -> Iterator[Iterator[_Outcome]]:
+    """Yield the programs one by one; on a terminal a live line says which is being planned."""
+    if len(outcomes) < 2 or sys.stderr is None or not sys.stderr.isatty():
+        yield iter(outcomes)
+        return
+    from robolang.cli.console import Console
+
+    def each() -> Iterator[_Outcome]:
+        for number, outcome in enumerate(outcomes, start=1):
+            status.update(f"planning {safe(outcome.checked.source.path)}, {number} of {len(outcomes)}")
+            yield outcome
+
+    with Console(stderr=True).status("planning") as status:
+        yield each()
+
+
 def _written(outcome: _Outcome) -> _Outcome:
     """Write a corrected program back, and say what was fixed; a file that cannot be written is a fault more."""
     before, after = outcome.before, outcome.checked.source
@@ -198,7 +218,7 @@ def _print(job: Job, outcomes: Sequence[_Outcome]) -> None:
     else:
         text = render(job.form, results, _root())
         if job.form in ("full", "concise"):
-            text += "".join(outcome.table for outcome in outcomes)
+            text += "".join(f"\n{outcome.table}" for outcome in outcomes if outcome.table)
     if job.output is not None:
         from robolang.storage import write_atomic
 
