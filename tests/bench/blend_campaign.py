@@ -1,4 +1,4 @@
-"""Random chains of moves with random zones, and what must be true of every one: ``make blend-campaign``.
+"""Random chains of moves with random zones and overrides, and what must be true of every one: ``make blend-campaign``.
 
     fault     a chain whose moves can be planned one by one is blended without an error
     limits    speed and acceleration of every joint within its limits at every servo tick of the whole chain
@@ -35,15 +35,16 @@ def random_command(rng, X, zone):
     k = rng.normal(size=3)
     target[:3, :3] = rotation_about(k / np.linalg.norm(k), rng.uniform(0.0, 0.4)) @ X[:3, :3]
     kind = rng.integers(3)
+    override = 1.0 if rng.random() < 0.5 else float(rng.uniform(0.2, 1.0))
     if kind == 0:
-        return MoveJoint(X_world_tool=target, speed=float(rng.uniform(0.1, 1.0)), zone=zone)
+        return MoveJoint(X_world_tool=target, speed=float(rng.uniform(0.1, 1.0)), zone=zone, override=override)
     speed = float(rng.uniform(0.05, 0.8))
     if kind == 1:
-        return MoveLinear(X_world_tool=target, speed=speed, zone=zone)
+        return MoveLinear(X_world_tool=target, speed=speed, zone=zone, override=override)
     via = target.copy()
     side = np.cross(way, rng.normal(size=3))
     via[:3, 3] = 0.5 * (X[:3, 3] + target[:3, 3]) + side / np.linalg.norm(side) * rng.uniform(0.01, 0.1)
-    return MoveArc(X_via=via, X_world_tool=target, speed=speed, zone=zone)
+    return MoveArc(X_via=via, X_world_tool=target, speed=speed, zone=zone, override=override)
 
 
 def random_chain(rng, planner, spec, kinematics, moves):
