@@ -5,7 +5,7 @@ from typing import NoReturn
 
 from robolang.diagnostics import Diagnostic
 from robolang.evaluator import Evaluator, Nowhere
-from robolang.nodes import Expression, Name, Negate, Number, Text, constant
+from robolang.nodes import Call, Expression, Name, Negate, Number, Text, constant, walk
 from robolang.places import Value
 from runtime.faults import Fault
 
@@ -34,10 +34,15 @@ class _Static(Nowhere):
 _EVALUATOR = Evaluator(_NoNames(), _Static())
 
 
+def _depends(node: Expression) -> bool:
+    """Return whether an expression reads ERR, which has a value in a handler only."""
+    return any(isinstance(each, Call) and each.name.key == "ERR" for each in walk(node))
+
+
 def fixed(node: Expression) -> float | None:
     """Return the value of an expression of numbers alone; None when it needs more or has none."""
     value = constant(node)
-    if value is not None or isinstance(node, Number | Name | Negate):
+    if value is not None or isinstance(node, Number | Name | Negate) or _depends(node):
         return value
     try:
         found = _EVALUATOR.value(node)
@@ -48,7 +53,7 @@ def fixed(node: Expression) -> float | None:
 
 def no_value(node: Expression) -> Iterator[Diagnostic]:
     """Report what has no value whatever the variables are: 1 / 0, SQR(-1)."""
-    if isinstance(node, Number | Name | Text | Negate):
+    if isinstance(node, Number | Name | Text | Negate) or _depends(node):
         return
     try:
         _EVALUATOR.value(node)

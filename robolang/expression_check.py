@@ -145,6 +145,8 @@ class ExpressionCheck:
         if isinstance(node, Call):
             if node.name.key in ("POSE", "JOINT", "HERE"):
                 return "a pose"
+            if node.name.key in ("TIMER", "ERR"):
+                return "a number"
             return "a text" if node.name.key.endswith("$") else "a number" if node.name.key in ARGUMENTS else None
         if isinstance(node, Chain):
             if any(isinstance(operand, Vector) for _, operand in node.rest):

@@ -11,8 +11,8 @@ carried out (planning, timeouts), goes to the line that ON ERROR GOTO named (``s
 already; ERR is then the number of its code. RESUME takes the statement again, RESUME NEXT the one after it. A latched
 alarm of the robot never comes here: it ends the run.
 
-Limits (counts, not wall clock): ``MAX_IDLE`` statements without one that takes time are RBL508, at the head of the
-loop; ``MAX_STEPS`` statements are RBL505; ``MAX_CALLS`` CALLs or GOSUBs within one another RBL504, as are
+Limits (counts, not wall clock): ``MAX_IDLE`` rounds of a loop without a statement that takes time are RBL508, at its
+head; ``MAX_STEPS`` statements are RBL505; ``MAX_CALLS`` CALLs or GOSUBs within one another RBL504, as are
 ``MAX_LOOPS`` FORs that were begun and left in one scope; ``MAX_SHOWN`` characters of PRINT RBL506. Memory is counted by
 ``scope``, the length of one text and the size of one array by ``evaluator``.
 """
@@ -124,7 +124,8 @@ class _Machine:
         self._scopes = Scopes(frozenset(point.upper() for point in points))
         self._values = Evaluator(self._scopes, world)
         self._actions = Actions(self._values, self._scopes)
-        self._idle = self._steps = self._shown = self._loop = 0
+        self._steps = self._shown = self._loop = 0
+        self._rounds: dict[int, int] = {}
         self._world = world
         self._reads: dict[int, bool] = {}
 
@@ -164,18 +165,20 @@ class _Machine:
 
     def _count(self, at: int) -> None:
         self._steps += 1
-        self._idle += 1
         if self._steps > MAX_STEPS:
             raise Fault("RBL505", f"more than {MAX_STEPS} statements")
 
     def _looped(self, at: int, to: int) -> int:
         """Return where a jump leads; ``Fault`` RBL508 when the program goes round and round without taking time."""
-        if to <= at and self._idle > MAX_IDLE:
+        if to > at:
+            return to
+        self._rounds[to] = rounds = self._rounds.get(to, 0) + 1
+        if rounds > MAX_IDLE:
             self._loop = to
             number = self._lines[to].number
             where = f"line {number}" if number is not None else f"line {self._lines[to].source_line} of the file"
-            raise Fault("RBL508", f"the loop that begins at {where} has gone on for {MAX_IDLE} statements, none of "
-                        "which takes time")  # fmt: skip
+            raise Fault("RBL508", f"the loop that begins at {where} has gone round {MAX_IDLE} times without a "
+                        "statement that takes time")  # fmt: skip
         return to
 
     def _statement(self, line: Line, node: Statement, at: int) -> Run:
@@ -190,7 +193,7 @@ class _Machine:
         return (yield from _carried_out(_DO[type(node)](self, line, node, at)))
 
     def _taking_time(self) -> None:
-        self._idle = 0
+        self._rounds.clear()
 
     def _act(self, line: Line, node: Action, at: int) -> Run:
         effect = self._actions.effect(line, node)
@@ -221,7 +224,7 @@ class _Machine:
 
     def _delay(self, line: Line, node: Delay, at: int) -> Run:
         time = seconds(self._values, node.seconds, "DELAY")
-        self._idle = 0 if time > 0.0 else self._idle
+        self._taking_time()
         yield Pass(**origin(line, node), seconds=time)
         return None
 
@@ -281,7 +284,10 @@ class _Machine:
         if node.word == "ELSEIF":  # reached from above: the branch before it is done
             return structure.end[at] + 1
         if node.word == "WHILE":
-            return None if self._is_true(node.value) else structure.end[at] + 1
+            if self._is_true(node.value):
+                return None
+            self._rounds.pop(at, None)
+            return structure.end[at] + 1
         if node.word == "SELECT":
             return (yield from self._case_of(line, node, at))
         while not self._is_true(node.value):
@@ -333,6 +339,7 @@ class _Machine:
             loops.pop()
         if len(loops) >= MAX_LOOPS:
             raise Fault("RBL504", f"more than {MAX_LOOPS} FORs have been begun and not ended")
+        self._rounds.pop(at, None)
         loops.append(Loop(line=at, variable=node.variable.key, rounds=rounds - 1, step=step))
         return None
 
@@ -404,7 +411,7 @@ class _Machine:
             failed = self._scopes.resume()
             if failed is None:
                 raise Fault("RBL533", "RESUME without an error that was caught")
-            return self._looped(at, failed if word == "RESUME" else failed + 1)
+            return self._looped(at, failed if word == "RESUME" else self._behind(failed))
         elif word == "END":
             return len(self._lines)
         else:
@@ -412,6 +419,11 @@ class _Machine:
             yield Halt(**origin(line, node), word=word)
             return len(self._lines) if word == "STOP" else None
         return None
+
+    def _behind(self, failed: int) -> int:
+        """Return the line behind a statement that failed: of the head of a block the one behind the block."""
+        is_head = isinstance(self._lines[failed].statement, Head | For)
+        return (self._structure.end[failed] if is_head else failed) + 1
 
     def _on_error(self, line: Line, node: OnError, at: int) -> int | None:
         self._scopes.on_error(self._line_of(node.target))

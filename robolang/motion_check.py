@@ -17,7 +17,19 @@ import numpy as np
 from robolang import lowering
 from robolang.branches import Decisions
 from robolang.diagnostics import Diagnostic
-from robolang.effects import Drain, Effect, Halt, MoveTo, Pass, SetHand, SetOutput, SetPayload, SetSeam, SetTool
+from robolang.effects import (
+    Drain,
+    Effect,
+    Halt,
+    MoveTo,
+    Pass,
+    SetHand,
+    SetOutput,
+    SetPayload,
+    SetSeam,
+    SetTool,
+    SetWrist,
+)
 from robolang.interpreter import ProgramFault, execute
 from robolang.lowering import Command
 from robolang.nodes import Delay, Wait
@@ -35,6 +47,7 @@ from runtime.robot.payload import NO_PAYLOAD, Payload
 
 MAX_CHAIN = 200
 """Most moves that blend into one another without a stop: a program that never stops is carried out nevertheless."""
+_NOT_STARTED = ("RBL3", "RBL4", "RBL505", "RBL508", "RBL509")
 MAX_RUN_US = 1_800_000_000
 """Longest run, us of simulated time: about a kilobyte of log is kept for every tick."""
 
@@ -90,8 +103,11 @@ class Rehearsal:
 
 
 def motion_check(project: Project) -> tuple[Diagnostic, ...]:
-    """Return what keeps a checked program from being carried out: RBL30x, RBL4xx and RBL50x at their statements."""
-    return rehearse(project).refused
+    """Return what keeps a checked program from being started: RBL3xx, RBL4xx, and loops and runs without an end.
+
+    An error of its calculations or a WAIT that times out is none of that: it comes in the run, where it comes.
+    """
+    return tuple(item for item in rehearse(project).refused if item.code.startswith(_NOT_STARTED))
 
 
 def rehearse(project: Project, *, decisions: Decisions | None = None, planner: Planner | None = None,
@@ -159,6 +175,8 @@ class _Rehearsal:
             self._runs[effect.line] += 1
         if isinstance(effect, MoveTo):
             self._move(effect)
+            return True
+        if isinstance(effect, SetWrist):  # each move carries what it says, so nothing has to end for it
             return True
         self._finish_motion()
         if isinstance(effect, SetPayload):

@@ -1,5 +1,6 @@
 """What a rehearsal shows beyond refusals: every finding at its statement, with path fraction, joint, value and limit.
 
+    RBL419   a move that ends in other joint angles than taught
     RBL414   a zone that takes more than half of a move at its corner: the blend is smaller than asked for
     RBL421   the arm or the hand in the floor or an obstacle of the cell
     RBL422   a joint near the end of its range
@@ -33,7 +34,7 @@ from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.load import ratings, wrist_load
 from runtime.robot.singularity import singularities
-from runtime.units import DEG, MM
+from runtime.units import DEG, MM, PERCENT
 
 NEAR = 0.5 * DEG
 """A joint nearer than this to the end of its range is named, rad."""
@@ -41,6 +42,8 @@ NEAR_SINGULAR = 2.0 * DEG
 """A wrist or elbow nearer than this to a singular posture is named, rad."""
 NEAR_SHOULDER = 20.0 * MM
 """The same for the wrist centre over axis 1, m."""
+NOTICED = 0.1 * DEG
+"""A tool that turns less from its posture keeps it, rad."""
 SLOWED = 1.5
 """A move that takes this many times as long as its programmed speed or time asks for is named."""
 
@@ -96,7 +99,8 @@ class _Moves:
     def findings(self, rehearsal: Rehearsal) -> Found:
         """Yield what the moves of a rehearsal show, those of one check after those of another."""
         new = [move for move in rehearsal.moves if self._is_new(move)]
-        for check in (self.touches, self.folds, self.near_range, self.near_singular, self.wrist_changes, self.slowed):
+        for check in (self.touches, self.folds, self.near_range, self.near_singular, self.wrist_changes,
+                      self.ends_otherwise, self.slowed):
             first: dict[Span, Diagnostic] = {}
             for move in new:
                 if move.effect.span not in first:
@@ -158,15 +162,24 @@ class _Moves:
     def wrist_changes(self, move: RehearsedMove) -> Found:
         """Report that the tool leaves its posture, where neither the move nor a setting says WRIST."""
         change = move.plan.wrist
-        if change is not None and move.effect.wrist is None:
+        if change is not None and move.effect.wrist is None and change.deviation >= NOTICED:
             begins, ends = 100.0 * change.share, 100.0 * change.share_end
             yield _at("RBL428", move, f"from {begins:.1f} % to {ends:.1f} % of the way the tool leaves its posture by "
                       f"up to {change.deviation / DEG:.1f} deg, for the wrist to change (condition {change.condition})")
 
+    def ends_otherwise(self, move: RehearsedMove) -> Found:
+        """Report a move that keeps the wrist and so does not end in the taught joint angles."""
+        taught = move.command.q_end
+        if taught is None or not np.abs(move.plan.q[-1] - taught).max() > NOTICED:
+            return
+        axis = int(np.argmax(np.abs(move.plan.q[-1] - taught)))
+        yield _at("RBL419", move, f"ends with J{axis + 1} at {float(move.plan.q[-1, axis]) / DEG:.1f} deg, not at the "
+                  f"taught {float(taught[axis]) / DEG:.1f} deg: WRIST KEEP keeps the sign of J5")  # fmt: skip
+
     def slowed(self, move: RehearsedMove) -> Found:
         """Report a move that takes far longer than the program asked for, and what rules it."""
         slow, effect = move.plan.slowdown, move.effect
-        asked_s = effect.time_s
+        asked_s = None if effect.time_s is None else effect.time_s / (effect.override_pct * PERCENT)
         takes_s = (len(move.plan.q) - 1) * self._period_s
         factor = takes_s / asked_s if asked_s else 1.0 if slow is None or effect.speed_mm_s is None else slow.factor
         if not factor <= SLOWED:

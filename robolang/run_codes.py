@@ -176,6 +176,12 @@ register(
         remedy="Give 0 or more, or FINE to stop.",
     ),
     Code(
+        code="RBL419",
+        name="ends-otherwise",
+        meaning="A move that keeps the wrist ends in other joint angles than the point was taught with.",
+        remedy="Say WRIST AUTO to end as taught, or teach the point in the wrist's configuration of the start.",
+    ),
+    Code(
         code="RBL421",
         name="collision-ahead",
         meaning="A move would lead the arm or the hand into an obstacle of the cell or into the ground.",

@@ -157,11 +157,10 @@ class Scopes:
         self._store(key, value)
 
     def fix(self, key: str, value: Value) -> None:
-        """Give a name a value that stays; the same CONST may be run again. ``Fault`` as of ``assign``."""
-        if key in self.here.constants:
-            check_kind(key, value)
-            self._store(key, value)
-        else:
+        """Give a name a value that stays; the same CONST may be run again, to the same value. ``Fault`` RBL531."""
+        if key in self.here.constants and self.here.values[key] != value:
+            raise Fault("RBL531", f"{key} is a constant and keeps its value")
+        if key not in self.here.constants:
             self.assign(key, value)
             self.here.constants.add(key)
 

@@ -15,8 +15,10 @@ from robolang.nodes import (
     Accel,
     Approach,
     Assign,
+    Block,
     Call,
     CallSub,
+    Case,
     Chain,
     Component,
     Component6,
@@ -71,6 +73,7 @@ class StatementCheck:
     def __init__(self, facts: Facts, defined: Defined) -> None:
         self._facts, self._defined = facts, defined
         self._expressions = ExpressionCheck(facts, defined)
+        self._selected: list[str | None] = []
 
     def check(self, node: Statement) -> Iterator[Diagnostic]:
         """Report what is wrong in a statement and in its branches."""
@@ -155,7 +158,8 @@ class StatementCheck:
         value = fixed(node)
         if value is not None and not low <= value <= high:
             message = f"{what} of {value:g} {unit} is not between {low:g} {unit} and {high:g} {unit}"
-            yield Diagnostic(code=code, message=message, span=place.span)
+            hint = f"give {low:g} to {high:g} {unit}"
+            yield Diagnostic(code=code, message=message, span=place.span, hint=hint)
 
     def _wrist(self, node: Wrist) -> Iterator[Diagnostic]:
         seen: dict[Component, Span] = {}
@@ -239,13 +243,33 @@ class StatementCheck:
             yield Diagnostic(code="RBL217", message=message, span=value.span)
 
     def _const(self, node: Const) -> Iterator[Diagnostic]:
+        first = self._defined.constants[node.name.key]
+        if first != node.name.span:
+            related = (Related(span=first, message="fixed here"),)
+            message = f"{node.name.text} is a constant already"
+            yield Diagnostic(code="RBL216", message=message, span=node.name.span, related=related)
         yield from self._fits(node.name, node.value)
 
     def _dim(self, node: Dim) -> Iterator[Diagnostic]:
         yield from self._expressions.must_be(node.size, "a number")
 
+    def _case(self, node: Case) -> Iterator[Diagnostic]:
+        selected = self._selected[-1] if self._selected else None
+        for value in node.values:
+            kind = self._expressions.kind(value)
+            if selected is not None and kind is not None and kind != selected:
+                message = f"{kind} is compared with {selected} of the SELECT: they are never equal"
+                yield Diagnostic(code="RBL217", message=message, span=value.span)
+
+    def _block(self, node: Block) -> Iterator[Diagnostic]:
+        if node.word == "ENDSELECT" and self._selected:
+            self._selected.pop()
+        yield from ()
+
     def _head(self, node: Head) -> Iterator[Diagnostic]:
-        if node.word != "SELECT":
+        if node.word == "SELECT":
+            self._selected.append(self._expressions.kind(node.value))
+        else:
             yield from self._expressions.must_be(node.value, "a number")
 
     def _out(self, node: Out | Pulse) -> Iterator[Diagnostic]:
@@ -305,7 +329,7 @@ _RULES: dict[type, Callable[..., Iterator[Diagnostic]]] = {
     Wrist: _Check._wrist, Seam: _Check._seam, Setting: _Check._setting, Assign: _Check._assign,
     Out: _Check._out, Pulse: _Check._out, Delay: _Check._delay, Wait: _Check._wait,
     For: _Check._for, CallSub: _Check._call_sub, Const: _Check._const, Dim: _Check._dim,
-    Head: _Check._head,
+    Head: _Check._head, Case: _Check._case, Block: _Check._block,
 }  # fmt: skip
 _NAMED_FIELDS = {"name", "variable", "sensor", "parameters", "label", "then", "otherwise"}
 

@@ -139,9 +139,13 @@ def _selection(program: str, job: Job, settings: Settings) -> Selection:
 
 
 def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
-    """Add what the motion of a program without errors shows, and the table of what its lines take."""
+    """Add what the motion of a program shows, and the table of what its lines take.
+
+    With an error there is no motion, but what the cell makes an error is added; and an error that is not reported,
+    since it is ignored or has a ``noqa``, is reported all the same: nothing was planned, and that is no pass.
+    """
     checked = outcome.checked
-    if checked.faults or has_errors(checked.diagnostics) or outcome.before.name == STANDARD_INPUT:
+    if checked.faults or outcome.before.name == STANDARD_INPUT:
         return outcome
     from robolang.cli.check_motion import planned
 
@@ -150,7 +154,11 @@ def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
         plan = planned(checked.source.path, job.max_cycle_s)
     except Fault as fault:
         return replace(outcome, checked=replace(checked, faults=(*checked.faults, fault)))
-    diagnostics = in_order(filter(selection.keeps, add_later(checked.source, checked.diagnostics, plan.diagnostics)))
+    known = {(item.code, item.span) for item in checked.diagnostics}
+    later = [item for item in plan.diagnostics if (item.code, item.span) not in known]
+    diagnostics = in_order(filter(selection.keeps, add_later(checked.source, checked.diagnostics, later)))
+    if plan.times is None and not has_errors(diagnostics):
+        diagnostics = in_order((*diagnostics, *(item for item in later if item.severity is Severity.ERROR)))
     return replace(outcome, checked=replace(checked, diagnostics=diagnostics), table=plan.table, times=plan.times)
 
 

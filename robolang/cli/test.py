@@ -12,7 +12,9 @@ import typer
 from robolang.cli.errors import DIAGNOSTICS, USAGE, reported, say
 
 if TYPE_CHECKING:
-    from robolang.expectation import Verdict
+    from robolang.diagnostics import Diagnostic
+    from robolang.expectation import Expectation, Verdict
+    from robolang.project import Project
 
 
 def test(
@@ -68,7 +70,7 @@ def _files(paths: list[str]) -> list[Path]:
 
 def _run(file: Path, update: bool) -> "tuple[int, str, list[Verdict], float]":
     """Run one program; return exit code, name, verdicts and the time of the run, s."""
-    from robolang.diagnostics import render, safe
+    from robolang.diagnostics import Severity, safe
     from robolang.expectation import ENDING, Verdict, judge, load_expectation
     from robolang.motion_check import motion_check
     from robolang.project import load_project
@@ -79,10 +81,10 @@ def _run(file: Path, update: bool) -> "tuple[int, str, list[Verdict], float]":
     try:
         expected = load_expectation(file)
         project = load_project(program)
-        refused = project.diagnostics if not project.ok else motion_check(project)
+        refused = [item for item in project.diagnostics if item.severity is Severity.ERROR]
+        refused = refused or list(motion_check(project))
         if refused:
-            verdicts = [Verdict(name="program", ok=False, said=render(item, project.source)) for item in refused]
-            seconds = 0.0
+            verdicts, seconds = _refused(project, refused, expected), 0.0
         else:
             session = Session(project, physics=expected.physics)
             result = session.run()
@@ -96,6 +98,18 @@ def _run(file: Path, update: bool) -> "tuple[int, str, list[Verdict], float]":
         if not verdict.ok:
             typer.echo(safe(f"     {verdict.name}: {verdict.said}"))
     return (0 if ok else DIAGNOSTICS), str(program), verdicts, seconds
+
+
+def _refused(project: "Project", refused: "list[Diagnostic]", expected: "Expectation") -> "list[Verdict]":
+    """Return what is to be said of a program that does not start: its codes are what it ends with."""
+    from robolang.expectation import Verdict
+
+    said = []
+    for item in refused:
+        place = project.source.place(item.span.start)
+        said.append(f"{project.source.path}:{place.line}:{place.column}: {item.code} {item.message}")
+    codes = [item.code for item in refused]
+    return [Verdict(name="alarms", ok=codes == list(expected.alarms), said=f"it does not start: {'; '.join(said)}")]
 
 
 def _as_junit(suites: "list[tuple[str, list[Verdict], float]]") -> str:

@@ -47,6 +47,16 @@ RULES = (
         motion=True,
     ),
     Rule(
+        code="RBL419",
+        severity=Severity.WARNING,
+        why="The tool is where it was taught, J4 and J6 half a turn away from it. The next joint move starts "
+        "from there, hoses wind up, and after some rounds an axis is at the end of its range.",
+        bad="10 MOVEJ JOINT(0, 60, -190, 20, -30, 0)\n20 MOVE JOINT(10, 60, -190, -160, 30, 180), WRIST KEEP\n",
+        good="10 MOVEJ JOINT(0, 60, -190, 20, -30, 0)\n20 MOVE JOINT(10, 60, -190, 20, -30, 0), WRIST KEEP\n",
+        line=2,
+        motion=True,
+    ),
+    Rule(
         code="RBL421",
         why="The joints and the path are possible, and a table is in the way. In the cell that is a broken hand.",
         bad="10 MOVE P1 + (0, 0, -30)\n",

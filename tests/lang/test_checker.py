@@ -350,6 +350,20 @@ def test_severity_and_the_other_place():
     assert source(text).slice(first(text).related[0].span) == "SUB s"
 
 
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("ON ERROR GOTO *H\nMOVE P1\nEND\n*H PRINT 1 / ERR; 7 MOD ERR; SQR(ERR - 100)\nRESUME NEXT", []),
+        ("CONST k = 3\nPRINT k\nCONST k = 5", [("RBL216", 3, 7, 1)]),
+        ('SELECT ERR\nCASE "410"\nENDSELECT', [("RBL217", 2, 6, 5)]),
+        ('SELECT "a"\nCASE "b", 3\nSELECT 1\nCASE 2\nENDSELECT\nCASE 4\nENDSELECT',
+         [("RBL217", 2, 11, 1), ("RBL217", 6, 6, 1)]),
+    ],
+)  # fmt: skip
+def test_values_that_only_a_run_has_and_values_that_never_fit(text, expected):
+    assert checked(text) == expected
+
+
 def test_an_inertia_is_a_body_s_or_not_as_its_principal_moments_say():
     """Against the eigenvalues, for tensors of random bodies and such as are a little off."""
     random = np.random.default_rng(18)

@@ -282,7 +282,6 @@ def test_calls_within_one_another_are_bounded(call):
         ("10 ON ERROR GOTO 30\n20 x = 1 / 0\n30 RESUME", 20, (2, 4)),
         ("10 ON ERROR GOTO 40\n20 WHILE 1\n30 WEND\n40 RESUME NEXT", 20, (2, 4)),
         ("10 WAIT 0, TIMEOUT 0, GOTO 10", 10, (1, 4)),
-        ("10 WHILE 1\n20 DELAY 0\n30 WEND", 10, (1, 4)),
     ],
 )
 def test_a_loop_that_takes_no_time_is_named_at_its_head(text, line, place, monkeypatch):
@@ -301,9 +300,37 @@ def test_a_loop_that_takes_time_is_none(work, monkeypatch):
 
 
 def test_idle_statements_are_counted_exactly(monkeypatch):
-    monkeypatch.setattr(interpreter, "MAX_IDLE", 11)
+    monkeypatch.setattr(interpreter, "MAX_IDLE", 10)
     assert shows("FOR i = 1 TO 11\nNEXT\nPRINT i") == ["11"]
     assert fault("FOR i = 1 TO 12\nNEXT\nPRINT i").code == "RBL508"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "FOR i = 1 TO 11\nNEXT\nFOR i = 1 TO 11\nNEXT\nPRINT 1",  # each is bounded
+        "FOR i = 1 TO 9\nFOR j = 1 TO 9\nNEXT\nNEXT\nPRINT 1",
+        "i = 0\nWHILE i < 9\nj = 0\nWHILE j < 9\nj = j + 1\nWEND\ni = i + 1\nWEND\nPRINT 1",
+        "FOR i = 1 TO 30\nDELAY 0\nNEXT\nPRINT 1",  # a cycle of 8 ms
+    ],
+)
+def test_rounds_are_those_of_one_loop(text, monkeypatch):
+    monkeypatch.setattr(interpreter, "MAX_IDLE", 10)
+    assert shows(text) == ["1"]
+
+
+@pytest.mark.parametrize(
+    ("head", "end", "shown"),
+    [
+        ("IF 1 / x > 5 THEN", "ELSE\nPRINT 2\nENDIF", ["9"]),
+        ("WHILE 1 / x", "WEND", ["9"]),
+        ("FOR i = 1 TO 1 / x", "NEXT", ["9"]),
+        ("SELECT 1 / x\nCASE 1", "ENDSELECT", ["9"]),
+    ],
+)
+def test_resume_next_goes_behind_a_block_whose_head_failed(head, end, shown):
+    text = f"x = 0\nON ERROR GOTO *H\n{head}\nPRINT 1\n{end}\nPRINT 9\nEND\n*H RESUME NEXT"
+    assert shows(text) == shown
 
 
 def test_statements_are_counted(monkeypatch):

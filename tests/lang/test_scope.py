@@ -45,8 +45,9 @@ def test_a_sub_cannot_change_what_its_caller_has(names):
 
 
 def test_constants(names):
-    names.fix("K", 1.0)
     names.fix("K", 2.0)
+    names.fix("K", 2.0)  # the same statement in a loop
+    assert code(names.fix, "K", 3.0) == "RBL531"
     assert names.value("K") == 2.0
     assert code(names.assign, "K", 3.0) == "RBL531"
     names.enter(1, {})

@@ -126,3 +126,17 @@ def test_the_table_is_written_for_other_programs(found, tmp_path):
 
 def test_times_need_the_motion(tmp_path):
     assert "--times" in robolang("check", "--times", tmp_path / "t.json", code=2).stderr
+
+
+@pytest.mark.parametrize("line", ["TOOL gripp  ' noqa: RBL305", "WAIT IN(9) = 1, TIMEOUT 2  ' noqa"])
+def test_what_keeps_the_motion_from_being_planned_cannot_be_hidden(tmp_path, line):
+    (tmp_path / "p.rbl").write_text(f"SPEED 200\n{line}\n{FAR}\n")
+    for words in ((), ("--ignore", "RBL305,RBL534")):
+        said = robolang("check", "--motion", "--max-cycle", "0.1s", tmp_path / "p.rbl", *words, code=1).stdout
+        assert "p.rbl:2:" in said
+
+
+def test_errors_of_the_cell_are_found_beside_errors_of_the_text(tmp_path):
+    (tmp_path / "p.rbl").write_text("MOV P1\nLOAD (0, 0, 0), 6\n")
+    said = robolang("check", "--motion", tmp_path / "p.rbl", "--output-format", "concise", code=1).stdout
+    assert [line.split()[2] for line in said.splitlines()] == ["RBL112", "RBL402"]

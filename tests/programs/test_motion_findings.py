@@ -97,6 +97,26 @@ def test_a_move_that_cannot_keep_its_speed(tmp_path):
     assert re.match(r"takes \d\.\d\d\d s, \d+\.\d\d times as long as asked for: J\d is at its (speed|acceler)", message)
 
 
+def test_a_time_is_asked_for_under_the_override(tmp_path):
+    assert found(tmp_path, "OVERRIDE 50\nMOVE P2, TIME 2\n", "RBL429") == []
+
+
+def test_an_end_in_other_joint_angles_is_named(tmp_path):
+    text = "MOVEJ JOINT(0, 60, -190, 20, -30, 0)\nMOVE JOINT(10, 60, -190, -160, 30, 180), WRIST KEEP\n"
+    ((line, message, _),) = found(tmp_path, text, "RBL419")
+    assert line == 2
+    assert re.fullmatch(r"ends with J\d at -?\d+\.\d deg, not at the taught -?\d+\.\d deg: WRIST KEEP .*", message)
+
+
+def test_a_wrist_statement_ends_no_blend_in_the_rehearsal_either(tmp_path):
+    from robolang.session import Session
+
+    text = "LOAD empty\nSPEED 200\nZONE 20\nMOVE P2\nWRIST KEEP\nMOVE P5\n"
+    project, rehearsal = looked_at(tmp_path, text)
+    run = Session(project, physics=False).run()
+    assert abs(rehearsal.total_us - round(run.report["sim_time_s"] * 1e6)) <= 8000
+
+
 HEAVY = "LOAD ({}, 0, 60), 2.4, ({}, {}, {}, 0, 0, 0)\nMOVE P1\nMOVE P2\n"
 
 

@@ -77,11 +77,33 @@ def test_the_report_is_junit(tmp_path):
 
 
 def test_the_report_is_xml_whatever_is_printed(tmp_path):
-    text = 'PRINT "a \x1b\ufffe <&"\n'
     report = tmp_path / "report.xml"
-    robolang("test", copied(tmp_path, 'printed = ["b"]', text), "--junit", report, code=1)
+    wanted = r'printed = ["b \u001b\ufffe <&"]'
+    robolang("test", copied(tmp_path, wanted, 'PRINT "a"\n'), "--junit", report, code=1)
     (failure,) = ET.parse(report).getroot().iter("failure")
-    assert "a \ufffd\ufffd <&" in failure.get("message")
+    assert "line 1 is 'a', expected 'b \ufffd\ufffd <&'" in failure.get("message")
+
+
+@pytest.mark.parametrize(
+    ("code", "text"),
+    [
+        ("RBL410", "MOVE P1 + (9000, 0, 0)\n"),
+        ("RBL301", "MOVE P99\n"),
+        ("RBL503", 'PRINT "a"\nWAIT 1 = 2, TIMEOUT 0.2\n'),
+        ("RBL501", 'PRINT "a"\nx = 0\nPRINT 1 / x\n'),
+    ],
+)
+def test_errors_of_planning_and_of_the_program_can_be_expected(tmp_path, code, text):
+    said = robolang("test", copied(tmp_path, f'alarms = ["{code}"]', text)).stdout
+    assert said.startswith("ok")
+    said = robolang("test", copied(tmp_path, "alarms = []", text), code=1).stdout
+    assert code in said
+    assert "\ufffd" not in said
+
+
+def test_what_a_program_printed_before_its_error_is_there(tmp_path):
+    text = 'PRINT "a"\nWAIT 1 = 2, TIMEOUT 0.2\nPRINT "b"\n'
+    robolang("test", copied(tmp_path, 'alarms = ["RBL503"]\nprinted = ["a"]\ncycle_s = [0.2, 0.21]', text))
 
 
 def test_a_file_that_is_not_there_is_refused(tmp_path):
