@@ -149,31 +149,31 @@ def _has(node: Moving, *kinds: type) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _Hold:
-    """Whether the hand is closed, and the HAND since which no LOAD has come; None: there is none."""
+    """Whether the hand is closed, and the place of the HAND since which no LOAD has come; None: there is none."""
 
     closed: bool = False
-    pending: Hand | None = None
+    pending: Span | None = None
 
 
 def _loads(program: Program, structure: Structure, ways: Ways) -> Iterator[Diagnostic]:
     """Report every HAND that changes what is held and is followed by a move before a LOAD."""
-    found: dict[Span, tuple[Hand, Moving]] = {}
+    found: dict[Span, Moving] = {}
 
     def step(at: int, node: Statement, hold: _Hold) -> tuple[_Hold]:
         if isinstance(node, Hand) and (node.state is HandState.ON) is not hold.closed:
-            return (_Hold(not hold.closed, node),)
+            return (_Hold(not hold.closed, node.span),)
         if isinstance(node, Load | LoadNamed):
             return (_Hold(hold.closed),)
         if isinstance(node, _MOVES) and hold.pending is not None:
-            found.setdefault(hold.pending.span, (hold.pending, node))
+            found.setdefault(hold.pending, node)
             return (_Hold(hold.closed),)
         return (hold,)
 
-    if facts_before(ways, _Hold(), step) is None:
+    if not any(isinstance(node, Hand) for _, node in _parts(program)) or facts_before(ways, _Hold(), step) is None:
         return
-    for hand, move in found.values():
+    for hand in (node for _, node in _parts(program) if isinstance(node, Hand) and node.span in found):
         does = "grasps" if hand.state is HandState.ON else "lets go"
-        related = (Related(span=move.span, message="the arm moves here"),)
+        related = (Related(span=found[hand.span].span, message="the arm moves here"),)
         yield _warn("RBL228", hand.span, f"the hand {does} and the arm moves on without a LOAD: the controller goes on "
                     "computing with the load before", related)  # fmt: skip
 
@@ -183,34 +183,38 @@ def _loads(program: Program, structure: Structure, ways: Ways) -> Iterator[Diagn
 
 @dataclass(frozen=True, slots=True)
 class _Corner:
-    """Whether ZONE is set, and the move whose end may be passed without a stop; None: the arm stands."""
+    """Whether ZONE is set, and the place of the move whose end may be passed without a stop; None: the arm stands."""
 
     zone: bool = False
-    move: Moving | None = None
+    move: Span | None = None
 
 
 @dataclass(slots=True)
 class _Corners:
-    """What became of the corners: moves that blended on some way, those that did not, and LOADs within."""
+    """What became of the corners: moves that blended on some way, those that did not, and LOADs within.
 
+    ``zones`` are the ZONEs of moves, by place of the move.
+    """
+
+    zones: dict[Span, Zone]
     used: set[Span] = field(default_factory=set)
-    lost: dict[Span, tuple[Moving, Statement | None]] = field(default_factory=dict)
-    loads: dict[Span, Moving] = field(default_factory=dict)
+    lost: dict[Span, Statement | None] = field(default_factory=dict)
+    loads: dict[Span, Span] = field(default_factory=dict)
 
     def step(self, at: int, node: Statement, corner: _Corner) -> tuple[_Corner]:
         """Follow one statement."""
         if isinstance(node, _MOVES):
             if corner.move is not None:
-                self.used.add(corner.move.span)
-            return (_Corner(corner.zone, node if _blends(node, corner.zone) else None),)
+                self.used.add(corner.move)
+            return (_Corner(corner.zone, node.span if _blends(node, corner.zone) else None),)
         if isinstance(node, Setting) and node.word == "ZONE":
             return (_Corner(node.value is not None and fixed(node.value) != 0.0, corner.move),)
         if not _stops(node) or corner.move is None:
             return (corner,)
         if isinstance(node, Load | LoadNamed):
             self.loads[node.span] = corner.move
-        elif _has(corner.move, Zone):
-            self.lost[corner.move.span] = corner.move, node
+        elif corner.move in self.zones:
+            self.lost[corner.move] = node
         return (_Corner(corner.zone),)
 
 
@@ -229,19 +233,21 @@ def _stops(node: Statement) -> bool:
 
 def _corners(program: Program, structure: Structure, ways: Ways) -> Iterator[Diagnostic]:
     """Report ZONEs of moves that nothing blends into, and LOADs that keep moves from blending."""
-    corners = _Corners()
+    moves = [node for _, node in _parts(program) if isinstance(node, _MOVES)]
+    zones = ((node.span, option) for node in moves for option in node.options if isinstance(option, Zone))
+    corners = _Corners(dict(zones))
     before = facts_before(ways, _Corner(), corners.step)
     if before is None:
         return
     for corner in before[-1]:  # the program ends behind its last line
-        if corner.move is not None and _has(corner.move, Zone):
-            corners.lost.setdefault(corner.move.span, (corner.move, None))
-    for span, (move, stop) in corners.lost.items():
+        if corner.move is not None and corner.move in corners.zones:
+            corners.lost.setdefault(corner.move, None)
+    for span, stop in corners.lost.items():
         if span not in corners.used:
-            zone = next(option for option in move.options if isinstance(option, Zone))
             related = () if stop is None else (Related(span=stop.span, message="the arm comes to rest for this"),)
-            yield _warn("RBL413", zone.span, "no move follows that this one could blend into: it stops", related)
-    for span, move in corners.loads.items():
-        related = (Related(span=move.span, message="the move that would blend"),)
-        yield _warn("RBL229", span, "the arm stops for this LOAD, where the move before it would blend into the next",
+            yield _warn("RBL413", corners.zones[span].span, "no move follows that this one could blend into: it stops",
+                        related)  # fmt: skip
+    for load, span in corners.loads.items():
+        related = (Related(span=span, message="the move that would blend"),)
+        yield _warn("RBL229", load, "the arm stops for this LOAD, where the move before it would blend into the next",
                     related)  # fmt: skip

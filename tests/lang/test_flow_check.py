@@ -50,6 +50,8 @@ def test_nothing_is_said_of_the_order_while_there_are_errors():
         ("CALL grasp\nLOAD l\nMOVE P1\nEND\nSUB grasp\nHAND ON\nENDSUB", []),
         ("CALL grasp\nMOVE P1\nEND\nSUB grasp\nHAND ON\nENDSUB", [5]),
         ("HAND ON\nCALL ready\nLOAD l\nCALL ready\nMOVE P1\nEND\nSUB ready\nWAIT x, TIMEOUT 1\nENDSUB", []),
+        ("IF x THEN HAND ON ELSE HAND ON\nMOVE P1", [1, 1]),
+        ("IF x THEN\nHAND ON\nELSE\nHAND ON\nENDIF\nMOVE P1", [2, 4]),
         ("HAND ON\nCALL up\nEND\nSUB up\nDEPART 50\nENDSUB", [1]),
     ],
 )
@@ -100,6 +102,7 @@ def test_tool_unset(text, lines):
         ("MOVE P1, ZONE 5\nHAND ON\nLOAD l\nMOVE P2", [1]),
         ("MOVE P1, ZONE 5\nx = 1\nMOVE P2", []),
         ("MOVE P1, ZONE 5\nIF x THEN HAND ON\nMOVE P2", []),  # it blends on some way
+        ("IF x THEN\nMOVE P1, ZONE 5\nELSE\nMOVE P1, ZONE 5\nENDIF\nHAND ON\nLOAD l", [2, 4]),
         ("ZONE 5\nMOVE P1\nMOVE P2", []),  # a setting holds for moves that stop, too
         ("WHILE x\nMOVE P1, ZONE 5\nWEND", []),
         ("CALL s\nMOVE P2\nEND\nSUB s\nMOVE P1, ZONE 5\nENDSUB", []),
