@@ -17,7 +17,7 @@ Time is linear in lines times facts; a rule keeps its facts few, and ``MAX_FACTS
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass
-from typing import Generic, Literal, TypeVar
+from typing import Generic, Literal, TypeAlias, TypeVar
 
 from robolang.constants import fixed
 from robolang.nodes import (
@@ -47,16 +47,19 @@ Step = Callable[[int, Statement, Fact], Iterable[Fact]]
 """From the line, a statement of it and a fact before it to the facts after it."""
 
 
+Kind: TypeAlias = Literal["go", "gosub", "call", "return", "leave", "end"]
+
+
 @dataclass(frozen=True, slots=True)
 class Way:
     """A way out of a line: the statement that it carries out, and where it leads.
 
-    ``kind``: ``go`` to line ``to``; ``call`` the subroutine whose first line is ``to``, to come back to the line below;
-    ``back`` to the caller; ``end``: the program ends.
+    ``kind``: ``go`` to line ``to``; ``gosub`` or ``call`` the part whose first line is ``to``, to come back to the line
+    below; ``return`` from the last GOSUB, or else the SUB; ``leave`` the SUB; ``end``: the program ends.
     """
 
     statement: Statement | None
-    kind: Literal["go", "call", "back", "end"]
+    kind: Kind
     to: int = -1
 
 
@@ -78,7 +81,7 @@ def _ways(node: Statement, at: int, program: Program, structure: Structure) -> l
         return taken + ([Way(None, "go", below)] if other is None else _ways(other, at, program, structure))
     if isinstance(node, Jump):
         to = structure.line_of(node.target)
-        return [Way(node, "end")] if to is None else [Way(node, "call" if node.word == "GOSUB" else "go", to)]
+        return [Way(node, "end")] if to is None else [Way(node, "gosub" if node.word == "GOSUB" else "go", to)]
     if isinstance(node, Wait | OnError):
         to = None if node.target is None else structure.line_of(node.target)
         return [Way(node, "go", below), *([] if to is None else [Way(node, "go", to)])]
@@ -88,8 +91,8 @@ def _ways(node: Statement, at: int, program: Program, structure: Structure) -> l
     if isinstance(node, Sub):
         return [Way(node, "go", structure.end.get(at, at) + 1)]
     if isinstance(node, Word):
-        kinds: dict[str, Literal["end", "back"]] = {"END": "end", "STOP": "end", "RESUME": "end", "RESUME NEXT": "end",
-                                                    "RETURN": "back"}  # fmt: skip
+        kinds: dict[str, Kind] = {"END": "end", "STOP": "end", "RESUME": "end", "RESUME NEXT": "end",
+                                  "RETURN": "return"}  # fmt: skip
         return [Way(node, kinds[node.word])] if node.word in kinds else [Way(node, "go", below)]
     if isinstance(node, Head | Block | Case | For | Next):
         return _block_ways(node, at, program, structure)
@@ -112,7 +115,7 @@ def _block_ways(node: Head | Block | Case | For | Next, at: int, program: Progra
     if word == "WEND":
         return [Way(node, "go", structure.after.get(at, at + 1))]
     if word == "ENDSUB":
-        return [Way(node, "back")]
+        return [Way(node, "leave")]
     return [Way(node, "go", at + 1 if word in ("ENDIF", "ENDSELECT") else past)]
 
 
@@ -148,20 +151,33 @@ def facts_before(ways: Ways, first: Fact, step: Step[Fact]) -> list[set[Fact]] |
     return _Search(ways, step).run(first)
 
 
+@dataclass(frozen=True, slots=True)
+class _Context(Generic[Fact]):
+    """Where, how (``main``, ``gosub``, ``call``) and with which fact the part that runs was entered."""
+
+    kind: str
+    line: int
+    fact: Fact
+
+
 class _Search(Generic[Fact]):
-    """The tabulation: pairs of a context, which is where and with which fact a subroutine was entered, and a fact."""
+    """The tabulation: pairs of a context and a fact before a line.
+
+    An exit of a context is a way out, RETURN or ENDSUB, with the fact there: what leaves a GOSUB by ENDSUB leaves the
+    SUB that it is in, as RETURN leaves the SUB where no GOSUB is open.
+    """
 
     def __init__(self, ways: Ways, step: Step[Fact]) -> None:
         self._ways, self._step = ways, step
         self._before: list[set[Fact]] = [set() for _ in range(len(ways) + 1)]
-        self._seen: set[tuple[tuple[int, Fact], int, Fact]] = set()
-        self._work: list[tuple[tuple[int, Fact], int, Fact]] = []
-        self._callers: dict[tuple[int, Fact], set[tuple[tuple[int, Fact], int]]] = defaultdict(set)
-        self._exits: dict[tuple[int, Fact], set[Fact]] = defaultdict(set)
+        self._seen: set[tuple[_Context[Fact], int, Fact]] = set()
+        self._work: list[tuple[_Context[Fact], int, Fact]] = []
+        self._callers: dict[_Context[Fact], set[tuple[_Context[Fact], int]]] = defaultdict(set)
+        self._exits: dict[_Context[Fact], set[tuple[str, Fact]]] = defaultdict(set)
 
     def run(self, first: Fact) -> list[set[Fact]] | None:
         """Search from line 0."""
-        self._push((-1, first), 0, first)
+        self._push(_Context("main", 0, first), 0, first)
         while self._work:
             if len(self._seen) > MAX_STEPS * len(self._before):
                 return None
@@ -173,22 +189,41 @@ class _Search(Generic[Fact]):
                     self._follow(context, at, way, after)
         return self._before
 
-    def _push(self, context: tuple[int, Fact], at: int, fact: Fact) -> None:
+    def _push(self, context: _Context[Fact], at: int, fact: Fact) -> None:
         if (key := (context, at, fact)) not in self._seen:
             self._seen.add(key)
             self._before[at].add(fact)
             self._work.append(key)
 
-    def _follow(self, context: tuple[int, Fact], at: int, way: Way, fact: Fact) -> None:
+    def _follow(self, context: _Context[Fact], at: int, way: Way, fact: Fact) -> None:
         if way.kind == "go":
             self._push(context, way.to, fact)
-        elif way.kind == "call":
-            callee = (way.to, fact)
-            self._callers[callee].add((context, at + 1))
+        elif way.kind in ("gosub", "call"):
+            callee = _Context(way.kind, way.to, fact)
             self._push(callee, way.to, fact)
-            for left in tuple(self._exits[callee]):
-                self._push(context, at + 1, left)
-        elif way.kind == "back" and fact not in self._exits[context]:
-            self._exits[context].add(fact)
-            for caller, line in tuple(self._callers[context]):
-                self._push(caller, line, fact)
+            self._callers[callee].add((context, at + 1))
+            for kind, left in tuple(self._exits[callee]):
+                self._exit(context, at + 1, callee, kind, left)
+        elif way.kind in ("return", "leave"):
+            self._leave(context, way.kind, fact)
+
+    def _leave(self, context: _Context[Fact], kind: str, fact: Fact) -> None:
+        """Leave a context; a stack instead of calls, since GOSUBs may be nested deeply."""
+        todo = [(context, kind)]
+        while todo:
+            inner, kind = todo.pop()
+            if (kind, fact) in self._exits[inner]:
+                continue
+            self._exits[inner].add((kind, fact))
+            for caller, line in tuple(self._callers[inner]):
+                if inner.kind == "gosub" and kind == "leave":
+                    todo.append((caller, kind))
+                else:
+                    self._push(caller, line, fact)
+
+    def _exit(self, caller: _Context[Fact], line: int, inner: _Context[Fact], kind: str, fact: Fact) -> None:
+        """Carry an exit of a context to one more caller."""
+        if inner.kind == "gosub" and kind == "leave":
+            self._leave(caller, kind, fact)
+        else:
+            self._push(caller, line, fact)

@@ -55,6 +55,17 @@ def test_a_subroutine_that_prints_tells_its_callers():
     assert lines_before("CALL s\nCALL s\nEND\nSUB s\nPRINT 1\nENDSUB") == [{0}, {5}, {5}, set(), {0, 5}, {5}, set()]
 
 
+def test_endsub_leaves_the_sub_however_many_gosubs_are_open_in_it():
+    text = "CALL s\nEND\nSUB s\nGOSUB *A\nPRINT 1\nRETURN\n*A GOSUB *B\nPRINT 2\nRETURN\n*B PRINT 3\nENDSUB"
+    assert lines_before(text) == [{0}, {10}, set(), {0}, set(), set(), {0}, set(), set(), {0}, {10}, set()]
+
+
+def test_endsub_leaves_for_every_caller_also_where_its_gosub_was_entered_before():
+    text = "CALL s\nPRINT 1\nCALL s\nEND\nSUB s\nIF x THEN GOSUB *A\nGOSUB *A\nRETURN\n*A ENDSUB"
+    assert lines_before(text)[:4] == [{0}, {0}, {2}, {2}]
+    assert lines_before(text)[7] == set()
+
+
 def test_too_many_facts_are_given_up():
     text = "*L\n" + "IF x THEN PRINT 1\n" * (MAX_FACTS + 2) + "GOTO *L"
     assert lines_before(text) is None
