@@ -10,11 +10,11 @@ Conditions are not decided, except a WHILE of a number that is not 0, which is l
 leads to its handler from where it stands. RESUME leads nowhere that is not reached anyway.
 
 Time is linear in lines times facts; a rule keeps its facts few, and ``MAX_FACTS`` of them before one line, or
-``MAX_STEPS`` for each line all in all, end the search: then nothing is said. Neither is it of a program of more than
-``MAX_LINES`` lines, whose facts would take more memory than the program.
+``MAX_STEPS`` for each line all in all, end the search: then nothing is said. A short program may take ``LEAST_STEPS``,
+none more than ``MOST_STEPS``, which bound the memory. Neither is anything said of a program of more than ``MAX_LINES``
+lines, whose facts would take more memory than the program.
 """
 
-from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass
 from typing import Generic, Literal, TypeAlias, TypeVar
@@ -38,8 +38,10 @@ from robolang.nodes import (
 )
 from robolang.structure import Structure
 
-MAX_FACTS = 16
+MAX_FACTS = 64
 MAX_STEPS = 64
+LEAST_STEPS = 20_000
+MOST_STEPS = 1_000_000
 MAX_LINES = 50_000
 
 Fact = TypeVar("Fact", bound=Hashable)
@@ -151,35 +153,30 @@ def facts_before(ways: Ways, first: Fact, step: Step[Fact]) -> list[set[Fact]] |
     return _Search(ways, step).run(first)
 
 
-@dataclass(frozen=True, slots=True)
-class _Context(Generic[Fact]):
-    """Where, how (``main``, ``gosub``, ``call``) and with which fact the part that runs was entered."""
-
-    kind: str
-    line: int
-    fact: Fact
-
-
 class _Search(Generic[Fact]):
     """The tabulation: pairs of a context and a fact before a line.
 
-    An exit of a context is a way out, RETURN or ENDSUB, with the fact there: what leaves a GOSUB by ENDSUB leaves the
-    SUB that it is in, as RETURN leaves the SUB where no GOSUB is open.
+    A context is where, how (``main``, ``gosub``, ``call``) and with which fact the part that runs was entered; it goes
+    by a number. An exit of it is a way out, RETURN or ENDSUB, with the fact there: what leaves a GOSUB by ENDSUB leaves
+    the SUB that it is in, as RETURN leaves the SUB where no GOSUB is open.
     """
 
     def __init__(self, ways: Ways, step: Step[Fact]) -> None:
         self._ways, self._step = ways, step
         self._before: list[set[Fact]] = [set() for _ in range(len(ways) + 1)]
-        self._seen: set[tuple[_Context[Fact], int, Fact]] = set()
-        self._work: list[tuple[_Context[Fact], int, Fact]] = []
-        self._callers: dict[_Context[Fact], set[tuple[_Context[Fact], int]]] = defaultdict(set)
-        self._exits: dict[_Context[Fact], set[tuple[str, Fact]]] = defaultdict(set)
+        self._seen: set[tuple[int, int, Fact]] = set()
+        self._work: list[tuple[int, int, Fact]] = []
+        self._contexts: dict[tuple[str, int, Fact], int] = {}
+        self._kinds: list[str] = []
+        self._callers: list[set[tuple[int, int]]] = []
+        self._exits: list[set[tuple[str, Fact]]] = []
 
     def run(self, first: Fact) -> list[set[Fact]] | None:
         """Search from line 0."""
-        self._push(_Context("main", 0, first), 0, first)
+        self._push(self._context("main", 0, first), 0, first)
+        most = min(max(MAX_STEPS * len(self._before), LEAST_STEPS), MOST_STEPS)
         while self._work:
-            if len(self._seen) > MAX_STEPS * len(self._before):
+            if len(self._seen) > most:
                 return None
             context, at, fact = self._work.pop()
             if len(self._before[at]) > MAX_FACTS:
@@ -189,41 +186,45 @@ class _Search(Generic[Fact]):
                     self._follow(context, at, way, after)
         return self._before
 
-    def _push(self, context: _Context[Fact], at: int, fact: Fact) -> None:
+    def _context(self, kind: str, line: int, fact: Fact) -> int:
+        number = self._contexts.setdefault((kind, line, fact), len(self._kinds))
+        if number == len(self._kinds):
+            self._kinds.append(kind)
+            self._callers.append(set())
+            self._exits.append(set())
+        return number
+
+    def _push(self, context: int, at: int, fact: Fact) -> None:
         if (key := (context, at, fact)) not in self._seen:
             self._seen.add(key)
             self._before[at].add(fact)
             self._work.append(key)
 
-    def _follow(self, context: _Context[Fact], at: int, way: Way, fact: Fact) -> None:
+    def _follow(self, context: int, at: int, way: Way, fact: Fact) -> None:
         if way.kind == "go":
             self._push(context, way.to, fact)
         elif way.kind in ("gosub", "call"):
-            callee = _Context(way.kind, way.to, fact)
+            callee = self._context(way.kind, way.to, fact)
             self._push(callee, way.to, fact)
             self._callers[callee].add((context, at + 1))
             for kind, left in tuple(self._exits[callee]):
-                self._exit(context, at + 1, callee, kind, left)
+                if way.kind == "gosub" and kind == "leave":
+                    self._leave(context, kind, left)
+                else:
+                    self._push(context, at + 1, left)
         elif way.kind in ("return", "leave"):
             self._leave(context, way.kind, fact)
 
-    def _leave(self, context: _Context[Fact], kind: str, fact: Fact) -> None:
-        """Leave a context; a stack instead of calls, since GOSUBs may be nested deeply."""
-        todo = [(context, kind)]
+    def _leave(self, context: int, kind: str, fact: Fact) -> None:
+        """Leave a context, with those around it that end as well: a list of them, since they may be many."""
+        todo = [context]
         while todo:
-            inner, kind = todo.pop()
+            inner = todo.pop()
             if (kind, fact) in self._exits[inner]:
                 continue
             self._exits[inner].add((kind, fact))
-            for caller, line in tuple(self._callers[inner]):
-                if inner.kind == "gosub" and kind == "leave":
-                    todo.append((caller, kind))
+            for caller, line in self._callers[inner]:
+                if self._kinds[inner] == "gosub" and kind == "leave":
+                    todo.append(caller)
                 else:
                     self._push(caller, line, fact)
-
-    def _exit(self, caller: _Context[Fact], line: int, inner: _Context[Fact], kind: str, fact: Fact) -> None:
-        """Carry an exit of a context to one more caller."""
-        if inner.kind == "gosub" and kind == "leave":
-            self._leave(caller, kind, fact)
-        else:
-            self._push(caller, line, fact)

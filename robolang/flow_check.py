@@ -57,8 +57,12 @@ def flow_check(program: Program, structure: Structure) -> Iterator[Diagnostic]:
     if len(program.lines) > MAX_LINES:
         return
     ways = ways_of(program, structure)
-    for rule in (_unreachable, _speeds, _tools, _loads, _corners):
-        yield from rule(program, structure, ways)
+    before = facts_before(ways, True, lambda at, node, fact: (fact,))
+    if before is None:  # where following nothing is too much, so is following anything
+        return
+    yield from _unreachable(program, before)
+    for rule in (_speeds, _tools, _loads, _corners):
+        yield from rule(program, ways)
 
 
 def _warn(code: str, span: Span, message: str, related: tuple[Related, ...] = (), hint: str = "") -> Diagnostic:
@@ -79,11 +83,8 @@ def _parts(program: Program) -> Iterator[tuple[int, Statement]]:
 # --- lines that cannot run -------------------------------------------------------------------------------------------
 
 
-def _unreachable(program: Program, structure: Structure, ways: Ways) -> Iterator[Diagnostic]:
+def _unreachable(program: Program, before: list[set[bool]]) -> Iterator[Diagnostic]:
     """Report SUBs that nothing calls, and the first of each run of other lines that nothing leads to."""
-    before = facts_before(ways, True, lambda at, node, fact: (fact,))
-    if before is None:
-        return
     said = False
     for index, line in enumerate(program.lines):
         node = line.statement
@@ -101,7 +102,7 @@ def _unreachable(program: Program, structure: Structure, ways: Ways) -> Iterator
 # --- speeds and tools ------------------------------------------------------------------------------------------------
 
 
-def _speeds(program: Program, structure: Structure, ways: Ways) -> Iterator[Diagnostic]:
+def _speeds(program: Program, ways: Ways) -> Iterator[Diagnostic]:
     """Report the first straight move, and the first joint move, that can run before its speed was set."""
     parts = [node for _, node in _parts(program)]
     for word, joint, default in (("SPEED", False, "the robot's default"), ("SPEEDJ", True, "full speed")):
@@ -115,7 +116,7 @@ def _speeds(program: Program, structure: Structure, ways: Ways) -> Iterator[Diag
             yield _warn("RBL226", unset[0].span, f"no {word} is set where this move runs{more}: it goes at {default}")
 
 
-def _tools(program: Program, structure: Structure, ways: Ways) -> Iterator[Diagnostic]:
+def _tools(program: Program, ways: Ways) -> Iterator[Diagnostic]:
     """Report the first move that can run before the tool was set, in a program that sets one."""
     if any(isinstance(node, Setting) and node.word == "TOOL" for _, node in _parts(program)):
         unset = _before_setting(ways, "TOOL", {node.span for _, node in _parts(program) if isinstance(node, _MOVES)})
@@ -155,7 +156,7 @@ class _Hold:
     pending: Span | None = None
 
 
-def _loads(program: Program, structure: Structure, ways: Ways) -> Iterator[Diagnostic]:
+def _loads(program: Program, ways: Ways) -> Iterator[Diagnostic]:
     """Report every HAND that changes what is held and is followed by a move before a LOAD."""
     found: dict[Span, Moving] = {}
 
@@ -231,7 +232,7 @@ def _stops(node: Statement) -> bool:
     return isinstance(node, _STOPS) or (isinstance(node, Word) and node.word in ("PAUSE", "STOP", "END"))
 
 
-def _corners(program: Program, structure: Structure, ways: Ways) -> Iterator[Diagnostic]:
+def _corners(program: Program, ways: Ways) -> Iterator[Diagnostic]:
     """Report ZONEs of moves that nothing blends into, and LOADs that keep moves from blending."""
     moves = [node for _, node in _parts(program) if isinstance(node, _MOVES)]
     zones = ((node.span, option) for node in moves for option in node.options if isinstance(option, Zone))

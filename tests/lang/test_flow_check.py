@@ -59,6 +59,17 @@ def test_load_missing(text, lines):
     assert found(text, "RBL228") == lines
 
 
+def test_every_one_of_many_grasps_is_found():
+    cases = "".join(f"CASE {k}\nHAND ON\n" for k in range(20))
+    assert found(f"SELECT CASE x\n{cases}ENDSELECT\nMOVE P1", "RBL228") == list(range(3, 43, 2))
+
+
+def test_a_short_program_that_calls_itself_in_many_ways_is_looked_at():
+    subs = "".join(f"SUB s{k}\nIF x THEN HAND ON ELSE HAND OFF\nIF x THEN CALL s{(k + 1) % 20}\n"
+                   f"IF x THEN CALL s{(k + 3) % 20}\nMOVE P1\nENDSUB\n" for k in range(20))  # fmt: skip
+    assert found(f"CALL s0\nIF x THEN CALL s0\nEND\n{subs}", "RBL228")
+
+
 def test_load_missing_names_the_move():
     (item,) = [one for one in check(parsed("HAND ON\nMOVE P1")) if one.code == "RBL228"]
     assert "grasps" in item.message
