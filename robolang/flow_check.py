@@ -16,13 +16,14 @@ from dataclasses import dataclass, field
 
 from robolang.constants import fixed
 from robolang.diagnostics import Diagnostic, Related, Severity
-from robolang.flow import MAX_LINES, Ways, facts_before, ways_of
+from robolang.flow import MAX_LINES, Way, Ways, facts_before, ways_of
 from robolang.nodes import (
     Approach,
     Delay,
     Depart,
     Hand,
     HandState,
+    Head,
     If,
     Load,
     LoadNamed,
@@ -44,6 +45,7 @@ from robolang.nodes import (
     Word,
     Zone,
 )
+from robolang.reading import reads_state
 from robolang.source import Span
 from robolang.structure import Structure, word_of
 
@@ -57,12 +59,24 @@ def flow_check(program: Program, structure: Structure) -> Iterator[Diagnostic]:
     if len(program.lines) > MAX_LINES:
         return
     ways = ways_of(program, structure)
-    before = facts_before(ways, True, lambda at, node, fact: (fact,))
+    before = facts_before(_resumed(program, structure, ways), True, lambda at, node, fact: (fact,))
     if before is None:  # where following nothing is too much, so is following anything
         return
     yield from _unreachable(program, before)
     for rule in (_speeds, _tools, _loads, _corners):
         yield from rule(program, ways)
+
+
+def _resumed(program: Program, structure: Structure, ways: Ways) -> Ways:
+    """Return the ways with those of RESUME NEXT, where a program has it: behind a CALL and a block that failed."""
+    if not any(isinstance(node, Word) and node.word == "RESUME NEXT" for _, node in _parts(program)):
+        return ways
+    behind = {index: structure.end.get(index, index) + 1 for index, node in _parts(program) if isinstance(node, Head)}
+    return [
+        [*each, Way(None, "go", behind.get(index, index + 1))]
+        if index in behind or any(way.kind == "call" for way in each) else each
+        for index, each in enumerate(ways)
+    ]  # fmt: skip
 
 
 def _warn(code: str, span: Span, message: str, related: tuple[Related, ...] = (), hint: str = "") -> Diagnostic:
@@ -150,10 +164,11 @@ def _has(node: Moving, *kinds: type) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _Hold:
-    """Whether the hand is closed, and the place of the HAND since which no LOAD has come; None: there is none."""
+    """Whether the hand is closed, the HAND since which no LOAD has come, if any, and whether one has come at all."""
 
     closed: bool = False
     pending: Span | None = None
+    declared: bool = False
 
 
 def _loads(program: Program, ways: Ways) -> Iterator[Diagnostic]:
@@ -163,17 +178,19 @@ def _loads(program: Program, ways: Ways) -> Iterator[Diagnostic]:
     def step(at: int, node: Statement, hold: _Hold) -> tuple[_Hold]:
         if isinstance(node, Hand) and (node.state is HandState.ON) is not hold.closed:
             return (_Hold(not hold.closed, node.span),)
+        if isinstance(node, Hand) and not hold.declared and hold.pending is None:  # it was open: what it weighs?
+            return (_Hold(hold.closed, node.span),)
         if isinstance(node, Load | LoadNamed):
-            return (_Hold(hold.closed),)
+            return (_Hold(hold.closed, declared=True),)
         if isinstance(node, _MOVES) and hold.pending is not None:
             found.setdefault(hold.pending, node)
-            return (_Hold(hold.closed),)
+            return (_Hold(hold.closed, declared=True),)
         return (hold,)
 
     if not any(isinstance(node, Hand) for _, node in _parts(program)) or facts_before(ways, _Hold(), step) is None:
         return
     for hand in (node for _, node in _parts(program) if isinstance(node, Hand) and node.span in found):
-        does = "grasps" if hand.state is HandState.ON else "lets go"
+        does = "grasps" if hand.state is HandState.ON else "opens"
         related = (Related(span=found[hand.span].span, message="the arm moves here"),)
         yield _warn("RBL228", hand.span, f"the hand {does} and the arm moves on without a LOAD: the controller goes on "
                     "computing with the load before", related)  # fmt: skip
@@ -205,8 +222,10 @@ class _Corners:
     def step(self, at: int, node: Statement, corner: _Corner) -> tuple[_Corner]:
         """Follow one statement."""
         if isinstance(node, _MOVES):
-            if corner.move is not None:
+            if corner.move is not None and not reads_state(node):
                 self.used.add(corner.move)
+            elif corner.move in self.zones:
+                self.lost[corner.move] = node
             return (_Corner(corner.zone, node.span if _blends(node, corner.zone) else None),)
         if isinstance(node, Setting) and node.word == "ZONE":
             return (_Corner(node.value is not None and fixed(node.value) != 0.0, corner.move),)
@@ -229,7 +248,9 @@ def _blends(node: Moving, is_set: bool) -> bool:
 def _stops(node: Statement) -> bool:
     if isinstance(node, Setting):
         return node.word == "TOOL"
-    return isinstance(node, _STOPS) or (isinstance(node, Word) and node.word in ("PAUSE", "STOP", "END"))
+    if isinstance(node, Word):
+        return node.word in ("PAUSE", "STOP", "END")
+    return isinstance(node, _STOPS) or reads_state(node)
 
 
 def _corners(program: Program, ways: Ways) -> Iterator[Diagnostic]:

@@ -30,7 +30,6 @@ from robolang.nodes import (
     Call,
     CallSub,
     Case,
-    Component6,
     Const,
     Delay,
     Dim,
@@ -54,10 +53,10 @@ from robolang.nodes import (
     Word,
 )
 from robolang.places import Place
+from robolang.reading import reads_state
 from robolang.scope import STOPS, Loop, Scopes
 from robolang.source import Span
 from robolang.structure import Structure, structure_of
-from robolang.tree import Node, walk
 from runtime.faults import Fault
 
 MAX_IDLE = 100_000
@@ -100,18 +99,6 @@ def execute(program: Program, world: World | None = None,
     no value, and where one was thrown in that no ON ERROR catches.
     """
     return _Machine(program, world or Nowhere(), points, decisions or Decisions()).run()
-
-
-_READS = frozenset({"IN", "HERE", "TIMER", "DIST"})
-
-
-def reads_state(node: Node | None) -> bool:
-    """Return whether a statement or expression reads what changes while the robot moves."""
-    if node is None:
-        return False
-    return any(
-        (isinstance(each, Call) and each.name.key in _READS) or isinstance(each, Component6) for each in walk(node)
-    )
 
 
 class _Machine:

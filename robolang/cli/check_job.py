@@ -6,9 +6,7 @@ fixed. With ``--fix`` a program from stdin goes to stdout, corrected, and its re
 
 import json
 import os
-import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -92,8 +90,12 @@ def run_once(job: Job) -> int:
         outcomes = [_written(outcome) for outcome in outcomes]
     outcomes = [replace(outcome, points=_points(outcome, job, settings)) for outcome in outcomes]
     if job.motion:
-        with _told(outcomes) as told:
-            outcomes = [_planned(outcome, job, settings) for outcome in told]
+        from robolang.cli.check_motion import told
+
+        with told(len(outcomes)) as tell:
+            for number, outcome in enumerate(outcomes):
+                tell(number, outcome.checked.source.path)
+                outcomes[number] = _planned(outcome, job, settings)
     if job.times is not None:
         _write_times(job.times, outcomes)
     _print(job, outcomes)
@@ -168,23 +170,6 @@ def _write_times(path: Path, outcomes: Sequence[_Outcome]) -> None:
 
     text = json.dumps([outcome.times for outcome in outcomes if outcome.times is not None], indent=2) + "\n"
     write_atomic(path, lambda stream: stream.write(text.encode()))
-
-
-@contextmanager
-def _told(outcomes: Sequence[_Outcome]) -> Iterator[Iterator[_Outcome]]:
-    """Yield the programs one by one; on a terminal a live line says which is being planned."""
-    if len(outcomes) < 2 or sys.stderr is None or not sys.stderr.isatty():
-        yield iter(outcomes)
-        return
-    from robolang.cli.console import Console
-
-    def each() -> Iterator[_Outcome]:
-        for number, outcome in enumerate(outcomes, start=1):
-            status.update(f"planning {safe(outcome.checked.source.path)}, {number} of {len(outcomes)}")
-            yield outcome
-
-    with Console(stderr=True).status("planning") as status:
-        yield each()
 
 
 def _written(outcome: _Outcome) -> _Outcome:

@@ -3,7 +3,9 @@
 Imported where it is asked for: it needs numpy, pinocchio and mujoco, which checking a text does not.
 """
 
-from collections.abc import Sequence
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 
 from robolang.diagnostics import Diagnostic, safe
@@ -15,6 +17,18 @@ from robolang.project import Project, load_project
 
 _STATEMENT = 30
 _NOTHING = 5e-4
+
+
+@contextmanager
+def told(count: int) -> Iterator[Callable[[int, str], None]]:
+    """Yield what is to be told which of ``count`` programs is planned; on a terminal a live line says so."""
+    if count < 2 or sys.stderr is None or not sys.stderr.isatty():
+        yield lambda number, name: None
+        return
+    from robolang.cli.console import Console
+
+    with Console(stderr=True).status("planning") as status:
+        yield lambda number, name: status.update(f"planning {safe(name)}, {number + 1} of {count}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -133,8 +133,8 @@ RULES = (
         severity=Severity.WARNING,
         why="Somebody wrote the steps down and the program leaves them out: a CALL is missing, or the SUB is left "
         "over.",
-        bad="10 HAND OFF\n20 END\n30 SUB PICK\n40 MOVE P1\n50 ENDSUB\n",
-        good="10 HAND OFF\n15 CALL PICK\n20 END\n30 SUB PICK\n40 MOVE P1\n50 ENDSUB\n",
+        bad="10 SPEED 200\n20 END\n30 SUB PICK\n40 MOVE P1\n50 ENDSUB\n",
+        good="10 SPEED 200\n15 CALL PICK\n20 END\n30 SUB PICK\n40 MOVE P1\n50 ENDSUB\n",
         line=3,
     ),
     Rule(

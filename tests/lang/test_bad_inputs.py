@@ -169,7 +169,7 @@ GOOD = """10 CONST height = 50
 140 IF count > 3 THEN GOTO *DONE
 150 LOAD (0, 0, 95), 2.3
 160 DEPART height
-170 MOVE P2 + (0, 0, height), ZONE 10
+170 MOVE P2 + (0, 0, height), SPEED 90
 180 part(i) = P2.Z + count * 2
 190 SELECT i
 200 CASE 1, 2

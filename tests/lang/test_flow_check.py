@@ -39,7 +39,10 @@ def test_nothing_is_said_of_the_order_while_there_are_errors():
         ("HAND ON\nMOVE P1", [1]),
         ("HAND ON\nLOAD l\nMOVE P1", []),
         ("LOAD l\nHAND ON\nMOVE P1\nMOVE P2", [2]),
-        ("HAND OFF\nMOVE P1", []),  # it was open already
+        ("HAND OFF\nMOVE P1", [1]),  # it was open already, but nobody has said what the hand weighs
+        ("LOAD l\nHAND OFF\nMOVE P1", []),
+        ("HAND OFF\nLOAD l\nMOVE P1", []),
+        ("MOVE P1\nHAND OFF\nMOVE P2", [2]),
         ("HAND ON\nLOAD l\nHAND OFF\nMOVE P1", [3]),
         ("HAND ON\nHAND OFF\nMOVE P1", [2]),
         ("HAND ON\nDELAY 1\nHAND ON\nMOVE P1", [1]),  # the second grasps nothing new
@@ -116,6 +119,9 @@ def test_tool_unset(text, lines):
         ("IF x THEN\nMOVE P1, ZONE 5\nELSE\nMOVE P1, ZONE 5\nENDIF\nHAND ON\nLOAD l", [2, 4]),
         ("ZONE 5\nMOVE P1\nMOVE P2", []),  # a setting holds for moves that stop, too
         ("WHILE x\nMOVE P1, ZONE 5\nWEND", []),
+        ("MOVE P1, ZONE 5\nq = HERE\nMOVE q", [1]),
+        ("MOVE P1, ZONE 5\nt = TIMER\nMOVE P2\nPRINT t", [1]),
+        ("MOVE P1, ZONE 5\nMOVE HERE * (0, 0, 9)", [1]),
         ("CALL s\nMOVE P2\nEND\nSUB s\nMOVE P1, ZONE 5\nENDSUB", []),
     ],
 )
@@ -145,6 +151,10 @@ def test_load_in_blend(text, lines):
         ("IF x THEN END ELSE STOP\nMOVE P1", [("RBL221", 2)]),
         ("END\nSUB s\nMOVE P1\nENDSUB", [("RBL222", 2)]),
         ("CALL s\nEND\nSUB s\nEND\nMOVE P1\nENDSUB", [("RBL221", 5)]),
+        ("ON ERROR GOTO *H\nCALL s\nMOVE P1\nEND\n*H RESUME NEXT\nSUB s\nWHILE 1\nDELAY 1\nWEND\nENDSUB", []),
+        ("ON ERROR GOTO *H\nWHILE 1 / x\nDELAY 1\nGOTO *E\nWEND\nMOVE P1\nEND\n*H RESUME NEXT\n*E STOP", []),
+        ("ON ERROR GOTO *H\nCALL s\nMOVE P1\nEND\n*H RESUME\nSUB s\nWHILE 1\nDELAY 1\nWEND\nENDSUB",
+         [("RBL221", 3)]),
         ("GOTO *B\n*A MOVE P1\nGOTO *A\n*B END", [("RBL221", 2)]),  # they lead to one another, nothing to them
     ],
 )

@@ -96,7 +96,7 @@ def test_steps_run_commands_that_exist(line):
 
 
 def test_a_command_that_is_none_is_noticed():
-    assert len(steps()) == 7
+    assert len(steps()) == 9
     with pytest.raises(KeyError):
         parse(["robolang", "format", "pick.rbl"])
     with pytest.raises(Exception, match="--chek"):

@@ -18,7 +18,7 @@ from tests.lang.cli.commands import ROOT, robolang
 
 def start(folder, *words):
     """Start a paced run of 60 s and return it once its move has been announced, a few cycles into the run."""
-    (folder / "p.rbl").write_text("10 HAND OFF, 0.1\n20 MOVE P1, TIME 60\n")
+    (folder / "p.rbl").write_text("10 DELAY 0.1\n20 MOVE P1, TIME 60\n")
     process = subprocess.Popen(
         [sys.executable, "-m", "robolang", "run", "--no-physics", "--realtime", "p.rbl", *words],
         cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT)}, text=True,
