@@ -107,13 +107,20 @@ def _parts(node: Statement | None) -> Iterator[Statement]:
 
 def _from_outside(program: Program) -> frozenset[str]:
     """Return the names that are given a value from outside somewhere, in capitals."""
-    given = list(_given(program))
+    into: dict[str, set[str]] = {}
+    todo: list[str] = []
+    for name, value in _given(program):
+        for read in _names(value):
+            into.setdefault(read, set()).add(name)
+        if _is_outside(value, frozenset()):
+            todo.append(name)
     found: set[str] = set()
-    while True:
-        more = {name for name, value in given if name not in found and _is_outside(value, found)}
-        if not more:
-            return frozenset(found)
-        found |= more
+    while todo:
+        name = todo.pop()
+        if name not in found:
+            found.add(name)
+            todo += into.get(name, ())
+    return frozenset(found)
 
 
 def _given(program: Program) -> Iterator[tuple[str, Expression]]:
@@ -132,5 +139,9 @@ def _given(program: Program) -> Iterator[tuple[str, Expression]]:
                 yield from zip((name.key for name in parameters), node.arguments, strict=False)
 
 
-def _is_outside(node: Node, names: frozenset[str] | set[str]) -> bool:
-    return any(isinstance(each, Name) and (each.key in _OUTSIDE or each.key in names) for each in walk(node))
+def _is_outside(node: Node, names: frozenset[str]) -> bool:
+    return any(key in _OUTSIDE or key in names for key in _names(node))
+
+
+def _names(node: Node) -> Iterator[str]:
+    return (each.key for each in walk(node) if isinstance(each, Name))

@@ -1,5 +1,7 @@
 """Conditions that may go another way: which they are, and that the interpreter lets itself be sent there."""
 
+import time
+
 import pytest
 
 from robolang.branches import Decisions, open_conditions
@@ -50,6 +52,14 @@ def asked(text):
 )
 def test_what_may_go_either_way(text, expected):
     assert asked(text) == expected
+
+
+def test_a_long_chain_of_values_is_followed_in_no_time():
+    count = 5_000
+    chain = "".join(f"x{k} = x{k + 1}\n" for k in range(count))
+    began = time.process_time()
+    assert asked(f"{chain}x{count} = IN(1)\nIF x0 THEN END") == [("x0", count + 2)]
+    assert time.process_time() - began < 4.0  # 0.2 s; 9 s when all values are gone through for each new name
 
 
 def printed(text, forced=(), *, patient=True):
