@@ -8,6 +8,7 @@ as the program goes; that two conditions may exclude one another is not known he
 Plans are remembered by what they depend on, so the part that a detour shares with another rehearsal costs nothing.
 """
 
+from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 
@@ -54,11 +55,13 @@ def explore(project: Project) -> Exploration:
     conditions = open_conditions(project.program)
     decisions = Decisions()
     first = rehearse(project, decisions=decisions, planner=planner)
-    gone = {(place, way) for place, ways in decisions.taken.items() for way in ways}
-    todo: list[dict[Span, bool]] = [{place: way} for place, way in _others(conditions, gone, decisions)]
+    gone: set[tuple[Span, bool]] = set()
+    known: set[tuple[Span, bool]] = set()  # gone or queued: each way is queued once, behind the fewest others
+    todo: deque[dict[Span, bool]] = deque()
+    _queue(todo, {}, conditions, known, decisions)
     detours: list[Detour] = []
     while todo and len(detours) < MOST_DETOURS:
-        forced = todo.pop(0)
+        forced = todo.popleft()
         place, way = next(reversed(forced.items()))
         if (place, way) in gone:
             continue
@@ -67,17 +70,21 @@ def explore(project: Project) -> Exploration:
         rehearsal = rehearse(project, decisions=decisions, planner=planner, most_us=DETOUR_US)
         detours.append(Detour(rehearsal=rehearsal, forced=forced))
         gone |= {(each, taken) for each, ways in decisions.taken.items() for taken in ways}
-        todo += [{**forced, other: turned} for other, turned in _others(conditions, gone, decisions)]
+        _queue(todo, forced, conditions, known, decisions)
     tried = first.tried.union(*(detour.rehearsal.tried for detour in detours))
     missed = tuple(node for node in _moves(project) if node.span not in tried)
     return Exploration(rehearsal=first, detours=tuple(detours), missed=missed)
 
 
-def _others(conditions: Mapping[Span, object], gone: set[tuple[Span, bool]],
-            decisions: Decisions) -> list[tuple[Span, bool]]:  # fmt: skip
-    """Return the ways that conditions of a rehearsal have not gone yet, in any."""
-    return [(place, way) for place in decisions.taken if place in conditions
-            for way in (True, False) if (place, way) not in gone]  # fmt: skip
+def _queue(todo: deque[dict[Span, bool]], forced: dict[Span, bool], conditions: Mapping[Span, object],
+           known: set[tuple[Span, bool]], decisions: Decisions) -> None:  # fmt: skip
+    """Queue the ways that conditions of a rehearsal did not go and that are not known yet, behind its own."""
+    known |= {(place, way) for place, ways in decisions.taken.items() for way in ways}
+    for place in decisions.taken:
+        for way in (True, False) if place in conditions else ():
+            if (place, way) not in known:
+                known.add((place, way))
+                todo.append({**forced, place: way})
 
 
 def _moves(project: Project) -> list[Moving]:
