@@ -58,7 +58,9 @@ def findings(project: Project, rehearsal: Rehearsal, max_cycle_s: float | None =
     it. What stops a detour otherwise, such as a WAIT that times out, is what its program wants.
     """
     moves = _Moves(project)
-    found = {(item.code, item.span): item for item in (*rehearsal.refused, *moves.findings(rehearsal))}
+    found: dict[tuple[str, Span], Diagnostic] = {}
+    for item in (*rehearsal.refused, *moves.findings(rehearsal)):
+        found.setdefault((item.code, item.span), item)
     for detour in detours:
         refused = (item for item in detour.rehearsal.refused if item.code.startswith(("RBL3", "RBL4")))
         for item in (*refused, *moves.findings(detour.rehearsal)):
@@ -110,7 +112,8 @@ class _Moves:
         yield from _loads(self._project, new)
 
     def _is_new(self, move: RehearsedMove) -> bool:
-        key = (move.effect.span, move.q.tobytes(), id(move.payload))
+        load = move.payload
+        key = (move.effect.span, move.q.tobytes(), load.mass, load.cog.tobytes(), load.inertia.tobytes())
         known = key in self._seen
         self._seen.add(key)
         return not known
@@ -243,7 +246,8 @@ def worst_loads(project: Project, moves: Sequence[RehearsedMove]) -> list[LoadSh
 
 def _loads(project: Project, moves: Sequence[RehearsedMove]) -> Found:
     """Report each axis of the wrist that a payload overloads, at the move with the worst posture."""
-    for share in worst_loads(project, moves):
+    shares = worst_loads(project, moves)
+    for share in sorted(shares, key=lambda share: (not share.given, share.limit / share.value)):  # worst first
         if not share.value <= share.limit:
             code = "RBL425" if share.what == "moment" else "RBL426"
             yield _at(code, share.move, f"at {share.move.share(share.row):.1f} % of the way the {share.what} of the "

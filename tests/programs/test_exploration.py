@@ -1,15 +1,18 @@
 """Moves behind conditions that the simulated inputs do not meet are planned too, and said with the way to them."""
 
 import json
+from collections import deque
 from importlib import resources
 
 import pytest
 
-from robolang import exploration
-from robolang.exploration import explore
+from robolang import exploration, motion_findings
+from robolang.branches import Decisions
+from robolang.exploration import _queue, explore
 from robolang.motion_check import rehearse
 from robolang.motion_findings import findings
 from robolang.project import load_project
+from robolang.source import Span
 from tests.lang.cli.commands import robolang
 
 FAR = "MOVE P1 + (900, 0, 0)"
@@ -140,3 +143,28 @@ def test_errors_of_the_cell_are_found_beside_errors_of_the_text(tmp_path):
     (tmp_path / "p.rbl").write_text("MOV P1\nLOAD (0, 0, 0), 6\n")
     said = robolang("check", "--motion", tmp_path / "p.rbl", "--output-format", "concise", code=1).stdout
     assert [line.split()[2] for line in said.splitlines()] == ["RBL112", "RBL402"]
+
+
+def test_a_way_is_queued_once():
+    decisions, known, todo = Decisions(), set(), deque()
+    places = {Span(k, k + 1): None for k in range(5)}
+    for place in places:
+        decisions.took(place, True)
+    for forced in ({}, {Span(9, 10): True}, {Span(10, 11): True}):  # three rehearsals that come by the same conditions
+        _queue(todo, forced, places, known, decisions)
+    assert list(todo) == [{place: False} for place in places]
+
+
+def test_moves_with_the_same_load_are_not_looked_at_again(found, monkeypatch):
+    looked = []
+    plain = motion_findings._Moves.touches
+    monkeypatch.setattr(motion_findings._Moves, "touches", lambda self, move: looked.append(move) or plain(self, move))
+    found("FOR i = 1 TO 3\nLOAD (0, 0, 60), 0.8\nMOVE P2\nMOVE P5\nNEXT\nIF IN(1) THEN DELAY 1")
+    assert len(looked) == 6  # those of the first rehearsal, and of the detour none
+
+
+def test_the_first_finding_of_a_statement_is_said(found):
+    said, _ = found("MOVE P2\nFOR i = 1 TO 2\nMOVE P2 + (0, 10 * i, 0), ZONE 50\n"
+                    "MOVE P2 + (0, 10 * i, 60)\nNEXT")
+    zones = {line: message for code, line, message in said if code == "RBL414"}
+    assert "10.0 mm" in zones[3]
