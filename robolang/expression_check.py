@@ -64,7 +64,7 @@ class ExpressionCheck:
             return
         points = self._facts.points
         if points is not None and node.key not in points and self._defined.is_missing(node):
-            message = f"{node.text} has no value: nothing assigns it, and it is no taught point"
+            message = f"{node.text} has no value: nothing gives it a first one, and it is no taught point"
             yield Diagnostic(code="RBL215", message=message, span=node.span, hint=hint_for(node, self._known))
 
     def _call(self, node: Call) -> Iterator[Diagnostic]:

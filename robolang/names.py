@@ -9,9 +9,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from robolang.diagnostics import Diagnostic
-from robolang.nodes import Assign, Const, Dim, For, If, Name, Program, Statement, Sub, Unparsed
+from robolang.nodes import Assign, Const, Dim, Expression, For, If, Name, Program, Statement, Sub, Unparsed
 from robolang.repeats import Repeats
 from robolang.source import Span
+from robolang.tree import walk
 from robolang.words import KEYWORDS, RESERVED, near
 
 _DEFINING = ("CONST", "DIM", "FOR", "SUB")
@@ -69,7 +70,8 @@ class Defined:
                 if part is not None:
                     self._take(part)
         elif isinstance(node, Assign) and isinstance(node.target, Name):
-            self.values.add(node.target.key)
+            if not _reads(node.value, node.target.key):  # n = n + 1 gives n no first value
+                self.values.add(node.target.key)
         elif isinstance(node, For):
             self.values.add(node.variable.key)
         elif isinstance(node, Const):
@@ -85,6 +87,10 @@ class Defined:
             self.seeming |= found
             self.values |= found
             self.arrays |= found
+
+
+def _reads(node: Expression, key: str) -> bool:
+    return any(isinstance(each, Name) and each.key == key for each in walk(node))
 
 
 def seems_to_define(text: str) -> frozenset[str]:

@@ -353,6 +353,18 @@ def test_severity_and_the_other_place():
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
+        ("FOR i = 1 TO 3\nn = n + 1\nNEXT\nPRINT n", [("RBL215", 2, 5, 1)]),
+        ("n = 0\nn = n + 1\nPRINT n", []),
+        ("P1 = P1 + (0, 0, 9)\nMOVE P1", []),
+    ],
+)
+def test_a_value_that_only_goes_into_itself_has_no_first_one(text, expected):
+    assert checked(text, points=("P1",)) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
         ("ON ERROR GOTO *H\nMOVE P1\nEND\n*H PRINT 1 / ERR; 7 MOD ERR; SQR(ERR - 100)\nRESUME NEXT", []),
         ("CONST k = 3\nPRINT k\nCONST k = 5", [("RBL216", 3, 7, 1)]),
         ('SELECT ERR\nCASE "410"\nENDSELECT', [("RBL217", 2, 6, 5)]),
