@@ -277,7 +277,7 @@ def _check_jump(program: Program, found: Structure, index: int, target: Target) 
         if found.missing.is_first(cause, target.span):
             found.report(Diagnostic(code="RBL202", message=f"there is no {name} to go to", span=target.span))
         return
-    if found.owner.get(where) != found.owner.get(index) and program.lines[where].statement is not None:
+    if found.owner.get(where) != found.owner.get(index):
         inside = where in found.owner
         message = f"the target is {'in a' if inside else 'outside of the'} SUB that the jump is {'not ' * inside}in"
         found.report(Diagnostic(code="RBL204", message=message, span=target.span))

@@ -67,6 +67,8 @@ def test_the_tables_of_a_program_with_every_block():
         ("GOTO 20\nSELECT 1\nCASE 1\n20 DELAY 1\nENDSELECT", [("RBL204", 1, 6, 2)]),
         ("GOTO 20\nSUB a\n20 DELAY 1\nENDSUB", [("RBL204", 1, 6, 2)]),
         ("20 DELAY 1\nSUB a\nGOTO 20\nENDSUB", [("RBL204", 3, 6, 2)]),
+        ("GOTO *L\nSUB a\n*L\nDELAY 1\nENDSUB", [("RBL204", 1, 6, 2)]),
+        ("*L\nDELAY 1\nSUB a\nGOTO *L\nENDSUB", [("RBL204", 4, 6, 2)]),
         ("FOR i = 1 TO 2\nFOR j = 1 TO 2\n20 DELAY 1\nNEXT\nGOTO 20\nNEXT", [("RBL204", 5, 6, 2)]),
         ("IF 1 THEN", [("RBL211", 1, 1, 9)]),
         ("FOR i = 1 TO 2", [("RBL211", 1, 1, 14)]),
