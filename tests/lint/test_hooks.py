@@ -34,6 +34,11 @@ HOOKS = read((ROOT / ".pre-commit-hooks.yaml").read_text("utf-8"))
 GITHUB, GITLAB, LOCAL = map(read, BLOCKS)
 
 
+@pytest.mark.parametrize(("name", "block"), [("github", BLOCKS[0]), ("gitlab", BLOCKS[1])])
+def test_the_pipelines_of_the_page_are_files_to_copy(name, block):
+    assert (ROOT / "docs" / "ci" / f"{name}.yml").read_text("utf-8") == block
+
+
 def parse(words):
     """Let the command line parse what a hook or a step calls; a usage error for an option that is none."""
     program, name, *rest = words
