@@ -6,8 +6,8 @@ returns from a CALL or GOSUB belongs to facts that entered it from there, so a s
 fact of one caller to the other. That is the tabulation of interprocedural analysis (Reps, Horwitz, Sagiv, "Precise
 interprocedural dataflow analysis via graph reachability", POPL 1995), over lines.
 
-Conditions are not decided, except a WHILE of a number that is not 0, which is left only by a jump or an end. ON ERROR
-leads to its handler from where it stands. RESUME leads nowhere that is not reached anyway.
+Conditions are not decided, except a WHILE of a number that is not 0, which is left only by a jump or an end. An error
+leads to the handler of its ON ERROR from every statement that may fail (``failing``), and RESUME back from there.
 
 Time is linear in lines times facts; a rule keeps its facts few, and ``MAX_FACTS`` of them before one line, or
 ``MAX_STEPS`` for each line all in all, end the search: then nothing is said. A short program may take ``LEAST_STEPS``,
@@ -15,11 +15,8 @@ none more than ``MOST_STEPS``, which bound the memory. Neither is anything said 
 lines, whose facts would take more memory than the program.
 """
 
-from collections.abc import Callable, Hashable, Iterable
-from dataclasses import dataclass
-from typing import Generic, Literal, TypeAlias, TypeVar
-
 from robolang.constants import fixed
+from robolang.failing import may_fail
 from robolang.nodes import (
     Block,
     CallSub,
@@ -37,43 +34,25 @@ from robolang.nodes import (
     Word,
 )
 from robolang.structure import Structure
+from robolang.tabulation import STOPS, Fact, Kind, Search, Step, Way, Ways
 
-MAX_FACTS = 64
-MAX_STEPS = 64
-LEAST_STEPS = 20_000
-MOST_STEPS = 1_000_000
 MAX_LINES = 50_000
 
-Fact = TypeVar("Fact", bound=Hashable)
-Step = Callable[[int, Statement, Fact], Iterable[Fact]]
-"""From the line, a statement of it and a fact before it to the facts after it."""
-
-
-Kind: TypeAlias = Literal["go", "gosub", "call", "return", "leave", "end"]
-
-
-@dataclass(frozen=True, slots=True)
-class Way:
-    """A way out of a line: the statement that it carries out, and where it leads.
-
-    ``kind``: ``go`` to line ``to``; ``gosub`` or ``call`` the part whose first line is ``to``, to come back to the line
-    below; ``return`` from the last GOSUB, or else the SUB; ``leave`` the SUB; ``end``: the program ends.
-    """
-
-    statement: Statement | None
-    kind: Kind
-    to: int = -1
-
-
-Ways = list[list[Way]]
+_WORDS: dict[str, Kind] = {"END": "end", "STOP": "end", "RETURN": "return", "RESUME": "resume",
+                           "RESUME NEXT": "resume next"}  # fmt: skip
 
 
 def ways_of(program: Program, structure: Structure) -> Ways:
     """Return the ways out of every line."""
-    return [
+    ways = [
         [Way(None, "go", index + 1)] if line.statement is None else _ways(line.statement, index, program, structure)
         for index, line in enumerate(program.lines)
     ]
+    if any(way.kind == "catch" for out in ways for way in out):
+        for out, line in zip(ways, program.lines, strict=True):
+            if line.statement is not None and may_fail(line.statement):
+                out.append(Way(None, "fail"))
+    return ways
 
 
 def _ways(node: Statement, at: int, program: Program, structure: Structure) -> list[Way]:
@@ -84,7 +63,10 @@ def _ways(node: Statement, at: int, program: Program, structure: Structure) -> l
     if isinstance(node, Jump):
         to = structure.line_of(node.target)
         return [Way(node, "end")] if to is None else [Way(node, "gosub" if node.word == "GOSUB" else "go", to)]
-    if isinstance(node, Wait | OnError):
+    if isinstance(node, OnError):
+        to = structure.line_of(node.target)
+        return [Way(node, "go", below) if to is None else Way(node, "catch", to)]
+    if isinstance(node, Wait):
         to = None if node.target is None else structure.line_of(node.target)
         return [Way(node, "go", below), *([] if to is None else [Way(node, "go", to)])]
     if isinstance(node, CallSub):
@@ -93,9 +75,9 @@ def _ways(node: Statement, at: int, program: Program, structure: Structure) -> l
     if isinstance(node, Sub):
         return [Way(node, "go", structure.end.get(at, at) + 1)]
     if isinstance(node, Word):
-        kinds: dict[str, Kind] = {"END": "end", "STOP": "end", "RESUME": "end", "RESUME NEXT": "end",
-                                  "RETURN": "return"}  # fmt: skip
-        return [Way(node, kinds[node.word])] if node.word in kinds else [Way(node, "go", below)]
+        if node.word == "ON ERROR STOP":
+            return [Way(node, "catch", STOPS)]
+        return [Way(node, _WORDS[node.word])] if node.word in _WORDS else [Way(node, "go", below)]
     if isinstance(node, Head | Block | Case | For | Next):
         return _block_ways(node, at, program, structure)
     return [Way(node, "go", below)]
@@ -150,81 +132,4 @@ def facts_before(ways: Ways, first: Fact, step: Step[Fact]) -> list[set[Fact]] |
 
     None when they are too many.
     """
-    return _Search(ways, step).run(first)
-
-
-class _Search(Generic[Fact]):
-    """The tabulation: pairs of a context and a fact before a line.
-
-    A context is where, how (``main``, ``gosub``, ``call``) and with which fact the part that runs was entered; it goes
-    by a number. An exit of it is a way out, RETURN or ENDSUB, with the fact there: what leaves a GOSUB by ENDSUB leaves
-    the SUB that it is in, as RETURN leaves the SUB where no GOSUB is open.
-    """
-
-    def __init__(self, ways: Ways, step: Step[Fact]) -> None:
-        self._ways, self._step = ways, step
-        self._before: list[set[Fact]] = [set() for _ in range(len(ways) + 1)]
-        self._seen: set[tuple[int, int, Fact]] = set()
-        self._work: list[tuple[int, int, Fact]] = []
-        self._contexts: dict[tuple[str, int, Fact], int] = {}
-        self._kinds: list[str] = []
-        self._callers: list[set[tuple[int, int]]] = []
-        self._exits: list[set[tuple[str, Fact]]] = []
-
-    def run(self, first: Fact) -> list[set[Fact]] | None:
-        """Search from line 0."""
-        self._push(self._context("main", 0, first), 0, first)
-        most = min(max(MAX_STEPS * len(self._before), LEAST_STEPS), MOST_STEPS)
-        while self._work:
-            if len(self._seen) > most:
-                return None
-            context, at, fact = self._work.pop()
-            if len(self._before[at]) > MAX_FACTS:
-                return None
-            for way in self._ways[at] if at < len(self._ways) else ():
-                for after in (fact,) if way.statement is None else self._step(at, way.statement, fact):
-                    self._follow(context, at, way, after)
-        return self._before
-
-    def _context(self, kind: str, line: int, fact: Fact) -> int:
-        number = self._contexts.setdefault((kind, line, fact), len(self._kinds))
-        if number == len(self._kinds):
-            self._kinds.append(kind)
-            self._callers.append(set())
-            self._exits.append(set())
-        return number
-
-    def _push(self, context: int, at: int, fact: Fact) -> None:
-        if (key := (context, at, fact)) not in self._seen:
-            self._seen.add(key)
-            self._before[at].add(fact)
-            self._work.append(key)
-
-    def _follow(self, context: int, at: int, way: Way, fact: Fact) -> None:
-        if way.kind == "go":
-            self._push(context, way.to, fact)
-        elif way.kind in ("gosub", "call"):
-            callee = self._context(way.kind, way.to, fact)
-            self._push(callee, way.to, fact)
-            self._callers[callee].add((context, at + 1))
-            for kind, left in tuple(self._exits[callee]):
-                if way.kind == "gosub" and kind == "leave":
-                    self._leave(context, kind, left)
-                else:
-                    self._push(context, at + 1, left)
-        elif way.kind in ("return", "leave"):
-            self._leave(context, way.kind, fact)
-
-    def _leave(self, context: int, kind: str, fact: Fact) -> None:
-        """Leave a context, with those around it that end as well: a list of them, since they may be many."""
-        todo = [context]
-        while todo:
-            inner = todo.pop()
-            if (kind, fact) in self._exits[inner]:
-                continue
-            self._exits[inner].add((kind, fact))
-            for caller, line in self._callers[inner]:
-                if self._kinds[inner] == "gosub" and kind == "leave":
-                    todo.append(caller)
-                else:
-                    self._push(caller, line, fact)
+    return Search(ways, step).run(first)

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 
 from robolang.constants import fixed
 from robolang.diagnostics import Diagnostic, Related, Severity
-from robolang.flow import MAX_LINES, Way, Ways, facts_before, ways_of
+from robolang.flow import MAX_LINES, facts_before, ways_of
 from robolang.nodes import (
     Approach,
     Delay,
@@ -48,6 +48,7 @@ from robolang.nodes import (
 from robolang.reading import reads_state
 from robolang.source import Span
 from robolang.structure import Structure, word_of
+from robolang.tabulation import Way, Ways
 
 _STOPS = (Load, LoadNamed, Hand, Seam, Out, Pulse, Delay, Wait, Print)
 """Statements before which the arm comes to rest, besides TOOL, PAUSE and the end."""

@@ -2,9 +2,10 @@
 
 import pytest
 
-from robolang.flow import MAX_FACTS, facts_before, ways_of
+from robolang.flow import facts_before, ways_of
 from robolang.nodes import Print
 from robolang.structure import structure_of
+from robolang.tabulation import MAX_FACTS
 from tests.lang.helpers import parsed
 
 
@@ -33,7 +34,7 @@ def lines_before(text):
         ("FOR i = 3 TO 1\nPRINT 1\nNEXT", [{0}, {0, 2}, {2}, {0, 2}]),
         ("GOTO *L\nPRINT 1\n*L PRINT 2", [{0}, set(), {0}, {3}]),
         ("WAIT x, TIMEOUT 1, GOTO *L\nPRINT 1\n*L\nEND", [{0}, {0}, {0, 2}, {0, 2}, set()]),
-        ("ON ERROR GOTO *L\nEND\n*L\nRESUME NEXT", [{0}, {0}, {0}, {0}, set()]),
+        ("ON ERROR GOTO *L\nPRINT 1\nEND\n*L\nRESUME NEXT", [{0}, {0}, {2}, set(), set(), set()]),
         ("STOP\nPRINT 1", [{0}, set(), set()]),
     ],
 )
@@ -64,6 +65,27 @@ def test_endsub_leaves_for_every_caller_also_where_its_gosub_was_entered_before(
     text = "CALL s\nPRINT 1\nCALL s\nEND\nSUB s\nIF x THEN GOSUB *A\nGOSUB *A\nRETURN\n*A ENDSUB"
     assert lines_before(text)[:4] == [{0}, {0}, {2}, {2}]
     assert lines_before(text)[7] == set()
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "expected"),
+    [
+        ("ON ERROR GOTO *L\nPRINT 1\nx = 1 / y\nPRINT 2\nEND\n*L END", 6, {2}),
+        ("PRINT 1\nx = 1 / y\nPRINT 2\nON ERROR GOTO *L\nEND\n*L END", 6, set()),  # what failed before ends the run
+        ("ON ERROR GOTO *L\nx = 1 / y\nON ERROR STOP\nPRINT 1\nx = 1 / y\nEND\n*L END", 7, {0}),
+        ("ON ERROR GOTO *L\nx = 1 / y\nPRINT 1\nEND\n*L PRINT 2\nRESUME NEXT", 3, {0, 5}),
+        ("ON ERROR GOTO *L\nx = 1 / y\nPRINT 1\nEND\n*L PRINT 2\nRESUME", 2, {0, 5}),
+        ("ON ERROR GOTO *L\nMOVE P1\nEND\n*L PRINT 1\nMOVE P1\nEND", 4, {0}),  # of an error in a handler none runs
+        ("ON ERROR GOTO *L\nCALL s\nEND\n*L END\nSUB s\nPRINT 1\nMOVE P1\nENDSUB", 4, {6}),
+        ("ON ERROR GOTO *L\nCALL s\nPRINT 9\nEND\n*L RESUME NEXT\nSUB s\nPRINT 1\nMOVE P1\nRETURN\nENDSUB", 3, {7}),
+        ("ON ERROR GOTO *L\nCALL s\nEND\n*L END\nSUB s\nON ERROR STOP\nMOVE P1\nENDSUB", 4, set()),
+        ("CALL s\nMOVE P1\nEND\nSUB s\nON ERROR GOTO *L\n*L RETURN\nENDSUB", 6, {0}),  # ends with its SUB
+        ("ON ERROR GOTO *L\nGOSUB *A\nEND\n*L PRINT 1\nRETURN\n*A MOVE P1\nRETURN", 3, {0, 4}),
+        ("GOSUB *A\nEND\n*L PRINT 1\nRETURN\n*A ON ERROR GOTO *L\nMOVE P1\nRETURN", 2, {0, 3}),
+    ],
+)
+def test_errors_lead_to_the_handler_of_the_way_that_they_come_on(text, line, expected):
+    assert lines_before(text)[line - 1] == expected
 
 
 def test_too_many_facts_are_given_up():

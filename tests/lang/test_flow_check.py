@@ -54,6 +54,7 @@ def test_nothing_is_said_of_the_order_while_there_are_errors():
         ("CALL grasp\nMOVE P1\nEND\nSUB grasp\nHAND ON\nENDSUB", [5]),
         ("HAND ON\nCALL ready\nLOAD l\nCALL ready\nMOVE P1\nEND\nSUB ready\nWAIT x, TIMEOUT 1\nENDSUB", []),
         ("IF x THEN HAND ON ELSE HAND ON\nMOVE P1", [1, 1]),
+        ("ON ERROR GOTO *H\nMOVE P1\nMOVE P2\nEND\n*H HAND ON\nRESUME NEXT", [5]),
         ("IF x THEN\nHAND ON\nELSE\nHAND ON\nENDIF\nMOVE P1", [2, 4]),
         ("HAND ON\nCALL up\nEND\nSUB up\nDEPART 50\nENDSUB", [1]),
     ],
@@ -90,6 +91,8 @@ def test_load_missing_names_the_move():
         ("MOVEJ P1\nSPEEDJ 50\nMOVEJ P2", [1]),
         ("MOVEJ P1\nMOVEJ P2, SPEED 50", [1]),
         ("IF x THEN SPEED 100\nDEPART 5", [2]),
+        ("ON ERROR GOTO *H\nSPEED 100\nTOOL t\nMOVE P1\nEND\n*H\nMOVE P2", []),  # nothing fails before SPEED
+        ("ON ERROR GOTO *H\nMOVEJ P1\nSPEED 100\nMOVE P1\nEND\n*H\nMOVE P2", [7]),
         ("SPEED 100\nCALL s\nEND\nSUB s\nMOVE P1\nENDSUB", []),
     ],
 )

@@ -4,8 +4,8 @@ The program is run by the interpreter, conditions and time-outs go any way, and 
 that came last, and the hand with what was declared since it last moved. Programs without loops are run on every way, by
 brute force, and there ``flow`` must find the very facts of the runs and no more.
 
-Not looked at, since flow does not follow it: CALLs and GOSUBs within one another beyond their most, and memory that
-runs out.
+Not looked at, since ``flow`` does not follow it: CALLs and GOSUBs within one another beyond their most, names without a
+value, and memory that runs out.
 """
 
 import random
@@ -20,7 +20,7 @@ from robolang.diagnostics import has_errors
 from robolang.effects import MoveTo, SetHand, SetPayload, Show
 from robolang.flow import facts_before, ways_of
 from robolang.interpreter import ProgramFault, _Machine
-from robolang.nodes import Hand, HandState, LoadNamed, Print
+from robolang.nodes import Hand, HandState, LoadNamed, Move, Print
 from robolang.structure import structure_of, word_of
 from tests.lang.helpers import parsed
 from tests.lang.test_branches import Still
@@ -45,6 +45,7 @@ class Section:
     def __init__(self, draw, name, subs, *, loops, errors):
         self.draw, self.name, self.subs, self.loops, self.errors = draw, name, subs, loops, errors
         self.chunks = draw(st.integers(1, 4))
+        self.catches = errors and draw(st.booleans())
         self.at = 0
 
     def text(self):
@@ -53,6 +54,8 @@ class Section:
             self.at = at
             if (label := self._label()) and self.pick((False, False, True)):
                 lines += [f"GOSUB {label}", self.pick(ACTS)]
+            if self.catches and label and self.pick((False, True)):
+                lines += [f"ON ERROR GOTO {label}", self.pick((*FAILING, *map("CALL {}".format, self.subs)))]
             lines += [f"*{self.name}{at}{' DELAY 0' * self.pick((0, 1))}", *self.block(2)]
         return lines
 
@@ -100,7 +103,7 @@ class Section:
             return self.pick(("GOTO ", "GOSUB ", "WAIT IN(1), TIMEOUT 1, GOTO ")) + label
         if kind == "error":
             label = self._label()
-            return self.pick((*FAILING, *((f"ON ERROR GOTO {label}",) * 4 if label else ())))
+            return self.pick((*FAILING, *((f"ON ERROR GOTO {label}",) * 4 if label and self.catches else ())))
         return self.pick(ACTS)
 
     def _label(self):
@@ -152,19 +155,24 @@ class Inputs(Still):
         return float(self._chance.randrange(3))
 
 
+class EnoughError(Exception):
+    """A run has been long enough."""
+
+
 class Followed(_Machine):
     """A program that runs, with the facts before every line that it came to."""
 
     def __init__(self, program, world, decisions):
         super().__init__(program, world, ("P1",), decisions)
-        self.lines, self.printed, self.hand = 0, 0, (False, True)
+        self.lines, self.printed, self.hand = 0, 0, (False, 0)
         self.seen = {"print": defaultdict(set), "hand": defaultdict(set)}
         self.slow_moves, self.bare_hands = 0, set()
-        self._hand_line = 0
 
     def _count(self, at):
         super()._count(at)
         self.lines += 1
+        if self.lines > MOST_LINES:
+            raise EnoughError
         self.seen["print"][at].add(self.printed)
         self.seen["hand"][at].add(self.hand)
 
@@ -173,9 +181,7 @@ class Followed(_Machine):
         try:
             for effect in self.run():
                 self._note(effect)
-                if self.lines > MOST_LINES:
-                    return self
-        except ProgramFault:
+        except (ProgramFault, EnoughError):
             pass
         return self
 
@@ -183,15 +189,15 @@ class Followed(_Machine):
         if isinstance(effect, Show):
             self.printed = effect.line
         elif isinstance(effect, SetPayload):
-            self.hand = (self.hand[0], True)
+            self.hand = (self.hand[0], 0)
         elif isinstance(effect, SetHand):
             if effect.closed is not self.hand[0]:
-                self.hand, self._hand_line = (effect.closed, False), effect.line
+                self.hand = (effect.closed, effect.line)
         elif isinstance(effect, MoveTo):
             self.slow_moves += effect.speed_mm_s is None
-            if not self.hand[1]:
-                self.bare_hands.add(self._hand_line)
-                self.hand = (self.hand[0], True)
+            if self.hand[1]:
+                self.bare_hands.add(self.hand[1])
+                self.hand = (self.hand[0], 0)
 
 
 def printed(at, node, fact):
@@ -200,15 +206,15 @@ def printed(at, node, fact):
 
 
 def declared(at, node, fact):
-    """Whether the hand is closed, and whether a LOAD or a move has come since it moved."""
+    """Whether the hand is closed, and the line of the HAND since which no LOAD or move has come, or 0."""
     closed, _ = fact
     if isinstance(node, Hand):
         on = node.state is HandState.ON
-        return ((on, False) if on is not closed else fact,)
-    return ((closed, True) if isinstance(node, LoadNamed) or type(node).__name__ == "Move" else fact,)
+        return ((on, at + 1) if on is not closed else fact,)
+    return ((closed, 0) if isinstance(node, LoadNamed | Move) else fact,)
 
 
-FACTS = {"print": (0, printed), "hand": ((False, True), declared)}
+FACTS = {"print": (0, printed), "hand": ((False, 0), declared)}
 
 
 def found_by_flow(program):
@@ -233,7 +239,7 @@ def assert_sound(text, chance):
         dead = {line for code, line in said if code in ("RBL221", "RBL222")}
         assert not dead & {at + 1 for at in run.seen["print"] if not text.split("\n")[at].startswith("SUB")}, text
         assert not run.slow_moves or "SPEED" not in text or any(code == "RBL226" for code, _ in said), text
-        assert {("RBL228", line) for line in run.bare_hands} <= said, text
+        assert facts["hand"] is None or {("RBL228", line) for line in run.bare_hands} <= said, text
 
 
 @given(programs(loops=True), st.integers(0, 10**6))
@@ -242,18 +248,23 @@ def test_what_is_true_in_a_run_is_found(text, seed):
     assert_sound(text, random.Random(seed))
 
 
+@given(programs(loops=True, errors=True), st.integers(0, 10**6))
+@settings(max_examples=300, deadline=None)
+def test_what_is_true_in_a_run_with_errors_is_found(text, seed):
+    assert_sound(text, random.Random(seed))
+
+
 def every_run(program):
-    """The facts before every line, of all ways; None when those are too many."""
+    """The facts before every line, of all ways; None when those are too many or too long."""
     seen = {name: defaultdict(set) for name in FACTS}
     todo, runs = [[]], 0
     while todo:
         choices = todo.pop()
         runs += 1
-        if runs > MOST_WAYS:
-            return None
         ways = Ways(program, choices)
         run = Followed(program, Still(), ways).follow()
-        assert run.lines <= MOST_LINES
+        if run.lines > MOST_LINES or runs > MOST_WAYS:
+            return None
         todo += [[*choices, *[False] * (k - len(choices)), True] for k in range(len(choices), ways.asked)]
         for name, table in run.seen.items():
             for at, facts in table.items():
