@@ -185,12 +185,15 @@ def _block(head: str, source: Source, span: Span) -> list[str]:
 
 
 def _excerpt(line: int, text: str, first: int, last: int) -> list[str]:
-    """Return the line and the line of carets under characters ``[first, last)``, at least one caret."""
+    """Return the line and the line of carets under characters ``[first, last)``, at least one caret.
+
+    A place outside the text is taken for the end that it is nearest to: a text may be shorter than its place says.
+    """
+    first = min(max(first, 0), len(text))
     begin = max(0, first - _WINDOW // 2) if len(text) > _WINDOW else 0
     end = min(len(text), begin + _WINDOW)
     shown, columns = _columns(text[begin:end])
-    left = columns[min(max(first - begin, 0), end - begin)]
-    right = columns[min(max(last - begin, 0), end - begin)]
+    left, right = columns[first - begin], columns[min(max(last, first), end) - begin]
     dots = "…" if begin else ""
     gutter = max(4, len(str(line)))
     return [

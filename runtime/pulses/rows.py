@@ -129,4 +129,4 @@ class Rows:
         line = self._lines[self._line - 1]
         if column is None:
             column = 1 + sum(len(part) + 1 for part in line.split(",")[:place])
-        fail(self._path, code, message, line=self._line, column=column, excerpt=line[:1000])
+        fail(self._path, code, message, line=self._line, column=column, excerpt=line)

@@ -137,7 +137,7 @@ def fault_at(source: Source, line: int, column: int, code: str, message: str, hi
     """Return a ``FileFault`` at a place (1-based) of a source."""
     lines = source.text.split("\n")
     excerpt = lines[line - 1].removesuffix("\r") if 0 < line <= len(lines) else ""
-    return FileFault(code, message, hint, path=source.path, line=line, column=column, excerpt=excerpt[:200])
+    return FileFault(code, message, hint, path=source.path, line=line, column=column, excerpt=excerpt)
 
 
 def parse_xml(source: Source) -> Element:

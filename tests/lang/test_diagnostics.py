@@ -1,12 +1,16 @@
 import json
+import unicodedata
 
 import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
 
 from robolang.diagnostics import (
     MAX_DIAGNOSTICS,
     Diagnostic,
     Related,
     Severity,
+    _excerpt,
     fault_to_json,
     has_errors,
     in_order,
@@ -58,6 +62,34 @@ def test_a_long_line_is_cut_around_the_place():
     assert len(line) < 120
     assert line[under.index("^") : under.rindex("^") + 1] == "HERE"
     assert line.endswith("…")
+
+
+def screen(text):
+    """Columns that a text takes on a screen."""
+    wide = [2 if unicodedata.east_asian_width(letter) in "WF" else 1 for letter in text]
+    return sum(0 if unicodedata.category(letter) in ("Mn", "Me", "Cf") else width
+               for letter, width in zip(text, wide, strict=True))  # fmt: skip
+
+
+PIECES = ("\t", "点", "e\u0301", "\u200b", "\u202e", "\x1b", " ", "MOVE P1 ", "x" * 50)
+LINES = st.text(max_size=40) | st.lists(st.sampled_from(PIECES), max_size=60).map("".join)
+
+
+@given(LINES, st.integers(-3, 400), st.integers(-3, 400))
+@settings(max_examples=200, deadline=None)
+@example("x" * 200, 286, 287)  # the place is one of the whole line, the text a part of it
+@example("", 0, 0)
+@example("\t" * 97, 96, 99)
+def test_any_text_and_any_place_give_carets_within_the_excerpt(text, first, last):
+    text += "."  # blanks at the end are not shown
+    line, under = _excerpt(7, text, first, last)
+    gutter = len("   7 | ")
+    carets = under.index("^")
+    assert (line[:gutter], under[:carets].strip(), set(under[carets:])) == ("   7 | ", "|", {"^"})
+    assert gutter <= carets <= screen(line)
+    assert len(under) <= screen(line) + 1
+    if text.isascii() and text.isprintable() and 0 <= first < len(text):
+        assert line[carets] == text[first]
 
 
 def test_a_span_past_the_end_of_its_line_is_cut():
