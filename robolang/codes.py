@@ -236,6 +236,18 @@ _COMMAND = (
         "Give a code such as RBL301, the beginning of one such as RBL2, or a name; robolang rules lists them.",
     ),
     (
+        "RBL711",
+        "golden-log-unusable",
+        "A golden log is damaged, has a joint angle that is not finite, or was written on another robot.",
+        "Write it again with robolang test --update, or restore it from a copy.",
+    ),
+    (
+        "RBL712",
+        "no-tests",
+        "robolang test was given a path with no test file in it, so nothing was compared.",
+        "Name a folder with NAME.test.toml files, or allow it with --allow-empty.",
+    ),
+    (
         "RBL900",
         "internal-error",
         "robolang itself failed; the program is not the cause.",

@@ -70,12 +70,12 @@ def reported() -> Iterator[None]:
         raise
     except OSError as error:
         if error.errno not in _FULL:
-            raise typer.Exit(_internal(error)) from None
+            raise typer.Exit(say(internal(error))) from None
         _drop_output()
         message = f"cannot write the standard output: {error.strerror}"
         raise typer.Exit(say(Fault("RBL706", message))) from None
     except Exception as error:
-        raise typer.Exit(_internal(error)) from None
+        raise typer.Exit(say(internal(error))) from None
 
 
 def escape_what_a_terminal_lacks() -> None:
@@ -84,12 +84,13 @@ def escape_what_a_terminal_lacks() -> None:
         sys.stdout.reconfigure(errors="backslashreplace")
 
 
-def _internal(error: Exception) -> int:
+def internal(error: Exception) -> Fault:
+    """Return the fault that stands for a defect of robolang itself; raises the error when that is asked for."""
     if os.environ.get("ROBOLANG_DEBUG"):
         raise error
     kind = type(error).__name__
     hint = "this is a defect of robolang; ROBOLANG_DEBUG=1 shows where it happened"
-    return say(Fault("RBL900", f"internal error: {kind}: {error}", hint))
+    return Fault("RBL900", f"internal error: {kind}: {error}", hint)
 
 
 def _drop_output() -> None:

@@ -1,20 +1,46 @@
 """``robolang test [PATHS]``: run programs that have a test file beside them, and compare with what it expects.
 
-``NAME.test.toml`` beside ``NAME.rbl`` (docs/testing.md). Exit codes: 0 all as expected; 1 one is not; 2 a file cannot
-be used. ``--junit FILE`` writes the report of one test suite for each program.
+``NAME.test.toml`` beside ``NAME.rbl`` (docs/testing.md). A test whose files cannot be used fails, and the others run
+all the same. Exit codes: 0 all as expected; 1 one is not; 2 a file cannot be used, or a path has no test; 4 a file
+cannot be written. ``--junit FILE`` writes the report, in every case, of one test suite for each program.
 """
 
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robolang.cli.errors import DIAGNOSTICS, USAGE, reported, say
+from robolang.cli.errors import DIAGNOSTICS, USAGE, internal, reported, say
 
 if TYPE_CHECKING:
     from robolang.diagnostics import Diagnostic
-    from robolang.expectation import Expectation, Verdict
+    from robolang.expectation import Expectation
     from robolang.project import Project
+    from robolang.verdict import Verdict
+    from runtime.faults import Fault
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Outcome:
+    """What became of one test: the program's name, the place of its test file, verdicts, and the time of the run, s."""
+
+    name: str
+    verdicts: "list[Verdict]"
+    expected: "Expectation | None" = None
+    seconds: float = 0.0
+
+    @property
+    def ok(self) -> bool:
+        return all(verdict.ok for verdict in self.verdicts)
+
+    def line(self, verdict: "Verdict") -> str:
+        """Return a verdict with the place of the key that asks for it."""
+        if self.expected is None:
+            return verdict.said
+        line, column = self.expected.place(*verdict.key)
+        return f"{self.expected.source.path}:{line}:{column}: {verdict.name}: {verdict.said}"
 
 
 def test(
@@ -24,6 +50,7 @@ def test(
     ] = None,
     update: Annotated[bool, typer.Option("--update", help="Write the golden logs anew.")] = False,
     junit: Annotated[Path | None, typer.Option("--junit", metavar="FILE", help="Write a JUnit report.")] = None,
+    allow_empty: Annotated[bool, typer.Option("--allow-empty", help="A path without a test file is no error.")] = False,
 ) -> None:
     """Run programs and compare with what their test files expect."""
     with reported():
@@ -31,98 +58,125 @@ def test(
 
         if junit is not None:
             check_writable(junit)
-        files = _files(paths or ["."])
-        if not files:
-            typer.echo("no test files (NAME.test.toml)", err=True)
-        suites, worst = [], 0
-        for file in files:
-            code, name, verdicts, seconds = _run(file, update)
-            worst = max(worst, code)
-            suites.append((name, verdicts, seconds))
+        outcomes, worst = [], 0
+        for found in _files(paths or ["."], allow_empty):
+            outcome = _run(found, update) if isinstance(found, Path) else found
+            worst = max(worst, _tell(outcome))
+            outcomes.append(outcome)
         if junit is not None:
-            text = _as_junit(suites)
+            text = _as_junit(outcomes)
             write_atomic(junit, lambda stream: stream.write(text.encode("utf-8")))
-        bad = sum(not all(verdict.ok for verdict in verdicts) for _, verdicts, _ in suites)
-        typer.echo(f"{len(suites) - bad} of {len(suites)} programs as expected")
+        good = sum(outcome.ok for outcome in outcomes)
+        typer.echo(f"{good} of {len(outcomes)} programs as expected" if outcomes else "no test files (NAME.test.toml)")
     if worst:
         raise typer.Exit(worst)
 
 
-def _files(paths: list[str]) -> list[Path]:
-    """Return the test files that paths name, each once, folders searched through."""
+def _files(paths: list[str], allow_empty: bool) -> Iterator[Path | _Outcome]:
+    """Yield the test files that paths mean, each once; for a path that means none, the outcome that says so."""
     from robolang.expectation import ENDING
+    from robolang.lint.files import programs
     from runtime.faults import Fault
 
-    found: list[Path] = []
+    seen: set[Path] = set()
     for path in map(Path, paths):
         if path.is_dir():
-            found += sorted(path.rglob(f"*{ENDING}"))
-        elif path.name.endswith(ENDING):
-            found.append(path)
+            files = [Path(name) for name in programs([str(path)], ENDING)]
         else:
-            beside = path.with_name(path.name.removesuffix(".rbl") + ENDING)
-            if not beside.exists():
-                hint = "write what the program is expected to do into it"
-                raise Fault("RBL701", f"there is no test file {beside}", hint)
-            found.append(beside)
-    return list(dict.fromkeys(found))
+            files = [path if path.name.endswith(ENDING) else path.with_name(path.name.removesuffix(".rbl") + ENDING)]
+            if not files[0].exists():
+                missing = "What the program is expected to do is written into it (docs/testing.md)."
+                yield _unusable(str(path), Fault("RBL701", f"there is no test file {files[0]}", missing))
+                continue
+        if not files and not allow_empty:
+            yield _unusable(str(path), Fault("RBL712", f"there is no test file (NAME{ENDING}) in {path}"))
+        for file in files:
+            if file.absolute() not in seen:
+                seen.add(file.absolute())
+                yield file
 
 
-def _run(file: Path, update: bool) -> "tuple[int, str, list[Verdict], float]":
-    """Run one program; return exit code, name, verdicts and the time of the run, s."""
-    from robolang.diagnostics import Severity, safe
-    from robolang.expectation import ENDING, Verdict, judge, load_expectation
-    from robolang.motion_check import motion_check
-    from robolang.project import load_project
-    from robolang.session import Session
+def _unusable(name: str, fault: "Fault", expected: "Expectation | None" = None) -> _Outcome:
+    from robolang.verdict import Verdict
+
+    verdict = Verdict(name="files", ok=False, said=f"{fault.code} {fault.message}", fault=fault)
+    return _Outcome(name=name, verdicts=[verdict], expected=expected)
+
+
+def _run(file: Path, update: bool) -> _Outcome:
+    """Run one program; whatever goes wrong is the outcome of this test alone."""
+    from robolang.expectation import ENDING, load_expectation
     from runtime.faults import Fault
 
     program = file.with_name(file.name.removesuffix(ENDING) + ".rbl")
+    expected = None
     try:
         expected = load_expectation(file)
-        project = load_project(program)
-        refused = [item for item in project.diagnostics if item.severity is Severity.ERROR]
-        refused = refused or list(motion_check(project))
-        if refused:
-            verdicts, seconds = _refused(project, refused, expected), 0.0
-        else:
-            session = Session(project, physics=expected.physics)
-            result = session.run()
-            verdicts = judge(expected, session, result.report, result.log, update)
-            seconds = session.controller.time_us / 1e6
+        verdicts, seconds = _judged(program, expected, update)
     except Fault as fault:
-        return max(USAGE, say(fault)), str(program), [Verdict(name="files", ok=False, said=fault.message)], 0.0
-    ok = all(verdict.ok for verdict in verdicts)
-    typer.echo(safe(f"{'ok  ' if ok else 'FAIL'} {program}, {seconds:.3f} s"))
-    for verdict in verdicts:
-        if not verdict.ok:
-            typer.echo(safe(f"     {verdict.name}: {verdict.said}"))
-    return (0 if ok else DIAGNOSTICS), str(program), verdicts, seconds
+        return _unusable(str(program), fault, expected)
+    except Exception as error:
+        return _unusable(str(program), internal(error), expected)
+    return _Outcome(name=str(program), verdicts=verdicts, expected=expected, seconds=seconds)
 
 
-def _refused(project: "Project", refused: "list[Diagnostic]", expected: "Expectation") -> "list[Verdict]":
-    """Return what is to be said of a program that does not start: its codes are what it ends with."""
-    from robolang.expectation import Verdict
+def _judged(program: Path, expected: "Expectation", update: bool) -> "tuple[list[Verdict], float]":
+    """Return the verdicts on a program and the time of its run, s."""
+    from robolang.diagnostics import Severity
+    from robolang.motion_check import motion_check
+    from robolang.project import load_project
+    from robolang.session import Session
+    from robolang.verdict import judge, judge_refused
 
-    said = []
-    for item in refused:
-        place = project.source.place(item.span.start)
-        said.append(f"{project.source.path}:{place.line}:{place.column}: {item.code} {item.message}")
-    codes = [item.code for item in refused]
-    return [Verdict(name="alarms", ok=codes == list(expected.alarms), said=f"it does not start: {'; '.join(said)}")]
+    project = load_project(program)
+    refused = [item for item in project.diagnostics if item.severity is Severity.ERROR] or list(motion_check(project))
+    if refused:
+        why = "; ".join(_shown(project, item) for item in refused)
+        return judge_refused(expected, [item.code for item in refused], why), 0.0
+    session = Session(project, physics=expected.physics)
+    result = session.run()
+    return judge(expected, session, result.report, result.log, update), session.controller.time_us / 1e6
 
 
-def _as_junit(suites: "list[tuple[str, list[Verdict], float]]") -> str:
+def _shown(project: "Project", item: "Diagnostic") -> str:
+    place = project.source.place(item.span.start)
+    return f"{project.source.path}:{place.line}:{place.column}: {item.code} {item.message}"
+
+
+def _tell(outcome: _Outcome) -> int:
+    """Print an outcome, the faults of its files to stderr, and return its exit code."""
+    from robolang.diagnostics import safe
+
+    code = 0 if outcome.ok else DIAGNOSTICS
+    typer.echo(safe(f"{'ok  ' if outcome.ok else 'FAIL'} {outcome.name}, {outcome.seconds:.3f} s"))
+    for verdict in outcome.verdicts:
+        if verdict.fault is not None:
+            code = max(code, USAGE, say(verdict.fault))
+        elif not verdict.ok or verdict.noted:
+            typer.echo(safe(f"     {outcome.line(verdict)}"))
+    return code
+
+
+def _as_junit(outcomes: list[_Outcome]) -> str:
+    """Return the report; a test whose files cannot be used is an error, one that finds a difference a failure."""
     from robolang.output.junit import quoted
 
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', "<testsuites>"]
-    for name, verdicts, seconds in suites:
-        failures = sum(not verdict.ok for verdict in verdicts)
-        counts = f'tests="{len(verdicts)}" failures="{failures}" errors="0" time="{seconds:.3f}"'
-        lines.append(f"  <testsuite name={quoted(name)} {counts}>")
-        for verdict in verdicts:
-            head = f"    <testcase classname={quoted(name)} name={quoted(verdict.name)}"
-            failure = f"><failure message={quoted(verdict.said)}/></testcase>"
-            lines.append(f"{head}{'/>' if verdict.ok else failure}")
+    for outcome in outcomes:
+        bad = [verdict for verdict in outcome.verdicts if not verdict.ok]
+        errors = sum(verdict.fault is not None for verdict in bad)
+        counts = f'tests="{len(outcome.verdicts)}" failures="{len(bad) - errors}" errors="{errors}"'
+        lines.append(f'  <testsuite name={quoted(outcome.name)} {counts} time="{outcome.seconds:.3f}">')
+        for verdict in outcome.verdicts:
+            head = f"    <testcase classname={quoted(outcome.name)} name={quoted(verdict.name)}"
+            lines.append(head + ("/>" if verdict.ok else f">{_failure(outcome, verdict)}</testcase>"))
         lines.append("  </testsuite>")
     return "\n".join([*lines, "</testsuites>", ""])
+
+
+def _failure(outcome: _Outcome, verdict: "Verdict") -> str:
+    from robolang.output.junit import quoted
+
+    if verdict.fault is None:
+        return f"<failure message={quoted(outcome.line(verdict))}/>"
+    return f"<error type={quoted(verdict.fault.code)} message={quoted(str(verdict.fault))}/>"

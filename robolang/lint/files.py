@@ -11,18 +11,18 @@ SUFFIX = ".rbl"
 STANDARD_INPUT = "-"
 
 
-def programs(paths: Iterable[str]) -> list[str]:
-    """Return the programs that paths mean, in order; a path that is no folder stands for itself, there or not."""
+def programs(paths: Iterable[str], suffix: str = SUFFIX) -> list[str]:
+    """Return the files that paths mean, in order; a path that is no folder stands for itself, there or not."""
     found: dict[str, str] = {}
     for path in paths:
-        inside = _below(path) if path != STANDARD_INPUT and os.path.isdir(path) else [path]  # noqa: PTH112
+        inside = _below(path, suffix) if path != STANDARD_INPUT and os.path.isdir(path) else [path]  # noqa: PTH112
         for name in inside:
             found.setdefault(_key(name), name)
     return list(found.values())
 
 
-def _below(folder: str) -> Iterator[str]:
-    """Yield the programs below a folder, named as the folder was: without ``./`` for the working folder.
+def _below(folder: str, suffix: str) -> Iterator[str]:
+    """Yield the files below a folder, named as the folder was: without ``./`` for the working folder.
 
     A folder that cannot be listed is yielded itself, so that it is reported like a file that cannot be read.
     """
@@ -30,7 +30,7 @@ def _below(folder: str) -> Iterator[str]:
     for place, folders, names in os.walk(folder, onerror=lambda error: closed.append(str(error.filename))):
         folders[:] = sorted(name for name in folders if not name.startswith("."))
         for name in sorted(names):
-            if name.lower().endswith(SUFFIX) and not name.startswith("."):
+            if name.lower().endswith(suffix) and not name.startswith("."):
                 yield os.path.normpath(os.path.join(place, name))  # noqa: PTH118 - names may be no valid Path
     yield from closed
 

@@ -2,12 +2,16 @@
 
 import shutil
 import xml.etree.ElementTree as ET
+from dataclasses import fields
 
 import pytest
+from typer.testing import CliRunner
 
-from robolang.expectation import load_expectation
+from robolang import verdict
+from robolang.cli.main import app
+from robolang.expectation import Expectation, load_expectation
 from runtime.tomlfile import FileFault
-from tests.lang.cli.commands import ROOT, robolang
+from tests.lang.cli.commands import ROOT, places, robolang
 
 PICK = ROOT / "programs/pick_and_place.rbl"
 
@@ -27,23 +31,26 @@ def test_the_programs_do_what_they_are_expected_to():
     assert "7 of 7 programs as expected" in result.stdout
 
 
-@pytest.mark.parametrize(
-    ("expect", "says"),
-    [
-        ("cycle_s = [1, 2]", "cycle: 5."),
-        ("path_error_mm = 0.0", "path deviation: 0."),
-        ("tool_error_mm = 0.0", "tool error: 0."),
-        ("torque_pct = 1", "peak torque: "),
-        ("end_pose = [480, -220, 800, 180, 0, 180]", "end: 40.0"),
-        ('alarms = ["RBL516"]', "alarms: none"),
-        ('printed = ["a"]', "printed: 0 lines, expected 1"),
-        ("[expect.parts]\nghost = [0, 0, 0]", "part ghost: the cell has no such part"),
-    ],
-)
-def test_what_is_not_as_expected_is_named(tmp_path, expect, says):
-    result = robolang("test", copied(tmp_path, expect), code=1)
-    assert says in result.stdout
-    assert "0 of 1 programs as expected" in result.stdout
+def test_what_is_not_as_expected_is_named(tmp_path):
+    expected = {
+        "cycle_s = [1, 2]": "cycle: 5.",
+        "path_error_mm = 0.0": "path deviation: 0.",
+        "tool_error_mm = 0.0": "tool error: 0.",
+        "torque_pct = 1": "peak torque: ",
+        "end_pose = [480, -220, 800, 180, 0, 150]": "end: 40.0",
+        "end_deg = 29.9": "end turn: turned by 30.0",
+        'warnings = ["RBL523"]': "warnings: none, expected RBL523",
+        'alarms = ["RBL516"]': "alarms: none, expected RBL516",
+        'printed = ["a"]': "printed: 0 lines, expected 1",
+        "[expect.parts]\nghost = [0, 0, 0]": "part ghost: the cell has no such part",
+    }
+    result = robolang("test", copied(tmp_path, "\n".join(expected)), code=1)
+    lines = result.stdout.splitlines()
+    rows = [4, 5, 6, 7, 8, 8, 10, 11, 12, 14]  # of their keys
+    assert len(lines) == len(expected) + 2
+    for row, says in zip(rows, expected.values(), strict=True):
+        assert [line for line in lines if f"job.test.toml:{row}:1: {says}" in line]
+    assert lines[-1] == "0 of 1 programs as expected"
 
 
 def test_a_golden_log_names_the_first_line_and_tick_that_differ(tmp_path):
@@ -72,6 +79,7 @@ def test_the_report_is_junit(tmp_path):
     (suite,) = ET.parse(report).getroot()
     assert (suite.get("tests"), suite.get("failures")) == ("2", "1")
     assert [case.find("failure") is None for case in suite] == [True, False]
+    assert "job.test.toml:4:1: cycle: 5." in suite[1].find("failure").get("message")
     assert set(suite.keys()) == {"name", "tests", "failures", "errors", "time"}  # those that its schema asks for
     assert {name for case in suite for name in case.keys()} == {"classname", "name"}  # noqa: SIM118
 
@@ -106,6 +114,84 @@ def test_what_a_program_printed_before_its_error_is_there(tmp_path):
     robolang("test", copied(tmp_path, 'alarms = ["RBL503"]\nprinted = ["a"]\ncycle_s = [0.2, 0.21]', text))
 
 
+def test_a_program_that_does_not_start_meets_no_other_expectation(tmp_path):
+    expect = 'alarms = ["RBL301"]\nwarnings = []\nprinted = []\n'
+    robolang("test", copied(tmp_path, expect, "MOVE P99\n"))
+    keys = ("cycle_s = [0, 9]", "path_error_mm = 9", "end_pose = [480, -220, 840, 180, 0, 180]", "golden_deg = 9",
+            "[expect.parts]\npart = [480, 220, 640]")  # fmt: skip
+    for key in keys:
+        assert "does not start" in robolang("test", copied(tmp_path, expect + key, "MOVE P99\n"), code=1).stdout
+
+
+@pytest.mark.parametrize("key", ["path_error_mm", "tool_error_mm", "torque_pct"])
+def test_a_limit_of_what_never_moved_is_not_met(tmp_path, key):
+    said = robolang("test", copied(tmp_path, f"{key} = 1000", 'PRINT "a"\n'), code=1).stdout
+    assert "nothing to compare" in said
+
+
+def test_a_run_without_a_cycle_is_compared_too(tmp_path):
+    home = "end_pose = [400, 0, 840, 180, 0, 180]\nend_mm = 100000\nend_deg = 180\n"
+    program = copied(tmp_path, home + "golden_deg = 0\n", 'PRINT "a"\n')
+    assert "1 of 1" in robolang("test", program, "--update").stdout
+    robolang("test", program)
+    program.write_text('PRINT "a"\nMOVE P1\n', "utf-8")
+    assert "the golden log has 0" in robolang("test", program, code=1).stdout
+
+
+# --- a path without a test, a test that cannot be used ---------------------------------------------------------------
+
+
+def test_a_path_without_a_test_is_no_success(tmp_path):
+    (tmp_path / ".hidden").mkdir()
+    copied(tmp_path / ".hidden", "")
+    assert "error RBL712" in robolang("test", tmp_path, code=2).stderr
+    assert "no test files" in robolang("test", tmp_path, "--allow-empty").stdout
+    (tmp_path / "with").mkdir()
+    program = copied(tmp_path / "with", "")
+    result = robolang("test", tmp_path / "with", tmp_path / ".hidden" / "none.rbl", program, code=2)
+    assert "error RBL701" in result.stderr
+    assert "1 of 2 programs as expected" in result.stdout
+
+
+def test_a_test_that_cannot_be_used_fails_alone_and_is_in_the_report(tmp_path):
+    report = tmp_path / "report.xml"
+    for name in "abcdef":
+        (tmp_path / name).mkdir()
+        copied(tmp_path / name, "golden_deg = 0.1" if name in "cd" else "", 'PRINT "a"\n')
+    (tmp_path / "a" / "job.test.toml").write_text("schema = 1\n[expct]\n", "utf-8")
+    (tmp_path / "b" / "job.rbl").unlink()
+    (tmp_path / "c" / "job.golden.npz").write_bytes(b"PK")
+    (tmp_path / "e" / "job.cell.toml").write_text("schema = [", "utf-8")
+    result = robolang("test", tmp_path, "--junit", report, code=2)
+    assert [line[:4] for line in result.stdout.splitlines()] == ["FAIL"] * 5 + ["ok  ", "1 of"]
+    assert [code for _, _, code in places(result.stderr)] == ["RBL609", "RBL701", "RBL711", "RBL600", "RBL601"]
+    suites = ET.parse(report).getroot()
+    assert [(suite.get("failures"), suite.get("errors")) for suite in suites] == [("0", "1")] * 5 + [("0", "0")]
+    assert [error.get("type") for error in suites.iter("error")][2] == "RBL711"
+
+
+def test_a_defect_in_one_test_is_reported_and_the_others_run(tmp_path, monkeypatch):
+    for name in "ab":
+        (tmp_path / name).mkdir()
+        copied(tmp_path / name, "", f'PRINT "{name}"\n')
+
+    def judge(expected, session, report, log, update):
+        return [] if report["printed"][0]["text"] == "b" else 1 / 0
+
+    monkeypatch.setattr(verdict, "judge", judge)
+    result = CliRunner().invoke(app, ["test", str(tmp_path), "--junit", str(tmp_path / "report.xml")])
+    assert result.exit_code == 70
+    assert "error RBL900" in result.stderr
+    errors = [suite.get("errors") for suite in ET.parse(tmp_path / "report.xml").getroot()]
+    assert errors == ["1", "0"]
+
+
+def test_a_golden_log_is_written_of_a_run_that_meets_the_rest_only(tmp_path):
+    program = copied(tmp_path, "golden_deg = 0.1\ncycle_s = [1, 2]")
+    assert "not written" in robolang("test", program, "--update", code=1).stdout
+    assert not program.with_name("job.golden.npz").exists()
+
+
 def test_a_file_that_is_not_there_is_refused(tmp_path):
     assert "RBL701" in robolang("test", tmp_path / "no.rbl", code=2).stderr
 
@@ -119,6 +205,18 @@ def test_a_file_that_is_not_there_is_refused(tmp_path):
         ("schema = 1\n[expect]\nprinted = [1]", "RBL613", 3),
         ("schema = 1\n[expect]\ntorque_pct = nan", "RBL604", 3),
         ("schema = 1\n[expect.parts]\npart = [1, 2]", "RBL613", 3),
+        ("schema = 1\n[expct]", "RBL609", 2),
+        ("schema = 1\nphysic = false", "RBL609", 2),
+        ("schema = 1\n[expect]\ncycle_s = [nan, 1]", "RBL604", 3),
+        ("schema = 1\n[expect]\nend_pose = [0, 0, 0, inf, 0, 0]", "RBL604", 3),
+        ("schema = 1\n[expect]\ngolden_deg = -0.1", "RBL605", 3),
+        ("schema = 1\n[expect]\ngolden_deg = true", "RBL613", 3),
+        ('schema = 1\n[expect]\nalarms = "RBL516"', "RBL613", 3),
+        ('schema = 1\n[expect]\nalarms = ["RBL999"]', "RBL610", 3),
+        ('schema = 1\n[expect]\nwarnings = ["rbl523"]', "RBL610", 3),
+        ("schema = 1\n[expect]\nend_deg = 1", "RBL608", 3),
+        ("schema = 1\n[expect]\nend_mm = 1", "RBL608", 3),
+        ("schema = 1\n[expect.parts]\npart_mm = 1", "RBL608", 3),
     ],
 )
 def test_a_test_file_is_refused_at_its_line(tmp_path, text, code, line):
@@ -127,3 +225,9 @@ def test_a_test_file_is_refused_at_its_line(tmp_path, text, code, line):
     with pytest.raises(FileFault) as caught:
         load_expectation(path)
     assert (caught.value.code, caught.value.line) == (code, line)
+
+
+def test_every_key_of_a_test_file_is_explained():
+    explained = (ROOT / "docs" / "testing.md").read_text("utf-8")
+    keys = {each.name for each in fields(Expectation)} - {"source", "parts"}
+    assert {key for key in keys if f"\n{key} = " not in explained} == set()

@@ -1,0 +1,193 @@
+"""What a finished run says to the expectations of its test file: one verdict for each.
+
+Every comparison is written so that NaN fails it, and so that nothing to compare fails it: an expectation that no run
+could miss is none. A difference from the golden log is named by the first line and tick at which it is too large.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+
+from robolang.expectation import Expectation
+from robolang.golden import read_golden, write_golden
+from robolang.report import pose_mm_deg
+from robolang.session import Session
+from runtime.faults import Fault
+from runtime.frames import Array, pose_from_xyzrpy, rotation_angles
+from runtime.units import DEG, MM
+
+_LARGEST = (
+    ("path_error_mm", "path_deviation_mm", "mm"),
+    ("tool_error_mm", "tool_error_mm", "mm"),
+    ("torque_pct", "peak_torque_pct", "%"),
+)
+"""Keys of ``[expect]`` that bound a measure of the statements: the measure in the report, and its unit."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Verdict:
+    """One expectation: its name, whether it is met, what was found, and its key of ``[expect]``, ``()`` for none.
+
+    ``fault`` is why it could not be compared at all; it is never met then. ``noted``: worth a line though it is met.
+    """
+
+    name: str
+    ok: bool
+    said: str
+    key: tuple[str, ...] = ()
+    fault: Fault | None = None
+    noted: bool = False
+
+
+def judge(
+    expected: Expectation, session: Session, report: dict[str, Any], log: dict[str, Array], update: bool = False
+) -> list[Verdict]:
+    """Return what a finished run says to the expectations; ``update``: the golden log is written when all are met."""
+    found = _events(expected, report["alarms"], report["warnings"], [entry["text"] for entry in report["printed"]])
+    if expected.cycle_s is not None:
+        low, high = expected.cycle_s
+        seconds = report["sim_time_s"]
+        said = f"{seconds:.3f} s, expected {low:g} to {high:g} s"
+        found.append(Verdict(name="cycle", ok=low <= seconds <= high, said=said, key=("cycle_s",)))
+    for key, measure, unit in _LARGEST:
+        most = getattr(expected, key)
+        if most is not None:
+            found.append(_largest(report["statements"], key, measure, most, unit))
+    if expected.end_pose is not None:
+        found += _end(expected, _end_pose(session, log))
+    found += [_part(report["objects"], name, place, expected.part_mm) for name, place in expected.parts.items()]
+    if expected.golden_deg is not None:
+        clean = all(verdict.ok for verdict in found)
+        found.append(_update(expected, session, log, clean) if update else _golden(expected, session, log))
+    return found
+
+
+def judge_refused(expected: Expectation, codes: Sequence[str], why: str) -> list[Verdict]:
+    """Return the verdicts of a program that does not start: its codes are what it ends with, nothing else comes."""
+    alarms, *rest = _events(expected, [{"code": code} for code in codes], [], [])
+    found = [Verdict(name="alarms", ok=alarms.ok, said=f"it does not start: {why}", key=("alarms",)), *rest]
+    names = ("cycle_s", *(key for key, _, _ in _LARGEST), "end_pose", "golden_deg")
+    keys: list[tuple[str, ...]] = [(name,) for name in names if getattr(expected, name) is not None]
+    keys += [("parts", name) for name in expected.parts]
+    said = "nothing to compare, the program does not start"
+    return found + [Verdict(name=" ".join(key), ok=False, said=said, key=key) for key in keys]
+
+
+def _events(
+    expected: Expectation, alarms: Sequence[dict[str, Any]], warnings: Sequence[dict[str, Any]], printed: list[str]
+) -> list[Verdict]:
+    """Return the verdicts of what a run says of itself, that of the alarms first."""
+    codes = [alarm["code"] for alarm in alarms]
+    said = f"{_listed(codes)}, expected {_listed(expected.alarms)}"
+    found = [Verdict(name="alarms", ok=codes == list(expected.alarms), said=said, key=("alarms",))]
+    codes = [warning["code"] for warning in warnings]
+    if expected.warnings is not None:
+        said = f"{_listed(codes)}, expected {_listed(expected.warnings)}"
+        found.append(Verdict(name="warnings", ok=set(codes) == set(expected.warnings), said=said, key=("warnings",)))
+    elif codes:
+        said = f"{_listed(codes)}, neither expected nor forbidden"
+        found.append(Verdict(name="warnings", ok=True, said=said, key=("warnings",), noted=True))
+    if expected.printed is not None:
+        said = _first_line(printed, expected.printed)
+        found.append(Verdict(name="printed", ok=printed == list(expected.printed), said=said, key=("printed",)))
+    return found
+
+
+def _listed(codes: Sequence[str]) -> str:
+    """Return codes in their order, each once with how often it came."""
+    counts = Counter(codes)
+    return ", ".join(code if count == 1 else f"{code} ({count} times)" for code, count in counts.items()) or "none"
+
+
+def _first_line(lines: list[str], expected: tuple[str, ...]) -> str:
+    for number, (line, other) in enumerate(zip(lines, expected, strict=False), start=1):
+        if line != other:
+            return f"line {number} is '{line}', expected '{other}'"
+    return f"{len(lines)} lines, expected {len(expected)}"
+
+
+def _largest(statements: list[dict[str, Any]], key: str, measure: str, most: float, unit: str) -> Verdict:
+    """Return the verdict of the largest value; one that is not a number is larger than all others."""
+    rows = [(entry[measure], entry) for entry in statements if entry[measure] is not None]
+    name = measure.rpartition("_")[0].replace("_", " ")
+    if not rows:
+        return Verdict(name=name, ok=False, said="nothing to compare, no statement moves the arm", key=(key,))
+    value, entry = max(rows, key=lambda row: (not math.isfinite(row[0]), row[0]))
+    where = entry["number"] if entry["number"] is not None else entry["line"]
+    said = f"{value:.3f} {unit} in line {where}, at most {most:g} {unit}"
+    return Verdict(name=name, ok=value <= most, said=said, key=(key,))
+
+
+def _end_pose(session: Session, log: dict[str, Array]) -> Array:
+    """Return X_world_tool (4, 4) at the end of the run; a run without a tick ends where it starts."""
+    poses = log["X_world_tool"]
+    return poses[-1] if len(poses) else session.controller.tool_poses(np.array(session.controller.areas.ina))
+
+
+def _end(expected: Expectation, X: Array) -> list[Verdict]:
+    values = np.array(cast("tuple[float, ...]", expected.end_pose))
+    X_expected = pose_from_xyzrpy(values * ([MM] * 3 + [DEG] * 3))
+    far = float(np.linalg.norm(X[:3, 3] - X_expected[:3, 3])) / MM
+    turned = float(rotation_angles(X[:3, :3], X_expected[:3, :3])) / DEG
+    ended = ", ".join(f"{value:.3f}" for value in pose_mm_deg(X))
+    most_mm, most_deg = expected.end_mm, expected.end_deg
+    return [
+        Verdict(
+            name="end",
+            ok=far <= most_mm,
+            said=f"{far:.3f} mm away, at most {most_mm:g} mm: ({ended})",
+            key=("end_pose",),
+        ),
+        Verdict(
+            name="end turn",
+            ok=turned <= most_deg,
+            said=f"turned by {turned:.3f} deg, at most {most_deg:g} deg: ({ended})",
+            key=("end_pose",),
+        ),
+    ]
+
+
+def _part(objects: dict[str, Any], name: str, place: tuple[float, ...], most: float) -> Verdict:
+    title, key = f"part {name}", ("parts", name)
+    if name not in objects:
+        near = f"; its parts: {', '.join(sorted(objects))}" if objects else ""
+        return Verdict(name=title, ok=False, said=f"the cell has no such part{near}", key=key)
+    off = float(np.linalg.norm(np.array(objects[name]["pose_mm_deg"][:3]) - place))
+    return Verdict(name=title, ok=off <= most, said=f"{off:.3f} mm away, at most {most:g} mm", key=key)
+
+
+# --- the golden log --------------------------------------------------------------------------------------------------
+
+
+def _cycles(session: Session, log: dict[str, Array]) -> tuple[Array, Array]:
+    """Return detected joint angles (n, axes), as precise as a golden log has them, and lines (n,) of every cycle."""
+    every = session.project.profile.ticks_per_cycle
+    return log["q_fb"][::every].astype(np.float32), log["line"][::every]
+
+
+def _update(expected: Expectation, session: Session, log: dict[str, Array], clean: bool) -> Verdict:
+    q, line = _cycles(session, log)
+    if not (clean and np.isfinite(q).all()):
+        why = "the run does not meet the other expectations" if not clean else "its angles are not finite"
+        return Verdict(name="golden", ok=False, said=f"not written, {why}", key=("golden_deg",))
+    write_golden(expected.golden, q, line)
+    return Verdict(name="golden", ok=True, said=f"written, {len(q)} cycles", key=("golden_deg",))
+
+
+def _golden(expected: Expectation, session: Session, log: dict[str, Array]) -> Verdict:
+    q, line = _cycles(session, log)
+    try:
+        golden = read_golden(expected.golden, axes=q.shape[1], most_cycles=len(q))
+    except Fault as fault:
+        placed = expected.fault(fault.code, fault.message, fault.hint, "golden_deg")
+        return Verdict(name="golden", ok=False, said=fault.message, key=("golden_deg",), fault=placed)
+    at, said = golden.difference(q, line, cast("float", expected.golden_deg))
+    if at is not None and len(q):
+        profile = session.project.profile
+        tick = at * profile.ticks_per_cycle
+        said += f", first at tick {tick} ({tick * profile.tick_s:.3f} s), line {int(line[min(at, len(line) - 1)])}"
+    return Verdict(name="golden", ok=at is None, said=said, key=("golden_deg",))
