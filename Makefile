@@ -1,7 +1,7 @@
 # make demo   the main job: install into .venv and run the 1992 program
-# make test   the tests
+# make test   the tests; prints their processor time by folder
 # make gates  style, types, import floors
-# make bench  ratios and start-up times, printed
+# make bench  the figures of docs/measured.md that are times or ratios of times
 # make plots   the plots of docs/servo.md, drawn anew
 # make fault-campaign         every injected fault and 200 clean runs, counted (minutes)
 # make supervision-campaign   wrong payloads in random programs, counted
@@ -10,17 +10,23 @@
 # make wrist-campaign         random straight moves through the wrist, counted (minutes)
 # make fuzz               readers of programs, points and cells on made-up bytes, FUZZ_SECONDS of each target
 # make large              time and memory of check and fmt on programs of 1 MB of every kind (minutes)
-# make measured   every other figure of docs/measured.md, printed
+# make measured   the figures of docs/measured.md that repeat exactly
+# make help   these lines
 
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test gates bench measured plots fault-campaign supervision-campaign wrist-campaign pulse-campaign blend-campaign fuzz large clean
+# A row that is not as promised ends a bench or a campaign with an error.
+
+.PHONY: help demo test gates bench measured plots fault-campaign supervision-campaign wrist-campaign pulse-campaign blend-campaign fuzz large clean
 
 demo: $(READY)
 	$(BIN)/robolang run programs/pick_and_place.rbl
+
+help:
+	@sed -n 's/^# make/make/p' $(MAKEFILE_LIST)
 
 test: $(READY)
 	$(BIN)/python -m pytest -n 2

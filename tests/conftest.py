@@ -1,9 +1,28 @@
-"""Settings of all tests: no deadlines, and in CI the same examples every time, so that a red run can be repeated."""
+"""Settings of all tests: no deadlines, and in CI the same examples every time, so that a red run can be repeated.
+
+At the end of a run its processor time is printed by folder (``tests/processor_time.py``).
+"""
 
 import os
 
 from hypothesis import settings
 
+from tests.processor_time import Meter
+
 settings.register_profile("local", deadline=None)
 settings.register_profile("ci", deadline=None, derandomize=True)
 settings.load_profile("ci" if os.environ.get("CI") else "local")
+
+
+def pytest_addoption(parser):
+    parser.addoption(
+        "--processor-files",
+        type=int,
+        default=0,
+        metavar="N",
+        help="print the processor time of the N test files that cost most, too",
+    )
+
+
+def pytest_configure(config):
+    config.pluginmanager.register(Meter(config))

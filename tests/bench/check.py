@@ -5,21 +5,24 @@ of ``programs/`` is rehearsed on all its ways and its motion looked at, as ``che
 time that the robot would need over the time that took, in one process.
 """
 
+import os
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 from robolang.exploration import explore
 from robolang.motion_findings import findings
 from robolang.project import load_project
+from tests.bench import figures
+from tests.bench.figures import Row
 
 PROGRAMS = Path(__file__).parents[2] / "programs"
 COMMAND = Path(sys.executable).with_name("robolang")
-PROCESSES = 9
-ROUNDS = 5
 BLOCK = """\
 FOR i{0} = 1 TO 3
   APPROACH P{1}, 50, ZONE 10
@@ -42,25 +45,38 @@ def text(lines: int) -> str:
     return f"SPEED 250\nSPEEDJ 50\ntotal = 0\n{body}{rest}PRINT total\n"
 
 
-def cold(lines: int) -> float:
-    """Return the median time of ``robolang check`` of a program of so many lines, s."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cost:
+    """What a process cost, s: time from outside and processor time."""
+
+    wall: float
+    processor: float
+
+
+def cold(lines: int, processes: int) -> Cost:
+    """Return the median cost of ``robolang check`` of a program of so many lines; the first of several is left out."""
+    costs = []
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "job.rbl"
         path.write_text(text(lines))
-        times = []
-        for _ in range(PROCESSES + 1):
-            began = time.perf_counter()
+        for _ in range(processes):
+            began, before = time.perf_counter(), os.times()
             done = subprocess.run([COMMAND, "check", path], capture_output=True, text=True, check=False)
-            times.append(time.perf_counter() - began)
+            wall, after = time.perf_counter() - began, os.times()
+            spent = after.children_user + after.children_system - before.children_user - before.children_system
+            costs.append(Cost(wall=wall, processor=spent))
             assert done.returncode == 0 and not done.stdout, done.stdout
-    return statistics.median(times[1:])
+    kept = costs[1:] or costs
+    return Cost(
+        wall=statistics.median(cost.wall for cost in kept), processor=statistics.median(cost.processor for cost in kept)
+    )
 
 
-def ratio(path: Path) -> tuple[float, float]:
-    """Return the robot's time for a program, s, and how much faster it is planned and looked at."""
+def ratio(path: Path, rounds: int) -> tuple[float, float]:
+    """Return the robot's time for a program, s, and how much faster it is planned and its motion examined."""
     project = load_project(path)
     best = float("inf")
-    for _ in range(ROUNDS):
+    for _ in range(rounds):
         began = time.perf_counter()
         explored = explore(project)
         findings(project, explored.rehearsal, None, explored.detours)
@@ -69,14 +85,37 @@ def ratio(path: Path) -> tuple[float, float]:
     return robot_s, robot_s / best
 
 
-def main() -> None:
-    """Print the figures."""
-    for lines in (50, 10_000):
-        print(f"robolang check, {lines} lines, cold: {1e3 * cold(lines):.0f} ms")
-    for path in sorted(PROGRAMS.rglob("*.rbl")):
-        robot_s, times = ratio(path)
-        print(f"check --motion {path.relative_to(PROGRAMS)}: {robot_s:.2f} s of the robot, {times:.0f} times faster")
+def planning(paths: list[Path], rounds: int) -> Row:
+    """Measure the planning of programs; those without motion say nothing."""
+    found = {path.relative_to(PROGRAMS).as_posix(): ratio(path, rounds) for path in paths}
+    times = [ratio for _, ratio in found.values()]
+    return Row(
+        figure="planning all ways of a program and looking at its motion, against the time of the robot, "
+        "in one process",
+        form="{:.0f} to {:.0f} times, median {:.0f}",
+        values=(min(times), max(times), statistics.median(times)),
+        details=tuple(
+            f"{name}: {robot_s:.2f} s of the robot, {ratio:.0f} times" for name, (robot_s, ratio) in found.items()
+        ),
+    )
+
+
+def rows(smallest: bool) -> Iterator[Row]:
+    """Measure checking and planning."""
+    few, many, processes = (50, 200, 1) if smallest else (50, 10_000, 10)
+    yield Row(
+        figure="`robolang check` of a program of 50 lines, whole process, cold",
+        form="{:.0f} ms",
+        values=(1e3 * cold(few, processes).wall,),
+    )
+    yield Row(
+        figure="10,000 lines checked, the ways through them followed, CPU time",
+        form="{:.2f} s",
+        values=(cold(many, processes).processor,),
+    )
+    paths = [PROGRAMS / "pick_and_place.rbl"] if smallest else sorted(PROGRAMS.rglob("*.rbl"))
+    yield planning(paths, 1 if smallest else 5)
 
 
 if __name__ == "__main__":
-    main()
+    figures.run(rows)

@@ -1,21 +1,22 @@
-"""``python -m tests.bench.inertia``: what the inertia of an axis costs by each way that the repository has.
+"""``make bench``: what the inertia of an axis costs by each way that the repository has.
 
 Experiment B7 (docs/motor-inertia.md). All ways take their turn in every round, so that they meet the same speed of the
-machine; the medians over the rounds, and their ratios, are printed. Nothing is asserted: times depend on the machine.
+machine; the medians over the rounds, and their ratios, are printed. Nothing is promised: times depend on the machine.
 """
 
 import statistics
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
 from runtime.dynamics.motor_inertia import axis_inertia, inertia_row, link_chain, link_inertia
 from runtime.robot.loader import load_builtin
 from runtime.robot.model import ArmModel
+from tests.bench import figures
+from tests.bench.figures import Row
 from tests.runtime.dynamics import lagrangian
 
-ROUNDS = 15
 POSTURES = 1000
 FEW = 8
 """Postures of one round of the ways that take them one by one."""
@@ -43,13 +44,13 @@ def ways(name: str) -> dict[str, tuple[int, Callable[[], object]]]:
     }
 
 
-def measure(name: str) -> dict[str, float]:
+def measure(name: str, rounds: int) -> dict[str, float]:
     """Return the median time of an axis and posture by each way, us."""
     times: dict[str, list[float]] = {}
     todo = ways(name)
     for _, run in todo.values():
         run()  # what is made once is made before
-    for _ in range(ROUNDS):
+    for _ in range(rounds):
         for way, (count, run) in todo.items():
             started = time.perf_counter()
             run()
@@ -57,16 +58,18 @@ def measure(name: str) -> dict[str, float]:
     return {way: statistics.median(found) for way, found in times.items()}
 
 
-def main() -> None:
-    """Print a table."""
-    found = measure("puma560")
-    batch = next(iter(found.values()))
-    print(f"inertia of an axis of puma560, medians of {ROUNDS} rounds in turn\n")
-    print(f"{'way':<36} {'us per axis':>12} {'ratio':>9}")
-    print(f"{'':<36} {'and posture':>12}")
-    for way, us in found.items():
-        print(f"{way:<36} {us:>12.3g} {us / batch:>9.4g}")
+def rows(smallest: bool) -> Iterator[Row]:
+    """Measure all ways on the Puma."""
+    found = measure("puma560", 1 if smallest else 15)
+    batch, *_, lagrange = found.values()
+    pass_, matrix = found["pinocchio, rnea of one column"], found["pinocchio, crba / n"]
+    yield Row(
+        figure="recursion, all axes of 1000 postures at once, per axis and posture",
+        form="{:.2g} us; 1/{:.0f} of Pinocchio's pass, 1/{:.0f} of its mass matrix, 1/{:.0f} of the Lagrangian",
+        values=(batch, pass_ / batch, matrix / batch, lagrange / batch),
+        details=tuple(f"{way:<36} {us:>8.3g} us, {us / batch:>6.4g} times" for way, us in found.items()),
+    )
 
 
 if __name__ == "__main__":
-    main()
+    figures.run(rows)

@@ -10,12 +10,11 @@ Each move is planned, put into tables and taken from them again. Counted are mov
     hint      a move refused for its frequency goes at the speed that the refusal names
 """
 
-import argparse
 import re
 import time
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 
 import numpy as np
 
@@ -31,6 +30,8 @@ from runtime.pulses.mechanism import load_builtin
 from runtime.pulses.move import counted, plan_move
 from runtime.pulses.table import rows_of
 from runtime.units import MM
+from tests.bench import figures
+from tests.bench.figures import Row
 
 MACHINES = ("xy", "cylindrical", "scara", "puma560")
 STEPS_HZ = (50, 100, 200)
@@ -122,15 +123,15 @@ def examine(machine, channels, stand, command, step_hz, count):
         for row in rows:
             lasting += row.steps / step_hz if row.frequency == 0 else abs(row.target - at) / row.frequency
             at = row.target
-        count.broken["step"] += int(abs(lasting * step_hz - move.count) > 1e-6 or at != start[k] + wanted[k])
+        count.broken["step"] += int(not abs(lasting * step_hz - move.count) <= 1e-6 or at != start[k] + wanted[k])
     debts = np.array([each.debt for each in move.emitted])
     bound = SLACK * float((levers(machine, move.q) * pulses * (0.5 + debts)).sum()) + 1e-12
-    count.broken["bound"] += int(move.error.max() > bound)
+    count.broken["bound"] += int(not move.error.max() <= bound)
     start_point, end_point = move.way.ends
     if move.way.length > 1e-6:
         along = (move.points - start_point) @ (end_point - start_point) / move.way.length
         hardest = move.steps.acceleration * move.way.length / step_hz**2
-        count.broken["smooth"] += int(np.abs(np.diff(along, 2)).max(initial=0.0) > hardest + 4.0 * bound)
+        count.broken["smooth"] += int(not np.abs(np.diff(along, 2)).max(initial=0.0) <= hardest + 4.0 * bound)
     count.appended += move.count - move.steps.n
     count.worst_mm = max(count.worst_mm, float(move.error.max()) / MM)
     count.worst_share = max(count.worst_share, float(move.error.max()) / bound)
@@ -152,8 +153,8 @@ def campaign(moves, seed=11, min_hz=None):
     return found
 
 
-def costs(name, seconds=(2.0, 4.0, 8.0, 16.0)):
-    """Return the time of planning one move of each duration and making its rows, s, and its steps."""
+def cost(name: str, duration: float, rounds: int) -> tuple[float, int]:
+    """Return the time of planning one move of a duration and making its rows, s, and its steps of 10 ms."""
     machine, pulses = machine_and_pulses(name)
     channels = default_channels(machine.joints, pulses, None)
     stand = machine.home
@@ -162,44 +163,77 @@ def costs(name, seconds=(2.0, 4.0, 8.0, 16.0)):
     R = np.eye(3)
     if isinstance(machine, RobotArm):
         R = (machine.kinematics.forward(stand.q) @ builtin_cell().hand.X_flange_tool)[:3, :3]
-    start, found = counted(stand.q, channels), []
-    for duration in seconds:
-        command = MoveLinear(X_world_tool=pose(end, R), duration=duration)
-        times = []
-        for _ in range(5):
-            began = time.perf_counter()
-            move = plan_move(machine, stand, command, channels, start, 0.01)
-            for k, each in enumerate(move.emitted):
-                rows_of(each.steps, int(start[k]), move.count, 100)
-            times.append(time.perf_counter() - began)
-        found.append((min(times), move.count))
-    return found
+    start, times = counted(stand.q, channels), []
+    command = MoveLinear(X_world_tool=pose(end, R), duration=duration)
+    for _ in range(rounds):
+        began = time.perf_counter()
+        move = plan_move(machine, stand, command, channels, start, 0.01)
+        for k, each in enumerate(move.emitted):
+            rows_of(each.steps, int(start[k]), move.count, 100)
+        times.append(time.perf_counter() - began)
+    return min(times), move.count
 
 
-def main():
-    """Print the counts of a campaign and the cost of a move."""
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--moves", type=int, default=500)
-    arguments = parser.parse_args()
-    for min_hz in (None, 500.0):
-        print(f"\nlowest frequency {min_hz or 191:g} Hz, steps of 5, 10 and 20 ms")
-        print("machine        moves  refused  broken  raised by document, ours  appended  worst off, mm  of its bound")
-        for name, count in campaign(arguments.moves, min_hz=min_hz).items():
-            rules = f"{count.rules['compensate']}, {count.rules['hold']} of {sum(count.rules.values())}"
-            print(f"{name:<12} {count.moves:7d} {sum(count.refused.values()):8d} {sum(count.broken.values()):7d} "
-                  f"{rules:>25} {count.appended:9d} {count.worst_mm:14.4f} {count.worst_share:13.2f}")  # fmt: skip
-            if sum(count.broken.values()):
-                print(f"  broken: {dict(+count.broken)}")
-            if sum(count.refused.values()):
-                print(f"  refused: {dict(count.refused)}")
+def details(name: str, count: Count) -> Iterator[str]:
+    """Say what was counted on a machine."""
+    yield (
+        f"{name}: {count.moves} moves, raised by document {count.rules['compensate']}, by ours {count.rules['hold']} "
+        f"of {sum(count.rules.values())}, {count.appended} steps appended, at most {count.worst_mm:.4f} mm off, "
+        f"{count.worst_share:.2f} of the bound"
+    )
+    if sum(count.broken.values()) or sum(count.refused.values()):
+        yield f"{name}: broken {dict(+count.broken)}, refused {dict(count.refused)}"
 
 
-    print("\ncost of a move, planned and put into rows; ratio to the one of half the steps")
-    for name in MACHINES:
-        cost = costs(name)
-        ratios = ", ".join(f"{b[0] / a[0]:.2f}" for a, b in pairwise(cost))
-        print(f"{name:<12} {cost[-1][1]} steps {cost[-1][0] * 1e3:6.1f} ms, {ratios}")
+def rows(smallest: bool) -> Iterator[Row]:
+    """Count on every machine, and measure the cost of a move."""
+    low, high = (campaign(3 if smallest else 500, min_hz=min_hz) for min_hz in (None, 500.0))
+    both = [*low.values(), *high.values()]
+    broken = [sum(sum(count.broken.values()) for count in found.values()) for found in (low, high)]
+    yield Row(
+        figure="2,000 random moves on four machines, steps of 5, 10, 20 ms; moves that break a law, at 191 "
+        "and at 500 Hz",
+        form="{}, {}",
+        values=tuple(broken),
+        good=not any(broken),
+        details=tuple(
+            line
+            for hz, found in ((191, low), (500, high))
+            for name, count in found.items()
+            for line in details(f"{hz} Hz, {name}", count)
+        ),
+    )
+    hints, refused = sum(count.broken["hint"] for count in both), sum(count.refused["RBL430"] for count in both)
+    yield Row(
+        figure="moves refused for frequency that do not go at the speed named",
+        form="{} of {}",
+        values=(hints, refused),
+        good=hints == 0,
+    )
+    shares = [max(count.worst_share for count in found.values()) for found in (low, high)]
+    yield Row(
+        figure="largest path error, in terms of its bound",
+        form="{:.2f} at 191 Hz, {:.2f} at 500 Hz",
+        values=tuple(shares),
+        good=max(shares) <= 1.0,
+    )
+    yield Row(
+        figure="steps appended after the end",
+        form="{} at 191 Hz, {} at 500 Hz",
+        values=tuple(sum(count.appended for count in found.values()) for found in (low, high)),
+    )
+    whole = 2.0 if smallest else 16.0
+    long, short = ([cost(name, seconds, 1 if smallest else 5) for name in MACHINES] for seconds in (whole, whole / 2))
+    yield Row(
+        figure="a move of 1,600 steps planned and put into rows, ratio to 800 steps: xy, cylindrical, scara, puma560",
+        form="{:.1f}, {:.1f}, {:.1f}, {:.1f}",
+        values=tuple(a / b for (a, _), (b, _) in zip(long, short, strict=True)),
+        details=tuple(
+            f"{name}: {steps} steps, {1e3 * seconds:.1f} ms"
+            for name, (seconds, steps) in zip(MACHINES, long, strict=True)
+        ),
+    )
 
 
 if __name__ == "__main__":
-    main()
+    figures.run(rows)

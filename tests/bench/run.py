@@ -9,24 +9,31 @@ import statistics
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from dataclasses import replace
 
 import mujoco
 import numpy as np
 
 from robolang.effects import MoveTo
-from robolang.interpreter import execute
 from robolang.project import Project, load_project
-from robolang.session import RunResult, Session
+from robolang.session import Session
 from runtime.plant.mujoco_plant import MujocoPlant
+from tests.bench import figures
+from tests.bench.figures import Row
 from tests.runtime.motion.test_seam import SAME, tracked
 from tests.runtime.motion.wrist_moves import E2, NOTHING
 
 PROGRAM = "programs/pick_and_place.rbl"
 WRIST = "programs/wrist/e1.rbl"
-ROUNDS = 11
-WRIST_ROUNDS = 7
-PROCESSES = 7
+COMMANDS = {
+    f"`robolang run {PROGRAM}`, whole process": ("run", PROGRAM),
+    "`robolang --version`, whole process": ("--version",),
+    "`robolang --help`, whole process": ("--help",),
+    f"`robolang check {PROGRAM}`, whole process": ("check", PROGRAM),
+}
+WAYS = {"KEEP": {"mode": "keep"}, "document": {"remedies": False}, "all remedies": {}, "HOLD": {}}
+"""Options of the wrist by the name of the method; HOLD is WRIST HOLD TILT in the program."""
 
 
 class ControlTape(MujocoPlant):
@@ -64,99 +71,129 @@ def bare_seconds(project: Project, controls: list[np.ndarray]) -> tuple[float, n
     return time.perf_counter() - started, np.array(data.qpos[: project.cell.robot.n])
 
 
-def run_seconds(project: Project) -> tuple[float, RunResult, np.ndarray]:
-    """Return the time of a whole run (cycles, servo, dynamics task, physics, log, report), its result and end."""
-    session = Session(project)
-    started = time.perf_counter()
-    result = session.run()
-    return time.perf_counter() - started, result, np.array(session.controller.plant.q)
-
-
-def wrist_seconds() -> dict[str, tuple[float, float]]:
-    """Return by way the median time of a cycle, run and planning together, and of planning alone, of move E1, s."""
-    base = load_project(WRIST)
-    ways = {"KEEP": {"mode": "keep"}, "document": {"remedies": False}, "all remedies": {}, "HOLD": {}}
-    projects = {way: base.with_profile(replace(base.profile, wrist=replace(base.profile.wrist, **changes)))
-                for way, changes in ways.items()}  # fmt: skip
-    times: dict[str, list[tuple[float, float]]] = {way: [] for way in ways}
-    for _ in range(WRIST_ROUNDS):
-        for way, project in projects.items():
-            held = ("TILT",) if way == "HOLD" else ()
-            session = Session(project, effects=lambda program, h=held: (
-                replace(effect, held=h) if isinstance(effect, MoveTo) else effect for effect in execute(program)
-            ))  # fmt: skip
-            planner, spent = session.controller._planner, [0.0]
-
-            def timed(*args, plan=planner.plan, spent=spent):
-                began = time.perf_counter()
-                try:
-                    return plan(*args)
-                finally:
-                    spent[0] += time.perf_counter() - began
-
-            planner.plan = timed
-            whole = run_seconds_of(session)
-            times[way].append((whole / session.controller.recorder.cycle, spent[0]))
-    return {way: tuple(statistics.median(column) for column in zip(*rows, strict=True)) for way, rows in times.items()}
-
-
-def tracked_microseconds() -> tuple[float, float]:
-    """Return the median time of a set-point on a seam, on the path and with the wrist on its own way, us."""
-    times = []
-    for move, options in ((SAME, NOTHING), (E2, replace(NOTHING, remaining_time=3.9))):
-        going, _, planned = tracked(move, options)
-        began = time.perf_counter()
-        for n in range(1, len(planned)):
-            going.next(n)
-        times.append(1e6 * (time.perf_counter() - began) / len(planned))
-    return times[0], times[1]
-
-
-def run_seconds_of(session: Session) -> float:
-    """Return the time of a whole run of a session, s."""
+def run_seconds(session: Session) -> float:
+    """Return the time of a whole run of a session (cycles, servo, dynamics task, physics, log, report), s."""
     started = time.perf_counter()
     session.run()
     return time.perf_counter() - started
 
 
-def process_seconds(*command: str) -> float:
-    """Return the median wall time of a whole process."""
-    times = []
-    for _ in range(PROCESSES + 1):
-        started = time.perf_counter()
-        subprocess.run([sys.executable, "-m", "robolang", *command], check=True, capture_output=True)
-        times.append(time.perf_counter() - started)
-    return statistics.median(times[1:])
-
-
-def main() -> None:
-    """Print the figures."""
+def whole_run(rounds: int) -> Row:
+    """Measure whole runs against bare loops, in turn."""
     project = load_project(PROGRAM)
     controls = controls_of(project)
     ratios, runs = [], []
-    for _ in range(ROUNDS):
-        whole, result, q_run = run_seconds(project)
+    for _ in range(rounds):
+        session = Session(project)
+        whole = run_seconds(session)
         bare, q_bare = bare_seconds(project, controls)
-        if not np.array_equal(q_run, q_bare):
+        if not np.array_equal(session.controller.plant.q, q_bare):
             raise SystemExit("the bare loop did not repeat the physics of the run")
         ratios.append(whole / bare)
         runs.append(whole)
-    sim_s = float(result.report["sim_time_s"])
-    print(f"whole run / bare mj_step loop, same steps and controls: median {statistics.median(ratios):.2f} "
-          f"(min {min(ratios):.2f}, max {max(ratios):.2f}; goal <= 6, aim 3)")  # fmt: skip
-    print(f"steps {len(controls)}, simulated {sim_s:.3f} s, real-time factor {sim_s / statistics.median(runs):.1f}")
-    wrist = wrist_seconds()
-    for way, (cycle, planning) in wrist.items():
-        print(f"{WRIST}, {way}: {1e6 * cycle:.0f} us a cycle with planning, {cycle / wrist['KEEP'][0]:.2f} of KEEP; "
-              f"planning {1e3 * planning:.1f} ms before the move")  # fmt: skip
-    on_path, on_its_way = tracked_microseconds()
-    print(f"set-point on a seam: {on_path:.0f} us on the path, {on_its_way / on_path:.2f} of that with the wrist on "
-          "its way")  # fmt: skip
-    print(f"robolang run {PROGRAM}, whole process: {process_seconds('run', PROGRAM):.2f} s (goal <= 2 s)")
-    print(f"robolang --version, whole process: {1000 * process_seconds('--version'):.0f} ms (goal <= 150 ms)")
-    print(f"robolang --help, whole process: {1000 * process_seconds('--help'):.0f} ms")
-    print(f"robolang check {PROGRAM}, whole process: {1000 * process_seconds('check', PROGRAM):.0f} ms")
+    simulated = len(controls) * project.profile.tick_s
+    detail = f"{len(controls)} ticks, {simulated:.3f} s, real-time factor {simulated / statistics.median(runs):.1f}"
+    return Row(
+        figure="whole run against a bare `mj_step` loop over the same steps and controls",
+        form=f"{{:.2f}} ({{:.2f}} to {{:.2f}} over {rounds} pairs)",
+        values=(statistics.median(ratios), min(ratios), max(ratios)),
+        details=(detail,),
+    )
+
+
+def wrist_seconds(rounds: int) -> dict[str, tuple[float, float]]:
+    """Return by method the median time of a cycle, run and planning together, and of planning alone, of move E1, s."""
+    base = load_project(WRIST)
+    projects = {
+        way: base.with_profile(replace(base.profile, wrist=replace(base.profile.wrist, **changes)))
+        for way, changes in WAYS.items()
+    }
+    times: dict[str, list[tuple[float, float]]] = {way: [] for way in WAYS}
+    for _ in range(rounds):
+        for way, project in projects.items():
+            times[way].append(wrist_run(project, ("TILT",) if way == "HOLD" else ()))
+    return {way: tuple(statistics.median(column) for column in zip(*rows, strict=True)) for way, rows in times.items()}
+
+
+def wrist_run(project: Project, held: tuple[str, ...]) -> tuple[float, float]:
+    """Return the time of a cycle, run and planning together, and of planning alone, s."""
+    session = Session(
+        project, alter=lambda effect: replace(effect, held=held) if isinstance(effect, MoveTo) else effect
+    )
+    planner, spent = session.controller._planner, 0.0
+    plan = planner.plan
+
+    def timed(*args):
+        nonlocal spent
+        began = time.perf_counter()
+        try:
+            return plan(*args)
+        finally:
+            spent += time.perf_counter() - began
+
+    planner.plan = timed
+    whole = run_seconds(session)
+    return whole / session.controller.recorder.cycle, spent
+
+
+def wrist(rounds: int) -> Iterator[Row]:
+    """Measure a move through the wrist by each method."""
+    found = wrist_seconds(rounds)
+    details = tuple(
+        f"{way}: {1e6 * cycle:.0f} us a cycle, {cycle / found['KEEP'][0]:.2f} of KEEP"
+        for way, (cycle, _) in found.items()
+    )
+    yield Row(
+        figure="one cycle of E1, run and planning, document's method against KEEP",
+        form="{:.2f}",
+        values=(found["document"][0] / found["KEEP"][0],),
+        details=details,
+    )
+    on_path, on_its_way = tracked_microseconds(rounds)
+    yield Row(
+        figure="set-point on a seam, wrist on its way against on the path",
+        form="{:.2f} ({:.0f} us on the path)",
+        values=(on_its_way / on_path, on_path),
+    )
+    yield Row(
+        figure="planning E1 before it moves: KEEP, document, all remedies, HOLD",
+        form="{:.3g}, {:.3g}, {:.3g}, {:.3g} ms",
+        values=tuple(1e3 * found[way][1] for way in WAYS),
+    )
+
+
+def tracked_microseconds(rounds: int) -> tuple[float, float]:
+    """Return the median time of a set-point on a seam, on the path and with the wrist on its own way, us."""
+    times: tuple[list[float], list[float]] = ([], [])
+    for _ in range(rounds):
+        for found, (move, options) in zip(
+            times, ((SAME, NOTHING), (E2, replace(NOTHING, remaining_time=3.9))), strict=True
+        ):
+            going, _, planned = tracked(move, options)
+            began = time.perf_counter()
+            for n in range(1, len(planned)):
+                going.next(n)
+            found.append(1e6 * (time.perf_counter() - began) / len(planned))
+    return statistics.median(times[0]), statistics.median(times[1])
+
+
+def process_seconds(processes: int, *command: str) -> float:
+    """Return the median wall time of a whole process, s; the first of several is not counted."""
+    times = []
+    for _ in range(processes):
+        started = time.perf_counter()
+        subprocess.run([sys.executable, "-m", "robolang", *command], check=True, capture_output=True)
+        times.append(time.perf_counter() - started)
+    return statistics.median(times[1:] or times)
+
+
+def rows(smallest: bool) -> Iterator[Row]:
+    """Measure everything; small machines differ, so nothing is promised here."""
+    yield whole_run(1 if smallest else 11)
+    yield from wrist(1 if smallest else 7)
+    for figure, command in COMMANDS.items():
+        yield Row(figure=figure, form="{:.0f} ms", values=(1e3 * process_seconds(1 if smallest else 8, *command),))
 
 
 if __name__ == "__main__":
-    main()
+    figures.run(rows)

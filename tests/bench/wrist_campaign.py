@@ -1,27 +1,25 @@
-"""``make wrist-campaign``: random straight moves that change the sign of J5, under KEEP, the document's method and
-ours.
+"""``make wrist-campaign``: random straight moves that change the sign of J5.
 
-    python -m tests.bench.wrist_campaign [moves per robot, default 5000]
+They are planned under KEEP, by the document's method, and by ours.
 
 Moves are drawn as points are taught: the start anywhere in the joint ranges, the end a tenth to a half of the way to
 another such posture, with the other sign of J5, arm and elbow alike, the tool above the floor; speeds from 50 to 500
 mm/s, a tool of 200 mm. Nothing is known of whether the straight line between them can be moved along at all.
 
 - KEEP: planned with the sign of J5 kept, slowed as far as it takes. It cannot end as taught; counted is how often it
-runs at all.
+  runs at all.
 - document: the first of C1 (any), C3, C4, C6 and the linear way from there, at the programmed speed; executed where
-every
-  8 ms sample keeps position and speed of every joint and the end is the taught one. The document's switch is a step of
-  speed, so accelerations are counted apart.
+  every 8 ms sample keeps position and speed of every joint and the end is the taught one. The document's switch is a
+  step of speed, so accelerations are counted apart.
 - ours: ``LinePlanner.plan``. Every plan is checked again from its rows alone, at every servo tick: position, speed and
   acceleration of every joint, the line, the end angles. What fails there would fail in the middle of a path.
 """
 
 import multiprocessing
 import re
-import sys
 import time
 from collections import Counter
+from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field, replace
 
@@ -40,6 +38,8 @@ from runtime.motion.wrist_planner import wrist_limits
 from runtime.profile import Profile, WristOptions
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.loader import load_builtin
+from tests.bench import figures
+from tests.bench.figures import Row
 
 ROBOTS = ("irb2400", "puma560")
 TOOL = pose((0.0, 0.0, 0.2))
@@ -160,36 +160,72 @@ def batch(name: str, seed: int, moves: int) -> Tally:
     return tally
 
 
-def report(name: str, moves: int, tally: Tally) -> None:
-    print(f"\n{name}: {moves} moves, {1e3 * tally.seconds / moves:.0f} ms of planning each")
+def tally_of(name: str, moves: int) -> Tally:
+    """Return the tally of so many moves of a robot, planned by two processes."""
+    sizes, total = [min(BATCH, moves - k) for k in range(0, moves, BATCH)], Tally()
+    with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
+        for job in [pool.submit(batch, name, 2400 + k, size) for k, size in enumerate(sizes)]:
+            total.add(job.result())
+    return total
+
+
+COUNTED = {
+    "`WRIST KEEP`, slowed as far as it takes: ends at the taught angles": ("KEEP", ("ends as taught",)),
+    "it runs, and ends in the other posture": ("KEEP", ("ends in the other posture",)),
+    "the document's method alone at the programmed speed: position and speed kept at every 8 ms sample": (
+        "document",
+        ("executed", "executed, with a step of speed"),
+    ),
+    "the same, accelerations kept too (its switch is a step of speed)": ("document", ("executed",)),
+    "ours, position, speed and acceleration kept at every servo tick": ("ours", ("executed",)),
+    "refused before motion, with a reason": ("ours", ("refused",)),
+    "failures in the middle of a path: plans that break a limit, the line or the end": ("ours", ("FAILS",)),
+}
+"""What is counted by figure: the method, and what becomes of a move, or how that begins."""
+
+
+def share(tally: Tally, method: str, outcomes: tuple[str, ...]) -> float:
+    """Return in per cent how many moves of a method had one of these outcomes."""
+    counts = {what: count for (of, what), count in tally.counts.items() if of == method}
+    begins = tuple(outcome for outcome in outcomes if outcome in ("refused", "FAILS"))
+    found = sum(count for what, count in counts.items() if what in outcomes or what.startswith(begins))
+    return 100.0 * found / sum(counts.values())
+
+
+def details(name: str, tally: Tally) -> Iterator[str]:
+    """Say all that was counted on a robot."""
+    moves = sum(count for (of, _), count in tally.counts.items() if of == "KEEP")
+    yield f"{name}: {moves} moves, {1e3 * tally.seconds / moves:.0f} ms of planning each"
     for method in ("KEEP", "document", "ours", "how", "why"):
         for (of, what), count in sorted(tally.counts.items(), key=lambda item: -item[1]):
             if of == method:
-                print(f"  {method:9} {count:6} {100 * count / moves:6.1f} %  {what}")
+                yield f"{name}: {method:9} {count:6} {100 * count / moves:6.1f} %  {what}"
     slow, turned = np.array(tally.slowdowns), np.array(tally.deviations)
-    full = int((slow == 1.0).sum())
-    print(f"  of {len(slow)} executed {full} at the programmed speed, the others slowed "
-          f"{np.median(slow[slow > 1]):.2f} times in the median, at most {slow.max():.1f}")  # fmt: skip
-    print(f"  posture deviation: median {np.median(turned):.1f} deg, 90 % below {np.percentile(turned, 90):.1f} deg")
+    slowed = slow[slow > 1.0]
+    if len(slowed):
+        yield (
+            f"{name}: of {len(slow)} executed {len(slow) - len(slowed)} at the programmed speed, the others slowed "
+            f"{np.median(slowed):.2f} times in the median, at most {slow.max():.1f}"
+        )
+        below = np.percentile(turned, 90)
+        yield f"{name}: posture deviation: median {np.median(turned):.1f} deg, 90 % below {below:.1f} deg"
 
 
-def main() -> None:
-    """Run the campaign and print its counts; exit code 1 when a plan breaks a limit."""
-    moves = int(sys.argv[1]) if len(sys.argv) > 1 else 5000
-    failed = False
-    with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
-        for name in ROBOTS:
-            sizes = [min(BATCH, moves - k) for k in range(0, moves, BATCH)]
-            jobs = [pool.submit(batch, name, 2400 + k, size) for k, size in enumerate(sizes)]
-            total = Tally()
-            for done, job in enumerate(jobs, start=1):
-                total.add(job.result())
-                print(f"\r{name}: {sum(sizes[:done])} of {moves}", end="", file=sys.stderr, flush=True)
-            print(file=sys.stderr)
-            report(name, moves, total)
-            failed |= any(of == "ours" and what.startswith("FAILS") for of, what in total.counts)
-    sys.exit(int(failed))
+def rows(smallest: bool) -> Iterator[Row]:
+    """Count on every robot."""
+    tallies = {name: batch(name, 2400, 3) if smallest else tally_of(name, 5000) for name in ROBOTS}
+    for figure, (method, outcomes) in COUNTED.items():
+        shares = tuple(share(tally, method, outcomes) for tally in tallies.values())
+        yield Row(
+            figure=figure,
+            form="{:.1f} %, {:.1f} %",
+            values=shares,
+            good=outcomes != ("FAILS",) or not any(shares),
+            details=tuple(line for name, tally in tallies.items() for line in details(name, tally))
+            if outcomes == ("FAILS",)
+            else (),
+        )
 
 
 if __name__ == "__main__":
-    main()
+    figures.run(rows)

@@ -133,11 +133,11 @@ def test_gravity_droop_follows_the_formula(carried, said, gravity):
     assert result.droop == pytest.approx(expected, rel=0.01)
 
 
-def over_the_range(axis, locked, coupling):
-    """Return settling times and overshoots at 8 postures, bare and with rated payload."""
+def over_the_range(axis, locked, coupling, postures=8):
+    """Return settling times and overshoots at some postures, bare and with rated payload."""
     rated = Payload(mass=PUMA.rated_payload, cog=FIVE.cog)
     results = []
-    for q in np.random.default_rng(8).uniform(0.95 * PUMA.lower, 0.95 * PUMA.upper, (8, 6)):
+    for q in np.random.default_rng(8).uniform(0.95 * PUMA.lower, 0.95 * PUMA.upper, (postures, 6)):
         for carried in (NO_PAYLOAD, rated):
             request = experiment(axis, q, 0.5 * DEG, carried, robot=PUMA, coupling=coupling)
             results.append(step(replace(request, locked=locked, seconds=0.6)))

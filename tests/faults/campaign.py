@@ -1,11 +1,11 @@
 """``make fault-campaign``, ``make supervision-campaign``: every fault, 200 clean runs and wrong payloads, counted."""
 
 import dataclasses
-import re
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -13,17 +13,46 @@ import numpy as np
 from robolang.project import Project, load_project
 from robolang.session import RunResult, Session
 from runtime.profile import Profile
+from tests.bench import figures
+from tests.bench.figures import Row
 from tests.faults.devices import break_drive, break_encoder, break_hand_over, break_plant
 
 PROGRAM = Path("programs/pick_and_place.rbl")
 Break = Callable[[Session, int, int], None]
 
 WITHIN_MS: dict[str, float] = {
-    "encoder stuck": 60.0, "encoder jump": 1.0, "encoder sign": 150.0, "encoder lost": 16.0, "encoder nan": 1.0,
-    "drive dead": 250.0, "drive half": 500.0, "brake": 150.0,
-    "nan torque": 1.0, "nan state": 1.0, "plan row": 32.0, "INA": 8.0, "D": 8.0, "T": 8.0,
-}  # fmt: skip
+    "encoder stuck": 60.0,
+    "encoder jump": 1.0,
+    "encoder sign": 150.0,
+    "encoder lost": 16.0,
+    "encoder nan": 1.0,
+    "drive dead": 250.0,
+    "drive half": 500.0,
+    "brake": 150.0,
+    "nan torque": 1.0,
+    "nan state": 1.0,
+    "plan row": 32.0,
+    "INA": 8.0,
+    "D": 8.0,
+    "T": 8.0,
+}
 """Longest time from the fault to the tick that the alarm names, ms (docs/supervision.md)."""
+
+
+@dataclass(slots=True)
+class Tally:
+    """What became of faults: how many there were, which were not named rightly, alarms and times to them, ms."""
+
+    tries: int = 0
+    wrong: list[str] = field(default_factory=list)
+    codes: Counter[str] = field(default_factory=Counter)
+    times: list[float] = field(default_factory=list)
+
+    def add(self, other: "Tally") -> None:
+        self.tries += other.tries
+        self.wrong += other.wrong
+        self.codes += other.codes
+        self.times += other.times
 
 
 def inject(fault: str) -> Break:
@@ -38,8 +67,12 @@ def inject(fault: str) -> Break:
     return lambda session, axis, at: break_plant(session, kind, axis, at)
 
 
-def project_of(text: str, points: dict[str, list[float]] | None = None, profile: Profile | None = None,
-               part_kg: float | None = None) -> Project:  # fmt: skip
+def project_of(
+    text: str,
+    points: dict[str, list[float]] | None = None,
+    profile: Profile | None = None,
+    part_kg: float | None = None,
+) -> Project:
     """Return the project of a program text on the cell of the 1992 program, with other points, profile or part."""
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder) / "p.rbl"
@@ -85,32 +118,40 @@ def verdict(alarm: dict | None, fault: str, axis: int, at: int, line: int) -> st
     return ""
 
 
-def fault_campaign(physics_only: bool = False) -> int:
-    """Every fault on every axis that moves, at three places of the program, on both plants; prints the rates."""
+def fault_campaign(project: Project, physics: bool, fault: str, at: int, axes: list[int], line: int) -> Tally:
+    """Put one fault into each axis at one tick of a line, and return what became of it."""
+    tally = Tally()
+    for axis in axes:
+        tally.tries += 1
+        _, alarm = run_fault(project, fault, axis, at, physics)
+        if alarm is not None:
+            tally.codes[alarm["code"]] += 1
+            tally.times.append(alarm["time_s"] * 1000.0 - at)
+        why = verdict(alarm, fault, axis, at, line)
+        if why:
+            tally.wrong.append(f"line {line} J{axis + 1}: {why}")
+    return tally
+
+
+PLACES = ((30, 0.4), (60, 0.5), (70, 0.3))
+"""Lines of the program, and where in their moves."""
+
+
+def fault_tallies(
+    physics: bool, faults: Iterable[str], places: Iterable[tuple[int, float]], axes: int
+) -> dict[str, Tally]:
+    """Return by fault what became of it on the axes that move (at most so many), at several places."""
     project = load_project(PROGRAM)
-    wrong = 0
-    for physics in (True,) if physics_only else (False, True):
-        clean = Session(project, physics=physics).run()
-        torque = np.abs(clean.log["tau_sat"]) / project.cell.robot.per_axis("limits", "torque")
-        for fault in WITHIN_MS:
-            tries, bad, codes, times = 0, [], Counter(), []
-            for line, share in ((30, 0.4), (60, 0.5), (70, 0.3)):
-                at, axes = moving_axes(clean, line, share)
-                for axis in axes:
-                    if fault == "drive half" and (axis > 2 or torque[at, axis] < 0.1):
-                        continue  # what is missing is less than what a payload could explain
-                    tries += 1
-                    _, alarm = run_fault(project, fault, axis, at, physics)
-                    if alarm is not None:
-                        codes[alarm["code"]] += 1
-                        times.append(alarm["time_s"] * 1000.0 - at)
-                    why = verdict(alarm, fault, axis, at, line)
-                    if why:
-                        bad.append(f"line {line} J{axis + 1}: {why}")
-            wrong += len(bad)
-            print(f"{'MuJoCo' if physics else 'rigid':6} {fault:14} {tries - len(bad):3} of {tries:3}, at most "
-                  f"{max(times, default=-1):4.0f} ms, {dict(codes)}", *bad, sep="\n    ", flush=True)  # fmt: skip
-    return wrong
+    clean = Session(project, physics=physics).run()
+    torque = np.abs(clean.log["tau_sat"]) / project.cell.robot.per_axis("limits", "torque")
+    tallies: dict[str, Tally] = {fault: Tally() for fault in faults}
+    for fault, tally in tallies.items():
+        for line, share in places:
+            at, moving = moving_axes(clean, line, share)
+            if fault == "drive half":  # else what is missing is less than what a payload could explain
+                moving = [axis for axis in moving if axis <= 2 and torque[at, axis] >= 0.1]
+            tally.add(fault_campaign(project, physics, fault, at, moving[:axes], line))
+    return tallies
 
 
 def random_program(rng: np.random.Generator) -> tuple[str, dict[str, list[float]]]:
@@ -120,8 +161,14 @@ def random_program(rng: np.random.Generator) -> tuple[str, dict[str, list[float]
     for name in ("B", "C", "D"):
         angle -= float(rng.uniform(0.0, 60.0))
         tilt = 180.0 + float(rng.uniform(-15.0, 15.0))
-        points[name] = [float(rng.uniform(380, 560)), float(rng.uniform(-250, 250)), float(rng.uniform(760, 900)),
-                        tilt, 0.0, angle]  # fmt: skip
+        points[name] = [
+            float(rng.uniform(380, 560)),
+            float(rng.uniform(-250, 250)),
+            float(rng.uniform(760, 900)),
+            tilt,
+            0.0,
+            angle,
+        ]
     moves = "".join(f"{60 + 10 * k} MOVE {name}, SPEED {rng.uniform(80, 500):.0f}\n" for k, name in enumerate("ABCD"))
     text = f"10 LOAD (0, 0, 60), 0.8\n20 HAND OFF\n30 MOVE P1\n40 HAND ON\n50 LOAD (0, 0, {{cog}}), {{mass}}\n{moves}"
     return text, points
@@ -164,13 +211,19 @@ def clean_profile(rng: np.random.Generator) -> Profile:
     base = Profile()
     measured = rng.random() < 0.25
     servo = dataclasses.replace(
-        base.servo, mode="fixed" if rng.random() < 0.3 else "scheduled", source="measured" if measured else "command",
-        velocity_feedforward=0.0 if measured else 1.0, acceleration_feedforward=0.0 if measured else 1.0,
-    )  # fmt: skip
+        base.servo,
+        mode="fixed" if rng.random() < 0.3 else "scheduled",
+        source="measured" if measured else "command",
+        velocity_feedforward=0.0 if measured else 1.0,
+        acceleration_feedforward=0.0 if measured else 1.0,
+    )
     return dataclasses.replace(
-        base, servo=servo, tick_us=int(rng.choice([500, 1000])), load_mode="add",
+        base,
+        servo=servo,
+        tick_us=int(rng.choice([500, 1000])),
+        load_mode="add",
         speed_shape="jerk" if rng.random() < 0.7 else "trapezoid",
-    )  # fmt: skip
+    )
 
 
 def clean_campaign(runs: int, mujoco_share: float = 0.5, seed: int = 3) -> int:
@@ -188,26 +241,43 @@ def clean_campaign(runs: int, mujoco_share: float = 0.5, seed: int = 3) -> int:
     return tripped
 
 
-def main() -> None:
-    """Print the figures of docs/supervision.md; exit 1 when one of them is not as promised."""
-    failed = 0
-    if "payload" in sys.argv:
-        for share in (0.3, 0.05):
-            found, runs = payload_campaign(160, 40, share)
-            print(f"payload off by {share:.0%} of rated: reported in {found} of {runs} runs ({found / runs:.1%})")
-            failed += found < 0.99 * runs if share > 0.1 else found
-    if "faults" in sys.argv:
-        failed += fault_campaign()
-        tripped = clean_campaign(200)
-        print(f"false trips: {tripped} in 200 clean runs")
-        failed += tripped
-    raise SystemExit(1 if failed else 0)
+def fault_rows(smallest: bool) -> Iterator[Row]:
+    """Every fault on every axis, and clean runs."""
+    details, tries, wrong = [], 0, 0
+    for physics in (False,) if smallest else (False, True):
+        chosen = ("encoder jump", "plan row") if smallest else tuple(WITHIN_MS)
+        for fault, tally in fault_tallies(
+            physics, chosen, PLACES[:1] if smallest else PLACES, 1 if smallest else 6
+        ).items():
+            tries, wrong = tries + tally.tries, wrong + len(tally.wrong)
+            details += [
+                f"{'MuJoCo' if physics else 'rigid':6} {fault:14} {tally.tries - len(tally.wrong):3} of "
+                f"{tally.tries:3}, at most {max(tally.times, default=-1):4.0f} ms, {dict(tally.codes)}",
+                *tally.wrong,
+            ]
+    yield Row(
+        figure="injected faults named with line and axis in time",
+        form="{} of {}",
+        values=(tries - wrong, tries),
+        good=not wrong,
+        details=tuple(details),
+    )
+    runs = 2 if smallest else 200
+    tripped = clean_campaign(runs, 0.0 if smallest else 0.5)
+    yield Row(figure="false trips in clean runs", form="{} in {}", values=(tripped, runs), good=not tripped)
 
 
-def without_line(text: str, number: int) -> str:
-    """Return a program text without the statement of one line number."""
-    return re.sub(rf"(?m)^{number} .*$", "", text)
+def payload_rows(smallest: bool) -> Iterator[Row]:
+    """Wrong payloads in random programs, far off and little off."""
+    rigid, mujoco = (2, 0) if smallest else (160, 40)
+    (far, runs), (little, _) = (payload_campaign(rigid, mujoco, share) for share in (0.3, 0.05))
+    yield Row(
+        figure="payload 30 % of rated off: reported; 5 % off: reported",
+        form="{} of {}; {} of {}",
+        values=(far, runs, little, runs),
+        good=far >= 0.99 * runs and not little,
+    )
 
 
 if __name__ == "__main__":
-    main()
+    figures.run({"faults": fault_rows, "payload": payload_rows}[sys.argv.pop(1)])

@@ -31,12 +31,13 @@ def arm_model(load: Body | None) -> ArmModel:
     return model
 
 
-def worst(text: str, load: Body | None, compare: Callable[..., float], fingers: float | None = None) -> float:
+def worst(text: str, load: Body | None, compare: Callable[..., float], fingers: float | None = None,
+          poses: Array = POSES) -> float:  # fmt: skip
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
     ours = arm_model(load)
     errors = []
-    for q in POSES:
+    for q in poses:
         data.qpos[: SPEC.n] = q
         if fingers is not None:
             data.qpos[SPEC.n : SPEC.n + 2] = fingers

@@ -1,0 +1,142 @@
+"""Every bench and campaign works, at its smallest size, and prints the rows of docs/measured.md that name it."""
+
+import re
+import sys
+from itertools import groupby
+from pathlib import Path
+from types import SimpleNamespace
+from xml.etree import ElementTree
+
+import pytest
+
+from tests.bench import blend_campaign, check, figures, inertia, measure, plots, pulse_campaign, run, wrist_campaign
+from tests.bench.figures import Row
+from tests.faults import campaign
+from tests.fuzz import large, targets
+
+ROOT = Path(__file__).parents[2]
+MAKEFILE = (ROOT / "Makefile").read_text("utf-8")
+BENCHES = {
+    "make bench": (run.rows, inertia.rows, check.rows),
+    "make measured": (measure.rows,),
+    "make fault-campaign": (campaign.fault_rows,),
+    "make supervision-campaign": (campaign.payload_rows,),
+    "make blend-campaign": (blend_campaign.rows,),
+    "make pulse-campaign": (pulse_campaign.rows,),
+    "make wrist-campaign": (wrist_campaign.rows,),
+    "make large": (large.rows,),
+}
+"""What measures the rows that a command prints."""
+IN_PROSE = {measure.HELD}
+"""Figures that the page quotes in its text."""
+
+
+def page_rows(page: str) -> list[tuple[str, set[str]]]:
+    """Return the first cell of every row of every table, and the ``make`` commands that print it.
+
+    They are in the column "command", where "same" is that of the row above; where there is no such column, in the text
+    of the section.
+    """
+    found = []
+    for section in re.split(r"(?m)^#+ .*$", page):
+        lines = section.splitlines()
+        prose = set(re.findall(r"`(make [a-z-]+)`", "\n".join(line for line in lines if not line.startswith("|"))))
+        for is_table, table in groupby(lines, lambda line: line.startswith("|")):
+            if not is_table:
+                continue
+            head, _, *body = [[cell.strip() for cell in line.strip("|").split("|")] for line in table]
+            commands: set[str] = prose
+            for cells in body:
+                if "command" in head[-1] and cells[-1] != "same":
+                    commands = set(re.findall(r"`(make [a-z-]+)`", cells[-1]))
+                found.append((cells[0], commands))
+    return found
+
+
+PAGE = page_rows((ROOT / "docs" / "measured.md").read_text("utf-8"))
+
+
+@pytest.fixture(autouse=True)
+def at_the_root(monkeypatch):
+    monkeypatch.chdir(ROOT)
+
+
+@pytest.mark.parametrize("command", BENCHES)
+def test_a_command_prints_every_row_of_the_page_that_names_it_and_breaks_no_promise(command):
+    rows = [row for bench in BENCHES[command] for row in bench(True)]
+    for row in rows:
+        assert row.finite, row
+        assert "nan" not in row.measured.lower()
+        assert row.good, row
+    printed = {row.figure for row in rows}
+    assert len(printed) == len(rows)
+    named = {figure for figure, commands in PAGE if command in commands}
+    assert named, "the page names the command nowhere"
+    assert named <= printed
+    assert printed - IN_PROSE <= {figure for figure, _ in PAGE}
+
+
+def test_every_make_command_that_the_page_names_is_run_here_and_is_in_the_makefile():
+    named = {command for _, commands in PAGE for command in commands}
+    assert named == set(BENCHES)
+    for command in named:
+        assert re.search(rf"(?m)^{command.removeprefix('make ')}:", MAKEFILE)
+
+
+def test_the_makefile_runs_modules_that_are_there():
+    modules = re.findall(r"-m (tests[a-z_.]+)", MAKEFILE)
+    assert len(modules) >= 10
+    for module in modules:
+        assert (ROOT / (module.replace(".", "/") + ".py")).is_file(), module
+
+
+def test_the_page_is_read_as_it_is_meant():
+    page = (
+        "# a\n`make x`\n\n| f | m |\n|---|---|\n| one | 1 |\n\n"
+        "# b\n| f | command |\n|---|---|\n| two | `make y` |\n| three | same |\n| four | `time` |\n"
+    )
+    assert page_rows(page) == [("one", {"make x"}), ("two", {"make y"}), ("three", {"make y"}), ("four", set())]
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf")])
+def test_a_figure_that_is_no_number_ends_a_bench_with_an_error(value, monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["bench"])
+    for row, code in (
+        (Row(figure="f", form="{:.1f} s", values=(1.0,)), 0),
+        (Row(figure="f", form="{:.1f} s", values=(value,)), 1),
+        (Row(figure="f", form="{:.1f} s", values=(1.0,), good=False), 1),
+    ):
+        with pytest.raises(SystemExit) as ended:
+            figures.run(lambda smallest, row=row: iter([row]))
+        assert ended.value.code == code
+    assert "NOT AS PROMISED" in capsys.readouterr().out
+
+
+def test_the_plots_are_drawn(tmp_path):
+    for path in plots.draw(tmp_path, seconds=0.15, every_deg=90.0):
+        assert ElementTree.parse(path).getroot().tag.endswith("svg")
+        assert "nan" not in path.read_text("utf-8")
+
+
+def test_fuzzing_starts_with_words_and_seeds_and_gives_bytes_to_its_target(monkeypatch, tmp_path):
+    """With another fuzzer in the place of atheris, which the tests do not install."""
+    seen = {}
+    stub = SimpleNamespace(
+        instrument_imports=lambda include: pytest.MonkeyPatch.context(),
+        Setup=lambda options, target: seen.update(options=options, target=target),
+        Fuzz=lambda: seen["target"](b"10 MOVE P1\n"),
+    )
+    monkeypatch.setitem(sys.modules, "atheris", stub)
+    monkeypatch.delitem(sys.modules, "tests.fuzz.run", raising=False)
+    from tests.fuzz import run as fuzz
+
+    monkeypatch.setattr(fuzz, "OUT", tmp_path)
+    listed = re.search(r"(?m)^FUZZ_TARGETS \?= (.*)$", MAKEFILE)[1].split()
+    assert listed == list(targets.TARGETS)
+    for target in targets.TARGETS:
+        monkeypatch.setattr(sys, "argv", ["run", target, "1"])
+        fuzz.main()
+        *_, kept, seeds, programs = seen["options"]
+        assert (Path(kept), Path(programs)) == (tmp_path / target, ROOT / "programs")
+        assert any(Path(seeds).iterdir())
+        assert (tmp_path / f"{target}.dict").read_text("utf-8").count("\n") > 10
