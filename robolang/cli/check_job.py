@@ -23,7 +23,7 @@ from robolang.lint.settings import Settings
 from robolang.lint.suppress import add_later
 from robolang.lint.watch import watch
 from robolang.output import render
-from robolang.source import Source, read_bytes
+from robolang.source import Source
 from runtime.faults import Fault, lookup
 
 _ROOTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")
@@ -176,10 +176,8 @@ def _written(outcome: _Outcome) -> _Outcome:
     """Write a corrected program back, and say what was fixed; a file that cannot be written is a fault more."""
     before, after = outcome.before, outcome.checked.source
     try:
-        if outcome.fixed and before.name != STANDARD_INPUT:
-            _still(before)
         if outcome.fixed or before.name == STANDARD_INPUT:
-            store(before.name, before.mark, after.text)
+            store(before, after.text)
     except Fault as fault:
         checked = replace(outcome.checked, faults=(*outcome.checked.faults, fault))
         return replace(outcome, checked=checked, fixed={})
@@ -187,16 +185,6 @@ def _written(outcome: _Outcome) -> _Outcome:
         said = ", ".join(f"{count} x {code} {lookup(code).name}" for code, count in outcome.fixed.items())
         typer.echo(f"{safe(after.path)}: fixed {said}", err=True)
     return outcome
-
-
-def _still(loaded: Loaded) -> None:
-    """Raise ``Fault`` RBL706 when a file is not what was read any more; somebody is writing it."""
-    try:
-        same = read_bytes(loaded.name) == loaded.mark + loaded.source.text.encode()
-    except Fault:
-        same = False
-    if not same:
-        raise Fault("RBL706", f"{loaded.name} has changed since it was checked", "Check it again.")
 
 
 def _print(job: Job, outcomes: Sequence[_Outcome]) -> None:

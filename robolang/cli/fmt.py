@@ -90,7 +90,7 @@ class _Run:
             elif self.check and found.changed:
                 typer.echo(safe(f"would reformat {loaded.source.path}"))
         if not self.check and not self.diff and (found.changed or name == STDIO):
-            store(name, loaded.mark, found.text)
+            store(loaded, found.text)
         self.changed += found.changed
         self.same += not found.changed
 

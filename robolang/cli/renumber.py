@@ -66,7 +66,7 @@ def _deliver(loaded: "Loaded", found: "RenumberResult", *, check: bool, diff: bo
         with reader_may_leave():
             show(loaded, found.text)
     elif not check and (found.changed or out == STDIO or out != loaded.name):
-        store(out, loaded.mark, found.text)
+        store(loaded, found.text, out)
     would = "would change" if check or diff else "changed"
     parts = [_count(found.lines, "line number"), *([_count(found.targets, "jump")] if found.targets else [])]
     said = f"{' and '.join(parts)} {would}" if found.changed else "nothing to change"

@@ -5,7 +5,6 @@ the file is replaced whole or not at all. Imports no numpy, pinocchio or mujoco.
 """
 
 import re
-import stat
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -62,19 +61,31 @@ def _standard_input() -> bytes:
         raise Fault("RBL702", f"cannot read the standard input: {error.strerror}") from None
 
 
-def store(name: str, mark: bytes, text: str) -> None:
-    """Write a program to a file, in place of the one of that name, or to the standard output; ``Fault`` RBL706."""
-    from robolang.storage import write_atomic
+def store(loaded: Loaded, text: str, out: str | None = None) -> None:
+    """Write a text in place of the program that was read, or to ``out``; ``Fault`` RBL706.
 
-    raw = mark + text.encode("utf-8")
+    The program is left alone when it is not what was read any more: somebody else is writing it.
+    """
+    from robolang.storage import write_atomic
+    from runtime.faults import Fault
+
+    raw, name = loaded.mark + text.encode("utf-8"), loaded.name if out is None else out
     if name == STDIO:
         typer.echo(raw, nl=False)
         return
-    path = Path(name)
-    mode = stat.S_IMODE(path.stat().st_mode) if path.is_file() else None
-    write_atomic(path, lambda stream: stream.write(raw))
-    if mode is not None:
-        path.chmod(mode)
+    if name == loaded.name and not _still(loaded):
+        raise Fault("RBL706", f"{name} has changed since it was read", "Run the command again.")
+    write_atomic(Path(name), lambda stream: stream.write(raw))
+
+
+def _still(loaded: Loaded) -> bool:
+    from robolang.source import read_bytes
+    from runtime.faults import Fault
+
+    try:
+        return read_bytes(loaded.name) == loaded.mark + loaded.source.text.encode("utf-8")
+    except Fault:
+        return False
 
 
 def broken(loaded: Loaded, diagnostics: "Iterable[Diagnostic]") -> bool:

@@ -67,21 +67,6 @@ def test_the_mode_is_that_of_an_ordinary_new_file(tmp_path):
     assert stat.S_IMODE((tmp_path / "r.json").stat().st_mode) == 0o640
 
 
-@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EIO, errno.EROFS])
-@pytest.mark.parametrize("call", ["fsync", "replace"])
-def test_a_failing_disk_leaves_the_old_file_as_it_was(tmp_path, monkeypatch, number, call):
-    path = tmp_path / "r.json"
-    path.write_bytes(b"old bytes")
-
-    def fail(*args):
-        raise OSError(number, os.strerror(number))
-
-    monkeypatch.setattr(os if call == "fsync" else Path, call, fail)
-    assert os.strerror(number) in refused(write_json, path, {"new": 1})
-    assert path.read_bytes() == b"old bytes"
-    assert os.listdir(tmp_path) == ["r.json"]
-
-
 @pytest.mark.parametrize("suffix", [".npz", ".mcap", ".json"])
 @pytest.mark.parametrize("size", [0, 100, 20_000])
 def test_a_full_disk_while_writing_leaves_the_old_file_as_it_was(tmp_path, suffix, size):

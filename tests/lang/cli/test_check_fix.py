@@ -95,8 +95,8 @@ def test_permissions_and_links_are_kept(folder):
 
 
 def test_a_file_that_cannot_be_written_is_exit_code_4(folder, monkeypatch):
-    def refuse(name, mark, text):
-        raise Fault("RBL706", f"cannot write {name}")
+    def refuse(loaded, text):
+        raise Fault("RBL706", f"cannot write {loaded.name}")
 
     monkeypatch.setattr(check_job, "store", refuse)
     result = robolang("check", "--fix", code=4)
@@ -114,7 +114,7 @@ def test_a_file_that_changed_meanwhile_is_left_alone(gone, folder, monkeypatch):
         return real(source, find)
 
     monkeypatch.setattr(check_job, "fix_all", fix_all)
-    assert "RBL706 bad.rbl has changed since it was checked" in robolang("check", "--fix", code=4).stderr
+    assert "RBL706 bad.rbl has changed since it was read" in robolang("check", "--fix", code=4).stderr
     assert gone or (folder / "bad.rbl").read_text() == "MOVE P2\n"
 
 

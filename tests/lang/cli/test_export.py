@@ -8,6 +8,7 @@ import shutil
 import numpy as np
 import pytest
 
+from robolang import storage
 from robolang.cli.export import written_here
 from robolang.storage import write_folder
 from runtime.faults import Fault
@@ -257,11 +258,24 @@ def test_a_folder_that_cannot_take_its_name_is_put_back(tmp_path, monkeypatch):
             raise PermissionError(errno.EACCES, "no")
         return replace(self, target)
 
+    def refuse_exchange(one, other):
+        raise PermissionError(errno.EACCES, "no")
+
     monkeypatch.setattr(type(folder), "replace", refuse)
-    with pytest.raises(Fault, match="cannot write"):
-        write_folder(folder, {"manifest.json": b"new"}, written_here)
-    assert (folder / "manifest.json").read_bytes() == b"old"
-    assert [item.name for item in tmp_path.iterdir()] == ["x"]
+    for exchange in (lambda one, other: False, refuse_exchange):  # a system without an exchange in one step, and one
+        monkeypatch.setattr(storage, "_exchange", exchange)
+        with pytest.raises(Fault, match="cannot write"):
+            write_folder(folder, {"manifest.json": b"new"}, written_here)
+        assert (folder / "manifest.json").read_bytes() == b"old"
+        assert [item.name for item in tmp_path.iterdir()] == ["x"]
+
+
+def test_a_folder_is_replaced_where_the_system_has_no_exchange(tmp_path, monkeypatch):
+    monkeypatch.setattr(storage, "_exchange", lambda one, other: False)
+    for text in (b"old", b"new"):
+        write_folder(tmp_path / "x", {"manifest.json": text}, written_here)
+        assert (tmp_path / "x" / "manifest.json").read_bytes() == text
+        assert [item.name for item in tmp_path.iterdir()] == ["x"]
 
 
 def test_the_same_program_gives_the_same_bytes(tmp_path):
