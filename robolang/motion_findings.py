@@ -120,7 +120,7 @@ class _Moves:
 
     def touches(self, move: RehearsedMove) -> Found:
         """Report the first obstacle that the arm would be in."""
-        yield from self._first(move, "RBL421", self._shapes.touching)
+        yield from self._first(move, "RBL421", self._shapes.in_cell)
 
     def folds(self, move: RehearsedMove) -> Found:
         """Report the first of its links that the arm would be in."""

@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 
 from robolang.result import RunRecord, StatementRun
+from runtime.controller import Controller
 from runtime.faults import Alarm
 from runtime.frames import Array, xyzrpy_from_pose
+from runtime.plant.touches import shape_text
 from runtime.servo.motor import torque_limit
 from runtime.units import DEG, MM, PERCENT
 
@@ -33,7 +35,10 @@ def build_report(record: RunRecord, log: dict[str, Array], wall_s: float) -> dic
         "realtime_factor": sim_s / wall_s if wall_s > 0.0 else 0.0,
         "cycles": controller.recorder.cycle,
         "overruns": controller.overruns,
-        "statements": [_statement(run, measures, controller.profile.tick_us) for run in record.statements],
+        "statements": [
+            {**_statement(run, measures, controller.profile.tick_us), "touched": _touched(run, controller)}
+            for run in record.statements
+        ],
         "dynamics": _dynamics(record),
         "payload_history": record.payloads,
         "printed": [{"time_s": time_s, "text": text} for time_s, text in record.shown],
@@ -94,6 +99,22 @@ def _statement(run: StatementRun, measures: _Measures, tick_us: int) -> dict[str
         "seam": _seam(run, measures.deviation[span]),
         "notes": list(run.notes),
     }
+
+
+def _touched(run: StatementRun, controller: Controller) -> list[dict[str, object]]:
+    """Return what the arm, the hand or a held part touched in a statement and should not have; see ``Touches``."""
+    return [
+        {
+            "by": [shape_text(name) for name in touch.by],
+            "what": shape_text(touch.what),
+            "time_s": touch.tick * controller.profile.tick_us / 1_000_000,
+            "moved_mm": touch.moved / MM,
+            "turned_deg": touch.turned / DEG,
+            "slid_mm": touch.slid / MM,
+        }
+        for touch in ([] if controller.touches is None else controller.touches.records)
+        if touch.noticed and run.first_tick <= touch.tick < run.end_tick
+    ]
 
 
 def _wrist(run: StatementRun, mode: Array, tick_us: int) -> dict[str, object] | None:

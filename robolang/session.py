@@ -115,6 +115,7 @@ class Session:
         self.running = True
         self._run_program()
         self.running = False
+        self.controller.warn_of_touches()
         log = self.controller.recorder.signals(self.controller.tool_poses)
         report = build_report(self.record, log, wall_s() - started)
         return RunResult(ok=not self.controller.alarms, report=report, log=log)

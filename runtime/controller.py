@@ -35,6 +35,7 @@ from runtime.motion.planner import FOLLOWS, LinePlan
 from runtime.motion.seam import SeamTracker
 from runtime.motion.stop import stopping_rows
 from runtime.plant.plant import Plant
+from runtime.plant.touches import Touches
 from runtime.profile import Profile
 from runtime.recorder import Recorder
 from runtime.robot.kinematics import Kinematics
@@ -121,6 +122,8 @@ class Controller:
         )  # fmt: skip
         self._overruns = 0
         self._no_deviation = np.zeros(6)
+        self.touches = None if plant.bodies is None else Touches(plant.bodies, plant.gripped)
+        """What the arm, the hand and held parts touch; None where the plant knows no contacts."""
 
     def _power_up(self, q: Array, now_us: int = 0) -> None:
         """Fill ITA once for all axes before the brakes open, so that no servo ever works with an empty cell."""
@@ -167,6 +170,8 @@ class Controller:
         self._refuse_while_latched()
         self.plant.close_hand(closed)
         self._supervisor.hand_moves()
+        if self.touches is not None:
+            self.touches.hand(closed)
 
     def move(self, command: Command) -> LinePlan:
         """Plan a move from the commanded position and start it; ``Fault`` RBL4xx before anything moves."""
@@ -326,8 +331,11 @@ class Controller:
             if fault is not None and not self.alarms:
                 self.alarm(fault.code, fault.message)
         self.processor.begin_cycle(foreground_us)
+        start_tick = self.recorder.tick
         if not self._run_ticks(start_us, motion):
             return False
+        if self.touches is not None:
+            self._touch(self.touches, start_tick)
         if self.profile.supervision.enabled or self.alarms:  # a stop is seen to its end in any case
             self._supervise(start_us, motion)
         return not self.halted
@@ -407,6 +415,12 @@ class Controller:
         if found is not None:
             self._latch(found)
 
+    def _touch(self, touches: Touches, start_tick: int) -> None:
+        """Take the contacts of the cycle that has just run; a lost part stops the arm."""
+        lost = touches.cycle(start_tick, self.line, self.plant.touching())
+        if lost is not None and not self.alarms and self.profile.supervision.enabled:
+            self._stop_by(self._alarm_of(Finding(code="RBL536", message=lost.message, tick=lost.tick), lost.line))
+
     def _follow_stop(self, found: Finding | None) -> None:
         """See a controlled stop to its end: brakes when the arm stands, at once when it does not follow."""
         lost = self._supervisor.watch.lost_track(LOST)
@@ -437,10 +451,20 @@ class Controller:
         """Latch an alarm at the running line and the current tick, and stop the arm by its category."""
         self._stop_by(self._alarm_of(Finding(code=code, message=message, axis=axis, tick=self.recorder.tick)))
 
-    def _alarm_of(self, found: Finding) -> Alarm:
+    def warn_of_touches(self) -> None:
+        """Take what has been touched so far and should not have been into ``warnings``; once, at the end of a run."""
+        for touch in [] if self.touches is None else self.touches.records:
+            if touch.noticed:
+                code = "RBL537" if touch.fixed else "RBL535"
+                found = Finding(code=code, message=touch.message, tick=touch.tick, warning=True)
+                self.warnings.append(self._alarm_of(found, touch.line))
+        self.warnings.sort(key=lambda alarm: alarm.tick)
+
+    def _alarm_of(self, found: Finding, line: int | None = None) -> Alarm:
         entry = lookup(found.code)
-        return Alarm(code=found.code, message=found.message, tick=found.tick, axis=found.axis, line=self.line or None,
-                     hint=entry.remedy, category=entry.category)  # fmt: skip
+        return Alarm(code=found.code, message=found.message, tick=found.tick, axis=found.axis,
+                     line=(self.line if line is None else line) or None, hint=entry.remedy,
+                     category=entry.category)  # fmt: skip
 
     def _stop_by(self, alarm: Alarm) -> None:
         self.alarms.append(alarm)

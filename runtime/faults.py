@@ -239,4 +239,26 @@ register(
         meaning="The run was stopped from outside (Ctrl-C or SIGTERM).",
         remedy="The log and the report are complete up to the stop.",
     ),
+    Code(
+        code="RBL535",
+        name="part-pushed",
+        meaning="The arm, the hand or a held part has touched a part that it should not touch, and moved it by more "
+        "than 0.5 mm.",
+        remedy="Keep clear of it: go there from another side, open the hand where there is room, or hold the part "
+        "elsewhere.",
+    ),
+    Code(
+        code="RBL536",
+        name="part-lost",
+        meaning="A part that HAND ON gripped is no longer held, and no HAND OFF has let it go.",
+        remedy="Move with less ACCEL, grip nearer to its centre of gravity, or give the hand more grip force or "
+        "better pads in the cell file.",
+    ),
+    Code(
+        code="RBL537",
+        name="obstacle-touched",
+        meaning="The arm or the hand has touched an obstacle of the cell or the floor, or a held part has slid along "
+        "one.",
+        remedy="Lift the part before it is moved, go there over a via point, or correct the obstacle in the cell file.",
+    ),
 )

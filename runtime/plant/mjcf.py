@@ -52,7 +52,6 @@ COLLIDES = {
     "environment": (ENVIRONMENT, ARM | HAND | PART),
     "arm": (ARM, ENVIRONMENT | PART),
     "hand": (HAND, ENVIRONMENT | PART),
-    "shank": (HAND, ENVIRONMENT),  # stands back from the pad, so it need not be tested against the part
     "part": (PART, ENVIRONMENT | ARM | HAND | PART),
 }
 
@@ -267,7 +266,7 @@ def _finger(flange: ET.Element, hand: HandSpec, side: str, timestep: float) -> N
     pad, shank = pose([0.0, y_pad, 0.0]), pose([0.0, y_shank, (top + tip) / 2.0])
     shank_size = np.array([width, thickness * 0.75, tip - top])
     _geom(finger, f"pad_{side}", "hand", pad, type="box", size=_row(hand.pad / 2.0), rgba="0.1 0.1 0.1 1")
-    _geom(finger, f"shank_{side}", "shank", shank, type="box", size=_row(shank_size / 2.0), rgba="0.4 0.42 0.45 1")
+    _geom(finger, f"shank_{side}", "hand", shank, type="box", size=_row(shank_size / 2.0), rgba="0.4 0.42 0.45 1")
 
 
 def _grip(root: ET.Element, cell: CellSpec, timestep: float) -> None:

@@ -29,6 +29,7 @@ from runtime.plant.gears import elastic_axes, physics_steps
 from runtime.plant.hand import FINGERS
 from runtime.plant.mjcf import build_mjcf, friction_bias, gear_joint, joint_name
 from runtime.plant.plant import HandState
+from runtime.plant.touches import Bodies, Pair
 from runtime.robot.spec import RobotSpec
 
 MAX_PHYSICS_STEP = 1e-3
@@ -77,7 +78,26 @@ class MujocoPlant:
         self._hang(spec.per_axis("motor", "stiffness")[self._elastic])
         self._last_qpos, self._last_qvel = self._qpos.copy(), self._qvel.copy()
         self._show_state()
+        self._watch(cell)
         self.close_hand(False)
+
+    def _watch(self, cell: CellSpec) -> None:
+        """Set up what ``touching`` and ``bodies`` give: mjData's own arrays, which stay where they are."""
+        data, m = self._data, len(cell.parts)
+        first = self._model.nbody - m  # parts are the last bodies
+        site = int(self._model.site("tool").id)
+        mujoco.mj_kinematics(self._model, data)  # so that they hold from the first cycle on
+        self.bodies = Bodies(
+            names=tuple(part.name for part in cell.parts),
+            size=np.array([part.size for part in cell.parts]).reshape(m, 3),
+            p=data.xpos[first:], R=data.xmat[first:].reshape(m, 3, 3),
+            p_tool=data.site_xpos[site], R_tool=data.site_xmat[site].reshape(3, 3),
+            pad_length=float(cell.hand.pad[2]),
+        )  # fmt: skip
+        self._geom_names = [str(self._model.geom(index).name) for index in range(self._model.ngeom)]
+        self._known_contacts: dict[bytes, frozenset[Pair]] = {}
+        self._touched: frozenset[Pair] = frozenset()
+        self._ncon = -1
 
     def _hang(self, stiffness: Array) -> None:
         """Twist the gears (m,) N m/rad by the weight that hangs on them: the arm starts at rest."""
@@ -148,6 +168,8 @@ class MujocoPlant:
         _mj_step(self._model, self._data, self._substeps)
         if self._warnings() != self._no_warning:
             return self._stop()
+        if self._data.ncon != self._ncon:
+            self._note_contacts()
         self._last_qpos[:] = self._qpos
         self._last_qvel[:] = self._qvel
         if self._renew is not None:
@@ -172,18 +194,22 @@ class MujocoPlant:
         self._finger_force[:] = -self._grip_force if closed else self._grip_force
 
     def hand(self) -> HandState:
-        """Return what the hand does now; ``holding`` is the part that presses on both pads of the closed hand."""
+        """Return what the hand does now; ``holding`` is the first part that it grips, the hand being closed."""
         opening = float(self._last_qpos[self._fingers].sum())
-        return HandState(closed=self._closed, opening=opening, holding=self._held() if self._closed else None)
+        holding = next(iter(self.gripped()), None) if self._closed else None
+        return HandState(closed=self._closed, opening=opening, holding=holding)
 
-    def _held(self) -> str | None:
-        pads = {f"pad_{side}" for side in FINGERS}
-        touched: dict[str, set[str]] = {}
-        for touch in self.contacts():
-            for pad, other in (touch.names, touch.names[::-1]):
-                if pad in pads and other.startswith("part:"):
-                    touched.setdefault(other.removeprefix("part:"), set()).add(pad)
-        return next((name for name in self._part_address if touched.get(name) == pads), None)
+    def gripped(self) -> tuple[str, ...]:
+        """Return the parts that both pads press on from the sides; one that the tips of the pads stand on is not."""
+        data = self._data
+        y_tool = self.bodies.R_tool[:, 1]
+        pads: dict[str, set[str]] = {name: set() for name in self._part_address}
+        for contact in (data.contact[index] for index in range(data.ncon)):
+            pair = [self._geom_names[geom] for geom in contact.geom]
+            pad, part = sorted(pair)  # "pad_left" before "part:..."
+            if pad.startswith("pad_") and part.startswith("part:") and abs(contact.frame[:3] @ y_tool) > SIDEWAYS:
+                pads[part.removeprefix("part:")].add(pad)
+        return tuple(name for name, touched in pads.items() if len(touched) == len(FINGERS))
 
     def contacts(self) -> list[Touch]:
         """Return every contact that carries a force, in MuJoCo's order: names such as ``link4``, ``pad_left``,
@@ -201,7 +227,31 @@ class MujocoPlant:
                 touches.append(Touch(names=(first, second), force=float(wrench[0])))
         return touches
 
-    def touching(self, q: Array) -> tuple[str, str] | None:
+    def touching(self) -> frozenset[Pair]:
+        """Return which shapes have touched since the last call, as sorted pairs of their names.
+
+        ``step`` adds to them whenever the number of contacts has changed; called once per cycle.
+        """
+        self._note_contacts()
+        touched, self._touched = self._touched, frozenset()
+        return touched
+
+    def _note_contacts(self) -> None:
+        self._ncon = self._data.ncon
+        geoms = self._data.contact.geom
+        key = geoms.tobytes()
+        pairs = self._known_contacts.get(key)
+        if pairs is None:
+            if len(self._known_contacts) >= MOST_KNOWN:
+                self._known_contacts.clear()
+            names = self._geom_names
+            pairs = frozenset((names[a], names[b]) if names[a] < names[b] else (names[b], names[a])
+                              for a, b in geoms.tolist())  # fmt: skip
+            self._known_contacts[key] = pairs
+        if not pairs <= self._touched:
+            self._touched |= pairs
+
+    def in_cell(self, q: Array) -> tuple[str, str] | None:
         """Return what of the arm would be in the floor or in an obstacle at joint angles q (n,) rad, and in which.
 
         Nothing moves by itself: for a plant that stands for the cell's shapes and is not run. Parts are passed over.
@@ -221,7 +271,7 @@ class MujocoPlant:
     def folded(self, q: Array) -> tuple[str, str] | None:
         """Return what of the arm or the hand would be in another link at joint angles q (n,) rad, and in which.
 
-        Looked at as ``touching`` does, for the pairs of ``_pairs``.
+        Looked at as ``in_cell`` does, for the pairs of ``_pairs``.
         """
         self._qpos[self._motors] = q
         mujoco.mj_kinematics(self._model, self._data)
@@ -266,6 +316,10 @@ class MujocoPlant:
 
 
 _mj_step = mujoco.mj_step
+SIDEWAYS = 0.7
+"""Cosine of the largest angle between a contact and the direction in which the fingers close, of a grip."""
+MOST_KNOWN = 10_000
+"""Sets of contacts whose names are remembered."""
 CLEARANCE = 1e-4
 """Shapes that meet by less than this touch, m."""
 APART = 3

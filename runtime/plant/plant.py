@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from runtime.frames import Array
+from runtime.plant.touches import Bodies, Pair
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,3 +60,13 @@ class Plant(Protocol):
 
     def parts(self) -> dict[str, Array]:
         """Return the pose X_world_part (4, 4) of every part by name."""
+
+    @property
+    def bodies(self) -> Bodies | None:
+        """Parts and tool as live arrays; None where the plant knows no contacts."""
+
+    def touching(self) -> frozenset[Pair]:
+        """Return which shapes have touched since the last call, as sorted pairs of their names."""
+
+    def gripped(self) -> tuple[str, ...]:
+        """Return the parts between the fingers that press on them."""

@@ -12,6 +12,7 @@ import numpy as np
 from runtime.frames import Array, inverse
 from runtime.plant.cell import CellSpec
 from runtime.plant.plant import HandState
+from runtime.plant.touches import Pair
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
@@ -22,6 +23,8 @@ REACH = 0.01
 
 class RigidPlant:
     """Plant without physics engine; see ``Plant`` for the meaning of each method."""
+
+    bodies = None
 
     def __init__(self, spec: RobotSpec, cell: CellSpec, tick_s: float = 1e-3) -> None:
         self.tick_s = tick_s
@@ -72,6 +75,14 @@ class RigidPlant:
         if self._holding is not None:
             poses[self._holding] = self._X_world_tool() @ self._X_tool_part
         return poses
+
+    def touching(self) -> frozenset[Pair]:
+        """Return nothing: there are no contacts."""
+        return frozenset()
+
+    def gripped(self) -> tuple[str, ...]:
+        """Return the part that the hand holds."""
+        return () if self._holding is None else (self._holding,)
 
     def _X_world_tool(self) -> Array:
         return np.asarray(self._model.flange(self.q) @ self._cell.hand.X_flange_tool)
