@@ -14,6 +14,7 @@ A part is measured from where it was before the touch until it rests again: the 
 corners. A touch that goes on in the next statement begins a record of its own there. Nothing here acts on the motion.
 """
 
+import math
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, field, replace
@@ -101,7 +102,7 @@ class Touch:
     @property
     def noticed(self) -> bool:
         """Whether it is a finding: something moved, or the arm or the hand struck what is fixed."""
-        return (self.fixed and not self.by_part) or not max(self.reach, self.slid) <= NOTICED
+        return (self.fixed and not self.by_part) or not (self.reach <= NOTICED and self.slid <= NOTICED)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -175,15 +176,18 @@ class Touches:
         self._seen = _Seen()
         self._closed = False
         self._held: dict[str, _Grip] = {}
-        self._free: set[str] = set()  # let go or lost: they move by themselves until they rest
+        self._lost: set[str] = set()
+        self._free: set[str] = set()  # let go: they move by themselves until they rest
         self._open: dict[str, _Open] = {}  # by the part that is pushed, or by "part>fixed" that it slides along
         self._line, self._statement = 0, 0
 
     def hand(self, closed: bool) -> None:
-        """HAND ON or HAND OFF begins: what is held is let go."""
+        """HAND ON or HAND OFF begins; OFF lets go what is held."""
         if not closed:
             self._free |= self._held.keys()
             self._held.clear()
+        self._free |= self._lost
+        self._lost.clear()
         self._closed = closed
         self._pairs = None
 
@@ -192,8 +196,10 @@ class Touches:
         if line != self._line:
             self._line, self._statement, self._pairs = line, self._statement + 1, None
         lost = None
-        if pairs != self._pairs or self._held or self._open or self._free:  # else parts at rest, an arm in the air
+        if pairs != self._pairs or self._open or self._free:
             lost = self._follow(tick, pairs)
+        elif self._held:  # an arm in the air with a part
+            lost = self._lose(self._seen, tick)
         self._remember()
         return lost
 
@@ -224,7 +230,7 @@ class Touches:
 
     def _grip(self, seen: _Seen) -> None:
         """Take a part between the pads of the closed hand as held; that it was pushed to there was its grasp."""
-        may = [part for part, pads in seen.pads.items() if len(pads) == len(FINGERS) and part not in self._held]
+        may = [part for part, pads in seen.pads.items() if len(pads) == len(FINGERS) and part not in self._taken]
         gripped = self._gripped() if self._closed and may else ()
         for part in may:
             if part.removeprefix(_PART) in gripped:
@@ -246,15 +252,20 @@ class Touches:
                 grip.bare, grip.since = 1, (tick, self._line)
             else:
                 grip.bare += 1
-            distance = float(np.linalg.norm(here - grip.place))
+            distance = math.hypot(*(here - grip.place).tolist())
             most = NOTICED if grip.bare >= LOST_CYCLES else max(SLIPPED, self._bodies.pad_length / 2.0)
             if not distance <= most:
                 since, line = grip.since if grip.bare else (tick, self._line)
                 del self._held[part]
-                self._free.add(part)
+                self._lost.add(part)
                 return Loss(part=part.removeprefix(_PART), tick=since, line=line, gripped_line=grip.line,
                             distance=distance)  # fmt: skip
         return None
+
+    @property
+    def _taken(self) -> set[str]:
+        """The parts that the closed hand has gripped, lost ones as well."""
+        return self._held.keys() | self._lost
 
     # touches --------------------------------------------------------------------------------------------------------
 
@@ -262,12 +273,13 @@ class Touches:
         """Yield (by, part) of every contact that may push a part and is not allowed."""
         for by, part in seen.on_parts:
             hand = not by.startswith("link")
-            if not (hand and (part in self._held or (part in self._free and by != "palm"))):
+            if not (hand and (part in self._taken or (part in self._free and by != "palm"))):
                 yield by, part
-        loose = self._held.keys() | self._free | {key for key in self._open if key in self._index}
+        moving = self._taken | self._free
+        loose = moving | {key for key in self._open if key in self._index}
         for first, second in seen.among_parts:
             for by, part in ((first, second), (second, first)):
-                if by in loose and part not in self._held and part not in self._free and not self._pushed_by(by, part):
+                if by in loose and part not in moving and not self._pushed_by(by, part):
                     yield by, part
 
     def _pushed_by(self, part: str, other: str) -> bool:
@@ -325,7 +337,7 @@ class Touches:
         touch, way = going.touch, p - going.p
         reach = float(np.linalg.norm(self._corners[going.body] @ (R - going.R).T + way, axis=1).max())
         if not pushed:
-            touch.slid = max(touch.slid, reach)
+            touch.slid = touch.slid if reach <= touch.slid else reach
         elif not reach <= touch.reach:
             touch.reach, touch.moved = reach, float(np.linalg.norm(way))
             touch.turned = rotation_angle(going.R, R)
