@@ -67,6 +67,11 @@ REPEATED = {
     "mistakes": "a;a;\n",
     "one letter": "a\n",
     "suspicious": "é\n",
+    "open IFs": "IF 1 THEN\n",
+    "open WHILEs": "WHILE 1\n",
+    "open SUBs": "SUB a\n",
+    "open SELECTs": "SELECT 1\nCASE 1\n",
+    "ELSEs": "ELSE\n",
 }
 COUNTED = {
     "names": "x{n}=y{n}\n",
@@ -77,6 +82,7 @@ COUNTED = {
     "subroutines": "SUB s{n}\nENDSUB\n",
     "calls": "CALL s{n}\n",
     "points": "MOVE P{n}\n",
+    "jumps to nowhere": "GOTO {n}\n",
 }
 KINDS = (*REPEATED, *COUNTED, "anything", "any characters")
 
@@ -160,7 +166,7 @@ class Pair:
 
 
 def rows(smallest: bool) -> Iterator[Row]:
-    """Measure every kind with every command."""
+    """Measure every kind with every command; times of the smallest size are not held to the promises."""
     kinds, size = (("comments",), 2000) if smallest else (KINDS, SIZE)
     with TemporaryDirectory() as folder:
         pairs = [
@@ -179,10 +185,10 @@ def rows(smallest: bool) -> Iterator[Row]:
     )
     ended = all(pair.whole.code in (0, 1, 2) for pair in pairs)
     yield Row(
-        figure="programs of 1 MB of 45 kinds, `check` and `fmt`: longest CPU time",
+        figure=f"programs of 1 MB of {len(KINDS)} kinds, `check` and `fmt`: longest CPU time",
         form=f"{{:.1f}} s ({slowest.kind}, {slowest.command})",
         values=(slowest.whole.cpu_s,),
-        good=ended and slowest.whole.cpu_s <= MOST_S,
+        good=ended and (smallest or slowest.whole.cpu_s <= MOST_S),
         details=tuple(map(str, pairs)),
     )
     yield Row(
@@ -195,7 +201,7 @@ def rows(smallest: bool) -> Iterator[Row]:
         figure="largest ratio of times, 1 MB to 0.5 MB",
         form=f"{{:.1f}} ({steepest.kind}, {steepest.command})",
         values=(steepest.ratio,),
-        good=steepest.ratio <= MOST_RATIO,
+        good=smallest or steepest.ratio <= MOST_RATIO,
     )
 
 

@@ -33,7 +33,7 @@ def main():
     words = _TOML if target in targets.SEEDS else (*KEYWORDS, *ARGUMENTS, *VALUES, *_SIGNS)
     dictionary = OUT / f"{target}.dict"
     dictionary.write_text("".join(f'"{word}"\n' for word in words), encoding="utf-8")
-    options = [f"-max_total_time={seconds}", "-max_len=4096", "-timeout=30", f"-dict={dictionary}",
+    options = [f"-max_total_time={seconds}", "-max_len=4096", "-timeout=10", f"-dict={dictionary}",
                f"-artifact_prefix={OUT}/{target}-", "-print_final_stats=1", "-verbosity=0", *sys.argv[3:]]  # fmt: skip
     seeds = CORPUS / targets.SEEDS.get(target, "program")
     atheris.Setup([sys.argv[0], *options, str(kept), str(seeds), str(PROGRAMS)], lambda data: targets.run(target, data))

@@ -5,7 +5,6 @@ registered code, in bounded time; places lie in the text; formatting is done onc
 """
 
 import re
-import time
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -23,7 +22,6 @@ from runtime.faults import lookup
 from runtime.plant.cell import load_cell
 from runtime.tomlfile import FileFault
 
-SLOWEST_S = 5.0
 _NAME = "fuzz.rbl"
 _POINTS = ("P1", "P2", "P3")
 _LINE = re.compile(r"\r\n?|\n")
@@ -116,9 +114,7 @@ SEEDS = {"points": "points", "cell": "cell"}
 
 def run(target, data):
     """Give bytes to a target; ``AssertionError`` when a promise is broken, whatever else breaks included."""
-    began = time.process_time()
     TARGETS[target](data)
-    assert time.process_time() - began < SLOWEST_S + 20e-6 * len(data)
 
 
 # --- oracles ---------------------------------------------------------------------------------------------------------

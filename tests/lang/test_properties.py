@@ -1,6 +1,5 @@
 """Properties over all programs and all texts."""
 
-import sys
 from dataclasses import replace
 from itertools import islice
 from typing import get_args
@@ -25,6 +24,7 @@ from runtime.tomlfile import FileFault
 from tests.lang import generator
 from tests.lang.generator import expressions, jumping_programs, programs, texts, written_badly
 from tests.lang.helpers import source
+from tests.steps import assert_linear
 
 
 def test_the_generator_makes_every_kind_of_node():
@@ -319,23 +319,6 @@ def test_a_printer_without_these_parentheses_is_caught(defect, monkeypatch):
 # --- time ------------------------------------------------------------------------------------------------------------
 
 
-def calls(work, text):
-    """The number of Python calls that some work on a text takes; a measure that does not depend on the machine."""
-    where, count = source(text), 0
-
-    def step(frame, event, argument):
-        nonlocal count
-        count += event in ("call", "c_call")
-
-    before = sys.getprofile()
-    sys.setprofile(step)
-    try:
-        work(where)
-    finally:
-        sys.setprofile(before)
-    return count
-
-
 SHAPES = ("10 MOVE P1, SPEED 200 ' x\n", "LOAD (1, -2, 3), 4\n", "'\n", "\n", "MOVE " + "-" * 90 + "\n", "1_0 \n",
           "MOVE P1, WRIST HOLD TILT, ADVANCE, TIME 2\n", "WRIST HOLD TILT\n", "SEAM ON, s\n", "IF x\n", "NEXT\n",
           "IF x\nFOR i = 1 TO 2\n", "WHILE 1\nENDIF\n", "CASE 1\n", "x = (((1 + 2) * 3)^4 MOD 5)\n", "PRINT x; y ' z\n",
@@ -349,7 +332,6 @@ REPEATED = (("MOVE P1", ", SPEED 1"), ("MOVE P1", ", WRIST HOLD TILT"), ("MOVE P
 def test_work_grows_with_the_text_and_not_faster(work):
     parse(source("MOVE P1"))
     for shape in SHAPES:
-        small, large = calls(work, shape * 100), calls(work, shape * 200)
-        assert large <= 2.1 * small + 100, shape
+        assert_linear(work, source(shape * 100), source(shape * 200))
     for start, more in REPEATED:
-        assert calls(work, start + more * 200) <= 2.1 * calls(work, start + more * 100) + 100, more
+        assert_linear(work, source(start + more * 100), source(start + more * 200))

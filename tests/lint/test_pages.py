@@ -9,6 +9,7 @@ import pytest
 from robolang.lint.pages import index, page, pages, write
 from robolang.lint.registry import rules
 from runtime.faults import lookup
+from tests.steps import HANG_S
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "docs" / "rules"
@@ -60,7 +61,7 @@ def test_writing_removes_the_pages_of_rules_that_are_gone(tmp_path):
 
 def test_the_command_writes_the_folder_that_is_named(tmp_path):
     done = subprocess.run(
-        [sys.executable, "-m", "robolang.lint.pages", str(tmp_path / "made")], check=True, cwd=ROOT, timeout=30,
+        [sys.executable, "-m", "robolang.lint.pages", str(tmp_path / "made")], check=True, cwd=ROOT, timeout=HANG_S,
         capture_output=True,
     )  # fmt: skip
     assert done.stdout == b""

@@ -9,6 +9,7 @@ from pathlib import Path
 from typer.testing import CliRunner
 
 from robolang.cli.main import app
+from tests.steps import HANG_S
 
 ROOT = Path(__file__).parents[3]
 BUILTIN = ROOT / "robolang" / "builtin"
@@ -42,7 +43,7 @@ def places(text):
     return [(int(line), int(column), code) for line, column, code in found]
 
 
-def shell(*words, cwd=None, env=None, timeout=30, **options):
+def shell(*words, cwd=None, env=None, timeout=HANG_S, **options):
     """Run ``python -m robolang`` as a process."""
     return subprocess.run(
         [sys.executable, "-m", "robolang", *map(str, words)],

@@ -15,6 +15,7 @@ from robolang.cli import check_job
 from robolang.cli.main import app
 from runtime.faults import Fault
 from tests.lang.cli.commands import ROOT, places, robolang
+from tests.steps import HANG_S
 
 BAD = "10MOVE P1, SPEED 1_000 ' noqa\n20 MOVE P2 SPEED 20\n30 MOVE P9\n"
 GOOD = "10 MOVE P1, SPEED 1000 ' noqa\n20 MOVE P2, SPEED 20\n30 MOVE P9\n"
@@ -125,7 +126,7 @@ def test_a_file_that_changed_meanwhile_is_left_alone(gone, folder, monkeypatch):
 def test_a_diff_is_one_that_patch_takes(text, folder):
     (folder / "bad.rbl").write_bytes(text.encode())
     diff = CliRunner().invoke(app, ["check", "--diff"]).stdout_bytes
-    subprocess.run(["patch", "--binary", "-s", "-p0"], input=diff, cwd=folder, check=True, timeout=10)
+    subprocess.run(["patch", "--binary", "-s", "-p0"], input=diff, cwd=folder, check=True, timeout=HANG_S)
     patched = (folder / "bad.rbl").read_bytes()
     (folder / "bad.rbl").write_bytes(text.encode())
     CliRunner().invoke(app, ["check", "--fix"])
@@ -208,5 +209,5 @@ def test_ctrl_c_ends_a_watch(folder):
     with subprocess.Popen(command, cwd=folder, env=env, stderr=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         assert process.stderr.readline() == b"watching; Ctrl-C ends\n"
         process.send_signal(signal.SIGINT)
-        out, said = process.communicate(timeout=10)
+        out, said = process.communicate(timeout=HANG_S)
     assert (process.returncode, out, said) == (0, b"", b"")

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 
 from robolang.cli.main import app
 from tests.lang.cli.commands import ROOT, flat, places, robolang, shell
+from tests.steps import HANG_S
 
 
 @pytest.fixture(autouse=True)
@@ -230,7 +231,7 @@ def test_a_reader_that_leaves_changes_no_exit_code(folder):
 def python(code, *words, cwd):
     """Run a line of Python as a process."""
     return subprocess.run(
-        [sys.executable, "-c", f"import sys; {code}", *words], cwd=cwd, capture_output=True, text=True, timeout=30,
+        [sys.executable, "-c", f"import sys; {code}", *words], cwd=cwd, capture_output=True, text=True, timeout=HANG_S,
         env={**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "80"},
     )  # fmt: skip
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.lang.cli.commands import ROOT
+from tests.steps import HANG_S
 
 SCRIPT = Path(sys.executable).with_name("robolang")
 NAMES = ("lark", "typer", "click", "rich", "numpy", "pinocchio", "mujoco", "ruckig", "tomllib", "tomlkit", "runtime",
@@ -33,7 +34,7 @@ def plant(folder, name):
 
 def done(folder, *words):
     env = {key: value for key, value in os.environ.items() if key not in ("PYTHONPATH", "PYTHONSAFEPATH")}
-    return subprocess.run(list(map(str, words)), cwd=folder, env=env, capture_output=True, text=True, timeout=60)
+    return subprocess.run(list(map(str, words)), cwd=folder, env=env, capture_output=True, text=True, timeout=HANG_S)
 
 
 def traces(folder):

@@ -10,6 +10,7 @@ import pytest
 
 from robolang.cli import run_table
 from tests.lang.cli.commands import ROOT, dry, robolang, shell
+from tests.steps import HANG_S
 
 LONG = "100 MOVE P1, SPEED 123.456789, ACCEL 12.345678901"
 
@@ -131,7 +132,7 @@ def test_on_a_terminal_progress_is_one_live_line(program):
     os.close(slave)
     shown = read_terminal(master)
     os.close(master)
-    table, _ = process.communicate(timeout=20)
+    table, _ = process.communicate(timeout=HANG_S)
     assert process.returncode == 0
     assert "20  MOVE P5" in table
     assert "line 10   MOVE P1" in shown
@@ -178,7 +179,7 @@ def test_closed_streams_and_a_plain_encoding_do_not_stop_a_run(program):
     for first, last in ((1, 2), (2, 3), (1, 3)):
         words = [sys.executable, "-c", run.format(first, last), "run", "--no-physics", "p.rbl", "--report", "r.json"]
         env = {**os.environ, "PYTHONPATH": str(ROOT)}
-        assert subprocess.run(words, cwd=program.parent, env=env, timeout=20).returncode == 0
+        assert subprocess.run(words, cwd=program.parent, env=env, timeout=HANG_S).returncode == 0
         (program.parent / "r.json").unlink()
     program.write_text("MOVE P9 ' \u03a9\n", encoding="utf-8")
     result = shell("check", "p.rbl", cwd=program.parent, env={"PYTHONIOENCODING": "latin-1"})

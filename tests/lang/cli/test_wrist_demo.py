@@ -15,6 +15,7 @@ from runtime.faults import Fault
 from runtime.robot.loader import load_builtin
 from runtime.units import DEG
 from tests.lang.cli.commands import ROOT, flat, robolang
+from tests.steps import HANG_S
 
 SVG = "{http://www.w3.org/2000/svg}"
 LIBRARY = ROOT / "runtime" / "robot" / "library"
@@ -267,7 +268,7 @@ def test_a_folder_that_cannot_be_written_is_rbl706_before_anything_is_computed(t
 
 def test_the_command_is_listed_and_imports_nothing_heavy():
     code = "import sys, robolang.cli.main as m; print(sorted({'numpy', 'pinocchio', 'rich.table'} & set(sys.modules)))"
-    found = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=30)
+    found = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=HANG_S)
     assert found.stdout == "[]\n"
     assert "wrist-demo" in robolang("--help").stdout
 
