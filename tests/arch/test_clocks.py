@@ -4,6 +4,7 @@ Benches and campaigns measure times and are no tests: those are the modules whos
 """
 
 import ast
+import os
 from pathlib import Path
 
 import pytest
@@ -75,6 +76,13 @@ def test_no_test_reads_a_clock_or_ends_a_wait_early(path):
 
 def test_what_ends_a_hang_is_no_measure_of_speed():
     assert steps.HANG_S >= LEAST_S
+
+
+def test_a_hang_is_a_failed_test(tmp_path, monkeypatch):
+    monkeypatch.setattr(steps, "HANG_S", 1)
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(AssertionError, match="still waits"), steps.guarded():
+        (tmp_path / "pipe").open()
 
 
 @pytest.mark.parametrize(
