@@ -120,9 +120,9 @@ def render(diagnostic: Diagnostic, source: Source) -> str:
     return "\n".join(lines)
 
 
-def render_fault(fault: FileFault) -> str:
+def render_fault(fault: FileFault, severity: Severity = Severity.ERROR) -> str:
     """Return a fault of a file in the same form as ``render``."""
-    head = f"{fault.path}:{fault.line}:{fault.column}: error {fault.code} {fault.message}"
+    head = f"{fault.path}:{fault.line}:{fault.column}: {severity.value} {fault.code} {fault.message}"
     lines = [safe(head)]
     if fault.excerpt:
         lines += _excerpt(fault.line, fault.excerpt, fault.column - 1, fault.column)

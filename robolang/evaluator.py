@@ -14,6 +14,7 @@ from robolang.nodes import Call, Chain, Component6, Expression, Name, Negate, No
 from robolang.places import Frame, Place, Shift, Six, Value, kind_of
 from robolang.words import ARGUMENTS, VALUES
 from runtime.faults import Fault
+from runtime.numerals import number_in
 
 MAX_TEXT = 10_000
 """Longest text that a program may make, characters."""
@@ -247,10 +248,10 @@ class Evaluator:
 
     def _do_val(self, node: Call) -> Value:
         text = self._text(node.arguments[0])
-        try:
-            return finite(float(text.strip().replace("_", "x")), "VAL")
-        except ValueError:
-            raise Fault("RBL502", f"VAL of '{text[:20]}': that is no number") from None
+        number = number_in(text.strip())
+        if number is None:
+            raise Fault("RBL502", f"VAL of '{text[:20]}': that is no number")
+        return finite(number, "VAL")
 
     def _do_len(self, node: Call) -> Value:
         return float(len(self._text(node.arguments[0])))

@@ -143,12 +143,16 @@ class Source:
     path: str
     text: str
 
-    def fail(self, code: str, message: str, hint: str = "", keys: Sequence[str | int] = ()) -> NoReturn:
-        """Raise ``FileFault`` at the place of the key path ``keys`` (best match)."""
+    def fault(self, code: str, message: str, hint: str = "", keys: Sequence[str | int] = ()) -> FileFault:
+        """Return a ``FileFault`` at the place of the key path ``keys`` (best match)."""
         line, column = locate(self.text, keys)
         lines = lines_of(self.text)
         excerpt = lines[line - 1] if 0 < line <= len(lines) else ""
-        raise FileFault(code, message, hint, path=self.path, line=line, column=column, excerpt=excerpt)
+        return FileFault(code, message, hint, path=self.path, line=line, column=column, excerpt=excerpt)
+
+    def fail(self, code: str, message: str, hint: str = "", keys: Sequence[str | int] = ()) -> NoReturn:
+        """Raise ``FileFault`` at the place of the key path ``keys`` (best match)."""
+        raise self.fault(code, message, hint, keys)
 
 
 def read_source(path: Path, code: str = "RBL600") -> Source:
@@ -225,10 +229,14 @@ class Table:
         """Return the keys present, in file order."""
         return list(self._data)
 
+    def fault(self, code: str, message: str, hint: str = "", key: str | None = None) -> FileFault:
+        """Return a ``FileFault`` at ``key`` of this table."""
+        keys = (*self.keys, key) if key is not None else self.keys
+        return self.source.fault(code, message, hint, keys)
+
     def fail(self, code: str, message: str, hint: str = "", key: str | None = None) -> NoReturn:
         """Raise ``FileFault`` at ``key`` of this table."""
-        keys = (*self.keys, key) if key is not None else self.keys
-        self.source.fail(code, message, hint, keys)
+        raise self.fault(code, message, hint, key)
 
     def name(self, key: str = "") -> str:
         """Return the dotted name of ``key`` as people write it, axes counted from 1."""

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import typer
 
-from robolang.cli.errors import DIAGNOSTICS, reader_may_leave, say
+from robolang.cli.errors import DIAGNOSTICS, reader_may_leave, say, say_warnings
 from robolang.cli.rewrite import Loaded, load, store, unified
 from robolang.diagnostics import Diagnostic, Severity, has_errors, in_order, safe
 from robolang.lint.apply import fix_all
@@ -25,6 +25,7 @@ from robolang.lint.watch import watch
 from robolang.output import render
 from robolang.source import Source
 from runtime.faults import Fault, lookup
+from runtime.tomlfile import FileFault
 
 _ROOTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")
 
@@ -50,7 +51,10 @@ class Job:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Outcome:
-    """A program as it was read, what was found after its fixes and in its points, how often each code was fixed."""
+    """A program as it was read, what was found after its fixes and in its points, how often each code was fixed.
+
+    ``warnings`` are about the files of its robot.
+    """
 
     checked: Checked
     before: Loaded
@@ -58,6 +62,7 @@ class _Outcome:
     fixed: dict[str, int] = field(default_factory=dict)
     table: str = ""
     times: dict[str, object] | None = None
+    warnings: tuple[FileFault, ...] = ()
 
 
 def watched(job: Job) -> int:
@@ -99,6 +104,7 @@ def run_once(job: Job) -> int:
     if job.times is not None:
         _write_times(job.times, outcomes)
     _print(job, outcomes)
+    say_warnings(warning for outcome in outcomes for warning in outcome.warnings)
     worst = max([0, *(say(fault) for outcome in outcomes for fault in outcome.checked.faults)])
     return max(worst, _judged(job, outcomes))
 
@@ -161,7 +167,8 @@ def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
     diagnostics = in_order(filter(selection.keeps, add_later(checked.source, checked.diagnostics, later)))
     if plan.times is None and not has_errors(diagnostics):
         diagnostics = in_order((*diagnostics, *(item for item in later if item.severity is Severity.ERROR)))
-    return replace(outcome, checked=replace(checked, diagnostics=diagnostics), table=plan.table, times=plan.times)
+    return replace(outcome, checked=replace(checked, diagnostics=diagnostics), table=plan.table, times=plan.times,
+                   warnings=plan.warnings)  # fmt: skip
 
 
 def _write_times(path: Path, outcomes: Sequence[_Outcome]) -> None:
@@ -239,5 +246,6 @@ def _judged(job: Job, outcomes: Sequence[_Outcome]) -> int:
     if job.diff:
         return DIAGNOSTICS if any(outcome.fixed for outcome in outcomes) else 0
     found = [item for result in _results(outcomes) for item in result.diagnostics]
-    warned = job.strict and any(item.severity is Severity.WARNING for item in found)
+    warned = job.strict and (any(item.severity is Severity.WARNING for item in found)
+                             or any(outcome.warnings for outcome in outcomes))  # fmt: skip
     return DIAGNOSTICS if warned or has_errors(found) else 0

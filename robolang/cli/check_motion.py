@@ -14,6 +14,7 @@ from robolang.line_times import LineTime, line_times
 from robolang.motion_check import Rehearsal
 from robolang.motion_findings import findings, worst_loads
 from robolang.project import Project, load_project
+from runtime.tomlfile import FileFault
 
 _STATEMENT = 30
 _NOTHING = 5e-4
@@ -33,9 +34,13 @@ def told(count: int) -> Iterator[Callable[[int, str], None]]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Planned:
-    """The findings in the motion of a program, the table of its times for people, and the same as plain JSON types."""
+    """The findings in the motion of a program, the table of its times for people, and the same as plain JSON types.
+
+    ``warnings`` are what is unlikely about the files of its robot.
+    """
 
     diagnostics: tuple[Diagnostic, ...]
+    warnings: tuple[FileFault, ...] = ()
     table: str = ""
     times: dict[str, object] | None = None
 
@@ -47,12 +52,13 @@ def planned(program: str, max_cycle_s: float | None) -> Planned:
     """
     project = load_project(program)
     if not project.ok:
-        return Planned(diagnostics=project.diagnostics)
+        return Planned(diagnostics=project.diagnostics, warnings=project.cell.robot.warnings)
     explored = explore(project)
     found = findings(project, explored.rehearsal, max_cycle_s, explored.detours)
     rows = line_times(project, explored.rehearsal)
     return Planned(
         diagnostics=found,
+        warnings=project.cell.robot.warnings,
         table=_table(project, explored.rehearsal, rows) + _ways(project, explored),
         times=_times(project, explored, rows),
     )

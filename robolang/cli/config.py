@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from robolang.cli import servo_options as o
-from robolang.cli.errors import reported
+from robolang.cli.errors import reported, say_warnings
 from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
@@ -48,6 +48,7 @@ def show(
         found, in_force = load_cell_and_settings(
             None if program is None else Path(program), cell, robot, profile, options
         )
+        say_warnings(found.robot.warnings)
         rows = _rows(found.robot, in_force)
         if as_json:
             typer.echo(json.dumps({"robot": found.robot.name, "settings": rows}, indent=2))

@@ -9,12 +9,12 @@ import errno
 import io
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 
 import typer
 
-from robolang.diagnostics import render_fault, safe
+from robolang.diagnostics import Severity, render_fault, safe
 from runtime.faults import Fault
 from runtime.tomlfile import FileFault
 
@@ -43,6 +43,15 @@ def say(fault: Fault) -> int:
     else:
         typer.echo(f"error {fault.code} {safe(fault.message)}\n  help: {safe(fault.hint)}", err=True)
     return exit_code(fault.code)
+
+
+def say_warnings(warnings: Iterable[FileFault], said: set[str] | None = None) -> None:
+    """Print what is unlikely about a file to stderr; ``said`` keeps what was printed, for a file that is read again."""
+    printed = set() if said is None else said
+    for text in (render_fault(warning, Severity.WARNING) for warning in warnings):
+        if text not in printed:
+            printed.add(text)
+            typer.echo(text, err=True)
 
 
 @contextmanager

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from robolang.cli.errors import DIAGNOSTICS, exit_code, reported
+from robolang.cli.errors import DIAGNOSTICS, exit_code, reported, say_warnings
 from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
@@ -113,6 +113,7 @@ def _refuse(project: "Project") -> None:
     """Print what is wrong with the text; leave when it has errors."""
     from robolang.diagnostics import render
 
+    say_warnings(project.cell.robot.warnings)
     for item in project.diagnostics:
         typer.echo(render(item, project.source), err=True)
     if not project.ok:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 import typer
 
 from robolang.cli import values
-from robolang.cli.errors import reported
+from robolang.cli.errors import reported, say_warnings
 from robolang.cli.values import OptionValueError
 from robolang.cli.weigh import weigh
 
@@ -81,6 +81,7 @@ def identify(
         from runtime.dynamics.compensation import as_toml
 
         spec, profile, hand = _subject(subject)
+        say_warnings(spec.warnings)
         request = Request(
             robot=spec, axes=_axes(axis, spec.n), positions=positions, plant=cast("PlantName", plant),
             real=None if error is None else with_errors(spec, error), profile=profile,
@@ -132,7 +133,7 @@ def _axes(text: str, n: int) -> tuple[int, ...]:
         return tuple(range(n))
     axes = set()
     for position, part in enumerate(text.split(","), start=1):
-        if not (part.strip().isdecimal() and 1 <= int(part[:9]) <= n):
+        if not (part.strip().isdecimal() and part.isascii() and 1 <= int(part[:9]) <= n):
             raise OptionValueError("--axis", f"'{part.strip()[:20]}' is not one of 1 to {n}, or all", position)
         axes.add(int(part) - 1)
     return tuple(sorted(axes))

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from robolang.cli import values
-from robolang.cli.errors import reported
+from robolang.cli.errors import reported, say_warnings
 from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
@@ -55,6 +55,7 @@ def inertia(
         from robolang.project import load_any_robot
 
         spec = load_any_robot(robot)
+        say_warnings(spec.warnings)
         q, carried = values.posture(joints, spec), values.payload(payload, "--payload", spec)
         values.note_overload(carried, "--payload", spec)
         head = {"robot": spec.name, "joints_deg": [float(f"{angle:.12g}") + 0.0 for angle in np.rad2deg(q)],

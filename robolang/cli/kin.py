@@ -5,19 +5,24 @@ limits, best first. The pose is X_base_tool, ``x,y,z,rx,ry,rz`` with the rotatio
 that order; without ``--tool`` the tool is the flange. ``--json`` gives full double precision, one object a call:
 
     fk  {"pose_mm_deg": [x, y, z, rx, ry, rz]}
-    ik  {"solutions": [{"joints_deg": [...], "branch": "RIGHTY ABOVE NOFLIP", "limit_margin_deg": number}, ...]}
+    ik  {"solutions": [{"joints_deg": [...], "branch": "RIGHTY ABOVE NOFLIP", "limit_margin_deg": number,
+         "turns_deg": [[...], ...]}, ...], "complete": boolean, "not_listed": number}
 
+``turns_deg`` holds the joint angles of a solution and all others inside the ranges that differ from them by whole
+turns: a joint with a range above one turn has several angles for one place. ``complete`` is false for an arm without a
+closed form, whose numeric search may have missed solutions. ``not_listed`` counts the turns beyond ``MOST_TURNS``.
 Exit codes: 0; 1 out of reach (RBL410 on stderr); 2 a value, a robot name or a robot file that cannot be used.
 A robot may be a URDF or MJCF file: no drives are needed here. An arm without a closed form has the branch NUMERIC.
 numpy, rich and the runtime are imported inside the commands, so that ``robolang --help`` stays quick.
 """
 
 import json
+from itertools import islice
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from robolang.cli.errors import reported
+from robolang.cli.errors import reported, say_warnings
 from robolang.cli.values import OptionValueError, numbers
 
 if TYPE_CHECKING:
@@ -28,6 +33,9 @@ app = typer.Typer(no_args_is_help=True, help="Forward and inverse kinematics of 
 
 POSE = ("x", "y", "z", "rx", "ry", "rz")
 POSE_UNITS = ("mm", "mm", "mm", "deg", "deg", "deg")
+
+MOST_TURNS = 1000
+"""As many turns are listed of a pose, at most."""
 
 RobotOption = Annotated[str, typer.Option("--robot", help="Built-in robot, or a .toml, .urdf or .xml file.")]
 ToolOption = Annotated[
@@ -83,19 +91,30 @@ def _ik(robot: str, pose: str, tool: str | None, as_json: bool) -> None:
 
     kinematics = _kinematics(robot)
     X_base_flange = _pose(pose, "--pose") @ inverse(_pose(tool, "--tool"))
-    solutions = _solutions_deg(kinematics, X_base_flange)
+    solutions, left = _solutions_deg(kinematics, X_base_flange)
     if as_json:
-        typer.echo(json.dumps({"solutions": solutions}))
+        typer.echo(json.dumps({"solutions": solutions, "complete": kinematics.closed_form, "not_listed": left}))
     if not solutions:
-        _say_out_of_reach(kinematics.spec.title)
+        _say_out_of_reach(kinematics)
         raise typer.Exit(1)
     if not as_json:
         _print_table(
             f"Joint angles, {kinematics.spec.title}",
             ["branch", *(f"{name}\ndeg" for name in _joint_names(kinematics.n)), "margin\ndeg"],
-            [_solution_row(solution) for solution in solutions],
-            caption="margin: from the joint nearest to a limit; negative: outside its range",
+            [row for solution in solutions for row in _solution_rows(solution)],
+            caption=_caption(kinematics, solutions, left),
         )
+
+
+def _caption(kinematics: "Kinematics", solutions: list[dict[str, Any]], left: int) -> str:
+    lines = ["margin: from the joint nearest to a limit; negative: outside its range"]
+    if any(len(solution["turns_deg"]) > 1 for solution in solutions):
+        lines.append("no branch: the row above, whole turns of joints on")
+    if left:
+        lines.append(f"{left} more turns are not listed")
+    if not kinematics.closed_form:
+        lines.append("numeric, without a closed form: solutions may be missing")
+    return "\n".join(lines)
 
 
 def _kinematics(robot: str) -> "Kinematics":
@@ -107,9 +126,13 @@ def _kinematics(robot: str) -> "Kinematics":
     from runtime.robot.loader import library, load_builtin
 
     if is_model(robot):
-        return Kinematics(read_arm(Path(robot)))  # drives are not needed to say where the tool is
+        arm = read_arm(Path(robot))  # drives are not needed to say where the tool is
+        say_warnings(arm.warnings)
+        return Kinematics(arm)
     if robot.lower().endswith(ROBOT_ENDINGS):
-        return Kinematics(load_file(Path(robot)))
+        spec = load_file(Path(robot))
+        say_warnings(spec.warnings)
+        return Kinematics(spec)
     try:
         return Kinematics(load_builtin(robot))
     except KeyError:
@@ -138,18 +161,21 @@ def _pose_scale() -> list[float]:
     return [{"mm": MM, "deg": DEG}[unit] for unit in POSE_UNITS]
 
 
-def _solutions_deg(kinematics: "Kinematics", X_base_flange: "Array") -> list[dict[str, Any]]:
+def _solutions_deg(kinematics: "Kinematics", X_base_flange: "Array") -> tuple[list[dict[str, Any]], int]:
+    """Return the solutions, best first, each with its turns, and how many turns are not listed."""
     import numpy as np
 
-    found = sorted(kinematics.solutions(X_base_flange), key=lambda s: -s.limit_margin)
-    return [
-        {
-            "joints_deg": _plain(np.rad2deg(s.q)),
-            "branch": str(s.branch),
-            "limit_margin_deg": float(np.rad2deg(s.limit_margin)),
-        }
-        for s in found
-    ]
+    rows, room, left = [], MOST_TURNS, 0
+    for found in sorted(kinematics.solutions(X_base_flange), key=lambda s: -s.limit_margin):
+        turns = list(islice(kinematics.other_turns(found), room))
+        room, left = room - len(turns), left + kinematics.turn_count(found) - len(turns)
+        rows.append({
+            "joints_deg": _plain(np.rad2deg(found.q)),
+            "branch": str(found.branch),
+            "limit_margin_deg": float(np.rad2deg(found.limit_margin)),
+            "turns_deg": [_plain(np.rad2deg(each.q)) for each in (found, *turns)],
+        })  # fmt: skip
+    return rows, left
 
 
 def _plain(values: "Array") -> list[float]:
@@ -161,16 +187,19 @@ def _joint_names(n: int) -> tuple[str, ...]:
     return tuple(f"J{i}" for i in range(1, n + 1))
 
 
-def _solution_row(solution: dict[str, Any]) -> list[str]:
-    shown = [*solution["joints_deg"], solution["limit_margin_deg"]]
-    return [solution["branch"], *(f"{round(value, 2) + 0.0:.2f}" for value in shown)]
+def _solution_rows(solution: dict[str, Any]) -> list[list[str]]:
+    """Return the row of a solution and those of its other turns, which have neither branch nor margin."""
+    first, *others = [[f"{round(value, 2) + 0.0:.2f}" for value in joints] for joints in solution["turns_deg"]]
+    margin = f"{round(solution['limit_margin_deg'], 2) + 0.0:.2f}"
+    return [[solution["branch"], *first, margin], *(["", *joints, ""] for joints in others)]
 
 
-def _say_out_of_reach(robot: str) -> None:
+def _say_out_of_reach(kinematics: "Kinematics") -> None:
     from runtime.faults import lookup
 
-    code = lookup("RBL410")
-    typer.echo(f"error {code.code} {code.name} --pose: {code.meaning} ({robot})\n  help: {code.remedy}", err=True)
+    code, robot = lookup("RBL410"), kinematics.spec.title
+    meaning = code.meaning if kinematics.closed_form else "The numeric search met the pose from none of its starts."
+    typer.echo(f"error {code.code} {code.name} --pose: {meaning} ({robot})\n  help: {code.remedy}", err=True)
 
 
 def _print_table(title: str, headings: list[str], rows: list[list[str]], caption: str | None = None) -> None:
@@ -186,4 +215,6 @@ def _print_table(title: str, headings: list[str], rows: list[list[str]], caption
         table.add_column(heading, justify="left" if heading == "branch" else "right", no_wrap=True)
     for row in rows:
         table.add_row(*row)
-    Console().print(table)
+    console = Console()
+    console.width = max(console.width, console.measure(table).maximum)  # a number is never cut
+    console.print(table)

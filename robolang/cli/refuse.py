@@ -4,16 +4,20 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from robolang.cli.errors import DIAGNOSTICS, exit_code
+from robolang.cli.errors import DIAGNOSTICS, exit_code, say_warnings
 
 if TYPE_CHECKING:
     from robolang.project import Project
 
 
 def refuse(project: "Project") -> None:
-    """Print the diagnostics; leave when the text has errors or a motion cannot be planned."""
+    """Print the diagnostics and what is unlikely about the robot.
+
+    Leave when the text has errors or a motion cannot be planned.
+    """
     from robolang.diagnostics import render
 
+    say_warnings(project.cell.robot.warnings)
     for item in project.diagnostics:
         typer.echo(render(item, project.source), err=True)
     if not project.ok:

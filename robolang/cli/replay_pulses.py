@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from robolang.cli.errors import DIAGNOSTICS, MOTION, reader_may_leave, reported, say
+from robolang.cli.errors import DIAGNOSTICS, MOTION, reader_may_leave, reported, say, say_warnings
 from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
@@ -88,6 +88,7 @@ def _drive(export: "Export", cell: str) -> "Drive":
     from robolang.pulse_drive import drive, start_angles
 
     spec, settings = load_cell_and_settings(None, cell, None, None, {})
+    say_warnings(spec.robot.warnings)
     start_angles(export, spec)  # before anything is said to move
     typer.echo(f"driving {spec.robot.name}: {export.seconds:.1f} s of motion", err=True)
     return drive(export, spec, settings.profile)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robolang.cli.errors import reported
+from robolang.cli.errors import reported, say_warnings
 from robolang.diagnostics import safe
 from runtime.faults import Fault
 
@@ -46,6 +46,7 @@ def show(robot: Annotated[str, typer.Argument(help="Built-in robot, or a .toml, 
             _show_model(robot)
             return
         spec = load_any_robot(robot)
+        say_warnings(spec.warnings)
         console = Console()
         console.print(safe(f"{spec.name}: {spec.title}, {spec.n} axes, rated payload {spec.rated_payload:g} kg"), "\n")
         for table in (_limits(spec), _wrist(spec), _drives(spec), *_springs(spec), _loops(spec), _bodies(spec)):
@@ -76,7 +77,9 @@ def import_model(
         from runtime.robot.sidecar import NO_OVERLAY, sidecar_path, template
 
         target = output if output is not None else sidecar_path(file)
-        text = template(read_model(file, replace(NO_OVERLAY, flange=flange))).encode()
+        arm = read_model(file, replace(NO_OVERLAY, flange=flange))
+        say_warnings(arm.warnings)
+        text = template(arm).encode()
         if not force and os.path.lexists(target):
             raise Fault("RBL706", f"{target} is there already", "Give another name with -o, or --force to replace it.")
         write_atomic(target, lambda stream: stream.write(text))
@@ -93,6 +96,7 @@ def _show_model(robot: str) -> None:
 
     path = Path(robot)
     arm = read_model(path)
+    say_warnings(arm.warnings)
     console = Console()
     console.print(safe(f"{arm.title}, {arm.n} axes; the flange is {arm.flange!r}"), "\n")
     for table in (_model_limits(arm), _model_bodies(arm)):

@@ -8,7 +8,7 @@ import typer
 
 from robolang.cli import servo_options as o
 from robolang.cli import values
-from robolang.cli.errors import MOTION, reported
+from robolang.cli.errors import MOTION, reported, say_warnings
 from robolang.cli.values import OptionValueError, numbers
 
 if TYPE_CHECKING:
@@ -64,6 +64,7 @@ def step(
         from runtime.units import DEG, MM
 
         spec = load_any_robot(robot)
+        say_warnings(spec.warnings)
         tool_point = np.array(numbers(tool, option="--tool", names=("x", "y", "z"))) * MM
         in_force = load_settings(spec, pose(tool_point, np.eye(3)), None, profile, options)
         if not (abs(size) <= 360.0):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NoReturn
 import typer
 
 from robolang.cli.usage import OptionValueError as OptionValueError
+from runtime.numerals import number_in, why_none
 
 if TYPE_CHECKING:
     from runtime.frames import Array
@@ -69,10 +70,9 @@ def _number(text: str, option: str, name: str, position: int) -> float:
         raise OptionValueError(option, f"{name} {message}", position)
 
     shown = text if len(text) <= 40 else f"{text[:37]}..."
-    try:
-        value = float(text.replace("_", "x"))  # Python reads 1_0 as 10, the language does not
-    except ValueError:
-        refuse(f"is {shown!r}, not a number")
+    value = number_in(text)
+    if value is None:
+        refuse(f"is {shown!r}, not a number{why_none(text)}")
     if not math.isfinite(value):
         refuse(f"is {shown!r}, not a finite number")
     if not abs(value) <= MAX_ABS:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 import typer
 
 from robolang.cli import values
-from robolang.cli.errors import reported
+from robolang.cli.errors import reported, say_warnings
 from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
@@ -55,6 +55,7 @@ def weigh(
 
         where = None if program is None else Path(program)
         found_cell, in_force = load_cell_and_settings(where, cell, robot, None, {})
+        say_warnings(found_cell.robot.warnings)
         request = WeighRequest(
             cell=found_cell,
             added=None if payload is None else values.payload(payload, "--payload", found_cell.robot),

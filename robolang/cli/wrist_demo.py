@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from robolang.cli.errors import reported
+from robolang.cli.errors import reported, say_warnings
 from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
@@ -44,6 +44,7 @@ def wrist_demo(
 
         chosen = _chosen(figures or [], FIGURES)
         spec = load_any_robot(robot)
+        say_warnings(spec.warnings)
         why = unusable(spec)
         if why:
             raise OptionValueError("--robot", why)

@@ -28,6 +28,25 @@ register(
         remedy="Remove the plugin element.",
     ),
     Code(
+        code="RBL627",
+        name="angle-unlikely",
+        meaning="A joint range or speed in a robot file is one that no known arm has; it looks like another unit.",
+        remedy="Check the unit: radians in a URDF, degrees in a robot file in TOML and, as a rule, in MJCF.",
+    ),
+    Code(
+        code="RBL628",
+        name="length-unlikely",
+        meaning="A length or a direction in a robot file is one that no known arm has; it looks like another unit.",
+        remedy="Check the unit: lengths of a robot file are in m.",
+    ),
+    Code(
+        code="RBL629",
+        name="mass-or-drive-unlikely",
+        meaning="A mass, inertia, torque or gear ratio in a robot file is one that no known arm has; it looks like "
+        "another unit.",
+        remedy="Check the unit: kg, kg m2 and N m; a gear ratio is motor turns per joint turn.",
+    ),
+    Code(
         code="RBL621",
         name="import-unsupported",
         meaning="A URDF or MJCF file uses something that the import does not read; it is never guessed.",

@@ -57,7 +57,7 @@ def _check_need(table: Table, published: Body, correction: Correction) -> None:
     if mass > TOKEN_MASS:
         table.fail("RBL606", f"an added mass of {mass:g} kg is more than the {TOKEN_MASS:g} that a body needs",
                    "if the mass is known, write it as mass_kg with its source", key="added_mass_kg")  # fmt: skip
-    if moments > 0.0 and not flat(_shifted(published.inertia, shift)):
+    if moments > 0.0 and not flat(shifted(published.inertia, shift)):
         table.fail("RBL606", f"{name} has moments about every axis already", "remove added_inertia_kg_m2",
                    key="added_inertia_kg_m2")  # fmt: skip
     if moments > TOKEN_INERTIA:
@@ -88,7 +88,8 @@ def _with_body(axis: AxisSpec, body: Body) -> AxisSpec:
     )
 
 
-def _shifted(inertia: Array, shift: float) -> Array:
+def shifted(inertia: Array, shift: float) -> Array:
+    """Return an inertia (3, 3) with a shift, kg m2, across the joint."""
     return np.asarray(inertia + shift * np.diag([1.0, 1.0, 0.0]))
 
 
@@ -100,7 +101,7 @@ def smallest_shift(inertia: Array) -> float | None:
     """
 
     def mended(shift: float) -> bool:
-        return inertia_defect(_shifted(inertia, shift)) <= 1e-3 * SLACK
+        return inertia_defect(shifted(inertia, shift)) <= 1e-3 * SLACK
 
     low, high = 0.0, 4.0 * float(np.abs(inertia).sum())
     if mended(low):
@@ -136,5 +137,5 @@ def _inertia_hint(inertia: Array) -> str:
     shift = smallest_shift(inertia)
     if shift is None:
         return "no shift of inertia across the joint can mend that; check the order xx, yy, zz and the signs"
-    point = f", added_inertia_kg_m2 = {TOKEN_INERTIA:g}" if flat(_shifted(inertia, shift)) else ""
+    point = f", added_inertia_kg_m2 = {TOKEN_INERTIA:g}" if flat(shifted(inertia, shift)) else ""
     return f"state [axes.correction] with inertia_shift_kg_m2 = {shift:.12g}, added_mass_kg = 0{point} and a reason"

@@ -14,13 +14,14 @@ The result holds no drives: such files have none. Forward and inverse kinematics
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import PurePath
 
 import numpy as np
 
 from runtime.frames import Array, frozen, inverse, pose, rotation_about, skew
-from runtime.robot.spec import Body, OpwParameters, inertia_defect
+from runtime.robot.corrections import flat
+from runtime.robot.spec import Body, OpwParameters, inertia_defect, joint_label
 from runtime.robot.xmlfile import Element
 from runtime.tomlfile import FileFault
 
@@ -39,7 +40,7 @@ class Hinge:
     """A revolute joint: unit ``axis`` (3,) and ``anchor`` (3,) m in its node's frame; what the file says of it.
 
     None is what the file leaves out. ``lower`` and ``upper`` rad, ``speed`` rad/s, ``effort`` N m, ``damping``
-    N m s/rad, ``friction`` N m, ``armature`` kg m2, all at the joint.
+    N m s/rad, ``friction`` N m, ``armature`` kg m2, all at the joint. ``in_degrees``: the file has degrees.
     """
 
     name: str
@@ -53,6 +54,7 @@ class Hinge:
     damping: float
     friction: float
     armature: float
+    in_degrees: bool
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -75,10 +77,12 @@ class Node:
 class ImportedAxis:
     """One axis: ``placement`` (4, 4) as in ``AxisSpec``, ``body`` in the axis frame, ``hinge`` as the file has it.
 
-    ``impossible`` says at its place why no body can be like that; None for one that can.
+    ``impossible`` says at its place why no body can be like that; None for one that can. ``link`` is the element that
+    turns with the joint.
     """
 
     name: str
+    link: Element
     placement: Array
     body: Body
     hinge: Hinge
@@ -87,7 +91,10 @@ class ImportedAxis:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ImportedArm:
-    """A serial arm of a URDF or MJCF file. ``lower``, ``upper`` (n,) rad; ``flange`` names its last frame."""
+    """A serial arm of a URDF or MJCF file. ``lower``, ``upper`` (n,) rad; ``flange`` names its last frame.
+
+    ``warnings`` are what is unlikely about it (``plausibility``).
+    """
 
     name: str
     path: str
@@ -97,6 +104,7 @@ class ImportedArm:
     lower: Array
     upper: Array
     opw: OpwParameters | None = None
+    warnings: tuple[FileFault, ...] = ()
 
     @property
     def n(self) -> int:
@@ -107,11 +115,6 @@ class ImportedArm:
     def title(self) -> str:
         """What to call it to people."""
         return f"{self.name} ({PurePath(self.path).name})"
-
-
-def joint_label(index: int, name: str) -> str:
-    """Return ``J2 shoulder_lift``: the number people use, from 1, and the name in the file."""
-    return f"J{index + 1} {name}"
 
 
 def rotation_z_to(axis: Array) -> Array:
@@ -178,7 +181,7 @@ def serial_chain(root: Node, path: str, name: str, flange: str | None) -> Import
             node.hinge.element.fail("RBL610", f"two joints are named {node.hinge.name!r}")
         seen.add(node.hinge.name)
         X_node_axis = pose(node.hinge.anchor, rotation_z_to(node.hinge.axis))
-        axes.append(_axis(node.hinge, X @ X_node_axis))
+        axes.append(_axis(node, node.hinge, X @ X_node_axis))
         X_axis_node = inverse(X_node_axis)
     if not FEWEST_AXES <= len(axes) <= MOST_AXES:
         root.element.fail(
@@ -201,10 +204,9 @@ def _limits(axes: list[ImportedAxis], side: str) -> Array:
     return frozen([np.nan if value is None else value for value in values])
 
 
-def _axis(hinge: Hinge, placement: Array) -> ImportedAxis:
-    return ImportedAxis(
-        name=hinge.name, placement=frozen(placement), body=combined([]), hinge=hinge, impossible=None
-    )  # fmt: skip
+def _axis(node: Node, hinge: Hinge, placement: Array) -> ImportedAxis:
+    return ImportedAxis(name=hinge.name, link=node.element, placement=frozen(placement), body=combined([]),
+                        hinge=hinge, impossible=None)  # fmt: skip
 
 
 def _with_body(axis: ImportedAxis, cluster: list[tuple[Array, Node]], index: int) -> ImportedAxis:
@@ -216,9 +218,9 @@ def _with_body(axis: ImportedAxis, cluster: list[tuple[Array, Node]], index: int
             impossible = impossible or impossible_inertia(node.element, node.body.inertia, repr(node.name))
     if not body.mass > 0.0:
         impossible = axis.hinge.element.fault("RBL606", f"{what} has no mass")
-    return ImportedAxis(
-        name=axis.name, placement=axis.placement, body=body, hinge=axis.hinge, impossible=impossible
-    )  # fmt: skip
+    elif impossible is None and flat(body.inertia):
+        impossible = axis.link.fault("RBL606", f"{what} has {body.mass:g} kg and no inertia about some axis")
+    return replace(axis, body=body, impossible=impossible)
 
 
 def _fixed(node: Node, X: Array) -> Iterator[tuple[Array, Node]]:

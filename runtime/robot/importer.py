@@ -6,22 +6,28 @@ text is checked here in full (``xmlfile``, ``urdf``, ``mjcf_import``, ``imported
 it: both get the ``RobotSpec``. Which of the two languages it is says the root element, not the file's name.
 """
 
+import math
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import NoReturn
 
 import numpy as np
 
-from runtime.frames import frozen
+from runtime.frames import Array, frozen
 from runtime.robot.closed_form import find_opw
-from runtime.robot.imported import ImportedArm, joint_label, serial_chain
+from runtime.robot.imported import ImportedArm, serial_chain
 from runtime.robot.loader import load_robot
 from runtime.robot.mjcf_import import read_mjcf
-from runtime.robot.sidecar import NO_OVERLAY, Overlay, complete, read_overlay, sidecar_path
-from runtime.robot.spec import RobotSpec
+from runtime.robot.plausibility import Turning, What, doubt_bodies, doubt_drives, doubt_turning, offsets, weight_moment
+from runtime.robot.sidecar import NO_OVERLAY, Overlay, complete, missing_in_template, read_overlay, sidecar_path
+from runtime.robot.spec import RobotSpec, joint_label
 from runtime.robot.urdf import read_urdf
 from runtime.robot.xmlfile import fault_at, parse_xml
-from runtime.tomlfile import Source, read_source
+from runtime.tomlfile import FileFault, Source, read_source
+
+UNIT_SLACK = 1e-3
+"""Rounding of the length of an axis."""
 
 MODEL_ENDINGS = (".urdf", ".xml")
 ROBOT_ENDINGS = (".toml", *MODEL_ENDINGS)
@@ -50,17 +56,21 @@ def load_arm(path: Path) -> RobotSpec:
 def read_arm(path: Path) -> ImportedArm:
     """Return the arm of a model file without its drives; ``FileFault`` RBL6xx, RBL608 when a joint has no range."""
     arm, sidecar = _with_sidecar(path)
-    _check(arm, NO_OVERLAY if sidecar is None else read_overlay(sidecar))
-    return arm
+    overlay = NO_OVERLAY if sidecar is None else read_overlay(sidecar)
+    _check(arm, overlay)
+    return _with_limits_doubted(arm, overlay)
 
 
 def read_model(path: Path, overlay: Overlay = NO_OVERLAY) -> ImportedArm:
     """Return what a model file alone says; ranges it leaves out are NaN, and bodies are not judged."""
-    return parse_model(read_source(path), overlay)
+    return _with_limits_doubted(parse_model(read_source(path), overlay), overlay)
 
 
 def parse_model(source: Source, overlay: Overlay = NO_OVERLAY) -> ImportedArm:
-    """Return the arm of the text of a model file; ``FileFault`` RBL6xx at the element that is wrong."""
+    """Return the arm of the text of a model file; ``FileFault`` RBL6xx at the element that is wrong.
+
+    Its limits are not doubted yet: a sidecar may state others.
+    """
     root = parse_xml(source)
     if root.tag == "robot":
         name, tree = read_urdf(root)
@@ -72,7 +82,55 @@ def parse_model(source: Source, overlay: Overlay = NO_OVERLAY) -> ImportedArm:
     ranges = [overlay.ranges.get(axis.name, (low, high)) for axis, low, high in
               zip(arm.axes, arm.lower, arm.upper, strict=True)]  # fmt: skip
     lower, upper = np.array(ranges).T
-    return replace(arm, lower=frozen(lower), upper=frozen(upper), opw=find_opw(arm.axes, arm.X_last_flange))
+    return replace(arm, lower=frozen(lower), upper=frozen(upper), opw=find_opw(arm.axes, arm.X_last_flange),
+                   warnings=(*_doubted_axes(arm), *_doubted_bodies(arm)))  # fmt: skip
+
+
+def _doubted_axes(arm: ImportedArm) -> Iterator[FileFault]:
+    """Yield the axes of a URDF that are no unit vectors, as its specification asks for (RBL628)."""
+    for index, axis in enumerate(arm.axes):
+        element = axis.hinge.element.one("axis")  # of an MJCF it is an attribute, and need not be one
+        if element is None:
+            continue
+        length = math.hypot(*element.numbers("xyz", 3))
+        if not abs(length - 1.0) <= UNIT_SLACK:
+            message = f"the axis of {joint_label(index, axis.name)} has length {length:g}: only its direction is used"
+            yield element.fault("RBL628", message, "an axis of a URDF is a unit vector")
+
+
+def _doubted_bodies(arm: ImportedArm) -> list[FileFault]:
+    labels = [joint_label(index, axis.name) for index, axis in enumerate(arm.axes)]
+    bodies = [axis.body if axis.impossible is None else None for axis in arm.axes]
+    return doubt_bodies(labels, bodies, _offsets(arm), lambda what, axis: (
+        arm.axes[axis].hinge.element if what == "length" else arm.axes[axis].link).fault)  # fmt: skip
+
+
+def _offsets(arm: ImportedArm) -> Array:
+    return offsets([axis.placement for axis in arm.axes], arm.X_last_flange)
+
+
+def _with_limits_doubted(arm: ImportedArm, overlay: Overlay) -> ImportedArm:
+    """Return the arm with what is unlikely about its ranges, and about speeds and torques that no sidecar states."""
+
+    def place(what: What, axis: int) -> Callable[[str, str, str], FileFault]:
+        name, joint = arm.axes[axis].name, arm.axes[axis].hinge.element
+        if what == "range" and name in overlay.tables:
+            table = overlay.tables[name]
+            return lambda code, message, hint: table.fault(code, message, hint, key="range_deg")
+        return (joint.one("limit") or joint).fault
+
+    joints = [
+        Turning(
+            label=joint_label(index, axis.name), lower=lower, upper=upper,
+            speed=math.nan if axis.hinge.speed is None else axis.hinge.speed,
+            torque=math.nan if axis.hinge.effort is None else axis.hinge.effort,
+            in_degrees=axis.hinge.in_degrees or axis.name in overlay.tables,
+        )
+        for index, (axis, lower, upper) in enumerate(zip(arm.axes, arm.lower.tolist(), arm.upper.tolist(), strict=True))
+    ]  # fmt: skip
+    weight = weight_moment([axis.body for axis in arm.axes], _offsets(arm))
+    doubts = (*doubt_turning(joints, place), *doubt_drives(joints, [math.nan] * arm.n, weight, place))
+    return replace(arm, warnings=(*arm.warnings, *doubts))
 
 
 def _with_sidecar(path: Path) -> tuple[ImportedArm, Source | None]:
@@ -97,16 +155,11 @@ def _check(arm: ImportedArm, overlay: Overlay) -> None:
 
 
 def _refuse_without_sidecar(arm: ImportedArm, path: Path) -> NoReturn:
-    gaps = []
-    for index, axis in enumerate(arm.axes):
-        hinge = axis.hinge
-        given = {"range": None if hinge.upper is None else hinge.lower, "speed": hinge.speed, "torque": hinge.effort}
-        missing = [name for name, value in given.items() if value is None]
-        gaps.append(f"{joint_label(index, axis.name)}: {', '.join([*missing, 'acceleration', 'motor', 'servo'])}")
     beside = sidecar_path(path).name
     place = arm.axes[0].hinge.element
     raise fault_at(
         place.source, place.line, place.column, "RBL608",
-        f"no drives, path limits and rated payload: there is no {beside}; missing for {'; '.join(gaps)}",
+        f"no drives, path limits and rated payload: there is no {beside}; missing for "
+        f"{missing_in_template(arm)}",
         f"'robolang robot import {path.name}' writes {beside}; fill in what it marks MISSING",
     )  # fmt: skip

@@ -14,8 +14,10 @@ of them in it. Of those inside the range the one nearest to a reference is taken
 middle of the range. Where none is inside, the one nearest to the middle is returned, and the margin is negative.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,14 +32,14 @@ from runtime.robot.spec import OpwParameters
 LIMIT_ROUNDING = 1e-9
 """A joint this far outside its range, rad, is not turned by a whole turn to bring it in."""
 
+REDUNDANT_ABOVE = 6
+"""With more axes an arm meets a pose in infinitely many ways."""
+
 SAME_ANGLES = 1e-9
 """Two branches whose joints differ by less, rad, are one solution (they merge at a singularity)."""
 
-SAME_NUMERIC = 1e-6
-"""The same for solutions of Newton's method, rad: near a singularity their digits are fewer."""
-
-MOST_NUMERIC = 8
-"""As many solutions of Newton's method are listed, at most."""
+MOST_NUMERIC, MOST_REDUNDANT = 16, 8
+"""As many solutions of Newton's method are listed, at most, of arms of up to 6 axes, which have no more, and of 7."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -122,6 +124,24 @@ class Kinematics:
             found.append(Solution(q=frozen(q), branch=branch, limit_margin=float(self.limit_margin(q))))
         return found
 
+    def other_turns(self, solution: Solution) -> Iterator[Solution]:
+        """Yield all other joint angles inside the ranges that differ from a solution there by whole turns of joints."""
+        for turns in product(*(sorted(counts, key=abs) for counts in self._turns(solution))):
+            if any(turns):
+                q = solution.q + TURN * np.array(turns)
+                yield Solution(q=frozen(q), branch=solution.branch, limit_margin=float(self.limit_margin(q)))
+
+    def turn_count(self, solution: Solution) -> int:
+        """Return how many ``other_turns`` there are."""
+        return math.prod(map(len, self._turns(solution))) - 1
+
+    def _turns(self, solution: Solution) -> list[range]:
+        """Return by how many whole turns each joint can be turned inside its range; 0 for a solution outside."""
+        if not solution.limit_margin >= -LIMIT_ROUNDING:
+            return [range(1)] * self.n
+        fewest, most = self._fewest_and_most(solution.q)
+        return [range(int(low), int(high) + 1) for low, high in zip(fewest, most, strict=True)]
+
     def branch_of(self, q: ArrayLike) -> Branch:
         """Return the branch of one joint vector (n,) rad; ``NUMERIC`` for an arm without a closed form."""
         if self._opw is None:
@@ -143,21 +163,22 @@ class Kinematics:
         return self._middle if near is None else np.asarray(near, dtype=np.float64)
 
     def _numeric_solutions(self, near: Array, X_base_flange: Array) -> list[Solution]:
-        found: list[Solution] = []
-        for q in self.newton.search(np.asarray(X_base_flange), near, self._lower, self._upper):
-            q = self._into_range(q, near)
-            if all(np.max(np.abs(opw.wrapped(q - s.q))) >= SAME_NUMERIC for s in found):
-                found.append(Solution(q=frozen(q), branch=NUMERIC, limit_margin=float(self.limit_margin(q))))
+        rows = self.newton.search(np.asarray(X_base_flange), near, self._lower, self._upper)
+        turned = (self._into_range(q, near) for q in rows)
+        found = [Solution(q=frozen(q), branch=NUMERIC, limit_margin=float(self.limit_margin(q))) for q in turned]
         found.sort(key=lambda solution: solution.limit_margin < 0.0)  # in range first, otherwise as they were found
-        return found[:MOST_NUMERIC]
+        return found[: MOST_REDUNDANT if self.n > REDUNDANT_ABOVE else MOST_NUMERIC]
 
     def _into_range(self, q: Array, near: ArrayLike | None) -> Array:
         wanted = self.nearest_turns(q, self._middle if near is None else near)
-        # whole turns from the wanted angle that still end inside the range
-        fewest = np.ceil((self._lower - LIMIT_ROUNDING - wanted) / TURN)
-        most = np.floor((self._upper + LIMIT_ROUNDING - wanted) / TURN)
+        fewest, most = self._fewest_and_most(wanted)
         inside = wanted + TURN * np.clip(0.0, fewest, most)
         return np.where(fewest <= most, inside, self.nearest_turns(q, self._middle))
+
+    def _fewest_and_most(self, q: Array) -> tuple[Array, Array]:
+        """Return the whole turns (..., n) from q on that still end inside the range."""
+        fewest = np.ceil((self._lower - LIMIT_ROUNDING - q) / TURN)
+        return fewest, np.floor((self._upper + LIMIT_ROUNDING - q) / TURN)
 
     def _axis_frames(self, q: Array) -> Iterator[Array]:
         """Yield the frame of each axis, turned, in the base frame (..., 4, 4)."""

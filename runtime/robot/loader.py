@@ -7,6 +7,7 @@ smallest one that works is named in the message (``corrections``).
 """
 
 import math
+from collections.abc import Sequence
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -16,6 +17,7 @@ import numpy as np
 from runtime.frames import Array, frozen
 from runtime.robot.corrections import check_bodies, correct
 from runtime.robot.geometry import Geometry, read_form, read_geometry
+from runtime.robot.plausibility import doubt_bodies, doubt_limits_and_drives, in_tables, offsets
 from runtime.robot.spec import (
     AxisSpec,
     Bandwidths,
@@ -26,8 +28,9 @@ from runtime.robot.spec import (
     OpwParameters,
     PathLimits,
     RobotSpec,
+    joint_label,
 )
-from runtime.tomlfile import Source, Table, load_table, read_source
+from runtime.tomlfile import FileFault, Source, Table, load_table, read_source
 from runtime.units import DEG, MM
 
 SCHEMA = 1
@@ -36,6 +39,9 @@ STIFFEST = 1e8
 
 FASTEST_SPRING = 1e4
 """A rotor that swings faster against its gear, rad/s, needs physics steps below 25 us: such a gear is rigid."""
+
+WIDEST = 3600.0 * DEG
+"""No joint turns further than ten turns to a side, rad."""
 
 FASTEST_LOOP = 8000.0
 """No loop is stable beyond this at the shortest servo period: bandwidth times 0.25 ms is 2, 1/s (see ``project``)."""
@@ -88,10 +94,24 @@ def parse_robot(source: Source) -> RobotSpec:
         opw=opw,
         corrections=corrections,
         published=published,
+        warnings=_doubts(axes, published, corrections, geometry, axis_tables),
     )
     table.done()
     _check_opw(spec, table)
     return spec
+
+
+def _doubts(axes: Sequence[AxisSpec], published: Sequence[Body], corrections: Sequence[Correction], geometry: Geometry,
+            tables: Sequence[Table]) -> tuple[FileFault, ...]:  # fmt: skip
+    """Return what is unlikely about a robot file; a corrected body is not judged."""
+    corrected = {item.axis for item in corrections}
+    labels = [joint_label(k, axis.name) for k, axis in enumerate(axes)]
+    bodies = [None if k in corrected else body for k, body in enumerate(published)]
+    lengths = offsets(geometry.placements, geometry.X_last_flange)
+    return (
+        *doubt_bodies(labels, bodies, lengths, in_tables(tables)),
+        *doubt_limits_and_drives(axes, geometry.X_last_flange, tables),
+    )
 
 
 def texts(table: Table, key: str) -> tuple[str, ...]:
@@ -223,7 +243,7 @@ def _check_spring(table: Table, motor: Motor) -> None:
 
 def limits(table: Table) -> Limits:
     """Read the range, speed, acceleration and torque of an axis in deg and N m; ``FileFault`` RBL60x."""
-    lower, upper = table.numbers("range_deg", 2, low=-3600.0, high=3600.0)
+    lower, upper = table.numbers("range_deg", 2, low=-WIDEST / DEG, high=WIDEST / DEG)
     if not lower < upper:
         table.fail("RBL607", f"'{table.name('range_deg')}' goes from {lower:g} to {upper:g}", key="range_deg")
     return Limits(

@@ -18,7 +18,7 @@ from runtime.frames import Array, frozen, pose, rotation_about
 from runtime.robot.imported import Hinge, Node, rotation_z_to
 from runtime.robot.spec import Body
 from runtime.robot.urdf import unit
-from runtime.robot.xmlfile import Element
+from runtime.robot.xmlfile import HEAVIEST_LINK, Element
 from runtime.units import DEG, GRAVITY
 
 _TOP = frozenset(
@@ -198,7 +198,7 @@ def _hinge(joint: Element, context: _Context, names: set[str]) -> Hinge:
         name=name,
         element=joint,
         axis=unit(joint, "axis") if "axis" in joint.attributes else frozen([0.0, 0.0, 1.0]),
-        anchor=frozen(joint.numbers("pos", 3, (0.0,) * 3)),
+        anchor=frozen(joint.point("pos")),
         lower=lower,
         upper=upper,
         speed=None,
@@ -206,6 +206,7 @@ def _hinge(joint: Element, context: _Context, names: set[str]) -> Hinge:
         damping=joint.number("damping", 0.0, low=0.0),
         friction=joint.number("frictionloss", 0.0, low=0.0),
         armature=joint.number("armature", 0.0, low=0.0),
+        in_degrees=context.angle != 1.0,
     )
 
 
@@ -240,12 +241,12 @@ def _body(body: Element, context: _Context, childclass: str, name: str) -> Body 
         I_own = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     else:
         I_own = np.diag(inertial.numbers("diaginertia", 3))
-    mass = inertial.number("mass", low=0.0)
+    mass = inertial.number("mass", low=0.0, high=HEAVIEST_LINK)
     return Body(mass=mass, cog=frozen(X[:3, 3]), inertia=frozen(R @ I_own @ R.T))
 
 
 def _pose(element: Element, context: _Context) -> Array:
-    return pose(element.numbers("pos", 3, (0.0,) * 3), _rotation(element, context))
+    return pose(element.point("pos"), _rotation(element, context))
 
 
 def _rotation(element: Element, context: _Context) -> Array:

@@ -15,7 +15,8 @@ end in an error that is not zero, and the answer is NaN, as it is for any pose o
 Beside a singularity convergence is linear, and a pose at its very edge may be given up (NaN) though it can be met.
 """
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Sequence
 
 import numpy as np
 import pinocchio as pin
@@ -30,7 +31,11 @@ LARGEST_STEP = 0.5
 """No joint turns further in one step, rad: beyond, the linear model says nothing."""
 
 STEPS = 100
-SEEDS = 40
+SEEDS, MOST_SEEDS = 40, 400
+"""Fewest and most starts of a search; between them it ends when it is likely to be complete."""
+SAME = 1e-6
+"""Solutions of a search whose joints differ by less, rad and whole turns apart, are one: near a singularity their
+digits are fewer."""
 _WORST_DAMPING = 1e8
 _DETERMINED = 6
 
@@ -83,18 +88,36 @@ class NewtonSolver:
                 worse *= 10.0
         return np.full(self.n, np.nan)
 
-    def search(self, X_base_flange: Array, near: Array, lower: Array, upper: Array) -> Iterator[Array]:
-        """Yield solutions (n,) of one pose from several starts: ``near``, mid-range, and points of the ranges.
+    def search(self, X_base_flange: Array, near: Array, lower: Array, upper: Array) -> list[Array]:
+        """Return solutions (n,) of one pose from several starts: ``near``, mid-range, and points of the ranges.
 
-        The starts are the same in every call. Solutions may come more than once and outside the ranges.
+        Whole turns apart they are the same. They may be outside the ranges, and some may be missing: of an arm of up
+        to 6 axes the search goes on while one was met from one start only, since then others are likely not to be met
+        yet (I. J. Good, The population frequencies of species, Biometrika 40, 1953), or while those of 6 axes are odd
+        in number, which they are nowhere but at a singularity. The starts are the same in every call.
         """
-        generator = np.random.default_rng(1992)
-        starts = [near, 0.5 * (lower + upper)]
-        starts += list(lower + (upper - lower) * generator.random((SEEDS, self.n)))
-        for start in starts:
+        middle, half = 0.5 * (lower + upper), np.minimum(0.5 * (upper - lower), math.pi)
+        random = np.random.default_rng(1992)
+        found: list[Array] = []
+        met: list[int] = []
+        for number in range(MOST_SEEDS + 2):
+            if number > SEEDS + 1 and self._settled(met):
+                break
+            start = (near, middle)[number] if number < 2 else middle + half * random.uniform(-1.0, 1.0, self.n)
             q = self.solve(X_base_flange, start)
-            if np.isfinite(q).all():
-                yield q
+            if not np.isfinite(q).all():
+                continue
+            known = next((k for k, other in enumerate(found) if _apart(q, other) < SAME), None)
+            if known is None:
+                found.append(q)
+                met.append(1)
+            else:
+                met[known] += 1
+        return found
+
+    def _settled(self, met: list[int]) -> bool:
+        """Return whether a search that has met each of its solutions so often is likely to be complete."""
+        return self.n > _DETERMINED or (1 not in met and not (self.n == _DETERMINED and len(met) % 2))
 
     def point(self, q: Array, offset: Array) -> tuple[Array, Array]:
         """Return where a point ``offset`` (3,) m of the flange frame is, (3,) m, and its Jacobian (3, n), base frame.
@@ -128,3 +151,8 @@ class NewtonSolver:
         moved = np.array(J)
         moved[:3] += np.cross(J[3:], p, axis=0)
         return moved
+
+
+def _apart(q: Array, other: Array) -> float:
+    """Return how far two joint vectors (n,) are apart but for whole turns, rad."""
+    return float(np.abs(np.remainder(q - other + math.pi, 2.0 * math.pi) - math.pi).max())

@@ -6,12 +6,15 @@ template writes what the model file gives and a line marked MISSING, commented o
 is refused until a person has filled it in (RBL608, every gap listed), because drive data are never guessed.
 """
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from runtime.robot import corrections as rules
 from runtime.robot import loader
-from runtime.robot.imported import ImportedArm, ImportedAxis, joint_label
+from runtime.robot.gaps import listed, whole
+from runtime.robot.imported import ImportedArm, ImportedAxis
+from runtime.robot.plausibility import doubt_limits_and_drives
 from runtime.robot.spec import AxisSpec, Correction, RobotSpec
 from runtime.tomlfile import Source, Table, load_table
 from runtime.units import DEG
@@ -59,31 +62,37 @@ def sidecar_path(model: Path) -> Path:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Overlay:
-    """What the geometry of an arm takes from its sidecar: flange, ranges (rad) by joint, joints with a correction."""
+    """What the geometry of an arm takes from its sidecar: flange, ranges (rad) by joint, joints with a correction.
+
+    ``tables`` are where the ranges stand, by joint.
+    """
 
     flange: str | None
     ranges: dict[str, tuple[float, float]]
+    tables: dict[str, Table]
     corrected: frozenset[str]
 
 
-NO_OVERLAY = Overlay(flange=None, ranges={}, corrected=frozenset())
+NO_OVERLAY = Overlay(flange=None, ranges={}, tables={}, corrected=frozenset())
 
 
 def read_overlay(source: Source) -> Overlay:
     """Return what a sidecar, filled in or not, says of the geometry; ``FileFault`` RBL6xx."""
     table = load_table(source)
-    ranges, corrected = {}, set()
+    ranges: dict[str, tuple[float, float]] = {}
+    tables: dict[str, Table] = {}
+    corrected: set[str] = set()
     for axis in table.tables("axes", required=False):
         name = axis.text("name")
         if "range_deg" in axis:
-            lower, upper = axis.numbers("range_deg", 2, low=-3600.0, high=3600.0)
+            lower, upper = axis.numbers("range_deg", 2, low=-loader.WIDEST / DEG, high=loader.WIDEST / DEG)
             if not lower < upper:
                 axis.fail("RBL607", f"'{axis.name('range_deg')}' goes from {lower:g} to {upper:g}", key="range_deg")
-            ranges[name] = (lower * DEG, upper * DEG)
+            ranges[name], tables[name] = (lower * DEG, upper * DEG), axis
         if "correction" in axis:
             corrected.add(name)
     flange = table.text("flange") if "flange" in table else None
-    return Overlay(flange=flange, ranges=ranges, corrected=frozenset(corrected))
+    return Overlay(flange=flange, ranges=ranges, tables=tables, corrected=frozenset(corrected))
 
 
 def complete(arm: ImportedArm, source: Source) -> RobotSpec:
@@ -109,6 +118,7 @@ def complete(arm: ImportedArm, source: Source) -> RobotSpec:
         opw=arm.opw,
         corrections=corrections,
         published=tuple(axis.body for axis in arm.axes),
+        warnings=(*arm.warnings, *doubt_limits_and_drives(built, arm.X_last_flange, axes)),
     )
     table.text("flange", arm.flange)
     table.done()
@@ -126,19 +136,33 @@ def _check_names(table: Table, axes: list[Table], arm: ImportedArm) -> None:
 def _check_complete(table: Table, axes: list[Table]) -> None:
     """Name every key that a person has still to fill in, in one message."""
     path = table.table("path") if "path" in table else None
-    gaps = [PAYLOAD_KEY] if PAYLOAD_KEY not in table else []
-    gaps += [f"path.{key}" for key in PATH_KEYS if path is None or key not in path]
-    where = table
-    for index, axis in enumerate(axes):
-        missing = [key for key in LIMIT_KEYS if key not in axis]
+    own = [PAYLOAD_KEY] if PAYLOAD_KEY not in table else []
+    own += [f"path.{key}" for key in PATH_KEYS if path is None or key not in path]
+    missing: list[set[str]] = []
+    for axis in axes:
+        here = {key for key in LIMIT_KEYS if key not in axis}
         for group, keys in _GROUPS.items():
             inner = axis.table(group) if group in axis else None
-            missing += [f"{group}.{key}" for key in keys if inner is None or key not in inner]
-        if missing:
-            where = axis if not gaps else where
-            gaps.append(f"{joint_label(index, axis.text('name'))}: {', '.join(missing)}")
-    if gaps:
-        where.fail("RBL608", f"missing in this file: {'; '.join(gaps)}", "fill in the lines marked MISSING")
+            here |= {f"{group}.{key}" for key in keys if inner is None or key not in inner}
+        missing.append(here)
+    if own or any(missing):
+        where = table if own else next(axis for axis, here in zip(axes, missing, strict=True) if here)
+        gaps = [*whole(own, {"path": [f"path.{key}" for key in PATH_KEYS]}), lacking(missing)]
+        where.fail("RBL608", f"missing in this file: {'; '.join(gap for gap in gaps if gap)}",
+                   "fill in the lines marked MISSING")  # fmt: skip
+
+
+def lacking(missing: Sequence[Collection[str]]) -> str:
+    """Return in words what each axis has not of the keys of a sidecar."""
+    inner = {f"axes.{group}": [f"{group}.{key}" for key in keys] for group, keys in _GROUPS.items()}
+    keys = [*LIMIT_KEYS, *(key for keys in inner.values() for key in keys)]
+    return listed({key: [k for k, here in enumerate(missing) if key in here] for key in keys}, len(missing), inner)
+
+
+def missing_in_template(arm: ImportedArm) -> str:
+    """Return in words what the template of an arm leaves to fill in for its axes."""
+    inner = [f"{group}.{key}" for group, keys in _GROUPS.items() for key in keys]
+    return lacking([{*inner, *(key for key in LIMIT_KEYS if key not in _given_limits(axis))} for axis in arm.axes])
 
 
 def _axes(arm: ImportedArm, tables: list[Table]) -> tuple[tuple[AxisSpec, ...], tuple[Correction, ...]]:
@@ -199,17 +223,24 @@ def _gap(key: str, unit: str) -> str:
 
 
 def _limit_lines(axis: ImportedAxis) -> list[str]:
+    values = _given_limits(axis)
+    return [
+        f"{key} = {values[key]}  # {unit}" if key in values else _gap(key, unit) for key, unit in LIMIT_KEYS.items()
+    ]
+
+
+def _given_limits(axis: ImportedAxis) -> dict[str, str]:
+    """Return what the model file gives of the limits, by key, as the sidecar writes it."""
     hinge = axis.hinge
     values: dict[str, str] = {}
-    if hinge.lower is not None and hinge.upper is not None:
+    widest = max(abs(hinge.lower or 0.0), abs(hinge.upper or 0.0))
+    if hinge.lower is not None and hinge.upper is not None and widest <= loader.WIDEST:  # else it is not read back
         values["range_deg"] = f"[{_degrees(hinge.lower)}, {_degrees(hinge.upper)}]"
     if hinge.speed is not None:
         values["max_speed_deg_s"] = _degrees(hinge.speed)
     if hinge.effort is not None:
         values["max_torque_nm"] = repr(hinge.effort)
-    return [
-        f"{key} = {values[key]}  # {unit}" if key in values else _gap(key, unit) for key, unit in LIMIT_KEYS.items()
-    ]
+    return values
 
 
 def _degrees(angle: float) -> str:
@@ -230,11 +261,14 @@ def _motor_notes(axis: ImportedAxis) -> list[str]:
 
 def _correction_lines(axis: ImportedAxis) -> list[str]:
     assert axis.impossible is not None
+    shift = rules.smallest_shift(axis.body.inertia) or 0.0
+    shifted = rules.shifted(axis.body.inertia, shift)
     return [
         f"# {_one_line(axis.impossible.message)}. Correct the model file, or state what to change:",
         "# [axes.correction]",
-        f"# inertia_shift_kg_m2 = {rules.smallest_shift(axis.body.inertia) or 0.0:.12g}",
+        f"# inertia_shift_kg_m2 = {shift:.12g}",
         f"# added_mass_kg = {rules.TOKEN_MASS if not axis.body.mass > 0.0 else 0.0:g}",
+        *([f"# added_inertia_kg_m2 = {rules.TOKEN_INERTIA:g}"] if rules.flat(shifted) else []),
         '# reason = "..."',
     ]
 

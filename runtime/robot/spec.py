@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from runtime.frames import Array
+from runtime.tomlfile import FileFault
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -159,7 +160,8 @@ class Correction:
 class RobotSpec:
     """A robot of ``n`` axes. ``X_last_flange`` (4, 4) is the flange in the frame of the last axis.
 
-    ``published`` holds the bodies as the source prints them, before ``corrections``.
+    ``published`` holds the bodies as the source prints them, before ``corrections``. ``warnings`` are what is unlikely
+    about its files, each at its place (``plausibility``).
     """
 
     name: str
@@ -173,6 +175,7 @@ class RobotSpec:
     corrections: tuple[Correction, ...]
     published: tuple[Body, ...]
     notes: tuple[str, ...]
+    warnings: tuple[FileFault, ...] = ()
 
     @property
     def n(self) -> int:
@@ -225,3 +228,8 @@ def shift_between_links(axis_spec: AxisSpec, before: Body, shift: float) -> tupl
         Body(mass=axis_spec.body.mass, cog=axis_spec.body.cog, inertia=own),
         Body(mass=before.mass, cog=before.cog, inertia=other),
     )
+
+
+def joint_label(index: int, name: str) -> str:
+    """Return ``J2 shoulder_lift``: the number people use, from 1, and the name in the file."""
+    return f"J{index + 1} {name}"

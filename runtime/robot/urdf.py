@@ -15,7 +15,7 @@ import numpy as np
 from runtime.frames import Array, frozen, pose, rotation_from_rpy
 from runtime.robot.imported import Hinge, Node
 from runtime.robot.spec import Body
-from runtime.robot.xmlfile import Element
+from runtime.robot.xmlfile import HEAVIEST_LINK, Element
 
 _IGNORED = ("gazebo", "transmission", "material", "sensor", "ros2_control")
 _TURNING = ("revolute", "continuous")
@@ -119,6 +119,7 @@ def _hinge(joint: Element, ranged: bool) -> Hinge:
         damping=dynamics.number("damping", 0.0, low=0.0) if dynamics is not None else 0.0,
         friction=dynamics.number("friction", 0.0, low=0.0) if dynamics is not None else 0.0,
         armature=0.0,
+        in_degrees=False,
     )
 
 
@@ -135,7 +136,7 @@ def _origin(element: Element) -> Array:
     origin = element.one("origin")
     if origin is None:
         return np.eye(4)
-    return pose(origin.numbers("xyz", 3, (0.0,) * 3), rotation_from_rpy(origin.numbers("rpy", 3, (0.0,) * 3)))
+    return pose(origin.point("xyz"), rotation_from_rpy(origin.numbers("rpy", 3, (0.0,) * 3)))
 
 
 def _body(link: Element) -> Body | None:
@@ -149,4 +150,5 @@ def _body(link: Element) -> Body | None:
     X = _origin(inertial)
     R = X[:3, :3]
     I_own = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    return Body(mass=mass.number("value", low=0.0), cog=frozen(X[:3, 3]), inertia=frozen(R @ I_own @ R.T))
+    kg = mass.number("value", low=0.0, high=HEAVIEST_LINK)
+    return Body(mass=kg, cog=frozen(X[:3, 3]), inertia=frozen(R @ I_own @ R.T))

@@ -16,10 +16,15 @@ from typing import NoReturn
 from xml.parsers import expat
 
 import runtime.robot.codes  # noqa: F401 - registers what is raised here
+from runtime.numerals import number_in, why_none
 from runtime.tomlfile import MAX_ABS, FileFault, Source
 
 MAX_DEPTH = 100
 MAX_ELEMENTS = 50_000
+HEAVIEST_LINK = 10_000.0
+"""Heaviest link, kg."""
+FARTHEST = 10.0
+"""No part of an arm is further from the one before it, m, as in robot files in TOML."""
 
 _TEXTS = frozenset(
     [
@@ -53,6 +58,9 @@ _TEXTS = frozenset(
     ]
 )
 """Attributes whose text is a name even where it looks like a number."""
+
+_SPACE = re.compile(r"[ \t\r\n]+")
+"""What separates numbers in XML; Python's ``split`` also takes spaces of Unicode."""
 
 _FILES = frozenset(["file", "filename", "meshdir", "texturedir", "assetdir"])
 
@@ -108,25 +116,37 @@ class Element:
             return default
         return parse_numbers(self, key, self.text(key), count)
 
-    def number(self, key: str, default: float | None = None, *, low: float = -MAX_ABS) -> float:
-        """Return one finite number of at least ``low``; RBL608, RBL613, RBL604 or RBL605."""
+    def point(self, key: str) -> tuple[float, ...]:
+        """Return a point (3,) m, the origin when it is left out; RBL605 for one further than ``FARTHEST``."""
+        values = self.numbers(key, 3, (0.0,) * 3)
+        for value in values:
+            if not abs(value) <= FARTHEST:
+                self.fail("RBL605", f"'{key}' of <{self.tag}> has {value:g} m and must be within {FARTHEST:g} m: it "
+                          "looks like mm", f"lengths are in m; write {value / 1e3:g} for {value:g} mm")  # fmt: skip
+        return values
+
+    def number(self, key: str, default: float | None = None, *, low: float = -MAX_ABS,
+               high: float = MAX_ABS) -> float:  # fmt: skip
+        """Return one finite number in ``[low, high]``; RBL608, RBL613, RBL604 or RBL605."""
         value = self.numbers(key, 1, None if default is None else (default,))[0]
         if not value >= low:
             self.fail("RBL605", f"'{key}' of <{self.tag}> is {value:g} and must be {low:g} or more")
+        if not value <= high:
+            self.fail("RBL605", f"'{key}' of <{self.tag}> is {value:g} and must be {high:g} or less")
         return value
 
 
 def parse_numbers(element: Element, key: str, text: str, count: int) -> tuple[float, ...]:
     """Return ``count`` finite numbers of ``text``; ``FileFault`` at the element."""
-    parts = text.split()
+    parts = _parts(text)
     if len(parts) != count:
         wanted = "one number" if count == 1 else f"{count} numbers"
         element.fail("RBL613", f"'{key}' of <{element.tag}> must be {wanted}, not {_shown(text)}")
     values = []
     for part in parts:
-        value = _number(part)
+        value = number_in(part)
         if value is None:
-            element.fail("RBL613", f"'{key}' of <{element.tag}> is {_shown(text)}, not a number")
+            element.fail("RBL613", f"'{key}' of <{element.tag}> is {_shown(text)}, not a number{why_none(part)}")
         if not abs(value) <= MAX_ABS:
             element.fail("RBL604", f"'{key}' of <{element.tag}> is {_shown(part)}, not a finite number")
         values.append(value)
@@ -201,7 +221,7 @@ def _check(element: Element) -> None:
 
 
 def _check_finite(element: Element, key: str, text: str) -> None:
-    values = [_number(part) for part in text.split()]
+    values = [number_in(part) for part in _parts(text)]
     if None in values:
         return  # a text; whoever wants a number there refuses it
     for value in values:
@@ -217,13 +237,8 @@ def check_path(element: Element, key: str, text: str) -> None:
         element.fail("RBL602", f"'{key}' of <{element.tag}> is {_shown(text)}, not a path inside the folder")
 
 
-def _number(text: str) -> float | None:
-    if "_" in text:  # Python reads 1_000, no other program does
-        return None
-    try:
-        return float(text)
-    except ValueError:
-        return None
+def _parts(text: str) -> list[str]:
+    return [part for part in _SPACE.split(text) if part]
 
 
 def _shown(text: str) -> str:

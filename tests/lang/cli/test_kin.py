@@ -1,4 +1,5 @@
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -7,7 +8,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from robolang.cli.kin import app
+from robolang.cli.kin import MOST_TURNS, app
 from robolang.cli.values import OptionValueError, numbers
 from runtime.frames import pose_from_xyzrpy, xyzrpy_from_pose
 from runtime.robot.kinematics import Kinematics
@@ -84,7 +85,7 @@ def test_ik_lists_every_branch_by_margin_and_each_leads_back():
 
 def test_out_of_reach_is_exit_code_1_with_an_empty_list():
     result = run("ik", "--robot", "puma560", "--pose", "2000,0,500,0,0,0", "--json", exit_code=1)
-    assert json.loads(result.stdout) == {"solutions": []}
+    assert json.loads(result.stdout) == {"solutions": [], "complete": True, "not_listed": 0}
     assert "RBL410 out-of-reach" in result.stderr
     result = run("ik", "--robot", "puma560", "--pose", "2000,0,500,0,0,0", exit_code=1)
     assert result.stdout == ""
@@ -98,6 +99,29 @@ def test_the_tables_fit_80_columns_uncut_and_name_their_units():
     assert max(map(len, table.splitlines())) <= 80
     table = run("fk", "--robot", "puma560", "--joints", "0,45,180,0,45,0").stdout
     assert all(word in table for word in ("596.303", "-150.050", "mm", "deg"))
+
+
+def test_every_turn_of_a_pose_is_listed_and_more_are_counted(tmp_path):
+    wide = re.sub(r"range_deg = .*", "range_deg = [-1080, 1080]", (LIBRARY / "puma560.toml").read_text())
+    (tmp_path / "wide.toml").write_text(wide)
+    pose = ",".join(map(repr, fk()))
+    result = run("ik", "--robot", tmp_path / "wide.toml", "--pose", pose, "--json")
+    found = json.loads(result.stdout)
+    turns = [joints for solution in found["solutions"] for joints in solution["turns_deg"]]
+    assert len(turns) == MOST_TURNS + len(found["solutions"])
+    assert len(turns) + found["not_listed"] == 8 * 6**6  # of each joint six turns, but where one is at a multiple
+    assert len({tuple(np.round(joints, 6)) for joints in turns}) == len(turns)
+    assert np.abs(turns).max() <= 1080.0
+    assert "RBL627" in result.stderr
+
+
+def test_a_numeric_search_says_that_solutions_may_be_missing():
+    target = json.loads(run("fk", "--robot", SEVEN, "--joints", "0,30,0,60,0,40,0", "--json").stdout)["pose_mm_deg"]
+    pose = ",".join(map(repr, target))
+    assert json.loads(run("ik", "--robot", SEVEN, "--pose", pose, "--json").stdout)["complete"] is False
+    assert "may be missing" in run("ik", "--robot", SEVEN, "--pose", pose).stdout
+    assert "numeric" in run("ik", "--robot", SEVEN, "--pose", "3000,0,0,0,0,0", exit_code=1).stderr
+    assert "may be missing" not in run("ik", "--robot", "puma560", "--pose", ",".join(map(repr, fk()))).stdout
 
 
 def test_a_robot_file_is_a_robot(tmp_path):

@@ -296,8 +296,10 @@ def test_without_a_sidecar_every_gap_is_named(tmp_path):
     with pytest.raises(FileFault) as caught:
         load_file(path)
     assert caught.value.code == "RBL608"
-    assert "J6 joint_6: torque, acceleration, motor" in caught.value.message
-    assert "J5 joint_5: acceleration, motor" in caught.value.message
+    message = caught.value.message
+    assert "J6: max_torque_nm" in message
+    assert "every axis: max_acceleration_deg_s2, all of [axes.motor], all of [axes.servo]" in message
+    assert len(message) < 300
     assert "robolang robot import seven.urdf" in caught.value.hint
 
 
@@ -307,7 +309,7 @@ def test_a_template_is_refused_until_each_gap_is_filled(tmp_path):
     text = template(read_model(path))
     sidecar.write_text(text)
     assert read_arm(path).n == 7  # kinematics needs no drives
-    with pytest.raises(FileFault, match=r"RBL608 .*rated_payload_kg; path.default_speed_mm_s.*J7 joint_7: max_acc"):
+    with pytest.raises(FileFault, match=r"RBL608 .*rated_payload_kg; all of \[path\].*every axis: max_acc"):
         load_arm(path)
     sidecar.write_text(fill(text))
     spec = load_arm(path)

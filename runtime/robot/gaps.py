@@ -1,0 +1,41 @@
+"""What a sidecar still lacks, in a line that people can read: keys that the same axes lack are named together.
+
+A template of seven axes lacks about a hundred values; listed axis by axis they were a line of 2,400 characters.
+"""
+
+from collections.abc import Mapping, Sequence
+
+
+def listed(lacking: Mapping[str, Sequence[int]], n: int, tables: Mapping[str, Sequence[str]]) -> str:
+    """Return ``every axis: max_acceleration_deg_s2, all of [axes.motor]; J6: max_torque_nm``.
+
+    ``lacking`` has the axes (0-based, of ``n``) by key, ``tables`` the keys of each table by its name: where the same
+    axes lack all of them, the table is named instead.
+    """
+    by_axes: dict[tuple[int, ...], list[str]] = {}
+    for key, axes in lacking.items():
+        if axes:
+            by_axes.setdefault(tuple(axes), []).append(key)
+    return "; ".join(f"{_axes(axes, n)}: {', '.join(whole(keys, tables))}" for axes, keys in by_axes.items())
+
+
+def whole(keys: Sequence[str], tables: Mapping[str, Sequence[str]]) -> list[str]:
+    """Return keys with those of each table that is missing as a whole in one entry."""
+    left = list(keys)
+    for name, inside in tables.items():
+        if inside and set(inside) <= set(left):
+            left[left.index(inside[0])] = f"all of [{name}]"
+            left = [key for key in left if key not in inside]
+    return left
+
+
+def _axes(axes: Sequence[int], n: int) -> str:
+    if len(axes) == n:
+        return "every axis"
+    runs: list[list[int]] = []
+    for axis in axes:
+        if runs and axis == runs[-1][-1] + 1:
+            runs[-1].append(axis)
+        else:
+            runs.append([axis])
+    return ", ".join(f"J{run[0] + 1}" if len(run) == 1 else f"J{run[0] + 1} to J{run[-1] + 1}" for run in runs)
