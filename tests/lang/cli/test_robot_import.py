@@ -83,7 +83,7 @@ def test_a_run_without_drives_is_refused_with_what_is_missing(seven):
     program.write_text("HAND ON\n")
     error = robolang("run", "--robot", seven, "--no-physics", program, code=2).stderr
     assert "seven.urdf:5:3: error RBL608" in error
-    assert "J7 joint_7: acceleration, motor, servo" in error
+    assert "every axis: max_acceleration_deg_s2, all of [axes.motor], all of [axes.servo]" in error
 
 
 SENSOR = 'kind = "ramp"\ndeviation_mm_deg = [3, 0, 2, 0, 0, 0]\nover_mm = 200\n'
