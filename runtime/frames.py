@@ -12,7 +12,17 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from runtime.units import DEG
+
 Array = NDArray[np.float64]
+
+HALF_TURN = 1e-6 * DEG
+"""A turn this near to 180 deg, rad, is an exact half turn. Poses that are calculated differ by rounding: 1e-14 rad, and
+1e-9 where RY is 90 deg. Poses that are taught have three decimals and differ by 1e-5 rad: those take the shorter turn.
+"""
+
+_SURELY_NOT_ZERO = 0.55
+"""One component of a unit vector is larger than this; and no axis that people choose has one that equals it."""
 
 _NO_ROTATION = 1e-200
 """Below this the sine of an angle has no direction; the angle is then zero to the last bit."""
@@ -61,6 +71,26 @@ def principal_axis(R_from: Array, R_to: Array) -> tuple[Array, float]:
     return (-k if float(k @ w) < 0.0 else k), theta
 
 
+def is_half_turn(angle: ArrayLike) -> NDArray[np.bool_]:
+    """Return whether angles (...,) rad are half a turn to either side, within ``HALF_TURN``."""
+    return np.asarray(np.abs(np.abs(np.asarray(angle, dtype=np.float64)) - np.pi) <= HALF_TURN)
+
+
+def principal_axes(R_from: Array, R_to: Array) -> tuple[tuple[Array, float], ...]:
+    """Return every shortest rotation from one orientation to another: axis k (3,) and angle rad of ``principal_axis``.
+
+    There is one, except at an exact half turn: there k and -k are equally short, and both are returned. The first of
+    them is positive about the tool, so that the rounding of the two orientations does not decide which one it is.
+    """
+    k, theta = principal_axis(R_from, R_to)
+    if not is_half_turn(theta):
+        return ((k, theta),)
+    in_tool = R_from.T @ k
+    leading = in_tool[int(np.argmax(np.abs(in_tool) > _SURELY_NOT_ZERO))]
+    both = ((k, theta), (-k, 2.0 * math.pi - theta))
+    return both if leading > 0.0 else both[::-1]
+
+
 def rotation_angle(R_a: Array, R_b: Array) -> float:
     """Return the angle between two orientations in rad, in [0, pi]."""
     return principal_axis(R_a, R_b)[1]
@@ -81,7 +111,10 @@ def rotation_from_rpy(rpy: ArrayLike) -> Array:
 
 
 def rpy_from_rotation(R: Array) -> Array:
-    """Return (rx, ry, rz) in rad with ry in [-pi/2, pi/2]; at ry = +-pi/2, where only a sum is defined, rx = 0."""
+    """Return (rx, ry, rz) in rad with ry in [-pi/2, pi/2]; at ry = +-pi/2, where only a sum is defined, rx = 0.
+
+    Half a turn is +pi, never -pi: both are the same, and rounding must not decide the sign that a program reads.
+    """
     cy = np.hypot(R[..., 0, 0], R[..., 1, 0])
     regular = cy > 1e-9
     rx = np.where(regular, np.arctan2(R[..., 2, 1], R[..., 2, 2]), 0.0)
@@ -89,7 +122,8 @@ def rpy_from_rotation(R: Array) -> Array:
     rz = np.where(
         regular, np.arctan2(R[..., 1, 0], R[..., 0, 0]), np.arctan2(-R[..., 0, 1], R[..., 1, 1])
     )
-    return np.stack([rx, ry, rz], axis=-1)
+    angles = np.stack([rx, ry, rz], axis=-1)
+    return np.asarray(np.where(is_half_turn(angles), np.abs(angles), angles))
 
 
 def pose(position: ArrayLike = (0.0, 0.0, 0.0), rotation: ArrayLike | None = None) -> Array:

@@ -105,7 +105,7 @@ class JointPlanner:
         solutions = kinematics.solutions(X_world_flange, q_start)
         if not solutions:
             raise Fault("RBL410", f"{point} is out of reach of {self._spec.name}")
-        found = [turned(each.q, command.turns[: kinematics.n]) for each in solutions]
+        found = [turned(kinematics, each.q, command.turns[: kinematics.n], q_start) for each in solutions]
         fitting = [q for q in found if as_taught(kinematics, q, command)]
         if not fitting:
             words = " ".join(command.configuration)

@@ -9,7 +9,8 @@ r"""The path of the tool point: a line or an arc; orientation by one of two laws
                                                    CN103429397A, S1; on lines only
 
 ``axis`` turns about one fixed axis at a constant rate, whatever frame the angles are counted in; ``rpy`` depends on the
-frame and may swing far where RY is near 90 deg. Both end exactly as taught.
+frame and may swing far where RY is near 90 deg. Both end exactly as taught. At an exact half turn two directions are
+equally short: ``candidates`` has a path for each, and the planner takes one (``runtime.motion.half_turn``).
 
 An arc lies on the circle through its start, a via point and its end: u points from the centre to the start, t along the
 circle there. The form above does not subtract the large coordinates of a far centre. The normal
@@ -21,6 +22,7 @@ for arcs over half a turn. The orientation of the via point is not used. Three p
 are one or all are on a line: refused (RBL416) when their triangle is flatter than ``FLATTEST``.
 """
 
+import itertools
 import math
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -29,7 +31,16 @@ import numpy as np
 
 import runtime.motion.codes  # noqa: F401 - registers what is raised here
 from runtime.faults import Fault
-from runtime.frames import Array, frozen, pose, principal_axis, rotation_about, rotation_from_rpy, rpy_from_rotation
+from runtime.frames import (
+    Array,
+    frozen,
+    is_half_turn,
+    pose,
+    principal_axes,
+    rotation_about,
+    rotation_from_rpy,
+    rpy_from_rotation,
+)
 from runtime.profile import PostureLaw
 from runtime.units import MM
 
@@ -53,16 +64,24 @@ class LinePath:
 
     @classmethod
     def between(cls, X_start: Array, X_end: Array, posture: PostureLaw = "axis") -> "LinePath":
-        """Return the straight path from one pose (4, 4) to another."""
-        axis, angle = principal_axis(X_start[:3, :3], X_end[:3, :3])
+        """Return the straight path from one pose (4, 4) to another; of several the first."""
+        return cls.candidates(X_start, X_end, posture)[0]
+
+    @classmethod
+    def candidates(cls, X_start: Array, X_end: Array, posture: PostureLaw = "axis") -> tuple["LinePath", ...]:
+        """Return the straight path from one pose (4, 4) to another: several where a half turn has two directions."""
+        rotations = principal_axes(X_start[:3, :3], X_end[:3, :3])
         length = float(np.linalg.norm(X_end[:3, 3] - X_start[:3, 3]))
-        rpy = None
-        if posture == "rpy":
-            start, end = rpy_from_rotation(X_start[:3, :3]), rpy_from_rotation(X_end[:3, :3])
-            way = end - start
-            rpy = frozen([start, way - 2.0 * np.pi * np.round(way / (2.0 * np.pi))])
-            angle = max(angle, float(np.abs(rpy[1]).sum()))  # no turning rate is above this over the way
-        return cls(X_start=frozen(X_start), X_end=frozen(X_end), axis=frozen(axis), angle=angle, length=length, rpy=rpy)
+        ends = frozen(X_start), frozen(X_end)
+        if posture == "axis":
+            return tuple(cls(X_start=ends[0], X_end=ends[1], axis=frozen(axis), angle=angle, length=length)
+                         for axis, angle in rotations)  # fmt: skip
+        axis, angle = rotations[0]
+        start, end = rpy_from_rotation(X_start[:3, :3]), rpy_from_rotation(X_end[:3, :3])
+        turns = [np.array(turn) for turn in itertools.product(*map(_shortest_turns, (end - start).tolist()))]
+        # no turning rate is above the sum of the three over the path
+        return tuple(cls(X_start=ends[0], X_end=ends[1], axis=frozen(axis), length=length, rpy=frozen([start, turn]),
+                         angle=max(angle, float(np.abs(turn).sum()))) for turn in turns)  # fmt: skip
 
     @property
     def name(self) -> str:
@@ -117,7 +136,15 @@ class ArcPath:
 
     @classmethod
     def through(cls, X_start: Array, X_via: Array, X_end: Array) -> "ArcPath":
-        """Return the arc from one pose (4, 4) over the place of a second to a third; ``Fault`` RBL416."""
+        """Return the arc from one pose (4, 4) over the place of a second to a third; ``Fault`` RBL416.
+
+        Of several the first.
+        """
+        return cls.candidates(X_start, X_via, X_end)[0]
+
+    @classmethod
+    def candidates(cls, X_start: Array, X_via: Array, X_end: Array) -> tuple["ArcPath", ...]:
+        """Return the arc of ``through``: twice where the tool makes a half turn, which has two directions."""
         start, via, end = (X[:3, 3] for X in (X_start, X_via, X_end))
         _check_points(start, via, end)
         first, last = via - start, end - start
@@ -130,10 +157,11 @@ class ArcPath:
         along = np.cross(normal / twice_area, outward)
         # tangent and chord are half the arc apart
         sweep = 2.0 * math.atan2(float(-(last @ outward)), float(last @ along))
-        axis, angle = principal_axis(X_start[:3, :3], X_end[:3, :3])
-        return cls(
-            X_start=frozen(X_start), X_end=frozen(X_end), axis=frozen(axis), angle=angle, length=radius * sweep,
-            centre=frozen(start + to_centre), outward=frozen(outward), along=frozen(along), sweep=sweep, radius=radius,
+        return tuple(
+            cls(X_start=frozen(X_start), X_end=frozen(X_end), axis=frozen(axis), angle=angle, length=radius * sweep,
+                centre=frozen(start + to_centre), outward=frozen(outward), along=frozen(along), sweep=sweep,
+                radius=radius)
+            for axis, angle in principal_axes(X_start[:3, :3], X_end[:3, :3])
         )  # fmt: skip
 
     @property
@@ -172,6 +200,15 @@ class ArcPath:
 
 
 Path: TypeAlias = LinePath | ArcPath
+
+
+def _shortest_turns(turn: float) -> tuple[float, ...]:
+    """Return the shortest of all angles that differ from ``turn`` rad by whole turns: two at half a turn."""
+    shortest = turn - 2.0 * math.pi * round(turn / (2.0 * math.pi))
+    if not is_half_turn(shortest):
+        return (shortest,)
+    positive = shortest % (2.0 * math.pi)
+    return positive, positive - 2.0 * math.pi
 
 
 def _check_points(start: Array, via: Array, end: Array) -> None:

@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 from runtime.faults import Fault
 from runtime.frames import Array, frozen
 from runtime.motion.commands import Component, MoveArc, MoveLinear, PathMove
+from runtime.motion.half_turn import in_order
 from runtime.motion.pacing import Pace, Slowdown
 from runtime.motion.path import ArcPath, LinePath, Path
 from runtime.motion.seam import SeamMove, SeamTracker
@@ -163,19 +164,30 @@ class LinePlanner:
     def way(self, q_start: Array, command: PathMove, X_flange_tool: Array) -> LineWay:
         """Return the curve of a move, at any path parameter, and its limits; arguments and faults of ``plan``."""
         X_start = self._kinematics.forward(q_start) @ X_flange_tool
-        path = self._path(X_start, command)
         turn = 0.0 if command.q_end is None else float(np.abs(command.q_end - q_start).max())
         arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=self._pace.fine, X_flange_tool=X_flange_tool)
-        line = LineSolver(arm, path, q_start)
+        lines = [LineSolver(arm, path, q_start) for path in self._paths(X_start, command)]
+        line, path = lines[0], lines[0].path
         if max(path.length, path.angle, turn) < NOTHING_TO_DO:
             return LineWay(path=path, line=line, limits=None, choice=Choice(solver=line))
         limits = speed_limits(path, command, self._spec.path, self._profile, turn)
-        return LineWay(path=path, line=line, limits=limits, choice=self._choose(line, limits, command))
+        if len(lines) > 1:
+            lines = in_order(lines, profile(limits, self._profile.period_s, command.duration), command.q_end)
+        refused: list[Fault] = []
+        for line in lines:
+            try:
+                choice = self._choose(line, limits, command)
+            except Fault as fault:
+                refused.append(fault)
+            else:
+                return LineWay(path=line.path, line=line, limits=limits, choice=choice)
+        raise refused[0]
 
-    def _path(self, X_start: Array, command: PathMove) -> Path:
+    def _paths(self, X_start: Array, command: PathMove) -> tuple[Path, ...]:
+        """Return the path of a move, one for each direction in which its tool may make a half turn."""
         if isinstance(command, MoveArc):
-            return ArcPath.through(X_start, command.X_via, command.X_world_tool)
-        return LinePath.between(X_start, command.X_world_tool, self._profile.wrist.posture)
+            return ArcPath.candidates(X_start, command.X_via, command.X_world_tool)
+        return LinePath.candidates(X_start, command.X_world_tool, self._profile.wrist.posture)
 
     def tracked(self, plan: LinePlan, command: MoveLinear, q_from: Array, q_here: Array, tracker: SeamTracker,
                 X_flange_tool: Array) -> SeamMove:  # fmt: skip

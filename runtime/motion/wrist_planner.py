@@ -24,7 +24,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from runtime.faults import Fault
-from runtime.frames import Array, inverse, rotation_angles
+from runtime.frames import HALF_TURN, Array, inverse, is_half_turn, rotation_angles
 from runtime.motion.commands import Component, MoveJoint, PathMove, in_configuration
 from runtime.motion.hold import COMPONENTS, Suppression, WristTable, component_deviation, held_ways
 from runtime.motion.path import Path
@@ -118,7 +118,8 @@ def ends(line: LineSolver, q: Array, command: PathMove) -> Iterator[Array]:
         yield q[-1]  # nearly always the one that is taken: the others are not looked for before they are asked for
     X_end = line.path.X_end @ inverse(arm.X_flange_tool)
     turns = command.turns[: arm.kinematics.n]
-    others = [turned(each.q, turns) for each in arm.kinematics.solutions(X_end, line.q_start)
+    solutions = arm.kinematics.solutions(X_end, line.q_start)
+    others = [turned(arm.kinematics, each.q, turns, line.q_start) for each in solutions
               if (each.branch.arm, each.branch.elbow) == (line.branch.arm, line.branch.elbow)]  # fmt: skip
     others = [end for end in others if arm.kinematics.limit_margin(end) >= -LIMIT_ROUNDING]
     others.sort(key=lambda end: float(np.abs(end - line.q_start)[-WRIST_AXES:].max()))
@@ -130,18 +131,25 @@ def ends(line: LineSolver, q: Array, command: PathMove) -> Iterator[Array]:
                     "it")  # fmt: skip
 
 
-def turned(q: Array, turns: tuple[int, ...]) -> Array:
-    """Return joint angles (n,) with as many whole turns on each joint as a point asks for."""
-    count = len(turns)
-    within = q[:count] - 2.0 * np.pi * np.round(q[:count] / (2.0 * np.pi))
-    return np.concatenate([within + 2.0 * np.pi * np.array(turns), q[count:]])
+def turned(kinematics: Kinematics, q: Array, turns: tuple[int, ...], near: Array) -> Array:
+    """Return joint angles (n,) with as many whole turns on each joint as a point asks for.
+
+    180 and -180 deg are the same angle with the same number of turns: the one nearer to ``near`` (n,) is taken.
+    """
+    middle = 2.0 * np.pi * np.array([*turns, *[0] * (len(q) - len(turns))])
+    within = Kinematics.nearest_turns(q, middle)
+    half = is_half_turn(within - middle)
+    either = kinematics.freer_half_turn(Kinematics.nearest_turns(q, near), near)
+    sides = np.sort([within, 2.0 * middle - within], axis=0)
+    within = np.where(half, np.clip(either, *sides), within)
+    return np.concatenate([within[: len(turns)], q[len(turns) :]])
 
 
 def as_taught(kinematics: Kinematics, q: Array, command: PathMove | MoveJoint) -> bool:
     """Return whether joint angles (n,) have the configuration and the turns that the end of a move is taught with."""
-    turns = np.round(q / (2.0 * np.pi))[: len(command.turns)]
+    turns = np.array(command.turns[: len(q)], dtype=np.float64)
     fits = in_configuration(kinematics.branch_of(q), command.configuration)
-    return fits and bool((turns == np.array(command.turns[: len(q)])).all())
+    return fits and bool((np.abs(q[: len(turns)] - 2.0 * np.pi * turns) <= np.pi + HALF_TURN).all())
 
 
 def choose(line: LineSolver, s: Array, q: Array, q_end: Array, period_s: float, options: WristOptions, excess: Excess,
@@ -191,7 +199,7 @@ def choose(line: LineSolver, s: Array, q: Array, q_end: Array, period_s: float, 
     fastest = min(choice.ratio for choice in found)
     slowest = 1.0 if fastest <= 1.0 else max(fastest, options.posture_first)
     quick = [choice for choice in found if choice.ratio <= slowest]
-    return min(quick, key=lambda choice: (choice.deviation, choice.ratio))
+    return min(quick, key=lambda choice: (round(choice.deviation, 9), round(choice.ratio, 9)))  # no tie by rounding
 
 
 def posture_deviation(line: LineSolver, s: Array, q: Array, held: tuple[Component, ...] = ()) -> float:

@@ -26,6 +26,7 @@ SCARA, is refused. Moves that the mechanism cannot make as taught are ``Fault`` 
     pulse_deg = 0.0036               # angle or length of one pulse
 """
 
+import math
 from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
@@ -35,10 +36,11 @@ import numpy as np
 
 import runtime.pulses.codes  # noqa: F401 - registers what is raised here
 from runtime.faults import Fault
-from runtime.frames import Array, frozen, principal_axis
+from runtime.frames import Array, frozen, principal_axes
 from runtime.motion.commands import MoveLinear
 from runtime.motion.speed import SpeedLimits, bound
 from runtime.pulses.machine import Joint, Stand
+from runtime.robot.kinematics import SAME_ROOM
 from runtime.tomlfile import Source, Table, load_table, read_source
 from runtime.units import DEG, MM
 
@@ -113,7 +115,8 @@ class Mechanism:
             if abs(end[k] - at) > SAME:
                 raise Fault("RBL431", f"the {self.name} has no joint for {axis} and stands at {at / MM:g} mm; the "
                             f"point is at {end[k] / MM:g} mm")  # fmt: skip
-        turn = self._turn(stand, command)
+        turns = self._turns(stand, command)
+        turn = turns[0]
         speed = self.speed if command.speed is None else command.speed
         speed = self.max_speed if command.duration is not None else speed
         for name, value, most in (("SPEED in mm/s", speed / MM, self.max_speed / MM),
@@ -126,23 +129,29 @@ class Mechanism:
             joint = self.joints[-1]
             extents.append((abs(turn), min(joint.speed, _FAST), min(joint.acceleration, _FAST), np.inf))
         moves = max(length, abs(turn)) > SAME * MM
-        return MechanismWay(mechanism=self, q_start=stand.q, ends=(start, end), turn=turn,
-                            limits=bound(extents, "trapezoid") if moves else None)  # fmt: skip
+        limits = bound(extents, "trapezoid") if moves else None
+        ways = [MechanismWay(mechanism=self, q_start=stand.q, ends=(start, end), turn=each, limits=limits)
+                for each in turns]  # fmt: skip
+        return ways[0] if len(ways) == 1 else _freer(ways[0], ways[1])
 
-    def _turn(self, stand: Stand, command: MoveLinear) -> float:
-        """Return by how much the tool turns about z on a move, rad; ``Fault`` RBL431 when it must turn otherwise."""
+    def _turns(self, stand: Stand, command: MoveLinear) -> tuple[float, ...]:
+        """Return by how much the tool turns about z on a move, rad, of a half turn both directions.
+
+        ``Fault`` RBL431 when it must turn otherwise.
+        """
         if stand.R is None:
-            return 0.0
-        axis, angle = principal_axis(stand.R, command.X_world_tool[:3, :3])
+            return (0.0,)
+        rotations = principal_axes(stand.R, command.X_world_tool[:3, :3])
+        axis, angle = rotations[0]
         if angle <= SAME:
-            return 0.0
+            return (0.0,)
         if "theta4" not in self.has:
             raise Fault("RBL431", f"the tool would have to turn by {angle / DEG:.2f} deg, and the {self.name} has no "
                         "joint that turns it")  # fmt: skip
         if 1.0 - abs(axis[2]) > SAME:
             raise Fault("RBL431", f"the tool would have to turn about another axis than z, and the {self.name} has no "
                         "joint for that")  # fmt: skip
-        return float(np.copysign(angle, axis[2]))
+        return tuple(math.copysign(angle, axis[2]) for axis, angle in rotations)
 
     def arrived(self, stand: Stand, command: MoveLinear, q: Array) -> Stand:
         """Return the stand at q (M,), with the posture of the command."""
@@ -181,6 +190,7 @@ class Mechanism:
 
 
 _FAST = 1e3
+_TRIED = np.linspace(0.0, 1.0, 101)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -230,6 +240,24 @@ class MechanismWay:
             name = self.mechanism.joints[turning[int(k)]].name
             raise Fault("RBL412", f"at {100 * s[step]:.1f} % of the straight path {name} would have to turn by "
                         f"{jumps[step, k] / DEG:.0f} deg in one step: the line passes a singularity")  # fmt: skip
+
+
+def _freer(first: MechanismWay, second: MechanismWay) -> MechanismWay:
+    """Return which direction of a half turn to take: in range, or else ending farther from the ends of the range.
+
+    As ``runtime.motion.half_turn`` has it for arms. The joint that turns the tool is the last one.
+    """
+    room = [_room_at_end(first), _room_at_end(second)]
+    return second if room[1] > room[0] + SAME_ROOM else first
+
+
+def _room_at_end(way: MechanismWay) -> float:
+    joint = way.mechanism.joints[-1]
+    try:
+        end = float(way.joints(_TRIED)[-1, -1])
+    except Fault:
+        return -np.inf
+    return min(end - joint.lower, joint.upper - end)
 
 
 def _unwrapped(angle: Array, start: float) -> Array:

@@ -11,7 +11,8 @@ their only branch is ``NUMERIC``. All arrays are in the base frame, m and rad, a
 
 Turns. Both solutions give each angle up to whole turns of 2 pi, and a joint with a range above one turn has several
 of them in it. Of those inside the range the one nearest to a reference is taken: the present joint angles, or the
-middle of the range. Where none is inside, the one nearest to the middle is returned, and the margin is negative.
+middle of the range. Where none is inside, the one nearest to the middle is returned, and the margin is negative. Half a
+turn from the reference two are equally near: the one farther from the ends of the range is taken, or else the larger.
 """
 
 import math
@@ -22,12 +23,13 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
-from runtime.frames import Array, frozen
+from runtime.frames import Array, frozen, is_half_turn
 from runtime.robot import opw
 from runtime.robot.closed_form import find_opw
 from runtime.robot.newton import NewtonSolver
 from runtime.robot.opw import BRANCHES, NUMERIC, TURN, Branch, Geometry
 from runtime.robot.spec import OpwParameters
+from runtime.units import DEG
 
 LIMIT_ROUNDING = 1e-9
 """A joint this far outside its range, rad, is not turned by a whole turn to bring it in."""
@@ -37,6 +39,10 @@ REDUNDANT_ABOVE = 6
 
 SAME_ANGLES = 1e-9
 """Two branches whose joints differ by less, rad, are one solution (they merge at a singularity)."""
+
+SAME_ROOM = 0.01 * DEG
+"""Two angles whose distances from the ends of the range differ by less, rad, are as far from them: taught angles have
+three decimals, and rounding must not decide which of the two a robot takes."""
 
 MOST_NUMERIC, MOST_REDUNDANT = 16, 8
 """As many solutions of Newton's method are listed, at most, of arms of up to 6 axes, which have no more, and of 7."""
@@ -159,6 +165,12 @@ class Kinematics:
         angles = np.asarray(q, dtype=np.float64)
         return np.asarray(angles + TURN * np.round((np.asarray(near, dtype=np.float64) - angles) / TURN))
 
+    def freer_half_turn(self, q: Array, near: Array) -> Array:
+        """Return q (..., n) rad, each joint that is half a turn from ``near`` (..., n) on the side with more room."""
+        low, high = np.where(q > near, q - TURN, q), np.where(q > near, q, q + TURN)
+        room_low, room_high = (np.minimum(each - self._lower, self._upper - each) for each in (low, high))
+        return np.where(is_half_turn(q - near), np.where(room_low > room_high + SAME_ROOM, low, high), q)
+
     def _start(self, near: ArrayLike | None) -> Array:
         return self._middle if near is None else np.asarray(near, dtype=np.float64)
 
@@ -170,7 +182,8 @@ class Kinematics:
         return found[: MOST_REDUNDANT if self.n > REDUNDANT_ABOVE else MOST_NUMERIC]
 
     def _into_range(self, q: Array, near: ArrayLike | None) -> Array:
-        wanted = self.nearest_turns(q, self._middle if near is None else near)
+        reference = self._middle if near is None else np.asarray(near, dtype=np.float64)
+        wanted = self.freer_half_turn(self.nearest_turns(q, reference), reference)
         fewest, most = self._fewest_and_most(wanted)
         inside = wanted + TURN * np.clip(0.0, fewest, most)
         return np.where(fewest <= most, inside, self.nearest_turns(q, self._middle))
