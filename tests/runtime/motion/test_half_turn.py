@@ -137,7 +137,8 @@ def test_all_pairs_of_half_turned_orientations_run_where_one_direction_keeps_the
         for axis, angle in principal_axes(robot.tool(q)[:3, :3], X[:3, :3]):
             R = rotation_about(axis, np.linspace(0.0, angle, 200)) @ robot.tool(q)[:3, :3]
             rows = robot.kinematics.inverse_branch(
-                pose(np.tile(X[:3, 3], (200, 1)), R) @ inverse(TOOL), robot.kinematics.branch_of(q), q)
+                pose(np.tile(X[:3, 3], (200, 1)), R) @ inverse(TOOL), robot.kinematics.branch_of(q), q
+            )
             rows = np.unwrap(rows, axis=0) + 0.0
             steady = np.isfinite(rows).all() and np.abs(np.diff(rows, axis=0)).max() < 0.3
             inside.append(steady and bool((robot.kinematics.limit_margin(rows) > 1e-3).all()))
