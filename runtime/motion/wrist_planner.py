@@ -140,7 +140,7 @@ def turned(kinematics: Kinematics, q: Array, turns: tuple[int, ...], near: Array
     within = Kinematics.nearest_turns(q, middle)
     half = is_half_turn(within - middle)
     either = kinematics.freer_half_turn(Kinematics.nearest_turns(q, near), near)
-    sides = np.sort([within, 2.0 * middle - within], axis=0)
+    sides = np.sort([within, within - np.copysign(2.0 * np.pi, within - middle)], axis=0)
     within = np.where(half, np.clip(either, *sides), within)
     return np.concatenate([within[: len(turns)], q[len(turns) :]])
 
