@@ -123,7 +123,7 @@ def rpy_from_rotation(R: Array) -> Array:
         regular, np.arctan2(R[..., 1, 0], R[..., 0, 0]), np.arctan2(-R[..., 0, 1], R[..., 1, 1])
     )
     angles = np.stack([rx, ry, rz], axis=-1)
-    return np.asarray(np.where(is_half_turn(angles), np.abs(angles), angles))
+    return np.asarray(angles + np.where(is_half_turn(angles) & (angles < 0.0), 2.0 * np.pi, 0.0))
 
 
 def pose(position: ArrayLike = (0.0, 0.0, 0.0), rotation: ArrayLike | None = None) -> Array:
