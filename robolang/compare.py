@@ -25,6 +25,7 @@ from robolang.project import Project, load_project
 from robolang.result import StatementRun
 from robolang.session import Alter, Session
 from runtime.frames import Array
+from runtime.linear import norm
 from runtime.units import DEG, MM
 
 BAND = 0.02
@@ -190,7 +191,7 @@ def _move(run: StatementRun, log: dict[str, Array], p_tool: Array) -> dict[str, 
         "settling_s": settling,
         "path_deviation_mm": float(run.path.deviation(p_tool[span]).max()) / MM,
         "droop_deg": ((q_cmd[-1] - q_link[-1]) / DEG).tolist(),
-        "left_mm": float(np.linalg.norm(run.path.X_end[:3, 3] - p_tool[span][-1])) / MM,
+        "left_mm": norm(run.path.X_end[:3, 3] - p_tool[span][-1]) / MM,
     }
 
 

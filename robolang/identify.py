@@ -45,6 +45,7 @@ from runtime.dynamics.equations import axis_inertia
 from runtime.dynamics.first_moments import Weight, gravity_columns, weigh_links
 from runtime.faults import Fault
 from runtime.frames import Array
+from runtime.linear import dot
 from runtime.plant.cell import CellSpec
 from runtime.plant.hand import hand_body
 from runtime.plant.plant import Plant
@@ -321,7 +322,7 @@ def passage(q: Array, tau: Array, position: float, half: int, tick_s: float) -> 
     share = (position - place[at - 1]) / (place[at] - place[at - 1])
 
     def mean(values: Array) -> float:
-        before, after = (float(w @ values[k : k + len(w)]) for k in (at - 1, at))
+        before, after = (dot(w, values[k : k + len(w)]) for k in (at - 1, at))
         return before + float(share) * (after - before)
 
     return Passage(

@@ -23,6 +23,7 @@ from robolang.places import Frame, Place, Shift, Six
 from robolang.points import Point, PointStore
 from runtime.faults import Fault
 from runtime.frames import Array, inverse, pose_from_xyzrpy, xyzrpy_from_pose
+from runtime.linear import matmul
 from runtime.motion.commands import Component, MoveArc, MoveJoint, MoveLinear, Wrist
 from runtime.motion.speed import MAX_DURATION
 from runtime.plant.cell import CellSpec
@@ -104,7 +105,7 @@ def move(effect: MoveTo, around: Surroundings) -> Command:
 
 def components(place: Place, frame: Frame, around: Surroundings) -> Six:
     """Return a place in a frame, mm and deg; ``Fault`` as of ``move``."""
-    return six_of(inverse(_frame(frame, around.cell)) @ _goal(place, around).X)
+    return six_of(matmul(inverse(_frame(frame, around.cell)), _goal(place, around).X))
 
 
 def tool(choice: Frame, cell: CellSpec) -> Array:
@@ -153,11 +154,11 @@ def _base(place: Place, around: Surroundings) -> _Goal:
     if place.last:
         return _Goal(X=_forward(around.q_last, around))
     assert place.pose is not None
-    return _Goal(X=_frame(place.frame, around.cell) @ pose_si(place.pose))
+    return _Goal(X=matmul(_frame(place.frame, around.cell), pose_si(place.pose)))
 
 
 def _forward(q: Array, around: Surroundings) -> Array:
-    return np.asarray(around.kinematics.forward(q) @ around.X_flange_tool)
+    return np.asarray(matmul(around.kinematics.forward(q), around.X_flange_tool))
 
 
 def _taught(point: Point, around: Surroundings) -> Array:
@@ -174,10 +175,10 @@ def _taught(point: Point, around: Surroundings) -> Array:
     assert point.pose is not None  # the store admits exactly one of the two
     X = pose_si(point.pose)
     if point.frame:
-        X = _named(cell.frames, point.frame, f"frame of point {point.name}") @ X
+        X = matmul(_named(cell.frames, point.frame, f"frame of point {point.name}"), X)
     if point.tool:
         X_flange_taught = _named(cell.tools, point.tool, f"tool of point {point.name}")
-        X = X @ inverse(X_flange_taught) @ around.X_flange_tool
+        X = matmul(X, inverse(X_flange_taught), around.X_flange_tool)
     return np.asarray(X)
 
 
@@ -185,9 +186,9 @@ def _shifted(X: Array, shift: Shift, cell: CellSpec) -> Array:
     if not all(map(math.isfinite, shift.by)):
         raise Fault("RBL502", "a way is not finite")
     if shift.kind == "tool":
-        return np.asarray(X @ pose_si(shift.by))
+        return np.asarray(matmul(X, pose_si(shift.by)))
     found = np.array(X)
-    found[:3, 3] += _frame(shift.frame, cell)[:3, :3] @ (np.array(shift.by[:3]) * MM)
+    found[:3, 3] += matmul(_frame(shift.frame, cell)[:3, :3], np.array(shift.by[:3]) * MM)
     return found
 
 

@@ -20,6 +20,7 @@ from robolang.trial_motion import quintic
 from runtime.controller import Controller
 from runtime.faults import Alarm, Fault
 from runtime.frames import Array, frozen
+from runtime.linear import norm
 from runtime.plant.cell import CellSpec
 from runtime.plant.plant import Plant
 from runtime.profile import Profile
@@ -216,7 +217,7 @@ def _driven(run: _Run, tool: Array, tick_s: float) -> DrivenMove:
     return DrivenMove(
         line=move.line, number=move.number, text=move.text, seconds=len(tool) * tick_s,
         error_mm=float(distances(tool, move.start, move.end).max(initial=0.0)) / MM,
-        end_mm=float(np.linalg.norm(tool[-1] - move.end)) / MM if len(tool) else 0.0,
+        end_mm=norm(tool[-1] - move.end) / MM if len(tool) else 0.0,
         notes=run.notes,
     )  # fmt: skip
 

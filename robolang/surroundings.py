@@ -13,6 +13,7 @@ from robolang.lowering import Surroundings
 from robolang.places import Frame, Place, Six
 from robolang.points import PointStore
 from runtime.frames import Array
+from runtime.linear import matmul
 from runtime.plant.cell import CellSpec
 from runtime.plant.signals import Signals
 from runtime.robot.kinematics import Kinematics
@@ -43,7 +44,7 @@ class RobotWorld:
 
     def here(self) -> Six:
         """Return where the tool is commanded to be, mm and deg in the world."""
-        return lowering.six_of(self._kinematics.forward(self.q_last) @ self.X_flange_tool)
+        return lowering.six_of(matmul(self._kinematics.forward(self.q_last), self.X_flange_tool))
 
     def components(self, place: Place, frame: Frame) -> Six:
         """Return a place in a frame, mm and deg."""

@@ -13,6 +13,7 @@ import numpy as np
 from runtime.dynamics.equations import axis_inertia
 from runtime.faults import Fault
 from runtime.frames import Array
+from runtime.linear import matmul
 from runtime.motion.fine import FineInterpolator
 from runtime.profile import Profile
 from runtime.robot.model import ArmModel, spec_rotors
@@ -271,15 +272,16 @@ def _room(spec: RobotSpec, q: Array, axis: int) -> tuple[float, float]:
     """Return the angles around the middle of an axis' range, rad, where joints and flange keep ``CLEARANCE``."""
     X, points = np.eye(4), []
     for index, joint in enumerate(spec.axes):
-        X = X @ joint.placement
+        X = matmul(X, joint.placement)
         if index == axis:
             up, X = X[2], np.eye(4)  # from here on in the frame of the axis, before it turns
         elif index > axis:
             points.append(X[:, 3])
         if index != axis:
             c, s = np.cos(q[index]), np.sin(q[index])
-            X = X @ np.array([[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
-    x, y, z, _ = np.array([*points, (X @ spec.X_last_flange)[:, 3]]).T
+            turn = np.array([[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
+            X = matmul(X, turn)
+    x, y, z, _ = np.array([*points, matmul(X, spec.X_last_flange)[:, 3]]).T
     own = np.linspace(spec.lower[axis], spec.upper[axis], 2 * _SCAN + 1)[:, None]
     c, s = np.cos(own), np.sin(own)
     height = up[0] * (c * x - s * y) + up[1] * (s * x + c * y) + up[2] * z + up[3]

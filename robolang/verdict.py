@@ -18,6 +18,7 @@ from robolang.report import pose_mm_deg
 from robolang.session import Session
 from runtime.faults import Fault
 from runtime.frames import Array, pose_from_xyzrpy, rotation_angles
+from runtime.linear import norm
 from runtime.units import DEG, MM
 
 _LARGEST = (
@@ -131,7 +132,7 @@ def _end_pose(session: Session, log: dict[str, Array]) -> Array:
 def _end(expected: Expectation, X: Array) -> list[Verdict]:
     values = np.array(cast("tuple[float, ...]", expected.end_pose))
     X_expected = pose_from_xyzrpy(values * ([MM] * 3 + [DEG] * 3))
-    far = float(np.linalg.norm(X[:3, 3] - X_expected[:3, 3])) / MM
+    far = norm(X[:3, 3] - X_expected[:3, 3]) / MM
     turned = float(rotation_angles(X[:3, :3], X_expected[:3, :3])) / DEG
     ended = ", ".join(f"{value:.3f}" for value in pose_mm_deg(X))
     most_mm, most_deg = expected.end_mm, expected.end_deg
@@ -156,7 +157,7 @@ def _part(objects: dict[str, Any], name: str, place: tuple[float, ...], most: fl
     if name not in objects:
         near = f"; its parts: {', '.join(sorted(objects))}" if objects else ""
         return Verdict(name=title, ok=False, said=f"the cell has no such part{near}", key=key)
-    off = float(np.linalg.norm(np.array(objects[name]["pose_mm_deg"][:3]) - place))
+    off = norm(np.array(objects[name]["pose_mm_deg"][:3]) - place)
     return Verdict(name=title, ok=off <= most, said=f"{off:.3f} mm away, at most {most:g} mm", key=key)
 
 

@@ -19,6 +19,7 @@ import numpy as np
 
 from runtime.faults import Fault
 from runtime.frames import Array, frozen, inverse, pose, rotation_angles
+from runtime.linear import matmul
 from runtime.motion.commands import Component
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.hold import COMPONENTS, Suppression, WristTable, posture_components, weld_line_frame
@@ -193,14 +194,14 @@ def run(robot: RobotSpec, trial: Trial) -> Run:
         q, switch, axis = *_tracked(line, q_end, s, trial), None
         seam = np.array(trial.seam)
         planned = np.stack([superposed(X, share * seam) for X, share in zip(planned, s, strict=True)])
-        flange = superposed(line.path.X_end, seam) @ inverse(X_FLANGE_TOOL)
+        flange = matmul(superposed(line.path.X_end, seam), inverse(X_FLANGE_TOOL))
         q_end = line.arm.kinematics.inverse_branch(flange, line.arm.kinematics.branch_of(q_end), q_end)
     else:
         q, switch, axis = _processed(line, q_end, s, trial)
     if not np.isfinite(q).all():
         place = 100 * s[int(np.argmin(np.isfinite(q).all(axis=1)))]
         raise Fault("RBL412", f"{robot.name} has no joint angles at {place:.1f} % of {trial.move}, {trial.condition}")
-    taken, path = line.arm.kinematics.forward(q) @ X_FLANGE_TOOL, line.path
+    taken, path = matmul(line.arm.kinematics.forward(q), X_FLANGE_TOOL), line.path
     assert isinstance(path, LinePath)
     return Run(
         trial=trial, t=frozen(s * DURATION_S), q=frozen(q), q_end=frozen(q_end), switch=switch, axis=axis,
@@ -215,7 +216,7 @@ def _line(robot: RobotSpec, trial: Trial) -> tuple[LineSolver, Array]:
     start, end = np.array(MOVES[trial.move]) * DEG
     arm = Arm(spec=_ranged(robot), kinematics=Kinematics(robot), X_flange_tool=X_FLANGE_TOOL,
               fine=FineInterpolator(1, trial.period_s, start))  # fmt: skip
-    X_start, X_end = (arm.kinematics.forward(q) @ X_FLANGE_TOOL for q in (start, end))
+    X_start, X_end = (matmul(arm.kinematics.forward(q), X_FLANGE_TOOL) for q in (start, end))
     return LineSolver(arm, LinePath.between(X_start, X_end, trial.options.posture), start), end
 
 

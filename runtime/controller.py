@@ -27,6 +27,7 @@ from runtime.dynamics.source import InertiaRows
 from runtime.dynamics.task import StepCosts, dynamics_task
 from runtime.faults import Alarm, Fault, lookup
 from runtime.frames import Array
+from runtime.linear import matmul
 from runtime.motion.chain import ChainFault, ChainPlan, MotionPlanner
 from runtime.motion.commands import Command, MoveLinear
 from runtime.motion.fine import FineInterpolator
@@ -306,7 +307,7 @@ class Controller:
 
     def tool_poses(self, q: Array) -> Array:
         """Return X_world_tool (..., 4, 4) at joint angles q (..., n)."""
-        return np.asarray(self.kinematics.forward(q) @ self.X_flange_tool)
+        return np.asarray(matmul(self.kinematics.forward(q), self.X_flange_tool))
 
     # the cycle --------------------------------------------------------------------------------------------------
 

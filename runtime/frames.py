@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from runtime.linear import dot, matmul, norm
 from runtime.units import DEG
 
 Array = NDArray[np.float64]
@@ -48,7 +49,7 @@ def rotation_about(k: ArrayLike, angle: ArrayLike) -> Array:
     K = skew(k)
     d = np.asarray(angle, dtype=np.float64)[..., None, None]
     # 2 sin^2(d/2) is 1 - cos(d) without the cancellation at small angles
-    return np.asarray(np.eye(3) + np.sin(d) * K + 2.0 * np.sin(d / 2.0) ** 2 * (K @ K))
+    return np.asarray(np.eye(3) + np.sin(d) * K + 2.0 * np.sin(d / 2.0) ** 2 * matmul(K, K))
 
 
 def principal_axis(R_from: Array, R_to: Array) -> tuple[Array, float]:
@@ -58,17 +59,17 @@ def principal_axis(R_from: Array, R_to: Array) -> tuple[Array, float]:
     zero), so there the axis comes from the symmetric part, ``k k' = (sym(M) - cos I) / (1 - cos)``, and w gives
     only its sign. Source: JPH06190750A Fig 6, steps 200 and 202. Single poses, 3x3.
     """
-    M = R_to @ R_from.T
+    M = matmul(R_to, R_from.T)
     w = 0.5 * np.array([M[2, 1] - M[1, 2], M[0, 2] - M[2, 0], M[1, 0] - M[0, 1]])
-    sine = float(np.linalg.norm(w))
+    sine = norm(w)
     cosine = 0.5 * (float(np.trace(M)) - 1.0)
     theta = math.atan2(sine, cosine)
     if cosine >= 0.0:
         return (w / sine if sine > _NO_ROTATION else np.array([0.0, 0.0, 1.0])), theta
     kk = (0.5 * (M + M.T) - cosine * np.eye(3)) / (1.0 - cosine)
     column = kk[:, int(np.argmax(np.diag(kk)))]
-    k = column / np.linalg.norm(column)
-    return (-k if float(k @ w) < 0.0 else k), theta
+    k = column / norm(column)
+    return (-k if dot(k, w) < 0.0 else k), theta
 
 
 def is_half_turn(angle: ArrayLike) -> NDArray[np.bool_]:
@@ -85,7 +86,7 @@ def principal_axes(R_from: Array, R_to: Array) -> tuple[tuple[Array, float], ...
     k, theta = principal_axis(R_from, R_to)
     if not is_half_turn(theta):
         return ((k, theta),)
-    in_tool = R_from.T @ k
+    in_tool = matmul(R_from.T, k)
     leading = in_tool[int(np.argmax(np.abs(in_tool) > _SURELY_NOT_ZERO))]
     both = ((k, theta), (-k, 2.0 * math.pi - theta))
     return both if leading > 0.0 else both[::-1]
@@ -98,7 +99,7 @@ def rotation_angle(R_a: Array, R_b: Array) -> float:
 
 def rotation_angles(R_a: Array, R_b: Array) -> Array:
     """Return the angles (...,) between orientations (..., 3, 3) in rad, in [0, pi], exact near zero."""
-    M = np.swapaxes(R_a, -1, -2) @ R_b
+    M = matmul(np.swapaxes(R_a, -1, -2), R_b)
     w = np.stack([M[..., 2, 1] - M[..., 1, 2], M[..., 0, 2] - M[..., 2, 0], M[..., 1, 0] - M[..., 0, 1]], axis=-1)
     return np.asarray(np.arctan2(np.linalg.norm(w, axis=-1), np.trace(M, axis1=-2, axis2=-1) - 1.0))
 
@@ -107,7 +108,7 @@ def rotation_from_rpy(rpy: ArrayLike) -> Array:
     """Return ``Rz(rz) @ Ry(ry) @ Rx(rx)``; rpy (..., 3) rad -> (..., 3, 3)."""
     rx, ry, rz = np.moveaxis(np.asarray(rpy, dtype=np.float64), -1, 0)
     x, y, z = np.eye(3)
-    return np.asarray(rotation_about(z, rz) @ rotation_about(y, ry) @ rotation_about(x, rx))
+    return np.asarray(matmul(rotation_about(z, rz), rotation_about(y, ry), rotation_about(x, rx)))
 
 
 def rpy_from_rotation(R: Array) -> Array:
@@ -151,4 +152,4 @@ def xyzrpy_from_pose(X: Array) -> Array:
 def inverse(X: Array) -> Array:
     """Return the inverse of poses (..., 4, 4)."""
     Rt = np.swapaxes(X[..., :3, :3], -1, -2)
-    return pose(-(Rt @ X[..., :3, 3:])[..., 0], Rt)
+    return pose(-matmul(Rt, X[..., :3, 3:])[..., 0], Rt)

@@ -60,10 +60,11 @@ def _fk(robot: str, joints: str, tool: str | None, as_json: bool) -> None:
     import numpy as np
 
     from runtime.frames import xyzrpy_from_pose
+    from runtime.linear import matmul
 
     kinematics = _kinematics(robot)
     q_deg = numbers(joints, option="--joints", names=_joint_names(kinematics.n))
-    X_base_tool = kinematics.forward(np.deg2rad(q_deg)) @ _pose(tool, "--tool")
+    X_base_tool = matmul(kinematics.forward(np.deg2rad(q_deg)), _pose(tool, "--tool"))
     pose_mm_deg = _plain(xyzrpy_from_pose(X_base_tool) / _pose_scale())
     if as_json:
         typer.echo(json.dumps({"pose_mm_deg": pose_mm_deg}))
@@ -88,9 +89,10 @@ def ik(
 
 def _ik(robot: str, pose: str, tool: str | None, as_json: bool) -> None:
     from runtime.frames import inverse
+    from runtime.linear import matmul
 
     kinematics = _kinematics(robot)
-    X_base_flange = _pose(pose, "--pose") @ inverse(_pose(tool, "--tool"))
+    X_base_flange = matmul(_pose(pose, "--pose"), inverse(_pose(tool, "--tool")))
     solutions, left = _solutions_deg(kinematics, X_base_flange)
     if as_json:
         typer.echo(json.dumps({"solutions": solutions, "complete": kinematics.closed_form, "not_listed": left}))

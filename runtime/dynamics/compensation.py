@@ -43,6 +43,7 @@ from runtime.dynamics.equations import axis_inertia, inertia_range
 from runtime.dynamics.first_moments import scale
 from runtime.faults import Fault
 from runtime.frames import Array
+from runtime.linear import norm
 from runtime.robot.joint_table import JointTable
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import NO_PAYLOAD, Payload, declared
@@ -264,7 +265,7 @@ def _believe_moments(found: Compensation, spec: RobotSpec, axes: list[Table]) ->
     """Refuse a first moment beyond anything the link can have."""
     most = MOST * (scale(spec) + FAR * spec.rated_payload)
     for axis, (moment, table) in enumerate(zip(found.first_moments, axes, strict=False)):
-        size = float(np.linalg.norm(moment))
+        size = norm(np.asarray(moment))
         if not size <= most[axis]:
             table.fail("RBL605", f"'first_moment_kg_m' of J{axis + 1} is {size:.4g} long; more than {most[axis]:.3g} "
                        "is not believed of that link", key="first_moment_kg_m")  # fmt: skip

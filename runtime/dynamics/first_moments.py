@@ -19,7 +19,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runtime.decompositions import least_squares
 from runtime.frames import Array
+from runtime.linear import matmul, norm
 from runtime.robot.model import ArmModel
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
@@ -31,6 +33,8 @@ DIGITS = 9
 """Decimals of a first moment in kg m that are kept."""
 LACKING = 0.5
 """Standard deviation of what a link lacks before anything is read, as a share of ``scale``."""
+ROUNDING = 1e-13
+"""Pivots smaller than this share of the largest are rounding: the measurements say nothing of what they belong to."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,14 +55,14 @@ def gravity_columns(spec: RobotSpec, q: Array) -> Array:
     R, rotations = np.eye(3), []
     for axis, angle in zip(spec.axes, q, strict=True):
         c, s = np.cos(angle), np.sin(angle)
-        R = R @ axis.placement[:3, :3] @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        R = matmul(R, axis.placement[:3, :3], np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]))
         rotations.append(R)
     Y = np.zeros((n, n, 3))
     for i in range(n):
         z = rotations[i][:, 2]
         lever = GRAVITY * np.array([-z[1], z[0], 0.0])  # g e_z x z_i
         for j in range(i, n):
-            Y[i, j] = lever @ rotations[j]
+            Y[i, j] = matmul(lever, rotations[j])
     return Y
 
 
@@ -68,7 +72,7 @@ def scale(spec: RobotSpec) -> Array:
     for j in reversed(range(spec.n)):
         body = spec.axes[j].body
         reach = spec.axes[j + 1].placement[:3, 3] if j + 1 < spec.n else np.zeros(3)
-        found[j] = body.mass * np.linalg.norm(body.cog) + beyond * np.linalg.norm(reach)
+        found[j] = body.mass * norm(body.cog) + beyond * norm(reach)
         beyond += body.mass
     return found
 
@@ -89,8 +93,8 @@ def weigh_links(spec: RobotSpec, payload: Payload, axes: Array, postures: Array,
         A[row, 3 * n + axis] = 1.0  # friction in terms of ``noise``, as large as it likes
         b[row] = (tau - model.gravity(q)[axis]) / noise[axis]
     bound = np.hstack([np.eye(3 * n), np.zeros((3 * n, n))])
-    x, *_ = np.linalg.lstsq(np.vstack([A, bound]), np.concatenate([b, np.zeros(3 * n)]), rcond=None)
-    left = (b - A @ x) * noise[axes]
+    x = least_squares(np.vstack([A, bound]), np.concatenate([b, np.zeros(3 * n)]), ROUNDING)
+    left = (b - matmul(A, x)) * noise[axes]
     return Weight(
         first_moments=np.round(x[: 3 * n].reshape(n, 3) * prior[:, None], DIGITS) + 0.0,
         friction=x[3 * n :] * noise,

@@ -39,6 +39,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from runtime.frames import Array, frozen, skew
+from runtime.linear import dot, matmul
 from runtime.robot.payload import NO_PAYLOAD, Payload
 from runtime.robot.spec import Body, RobotSpec
 
@@ -77,7 +78,7 @@ class LinkChain:
         """X_j (n, 6, 6): accelerations (dv, dw) of frame j-1 to those of j at angle zero; X_j' takes loads back."""
         X = np.zeros((self.n, 6, 6))
         X[:, :3, :3] = X[:, 3:, 3:] = self.rotations.transpose(0, 2, 1)
-        X[:, :3, 3:] = -self.rotations.transpose(0, 2, 1) @ skew(self.offsets)
+        X[:, :3, 3:] = matmul(-self.rotations.transpose(0, 2, 1), skew(self.offsets))
         return frozen(X)
 
     @cached_property
@@ -117,7 +118,7 @@ _Moments = tuple[float, Array, Array]
 def _about_origin(body: Body) -> _Moments:
     """Return mass, first moment (3,) and inertia (3, 3) of a body about its frame's origin."""
     r = body.cog
-    return body.mass, body.mass * r, body.inertia + body.mass * (r @ r * np.eye(3) - np.outer(r, r))
+    return body.mass, body.mass * r, body.inertia + body.mass * (matmul(r, r) * np.eye(3) - np.outer(r, r))
 
 
 def _sum(a: _Moments, b: _Moments) -> _Moments:
@@ -127,7 +128,7 @@ def _sum(a: _Moments, b: _Moments) -> _Moments:
 def _carried(payload: Payload, X_last_flange: Array) -> Body:
     """Return the payload as a body in the frame of the last axis."""
     R, p = X_last_flange[:3, :3], X_last_flange[:3, 3]
-    return Body(mass=payload.mass, cog=R @ payload.cog + p, inertia=R @ payload.inertia @ R.T)
+    return Body(mass=payload.mass, cog=matmul(R, payload.cog) + p, inertia=matmul(R, payload.inertia, R.T))
 
 
 # --- the recursion of 3.4, one axis and one posture ------------------------------------------------------------------
@@ -138,7 +139,7 @@ def axis_inertia(chain: LinkChain, q: Array, axis: int) -> float:
 
     3.4 as printed: links i+1 to n outward, n to i back.  Raises ``IndexError`` where there is no such axis.
     """
-    return float(_moments(chain, q, axis, last=axis)[axis] @ _Z)
+    return dot(_moments(chain, q, axis, last=axis)[axis], _Z)
 
 
 def inertia_row(chain: LinkChain, q: Array, axis: int) -> Array:
@@ -147,14 +148,14 @@ def inertia_row(chain: LinkChain, q: Array, axis: int) -> Array:
     3.4 continued: the torque of every axis under the unit acceleration of one is M_ji = n_j . Z. Before link i nothing
     moves, and only the load of the links beyond is carried back to the base. M is symmetric: row and column are one.
     """
-    return frozen([n @ _Z for n in _moments(chain, q, axis, last=0)])
+    return frozen([matmul(n, _Z) for n in _moments(chain, q, axis, last=0)])
 
 
 def _moments(chain: LinkChain, q: Array, axis: int, last: int) -> list[Array]:
     """Return n_j (3,) of links ``last`` to n in their frames, at their place in a list of n."""
     if not 0 <= axis < chain.n:
         raise IndexError(f"axis {axis} of {chain.n}")
-    R = [R0 @ _about_z(angle) for R0, angle in zip(chain.rotations, q.tolist(), strict=True)]
+    R = [matmul(R0, _about_z(angle)) for R0, angle in zip(chain.rotations, q.tolist(), strict=True)]
     dw, dv = [_NOTHING] * chain.n, [_NOTHING] * chain.n
     dw[axis] = _Z
     for j in range(axis + 1, chain.n):
@@ -163,20 +164,20 @@ def _moments(chain: LinkChain, q: Array, axis: int, last: int) -> list[Array]:
     Rf = Rn = _NOTHING  # R_{j+1} f_{j+1}, and R_{j+1} n_{j+1} + P_{j+1} x (R_{j+1} f_{j+1})
     for j in range(chain.n - 1, last - 1, -1):
         f, moments[j] = back(chain.masses[j], chain.moments[j], chain.inertias[j], dw[j], dv[j], Rf, Rn)
-        Rf = R[j] @ f
-        Rn = R[j] @ moments[j] + cross(chain.offsets[j], Rf)
+        Rf = matmul(R[j], f)
+        Rn = matmul(R[j], moments[j]) + cross(chain.offsets[j], Rf)
     return moments
 
 
 def outward(R: Array, P: Array, dw: Array, dv: Array) -> tuple[Array, Array]:
     """Return (dw_j, dv_j) from those of link j-1: R_j' dw, R_j' (dw x P_j + dv)."""
-    return R.T @ dw, R.T @ (cross(dw, P) + dv)
+    return matmul(R.T, dw), matmul(R.T, cross(dw, P) + dv)
 
 
 def back(m: float, Pm: Array, inertia: Array, dw: Array, dv: Array, Rf: Array, Rn: Array) -> tuple[Array, Array]:
     """Return (f_j, n_j) of link j; ``Rf`` and ``Rn`` are the force and moment of link j+1 at the origin of frame j."""
     f = Rf + m * dv + cross(dw, Pm)
-    n = Rn - cross(dv, Pm) + inertia @ dw
+    n = Rn - cross(dv, Pm) + matmul(inertia, dw)
     return f, n
 
 
@@ -239,7 +240,7 @@ def _accelerations(chain: LinkChain, c: Array, s: Array) -> Sequence[Array]:
 
 def _product(matrix: Array, columns: Array) -> Array:
     """Return a constant (6, 6) times columns (6, k, B), as one product of matrices."""
-    return np.asarray(matrix @ columns.reshape(6, -1)).reshape(columns.shape)
+    return np.asarray(matmul(matrix, columns.reshape(6, -1))).reshape(columns.shape)
 
 
 def _turned(columns: Array, c: Array, s: Array, out: Array | None = None) -> Array:

@@ -34,7 +34,9 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from runtime.decompositions import inverse_of
 from runtime.frames import Array, frozen
+from runtime.linear import matmul
 from runtime.robot.model import spec_rotors
 from runtime.robot.spec import RobotSpec
 from runtime.supervision.observer import TURNING, LoadModel
@@ -110,7 +112,7 @@ class BodyModel(LoadModel):
         """
         body = pin.jointBodyRegressor(self._model, self._data, self.n)
         jacobian = pin.computeJointJacobian(self._model, self._data, q, self.n)
-        return np.asarray(jacobian.T @ body)
+        return np.asarray(matmul(jacobian.T, body))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -155,7 +157,7 @@ def _averages(tau: Array, q: Array, ticks: int, tick_s: float) -> _Rows:
     slowest = np.where(first * second > 0.0, np.minimum(np.abs(first), np.abs(second)), 0.0)
     return _Rows(
         q=now, dq=(after - before) / (2.0 * h), ddq=(after - 2.0 * now + before) / h**2,
-        tau=np.array([triangle @ tau[k - m : k + m] for k in at]).reshape(now.shape), turning=slowest > TURNING,
+        tau=np.array([matmul(triangle, tau[k - m : k + m]) for k in at]).reshape(now.shape), turning=slowest > TURNING,
         step_s=h,
     )  # fmt: skip
 
@@ -220,9 +222,9 @@ def _weighted(A: Array, r: Array, axis: NDArray[np.intp], spec: RobotSpec,
     sigma = known.torque_uncertainty * known.torque
     for _ in range(ROUNDS):
         weight = 1.0 / sigma[axis] ** 2
-        covariance = np.linalg.inv((A.T * weight) @ A + prior)
-        found = covariance @ (A.T @ (weight * r))
-        left = r - A @ found
+        covariance = inverse_of(matmul(A.T * weight, A) + prior)
+        found = matmul(covariance, matmul(A.T, weight * r))
+        left = r - matmul(A, found)
         square = np.bincount(axis, left**2, spec.n) / np.maximum(np.bincount(axis, minlength=spec.n), 1)
         sigma = np.maximum(np.sqrt(square), quietest)
     return found, np.asarray(covariance, dtype=np.float64), left
@@ -249,15 +251,15 @@ def _in_flange(spec: RobotSpec, found: Array, covariance: Array, left: tuple[Arr
     """Move mass and first moment to the flange frame, h_F = R' (h - m p), and divide: c = h_F / m."""
     R, p = spec.X_last_flange[:3, :3], spec.X_last_flange[:3, 3]
     to_flange = np.zeros((4, 4))
-    to_flange[0, 0], to_flange[1:, 0], to_flange[1:, 1:] = 1.0, -R.T @ p, R.T
-    mass, *moment = to_flange @ found[:4]
-    spread = to_flange @ covariance[:4, :4] @ to_flange.T
+    to_flange[0, 0], to_flange[1:, 0], to_flange[1:, 1:] = 1.0, matmul(-R.T, p), R.T
+    mass, *moment = matmul(to_flange, found[:4])
+    spread = matmul(to_flange, covariance[:4, :4], to_flange.T)
     mass_sd = float(np.sqrt(spread[0, 0]))
     cog = cog_sd = None
     if mass > LIGHTEST * mass_sd:
         cog = np.array(moment) / mass
         slope = np.concatenate([-cog[:, None], np.eye(3)], axis=1) / mass
-        cog, cog_sd = frozen(cog), frozen(np.sqrt(np.diag(slope @ spread @ slope.T)))
+        cog, cog_sd = frozen(cog), frozen(np.sqrt(np.diag(matmul(slope, spread, slope.T))))
     rms, peak, rows = left
     return WeighedPayload(
         mass=float(mass), mass_sd=mass_sd, cog=cog, cog_sd=cog_sd,

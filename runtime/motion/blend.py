@@ -27,6 +27,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from runtime.frames import Array, rotation_angles
+from runtime.linear import matmul
 from runtime.motion.pacing import Pace
 from runtime.motion.solver import RANGE_TOLERANCE, Arm
 
@@ -154,7 +155,7 @@ def _inside(X: Array, corner: Array, zone: float) -> int:
 
 
 def _poses(arm: Arm, q: Array) -> Array:
-    return np.asarray(arm.kinematics.forward(q) @ arm.X_flange_tool)
+    return np.asarray(matmul(arm.kinematics.forward(q), arm.X_flange_tool))
 
 
 def _distances(X: Array, corner: Array) -> Array:

@@ -12,6 +12,7 @@ ticks.
 import numpy as np
 
 from runtime.frames import Array
+from runtime.linear import matmul
 
 
 def _quintic(u: Array) -> Array:
@@ -74,9 +75,9 @@ class FineInterpolator:
         self.ticks = ticks
         self._weights = np.concatenate(
             [
-                _quintic(u) @ _DIFFERENCES,
-                _quintic_speed(u) @ _DIFFERENCES / period_s,
-                _quintic_acceleration(u) @ _DIFFERENCES / period_s**2,
+                matmul(_quintic(u), _DIFFERENCES),
+                matmul(_quintic_speed(u), _DIFFERENCES) / period_s,
+                matmul(_quintic_acceleration(u), _DIFFERENCES) / period_s**2,
             ]
         )
         self._points = np.tile(np.asarray(q, dtype=np.float64), (4, 1))
@@ -86,7 +87,7 @@ class FineInterpolator:
         points = self._points
         points[:3] = points[1:]
         points[3] = setpoint
-        return (self._weights @ points).reshape(3, self.ticks, -1)
+        return matmul(self._weights, points).reshape(3, self.ticks, -1)
 
     def hold(self, q: Array) -> None:
         """Stand at joint angles q (n,): the pipeline holds nothing else any more."""
@@ -95,7 +96,7 @@ class FineInterpolator:
     @staticmethod
     def weights(u: Array) -> Array:
         """Return (..., 4): the share of the set-points (q_-1, q_0, q_1, q_2) in the position at u in [0, 1]."""
-        return np.asarray(_quintic(u) @ _DIFFERENCES)
+        return np.asarray(matmul(_quintic(u), _DIFFERENCES))
 
     @property
     def settled(self) -> bool:
@@ -115,7 +116,7 @@ class FineInterpolator:
         padded = np.concatenate([setpoints[:1], setpoints[:1], setpoints, setpoints[-1:], setpoints[-1:]])
         windows = np.lib.stride_tricks.sliding_window_view(padded, 4, axis=0)  # (segments, n, 4)
         ticks = self.ticks
-        moving = np.abs(windows @ self._weights[ticks:].T)  # (segments, n, 2 ticks)
+        moving = np.abs(matmul(windows, self._weights[ticks:].T))  # (segments, n, 2 ticks)
         return moving[..., :ticks].max(axis=(0, 2)), moving[..., ticks:].max(axis=(0, 2))
 
     def extremes(self, setpoints: Array) -> tuple[Array, Array, Array, Array]:
@@ -124,7 +125,7 @@ class FineInterpolator:
         Measured at the ticks from the second of the set-points (N, n), N at least 4, to the last but one.
         """
         windows = np.lib.stride_tricks.sliding_window_view(setpoints, 4, axis=0)  # (segments, n, 4)
-        found, ticks = windows @ self._weights.T, self.ticks  # (segments, n, 3 ticks)
+        found, ticks = matmul(windows, self._weights.T), self.ticks  # (segments, n, 3 ticks)
         q, moving = found[..., :ticks], np.abs(found[..., ticks:])
         speed, acceleration = moving[..., :ticks].max(axis=(0, 2)), moving[..., ticks:].max(axis=(0, 2))
         return q.min(axis=(0, 2)), q.max(axis=(0, 2)), speed, acceleration
@@ -137,5 +138,5 @@ class FineInterpolator:
         padded = np.concatenate([setpoints, setpoints[-1:], setpoints[-1:]])
         segments = len(padded) - 3
         windows = np.stack([padded[k : k + segments] for k in range(4)], axis=1)
-        out = (self._weights @ windows).reshape(segments, 3, self.ticks, -1)
+        out = matmul(self._weights, windows).reshape(segments, 3, self.ticks, -1)
         return np.asarray(np.moveaxis(out, 1, 0).reshape(3, segments * self.ticks, -1))

@@ -32,6 +32,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from runtime.frames import Array, frozen
+from runtime.linear import matmul, norm
 from runtime.motion.commands import Component
 from runtime.motion.path import ArcPath, Path
 from runtime.robot.frozen_wrist import WRIST_AXES, FrozenWrist, Side
@@ -49,9 +50,9 @@ _STEEP = 1e-6
 
 def weld_line_frame(travel: Array) -> Array:
     """Return R_base_line (3, 3), eqs (101) to (103), of a direction of travel (3,)."""
-    X = travel / np.linalg.norm(travel)
+    X = travel / norm(travel)
     Y = np.cross(X, [0.0, 0.0, -1.0])
-    Y = np.array([0.0, 1.0, 0.0]) if np.linalg.norm(Y) < _STEEP else Y / np.linalg.norm(Y)
+    Y = np.array([0.0, 1.0, 0.0]) if norm(Y) < _STEEP else Y / norm(Y)
     return np.stack([X, Y, np.cross(X, Y)], axis=1)
 
 
@@ -64,7 +65,7 @@ def frames_along(path: Path, s: Array) -> Array:
 
 def posture_components(R_base_line: Array, R_base_tool: Array) -> Array:
     """Return (tilt, advance, rotation) (..., 3) rad of postures (..., 3, 3), eqs (104) to (107)."""
-    B = np.swapaxes(R_base_line, -1, -2) @ R_base_tool
+    B = matmul(np.swapaxes(R_base_line, -1, -2), R_base_tool)
     return np.stack([np.arctan2(B[..., 2, 1], B[..., 2, 2]),
                      np.arctan2(-B[..., 2, 0], np.hypot(B[..., 0, 0], B[..., 1, 0])),
                      np.arctan2(B[..., 1, 0], B[..., 0, 0])], axis=-1)  # fmt: skip
@@ -122,7 +123,7 @@ class Suppression:
         return np.concatenate([self._frozen.solve(place[None], one[None], q_before, side) for one in candidates])
 
     def _best(self, rows: Array, R_base_line: Array, wanted: Array) -> int:
-        R = (self._kinematics.forward(rows) @ self._X_flange_tool)[:, :3, :3]
+        R = matmul(self._kinematics.forward(rows), self._X_flange_tool)[:, :3, :3]
         off = (posture_components(R_base_line, R) - wanted)[:, self._chosen]
         off -= 2.0 * np.pi * np.round(off / (2.0 * np.pi))
         cost = (off**2).sum(axis=1)

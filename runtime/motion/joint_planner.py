@@ -23,6 +23,7 @@ import numpy as np
 
 from runtime.faults import Fault
 from runtime.frames import Array, frozen, inverse
+from runtime.linear import matmul
 from runtime.motion.commands import MoveJoint
 from runtime.motion.pacing import Pace
 from runtime.motion.planner import NOTHING_TO_DO, LinePlan
@@ -95,7 +96,7 @@ class JointPlanner:
             self._check_end(q_end)
             return q_end
         assert command.X_world_tool is not None  # a command has at least one of the two
-        found = self._solutions(command.X_world_tool @ inverse(X_flange_tool), q_start, command)
+        found = self._solutions(matmul(command.X_world_tool, inverse(X_flange_tool)), q_start, command)
         return min(found, key=lambda q: float((np.abs(q - q_start) / self._pace.speed).max()))
 
     def _solutions(self, X_world_flange: Array, q_start: Array, command: MoveJoint) -> list[Array]:

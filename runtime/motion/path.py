@@ -41,6 +41,7 @@ from runtime.frames import (
     rotation_from_rpy,
     rpy_from_rotation,
 )
+from runtime.linear import dot, matmul, norm
 from runtime.profile import PostureLaw
 from runtime.units import MM
 
@@ -71,7 +72,7 @@ class LinePath:
     def candidates(cls, X_start: Array, X_end: Array, posture: PostureLaw = "axis") -> tuple["LinePath", ...]:
         """Return the straight path from one pose (4, 4) to another: several where a half turn has two directions."""
         rotations = principal_axes(X_start[:3, :3], X_end[:3, :3])
-        length = float(np.linalg.norm(X_end[:3, 3] - X_start[:3, 3]))
+        length = norm(X_end[:3, 3] - X_start[:3, 3])
         ends = frozen(X_start), frozen(X_end)
         if posture == "axis":
             return tuple(cls(X_start=ends[0], X_end=ends[1], axis=frozen(axis), angle=angle, length=length)
@@ -96,7 +97,7 @@ class LinePath:
     def poses(self, s: Array) -> Array:
         """Return the poses (N, 4, 4) at path parameters s (N,) in [0, 1]."""
         if self.rpy is None:
-            R = rotation_about(self.axis, s * self.angle) @ self.X_start[:3, :3]
+            R = matmul(rotation_about(self.axis, s * self.angle), self.X_start[:3, :3])
         else:
             R = rotation_from_rpy(self.rpy[0] + s[:, None] * self.rpy[1])
         return pose(self.points(s), R)
@@ -111,7 +112,7 @@ class LinePath:
         start, end = self.X_start[:3, 3], self.X_end[:3, 3]
         along = np.zeros(len(points))
         if self.length > 0.0:
-            along = np.clip((points - start) @ (end - start) / self.length**2, 0.0, 1.0)
+            along = np.clip(matmul(points - start, end - start) / self.length**2, 0.0, 1.0)
         return np.asarray(np.linalg.norm(points - (start + along[:, None] * (end - start)), axis=1))
 
 
@@ -149,14 +150,14 @@ class ArcPath:
         _check_points(start, via, end)
         first, last = via - start, end - start
         normal = np.cross(first, last)
-        twice_area = float(np.linalg.norm(normal))
+        twice_area = norm(normal)
         # where the perpendicular bisectors of both sides meet
-        to_centre = np.cross(last @ last * first - first @ first * last, -normal) / (2.0 * twice_area**2)
-        radius = float(np.linalg.norm(to_centre))
+        to_centre = np.cross(dot(last, last) * first - dot(first, first) * last, -normal) / (2.0 * twice_area**2)
+        radius = norm(to_centre)
         outward = -to_centre / radius
         along = np.cross(normal / twice_area, outward)
         # tangent and chord are half the arc apart
-        sweep = 2.0 * math.atan2(float(-(last @ outward)), float(last @ along))
+        sweep = 2.0 * math.atan2(-dot(last, outward), dot(last, along))
         return tuple(
             cls(X_start=frozen(X_start), X_end=frozen(X_end), axis=frozen(axis), angle=angle, length=radius * sweep,
                 centre=frozen(start + to_centre), outward=frozen(outward), along=frozen(along), sweep=sweep,
@@ -176,7 +177,7 @@ class ArcPath:
 
     def poses(self, s: Array) -> Array:
         """Return the poses (N, 4, 4) at path parameters s (N,) in [0, 1]."""
-        return pose(self.points(s), rotation_about(self.axis, s * self.angle) @ self.X_start[:3, :3])
+        return pose(self.points(s), matmul(rotation_about(self.axis, s * self.angle), self.X_start[:3, :3]))
 
     def points(self, s: Array) -> Array:
         """Return the places (N, 3) m of the tool point at path parameters s (N,)."""
@@ -192,8 +193,8 @@ class ArcPath:
     def deviation(self, points: Array) -> Array:
         """Return the distance (N,) m of points (N, 3) from the arc, its ends included."""
         off = points - self.centre
-        x, y = off @ self.outward, off @ self.along
-        on_circle = np.hypot(np.hypot(x, y) - self.radius, off @ np.cross(self.outward, self.along))
+        x, y = matmul(off, self.outward), matmul(off, self.along)
+        on_circle = np.hypot(np.hypot(x, y) - self.radius, matmul(off, np.cross(self.outward, self.along)))
         to_ends = [np.linalg.norm(points - X[:3, 3], axis=1) for X in (self.X_start, self.X_end)]
         beside = np.mod(np.arctan2(y, x), 2.0 * math.pi) <= self.sweep
         return np.asarray(np.where(beside, on_circle, np.minimum(*to_ends)))
@@ -214,12 +215,12 @@ def _shortest_turns(turn: float) -> tuple[float, ...]:
 def _check_points(start: Array, via: Array, end: Array) -> None:
     """Refuse points through which there is no circle; ``Fault`` RBL416."""
     sides = {"start and via point": via - start, "via point and end": end - via, "start and end": end - start}
-    lengths = {name: float(np.linalg.norm(side)) for name, side in sides.items()}
+    lengths = {name: norm(side) for name, side in sides.items()}
     for name, length in lengths.items():
         if not length >= FLATTEST:
             raise Fault("RBL416", f"{name} of the arc are {length / MM:.4f} mm apart: a circle takes at least "
                         f"{FLATTEST / MM:g} mm")  # fmt: skip
-    height = float(np.linalg.norm(np.cross(via - start, end - start))) / max(lengths.values())
+    height = norm(np.cross(via - start, end - start)) / max(lengths.values())
     if not height >= FLATTEST:
         raise Fault("RBL416", f"start, via point and end of the arc are within {height / MM:.4f} mm of one straight "
                     f"line: a circle takes at least {FLATTEST / MM:g} mm")  # fmt: skip

@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from runtime.faults import Fault
 from runtime.frames import Array, frozen
+from runtime.linear import matmul
 from runtime.motion.commands import Component, MoveArc, MoveLinear, PathMove
 from runtime.motion.half_turn import in_order
 from runtime.motion.pacing import Pace, Slowdown
@@ -163,7 +164,7 @@ class LinePlanner:
 
     def way(self, q_start: Array, command: PathMove, X_flange_tool: Array) -> LineWay:
         """Return the curve of a move, at any path parameter, and its limits; arguments and faults of ``plan``."""
-        X_start = self._kinematics.forward(q_start) @ X_flange_tool
+        X_start = matmul(self._kinematics.forward(q_start), X_flange_tool)
         turn = 0.0 if command.q_end is None else float(np.abs(command.q_end - q_start).max())
         arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=self._pace.fine, X_flange_tool=X_flange_tool)
         lines = [LineSolver(arm, path, q_start) for path in self._paths(X_start, command)]

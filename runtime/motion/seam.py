@@ -26,6 +26,7 @@ import numpy as np
 
 from runtime.faults import Fault
 from runtime.frames import Array, inverse, pose, rotation_from_rpy
+from runtime.linear import matmul, norm
 from runtime.motion.solver import LineSolver
 from runtime.motion.wrist import Conditions, WristLaw, law_from
 from runtime.motion.wrist_planner import wrist_limits
@@ -92,7 +93,7 @@ class SeamTracker:
                             f"{self._lost_in_a_row * self._period_s * 1e3:.0f} ms")  # fmt: skip
             return
         self._lost_in_a_row = 0
-        far, turned = float(np.linalg.norm(reading[:3])), float(np.abs(reading[3:]).max())
+        far, turned = norm(reading[:3]), float(np.abs(reading[3:]).max())
         if not (far <= limits.most and turned <= limits.most_turn):
             raise Fault("RBL524", f"seam sensor {self.name} sees the seam {far / MM:.2f} mm and {turned / DEG:.2f} deg "
                         f"away, more than {limits.most / MM:g} mm or {limits.most_turn / DEG:g} deg")  # fmt: skip
@@ -122,7 +123,7 @@ class SeamTracker:
 
 def superposed(X: Array, deviation: Array) -> Array:
     """Return the pose X (4, 4) with a deviation (6,) on it."""
-    return pose(X[:3, 3] + deviation[:3], rotation_from_rpy(deviation[3:]) @ X[:3, :3])
+    return pose(X[:3, 3] + deviation[:3], matmul(rotation_from_rpy(deviation[3:]), X[:3, :3]))
 
 
 class SeamMove:
@@ -202,7 +203,7 @@ class SeamMove:
         return q
 
     def _solve(self, X_base_tool: Array, branch: Branch, near: Array) -> Array:
-        return self._kinematics.inverse_branch(X_base_tool @ self._X_tool_flange, branch, near)
+        return self._kinematics.inverse_branch(matmul(X_base_tool, self._X_tool_flange), branch, near)
 
     def _met(self, n: int, q: Array, end: Array) -> bool:
         """Return whether sample n meets an exception condition with the end as it is seen now, S61."""

@@ -15,6 +15,7 @@ import numpy as np
 
 from runtime.faults import Fault
 from runtime.frames import Array, inverse
+from runtime.linear import matmul
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.hold import WristTable
 from runtime.motion.path import Path
@@ -73,7 +74,7 @@ class LineSolver:
         return self._posed[1]
 
     def _solve(self, s: Array) -> Array:
-        poses = self.planned(s) @ self._X_tool_flange
+        poses = matmul(self.planned(s), self._X_tool_flange)
         if self._known:  # an arm without branches follows its solution, so it has to begin where that is known
             poses = poses[::-1]
         q = self.arm.kinematics.inverse_branch(poses, self.branch, self.q_start)

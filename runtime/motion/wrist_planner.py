@@ -25,6 +25,7 @@ import numpy as np
 
 from runtime.faults import Fault
 from runtime.frames import HALF_TURN, Array, inverse, is_half_turn, rotation_angles
+from runtime.linear import matmul
 from runtime.motion.commands import Component, MoveJoint, PathMove, in_configuration
 from runtime.motion.hold import COMPONENTS, Suppression, WristTable, component_deviation, held_ways
 from runtime.motion.path import Path
@@ -116,7 +117,7 @@ def ends(line: LineSolver, q: Array, command: PathMove) -> Iterator[Array]:
     wanted = kept and as_taught(arm.kinematics, q[-1], command)
     if wanted:
         yield q[-1]  # nearly always the one that is taken: the others are not looked for before they are asked for
-    X_end = line.path.X_end @ inverse(arm.X_flange_tool)
+    X_end = matmul(line.path.X_end, inverse(arm.X_flange_tool))
     turns = command.turns[: arm.kinematics.n]
     solutions = arm.kinematics.solutions(X_end, line.q_start)
     others = [turned(arm.kinematics, each.q, turns, line.q_start) for each in solutions
@@ -204,7 +205,7 @@ def choose(line: LineSolver, s: Array, q: Array, q_end: Array, period_s: float, 
 
 def posture_deviation(line: LineSolver, s: Array, q: Array, held: tuple[Component, ...] = ()) -> float:
     """Return by how much the tool turns from its posture on the path, rad: the whole angle, or of held components."""
-    R = (line.arm.kinematics.forward(q) @ line.arm.X_flange_tool)[:, :3, :3]
+    R = matmul(line.arm.kinematics.forward(q), line.arm.X_flange_tool)[:, :3, :3]
     planned = line.planned(s)[:, :3, :3]
     if not held or line.path.length < SHORTEST_TRAVEL:
         return float(rotation_angles(planned, R).max())

@@ -16,6 +16,7 @@ import math
 
 import numpy as np
 
+from runtime.decompositions import inverse_of, symmetric_eigen
 from runtime.frames import Array
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.spec import RobotSpec
@@ -38,9 +39,9 @@ def spring_frequencies(spec: RobotSpec, q: Array) -> Array:
     motors_and_twists = np.block(
         [[M + np.diag(spec_rotors(spec)), M[:, elastic]], [M[elastic], M[np.ix_(elastic, elastic)]]]
     )
-    W = np.linalg.inv(motors_and_twists)[spec.n :, spec.n :]
+    W = inverse_of(motors_and_twists)[spec.n :, spec.n :]
     root_K = np.sqrt(spec.per_axis("motor", "stiffness")[elastic])
-    squares = np.linalg.eigvalsh(root_K[:, None] * W * root_K)
+    squares = symmetric_eigen(root_K[:, None] * W * root_K)[0]
     return np.sqrt(np.maximum(squares, 0.0))
 
 

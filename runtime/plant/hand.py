@@ -9,6 +9,7 @@ estimate, since no hand of this kind is published with its inertia. Frames: flan
 import numpy as np
 
 from runtime.frames import Array, pose
+from runtime.linear import dot, matmul
 from runtime.plant.cell import HandSpec
 from runtime.robot.spec import Body
 
@@ -50,7 +51,7 @@ def palm_body(hand: HandSpec) -> Body:
     mass = hand.mass - sum(body.mass for body in fingers)
     cog = (hand.mass * hand.cog - sum(body.mass * body.cog for body in fingers)) / mass
     R = hand.X_flange_tool[:3, :3]
-    return Body(mass=mass, cog=cog, inertia=R @ box_inertia(mass, palm_box(hand)[0]) @ R.T)
+    return Body(mass=mass, cog=cog, inertia=matmul(R, box_inertia(mass, palm_box(hand)[0]), R.T))
 
 
 def hand_body(hand: HandSpec, opening: float | None = None) -> Body:
@@ -64,11 +65,11 @@ def hand_body(hand: HandSpec, opening: float | None = None) -> Body:
 def _in_flange(hand: HandSpec, side: str, y: float) -> Body:
     own = finger_body(hand, side)
     R, p = hand.X_flange_tool[:3, :3], hand.X_flange_tool[:3, 3]
-    cog = p + R @ (own.cog + np.array([0.0, finger_sign(side) * y, 0.0]))
-    return Body(mass=own.mass, cog=cog, inertia=R @ own.inertia @ R.T)
+    cog = p + matmul(R, own.cog + np.array([0.0, finger_sign(side) * y, 0.0]))
+    return Body(mass=own.mass, cog=cog, inertia=matmul(R, own.inertia, R.T))
 
 
 def _about(body: Body, point: Array) -> Array:
     """Return the inertia (3, 3) of a body about ``point`` (parallel axes)."""
     r = body.cog - point
-    return np.asarray(body.inertia + body.mass * (float(r @ r) * np.eye(3) - np.outer(r, r)))
+    return np.asarray(body.inertia + body.mass * (dot(r, r) * np.eye(3) - np.outer(r, r)))

@@ -39,7 +39,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from runtime.decompositions import symmetric_eigen
 from runtime.frames import Array, pose
+from runtime.linear import matmul, norm
 from runtime.plant.cell import CellSpec, HandSpec, ObstacleSpec, PartSpec
 from runtime.plant.hand import FINGERS, box_inertia, finger_body, finger_sign, palm_body, palm_box
 from runtime.robot.spec import AxisSpec, Body, RobotSpec
@@ -226,7 +228,7 @@ def _link_geom(body: ET.Element, index: int, end: Array) -> None:
     """Draw a link as a capsule to the next joint; only links beyond the first can run into something."""
     radius = _LINK_RADIUS[0] if index < 3 else _LINK_RADIUS[1]
     group, name = ("arm" if index else "", f"link{index + 1}")
-    if float(np.linalg.norm(end)) < 1e-3:
+    if norm(end) < 1e-3:
         _geom(body, name, group, type="sphere", size=repr(radius), rgba="0.95 0.75 0.2 1")
         return
     fromto = _row([0.0, 0.0, 0.0, *end])
@@ -236,7 +238,7 @@ def _link_geom(body: ET.Element, index: int, end: Array) -> None:
 def _hand(flange: ET.Element, hand: HandSpec, timestep: float) -> None:
     _inertial(flange, palm_body(hand))
     size, X_tool_palm = palm_box(hand)
-    X_flange_palm = hand.X_flange_tool @ X_tool_palm
+    X_flange_palm = matmul(hand.X_flange_tool, X_tool_palm)
     _geom(flange, "palm", "hand", X_flange_palm, type="box", size=_row(size / 2.0), rgba="0.3 0.32 0.35 1")
     ET.SubElement(flange, "site", {"name": "tool", "size": "0.003", **_place(hand.X_flange_tool)})
     for side in FINGERS:
@@ -339,7 +341,7 @@ def _body(parent: ET.Element, name: str, X: Array) -> ET.Element:
 
 def _inertial(parent: ET.Element, body: Body) -> None:
     """State a body by its principal moments: MuJoCo's own diagonalisation stops at fewer digits."""
-    moments, axes = np.linalg.eigh(body.inertia)
+    moments, axes = symmetric_eigen(body.inertia)
     if np.linalg.det(axes) < 0.0:
         axes[:, 0] = -axes[:, 0]
     # a body on the edge of the triangle inequality (a rod, a corrected link) may miss it by rounding
@@ -367,11 +369,11 @@ def quaternion(R: Array) -> Array:
     if pivot == 0:
         q[0] = 1.0 + trace
         q[1:] = R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]
-        return q / float(np.linalg.norm(q))
+        return q / norm(q)
     i, j, k = ((0, 1, 2), (1, 2, 0), (2, 0, 1))[pivot - 1]
     q[1 + i] = 1.0 + R[i, i] - R[j, j] - R[k, k]
     q[0], q[1 + j], q[1 + k] = R[k, j] - R[j, k], R[j, i] + R[i, j], R[k, i] + R[i, k]
-    return q / float(np.linalg.norm(q))
+    return q / norm(q)
 
 
 def _row(values: Iterable[float]) -> str:

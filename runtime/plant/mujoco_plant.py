@@ -24,6 +24,7 @@ import mujoco
 import numpy as np
 
 from runtime.frames import Array, pose
+from runtime.linear import dot, norm
 from runtime.plant.cell import CellSpec
 from runtime.plant.gears import elastic_axes, physics_steps
 from runtime.plant.hand import FINGERS
@@ -207,7 +208,7 @@ class MujocoPlant:
         for contact in (data.contact[index] for index in range(data.ncon)):
             pair = [self._geom_names[geom] for geom in contact.geom]
             pad, part = sorted(pair)  # "pad_left" before "part:..."
-            if pad.startswith("pad_") and part.startswith("part:") and abs(contact.frame[:3] @ y_tool) > SIDEWAYS:
+            if pad.startswith("pad_") and part.startswith("part:") and abs(dot(contact.frame[:3], y_tool)) > SIDEWAYS:
                 pads[part.removeprefix("part:")].add(pad)
         return tuple(name for name, touched in pads.items() if len(touched) == len(FINGERS))
 
@@ -365,5 +366,5 @@ def _read_only(view: Array) -> Array:
 
 def _pose(values: Array) -> Array:
     R = np.empty(9)
-    mujoco.mju_quat2Mat(R, values[3:] / float(np.linalg.norm(values[3:])))
+    mujoco.mju_quat2Mat(R, values[3:] / norm(values[3:]))
     return pose(values[:3], R.reshape(3, 3))

@@ -10,6 +10,7 @@ within ``REACH`` of the tool point, and the arm then carries that part's true ma
 import numpy as np
 
 from runtime.frames import Array, inverse
+from runtime.linear import matmul, norm
 from runtime.plant.cell import CellSpec
 from runtime.plant.plant import HandState
 from runtime.plant.touches import Pair
@@ -59,7 +60,7 @@ class RigidPlant:
         if closed and not self._closed:
             self._take()
         if not closed and self._holding is not None:
-            self._parts[self._holding] = self._X_world_tool() @ self._X_tool_part
+            self._parts[self._holding] = matmul(self._X_world_tool(), self._X_tool_part)
             self._holding = None
         self._closed = closed
         self._carry()
@@ -73,7 +74,7 @@ class RigidPlant:
         """Return the pose X_world_part (4, 4) of every part."""
         poses = dict(self._parts)
         if self._holding is not None:
-            poses[self._holding] = self._X_world_tool() @ self._X_tool_part
+            poses[self._holding] = matmul(self._X_world_tool(), self._X_tool_part)
         return poses
 
     def touching(self) -> frozenset[Pair]:
@@ -85,13 +86,13 @@ class RigidPlant:
         return () if self._holding is None else (self._holding,)
 
     def _X_world_tool(self) -> Array:
-        return np.asarray(self._model.flange(self.q) @ self._cell.hand.X_flange_tool)
+        return np.asarray(matmul(self._model.flange(self.q), self._cell.hand.X_flange_tool))
 
     def _take(self) -> None:
         X_tool_world = inverse(self._X_world_tool())
         for name, X_world_part in self._parts.items():
-            X_tool_part = X_tool_world @ X_world_part
-            if float(np.linalg.norm(X_tool_part[:3, 3])) <= REACH:
+            X_tool_part = matmul(X_tool_world, X_world_part)
+            if norm(X_tool_part[:3, 3]) <= REACH:
                 self._holding, self._X_tool_part = name, X_tool_part
                 return
 
@@ -101,6 +102,6 @@ class RigidPlant:
         mass, moment = hand.mass, hand.mass * np.asarray(hand.cog)
         for part in self._cell.parts:
             if part.name == self._holding:
-                centre = (hand.X_flange_tool @ self._X_tool_part)[:3, 3]
+                centre = matmul(hand.X_flange_tool, self._X_tool_part)[:3, 3]
                 mass, moment = mass + part.mass, moment + part.mass * centre
         self._model.set_payload(Payload(mass=mass, cog=moment / mass if mass else np.zeros(3)))

@@ -22,6 +22,7 @@ from typing import Literal, cast
 import numpy as np
 
 from runtime.frames import Array, frozen, rotation_from_rpy, rpy_from_rotation
+from runtime.linear import matmul, norm
 from runtime.motion.hold import weld_line_frame
 from runtime.motion.seam import SeamLimits
 from runtime.tomlfile import Table, inside, read_source
@@ -75,7 +76,7 @@ class SeamSensor:
 
         ``travel`` (3,) is the direction of the path; where it has none, that of the move before counts.
         """
-        if float(np.linalg.norm(travel)) > SHORTEST_TRAVEL:
+        if norm(travel) > SHORTEST_TRAVEL:
             self._travel = travel
         spec = self._spec
         noise, lost = self._random.normal(size=6) * spec.noise, self._random.random() < spec.lost
@@ -85,8 +86,8 @@ class SeamSensor:
         if not spec.in_line_frame:
             return seen
         R_world_line = weld_line_frame(self._travel)
-        turned = R_world_line @ rotation_from_rpy(seen[3:]) @ R_world_line.T
-        return np.concatenate([R_world_line @ seen[:3], rpy_from_rotation(turned)])
+        turned = matmul(R_world_line, rotation_from_rpy(seen[3:]), R_world_line.T)
+        return np.concatenate([matmul(R_world_line, seen[:3]), rpy_from_rotation(turned)])
 
 
 def read_sensor(table: Table, folder: Path | None) -> SensorSpec:

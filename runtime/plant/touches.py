@@ -22,6 +22,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from runtime.frames import Array, rotation_angle
+from runtime.linear import matmul, norm
 from runtime.plant.hand import FINGERS
 from runtime.units import DEG, MM
 
@@ -226,7 +227,7 @@ class Touches:
 
     def _in_hand(self, part: str) -> Array:
         bodies = self._bodies
-        return np.asarray((bodies.p[self._index[part]] - bodies.p_tool) @ bodies.R_tool)
+        return np.asarray(matmul(bodies.p[self._index[part]] - bodies.p_tool, bodies.R_tool))
 
     def _grip(self, seen: _Seen) -> None:
         """Take a part between the pads of the closed hand as held; that it was pushed to there was its grasp."""
@@ -335,11 +336,11 @@ class Touches:
     def _displace(self, going: _Open, pushed: bool) -> None:
         p, R = _pose(self._bodies, going.body, going.in_tool)
         touch, way = going.touch, p - going.p
-        reach = float(np.linalg.norm(self._corners[going.body] @ (R - going.R).T + way, axis=1).max())
+        reach = float(np.linalg.norm(matmul(self._corners[going.body], (R - going.R).T) + way, axis=1).max())
         if not pushed:
             touch.slid = touch.slid if reach <= touch.slid else reach
         elif not reach <= touch.reach:
-            touch.reach, touch.moved = reach, float(np.linalg.norm(way))
+            touch.reach, touch.moved = reach, norm(way)
             touch.turned = rotation_angle(going.R, R)
 
     def _moves(self, body: int) -> bool:
@@ -351,7 +352,7 @@ def _pose(bodies: Bodies, body: int, in_tool: bool) -> tuple[Array, Array]:
     p, R = bodies.p[body], bodies.R[body]
     if not in_tool:
         return p.copy(), R.copy()
-    return np.asarray((p - bodies.p_tool) @ bodies.R_tool), np.asarray(bodies.R_tool.T @ R)
+    return np.asarray(matmul(p - bodies.p_tool, bodies.R_tool)), np.asarray(matmul(bodies.R_tool.T, R))
 
 
 def shape_text(name: str) -> str:

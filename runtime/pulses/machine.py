@@ -11,6 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from runtime.frames import Array, frozen
+from runtime.linear import matmul
 from runtime.motion.commands import MoveLinear
 from runtime.motion.planner import LinePlanner
 from runtime.motion.speed import SpeedLimits
@@ -147,7 +148,7 @@ class RobotArm:
 
     def points(self, q: Array) -> Array:
         """Return the tool points (K, 3) m."""
-        return np.asarray((self._kinematics.forward(q) @ self._X_flange_tool)[..., :3, 3])
+        return np.asarray(matmul(self._kinematics.forward(q), self._X_flange_tool)[..., :3, 3])
 
     def described(self) -> dict[str, Any]:
         """Return the chain of axes."""

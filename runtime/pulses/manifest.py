@@ -20,6 +20,7 @@ from typing import Any, NoReturn
 import numpy as np
 
 from runtime.frames import Array, frozen
+from runtime.linear import matmul
 from runtime.tomlfile import MAX_ABS, FileFault
 
 MAX_MANIFEST_BYTES = 16_000_000
@@ -245,7 +246,7 @@ class Object:
             self.fail(key, "must be a pose of 4 rows of 4 numbers")
         X = np.array([self._numbers(f"{key}.{row}", each, 4, -MAX_ABS, MAX_ABS) for row, each in enumerate(value, 1)])
         R = X[:3, :3]
-        off = max(float(np.abs(R @ R.T - np.eye(3)).max()), float(np.abs(X[3] - (0.0, 0.0, 0.0, 1.0)).max()))
+        off = max(float(np.abs(matmul(R, R.T) - np.eye(3)).max()), float(np.abs(X[3] - (0.0, 0.0, 0.0, 1.0)).max()))
         if off > POSE_TOLERANCE or np.linalg.det(R) < 0.0:
             self.fail(key, "is not a pose: three rows of a rotation with a position in m, then 0, 0, 0, 1")
         return frozen(X)

@@ -37,6 +37,7 @@ import numpy as np
 import runtime.pulses.codes  # noqa: F401 - registers what is raised here
 from runtime.faults import Fault
 from runtime.frames import Array, frozen, principal_axes
+from runtime.linear import norm
 from runtime.motion.commands import MoveLinear
 from runtime.motion.speed import SpeedLimits, bound
 from runtime.pulses.machine import Joint, Stand
@@ -123,7 +124,7 @@ class Mechanism:
                                   ("ACCEL in %", command.acceleration * 100.0, 100.0)):  # fmt: skip
             if not 0.0 < value <= most * (1.0 + 1e-12):
                 raise Fault("RBL404", f"{name} is {value:g} and must be above 0 and at most {most:g}")
-        length = float(np.linalg.norm(end - start))
+        length = norm(end - start)
         extents = [(length, speed, self.acceleration * command.acceleration, np.inf)]
         if turn:  # as fast as the joint that turns it; what its limits leave of that is found on the steps
             joint = self.joints[-1]
@@ -206,7 +207,7 @@ class MechanismWay:
     @property
     def length(self) -> float:
         """Way of the tool point, m."""
-        return float(np.linalg.norm(self.ends[1] - self.ends[0]))
+        return norm(self.ends[1] - self.ends[0])
 
     def joints(self, s: Array) -> Array:
         """Return joint values (N, M) at path parameters s (N,); ``Fault`` RBL410, 411, 412."""

@@ -18,6 +18,7 @@ import numpy as np
 import runtime.pulses.codes  # noqa: F401 - registers what is raised here
 from runtime.faults import Fault
 from runtime.frames import Array
+from runtime.linear import dot, matmul
 from runtime.motion.commands import MoveLinear
 from runtime.motion.speed import MAX_DURATION, SpeedLimits
 from runtime.pulses.channels import Channel
@@ -211,8 +212,8 @@ def _measured(machine: Machine, way: Way, steps: EqualTimeSteps | None, q: Array
 def off_line(points: Array, start: Array, end: Array) -> Array:
     """Return the distance (K,) m of points (K, 3) from the segment between two points (3,)."""
     way = end - start
-    length2 = float(way @ way)
-    along = np.clip((points - start) @ way / length2, 0.0, 1.0) if length2 > 0.0 else np.zeros(len(points))
+    length2 = dot(way, way)
+    along = np.clip(matmul(points - start, way) / length2, 0.0, 1.0) if length2 > 0.0 else np.zeros(len(points))
     return np.asarray(np.linalg.norm(points - (start + along[:, None] * way), axis=1))
 
 

@@ -16,6 +16,7 @@ from itertools import pairwise
 import numpy as np
 
 from runtime.frames import Array, frozen
+from runtime.linear import matmul, norm
 from runtime.pulses.exported import Export, Mechanism, Move, Table
 from runtime.units import MM
 
@@ -96,21 +97,21 @@ def tool_points(export: Export, pulses: Array) -> Array:
 
 def _arm_points(mechanism: Mechanism, q: Array) -> Array:
     """Take the tool point from the last frame to the world, joint by joint: q (K, n) rad -> (K, 3) m."""
-    tool = (mechanism.X_last_flange @ mechanism.X_flange_tool)[:3, 3]
+    tool = matmul(mechanism.X_last_flange, mechanism.X_flange_tool)[:3, 3]
     points = np.tile(tool, (len(q), 1))
     for placement, angle in reversed(list(zip(mechanism.placements, q.T, strict=True))):
         c, s = np.cos(angle), np.sin(angle)
         x, y, z = points.T
         turned = np.stack([c * x - s * y, s * x + c * y, z], axis=-1)
-        points = turned @ placement[:3, :3].T + placement[:3, 3]
+        points = matmul(turned, placement[:3, :3].T) + placement[:3, 3]
     return points
 
 
 def distances(points: Array, start: Array, end: Array) -> Array:
     """Return the distance (K,) of points (K, 3) from the straight segment between two points (3,), all in m."""
     way = end - start
-    length = float(np.linalg.norm(way))
-    along = np.zeros(len(points)) if length < 1e-12 else np.clip((points - start) @ way / length**2, 0.0, 1.0)
+    length = norm(way)
+    along = np.zeros(len(points)) if length < 1e-12 else np.clip(matmul(points - start, way) / length**2, 0.0, 1.0)
     return np.asarray(np.linalg.norm(points - start - along[:, None] * way, axis=1))
 
 
@@ -137,7 +138,7 @@ def _replay(export: Export, move: Move, samples: int) -> MoveReplay:
         error_mm=frozen(error),
         rows_mm=float(error[~between].max()),
         between_mm=float(error[between].max(initial=0.0)),
-        end_mm=float(np.linalg.norm(points[-1] - move.end)) / MM,
+        end_mm=norm(points[-1] - move.end) / MM,
         counts=tuple(_count(table) for table in move.tables),
     )
 

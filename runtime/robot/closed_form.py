@@ -22,7 +22,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runtime.decompositions import solve
 from runtime.frames import Array, frozen, inverse, pose
+from runtime.linear import dot, matmul, norm
 from runtime.robot import opw
 from runtime.robot.opw import Placed, PlacedOpw
 from runtime.robot.spec import OpwParameters
@@ -55,9 +57,9 @@ def find_opw(axes: Sequence[Placed], X_last_flange: Array) -> OpwParameters | No
     frames = []
     X = np.eye(4)
     for axis in axes:
-        X = X @ axis.placement
+        X = matmul(X, axis.placement)
         frames.append(X)
-    params = _parameters(np.stack(frames), X @ X_last_flange)
+    params = _parameters(np.stack(frames), matmul(X, X_last_flange))
     if params is None:
         return None
     none = np.zeros(0)
@@ -68,32 +70,32 @@ def find_opw(axes: Sequence[Placed], X_last_flange: Array) -> OpwParameters | No
 def _parameters(frames: Array, X_base_flange: Array) -> OpwParameters | None:
     p, z = frames[:, :3, 3], frames[:, :3, 2]
     wrist = _meeting_point(p[3:], z[3:])
-    square = np.array([z[0] @ z[1], z[2] @ z[3], z[3] @ z[4], z[4] @ z[5]])
-    if wrist is None or not np.abs(square).max() < _LOOSE or not np.linalg.norm(np.cross(z[1], z[2])) < _LOOSE:
+    square = np.array([matmul(z[0], z[1]), matmul(z[2], z[3]), matmul(z[3], z[4]), matmul(z[4], z[5])])
+    if wrist is None or not np.abs(square).max() < _LOOSE or not norm(np.cross(z[1], z[2])) < _LOOSE:
         return None
     X_base_opw, signs = _model_frame(p, z)
     a1, c1 = _across(X_base_opw, p[1])
     x3, z3 = _across(X_base_opw, p[2])
     c2, t2 = math.hypot(x3 - a1, z3 - c1), math.atan2(x3 - a1, z3 - c1)
     to_opw = X_base_opw[:3, :3].T
-    p_wrist = to_opw @ (wrist - X_base_opw[:3, 3])
+    p_wrist = matmul(to_opw, wrist - X_base_opw[:3, 3])
     fore = np.array([p_wrist[0] - x3, 0.0, p_wrist[2] - z3])
-    e4, e5, e6 = (to_opw @ z[i] for i in (3, 4, 5))
-    signs[3] = -1.0 if fore @ e4 < -_SAME else 1.0
+    e4, e5, e6 = (matmul(to_opw, z[i]) for i in (3, 4, 5))
+    signs[3] = -1.0 if matmul(fore, e4) < -_SAME else 1.0
     e4 = signs[3] * e4
     t23 = math.atan2(e4[0], e4[2])
     x4 = np.array([math.cos(t23), 0.0, -math.sin(t23)])  # where x points after t2 and t3
-    t4 = math.atan2(-float(e5 @ x4), float(e5[1]))
+    t4 = math.atan2(-dot(e5, x4), float(e5[1]))
     if math.cos(t4) < -_SAME:
-        signs[4], t4 = -1.0, math.atan2(float(e5 @ x4), -float(e5[1]))
+        signs[4], t4 = -1.0, math.atan2(dot(e5, x4), -float(e5[1]))
     x4_turned = math.cos(t4) * x4 + math.sin(t4) * np.array([0.0, 1.0, 0.0])
-    reach = float((to_opw @ (X_base_flange[:3, 3] - wrist)) @ e6)
-    if reach < -_SAME or (abs(reach) <= _SAME and float(X_base_flange[:3, 2] @ z[5]) < 0.0):
+    reach = float(matmul(to_opw, X_base_flange[:3, 3] - wrist, e6))
+    if reach < -_SAME or (abs(reach) <= _SAME and dot(X_base_flange[:3, 2], z[5]) < 0.0):
         signs[5], e6, reach = -1.0, -e6, -reach
-    t5 = math.atan2(float(e6 @ x4_turned), float(e6 @ e4))
+    t5 = math.atan2(dot(e6, x4_turned), dot(e6, e4))
     return _with_ends(
         OpwParameters(
-            a1=a1, a2=float(fore @ x4), b=float(p_wrist[1]), c1=c1, c2=c2, c3=float(fore @ e4), c4=reach,
+            a1=a1, a2=dot(fore, x4), b=float(p_wrist[1]), c1=c1, c2=c2, c3=dot(fore, e4), c4=reach,
             offsets=frozen([0.0, t2, t23 - t2, t4, t5, 0.0]), signs=frozen(signs),
         ),
         X_base_opw,
@@ -104,22 +106,22 @@ def _parameters(frames: Array, X_base_flange: Array) -> OpwParameters | None:
 def _model_frame(p: Array, z: Array) -> tuple[Array, Array]:
     """Return X_base_opw and the signs (6,) with those of J1 to J3 set."""
     signs = np.ones(6)
-    signs[0] = -1.0 if z[0] @ [0.0, 0.0, 1.0] < -0.5 else 1.0
+    signs[0] = -1.0 if z[0][2] < -0.5 else 1.0
     up = signs[0] * z[0]
-    origin = p[0] - (p[0] @ up) * up  # the foot of the base origin on J1
-    y = z[1] - (z[1] @ up) * up
-    y /= np.linalg.norm(y)
-    a1 = float((p[1] - origin) @ np.cross(y, up))
+    origin = p[0] - matmul(p[0], up) * up  # the foot of the base origin on J1
+    y = z[1] - matmul(z[1], up) * up
+    y /= norm(y)
+    a1 = dot(p[1] - origin, np.cross(y, up))
     forward = np.cross(y, up)
     side = a1 if abs(a1) > _LOOSE else float(forward[0] if abs(forward[0]) > _LOOSE else forward[1])
     y = -y if side < 0.0 else y
-    signs[1], signs[2] = (1.0 if z[i] @ y > 0.0 else -1.0 for i in (1, 2))
+    signs[1], signs[2] = (1.0 if matmul(z[i], y) > 0.0 else -1.0 for i in (1, 2))
     return pose(origin, np.stack([np.cross(y, up), y, up], axis=-1)), signs
 
 
 def _across(X_base_opw: Array, point: Array) -> tuple[float, float]:
     """Return x and z of a point (3,) in the model frame."""
-    local = X_base_opw[:3, :3].T @ (point - X_base_opw[:3, 3])
+    local = matmul(X_base_opw[:3, :3].T, point - X_base_opw[:3, 3])
     return float(local[0]), float(local[2])
 
 
@@ -129,16 +131,16 @@ def _meeting_point(p: Array, z: Array) -> Array | None:
     normal = across.sum(axis=0)
     if not np.linalg.cond(normal) < 1e6:
         return None
-    point = np.linalg.solve(normal, (across @ p[..., None]).sum(axis=0))[:, 0]
-    miss = np.linalg.norm((across @ (point - p)[..., None])[..., 0], axis=-1)
+    point = solve(normal, matmul(across, p[..., None]).sum(axis=0)[:, 0])
+    miss = np.linalg.norm(matmul(across, (point - p)[..., None])[..., 0], axis=-1)
     return point if miss.max() < _LOOSE else None
 
 
 def _with_ends(params: OpwParameters, X_base_opw: Array, X_base_flange: Array) -> OpwParameters:
     """Return the parameters with what is left before and behind the model, as offsets of J1 and J6 where it can be."""
-    X_base_end = X_base_opw @ opw.forward(params, np.zeros(6))
+    X_base_end = matmul(X_base_opw, opw.forward(params, np.zeros(6)))
     t1, before = _split(X_base_opw)
-    t6, behind = _split(inverse(X_base_end) @ X_base_flange)
+    t6, behind = _split(matmul(inverse(X_base_end), X_base_flange))
     offsets = np.array(params.offsets)
     offsets[0] += t1
     offsets[5] += t6

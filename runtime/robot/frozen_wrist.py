@@ -22,7 +22,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runtime.decompositions import least_squares
 from runtime.frames import Array, inverse
+from runtime.linear import dot, matmul
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.opw import TURN, PlacedOpw, arm_angles
 from runtime.robot.spec import OpwParameters
@@ -92,7 +94,7 @@ class FrozenWrist:
     def _closed(self, params: OpwParameters, p: Array, q_wrist: Array, side: Side) -> Array:
         if isinstance(params, PlacedOpw):
             X = inverse(params.X_base_opw)
-            p = p @ X[:3, :3].T + X[:3, 3]
+            p = matmul(p, X[:3, :3].T) + X[:3, 3]
         a2, b, c3 = self._forearm(params, q_wrist)
         with np.errstate(invalid="ignore"):
             t1, t2, t3 = arm_angles(params, p, side.arm, side.elbow, a2=a2, b=b, c3=c3)
@@ -104,7 +106,7 @@ class FrozenWrist:
         """Return a2*, b* and c3* (N,) of the forearm that ends in the tool point, wrist at q_wrist (N, 3)."""
         t4, t5, t6 = (params.signs[3:] * q_wrist + params.offsets[3:]).T
         X = self._X_flange_tool
-        x, y, z = (params.X_opw_flange @ X if isinstance(params, PlacedOpw) else X)[:3, 3]
+        x, y, z = (matmul(params.X_opw_flange, X) if isinstance(params, PlacedOpw) else X)[:3, 3]
         z = z + params.c4
         c4, s4, c5, s5, c6, s6 = np.cos(t4), np.sin(t4), np.cos(t5), np.sin(t5), np.cos(t6), np.sin(t6)
         u, w = c6 * x - s6 * y, s6 * x + c6 * y  # after Rz(t6)
@@ -127,9 +129,9 @@ class FrozenWrist:
         for _ in range(_NEWTON_STEPS):
             p_tool, J = self._kinematics.newton.point(q, offset)
             error = p - p_tool
-            if not float(error @ error) > NEWTON_TOLERANCE**2:
+            if not dot(error, error) > NEWTON_TOLERANCE**2:
                 return q[: self._main] if np.isfinite(q).all() else None
-            step = np.linalg.lstsq(J[:, : self._main], error, rcond=1e-6)[0]
+            step = least_squares(J[:, : self._main], error, rcond=1e-6)
             largest = float(np.abs(step).max())
             q[: self._main] += step if largest <= _LARGEST_STEP else step * (_LARGEST_STEP / largest)
         return None

@@ -24,6 +24,7 @@ from typing import Literal, cast
 import numpy as np
 
 from runtime.frames import Array, inverse, pose
+from runtime.linear import matmul, norm
 from runtime.robot.spec import dh_transform
 from runtime.tomlfile import Table
 from runtime.units import DEG
@@ -66,7 +67,8 @@ def _dh(tables: list[Table]) -> Geometry:
             table.number("a_m", low=-10.0, high=10.0),
             table.number("alpha_deg", low=-360.0, high=360.0) * DEG,
         )
-        placements.append(placement @ _turn(table.number("theta_offset_deg", 0.0, low=-360.0, high=360.0) * DEG))
+        offset = table.number("theta_offset_deg", 0.0, low=-360.0, high=360.0) * DEG
+        placements.append(matmul(placement, _turn(offset)))
         bodies.append(X_joint_dh)
         placement = X_joint_dh
     return Geometry(placements=tuple(placements), X_joint_body=tuple(bodies), X_last_flange=placement)
@@ -79,19 +81,19 @@ def _lines(tables: list[Table], flange: Table) -> Geometry:
         origin = np.array(table.numbers("origin_m", 3, low=-10.0, high=10.0))
         R_base_joint = _frame_about(_direction(table))
         X_base_joint = pose(origin, R_base_joint)
-        placements.append(inverse(X_base_before) @ X_base_joint)
+        placements.append(matmul(inverse(X_base_before), X_base_joint))
         bodies.append(pose(rotation=R_base_joint.T))
         X_base_before = X_base_joint
     return Geometry(
         placements=tuple(placements),
         X_joint_body=tuple(bodies),
-        X_last_flange=inverse(X_base_before) @ _flange(flange),
+        X_last_flange=matmul(inverse(X_base_before), _flange(flange)),
     )
 
 
 def _direction(table: Table) -> Array:
     direction = np.array(table.numbers("direction", 3, low=-10.0, high=10.0))
-    length = float(np.linalg.norm(direction))
+    length = norm(direction)
     if not length >= SHORTEST_DIRECTION:
         table.fail("RBL605", f"'{table.name('direction')}' has no direction", "write a vector such as [0, 1, 0]",
                    key="direction")  # fmt: skip
@@ -100,8 +102,8 @@ def _direction(table: Table) -> Array:
 
 def _frame_about(z: Array) -> Array:
     x = np.eye(3)[int(np.argmin(np.abs(z)))]
-    x = x - (x @ z) * z
-    x = x / float(np.linalg.norm(x))
+    x = x - matmul(x, z) * z
+    x = x / norm(x)
     return np.stack([x, np.cross(z, x), z], axis=1)
 
 
@@ -110,7 +112,7 @@ def _flange(table: Table) -> Array:
     position = table.numbers("position_m", 3, low=-10.0, high=10.0)
     rx, ry, rz = (angle * DEG for angle in table.numbers("rotation_deg", 3, low=-360.0, high=360.0))
     table.done()
-    return pose(position, _about(2, rz) @ _about(1, ry) @ _about(0, rx))
+    return pose(position, matmul(_about(2, rz), _about(1, ry), _about(0, rx)))
 
 
 def _about(axis: int, angle: float) -> Array:

@@ -20,6 +20,7 @@ from pathlib import PurePath
 import numpy as np
 
 from runtime.frames import Array, frozen, inverse, pose, rotation_about, skew
+from runtime.linear import matmul
 from runtime.robot.corrections import flat
 from runtime.robot.spec import Body, OpwParameters, inertia_defect, joint_label
 from runtime.robot.xmlfile import Element
@@ -129,7 +130,7 @@ def rotation_z_to(axis: Array) -> Array:
 def moved(body: Body, X: Array) -> Body:
     """Return a body given in frame b in frame a, X = X_a_b (4, 4)."""
     R = X[:3, :3]
-    return Body(mass=body.mass, cog=R @ body.cog + X[:3, 3], inertia=R @ body.inertia @ R.T)
+    return Body(mass=body.mass, cog=matmul(R, body.cog) + X[:3, 3], inertia=matmul(R, body.inertia, R.T))
 
 
 def combined(bodies: list[Body]) -> Body:
@@ -143,7 +144,7 @@ def combined(bodies: list[Body]) -> Body:
     inertia = np.zeros((3, 3))
     for body in bodies:
         r = skew(body.cog - cog)
-        inertia += body.inertia - body.mass * (r @ r)
+        inertia += body.inertia - body.mass * matmul(r, r)
     return Body(mass=mass, cog=frozen(cog), inertia=frozen(inertia))
 
 
@@ -168,7 +169,7 @@ def serial_chain(root: Node, path: str, name: str, flange: str | None) -> Import
         if node.hinge is not None:
             axes[-1] = _with_body(axes[-1], cluster, len(axes) - 1)
         turning = [
-            (X @ child.X_parent_node, child) for X, member in cluster for child in member.children if child.hinge
+            (matmul(X, child.X_parent_node), child) for X, member in cluster for child in member.children if child.hinge
         ]
         if not turning:
             break
@@ -181,7 +182,7 @@ def serial_chain(root: Node, path: str, name: str, flange: str | None) -> Import
             node.hinge.element.fail("RBL610", f"two joints are named {node.hinge.name!r}")
         seen.add(node.hinge.name)
         X_node_axis = pose(node.hinge.anchor, rotation_z_to(node.hinge.axis))
-        axes.append(_axis(node, node.hinge, X @ X_node_axis))
+        axes.append(_axis(node, node.hinge, matmul(X, X_node_axis)))
         X_axis_node = inverse(X_node_axis)
     if not FEWEST_AXES <= len(axes) <= MOST_AXES:
         root.element.fail(
@@ -229,7 +230,8 @@ def _fixed(node: Node, X: Array) -> Iterator[tuple[Array, Node]]:
     while todo:
         X_here, here = todo.pop()
         yield X_here, here
-        todo += [(X_here @ child.X_parent_node, child) for child in reversed(here.children) if child.hinge is None]
+        rigid = [child for child in reversed(here.children) if child.hinge is None]
+        todo += [(matmul(X_here, child.X_parent_node), child) for child in rigid]
 
 
 def _flange(cluster: list[tuple[Array, Node]], wanted: str | None, root: Node) -> tuple[str, Array]:

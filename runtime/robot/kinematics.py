@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from runtime.frames import Array, frozen, is_half_turn
+from runtime.linear import matmul
 from runtime.robot import opw
 from runtime.robot.closed_form import find_opw
 from runtime.robot.newton import NewtonSolver
@@ -87,12 +88,12 @@ class Kinematics:
         X = np.eye(4)
         for X in self._axis_frames(np.asarray(q, dtype=np.float64)):  # noqa: B007 - the last one is wanted
             pass
-        return np.asarray((X.reshape(-1, 4) @ self.spec.X_last_flange).reshape(X.shape))
+        return np.asarray(matmul(X.reshape(-1, 4), self.spec.X_last_flange).reshape(X.shape))
 
     def jacobian(self, q: ArrayLike) -> Array:
         """Return the Jacobian (..., 6, n): rows 0-2 velocity of the flange origin m/s per rad/s, 3-5 angular."""
         frames = list(self._axis_frames(np.asarray(q, dtype=np.float64)))
-        p_flange = (frames[-1] @ self.spec.X_last_flange)[..., :3, 3]
+        p_flange = matmul(frames[-1], self.spec.X_last_flange)[..., :3, 3]
         columns = [_twist(X, p_flange) for X in frames]
         return np.stack(columns, axis=-1)
 
@@ -197,7 +198,7 @@ class Kinematics:
         """Yield the frame of each axis, turned, in the base frame (..., 4, 4)."""
         X = np.eye(4)
         for i, axis in enumerate(self.spec.axes):
-            X = (X.reshape(-1, 4) @ axis.placement).reshape(X.shape)  # one product for all postures
+            X = matmul(X.reshape(-1, 4), axis.placement).reshape(X.shape)  # one product for all postures
             c, s = np.cos(q[..., i])[..., None], np.sin(q[..., i])[..., None]
             x, y = X[..., :, 0], X[..., :, 1]
             turned = np.empty((*q.shape[:-1], 4, 4))

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from runtime.frames import Array
+from runtime.linear import matmul
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.payload import Payload
 from runtime.robot.spec import AxisSpec, RobotSpec
@@ -43,9 +44,9 @@ def wrist_load(kinematics: Kinematics, q: Array, payload: Payload) -> WristLoad:
     J = kinematics.jacobian(q)[..., first:]
     R = kinematics.forward(q)[..., :3, :3]
     v, z = np.moveaxis(J[..., :3, :], -2, -1), np.moveaxis(J[..., 3:, :], -2, -1)
-    r = (R @ payload.cog)[..., None, :]
+    r = matmul(R, payload.cog)[..., None, :]
     w = v + np.cross(z, r)
-    own = R @ payload.inertia @ np.swapaxes(R, -1, -2)
+    own = matmul(R, payload.inertia, np.swapaxes(R, -1, -2))
     inertia = payload.mass * np.sum(w * w, axis=-1) + np.einsum("...ki,...ij,...kj->...k", z, own, z)
     return WristLoad(first=first, moment=payload.mass * GRAVITY * np.abs(w[..., 2]), inertia=inertia)
 

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from runtime.frames import Array, frozen
+from runtime.linear import matmul
 from runtime.robot.corrections import check_bodies, correct
 from runtime.robot.geometry import Geometry, read_form, read_geometry
 from runtime.robot.plausibility import doubt_bodies, doubt_limits_and_drives, in_tables, offsets
@@ -194,8 +195,8 @@ def _body(table: Table, X_joint_body: Array) -> Body:
         table.fail("RBL613", f"'{table.name('inertia_kg_m2')}' needs xx, yy, zz or xx, yy, zz, xy, xz, yz",
                    key="inertia_kg_m2")  # fmt: skip
     R = X_joint_body[:3, :3]
-    inertia = R @ inertia_matrix(values) @ R.T
-    return Body(mass=mass, cog=frozen(R @ cog + X_joint_body[:3, 3]), inertia=frozen(inertia))
+    inertia = matmul(R, inertia_matrix(values), R.T)
+    return Body(mass=mass, cog=frozen(matmul(R, cog) + X_joint_body[:3, 3]), inertia=frozen(inertia))
 
 
 def inertia_matrix(values: tuple[float, ...]) -> Array:

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from runtime.frames import Array, frozen, pose, rotation_about
+from runtime.linear import dot, matmul, norm
 from runtime.robot.imported import Hinge, Node, rotation_z_to
 from runtime.robot.spec import Body
 from runtime.robot.urdf import unit
@@ -242,7 +243,7 @@ def _body(body: Element, context: _Context, childclass: str, name: str) -> Body 
     else:
         I_own = np.diag(inertial.numbers("diaginertia", 3))
     mass = inertial.number("mass", low=0.0, high=HEAVIEST_LINK)
-    return Body(mass=mass, cog=frozen(X[:3, 3]), inertia=frozen(R @ I_own @ R.T))
+    return Body(mass=mass, cog=frozen(X[:3, 3]), inertia=frozen(matmul(R, I_own, R.T)))
 
 
 def _pose(element: Element, context: _Context) -> Array:
@@ -262,7 +263,7 @@ def _rotation(element: Element, context: _Context) -> Array:
 
 def _quat(element: Element, context: _Context) -> Array:
     q = np.array(element.numbers("quat", 4))
-    length = float(np.linalg.norm(q))
+    length = norm(q)
     if not length > 1e-9:
         element.fail("RBL605", "a quaternion of no length")
     w, x, y, z = q / length
@@ -280,7 +281,7 @@ def _euler(element: Element, context: _Context) -> Array:
     R = np.eye(3)
     for letter, angle in zip(context.eulerseq, element.numbers("euler", 3), strict=True):
         turn = rotation_about(np.eye(3)["xyz".index(letter.lower())], angle * context.angle)
-        R = R @ turn if letter.islower() else turn @ R
+        R = matmul(R, turn) if letter.islower() else matmul(turn, R)
     return R
 
 
@@ -292,7 +293,7 @@ def _axisangle(element: Element, context: _Context) -> Array:
 def _xyaxes(element: Element, context: _Context) -> Array:
     values = np.array(element.numbers("xyaxes", 6))
     x = _direction(element, values[:3])
-    y = _direction(element, values[3:] - (values[3:] @ x) * x)
+    y = _direction(element, values[3:] - matmul(values[3:], x) * x)
     return np.stack([x, y, np.cross(x, y)], axis=-1)
 
 
@@ -301,7 +302,7 @@ def _zaxis(element: Element, context: _Context) -> Array:
 
 
 def _direction(element: Element, v: Array) -> Array:
-    length = math.sqrt(float(v @ v))
+    length = math.sqrt(dot(v, v))
     if not length > 1e-9:
         element.fail("RBL605", f"an axis of <{element.tag}> has no direction")
     return v / length

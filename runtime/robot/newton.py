@@ -21,7 +21,9 @@ from collections.abc import Sequence
 import numpy as np
 import pinocchio as pin
 
+from runtime.decompositions import solve
 from runtime.frames import Array
+from runtime.linear import dot, matmul, norm
 
 TOLERANCE = 1e-10
 """A pose is met when position (m) and orientation (rad) are within this of it."""
@@ -73,15 +75,15 @@ class NewtonSolver:
         """Return joint angles (n,) that meet one pose (4, 4), nearest in steps from q_start (n,); NaN when none do."""
         q = np.array(q_start, dtype=np.float64)
         e = self._error(X_base_flange, q)
-        size, worse = float(e @ e), 1.0
+        size, worse = dot(e, e), 1.0
         for _ in range(STEPS):
-            if max(np.linalg.norm(e[:3]), np.linalg.norm(e[3:])) < TOLERANCE:
+            if max(norm(e[:3]), norm(e[3:])) < TOLERANCE:
                 return q
             if not worse < _WORST_DAMPING:
                 break
             trial = q + self._step(q, e, DAMPING * size * worse)
             e_trial = self._error(X_base_flange, trial)
-            size_trial = float(e_trial @ e_trial)
+            size_trial = dot(e_trial, e_trial)
             if size_trial < size:
                 q, e, size, worse = trial, e_trial, size_trial, max(1.0, 0.1 * worse)
             else:
@@ -131,16 +133,16 @@ class NewtonSolver:
         here = self._data.oMi[self.n] * self._flange
         e = np.empty(6)
         e[:3] = X_base_flange[:3, 3] - here.translation
-        e[3:] = pin.log3(X_base_flange[:3, :3] @ here.rotation.T)
+        e[3:] = pin.log3(matmul(X_base_flange[:3, :3], here.rotation.T))
         return e
 
     def _step(self, q: Array, e: Array, mu: float) -> Array:
         J = self._jacobian(q)
         damped = mu * self._eye
         if self.n < _DETERMINED:
-            dq = np.linalg.solve(J.T @ J + damped + 1e-15 * self._eye, J.T @ e)
+            dq = solve(matmul(J.T, J) + damped + 1e-15 * self._eye, matmul(J.T, e))
         else:
-            dq = J.T @ np.linalg.solve(J @ J.T + damped + 1e-15 * self._eye, e)
+            dq = matmul(J.T, solve(matmul(J, J.T) + damped + 1e-15 * self._eye, e))
         largest = float(np.abs(dq).max())
         return np.asarray(dq if largest <= LARGEST_STEP else dq * (LARGEST_STEP / largest))
 

@@ -65,6 +65,7 @@ from numpy.typing import ArrayLike
 
 from runtime.frames import Array, pose, rotation_about
 from runtime.frames import inverse as inverse_pose
+from runtime.linear import matmul
 from runtime.robot.spec import OpwParameters
 
 ROUNDING = 5e-13
@@ -192,12 +193,12 @@ def forward(params: OpwParameters, q: ArrayLike) -> Array:
     p_waist_wrist = (
         np.array([params.a1, params.b, 0.0])
         + params.c2 * R_waist_upper[..., :, 2]
-        + R_waist_fore @ np.array([params.a2, 0.0, params.c3])
+        + matmul(R_waist_fore, np.array([params.a2, 0.0, params.c3]))
     )
-    R = R_base_waist @ R_waist_fore @ rotation_about(_Z, t4) @ rotation_about(y, t5) @ rotation_about(_Z, t6)
-    p = (R_base_waist @ p_waist_wrist[..., None])[..., 0] + params.c1 * _Z + params.c4 * R[..., :, 2]
+    R = matmul(R_base_waist, R_waist_fore, rotation_about(_Z, t4), rotation_about(y, t5), rotation_about(_Z, t6))
+    p = matmul(R_base_waist, p_waist_wrist[..., None])[..., 0] + params.c1 * _Z + params.c4 * R[..., :, 2]
     X = pose(p, R)
-    return np.asarray(params.X_base_opw @ X @ params.X_opw_flange) if isinstance(params, PlacedOpw) else X
+    return np.asarray(matmul(params.X_base_opw, X, params.X_opw_flange)) if isinstance(params, PlacedOpw) else X
 
 
 def mismatch(spec: Geometry) -> float:
@@ -211,8 +212,8 @@ def mismatch(spec: Geometry) -> float:
         raise ValueError(f"{spec.name} has no closed form")
     X = np.eye(4)
     for axis, angles in zip(spec.axes, _PROBES.T, strict=True):
-        X = X @ axis.placement @ pose(rotation=rotation_about(_Z, angles))
-    difference = forward(spec.opw, _PROBES) - X @ spec.X_last_flange
+        X = matmul(X, axis.placement, pose(rotation=rotation_about(_Z, angles)))
+    difference = forward(spec.opw, _PROBES) - matmul(X, spec.X_last_flange)
     position = np.linalg.norm(difference[:, :3, 3], axis=-1)
     orientation = np.linalg.norm(difference[:, :3, :3], axis=(-2, -1)) / math.sqrt(2.0)
     return float(np.max(np.maximum(position, orientation)))
@@ -259,7 +260,7 @@ def _solve(params: OpwParameters, X: Array, signs: Array, near: Array | None) ->
     """Solve poses X (..., 4, 4) for branch signs (3, ...), broadcast against each other."""
     reference = params.offsets if near is None else params.signs * near + params.offsets
     if isinstance(params, PlacedOpw):
-        X = inverse_pose(params.X_base_opw) @ X @ inverse_pose(params.X_opw_flange)
+        X = matmul(inverse_pose(params.X_base_opw), X, inverse_pose(params.X_opw_flange))
     R, p = X[..., :3, :3], X[..., :3, 3]
     with np.errstate(invalid="ignore"):
         t1, t2, t3 = arm_angles(params, p - params.c4 * R[..., :, 2], signs[0], signs[1], t1_free=reference[..., 0])

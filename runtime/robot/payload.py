@@ -13,6 +13,7 @@ import numpy as np
 
 from runtime.faults import Fault
 from runtime.frames import Array, frozen
+from runtime.linear import norm
 from runtime.robot.spec import inertia_defect
 
 MAX_COG_DISTANCE = 2.0
@@ -41,7 +42,7 @@ def declared(mass: float, cog: Sequence[float] | Array, rated: float, inertia: A
     if not mass <= rated:
         raise Fault("RBL402", f"the payload of {mass:g} kg is over the rated {rated:g} kg")
     r = np.asarray(cog, dtype=np.float64)
-    if not float(np.linalg.norm(r)) <= MAX_COG_DISTANCE:
+    if not norm(r) <= MAX_COG_DISTANCE:
         raise Fault("RBL403", f"the centre of gravity {tuple(r * 1000.0)} mm is not on this arm")
     own = np.zeros((3, 3)) if inertia is None else np.asarray(inertia, dtype=np.float64)
     if not np.isfinite(own).all() or inertia_defect(own) > 1e-9:

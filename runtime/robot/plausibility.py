@@ -21,6 +21,7 @@ from typing import Literal
 import numpy as np
 
 from runtime.frames import Array
+from runtime.linear import norm
 from runtime.robot.spec import AxisSpec, Body, joint_label
 from runtime.tomlfile import FileFault, Table
 from runtime.units import DEG, GRAVITY, MM
@@ -211,7 +212,7 @@ def weight_moment(bodies: Sequence[Body], offsets: Array) -> float:
 
 
 def _far(body: Body, size: float) -> bool:
-    return not float(np.linalg.norm(body.cog)) <= size
+    return not norm(body.cog) <= size
 
 
 def _spread(body: Body, size: float) -> bool:
@@ -235,7 +236,7 @@ _BODY_RULES = (
 def _body(body: Body | None, code: str) -> str:
     assert body is not None
     if code == "RBL628":
-        return f"{float(np.linalg.norm(body.cog)) / MM:.4g} mm"
+        return f"{norm(body.cog) / MM:.4g} mm"
     return f"{body.mass:g} kg with {float(np.linalg.eigvalsh(body.inertia)[2]):.3g} kg m2"
 
 

@@ -13,6 +13,7 @@ import math
 import numpy as np
 
 from runtime.frames import Array, frozen, pose, rotation_from_rpy
+from runtime.linear import dot, matmul
 from runtime.robot.imported import Hinge, Node
 from runtime.robot.spec import Body
 from runtime.robot.xmlfile import HEAVIEST_LINK, Element
@@ -126,7 +127,7 @@ def _hinge(joint: Element, ranged: bool) -> Hinge:
 def unit(element: Element, key: str) -> Array:
     """Return the direction (3,) of an attribute as a unit vector; RBL605 for one of no length."""
     values = np.array(element.numbers(key, 3))
-    length = math.sqrt(float(values @ values))
+    length = math.sqrt(dot(values, values))
     if not length > 1e-9:
         element.fail("RBL605", f"'{key}' of <{element.tag}> has no direction")
     return frozen(values / length)
@@ -151,4 +152,4 @@ def _body(link: Element) -> Body | None:
     R = X[:3, :3]
     I_own = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     kg = mass.number("value", low=0.0, high=HEAVIEST_LINK)
-    return Body(mass=kg, cog=frozen(X[:3, 3]), inertia=frozen(R @ I_own @ R.T))
+    return Body(mass=kg, cog=frozen(X[:3, 3]), inertia=frozen(matmul(R, I_own, R.T)))

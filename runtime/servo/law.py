@@ -41,6 +41,7 @@ import numpy as np
 from numpy import add, copyto, multiply, subtract
 
 from runtime.frames import Array
+from runtime.linear import matmul
 from runtime.profile import FeedforwardSource
 
 LEAD_S = 0.02
@@ -81,6 +82,7 @@ class ServoLaw:
         self._gamma = np.zeros(shape)
         self._work = np.zeros(shape)
         self._extra = np.zeros(shape)
+        self._terms = np.zeros((*shape, shape[-1]))
         self._velocity_gain = np.zeros(shape)
         self._acceleration_gain = np.zeros(shape)
         self._windup = np.zeros(shape)
@@ -174,22 +176,20 @@ class ServoLaw:
 
     def _through_rows(self, domega: Array) -> Array:
         """Return sum_k D'_ik Kv_k domega_k / Ktn_i of (9) for the coupled axes, in place of the second buffer."""
-        if domega.ndim == 1:
-            return np.dot(self._velocity_rows, domega, out=self._extra)
-        copyto(self._extra, np.matmul(self._velocity_rows, domega[..., None])[..., 0])
-        return self._extra
+        multiply(self._velocity_rows, domega[..., None, :], self._terms)
+        return add.reduce(self._terms, axis=-1, out=self._extra)
 
     def _wound_up(self, gamma: Array) -> Array:
         """Return D gamma K2 / Kc of (6), rad."""
         if self._rows is None:
             return self._windup * gamma
-        return np.asarray(np.matmul(self._windup_rows, gamma[..., None])[..., 0])
+        return np.asarray(matmul(self._windup_rows, gamma[..., None])[..., 0])
 
     def _accelerating(self, gamma: Array) -> Array:
         """Return gamma Ka D' / Ktn of (10), A."""
         if self._rows is None:
             return self._acceleration_gain * gamma
-        return np.asarray(self.gains.Ka * np.matmul(self._coupled, gamma[..., None])[..., 0])
+        return np.asarray(self.gains.Ka * matmul(self._coupled, gamma[..., None])[..., 0])
 
     def _current_measured(self, current_ff: Array) -> Array:
         """Finish the tick with the detected derivatives in (6), (8) and (10), as the document prints them."""

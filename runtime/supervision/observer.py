@@ -32,7 +32,9 @@ import math
 import numpy as np
 import pinocchio as pin
 
+from runtime.decompositions import inverse_of, solve
 from runtime.frames import Array
+from runtime.linear import dot, matmul
 from runtime.robot.model import ArmModel, LoadMode, spec_rotors
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
@@ -65,7 +67,7 @@ class LoadModel(ArmModel):
         """Return Y (n, 4), N m per kg and kg m of (m, m c), flange frame, for the motion last given to ``torque``."""
         body = pin.jointBodyRegressor(self._model, self._data, self.n)[:, :4]
         jacobian = pin.computeJointJacobian(self._model, self._data, q, self.n)
-        return np.asarray(jacobian.T @ body @ self._to_joint)
+        return np.asarray(matmul(jacobian.T, body, self._to_joint))
 
 
 class Observer:
@@ -123,7 +125,7 @@ class Observer:
         acceleration = (after - 2.0 * now + before) / self._period_s**2
         dry = np.where(speed > 0.0, self._forward, self._backward) * np.tanh(speed / 0.01)
         friction = dry + self._viscous * speed
-        self.residual = self._triangle @ tau[: 2 * m] - friction - self._model.torque(now, speed, acceleration)
+        self.residual = matmul(self._triangle, tau[: 2 * m]) - friction - self._model.torque(now, speed, acceleration)
         resting = np.abs(speed) < TURNING
         self.sigma = self._base + np.where(resting, self._coulomb, self._share * np.abs(friction))
         self._q = now
@@ -134,17 +136,17 @@ class Observer:
         weighted = Y / (self.sigma**2)[:, None]
         self.steps += 1
         share = 1.0 / min(self.steps, MEMORY)
-        self._information += share * (weighted.T @ Y - self._information)
-        self._moment += share * (weighted.T @ self.residual - self._moment)
+        self._information += share * (matmul(weighted.T, Y) - self._information)
+        self._moment += share * (matmul(weighted.T, self.residual) - self._moment)
         if self.steps >= FEWEST:
-            difference = np.linalg.solve(self._information + self._prior, self._moment)
-            normal = (self.residual - Y @ difference) / self.sigma
+            difference = solve(self._information + self._prior, self._moment)
+            normal = (self.residual - matmul(Y, difference)) / self.sigma
             self._leftover += share * (normal - self._leftover)
 
     def estimate(self) -> tuple[float, float]:
         """Return (mass really carried, its standard deviation), kg."""
-        covariance = np.linalg.inv(self._information + self._prior)
-        return self._declared.mass + float(covariance[0] @ self._moment), math.sqrt(float(covariance[0, 0]))
+        covariance = inverse_of(self._information + self._prior)
+        return self._declared.mass + dot(covariance[0], self._moment), math.sqrt(float(covariance[0, 0]))
 
     @property
     def leftover(self) -> Array:

@@ -1,0 +1,46 @@
+"""Products of matrices and vectors with one order of summation, whatever the processor.
+
+numpy gives ``@``, ``np.dot`` and ``np.linalg`` to OpenBLAS, which picks a kernel for the processor that it finds.
+Kernels add in different orders, so the last digits of a run would differ between processor families. ``np.einsum``
+adds in numpy's own loops, in one order. Equations are solved in ``runtime.decompositions`` for the same reason.
+``tests/arch/test_summation.py`` keeps the other functions out of a run; ``tests/sim/test_processors.py`` runs programs
+under three kernels of OpenBLAS and compares the bytes of their logs.
+
+Arrays are float64.
+"""
+
+import math
+from functools import reduce
+
+import numpy as np
+from numpy import einsum
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def matmul(*factors: Array) -> Array:
+    """Return the matrix product of two or more factors, from the left, with the shapes of ``numpy.matmul``.
+
+    Matrices (..., m, n) broadcast over leading dimensions. A vector (n,) stands for a row as the first factor and for a
+    column as the last one.
+    """
+    return reduce(_matmul, factors)
+
+
+def _matmul(a: Array, b: Array) -> Array:
+    if b.ndim == 1:
+        return np.asarray(einsum("...j,j->...", a, b))
+    if a.ndim == 1:
+        return np.asarray(einsum("j,...jk->...k", a, b))
+    return np.asarray(einsum("...ij,...jk->...ik", a, b))
+
+
+def dot(a: Array, b: Array) -> float:
+    """Return the scalar product of two vectors (n,)."""
+    return float(einsum("i,i->", a, b))
+
+
+def norm(v: Array) -> float:
+    """Return the length of a vector (n,)."""
+    return math.sqrt(dot(v, v))
