@@ -44,6 +44,8 @@ NEAR_SHOULDER = 20.0 * MM
 """The same for the wrist centre over axis 1, m."""
 NOTICED = 0.1 * DEG
 """A tool that turns less from its posture keeps it, rad."""
+OVERLOAD, NOTHING = 1e-3, 1e-6
+"""A payload that is over its limit by less than this share and so many N m or kg m2 is within it."""
 SLOWED = 1.5
 """A move that takes this many times as long as its programmed speed or time asks for is named."""
 
@@ -248,10 +250,10 @@ def _loads(project: Project, moves: Sequence[RehearsedMove]) -> Found:
     """Report each axis of the wrist that a payload overloads, at the move with the worst posture."""
     shares = worst_loads(project, moves)
     for share in sorted(shares, key=lambda share: (not share.given, share.limit / share.value)):  # worst first
-        if not share.value <= share.limit:
+        if not share.value <= share.limit * (1.0 + OVERLOAD) + NOTHING:
             code = "RBL425" if share.what == "moment" else "RBL426"
             yield _at(code, share.move, f"at {share.move.share(share.row):.1f} % of the way the {share.what} of the "
-                      f"payload of {share.move.payload.mass:g} kg about J{share.axis + 1} is {share.value:.3g} "
+                      f"payload of {share.move.payload.mass:g} kg about J{share.axis + 1} is {share.value:.4g} "
                       f"{share.unit}, {share.value - share.limit:.3g} more than "
-                      f"{'it is rated for' if share.given else 'its drive allows by estimate'}, {share.limit:.3g} "
+                      f"{'it is rated for' if share.given else 'its drive allows by estimate'}, {share.limit:.4g} "
                       f"{share.unit}", Severity.ERROR if share.given else Severity.WARNING)  # fmt: skip

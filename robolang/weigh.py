@@ -29,7 +29,7 @@ from runtime.motion.fine import FineInterpolator
 from runtime.plant.cell import CellSpec
 from runtime.plant.plant import Plant
 from runtime.profile import Profile
-from runtime.robot.payload import Payload
+from runtime.robot.payload import MAX_COG_DISTANCE, Payload
 from runtime.robot.spec import RobotSpec
 from runtime.servo.motor import torque_limit
 from runtime.units import DEG, MM
@@ -59,6 +59,8 @@ FEELS = 1e-3
 """Torque by weight, N m per kg at 1 m, below which an axis does not feel it."""
 BELIEVED = 3.0
 """Standard uncertainties within which a mass may still be the rated one."""
+INSIDE = 0.999
+"""Share of the largest distance that is written for a centre of gravity beyond it, so that no digit passes it."""
 UNEXPLAINED = 0.05
 """Share of the torque limit that no payload may leave unexplained."""
 
@@ -245,17 +247,39 @@ def _explained(found: WeighedPayload, torque: Array) -> None:
 # --- what is shown ---------------------------------------------------------------------------------------------------
 
 
-def load_statement(found: WeighedPayload, rated: float) -> str:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Declaration:
+    """A LOAD that a program may declare, and what it states otherwise than it was weighed; empty: nothing."""
+
+    text: str
+    note: str = ""
+
+
+def load_statement(found: WeighedPayload, rated: float) -> Declaration:
     """Return the LOAD to paste: kg and mm with the digits that their uncertainty leaves, at most 3 and 1 decimals.
 
-    A mass over the rated one by no more than its uncertainty explains is written as the rated one, to be declared.
+    A mass over the rated one by no more than its uncertainty explains is written as the rated one. What no program may
+    declare (``runtime.robot.payload.declared``) is written as the nearest that one may, with a note.
     """
     if found.cog is None or found.cog_sd is None:
-        return "LOAD (0, 0, 0), 0"
-    cog = ", ".join(_rounded(c / MM, sd / MM, 1) for c, sd in zip(found.cog, found.cog_sd, strict=True))
-    excess = found.mass - rated
-    mass = rated if 0.0 < excess < BELIEVED * found.mass_sd else found.mass
-    return f"LOAD ({cog}), {_rounded(mass, found.mass_sd, 3)}"
+        less = not found.mass >= -BELIEVED * found.mass_sd
+        note = f"{found.mass:.3g} kg was weighed: the masses of the robot file are too large"
+        return Declaration(text="LOAD (0, 0, 0), 0", note=note if less else "")
+    notes = []
+    mass = min(found.mass, rated)
+    if not found.mass - rated < BELIEVED * found.mass_sd:
+        notes.append(f"{found.mass:.4g} kg was weighed and at most the rated {rated:g} kg may be declared")
+    mass_text = _rounded(mass, found.mass_sd, 3)
+    if not float(mass_text) <= rated:  # rounded up
+        mass_text = f"{rated:g}"
+    distance = float(np.linalg.norm(found.cog))
+    cog = found.cog
+    if not distance <= MAX_COG_DISTANCE:
+        notes.append(f"the centre of gravity is {distance / MM:.0f} mm from the flange and may be declared within "
+                     f"{MAX_COG_DISTANCE / MM:g} mm")  # fmt: skip
+        cog = cog * (INSIDE * MAX_COG_DISTANCE / distance)
+    values = ", ".join(_rounded(c / MM, sd / MM, 1) for c, sd in zip(cog, found.cog_sd, strict=True))
+    return Declaration(text=f"LOAD ({values}), {mass_text}", note="; ".join(notes))
 
 
 def _rounded(value: float, sd: float, most: int) -> str:
@@ -268,6 +292,7 @@ def _rounded(value: float, sd: float, most: int) -> str:
 def as_json(request: WeighRequest, result: WeighResult) -> dict[str, Any]:
     """Return the figures in plain types, in kg, mm, deg and N m; a centre of gravity that is not known is None."""
     found, true = result.found, result.true
+    load = load_statement(found, request.cell.robot.rated_payload)
     cog, sd = (None if x is None else [float(v) / MM for v in x] for x in (found.cog, found.cog_sd))
     return {
         "robot": request.cell.robot.name,
@@ -280,5 +305,6 @@ def as_json(request: WeighRequest, result: WeighResult) -> dict[str, Any]:
         "friction_off_pct": [float(x) * 100.0 for x in found.friction],
         "left_rms_nm": [float(x) for x in found.left],
         "left_peak_nm": [float(x) for x in found.peak],
-        "load": load_statement(found, request.cell.robot.rated_payload),
+        "load": load.text,
+        "load_note": load.note,
     }

@@ -3,7 +3,10 @@
 ``--json`` prints one object, in kg, mm, deg and N m:
 
     {"robot", "plant", "home_deg", "seconds", "amplitudes_deg", "estimated": {"mass_kg", "mass_sd_kg", "cog_mm",
-     "cog_sd_mm"}, "true": {"mass_kg", "cog_mm"}, "friction_off_pct", "left_rms_nm", "left_peak_nm", "load"}
+     "cog_sd_mm"}, "true": {"mass_kg", "cog_mm"}, "friction_off_pct", "left_rms_nm", "left_peak_nm", "load",
+     "load_note"}
+
+``load`` may be declared by a program; ``load_note`` is what it states otherwise than it was weighed, mostly empty.
 
 Exit codes: 0; 2 a value, a cell or a robot that cannot be used; 3 the exercise was refused or ended with an alarm.
 """
@@ -99,6 +102,8 @@ def _print(found: dict[str, Any]) -> None:
         for k, name in enumerate("xyz"):
             _row(f"cog {name}, mm", estimated["cog_mm"][k], estimated["cog_sd_mm"][k], true["cog_mm"][k], 2)
     typer.echo(f"\n{found['load']}")
+    if found["load_note"]:
+        typer.echo(f"note: {found['load_note']}; the LOAD above is the nearest that a program may declare", err=True)
 
 
 def _row(label: str, value: float, sd: float, true: float, digits: int) -> None:

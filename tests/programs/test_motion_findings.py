@@ -1,14 +1,16 @@
 """What a rehearsal shows beyond refusals, program by program on the built-in cell, with place, value and limit."""
 
+import math
 import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from robolang import motion_findings
 from robolang.diagnostics import Severity
 from robolang.motion_check import rehearse
-from robolang.motion_findings import findings, worst_loads
+from robolang.motion_findings import LoadShare, findings, worst_loads
 from robolang.project import builtin_cell, load_project
 from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.units import DEG
@@ -129,7 +131,20 @@ def test_a_payload_that_overloads_the_wrist(tmp_path):
     assert found(tmp_path, HEAVY.format(0, 0.01, 0.01, 0.01), "RBL426") == []
     inertia = found(tmp_path, HEAVY.format(0, 0.2, 0.2, 0.2), "RBL426")
     assert [severity for *_, severity in inertia] == [Severity.WARNING]  # one for a statement, the worst axis
-    assert "the inertia of the payload of 2.4 kg about J5 is 0.209 kg m2, 0.0594 more than" in inertia[0][1]
+    assert re.search(r"payload of 2.4 kg about J5 is 0\.20\d+ kg m2, 0\.0594 more than", inertia[0][1])
+
+
+@pytest.mark.parametrize(
+    ("value", "limit", "over"),
+    [(2.95e-40, 0.0, False), (0.15 + 1e-12, 0.15, False), (0.152, 0.15, True), (1e-3, 0.0, True), (math.nan, 1, True)],
+)
+def test_what_is_over_a_limit_is_over_it_in_the_digits_shown(tmp_path, monkeypatch, value, limit, over):
+    project, rehearsal = looked_at(tmp_path, "LOAD empty\nMOVE P1\n")
+    share = LoadShare(axis=4, what="inertia", value=value, limit=limit, given=True, move=rehearsal.moves[0], row=0)
+    monkeypatch.setattr(motion_findings, "worst_loads", lambda *_: [share])
+    said = [item.message for item in findings(project, rehearsal) if item.code == "RBL426"]
+    assert len(said) == over
+    assert all(f"{value:.3g} kg m2, " in message and f" {value - limit:.3g} more" in message for message in said)
 
 
 def test_published_ratings_make_it_an_error(tmp_path):

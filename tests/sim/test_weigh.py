@@ -1,5 +1,7 @@
 """The scales of docs/weighing.md: what they reach on MuJoCo with friction and encoders, and what they refuse."""
 
+import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,13 +10,15 @@ import pytest
 
 from robolang import weigh as module
 from robolang.project import load_cell_and_settings
-from robolang.weigh import WeighRequest, carried, load_statement, plan_exercise, weigh
+from robolang.weigh import Declaration, WeighRequest, carried, load_statement, plan_exercise, weigh
+from runtime.dynamics.payload_identification import WeighedPayload
 from runtime.faults import Fault
 from runtime.plant.cell import ObstacleSpec
 from runtime.profile import Profile
 from runtime.robot.loader import load_builtin
-from runtime.robot.payload import Payload
+from runtime.robot.payload import Payload, declared
 from runtime.units import DEG
+from tests.lang.helpers import checked
 
 PROGRAMS = Path(__file__).parents[2] / "programs"
 PUMA, MANUTEC = (load_cell_and_settings(PROGRAMS / f"{name}.rbl", None, None, None, {})[0]
@@ -156,15 +160,41 @@ def test_an_arm_that_strikes_something_is_not_weighed():
 # --- LOAD ------------------------------------------------------------------------------------------------------------
 
 
-def test_the_load_is_rounded_to_what_is_known_and_can_be_declared():
-    found = weigh(WeighRequest(cell=PUMA, plant="rigid")).found
-    said = replace(found, mass=2.30412, mass_sd=0.004, cog=np.array([-0.00002, 0.0123, 0.09504]),
-                   cog_sd=np.array([3e-5, 3e-4, 2e-3]))  # fmt: skip
-    assert load_statement(said, 2.5) == "LOAD (0, 12.3, 95), 2.304"
-    assert load_statement(replace(said, mass_sd=0.04), 2.5) == "LOAD (0, 12.3, 95), 2.3"
-    assert load_statement(replace(said, mass=2.504), 2.5) == "LOAD (0, 12.3, 95), 2.5"
-    assert load_statement(replace(said, mass=2.56), 2.5) == "LOAD (0, 12.3, 95), 2.56"
-    assert load_statement(replace(said, cog=None, cog_sd=None), 2.5) == "LOAD (0, 0, 0), 0"
+NONE = np.zeros(6)
+WEIGHED = WeighedPayload(mass=2.30412, mass_sd=0.004, cog=np.array([-0.00002, 0.0123, 0.09504]),
+                         cog_sd=np.array([3e-5, 3e-4, 2e-3]), friction=NONE, left=NONE, peak=NONE,
+                         rows=NONE)  # fmt: skip
+
+
+def test_the_load_is_rounded_to_what_is_known():
+    for changes, load in (
+        ({}, "LOAD (0, 12.3, 95), 2.304"),
+        ({"mass_sd": 0.04}, "LOAD (0, 12.3, 95), 2.3"),
+        ({"mass": 2.504}, "LOAD (0, 12.3, 95), 2.5"),
+        ({"cog": None, "cog_sd": None, "mass": 0.001}, "LOAD (0, 0, 0), 0"),
+    ):
+        assert load_statement(replace(WEIGHED, **changes), 2.5) == Declaration(text=load)
+
+
+@pytest.mark.parametrize(
+    ("changes", "rated", "noted"),
+    [
+        ({"mass": 2.56}, 2.5, True),
+        ({"mass": 500.0}, 2.5, True),
+        ({"mass": math.nan}, 2.5, True),
+        ({"cog": np.array([1.9, 1.9, 0.0])}, 2.5, True),
+        ({"cog": np.array([2.0, 0.0, 0.0]), "cog_sd": np.array([5.0, 5.0, 5.0])}, 2.5, False),
+        ({"mass": -0.5, "cog": None, "cog_sd": None}, 2.5, True),
+        ({"mass": math.nan, "cog": None, "cog_sd": None}, 2.5, True),
+        ({"mass": 1.6, "mass_sd": 0.6}, 1.7, False),  # 2 when it is rounded
+    ],
+)
+def test_a_load_to_paste_is_one_that_a_program_may_declare(changes, rated, noted):
+    load = load_statement(replace(WEIGHED, **changes), rated)
+    assert checked(load.text, rated=rated) == []
+    x, y, z, mass = map(float, re.fullmatch(r"LOAD \((\S+), (\S+), (\S+)\), (\S+)", load.text).groups())
+    declared(mass, np.array([x, y, z]) * 1e-3, rated)
+    assert bool(load.note) is noted
 
 
 def test_an_arm_that_feels_no_weight_is_refused(monkeypatch):

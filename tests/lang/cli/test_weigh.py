@@ -51,6 +51,9 @@ def test_more_than_rated_is_said_and_weighed():
     result = robolang("weigh", "--payload", "2.2,0,0,80", "--plant", "rigid")
     assert "note: hand and --payload weigh 3 kg, over the rated 2.5 kg" in result.stderr
     assert re.search(r"mass, kg +(2\.99|3\.00)", result.stdout)
+    assert checked(result.stdout.splitlines()[-1], rated=2.5) == []
+    assert result.stdout.endswith(", 2.5\n")
+    assert "may be declared" in result.stderr
 
 
 BAD = [
