@@ -87,7 +87,7 @@ def run_once(job: Job) -> int:
 
             check_writable(path)
     settings = Settings()
-    names = programs(job.paths)
+    names = programs(job.paths, excludes=settings.excludes)
     if not names:
         typer.echo(f"no programs (*.rbl) in {safe(', '.join(job.paths))}", err=True)
     outcomes = [_examined(name, job, settings) for name in names]

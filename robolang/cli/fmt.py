@@ -7,10 +7,7 @@ Exit codes: 0; 1 with ``--check`` or ``--diff``, something would change; 2 a fil
 written. Imports no numpy, pinocchio or mujoco.
 """
 
-import os
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -39,7 +36,10 @@ def fmt(
         elif STDIO in names:
             raise OptionValueError("PATH", "'-' stands alone")
         else:
-            for name in _programs(names, run.fail):
+            from robolang.lint.files import programs
+            from robolang.lint.settings import Settings
+
+            for name in programs(names, excludes=Settings().excludes):
                 run.one(name)
             with reader_may_leave():
                 typer.echo(run.summary(), err=diff)
@@ -106,29 +106,3 @@ class _Run:
             "reformatted", "left unchanged")  # fmt: skip
         parts = ((self.changed, would), (self.same, same), (self.left, "left alone for errors"))
         return ", ".join(f"{count} file{'s' * (count != 1)} {what}" for count, what in parts if count)
-
-
-def _programs(names: list[str], fail: "Callable[[Fault], None]") -> Iterator[str]:
-    """Yield the files that are meant, each once: those named, and ``*.rbl`` in folders at any depth.
-
-    Folders whose name starts with a point are passed over, links to folders are not followed.
-    """
-    seen: set[Path] = set()
-    for name in names:
-        for path in _inside(name, fail) if Path(name).is_dir() else (name,):
-            if (where := Path(path).absolute()) not in seen:
-                seen.add(where)
-                yield path
-
-
-def _inside(folder: str, fail: "Callable[[Fault], None]") -> Iterator[str]:
-    from runtime.faults import Fault
-
-    def unreadable(error: OSError) -> None:
-        fail(Fault("RBL702", f"cannot list {error.filename}: {error.strerror}"))
-
-    for where, folders, files in os.walk(folder, onerror=unreadable):
-        folders[:] = sorted(name for name in folders if not name.startswith("."))
-        for name in sorted(files):
-            if name.endswith(".rbl"):
-                yield str(Path(where, name))

@@ -76,12 +76,14 @@ def _files(paths: list[str], allow_empty: bool) -> Iterator[Path | _Outcome]:
     """Yield the test files that paths mean, each once; for a path that means none, the outcome that says so."""
     from robolang.expectation import ENDING
     from robolang.lint.files import programs
+    from robolang.lint.settings import Settings
     from runtime.faults import Fault
 
     seen: set[Path] = set()
+    excludes = Settings().excludes
     for path in map(Path, paths):
         if path.is_dir():
-            files = [Path(name) for name in programs([str(path)], ENDING)]
+            files = [Path(name) for name in programs([str(path)], ENDING, excludes)]
         else:
             files = [path if path.name.endswith(ENDING) else path.with_name(path.name.removesuffix(".rbl") + ENDING)]
             if not files[0].exists():

@@ -1,7 +1,9 @@
-"""Configuration of the linter: ``[lint]`` of ``robolang.toml``, or ``[tool.robolang.lint]`` of ``pyproject.toml``.
+"""Configuration: ``robolang.toml``, or ``[tool.robolang]`` of ``pyproject.toml``.
 
 The nearest folder above a program that has either file counts, and of two in one folder ``robolang.toml``; files are
 not merged. A ``pyproject.toml`` that does not speak of robolang is passed over. ::
+
+    exclude = ["tests/bad", "*/old"]   # from the file's folder; what is below is excluded, too
 
     [lint]
     select = ["RBL1", "RBL2"]          # these only; without it all
@@ -12,6 +14,8 @@ An unknown key, or one given twice, is a ``FileFault`` RBL707 at its place, an u
 """
 
 import os
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import NoReturn
 
@@ -22,25 +26,40 @@ FILE, PYPROJECT = "robolang.toml", "pyproject.toml"
 _TWICE = ("Cannot overwrite a value", "Cannot declare")
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Configuration:
+    """What a file says: of rules, and which paths below ``folder`` are passed over where a folder is searched."""
+
+    folder: Path
+    layer: Layer = field(default_factory=Layer)
+    exclude: tuple[str, ...] = ()
+
+
 class Settings:
-    """The layer of every folder, each file read once."""
+    """The configuration of every folder, each file read once."""
 
     def __init__(self) -> None:
-        self._layers: dict[Path, Layer] = {}
+        self._found: dict[Path, Configuration] = {}
 
     def layer(self, folder: Path) -> Layer:
-        """Return what the nearest file says of programs in a folder; ``FileFault`` RBL600, RBL601, RBL61x, RBL7xx."""
-        start = Path(os.path.abspath(folder))  # noqa: PTH100 - not resolved: the folder as the user sees it
+        """Return what the nearest file says of rules in a folder; ``FileFault`` RBL600, RBL601, RBL61x, RBL7xx."""
+        return self._nearest(Path(os.path.abspath(folder))).layer  # noqa: PTH100 - as the user sees it, not resolved
+
+    def excludes(self, path: str) -> bool:
+        """Return whether the nearest file above a file or folder excludes it; ``FileFault`` as ``layer``."""
+        whole = Path(os.path.abspath(path))  # noqa: PTH100
+        nearest = self._nearest(whole.parent)
+        name = whole.relative_to(nearest.folder).as_posix()
+        return any(fnmatchcase(name, pattern.rstrip("/")) for pattern in nearest.exclude)
+
+    def _nearest(self, start: Path) -> Configuration:
         for place in (start, *start.parents):
-            if place not in self._layers:
-                found = _layer_of(place)
-                if found is None:
-                    continue
-                self._layers[place] = found
-            self._layers[start] = self._layers[place]
-            return self._layers[place]
-        self._layers[start] = Layer()
-        return self._layers[start]
+            found = self._found.get(place) or _read(place)
+            if found is not None:
+                self._found[place] = self._found[start] = found
+                return found
+        self._found[start] = Configuration(folder=start)
+        return self._found[start]
 
 
 def files_above(folder: Path) -> list[Path]:
@@ -49,26 +68,26 @@ def files_above(folder: Path) -> list[Path]:
     return [place / name for place in (start, *start.parents) for name in (FILE, PYPROJECT)]
 
 
-def _layer_of(folder: Path) -> Layer | None:
-    """Return the layer of a folder's own file; None when it has none that speaks of robolang."""
+def _read(folder: Path) -> Configuration | None:
+    """Return what a folder's own file says; None when it has none that speaks of robolang."""
     own, shared = folder / FILE, folder / PYPROJECT
     if os.path.lexists(own):
         table = _table(read_source(own))
         table.integer("schema", 1, low=1, high=1)
-        return _only_lint(table)
+        return _configuration(folder, table)
     if not os.path.lexists(shared):
         return None
     source = read_source(shared)
     if "robolang" not in source.text:
         return None
     tools = _table(source).table("tool", required=False)
-    return _only_lint(tools.table("robolang")) if "robolang" in tools else None
+    return _configuration(folder, tools.table("robolang")) if "robolang" in tools else None
 
 
-def _only_lint(table: Table) -> Layer:
-    layer = _layer(table.table("lint", required=False))
+def _configuration(folder: Path, table: Table) -> Configuration:
+    layer, exclude = _layer(table.table("lint", required=False)), _texts(table, "exclude")
     _done(table)
-    return layer
+    return Configuration(folder=folder, layer=layer, exclude=exclude)
 
 
 def _layer(table: Table) -> Layer:
@@ -79,11 +98,16 @@ def _layer(table: Table) -> Layer:
     return layer
 
 
+def _texts(table: Table, key: str) -> tuple[str, ...]:
+    items = tuple(table.raw_list(key))
+    if not all(isinstance(item, str) for item in items):
+        table.fail("RBL613", f"'{table.name(key)}' must be a list of texts", key=key)
+    return tuple(str(item) for item in items)
+
+
 def _selectors(table: Table, key: str) -> tuple[str, ...]:
     found = []
-    for item in table.raw_list(key):
-        if not isinstance(item, str):
-            table.fail("RBL613", f"'{table.name(key)}' must be a list of texts", key=key)
+    for item in _texts(table, key):
         chosen = selector(item)
         if chosen is None:
             table.fail("RBL710", f"'{table.name(key)}' names '{item}', which is no rule", guess(item), key=key)

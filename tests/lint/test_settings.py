@@ -1,9 +1,11 @@
 """robolang.toml and pyproject.toml above a program."""
 
 import os
+from pathlib import Path
 
 import pytest
 
+from robolang.lint.files import programs
 from robolang.lint.selection import Layer
 from robolang.lint.settings import Settings, files_above
 from runtime.tomlfile import FileFault
@@ -138,3 +140,40 @@ def test_files_above_are_those_that_are_looked_for(tmp_path):
     assert names[:2] == [tmp_path / "robolang.toml", tmp_path / "pyproject.toml"]
     assert names[2].parent == tmp_path.parent
     assert len(names) == 2 * len([tmp_path, *tmp_path.parents])
+
+
+@pytest.mark.parametrize(
+    ("pattern", "path", "excluded"),
+    [
+        ("bad", "bad", True),
+        ("bad/", "bad", True),
+        ("bad", "good/bad", False),
+        ("*/bad", "good/bad", True),
+        ("bad/*.rbl", "bad/a.rbl", True),
+        ("bad/*.rbl", "bad/a.txt", False),
+    ],
+)
+def test_paths_are_excluded_from_the_folder_of_the_file(tmp_path, pattern, path, excluded):
+    put(tmp_path / "robolang.toml", f'exclude = ["{pattern}"]\n')
+    assert Settings().excludes(str(tmp_path / path)) is excluded
+
+
+def test_what_is_excluded_is_not_searched_and_what_is_named_is_read(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    put(tmp_path / "robolang.toml", 'exclude = ["bad", "*_old.rbl"]\n')
+    for name in ("a.rbl", "a_old.rbl", "bad/b.rbl", "good/bad/c.rbl"):
+        put(tmp_path / name, "MOVE P1\n")
+    assert programs(["."], excludes=Settings().excludes) == ["a.rbl", "good/bad/c.rbl"]
+    assert programs(["bad/b.rbl"], excludes=Settings().excludes) == ["bad/b.rbl"]
+
+
+def test_a_pattern_that_is_no_text_is_a_fault(tmp_path):
+    put(tmp_path / "robolang.toml", "exclude = [3]\n")
+    assert fails(tmp_path)[0] == "RBL613"
+
+
+def test_the_commands_of_the_documentation_find_nothing_at_the_root_of_this_repository(monkeypatch):
+    """As docs/ci.md shows them: what is wrong on purpose, for the tests, is excluded."""
+    monkeypatch.chdir(Path(__file__).parents[2])
+    names = programs(["."], excludes=Settings().excludes)
+    assert names and all(name.startswith("programs/") for name in names)
