@@ -36,6 +36,8 @@ WRONG_SHARE = 0.3
 STARVED_COST_MS = 50.0
 """Declared cost of one axis of a starved dynamics task, ms."""
 
+_OF_ALARM = ("code", "message", "file", "line", "column", "number", "time_s")
+
 Options = dict[str, tuple[str, Any]]
 
 
@@ -123,7 +125,7 @@ def run_variant(request: Request, variant: Variant) -> dict[str, Any]:
         "variant": variant.name,
         "title": variant.title,
         "ok": result.ok,
-        "alarms": [{key: alarm[key] for key in ("code", "message", "line", "time_s")} for alarm in alarms],
+        "alarms": [{key: alarm[key] for key in _OF_ALARM} for alarm in alarms],
         "sim_time_s": result.report["sim_time_s"],
         **measures(result.log, session.controller.tool_poses(result.log["q_cmd"]), session.record.statements),
     }
@@ -149,7 +151,7 @@ def wrong_mass(mass: float, rated: float) -> float:
 
 def measures(log: dict[str, Array], X_cmd: Array, statements: list[StatementRun]) -> dict[str, Any]:
     """Return the figures of a run, in deg, mm, s and %, over all its MOVEs; None where there is none."""
-    moves = [run for run in statements if run.path is not None and run.end_tick > run.first_tick]
+    moves = [run for run in statements if run.begun and run.path is not None and run.end_tick > run.first_tick]
     if not moves:
         return dict.fromkeys(("overshoot_pct", "settling_s", "joint_error_deg", "joint_rms_deg", "tool_error_mm",
                               "tool_rms_mm", "path_deviation_mm", "droop_deg", "per_axis", "moves"))  # fmt: skip
@@ -186,7 +188,8 @@ def _move(run: StatementRun, log: dict[str, Array], p_tool: Array) -> dict[str, 
     q_cmd, q_link, t = log["q_cmd"][span], log["q_link"][span], log["t"][span]
     overshoot, settling = last_approach(q_cmd, q_link, t)
     return {
-        "line": run.number if run.number is not None else run.line,
+        "line": run.origin.line,
+        "number": run.origin.number,
         "overshoot_pct": overshoot,
         "settling_s": settling,
         "path_deviation_mm": float(run.path.deviation(p_tool[span]).max()) / MM,

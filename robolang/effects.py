@@ -11,22 +11,35 @@ from typing import Any, Literal, TypeAlias
 from robolang.nodes import Line, Statement
 from robolang.places import Frame, Place
 from robolang.source import Span
+from runtime.program_line import ProgramLine
 
 Way = Literal["line", "joint", "arc"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Origin:
-    """Where an effect comes from: 1-based line of the file, line number of the program (None: not numbered)."""
+class Origin(ProgramLine):
+    """Where an effect or a fault comes from: ``span`` is the place of the statement, or of the part of it that failed.
 
-    line: int
-    number: int | None
+    This is what the controller keeps with an alarm, so its place is never looked up.
+    """
+
     span: Span
-    node: Statement
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SetPayload(Origin):
+class OfStatement(Origin):
+    """What every effect has: the statement, or the branch of an IF on one line, that asks for it."""
+
+    node: Statement
+
+    @property
+    def origin(self) -> Origin:
+        """Where it comes from, without what it asks for."""
+        return Origin(line=self.line, number=self.number, span=self.span)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SetPayload(OfStatement):
     """Declare all that is beyond the flange: centre of gravity in the flange frame, mm; mass, kg; inertia about the
     centre (ixx, iyy, izz, ixy, ixz, iyz), kg m2. ``name``: in their place a load of the cell, by its key."""
 
@@ -37,7 +50,7 @@ class SetPayload(Origin):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MoveTo(Origin):
+class MoveTo(OfStatement):
     """Move the tool to a place; None where the move leaves a value open.
 
     ``way``: straight, with all joints together, or on an arc over ``via``. ``speed_mm_s`` of the tool point and
@@ -60,7 +73,7 @@ class MoveTo(Origin):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SetHand(Origin):
+class SetHand(OfStatement):
     """Close or open the hand, then wait; ``dwell_s`` None: the default of the hand."""
 
     closed: bool
@@ -68,7 +81,7 @@ class SetHand(Origin):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SetWrist(Origin):
+class SetWrist(OfStatement):
     """Choose what the wrist does on the moves that follow; each ``MoveTo`` carries it, so nothing is left to do.
 
     ``mode`` is ``"keep"`` or ``"auto"``; ``held`` are the components of the posture to hold, in capitals. HOLD is
@@ -80,21 +93,21 @@ class SetWrist(Origin):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SetSeam(Origin):
+class SetSeam(OfStatement):
     """Superpose the deviation that a seam sensor of the cell measures, by its key; None: no more."""
 
     sensor: str | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SetTool(Origin):
+class SetTool(OfStatement):
     """Take another tool: a tool of the cell by its key, or a pose in the flange frame, mm and deg."""
 
     tool: Frame
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SetOutput(Origin):
+class SetOutput(OfStatement):
     """Set an output; with ``seconds`` only for so long, while the program goes on."""
 
     output: int
@@ -103,26 +116,26 @@ class SetOutput(Origin):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Pass(Origin):
+class Pass(OfStatement):
     """Let time pass, s; 0: at least one interpolation cycle, in which inputs may change."""
 
     seconds: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Show(Origin):
+class Show(OfStatement):
     """Show a line of text."""
 
     text: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Drain(Origin):
+class Drain(OfStatement):
     """Let all motion end: what comes next reads where the robot is, an input or the time."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Halt(Origin):
+class Halt(OfStatement):
     """``STOP``: the program ends here, ``PAUSE``: it would wait for an operator; a run notes it and goes on."""
 
     word: str
@@ -134,5 +147,5 @@ Effect: TypeAlias = (
 
 
 def origin(line: Line, node: Statement) -> dict[str, Any]:
-    """Return the fields of ``Origin`` for a statement, or a part of one, of a line."""
+    """Return the fields of ``OfStatement`` for a statement, or a part of one, of a line."""
     return {"line": line.source_line, "number": line.number, "span": node.span, "node": node}

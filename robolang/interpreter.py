@@ -22,7 +22,7 @@ from collections.abc import Callable, Collection, Generator
 
 from robolang.actions import ACTIONS, Action, Actions, seconds
 from robolang.branches import Decisions
-from robolang.effects import Drain, Effect, Halt, Pass, Show, origin
+from robolang.effects import Drain, Effect, Halt, Origin, Pass, Show, origin
 from robolang.evaluator import Evaluator, Nowhere, World, finite, shown
 from robolang.nodes import (
     Assign,
@@ -55,9 +55,10 @@ from robolang.nodes import (
 from robolang.places import Place
 from robolang.reading import reads_state
 from robolang.scope import STOPS, Loop, Scopes
-from robolang.source import Span
 from robolang.structure import Structure, structure_of
+from robolang.tree import Node
 from runtime.faults import Fault
+from runtime.program_line import named
 
 MAX_IDLE = 100_000
 MAX_STEPS = 10_000_000
@@ -78,12 +79,25 @@ def _carried_out(found: Run | int | None) -> Run:
 
 
 class ProgramFault(Fault):
-    """A fault that no ON ERROR caught, at its statement: ``span``, and ``line`` as alarms name it."""
+    """A fault that no ON ERROR caught: the statement it comes from, and the calls that led there, outermost first."""
 
-    def __init__(self, fault: Fault, line: Line, span: Span) -> None:
+    def __init__(self, fault: Fault, origin: Origin, calls: tuple[Origin, ...] = ()) -> None:
         super().__init__(fault.code, fault.message, fault.hint)
-        self.span = span
-        self.line = line.number if line.number is not None else line.source_line
+        self.origin = origin
+        self.calls = calls
+
+
+def _at(line: Line, part: Node) -> Origin:
+    return Origin(line=line.source_line, number=line.number, span=part.span)
+
+
+def _calling(line: Line) -> Node:
+    """Return what calls on a line: of an IF on one line its branch, where only one of the two can."""
+    node = line.statement
+    if isinstance(node, If):
+        branches = [each for each in (node.then, node.otherwise) if isinstance(each, CallSub | Jump)]
+        node = branches[0] if len(branches) == 1 else node
+    return node or line
 
 
 def execute(program: Program, world: World | None = None,
@@ -115,6 +129,8 @@ class _Machine:
         self._rounds: dict[int, int] = {}
         self._world = world
         self._reads: dict[int, bool] = {}
+        self._now: tuple[Line, Node]
+        """The line that runs, and the part of it that is carried out: of an IF on one line its branch, for instance."""
 
     def run(self) -> Generator[Effect, None, None]:
         """Yield the effects to the end of the program."""
@@ -124,6 +140,7 @@ class _Machine:
             if line.statement is None:
                 at += 1
                 continue
+            self._now = line, line.statement
             try:
                 self._count(at)
                 jump = yield from self._statement(line, line.statement, at)
@@ -131,7 +148,7 @@ class _Machine:
                 try:
                     jump = self._caught(fault, at)
                 except Fault as uncaught:
-                    raise self._located(uncaught, line) from None
+                    raise self._located(uncaught) from None
             at = at + 1 if jump is None else jump
 
     def _caught(self, fault: Fault, at: int) -> int:
@@ -144,11 +161,18 @@ class _Machine:
         self._values.error = float(fault.code.removeprefix("RBL"))
         return self._looped(at, handler)
 
-    def _located(self, fault: Fault, line: Line) -> ProgramFault:
-        """Return a fault that nothing caught at its statement, an idle loop at its head."""
+    def _located(self, fault: Fault) -> ProgramFault:
+        """Return a fault that nothing caught at the part of the statement that failed, an idle loop at its head."""
+        line, part = self._now
         if fault.code == "RBL508":
             line = self._lines[self._loop]
-        return ProgramFault(fault, line, line.span if line.statement is None else line.statement.span)
+            part = line.statement or line
+        return ProgramFault(fault, _at(line, part), self._calls())
+
+    def _calls(self) -> tuple[Origin, ...]:
+        """Return the CALLs and GOSUBs that have not come back, the outermost first."""
+        backs = [back for scope in self._scopes.stack for back in (scope.back, *scope.returns) if back > 0]
+        return tuple(_at(line, _calling(line)) for line in (self._lines[back - 1] for back in backs))
 
     def _count(self, at: int) -> None:
         self._steps += 1
@@ -162,8 +186,7 @@ class _Machine:
         self._rounds[to] = rounds = self._rounds.get(to, 0) + 1
         if rounds > MAX_IDLE:
             self._loop = to
-            number = self._lines[to].number
-            where = f"line {number}" if number is not None else f"line {self._lines[to].source_line} of the file"
+            where = named(self._lines[to].source_line, self._lines[to].number)
             raise Fault("RBL508", f"the loop that begins at {where} has gone round {MAX_IDLE} times without a "
                         "statement that takes time")  # fmt: skip
         return to
@@ -193,7 +216,9 @@ class _Machine:
     # --- values, inputs and time -------------------------------------------------------------------------------------
 
     def _assign(self, line: Line, node: Assign, at: int) -> int | None:
+        self._now = line, node.value
         value = self._values.value(node.value)
+        self._now = line, node
         name = node.target.name if isinstance(node.target, Call) else node.target
         if isinstance(node.target, Call):
             self._scopes.put(name.key, self._values.whole(node.target.arguments[0], "the number of an element"), value)
@@ -256,9 +281,11 @@ class _Machine:
         return found
 
     def _if(self, line: Line, node: If, at: int) -> Run:
+        self._now = line, node.condition
         chosen = node.then if self._is_true(node.condition) else node.otherwise
         if chosen is None:
             return None
+        self._now = line, chosen
         if reads_state(chosen):
             yield Drain(**origin(line, chosen))
         return (yield from _carried_out(_DO[type(chosen)](self, line, chosen, at)))
@@ -279,12 +306,13 @@ class _Machine:
             return (yield from self._case_of(line, node, at))
         while not self._is_true(node.value):
             at = structure.after[at]
-            following = self._lines[at].statement
+            line, following = self._lines[at], self._lines[at].statement
             if not isinstance(following, Head):  # ELSE, or ENDIF
                 break
-            if reads_state(following.value):
-                yield Drain(**origin(line, node))
             node = following
+            self._now = line, node
+            if reads_state(node.value):
+                yield Drain(**origin(line, node))
         return at + 1
 
     def _case_of(self, line: Line, node: Head, at: int) -> Generator[Effect, None, int]:
@@ -292,11 +320,12 @@ class _Machine:
         end = self._structure.end[at]
         while at != end:
             at = self._structure.after[at]
-            statement = self._lines[at].statement
+            line, statement = self._lines[at], self._lines[at].statement
             if not isinstance(statement, Case):
                 break
+            self._now = line, statement
             if reads_state(statement):
-                yield Drain(**origin(line, node))
+                yield Drain(**origin(line, statement))
             if self._decisions.of(statement.span, any(self._values.value(each) == chosen for each in statement.values)):
                 break
         return at + 1

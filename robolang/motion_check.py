@@ -15,6 +15,7 @@ from typing import Protocol
 import numpy as np
 
 from robolang import lowering
+from robolang.alarms import calls
 from robolang.branches import Decisions
 from robolang.diagnostics import Diagnostic
 from robolang.effects import (
@@ -154,8 +155,8 @@ class _Rehearsal:
             except StopIteration:
                 break
             except ProgramFault as uncaught:
-                refused = (Diagnostic(code=uncaught.code, message=uncaught.message, span=uncaught.span,
-                                      hint=uncaught.hint),)  # fmt: skip
+                refused = (Diagnostic(code=uncaught.code, message=uncaught.message, span=uncaught.origin.span,
+                                      hint=uncaught.hint, related=calls(uncaught.calls)),)  # fmt: skip
                 break
             fault = None
             try:

@@ -24,6 +24,7 @@ from runtime.linear import norm
 from runtime.plant.cell import CellSpec
 from runtime.plant.plant import Plant
 from runtime.profile import Profile
+from runtime.program_line import ProgramLine
 from runtime.pulses.exported import Export, Load, Marker, Move
 from runtime.pulses.replay import distances, joint_values, positions
 from runtime.robot.payload import Payload, declared
@@ -36,18 +37,15 @@ RAMP_S = 0.4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DrivenMove:
+class DrivenMove(ProgramLine):
     """What became of a move: ``error_mm``, largest distance of the true tool point from the straight segment until the
     arm is in position; ``end_mm``, its distance from the end of it then; ``seconds`` until then.
     """
 
-    line: int
-    number: int | None
     text: str
     seconds: float
     error_mm: float
     end_mm: float
-    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,7 +69,6 @@ class _Run:
     move: Move
     first_tick: int
     end_tick: int = 0
-    notes: tuple[str, ...] = ()
 
 
 def drive(export: Export, cell: CellSpec, profile: Profile, physics: bool = True) -> Drive:
@@ -134,7 +131,7 @@ class _Arm:
         """Carry out the whole sequence, until its end or an alarm."""
         controller = self._controller
         for item in self._export.sequence:
-            controller.line = item.line if item.number is None else item.number
+            controller.statement = ProgramLine(line=item.line, number=item.number)
             if isinstance(item, Move):
                 if not self._runs and not self._cycles(self._approach(item)):
                     break
@@ -167,7 +164,7 @@ class _Arm:
         waited_s = yield from self._settle()
         if waited_s is not None:
             error = np.degrees(self._controller.position_error)
-            run.notes = (f"RBL523 not in position: {error:.3f} deg left after {waited_s:g} s",)
+            self._controller.warn("RBL523", f"not in position: {error:.3f} deg left after {waited_s:g} s")
 
     def _hand(self, marker: Marker) -> Iterator[None]:
         self._controller.hand(marker.hand == "on")
@@ -218,7 +215,6 @@ def _driven(run: _Run, tool: Array, tick_s: float) -> DrivenMove:
         line=move.line, number=move.number, text=move.text, seconds=len(tool) * tick_s,
         error_mm=float(distances(tool, move.start, move.end).max(initial=0.0)) / MM,
         end_mm=norm(tool[-1] - move.end) / MM if len(tool) else 0.0,
-        notes=run.notes,
     )  # fmt: skip
 
 

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from robolang import lowering
+from robolang.alarms import calls
 from robolang.diagnostics import Diagnostic
 from robolang.effects import Drain, Effect, MoveTo, SetHand, SetPayload, SetSeam, SetTool, SetWrist
 from robolang.interpreter import ProgramFault, execute
@@ -25,6 +26,7 @@ from robolang.project import Project
 from runtime.faults import Fault
 from runtime.frames import Array
 from runtime.motion.commands import MoveLinear
+from runtime.program_line import named
 from runtime.pulses import f174, mechanism
 from runtime.pulses.channels import Channel, ChannelFile, channels_of, default_channels, motor_pulse, read_channel_file
 from runtime.pulses.emission import Pulses
@@ -176,7 +178,8 @@ def _effects(project: Project) -> Iterator[Effect]:
     except ProgramFault as fault:
         code = "RBL431" if fault.code == "RBL532" else fault.code
         hint = fault.hint if code == fault.code else ""
-        found = Diagnostic(code=code, message=fault.message, span=fault.span, hint=hint)
+        found = Diagnostic(code=code, message=fault.message, span=fault.origin.span, hint=hint,
+                           related=calls(fault.calls))  # fmt: skip
         raise NotExportableError(found) from None
 
 
@@ -226,7 +229,6 @@ def _tables(effect: MoveTo, move: MovePulses, number: int, machine: Machine, cha
             request: ExportRequest) -> list[list[Named]]:  # fmt: skip
     """Return the files of each channel: the neutral table, then the PLC's; [] for a channel that stands."""
     found: list[list[Named]] = []
-    line = effect.number if effect.number is not None else effect.line
     for k, (channel, emission) in enumerate(zip(channels, move.emitted, strict=True)):
         if not emission.steps.any():
             found.append([])
@@ -234,9 +236,9 @@ def _tables(effect: MoveTo, move: MovePulses, number: int, machine: Machine, cha
         start = int(move.start[k])
         rows = rows_of(emission.steps, start, move.count, request.step_hz)
         unit, scale = channel.unit
-        stem = f"{number:02d}_line{line}_{channel.joint.name}"
+        stem = f"{number:02d}_line{effect.line}_{channel.joint.name}"
         comments = [
-            f"{machine.name}, move {number}, line {line}: {describe(effect.node)}",
+            f"{machine.name}, move {number}, {named(effect.line, effect.number)}: {describe(effect.node)}",
             f"channel {channel.joint.name} from {start} pulses; one pulse is {channel.pulse / scale:.9g} {unit}; one "
             f"step is {request.step_s * 1e3:g} ms",
         ]  # fmt: skip

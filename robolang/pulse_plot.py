@@ -105,11 +105,11 @@ def _thinned(x: Array, y: Array) -> tuple[Array, Array]:
 
 
 def _marks(export: Export, starts: list[float], moves: list[Move]) -> list[Mark]:
-    """Return a mark where each move starts, with its line where there is room for it before the next one."""
+    """Return a mark where each move starts, with its line in the file where there is room before the next one."""
     per_second = (WIDTH - LEFT - RIGHT) / max(export.seconds, 1e-9)
     marks, free = [], 0.0
     for start, move in zip(starts, moves, strict=True):
-        name = str(move.line if move.number is None else move.number)
+        name = str(move.line)
         x = start * per_second
         fits = x >= free
         free = x + _LETTER * (len(name) + 1) if fits else free

@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from robolang.alarms import as_json
+from robolang.diagnostics import Severity
 from robolang.result import RunRecord, StatementRun
 from runtime.controller import Controller
 from runtime.faults import Alarm
@@ -45,27 +47,25 @@ def build_report(record: RunRecord, log: dict[str, Array], wall_s: float) -> dic
         "objects": {
             name: {"pose_mm_deg": pose_mm_deg(X)} for name, X in sorted(controller.plant.parts().items())
         },
-        "alarms": [_alarm(alarm, controller.profile.tick_us) for alarm in controller.alarms],
-        "warnings": [_alarm(alarm, controller.profile.tick_us) for alarm in controller.warnings],
+        "alarms": _events(record, controller.alarms, Severity.ERROR),
+        "warnings": _events(record, controller.warnings, Severity.WARNING),
     }
 
 
-def _alarm(alarm: Alarm, tick_us: int) -> dict[str, object]:
-    return {
-        "code": alarm.code,
-        "message": alarm.message,
-        "line": alarm.line,
-        "axis": None if alarm.axis is None else alarm.axis + 1,
-        "time_s": alarm.tick * tick_us / 1_000_000,
-        "category": alarm.category,
-        "hint": alarm.hint,
-    }
+def _events(record: RunRecord, found: list[Alarm], severity: Severity) -> list[dict[str, object]]:
+    source, tick_us = record.project.source, record.controller.profile.tick_us
+    return [as_json(alarm, severity, source, tick_us) for alarm in found]
 
 
 def pose_mm_deg(X: Array) -> list[float]:
     """Return [x, y, z, rx, ry, rz] in mm and deg of a pose (4, 4)."""
     values = xyzrpy_from_pose(X) / ([MM] * 3 + [DEG] * 3)
     return [float(value) + 0.0 for value in values]
+
+
+_MEASURED = ("start_s", "duration_s", "planned_s", "joint_error_deg", "tool_error_mm", "path_deviation_mm",
+             "peak_torque_pct", "wrist", "seam")  # fmt: skip
+"""What a statement that has not begun has none of."""
 
 
 class _Measures:
@@ -82,12 +82,12 @@ class _Measures:
 def _statement(run: StatementRun, measures: _Measures, tick_us: int) -> dict[str, Any]:
     span = slice(run.first_tick, run.end_tick)
     deviation = None
+    if not run.begun:
+        return {**_head(run), **dict.fromkeys(_MEASURED), "notes": []}
     if run.path is not None and run.end_tick > run.first_tick:
         deviation = float(run.path.deviation((measures.p_tool - measures.deviation[:, :3])[span]).max()) / MM
     return {
-        "line": run.line,
-        "number": run.number,
-        "text": run.text,
+        **_head(run),
         "start_s": run.first_tick * tick_us / 1_000_000,
         "duration_s": (run.end_tick - run.first_tick) * tick_us / 1_000_000,
         "planned_s": run.planned_s,
@@ -115,6 +115,10 @@ def _touched(run: StatementRun, controller: Controller) -> list[dict[str, object
         for touch in ([] if controller.touches is None else controller.touches.records)
         if touch.noticed and run.first_tick <= touch.tick < run.end_tick
     ]
+
+
+def _head(run: StatementRun) -> dict[str, Any]:
+    return {"line": run.origin.line, "number": run.origin.number, "text": run.text, "begun": run.begun}
 
 
 def _wrist(run: StatementRun, mode: Array, tick_us: int) -> dict[str, object] | None:

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, field
 
+from robolang.diagnostics import Diagnostic
+from robolang.effects import Origin
 from robolang.project import Project
 from runtime.controller import Controller
 from runtime.frames import Array
@@ -12,14 +14,14 @@ from runtime.motion.seam import SeamTracker
 
 @dataclass(slots=True, kw_only=True)
 class StatementRun:
-    """What became of one statement: its place, its first and last tick, the path it moved on.
+    """What became of one statement: where it stands, its first and last tick, the path it moved on.
 
+    ``begun``: whether it was reached; the moves of a row that was stopped before them were not.
     ``wrist`` is what its plan did with the wrist, ``seam`` the tracker it moved under, ``lost`` the readings that this
     one lost since; ``lamp`` what the pendant's lamp shows now: ``wrist`` while the wrist goes its own way.
     """
 
-    line: int
-    number: int | None
+    origin: Origin
     text: str
     first_tick: int
     end_tick: int = 0
@@ -29,14 +31,21 @@ class StatementRun:
     seam: SeamTracker | None = None
     lost: int = 0
     lamp: str = ""
+    begun: bool = True
     notes: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunResult:
-    """Outcome of a run: ``report`` of plain JSON types, ``log`` arrays by signal name, first dimension ticks."""
+    """Outcome of a run: ``report`` of plain JSON types, ``log`` arrays by signal name, first dimension ticks.
+
+    ``ok``: the program ran to its end. ``alarms`` ended it otherwise, the one that stopped the arm first; ``warnings``
+    did not: both at the statements that ran.
+    """
 
     ok: bool
+    alarms: tuple[Diagnostic, ...]
+    warnings: tuple[Diagnostic, ...]
     report: dict[str, object]
     log: dict[str, Array]
 

@@ -7,12 +7,14 @@ the whole program is planned once (``motion_check``), so a plannable fault is fo
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
 from robolang import lowering
-from robolang.diagnostics import Diagnostic, render
+from robolang.alarms import as_diagnostic
+from robolang.diagnostics import Diagnostic, Severity, render
 from robolang.effects import (
     Drain,
     Effect,
@@ -118,7 +120,12 @@ class Session:
         self.controller.warn_of_touches()
         log = self.controller.recorder.signals(self.controller.tool_poses)
         report = build_report(self.record, log, wall_s() - started)
-        return RunResult(ok=not self.controller.alarms, report=report, log=log)
+        alarms, warnings = (
+            tuple(as_diagnostic(alarm, severity) for alarm in found)
+            for found, severity in ((self.controller.alarms, Severity.ERROR),
+                                    (self.controller.warnings, Severity.WARNING))
+        )  # fmt: skip
+        return RunResult(ok=not alarms, alarms=alarms, warnings=warnings, report=report, log=log)
 
     def _run_program(self) -> None:
         """Take one effect after another; a request that cannot be carried out goes back to the program (ON ERROR)."""
@@ -147,8 +154,8 @@ class Session:
                 fault = refused
 
     def _end_with(self, fault: ProgramFault) -> None:
-        self.controller.line = fault.line
-        self.controller.alarm(fault.code, fault.message)
+        self.controller.statement = fault.origin
+        self.controller.alarm(fault.code, fault.message, hint=fault.hint, calls=fault.calls)
         self._come_to_rest()
 
     def _take(self, effect: Effect) -> bool:
@@ -167,7 +174,6 @@ class Session:
 
     def _move(self, effect: MoveTo) -> bool:
         """Plan a move where the one before ends; it runs at once, or with the next one where it has a zone."""
-        self.controller.line = _number(effect)
         command = _without_zone(lowering.move(effect, self.world.around), self._tracker is not None)
         if self._chain or command.zone > 0.0:  # refused here, where the program can answer, and not when it runs
             plan = self.controller.rehearse(self.world.q_last, command)
@@ -183,81 +189,92 @@ class Session:
         if not self._chain:
             return not self.controller.alarms
         chain, self._chain = self._chain, []
-        self.controller.line = _number(chain[0][0])
-        plan = self.controller.move_chain([command for _, command in chain])
+        self.controller.statement = chain[0][0].origin
+        plan = self.controller.move_chain([command for _, command in chain], [effect.origin for effect, _ in chain])
         runs = [self._begin(effect) for effect, _ in chain]
         for run, part in zip(runs, plan.parts, strict=True):
             run.path, run.notes = part.path, [*run.notes, *part.notes]
             run.planned_s = part.planned_s
-            run.wrist, run.seam = part.wrist, self._tracker
-        self._cycles(self._follow(runs), runs[0])
+            run.wrist, run.seam, run.begun = part.wrist, self._tracker, False
+        self._cycles(self._follow(runs), *runs)
         self.world.q_last = np.array(self.controller.areas.ina)
         for run in runs:
             run.end_tick = run.end_tick or self.controller.recorder.tick
         return not self.controller.alarms
 
     def _begin(self, effect: Effect) -> StatementRun:
-        run = StatementRun(line=effect.line, number=effect.number, text=describe(effect.node),
-                           first_tick=self.controller.recorder.tick)  # fmt: skip
+        run = StatementRun(origin=effect.origin, text=describe(effect.node), first_tick=self.controller.recorder.tick)
         self.record.statements.append(run)
         return run
 
     def _begin_again(self, effect: Effect) -> StatementRun | None:
         """Return the record of a WAIT that goes on: each of its cycles is an effect."""
         last = self.record.statements[-1] if self.record.statements else None
-        goes_on = isinstance(effect.node, Wait) and last is not None and last.end_tick == self.controller.recorder.tick
-        return last if goes_on and last is not None and last.text == describe(effect.node) else None
+        if not isinstance(effect.node, Wait) or last is None or last.end_tick != self.controller.recorder.tick:
+            return None
+        return last if last.origin.span == effect.span else None
 
     def _follow(self, runs: list[StatementRun]) -> Iterator[None]:
         """Yield once for every cycle of a chain of moves, until the arm is in position."""
         controller, profile = self.controller, self.project.profile
         self._progress(runs[0], controller.time_us)
         lost = 0 if runs[0].seam is None else runs[0].seam.lost
-        current = 0
         if not controller.moving:  # it is there already; a loop of such moves takes time all the same
             yield
         while controller.moving:
             yield
-            while current < controller.chain_index:
-                runs[current].end_tick = runs[current + 1].first_tick = controller.recorder.tick
-                current += 1
-                controller.line = runs[current].line if runs[current].number is None else runs[current].number or 0
-                self._progress(runs[current], controller.time_us)
-            run = runs[current]
+            run = self._reach(runs)
             run.lamp = LAMPS[controller.wrist_mode]
             run.lost = 0 if run.seam is None else run.seam.lost - lost
             if controller.recorder.cycle % _PROGRESS_CYCLES == 0:
                 self._progress(run, controller.time_us)
-        run, waited_us = runs[-1], 0
+        waited_us = 0
         while not controller.position_error <= profile.in_position:
             if waited_us >= profile.settle_timeout_us:
                 error = np.degrees(controller.position_error)
-                run.notes.append(f"RBL523 not in position: {error:.3f} deg left after {waited_us / 1e6:g} s")
+                controller.warn("RBL523", f"not in position: {error:.3f} deg left after {waited_us / 1e6:g} s")
                 return
             waited_us += profile.period_us
             yield
+
+    def _reach(self, runs: list[StatementRun]) -> StatementRun:
+        """Return the move of a chain whose set-point is sent next; it begins when the one before it ends."""
+        tick, at = self.controller.recorder.tick, self.controller.chain_index
+        runs[0].begun = tick > runs[0].first_tick
+        if not runs[at].begun and runs[0].begun:
+            for before, run in pairwise(runs[: at + 1]):
+                if not run.begun:
+                    before.end_tick = run.first_tick = tick
+                    run.begun = True
+            self._progress(runs[at], self.controller.time_us)
+        return runs[at]
 
     # --- everything else ---------------------------------------------------------------------------------------------
 
     def _run_statement(self, effect: Effect) -> bool:
         controller = self.controller
-        controller.line = _number(effect)
+        controller.statement = effect.origin
         run = self._begin_again(effect) or self._begin(effect)
         self._progress(run, controller.time_us)
         self._cycles(self._carry_out(effect, run), run)
         run.end_tick = controller.recorder.tick
         return not controller.alarms
 
-    def _cycles(self, each: Iterator[None], run: StatementRun) -> None:
-        """Run one cycle for every step; stop the arm when it was asked for or an alarm has been raised."""
+    def _cycles(self, each: Iterator[None], *runs: StatementRun) -> None:
+        """Run one cycle for every step; stop the arm when it was asked for or an alarm has been raised.
+
+        ``runs``: one statement, or the moves of a chain.
+        """
         controller = self.controller
         for _ in each:
             if self._stop_requested or not controller.cycle() or controller.alarms:
                 break
             if controller.time_us >= MAX_RUN_US:
                 controller.alarm("RBL509", f"the run has lasted {MAX_RUN_US / 1e6:g} s of simulated time")
-            if controller.recorder.cycle % _PROGRESS_CYCLES == 0 and run.path is None:
-                self._progress(run, controller.time_us)
+            if controller.recorder.cycle % _PROGRESS_CYCLES == 0 and runs[0].path is None:
+                self._progress(runs[0], controller.time_us)
+        if runs[0].planned_s is not None:
+            self._reach(list(runs))
         if self._stop_requested and not controller.alarms:
             controller.alarm("RBL530", "the run was stopped from outside")
         if controller.alarms:
@@ -304,7 +321,8 @@ class Session:
         self.record.payloads.append(
             {
                 "time_s": self.controller.time_us / 1_000_000,
-                "line": self.controller.line,
+                "line": effect.line,
+                "number": effect.number,
                 "mass_kg": payload.mass,
                 "cog_mm": [float(x) for x in np.round(payload.cog / MM, 9)],
             }
@@ -327,11 +345,6 @@ class Session:
         holding = self.controller.plant.hand().holding
         if effect.closed:
             run.notes.append(f"holds '{holding}'" if holding else "closed on nothing")
-
-
-def _number(effect: Effect) -> int:
-    """Return the number by which alarms and the log name a statement."""
-    return effect.line if effect.number is None else effect.number
 
 
 def _without_zone(command: Command, tracked: bool) -> Command:

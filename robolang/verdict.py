@@ -19,6 +19,7 @@ from robolang.session import Session
 from runtime.faults import Fault
 from runtime.frames import Array, pose_from_xyzrpy, rotation_angles
 from runtime.linear import norm
+from runtime.program_line import named
 from runtime.units import DEG, MM
 
 _LARGEST = (
@@ -27,6 +28,7 @@ _LARGEST = (
     ("torque_pct", "peak_torque_pct", "%"),
 )
 """Keys of ``[expect]`` that bound a measure of the statements: the measure in the report, and its unit."""
+_MOST_PLACES = 5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,14 +85,14 @@ def _events(
 ) -> list[Verdict]:
     """Return the verdicts of what a run says of itself, that of the alarms first."""
     codes = [alarm["code"] for alarm in alarms]
-    said = f"{_listed(codes)}, expected {_listed(expected.alarms)}"
+    said = f"{_listed(codes)}, expected {_listed(expected.alarms)}{_placed(alarms)}"
     found = [Verdict(name="alarms", ok=codes == list(expected.alarms), said=said, key=("alarms",))]
     codes = [warning["code"] for warning in warnings]
     if expected.warnings is not None:
-        said = f"{_listed(codes)}, expected {_listed(expected.warnings)}"
+        said = f"{_listed(codes)}, expected {_listed(expected.warnings)}{_placed(warnings)}"
         found.append(Verdict(name="warnings", ok=set(codes) == set(expected.warnings), said=said, key=("warnings",)))
     elif codes:
-        said = f"{_listed(codes)}, neither expected nor forbidden"
+        said = f"{_listed(codes)}, neither expected nor forbidden{_placed(warnings)}"
         found.append(Verdict(name="warnings", ok=True, said=said, key=("warnings",), noted=True))
     if expected.printed is not None:
         said = _first_line(printed, expected.printed)
@@ -102,6 +104,19 @@ def _listed(codes: Sequence[str]) -> str:
     """Return codes in their order, each once with how often it came."""
     counts = Counter(codes)
     return ", ".join(code if count == 1 else f"{code} ({count} times)" for code, count in counts.items()) or "none"
+
+
+def _placed(rows: Sequence[dict[str, Any]]) -> str:
+    """Return where alarms or warnings of a run came from, each of a statement once, the first ``_MOST_PLACES``."""
+    found: dict[tuple[Any, ...], str] = {}
+    for row in rows:
+        if "file" in row:  # what keeps a program from starting is placed by the caller
+            place = row["file"], row["line"], row["column"]
+            text = "{}:{}:{}: ".format(*place) + f"{row['code']} {row['message']}"
+            found.setdefault((*place, row["code"]), text)
+    more = len(found) - _MOST_PLACES
+    texts = [*list(found.values())[:_MOST_PLACES], *([f"and at {more} more places"] if more > 0 else [])]
+    return "".join(f"; {text}" for text in texts)
 
 
 def _first_line(lines: list[str], expected: tuple[str, ...]) -> str:
@@ -118,8 +133,8 @@ def _largest(statements: list[dict[str, Any]], key: str, measure: str, most: flo
     if not rows:
         return Verdict(name=name, ok=False, said="nothing to compare, no statement moves the arm", key=(key,))
     value, entry = max(rows, key=lambda row: (not math.isfinite(row[0]), row[0]))
-    where = entry["number"] if entry["number"] is not None else entry["line"]
-    said = f"{value:.3f} {unit} in line {where}, at most {most:g} {unit}"
+    where = named(entry["line"], entry["number"])
+    said = f"{value:.3f} {unit} in {where}, at most {most:g} {unit}"
     return Verdict(name=name, ok=value <= most, said=said, key=(key,))
 
 
@@ -190,5 +205,7 @@ def _golden(expected: Expectation, session: Session, log: dict[str, Array]) -> V
     if at is not None and len(q):
         profile = session.project.profile
         tick = at * profile.ticks_per_cycle
-        said += f", first at tick {tick} ({tick * profile.tick_s:.3f} s), line {int(line[min(at, len(line) - 1)])}"
+        row = min(at, len(line) - 1)
+        number = int(log["number"][:: profile.ticks_per_cycle][row])
+        said += f", first at tick {tick} ({tick * profile.tick_s:.3f} s), {named(int(line[row]), number or None)}"
     return Verdict(name="golden", ok=at is None, said=said, key=("golden_deg",))

@@ -38,6 +38,7 @@ from runtime.motion.stop import stopping_rows
 from runtime.plant.plant import Plant
 from runtime.plant.touches import Touches
 from runtime.profile import Profile
+from runtime.program_line import ProgramLine, logged
 from runtime.recorder import Recorder
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.model import ArmModel
@@ -76,12 +77,12 @@ class Controller:
         self.profile = profile
         self.kinematics = kinematics or Kinematics(spec)
         self.X_flange_tool = X_flange_tool
-        self.line = 0
-        """Program line that runs, for the log and for alarms."""
+        self.statement: ProgramLine | None = None
+        """Statement that runs, for the log and for alarms; None: none does."""
         self.alarms: list[Alarm] = []
         """Latched alarms, the one that stopped the arm first."""
         self.warnings: list[Alarm] = []
-        """What supervision reported without stopping."""
+        """What was found without stopping the arm."""
         self.halted = False
         """Whether the brakes hold the arm: nothing moves until ``acknowledge``."""
         self._rest_us = self._loaded_us = 0
@@ -106,7 +107,7 @@ class Controller:
         self._tracker: SeamTracker | None = None
         self._waiting: list[tuple[LinePlan, MoveLinear]] = []  # under the tracker a move begins where the last one led
         self._before = 0  # moves of a row before those that the interpolator has
-        self._lines: tuple[int, ...] = ()
+        self._statements: tuple[ProgramLine, ...] = ()
         self.wrist_mode = FOLLOWS
         """Whether the wrist follows the path at the set-point in INA, or goes its own way (``runtime.motion.planner``).
         """
@@ -178,15 +179,16 @@ class Controller:
         """Plan a move from the commanded position and start it; ``Fault`` RBL4xx before anything moves."""
         return self.move_chain([command]).parts[0].plan
 
-    def move_chain(self, commands: Sequence[Command], lines: Sequence[int] = ()) -> ChainPlan:
+    def move_chain(self, commands: Sequence[Command],
+                   statements: Sequence[ProgramLine] = ()) -> ChainPlan:  # fmt: skip
         """Plan moves in a row, blended where they have zones, and start them; ``ChainFault`` RBL4xx before any moves.
 
-        ``lines``, one for each: ``line`` becomes that of a move when its rows begin, in the middle of a blend. Under a
-        seam sensor moves are straight and do not blend: zones are taken as 0.
+        ``statements``, one for each: ``statement`` becomes that of a move with the cycle that sends its first row, in
+        the middle of a blend. Under a seam sensor moves are straight and do not blend: zones are taken as 0.
         """
         self._refuse_while_latched()
-        if lines and len(lines) != len(commands):
-            raise ValueError(f"{len(commands)} moves have {len(lines)} lines")
+        if statements and len(statements) != len(commands):
+            raise ValueError(f"{len(commands)} moves have {len(statements)} statements")
         here, tracker = np.array(self.areas.ina), self._tracker
         if tracker is None:
             chain = self._planner.chain(here, commands, self.X_flange_tool, self._override)
@@ -198,9 +200,9 @@ class Controller:
             if self._interpolator.busy:
                 raise RuntimeError("a move is running")
             self._waiting = [(part.plan, command) for part, command in zip(chain.parts, tracked, strict=True)]
-        self._before, self._lines = 0 if tracker is None else -1, tuple(lines)
+        self._before, self._statements = 0 if tracker is None else -1, tuple(statements)
         self._start_waiting()
-        self._name_line()
+        self._name_statement()
         return chain
 
     def _start_waiting(self) -> None:
@@ -213,9 +215,9 @@ class Controller:
             self._interpolator.start(plan, lines.tracked(plan, command, q_from, here, tracker, self.X_flange_tool))
             self._before += 1
 
-    def _name_line(self) -> None:
-        if self._lines:
-            self.line = self._lines[self.chain_index]
+    def _name_statement(self) -> None:
+        if self._statements:
+            self.statement = self._statements[self.chain_index]
 
     @property
     def override(self) -> float:
@@ -323,13 +325,14 @@ class Controller:
             return False
         foreground_us = 0
         self._start_waiting()
-        if self._interpolator.busy:
+        next_row = self._interpolator.busy
+        if next_row:
             areas.ina = self._interpolator.next()
-            self._name_line()
             foreground_us = profile.interpolation_cost_us
             self.wrist_mode = self._interpolator.mode
             fault = self._interpolator.fault
             if fault is not None and not self.alarms:
+                self._name_statement()
                 self.alarm(fault.code, fault.message)
         self.processor.begin_cycle(foreground_us)
         start_tick = self.recorder.tick
@@ -339,6 +342,8 @@ class Controller:
             self._touch(self.touches, start_tick)
         if self.profile.supervision.enabled or self.alarms:  # a stop is seen to its end in any case
             self._supervise(start_us, motion)
+        if next_row:  # what has been judged is the row before it
+            self._name_statement()
         return not self.halted
 
     def _send(self) -> Array | None:
@@ -357,7 +362,7 @@ class Controller:
         rows = np.array([cell.row for cell in cells]) if self.servo.coupled else None
         self.servo.take(D, T, motion, rows)
         self.recorder.begin_cycle((self.areas.ina, D, T, read_us, self.seam_deviation), motion,
-                                  (self.areas.sda.mass, self.line, self.wrist_mode))  # fmt: skip
+                                  (self.areas.sda.mass, *logged(self.statement), self.wrist_mode))  # fmt: skip
         return motion
 
     def _run_ticks(self, start_us: int, motion: Array) -> bool:
@@ -418,9 +423,9 @@ class Controller:
 
     def _touch(self, touches: Touches, start_tick: int) -> None:
         """Take the contacts of the cycle that has just run; a lost part stops the arm."""
-        lost = touches.cycle(start_tick, self.line, self.plant.touching())
+        lost = touches.cycle(start_tick, self.statement, self.plant.touching())
         if lost is not None and not self.alarms and self.profile.supervision.enabled:
-            self._stop_by(self._alarm_of(Finding(code="RBL536", message=lost.message, tick=lost.tick), lost.line))
+            self._stop_by(self._alarm_of(Finding(code="RBL536", message=lost.message, tick=lost.tick), lost.place))
 
     def _follow_stop(self, found: Finding | None) -> None:
         """See a controlled stop to its end: brakes when the arm stands, at once when it does not follow."""
@@ -448,9 +453,15 @@ class Controller:
         else:
             self._stop_by(self._alarm_of(found))
 
-    def alarm(self, code: str, message: str, axis: int | None = None) -> None:
-        """Latch an alarm at the running line and the current tick, and stop the arm by its category."""
-        self._stop_by(self._alarm_of(Finding(code=code, message=message, axis=axis, tick=self.recorder.tick)))
+    def alarm(self, code: str, message: str, axis: int | None = None, *, hint: str = "",
+              calls: tuple[ProgramLine, ...] = ()) -> None:  # fmt: skip
+        """Latch an alarm at the running statement and the current tick, and stop the arm by its category."""
+        found = Finding(code=code, message=message, axis=axis, tick=self.recorder.tick)
+        self._stop_by(self._alarm_of(found, hint=hint, calls=calls))
+
+    def warn(self, code: str, message: str, axis: int | None = None) -> None:
+        """Keep a warning at the running statement and the current tick; the arm goes on."""
+        self._latch(Finding(code=code, message=message, axis=axis, tick=self.recorder.tick, warning=True))
 
     def warn_of_touches(self) -> None:
         """Take what has been touched so far and should not have been into ``warnings``; once, at the end of a run."""
@@ -458,14 +469,15 @@ class Controller:
             if touch.noticed:
                 code = "RBL537" if touch.fixed else "RBL535"
                 found = Finding(code=code, message=touch.message, tick=touch.tick, warning=True)
-                self.warnings.append(self._alarm_of(found, touch.line))
+                self.warnings.append(self._alarm_of(found, touch.place))
         self.warnings.sort(key=lambda alarm: alarm.tick)
 
-    def _alarm_of(self, found: Finding, line: int | None = None) -> Alarm:
+    def _alarm_of(self, found: Finding, statement: ProgramLine | None = None, hint: str = "",
+                  calls: tuple[ProgramLine, ...] = ()) -> Alarm:  # fmt: skip
+        """Return the alarm of a finding at a statement; None: at the one that runs."""
         entry = lookup(found.code)
-        return Alarm(code=found.code, message=found.message, tick=found.tick, axis=found.axis,
-                     line=(self.line if line is None else line) or None, hint=entry.remedy,
-                     category=entry.category)  # fmt: skip
+        return Alarm(code=found.code, message=found.message, tick=found.tick, axis=found.axis, category=entry.category,
+                     statement=statement or self.statement, calls=calls, hint=hint or entry.remedy)  # fmt: skip
 
     def _stop_by(self, alarm: Alarm) -> None:
         self.alarms.append(alarm)

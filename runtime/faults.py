@@ -5,11 +5,13 @@ alarms of the running controller, so that a code means one thing everywhere. Eac
 raises: the runtime its own below, the language front end its own in ``robolang.codes``.
 
 A *fault* (``Fault``) is raised where a request cannot be carried out; the request itself has moved nothing. An
-*alarm* (``Alarm``) is a latched event of the running robot, kept in the report. Neither knows of source files:
-the session adds file, line and column.
+*alarm* (``Alarm``) is a latched event of the running robot, kept in the report. It carries the statement that ran,
+as the front end gave it to the controller, so that its place in the program is never looked up a second time.
 """
 
 from dataclasses import dataclass
+
+from runtime.program_line import ProgramLine
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,15 +54,17 @@ def all_codes() -> list[Code]:
 class Alarm:
     """A latched event of the running controller.
 
-    ``tick`` is the servo tick at which it was raised, ``axis`` is 0-based (None: no single axis), ``line`` the
-    program line that ran (None: none did). ``category`` is the stop that answers it: 0 at once, 1 on the path.
+    ``tick`` is the servo tick at which it was raised, ``axis`` is 0-based (None: no single axis), ``statement`` the
+    one that ran (None: none did), ``calls`` those that led to it, the outermost first. ``category`` is the stop that
+    answers it: 0 at once, 1 on the path.
     """
 
     code: str
     message: str
     tick: int
     axis: int | None = None
-    line: int | None = None
+    statement: ProgramLine | None = None
+    calls: tuple[ProgramLine, ...] = ()
     hint: str = ""
     category: int = 1
 

@@ -15,7 +15,7 @@ signal                    unit    meaning
 ``D`` ``T``               kg m2   inertia and gravity torque (N m) in use, without the rotor
 ``D_age`` ``T_age``       ms      time since the angles were read from which they were computed
 ``payload_mass``          kg      mass declared by LOAD
-``line``                  -       line of the program that runs (0: none)
+``line`` ``number``       -       line of the file that runs, and its line number (0: none)
 ``wrist_mode``            -       0: wrist follows the path, 1: goes to its end angles, 2: with components held
 ``seam_deviation``        m, rad  what the seam sensor adds to the path, (6,), world frame
 ========================  ======  ==========================================================================
@@ -44,23 +44,23 @@ class Recorder:
         self._tick_us = tick_us
         self._ticks = np.zeros((_FIRST_ROWS, 5 * n))
         self._commands = np.zeros((_FIRST_ROWS, 2 * n))
-        self._cycles = np.zeros((_FIRST_ROWS // ticks_per_cycle + 1, 4 * n + 9))
+        self._cycles = np.zeros((_FIRST_ROWS // ticks_per_cycle + 1, 4 * n + 10))
         self.tick = 0
         """Ticks recorded so far."""
         self.cycle = 0
         """Cycles begun so far."""
 
-    def begin_cycle(self, vectors: tuple[Array, ...], motion: Array, scalars: tuple[float, int, int]) -> None:
+    def begin_cycle(self, vectors: tuple[Array, ...], motion: Array, scalars: tuple[float, int, int, int]) -> None:
         """Record what is constant in a cycle and the commanded motion (3, ticks, n) of its ticks.
 
         ``vectors``: q_plan, D, T, time of reading us, each (n,), and the seam's deviation (6,); ``scalars``: mass
-        declared, line, wrist_mode.
+        declared, line, line number, wrist_mode.
         """
         if self.cycle == len(self._cycles):
             self._cycles = np.concatenate([self._cycles, np.zeros_like(self._cycles)])
         row = self._cycles[self.cycle]
-        np.concatenate(vectors, out=row[:-3])
-        row[-3:] = scalars
+        np.concatenate(vectors, out=row[:-4])
+        row[-4:] = scalars
         self.cycle += 1
         end = self.tick + self._ticks_per_cycle
         if end > len(self._ticks):
@@ -103,8 +103,9 @@ class Recorder:
             "T": cycles[:, 2 * n : 3 * n],
             "D_age": age_ms,
             "T_age": age_ms.copy(),
-            "payload_mass": cycles[:, -3],
-            "line": cycles[:, -2].astype(np.int32),
+            "payload_mass": cycles[:, -4],
+            "line": cycles[:, -3].astype(np.int32),
+            "number": cycles[:, -2].astype(np.int32),
             "wrist_mode": cycles[:, -1].astype(np.int8),
             "seam_deviation": cycles[:, 4 * n : 4 * n + 6],
         }

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 
+from robolang.cli import lines
 from robolang.diagnostics import Diagnostic, safe
 from robolang.exploration import Exploration, explore
 from robolang.line_times import LineTime, line_times
@@ -85,15 +86,20 @@ def _missed(project: Project, explored: Exploration) -> list[int]:
 
 
 def _table(project: Project, rehearsal: Rehearsal, rows: Sequence[LineTime]) -> str:
-    lines = [
+    where = lines.headings([asdict(row) for row in rows])
+    table = [
         f"{safe(project.source.path)} on {project.cell.robot.name}, planned without physics",
-        f"{'line':>5}  {'statement':<{_STATEMENT}} {'times':>5} {'time, s':>8} {'way, mm':>8} {'fastest':>11} "
+        f"{_where(where)}  {'statement':<{_STATEMENT}} {'times':>5} {'time, s':>8} {'way, mm':>8} {'fastest':>11} "
         f"{'to range':>9} {'wrist':>9}",
-        *(_row(row) for row in rows),
-        f"{'':>5}  {'total':<{_STATEMENT}} {'':>5} {rehearsal.total_us / 1e6:8.3f}",
+        *(_row(row, where) for row in rows),
+        f"{_where([''] * len(where))}  {'total':<{_STATEMENT}} {'':>5} {rehearsal.total_us / 1e6:8.3f}",
         *_wrist(project, rehearsal),
     ]
-    return "\n".join(line.rstrip() for line in lines) + "\n"
+    return "\n".join(line.rstrip() for line in table) + "\n"
+
+
+def _where(cells: Sequence[str]) -> str:
+    return " ".join(f"{cell:>5}" for cell in cells)
 
 
 def _ways(project: Project, explored: Exploration) -> str:
@@ -103,15 +109,15 @@ def _ways(project: Project, explored: Exploration) -> str:
         ways = len(explored.detours)
         text += f"and {ways} other way{'s' * (ways > 1)} through it, where inputs, time or errors decide\n"
     if explored.missed:
-        lines = ", ".join(map(str, _missed(project, explored)))
-        text += f"not planned, since no way led there: the moves in line {lines}\n"
+        missed = ", ".join(map(str, _missed(project, explored)))
+        text += f"not planned, since no way led there: the moves in line {missed}\n"
     return text
 
 
 def _wrist(project: Project, rehearsal: Rehearsal) -> list[str]:
     """Return the lines that say what the payload asks of the wrist in its worst posture, and of what; ~ estimated."""
     shares = worst_loads(project, rehearsal.moves)
-    lines = []
+    said_of = []
     for what in ("moment", "inertia"):
         said = [
             f"J{share.axis + 1} {share.value if share.value >= _NOTHING else 0:.3g} of "
@@ -120,17 +126,17 @@ def _wrist(project: Project, rehearsal: Rehearsal) -> list[str]:
         ]  # fmt: skip
         if said:
             unit = next(share.unit for share in shares if share.what == what)
-            lines.append(f"{what} of the payload at the wrist, worst posture: {', '.join(said)} {unit}")
-    return lines
+            said_of.append(f"{what} of the payload at the wrist, worst posture: {', '.join(said)} {unit}")
+    return said_of
 
 
-def _row(row: LineTime) -> str:
+def _row(row: LineTime, where: tuple[str, ...]) -> str:
     text = safe(row.text)
     text = text if len(text) <= _STATEMENT else f"{text[: _STATEMENT - 1]}…"
     way = "" if row.length_mm is None else f"{row.length_mm:.1f}"
     fastest = "" if row.speed_pct is None else f"{row.joint} {row.speed_pct:4.0f} %"
     margin = "" if row.margin_deg is None else f"{row.margin_deg:.1f} deg"
-    number = row.line if row.number is None else row.number
     wrist = "" if row.wrist_deg is None else f"{row.wrist_deg:.1f} deg"
-    return (f"{number:>5}  {text:<{_STATEMENT}} {row.count:>5} {row.seconds:8.3f} {way:>8} {fastest:>11} "
+    at = _where(lines.cells(asdict(row), where))
+    return (f"{at}  {text:<{_STATEMENT}} {row.count:>5} {row.seconds:8.3f} {way:>8} {fastest:>11} "
             f"{margin:>9} {wrist:>9}")  # fmt: skip

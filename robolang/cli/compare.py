@@ -96,7 +96,9 @@ def _print(program: str, rows: list[dict[str, Any]]) -> None:
     _print_axes(console, rows)
     for row in rows:
         for alarm in row["alarms"]:
-            console.print(safe(f"{row['title']}: stopped at line {alarm['line']}, {alarm['code']} {alarm['message']}"))
+            place = f"{alarm['file']}:{alarm['line']}:{alarm['column']}"
+            text = f"{row['title']}: stopped at {place}, {alarm['time_s']:.3f} s: {alarm['code']} {alarm['message']}"
+            console.print(safe(text), soft_wrap=True)
 
 
 def _print_axes(console: Any, rows: list[dict[str, Any]]) -> None:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from robolang.cli import lines
 from robolang.cli.errors import DIAGNOSTICS, exit_code, reported, say_warnings
 from robolang.cli.values import OptionValueError
 
@@ -144,20 +145,22 @@ def _print(found: "Export", out: Path) -> None:
 
     plain, console = _plain(found, out), Console()
     moves, markers = plain["moves"], plain["markers"]
+    where = lines.headings([*moves, *markers])
+    width = 24 if len(where) == 1 else 19  # the table has 80 columns at most
 
     def table(*headings: str) -> Table:
         made = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
         for heading in headings:
             text = heading in ("statement", "channel")
             made.add_column(heading, justify="left" if text else "right", no_wrap=True, overflow="ellipsis",
-                            max_width=24 if heading == "statement" else None)  # fmt: skip
+                            max_width=width if heading == "statement" else None)  # fmt: skip
         return made
 
     title = f"{found.machine.name}: pulse tables in steps of {found.request.step_s * 1e3:g} ms"
     console.print(safe(title), soft_wrap=True)
-    by_move = table("line", "statement", "steps", "time, s", "mm/s", "raised", "tables", "off, mm")
-    move_rows = map(_move_row, moves)
-    marker_rows = ((_number(entry), safe(entry["text"])) for entry in markers)
+    by_move = table(*where, "statement", "steps", "time, s", "mm/s", "raised", "tables", "off, mm")
+    move_rows = ((*lines.cells(entry, where), *_move_row(entry)) for entry in moves)
+    marker_rows = ((*lines.cells(entry, where), safe(entry["text"])) for entry in markers)
     for item in found.sequence:
         by_move.add_row(*next(move_rows if isinstance(item, ExportedMove) else marker_rows))
     console.print(by_move)
@@ -173,16 +176,12 @@ def _print(found: "Export", out: Path) -> None:
                        f"markers between them; largest path error {worst:.4f} mm"), soft_wrap=True)  # fmt: skip
 
 
-def _number(entry: dict[str, Any]) -> str:
-    return str(entry["line"] if entry["number"] is None else entry["number"])
-
-
 def _move_row(entry: dict[str, Any]) -> tuple[str, ...]:
     from robolang.diagnostics import safe
 
     channels = entry["channels"]
     return (
-        _number(entry), safe(entry["text"]), str(entry["steps"]), f"{entry['seconds']:.2f}",
+        safe(entry["text"]), str(entry["steps"]), f"{entry['seconds']:.2f}",
         f"{entry['speed_mm_s']:.1f}", str(sum(channel["raised"] for channel in channels)),
         str(sum(channel["tables"] for channel in channels)), f"{entry['error_mm']:.4f}",
     )  # fmt: skip
@@ -203,7 +202,7 @@ def _notes(moves: list[dict[str, Any]]) -> list[str]:
     for entry in moves:
         held = [channel["name"] for channel in entry["channels"] if channel["rule"] == "hold"]
         waits = [f"{', '.join(held)}: stands between pulses, too slow for the lowest frequency"] if held else []
-        notes += [f"line {_number(entry)}: {note}" for note in [*entry["notes"], *waits]]
+        notes += [f"{lines.name(entry)}: {note}" for note in [*entry["notes"], *waits]]
     return notes
 
 

@@ -10,16 +10,20 @@ if TYPE_CHECKING:
     from robolang.project import Project
 
 
-def refuse(project: "Project") -> None:
+def refuse(project: "Project", *, warnings: bool = True) -> bool:
     """Print the diagnostics and what is unlikely about the robot.
 
-    Leave when the text has errors or a motion cannot be planned.
+    Leave when the text has errors or a motion cannot be planned. ``warnings`` False: print errors only. Returns whether
+    there are warnings, printed or not.
     """
-    from robolang.diagnostics import render
+    from robolang.diagnostics import Severity, render
 
-    say_warnings(project.cell.robot.warnings)
+
+    if warnings:
+        say_warnings(project.cell.robot.warnings)
     for item in project.diagnostics:
-        typer.echo(render(item, project.source), err=True)
+        if warnings or item.severity is Severity.ERROR:
+            typer.echo(render(item, project.source), err=True)
     if not project.ok:
         raise typer.Exit(DIAGNOSTICS)
     from robolang.motion_check import motion_check
@@ -29,3 +33,5 @@ def refuse(project: "Project") -> None:
         typer.echo(render(item, project.source), err=True)
     if refused:
         raise typer.Exit(exit_code(refused[0].code))
+    unlikely = bool(project.cell.robot.warnings)
+    return unlikely or any(item.severity is Severity.WARNING for item in project.diagnostics)

@@ -8,8 +8,9 @@ program asks for. ``--physics`` drives the arm of the cell with them too. ``--js
      "sequence": [{"kind": "marker", "line", "number", "text", "dwell_s"},
                   {"kind": "move", "line", "number", "text", "steps", "seconds", "pulses": {channel: count},
                    "highest_hz", "highest_channel", "rows_mm", "between_mm", "end_mm",
-                   "real": null or {"seconds", "error_mm", "end_mm", "notes"}}, ...],
-     "physics": null or {"seconds", "alarms": [{"code", "message", "line", "axis", "time_s"}, ...], "warnings"}}
+                   "real": null or {"seconds", "error_mm", "end_mm"}}, ...],
+     "physics": null or {"seconds", "alarms": [{"code", "message", "line", "number", "axis", "time_s"}, ...],
+                                  "warnings"}}
 
 Exit codes: 0; 1 the tables lead further from a line than ``--max-error`` (RBL635); 2 a value or a folder that cannot be
 used, or one for another robot; 3 the real arm stopped with an alarm.
@@ -22,8 +23,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from robolang.cli import lines
 from robolang.cli.errors import DIAGNOSTICS, MOTION, reader_may_leave, reported, say, say_warnings
 from robolang.cli.values import OptionValueError
+from runtime.program_line import named
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -102,9 +105,8 @@ def _is_too_far(replays: "list[MoveReplay]", max_error: float) -> bool:
     if worst is None or worst.worst_mm <= max_error:
         return False
     move = worst.move
-    number = move.line if move.number is None else move.number
-    message = f"line {number}, {move.text}: {worst.worst_mm:.4f} mm off its line, {max_error:g} mm are allowed"
-    say(Fault("RBL635", message))
+    where = f"{named(move.line, move.number)}, {move.text}"
+    say(Fault("RBL635", f"{where}: {worst.worst_mm:.4f} mm off its line, {max_error:g} mm are allowed"))
     return True
 
 
@@ -164,12 +166,13 @@ def _channels(export: "Export", replays: "list[MoveReplay]") -> list[dict[str, A
 
 
 def _driven(move: "DrivenMove") -> dict[str, Any]:
-    return {"seconds": move.seconds, "error_mm": move.error_mm, "end_mm": move.end_mm, "notes": list(move.notes)}
+    return {"seconds": move.seconds, "error_mm": move.error_mm, "end_mm": move.end_mm}
 
 
 def _alarm(alarm: "Alarm", tick_s: float) -> dict[str, Any]:
-    axis = None if alarm.axis is None else alarm.axis + 1
-    return {"code": alarm.code, "message": alarm.message, "line": alarm.line, "axis": axis,
+    axis, at = None if alarm.axis is None else alarm.axis + 1, alarm.statement
+    return {"code": alarm.code, "message": alarm.message, "line": None if at is None else at.line,
+            "number": None if at is None else at.number, "axis": axis,
             "time_s": round(alarm.tick * tick_s, 9)}  # fmt: skip
 
 
@@ -189,20 +192,13 @@ def _print(found: dict[str, Any]) -> None:
     console.print(safe(f"{found['program']} on {mechanism['name']}, steps of {found['step_s'] * 1e3:g} ms"),
                   style="italic", soft_wrap=True)  # fmt: skip
     console.print(_table(found, console.width))
-    for row in found["sequence"]:
-        for note in (row.get("real") or {}).get("notes", ()):
-            console.print(safe(f"  line {_number(row)}: {note}"), soft_wrap=True)
     for kind, alarms in () if physics is None else (("warning", physics["warnings"]), ("stopped", physics["alarms"])):
         for alarm in alarms:
-            where = "" if alarm["line"] is None else f" at line {alarm['line']}"
+            where = "" if alarm["line"] is None else f" at {lines.name(alarm)}"
             text = f"{kind}{where}, {alarm['time_s']:.3f} s: {alarm['code']} {alarm['message']}"
             console.print(safe(text), soft_wrap=True)
     for line in _totals(found):
-        console.print(line)
-
-
-def _number(row: dict[str, Any]) -> int:
-    return int(row["line"] if row["number"] is None else row["number"])
+        console.print(line, soft_wrap=True)
 
 
 def _table(found: dict[str, Any], width: int) -> "Table":
@@ -210,22 +206,26 @@ def _table(found: dict[str, Any], width: int) -> "Table":
     from rich.table import Table
 
     headings = (*_COLUMNS, *(() if found["physics"] is None else (_REAL,)))
-    rows = [_cells(row, real=found["physics"] is not None) for row in found["sequence"]]
+    where = lines.headings(found["sequence"])
+    rows = [[*lines.cells(row, where), *_cells(row, real=found["physics"] is not None)] for row in found["sequence"]]
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False, show_edge=False)
-    table.add_column("line", justify="right", no_wrap=True)
+    for heading in where:
+        table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("statement", no_wrap=True)
     for heading in headings:
         table.add_column(heading, justify="right", no_wrap=True)
-    room = _room(rows, headings, width)
-    for number, text, *cells in rows:
-        table.add_row(number, text if len(text) <= room else f"{text[: room - 1]}…", *cells)
+    room, at = _room(rows, where, headings, width), len(where)
+    for row in rows:
+        text = row[at]
+        row[at] = text if len(text) <= room else f"{text[: room - 1]}…"
+        table.add_row(*row)
     return table
 
 
 def _cells(row: dict[str, Any], *, real: bool) -> list[str]:
     from robolang.diagnostics import safe
 
-    head = [str(_number(row)), safe(row["text"])]
+    head = [safe(row["text"])]
     if row["kind"] == "marker":
         waits = f"{row['dwell_s']:.3f}" if row["dwell_s"] else ""
         return [*head, "", waits, *([""] * (len(_COLUMNS) - 2 + real))]
@@ -235,11 +235,11 @@ def _cells(row: dict[str, Any], *, real: bool) -> list[str]:
     return [*head, *cells, *((["-"] if row["real"] is None else [f"{row['real']['error_mm']:.3f}"]) if real else [])]
 
 
-def _room(rows: list[list[str]], headings: tuple[str, ...], width: int) -> int:
+def _room(rows: list[list[str]], where: tuple[str, ...], headings: tuple[str, ...], width: int) -> int:
     """Return how wide a statement may be so that the table is not wider than the console."""
-    names = ["line", "", *(max(heading.split("\n"), key=len) for heading in headings)]
+    names = [*where, "", *(max(heading.split("\n"), key=len) for heading in headings)]
     widths = [max(map(len, column)) for column in zip(names, *rows, strict=True)]
-    taken = sum(widths) - widths[1] + 2 * (len(widths) - 1)  # two spaces between columns
+    taken = sum(widths) - widths[len(where)] + 2 * (len(widths) - 1)  # two spaces between columns
     return min(max(width - taken, _NARROWEST), _WIDEST)
 
 
@@ -248,16 +248,16 @@ def _totals(found: dict[str, Any]) -> list[str]:
     moves = [row for row in found["sequence"] if row["kind"] == "move"]
     pulses = sum(channel["pulses"] for channel in found["channels"])
     many = "1 move" if len(moves) == 1 else f"{len(moves)} moves"
-    lines = [f"{many}, {sum(row['steps'] for row in moves)} steps, {found['seconds']:.3f} s, {pulses} pulses"]
+    totals = [f"{many}, {sum(row['steps'] for row in moves)} steps, {found['seconds']:.3f} s, {pulses} pulses"]
     if moves:
         worst = max(moves, key=_worst)
-        lines[0] += f"; at most {_worst(worst):.4f} mm off (line {_number(worst)})"
+        totals[0] += f"; at most {_worst(worst):.4f} mm off, in {lines.name(worst)}"
     driven = [row for row in moves if row["real"] is not None]
     if driven:
         worst = max(driven, key=lambda row: float(row["real"]["error_mm"]))
-        lines.append(f"real arm: {found['physics']['seconds']:.3f} s simulated; at most "
-                     f"{worst['real']['error_mm']:.3f} mm off (line {_number(worst)})")  # fmt: skip
-    return lines
+        totals.append(f"real arm: {found['physics']['seconds']:.3f} s simulated; at most "
+                     f"{worst['real']['error_mm']:.3f} mm off, in {lines.name(worst)}")  # fmt: skip
+    return totals
 
 
 def _worst(row: dict[str, Any]) -> float:

@@ -1,27 +1,32 @@
 """``robolang run PROG``: a program on the controller and the physics, with progress, a table and files to keep.
 
-Progress and errors go to stderr, the table to stdout. Output files are tried before the run and written whole.
+Progress, warnings and errors go to stderr, the table to stdout. Output files are tried before the run.
+
+Exit codes: 0; 3 the run ended with an alarm; with ``--strict`` 1 where it ended well and there were warnings.
+``--quiet`` leaves warnings out, but not with ``--strict``: what makes the exit code 1 is shown.
 """
 
 import os
 import signal
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from robolang.cli import servo_options as o
-from robolang.cli.errors import MOTION, reader_may_leave, reported, say
+from robolang.cli.errors import DIAGNOSTICS, MOTION, reader_may_leave, reported, say
 from robolang.cli.refuse import refuse
 from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
+    from robolang.diagnostics import Diagnostic
     from robolang.project import Project
     from robolang.session import Progress, RunResult, Session, StatementRun
-    from robolang.source import Span
 
 
 def run(
@@ -41,7 +46,10 @@ def run(
     realtime: Annotated[bool, typer.Option("--realtime", help="Keep wall time.")] = False,
     report: Annotated[Path | None, typer.Option(help="Write the report as JSON.")] = None,
     log: Annotated[Path | None, typer.Option(help="Write every signal: .npz (numpy) or .mcap (log viewers).")] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
+    strict: Annotated[bool, typer.Option("--strict", help="Exit with 1 when the run has warnings.")] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", help="Print nothing but errors, and warnings only with --strict.")
+    ] = False,
 ) -> None:
     """Run a program on the controller and the physics."""
     options = o.controller_options(servo=servo, fixed_at=fixed_at, coupling=coupling, feedforward=feedforward,
@@ -52,7 +60,7 @@ def run(
         from robolang.project import load_project
 
         project = load_project(program, cell, robot, profile=profile, options=options)
-        refuse(project)
+        warned = refuse(project, warnings=strict or not quiet)
         from robolang.session import Session
 
         with _progress(quiet) as progress:
@@ -65,11 +73,13 @@ def run(
 
             with reader_may_leave():
                 print_result(result.report)
-        _print_alarms(project, result)
+        _print_alarms(project, result, warnings=strict or not quiet)
     if stopped and not code:
         code = 128 + stopped[0]
     if code or not result.ok:
         raise typer.Exit(code or MOTION)
+    if strict and (warned or result.warnings):
+        raise typer.Exit(DIAGNOSTICS)
 
 
 def _show(text: str) -> None:
@@ -120,32 +130,22 @@ def _write(result: "RunResult", report: Path | None, log: Path | None) -> int:
     return code
 
 
-def _print_alarms(project: "Project", result: "RunResult") -> None:
-    from robolang.diagnostics import Diagnostic, Severity, render
-
-    warnings: Any = result.report["warnings"]
-    alarms: Any = result.report["alarms"]
-    for severity, found in [(Severity.WARNING, warning) for warning in warnings] + [
-        (Severity.ERROR, alarm) for alarm in alarms
-    ]:
-        message = f"at {found['time_s']:.3f} s: {found['message']}"
-        item = Diagnostic(code=found["code"], message=message, span=_span(project, result, found["line"]),
-                          severity=severity, hint=found["hint"])  # fmt: skip
-        typer.echo(render(item, project.source), err=True)
+def _print_alarms(project: "Project", result: "RunResult", *, warnings: bool) -> None:
+    """Print what went wrong in a run at its statements; a warning that comes again at one of them with a count."""
+    report: Any = result.report
+    counts = Counter((item.code, item.span) for item in result.warnings) if warnings else Counter()
+    for item, row in zip(result.warnings, report["warnings"], strict=True):
+        count = counts.pop((item.code, item.span), 0)
+        if count:
+            _print_at(project, item, f"at {row['time_s']:.3f} s{f', {count} times in all' if count > 1 else ''}")
+    for item, row in zip(result.alarms, report["alarms"], strict=True):
+        _print_at(project, item, f"at {row['time_s']:.3f} s")
 
 
-def _span(project: "Project", result: "RunResult", number: int | None) -> "Span":
-    """Return the place of the statement that ran with this number; the start of the program when none did."""
-    from robolang.source import Span
+def _print_at(project: "Project", item: "Diagnostic", when: str) -> None:
+    from robolang.diagnostics import render
 
-    statements: Any = result.report["statements"]
-    places = {
-        line.source_line: line.statement.span for line in project.program.statements if line.statement is not None
-    }
-    for run in reversed(statements):
-        if number in (run["number"], run["line"], None):
-            return places.get(run["line"], Span(0, 0))
-    return Span(0, 0)
+    typer.echo(render(replace(item, message=f"{when}: {item.message}"), project.source), err=True)
 
 
 @contextmanager
@@ -209,6 +209,8 @@ def _line_printer() -> "Progress":
 
 
 def _status(statement: "StatementRun", time_us: int) -> str:
-    number = statement.number if statement.number is not None else statement.line
+    from runtime.program_line import named
+
+    where = named(statement.origin.line, statement.origin.number)
     lamp = f"[{statement.lamp}]  " if statement.lamp else ""
-    return f"{time_us / 1e6:9.3f} s  line {number:<4} {lamp}{statement.text}"
+    return f"{time_us / 1e6:9.3f} s  {where:<9} {lamp}{statement.text}"

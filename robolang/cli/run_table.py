@@ -9,6 +9,7 @@ from typing import Any
 from rich import box
 from rich.table import Table
 
+from robolang.cli import lines
 from robolang.cli.console import Console
 from robolang.diagnostics import safe
 
@@ -30,38 +31,41 @@ def print_result(report: dict[str, Any]) -> None:
     console.print(_statements(report, console.width))
     for statement in report["statements"]:
         for note in statement["notes"]:
-            console.print(f"  line {_number(statement)}: {note}")
+            console.print(f"  {lines.name(statement)}: {note}")
     for line in _facts(report):
         console.print(line)
 
 
-def _number(statement: dict[str, Any]) -> int:
-    return int(statement["line"] if statement["number"] is None else statement["number"])
-
-
 def _statements(report: dict[str, Any], width: int) -> Table:
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    table.add_column("line", justify="right", no_wrap=True)
+    statements = report["statements"]
+    where = lines.headings(statements)
+    for heading in where:
+        table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("statement", no_wrap=True)
     for heading, _, _ in _COLUMNS:
         table.add_column(heading, justify="right", no_wrap=True)
-    rows = [_cells(statement) for statement in report["statements"]]
-    room = _room(rows, width)
-    for number, text, *cells in rows:
-        table.add_row(number, text if len(text) <= room else f"{text[: room - 1]}…", *cells)
+    rows = [[*lines.cells(statement, where), *_cells(statement)] for statement in statements]
+    room, at = _room(rows, where, width), len(where)
+    for row in rows:
+        text = row[at]
+        row[at] = text if len(text) <= room else f"{text[: room - 1]}…"
+        table.add_row(*row)
     return table
 
 
 def _cells(statement: dict[str, Any]) -> list[str]:
     numbers = ["" if statement[key] is None else form.format(statement[key]) for _, key, form in _COLUMNS]
-    return [str(_number(statement)), safe(statement["text"]), *numbers]
+    if not statement["begun"]:
+        numbers[0] = "not begun"
+    return [safe(statement["text"]), *numbers]
 
 
-def _room(rows: list[list[str]], width: int) -> int:
+def _room(rows: list[list[str]], where: tuple[str, ...], width: int) -> int:
     """Return how wide a statement may be so that the table is not wider than the console."""
-    headings = ["line", "", *(max(heading.split("\n"), key=len) for heading, _, _ in _COLUMNS)]
+    headings = [*where, "", *(max(heading.split("\n"), key=len) for heading, _, _ in _COLUMNS)]
     widths = [max(map(len, column)) for column in zip(headings, *rows, strict=True)]
-    taken = sum(widths) - widths[1] + 2 * len(widths) + 1  # two spaces between columns, and those at the edges
+    taken = sum(widths) - widths[len(where)] + 2 * len(widths) + 1  # two spaces between columns, and those at the edges
     return min(max(width - taken, _NARROWEST), _WIDEST)
 
 

@@ -24,6 +24,7 @@ import numpy as np
 from runtime.frames import Array, rotation_angle
 from runtime.linear import matmul, norm
 from runtime.plant.hand import FINGERS
+from runtime.program_line import ProgramLine, named
 from runtime.units import DEG, MM
 
 Pair = tuple[str, str]
@@ -64,7 +65,7 @@ class Bodies:
 
 @dataclass(slots=True, kw_only=True)
 class Touch:
-    """A touch: ``by`` which shapes (the first one first), of what, since which ``tick`` and in which ``line``.
+    """A touch: ``by`` which shapes (the first one first), of what, since which ``tick`` and in which statement.
 
     ``reach`` m is the largest displacement of a corner of the touched part, ``moved`` m and ``turned`` rad what its
     centre and its orientation had changed by then; ``slid`` m is how far a held part slid along what it touched.
@@ -73,7 +74,7 @@ class Touch:
     by: list[str]
     what: str
     tick: int
-    line: int
+    place: ProgramLine | None
     statement: int
     moved: float = 0.0
     turned: float = 0.0
@@ -108,30 +109,31 @@ class Touch:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loss:
-    """A part that the hand no longer holds: since which tick and line, and how far it is from where it was held, m."""
+    """A part that the hand no longer holds: since which tick and statement, and how far it is off its place."""
 
     part: str
     tick: int
-    line: int
-    gripped_line: int
+    place: ProgramLine | None
+    gripped: ProgramLine | None
     distance: float
 
     @property
     def message(self) -> str:
         """What is said of it."""
-        return (f"{self.part}, gripped in line {self.gripped_line}, has slipped out of the hand: it is "
+        gripped = "" if self.gripped is None else f", gripped in {named(self.gripped.line, self.gripped.number)},"
+        return (f"{self.part}{gripped} has slipped out of the hand: it is "
                 f"{self.distance / MM:.1f} mm from where it was gripped")  # fmt: skip
 
 
 @dataclass(slots=True, kw_only=True)
 class _Grip:
-    """A held part: where it is held (3,) m in the tool frame; cycles held, and without a pad since tick and line."""
+    """A held part: where it is held (3,) m in the tool frame; cycles held, and without a pad since when and where."""
 
     place: Array
-    line: int
+    gripped: ProgramLine | None
     age: int = 0
     bare: int = 0
-    since: tuple[int, int] = (0, 0)
+    since: tuple[int, ProgramLine | None] = (0, None)
 
 
 @dataclass(slots=True, kw_only=True)
@@ -180,7 +182,8 @@ class Touches:
         self._lost: set[str] = set()
         self._free: set[str] = set()  # let go: they move by themselves until they rest
         self._open: dict[str, _Open] = {}  # by the part that is pushed, or by "part>fixed" that it slides along
-        self._line, self._statement = 0, 0
+        self._place: ProgramLine | None = None
+        self._statement = 0
 
     def hand(self, closed: bool) -> None:
         """HAND ON or HAND OFF begins; OFF lets go what is held."""
@@ -192,10 +195,10 @@ class Touches:
         self._closed = closed
         self._pairs = None
 
-    def cycle(self, tick: int, line: int, pairs: frozenset[Pair]) -> Loss | None:
-        """Take the contacts of the cycle from ``tick`` on, in which a line ran; a part that was lost, if one was."""
-        if line != self._line:
-            self._line, self._statement, self._pairs = line, self._statement + 1, None
+    def cycle(self, tick: int, place: ProgramLine | None, pairs: frozenset[Pair]) -> Loss | None:
+        """Take the contacts of the cycle from ``tick`` on and the statement that ran; a part that was lost, if any."""
+        if place != self._place:
+            self._place, self._statement, self._pairs = place, self._statement + 1, None
         lost = None
         if pairs != self._pairs or self._open or self._free:
             lost = self._follow(tick, pairs)
@@ -235,7 +238,7 @@ class Touches:
         gripped = self._gripped() if self._closed and may else ()
         for part in may:
             if part.removeprefix(_PART) in gripped:
-                self._held[part] = _Grip(place=self._in_hand(part), line=self._line)
+                self._held[part] = _Grip(place=self._in_hand(part), gripped=self._place)
                 self._free.discard(part)
                 going = self._open.pop(part, None)
                 if going is not None and going.gripping:
@@ -250,16 +253,16 @@ class Touches:
             if part in seen.pads:
                 grip.bare = 0
             elif not grip.bare:
-                grip.bare, grip.since = 1, (tick, self._line)
+                grip.bare, grip.since = 1, (tick, self._place)
             else:
                 grip.bare += 1
             distance = math.hypot(*(here - grip.place).tolist())
             most = NOTICED if grip.bare >= LOST_CYCLES else max(SLIPPED, self._bodies.pad_length / 2.0)
             if not distance <= most:
-                since, line = grip.since if grip.bare else (tick, self._line)
+                since, place = grip.since if grip.bare else (tick, self._place)
                 del self._held[part]
                 self._lost.add(part)
-                return Loss(part=part.removeprefix(_PART), tick=since, line=line, gripped_line=grip.line,
+                return Loss(part=part.removeprefix(_PART), tick=since, place=place, gripped=grip.gripped,
                             distance=distance)  # fmt: skip
         return None
 
@@ -291,7 +294,7 @@ class Touches:
         """Open the record of a touch of a part, or go on with it in the same statement."""
         going = self._open.get(part)
         if going is None or going.touch.statement != self._statement:
-            touch = Touch(by=[by], what=part, tick=tick, line=self._line, statement=self._statement)
+            touch = Touch(by=[by], what=part, tick=tick, place=self._place, statement=self._statement)
             self._start(part, touch, self._index[part], self._closed and by.startswith("pad_"))
         elif by not in going.touch.by:
             going.touch.by.append(by)
@@ -301,7 +304,7 @@ class Touches:
         """Open the record of a held part on what is fixed, or go on with it in the same statement."""
         key = f"{part}>{fixed}"
         if key not in self._open or self._open[key].touch.statement != self._statement:
-            touch = Touch(by=[part], what=fixed, tick=tick, line=self._line, statement=self._statement)
+            touch = Touch(by=[part], what=fixed, tick=tick, place=self._place, statement=self._statement)
             self._start(key, touch, self._index[part])
         return key
 
@@ -320,7 +323,7 @@ class Touches:
                 if by not in touch.by:
                     touch.by.append(by)
                 return
-        self.records.append(Touch(by=[by], what=fixed, tick=tick, line=self._line, statement=self._statement))
+        self.records.append(Touch(by=[by], what=fixed, tick=tick, place=self._place, statement=self._statement))
 
     def _measure(self, touched: set[str]) -> None:
         """Measure what is touched or still moves, and end the records of what is neither."""

@@ -212,7 +212,7 @@ def test_the_layers_are_those_that_are_checked():
 def test_every_signal_is_in_the_table_with_its_shape():
     recorder = Recorder(7, 8, 1000)  # seven axes: a deviation has six entries on any arm
     zeros = np.zeros(7)
-    recorder.begin_cycle((zeros, zeros, zeros, zeros, np.zeros(6)), np.zeros((3, 8, 7)), (0.0, 0, 0))
+    recorder.begin_cycle((zeros, zeros, zeros, zeros, np.zeros(6)), np.zeros((3, 8, 7)), (0.0, 0, 0, 0))
     recorder.record((zeros, zeros, zeros, zeros, zeros))
     signals = recorder.signals(lambda q: np.zeros((len(q), 4, 4)))
     shapes = {key: "(N, " + ", ".join("n" if k == 7 else str(k) for k in values.shape[1:]) + ")"
@@ -223,7 +223,8 @@ def test_every_signal_is_in_the_table_with_its_shape():
 
 def test_every_key_of_the_report_is_explained(run_result):
     explained = set(re.findall(r"`(\w+)", (ROOT / "docs/signals.md").read_text("utf-8")))
-    alarm = {"code", "message", "line", "axis", "time_s", "hint"}
+    keys = "code name severity message hint file line column end_line end_column related number axis time_s category"
+    alarm = set(keys.split())
     assert keys_of({key: value for key, value in run_result.report.items() if key != "objects"}) | alarm <= explained
 
 

@@ -141,7 +141,7 @@ def program(physics: bool) -> Iterator[Row]:
         form="{:.2f} ms, {:g} ms",
         values=(dynamics["refresh_mean_ms"], dynamics["refresh_max_ms"]),
     )
-    first = int(np.flatnonzero(result.log["line"] == 60)[0])
+    first = int(np.flatnonzero(result.log["number"] == 60)[0])
     D = result.log["D"][first : first + 60]
     yield Row(
         figure="from LOAD to the last axis using it",
@@ -186,7 +186,7 @@ def planned(session: Session, result: RunResult) -> Row:
     worst = 0.0
     for run in session.record.statements:
         if run.path is not None:
-            q = result.log["q_plan"][result.log["line"] == run.number]
+            q = result.log["q_plan"][result.log["line"] == run.origin.line]
             worst = max(worst, run.path.deviation(session.controller.tool_poses(q)[:, :3, 3]).max())
     return Row(
         figure="planned path of every MOVE off its line, at the 8 ms set-points",

@@ -90,7 +90,7 @@ def project_of(
 
 def moving_axes(result: RunResult, line: int, at_share: float) -> tuple[int, list[int]]:
     """Return (tick, axes that turn briskly there) at a share of a line of a clean run."""
-    ticks = np.flatnonzero(result.log["line"] == line)
+    ticks = np.flatnonzero(result.log["number"] == line)
     tick = int(ticks[0] + at_share * len(ticks))
     return tick, [int(axis) for axis in np.flatnonzero(np.abs(result.log["dq_cmd"][tick]) > 0.1)]
 
@@ -109,7 +109,7 @@ def verdict(alarm: dict | None, fault: str, axis: int, at: int, line: int) -> st
     if alarm is None:
         return "not found"
     late = alarm["time_s"] * 1000.0 - at
-    if alarm["line"] != line:
+    if alarm["number"] != line:
         return f"line {alarm['line']} instead of {line} ({alarm['code']})"
     if alarm["axis"] != axis + 1:
         return f"J{alarm['axis']} instead of J{axis + 1} ({alarm['code']})"

@@ -61,7 +61,7 @@ def test_nothing_moves_after_the_stop_and_the_command_comes_to_rest_on_the_path(
     inject("drive half")(session, 1, at)
     result = session.run()
     run = session.record.statements[-1]
-    ticks = result.log["line"] == 60
+    ticks = result.log["number"] == 60
     p_cmd = session.controller.tool_poses(result.log["q_cmd"][ticks])[:, :3, 3]
     assert run.path.deviation(p_cmd).max() < 1e-5
     assert np.abs(result.log["dq_cmd"][-1]).max() < 1e-9
@@ -78,7 +78,7 @@ def test_a_starved_dynamics_task_is_noticed_at_its_line():
     project = project.with_profile(dataclasses.replace(project.profile, interpolation_cost_us=8000))
     result = Session(project, physics=False).run()
     (alarm,) = result.report["alarms"]
-    assert (alarm["code"], alarm["line"]) == ("RBL521", 30)
+    assert (alarm["code"], alarm["number"]) == ("RBL521", 30)
     age_ms = result.log["D_age"][round(alarm["time_s"] * 1000) - 1].max()
     assert 400.0 <= age_ms <= 420.0
 
@@ -100,7 +100,7 @@ def test_driving_into_the_table_stops_at_the_line_of_the_move(speed):
     touched = {name for touch in session.controller.plant.contacts() for name in touch.names}
     assert "obstacle:table" in touched
     alarm = result.report["alarms"][0]
-    assert (alarm["code"], alarm["line"], alarm["category"]) == ("RBL516", 30, 1)
+    assert (alarm["code"], alarm["number"], alarm["category"]) == ("RBL516", 30, 1)
     assert alarm["axis"] in (2, 3, 5)
     z_tool = result.log["X_world_tool_fb"][round(alarm["time_s"] * 1000) - 1, 2, 3]
     assert z_tool > 0.590  # pressed in by less than 10 mm

@@ -90,7 +90,7 @@ def test_a_byte_order_mark_and_bytes_that_are_no_text():
 
 
 @pytest.mark.parametrize(
-    ("text", "code", "line"),
+    ("text", "code", "number"),
     [
         ("10 x = 0\n20 PRINT 1 / x", "RBL501", 20),
         ("10 x = -1\n20 PRINT SQR(x)", "RBL502", 20),
@@ -100,11 +100,11 @@ def test_a_byte_order_mark_and_bytes_that_are_no_text():
     ],
     ids=["A38", "A39", "A40", "A57", "A58"],
 )
-def test_golden_of_a_run(text, code, line):
+def test_golden_of_a_run(text, code, number):
     assert problems(text) == []
     with pytest.raises(ProgramFault) as caught:
         list(execute(parse(Source("p", text)).program))
-    assert (caught.value.code, caught.value.line) == (code, line)
+    assert (caught.value.code, caught.value.origin.number) == (code, number)
 
 
 def printed(text):
@@ -238,7 +238,7 @@ def test_one_typo_costs_few_diagnostics_and_hides_nothing_behind_it():
 
 
 def test_the_effects_and_functions_of_a_program_are_these():
-    kinds = {kind.__name__ for kind in effects.Origin.__subclasses__()}
+    kinds = {kind.__name__ for kind in effects.OfStatement.__subclasses__()}
     assert kinds == {
         "SetPayload", "MoveTo", "SetHand", "SetWrist", "SetSeam", "SetTool", "SetOutput", "Pass", "Show",
         "Drain", "Halt",

@@ -3,12 +3,13 @@ from pathlib import Path
 import pytest
 
 from robolang import interpreter
-from robolang.effects import Drain, MoveTo, Pass, SetHand, SetPayload, SetSeam, SetWrist
+from robolang.effects import Drain, MoveTo, Origin, Pass, SetHand, SetPayload, SetSeam, SetWrist
 from robolang.interpreter import MAX_CALLS, ProgramFault, execute
 from robolang.parser import parse
 from robolang.places import Place, Shift
 from robolang.printer import describe
 from robolang.source import Span
+from runtime.program_line import named
 from tests.lang.helpers import parsed, source
 from tests.lang.running import POINTS, World, fault, ran, shows
 
@@ -97,7 +98,7 @@ def test_nothing_is_computed_ahead():
 def test_a_name_without_a_value_is_a_fault_at_its_statement():
     with pytest.raises(ProgramFault, match="t has no value") as caught:
         list(execute(parsed("' x\n20 HAND ON, t")))
-    assert (caught.value.code, caught.value.line, caught.value.span) == ("RBL532", 20, Span(7, 17))
+    assert (caught.value.code, caught.value.origin) == ("RBL532", Origin(line=2, number=20, span=Span(7, 17)))
 
 
 # --- the whole language ----------------------------------------------------------------------------------------------
@@ -272,10 +273,10 @@ def test_calls_within_one_another_are_bounded(call):
 
 
 @pytest.mark.parametrize(
-    ("text", "line", "place"),
+    ("text", "number", "place"),
     [
         ("10 WHILE 1\n20 WEND", 10, (1, 4)),
-        ("' x\nWHILE 1\nx = 1\nWEND", 2, (2, 1)),
+        ("' x\nWHILE 1\nx = 1\nWEND", None, (2, 1)),
         ("10 DELAY 1\n20 GOTO 40\n30 END\n40 GOTO 20", 20, (2, 4)),
         ("10 *A\n20 GOTO *A", 10, (1, 1)),
         ("5 x = 1\n10 FOR i = 1 TO 1E9\n20 NEXT", 10, (2, 4)),
@@ -284,13 +285,13 @@ def test_calls_within_one_another_are_bounded(call):
         ("10 WAIT 0, TIMEOUT 0, GOTO 10", 10, (1, 4)),
     ],
 )
-def test_a_loop_that_takes_no_time_is_named_at_its_head(text, line, place, monkeypatch):
+def test_a_loop_that_takes_no_time_is_named_at_its_head(text, number, place, monkeypatch):
     monkeypatch.setattr(interpreter, "MAX_IDLE", 1000)
     found = fault(text)
-    assert (found.code, found.line) == ("RBL508", line)
-    where = source(text).place(found.span.start)
+    assert (found.code, found.origin.line, found.origin.number) == ("RBL508", place[0], number)
+    where = source(text).place(found.origin.span.start)
     assert (where.line, where.column) == place
-    assert f"begins at line {line} " in found.message
+    assert f"begins at {named(place[0], number)} " in found.message
 
 
 @pytest.mark.parametrize("work", ["DELAY 0.01", "MOVE P1", "HAND ON, 0", "WAIT TIMER > 0.008 * n"])
@@ -360,7 +361,7 @@ def test_wait():
 def test_wait_with_a_timeout():
     world = World()
     found = fault("20 WAIT IN(1), TIMEOUT 0.5", world)
-    assert (found.code, found.line) == ("RBL503", 20)
+    assert (found.code, found.origin.number) == ("RBL503", 20)
     assert world.time == pytest.approx(0.5, abs=0.009)
     assert shows("WAIT IN(1), TIMEOUT 0.5, GOTO *L\nPRINT 1\n*L PRINT 2") == ["2"]
     assert shows("WAIT NOT IN(1), TIMEOUT 0.5, GOTO *L\nPRINT 1\n*L PRINT 2") == ["1", "2"]

@@ -30,11 +30,11 @@ def test_errors_are_caught(text, printed):
 
 def test_an_error_inside_the_handler_is_not_caught():
     found = fault("n = 0\nON ERROR GOTO *H\nx = 1 / n\nEND\n*H x = SQR(n - 1)\nRESUME")
-    assert (found.code, found.line) == ("RBL502", 5)
+    assert (found.code, found.origin.line) == ("RBL502", 5)
 
 
 def test_on_error_stop_and_a_new_handler():
-    assert fault("n = 0\nON ERROR GOTO *H\nON ERROR STOP\nx = 1 / n\n*H END").line == 4
+    assert fault("n = 0\nON ERROR GOTO *H\nON ERROR STOP\nx = 1 / n\n*H END").origin.line == 4
     text = 'n = 0\nON ERROR GOTO *H\nx = 1 / n\n*H ON ERROR GOTO *K\nx = 1 / n\n*K PRINT "k"'
     assert shows(text) == ["k"]
 
@@ -65,7 +65,7 @@ def test_a_refusal_of_the_session_is_caught_where_the_move_stands():
     assert thrown("ON ERROR GOTO *H\nIF 1 THEN MOVE P1\nMOVE P2\nEND\n*H RESUME NEXT") == ["P2"]
     with pytest.raises(ProgramFault) as caught:
         thrown("' x\nMOVE P1")
-    assert (caught.value.code, caught.value.line, caught.value.span) == ("RBL410", 2, Span(4, 11))
+    assert (caught.value.code, caught.value.origin.line, caught.value.origin.span) == ("RBL410", 2, Span(4, 11))
 
 
 # --- scopes ----------------------------------------------------------------------------------------------------------
@@ -111,12 +111,12 @@ def test_the_handler_belongs_to_the_scope_that_said_so(text, printed):
     ],
 )  # fmt: skip
 def test_what_is_not_caught_is_named_where_it_happened(text, line):
-    assert fault(MAIN + text).line == line
+    assert fault(MAIN + text).origin.line == line
 
 
 def test_the_handler_of_a_sub_ends_with_it():
     text = "n = 0\nCALL s\nx = 1 / n\nSUB s\nON ERROR GOTO *K\nRETURN\n*K RESUME NEXT\nENDSUB"
-    assert fault(text).line == 3
+    assert fault(text).origin.line == 3
 
 
 @pytest.mark.parametrize("leave", ["RESUME NEXT", "ON ERROR GOTO *H\nGOTO *MORE"])
@@ -139,7 +139,7 @@ def test_depth_is_what_it_was_after_an_error():
 def test_a_handler_above_the_statement_that_fails_is_a_loop_as_well(monkeypatch):
     monkeypatch.setattr(interpreter, "MAX_IDLE", 1000)
     found = fault("n = 0\nGOTO *TOP\n30 *H RESUME\n*TOP ON ERROR GOTO *H\nx = 1 / n")
-    assert (found.code, found.line) == ("RBL508", 30)
+    assert (found.code, found.origin.number) == ("RBL508", 30)
 
 
 def test_a_move_that_is_refused_takes_no_time(monkeypatch):
@@ -149,7 +149,7 @@ def test_a_move_that_is_refused_takes_no_time(monkeypatch):
     with pytest.raises(ProgramFault) as caught:
         for _ in range(1001):
             program.throw(Fault("RBL410", "no"))
-    assert (caught.value.code, caught.value.line) == ("RBL508", 20)
+    assert (caught.value.code, caught.value.origin.number) == ("RBL508", 20)
 
 
 @pytest.mark.parametrize("code", ["RBL505", "RBL506", "RBL508", "RBL509"])

@@ -10,11 +10,12 @@ from runtime.motion.chain import ChainFault, ChainPlan
 from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
 from runtime.motion.planner import LinePlan
 from runtime.motion.seam import SeamLimits, SeamTracker
+from runtime.program_line import ProgramLine
 from runtime.units import MM
 from tests.loop import test_seam_stops
 from tests.loop.test_controller import CELL, carried_payload, controller, down, signals
 
-LINES = (10, 20, 30)
+LINES = tuple(ProgramLine(line=line, number=10 * line) for line in (1, 2, 3))
 
 
 def corner(robot: Controller, zone: float = 0.05) -> list[Command]:
@@ -26,7 +27,7 @@ def corner(robot: Controller, zone: float = 0.05) -> list[Command]:
             MoveArc(X_via=via, X_world_tool=X, speed=0.4)]  # fmt: skip
 
 
-def started(cycles: int = 0, lines: tuple[int, ...] = LINES) -> tuple[Controller, ChainPlan]:
+def started(cycles: int = 0, lines: tuple[ProgramLine, ...] = LINES) -> tuple[Controller, ChainPlan]:
     robot = controller()
     robot.load(carried_payload())
     chain = robot.move_chain(corner(robot), lines)
@@ -54,16 +55,18 @@ def test_every_row_of_the_chain_is_sent_and_none_else():
 
 def test_the_line_changes_in_the_middle_of_a_blend_with_the_rows_it_belongs_to():
     robot, chain = started()
-    assert (robot.line, robot.chain_index) == (10, 0)
+    assert (robot.statement, robot.chain_index) == (LINES[0], 0)
     seen = []
     while robot.moving:
         robot.cycle()
         seen.append(robot.chain_index)
-        assert robot.line == LINES[robot.chain_index]
+        assert robot.statement == LINES[robot.chain_index]
     assert sorted(set(seen)) == [0, 1, 2]
     assert seen == sorted(seen)
-    lines = signals(robot)["line"][::8][: len(chain.q)]
-    np.testing.assert_array_equal(lines, np.array(LINES)[chain.command])
+    log = signals(robot)
+    lines = log["line"][::8][: len(chain.q)]
+    np.testing.assert_array_equal(lines, np.array([each.line for each in LINES])[chain.command])
+    np.testing.assert_array_equal(log["number"], 10 * log["line"])
     moves = np.flatnonzero(np.diff(lines)) + 1
     for row, before, after, blend in zip(moves, chain.parts, chain.parts[1:], chain.corners, strict=False):
         begins, ends = after.offset, before.offset + len(before.plan.q) - 1
@@ -73,23 +76,23 @@ def test_the_line_changes_in_the_middle_of_a_blend_with_the_rows_it_belongs_to()
 
 def test_without_lines_the_line_is_the_callers_and_there_is_one_for_every_move():
     robot, _ = started(lines=())
-    robot.line = 7
+    robot.statement = LINES[2]
     run_out(robot)
-    assert robot.line == 7
-    with pytest.raises(ValueError, match="3 moves have 2 lines"):
-        started(lines=(1, 2))
+    assert robot.statement == LINES[2]
+    with pytest.raises(ValueError, match="3 moves have 2 statements"):
+        started(lines=LINES[:2])
 
 
 def test_a_chain_that_is_refused_moves_nothing_and_names_its_move():
     robot = controller()
     commands = corner(robot)
-    robot.line = 5
+    robot.statement = LINES[1]
     far = MoveLinear(X_world_tool=pose((3.0, 0.0, 0.5)))
     with pytest.raises(ChainFault, match="RBL410") as caught:
-        robot.move_chain([*commands, far], (1, 2, 3, 4))
+        robot.move_chain([*commands, far], (*LINES, LINES[0]))
     assert caught.value.index == 3
     assert not robot.moving
-    assert robot.line == 5
+    assert robot.statement == LINES[1]
     robot.move(commands[0])
     with pytest.raises(RuntimeError, match="a move is running"):
         robot.move_chain(commands, LINES)
@@ -128,7 +131,7 @@ def off_way(robot: Controller, chain: ChainPlan, q: Array) -> float:
 def test_a_stop_in_or_before_a_blend_ends_at_rest_on_the_blended_way_within_joint_limits(shift, index):
     _, whole = started()
     robot, chain = started(whole.parts[index].last + shift)
-    line = robot.line
+    statement = robot.statement
     robot.alarm("RBL530", "stopped")
     cycles = 0
     while robot.cycle():
@@ -141,8 +144,8 @@ def test_a_stop_in_or_before_a_blend_ends_at_rest_on_the_blended_way_within_join
     ddq = np.abs(np.diff(log["dq_cmd"], axis=0)) / 1e-3  # sees a little of what lies between two ticks
     assert (ddq <= CELL.robot.per_axis("limits", "acceleration") * 1.02).all()
     assert robot.recorder.cycle < len(chain.q)
-    assert robot.line == line  # a stop belongs to the line that ran
-    assert robot.alarms[0].line == line
+    assert robot.statement == statement  # a stop belongs to the line that ran
+    assert robot.alarms[0].statement == statement
     robot.acknowledge()
     assert not robot.moving
     robot.move(down(robot, 0.02))
@@ -195,8 +198,8 @@ def test_under_a_seam_sensor_a_chain_is_moves_one_after_the_other_without_blends
     seen = []
     while robot.moving:
         assert robot.cycle()
-        seen.append((robot.chain_index, robot.line))
-    assert list(dict.fromkeys(seen)) == [(0, 10), (1, 20), (2, 30)]
+        seen.append((robot.chain_index, robot.statement))
+    assert list(dict.fromkeys(seen)) == list(enumerate(LINES))
     single.seam(off())
     for command in commands:
         single.move(command)
@@ -233,7 +236,7 @@ def test_a_stop_under_a_seam_sensor_drops_the_moves_that_wait():
     while robot.cycle():
         cycles += 1
         assert cycles < 120
-    assert robot.line == 10
+    assert robot.statement == LINES[0]
     robot.acknowledge()
     assert not robot.moving
 
@@ -259,7 +262,8 @@ def test_the_wrist_lamp_follows_the_rows_of_a_chain():
     robot = test_seam_stops.controller(home=start)
     X = robot.tool_poses(end)
     chain = robot.move_chain([MoveLinear(X_world_tool=X, q_end=end, speed=0.3, zone=0.05),
-                              MoveLinear(X_world_tool=pose(X[:3, 3] + [0.0, 0.0, 0.1], X[:3, :3]), speed=0.3)], (1, 2))
+                              MoveLinear(X_world_tool=pose(X[:3, 3] + [0.0, 0.0, 0.1], X[:3, :3]), speed=0.3)],
+                             LINES[:2])  # fmt: skip
     assert chain.parts[0].wrist is not None
     assert chain.corners[0].cycles > 0
     modes = []

@@ -12,6 +12,7 @@ from runtime.frames import Array
 from runtime.motion.commands import MoveLinear
 from runtime.plant.rigid_plant import RigidPlant
 from runtime.profile import Profile, ServoOptions
+from runtime.program_line import ProgramLine
 from runtime.robot.payload import Payload
 from runtime.supervision.limits import SupervisionLimits
 
@@ -200,12 +201,12 @@ class BrokenPlant(RigidPlant):
 )
 def test_a_state_that_is_not_finite_is_caught_in_its_tick_named_and_latched(what, named, axis):
     robot = controller(plant=BrokenPlant(at_tick=21, what=what))
-    robot.line = 70
+    robot.statement = ProgramLine(line=7, number=70)
     robot.move(down(robot))
     while robot.cycle():
         pass
     (alarm,) = robot.alarms
-    assert (alarm.code, alarm.line, alarm.axis) == ("RBL510", 70, axis)
+    assert (alarm.code, alarm.statement, alarm.axis) == ("RBL510", robot.statement, axis)
     assert named in alarm.message
     assert alarm.tick == (20 if what == "state" else 21)
     log = signals(robot)

@@ -42,7 +42,7 @@ def ran(tmp_path, text):
 def speeds(session, result, line):
     """The largest speeds of the move of a line: each joint rad/s, tool m/s, turning rad/s."""
     log = result.log
-    q = log["q_plan"][log["line"] == line][::8]
+    q = log["q_plan"][log["number"] == line][::8]
     X = session.controller.tool_poses(q)
     turn = np.einsum("kji,kjl->kil", X[:-1, :3, :3], X[1:, :3, :3])
     angle = np.arccos(np.clip((np.trace(turn, axis1=1, axis2=2) - 1.0) / 2.0, -1.0, 1.0))
@@ -60,7 +60,7 @@ def test_every_speed_keeps_its_share_and_one_uses_it(tmp_path, kind, share):
                              else np.inf])  # fmt: skip
     used = speeds(session, result, 30) / most
     assert 0.97 < used.max() <= 1.001
-    dq = np.abs(result.log["dq_cmd"][result.log["line"] == 30]).max(axis=0)
+    dq = np.abs(result.log["dq_cmd"][result.log["number"] == 30]).max(axis=0)
     assert (dq <= most[:6] * 1.001).all()
 
 
@@ -81,7 +81,7 @@ def test_a_joint_move_takes_twice_the_time_at_its_speed(tmp_path):
     for share in (100, 50):
         session, result = ran(tmp_path, f"5 {HAND}\n10 MOVEJ {start}\n20 OVERRIDE {share}\n30 {move}\n")
         limits = session.project.cell.robot.axes[0].limits
-        dq = np.abs(result.log["dq_cmd"][result.log["line"] == 30][:, 0])
+        dq = np.abs(result.log["dq_cmd"][result.log["number"] == 30][:, 0])
         assert 0.99 < dq.max() / (limits.speed * share / 100.0) <= 1.001
         times.append(result.report["statements"][-1]["planned_s"])
     whole, ramps = np.radians(200.0) / limits.speed, 0.5 * limits.speed / limits.acceleration
@@ -101,10 +101,10 @@ def test_an_override_that_changes_within_a_chain(tmp_path):
             "40 MOVEJ P1 + (0, 200, 150), ZONE 50\n50 OVERRIDE 100\n60 MOVEJ P1 + (0, 0, 150)\n")  # fmt: skip
     session, result = ran(tmp_path, text)
     log, limits = result.log, session.project.cell.robot.per_axis("limits", "speed")
-    share = {line: (np.abs(log["dq_cmd"][log["line"] == line]) / limits).max() for line in (20, 40, 60)}
+    share = {line: (np.abs(log["dq_cmd"][log["number"] == line]) / limits).max() for line in (20, 40, 60)}
     assert share[40] <= 0.2 * 1.001
     assert min(share[20], share[60]) > 0.3
-    between = (log["line"][1:] != log["line"][:-1]) & np.isin(log["line"][1:], (40, 60))
+    between = (log["number"][1:] != log["number"][:-1]) & np.isin(log["number"][1:], (40, 60))
     standing = np.abs(log["dq_cmd"][1:][between]).max(axis=1)
     assert (standing > 1e-3).all()
     assert rehearse(session.project).total_us == pytest.approx(result.report["sim_time_s"] * 1e6, abs=8000.0)

@@ -43,7 +43,7 @@ def statement(result: RunResult, number: int) -> dict:
 
 
 def ticks(result: RunResult, number: int) -> np.ndarray:
-    return np.flatnonzero(result.log["line"] == number)
+    return np.flatnonzero(result.log["number"] == number)
 
 
 def test_the_statements_run_in_the_order_of_the_listing(result):
@@ -60,7 +60,7 @@ def test_the_payload_area_holds_what_load_declared_line_by_line(result):
     for number, mass in {20: HAND, 30: HAND, 40: HAND, 60: HAND_AND_PART, 70: HAND_AND_PART, 80: HAND_AND_PART,
                          100: HAND, 110: HAND}.items():  # fmt: skip
         assert set(log["payload_mass"][ticks(result, number)]) == {mass}, number
-    history = [(entry["line"], entry["mass_kg"], entry["cog_mm"]) for entry in result.report["payload_history"]]
+    history = [(entry["number"], entry["mass_kg"], entry["cog_mm"]) for entry in result.report["payload_history"]]
     assert history == [(10, 0.8, [0, 0, 60]), (50, 2.3, [0, 0, 95]), (90, 0.8, [0, 0, 60])]
 
 
@@ -178,7 +178,7 @@ def test_a_forgotten_load_is_reported_where_the_part_is_first_carried(tmp_path):
     """R08: declared 0.8 kg, carried 2.3 kg; the arm stops on the line of the move and nothing comes after it."""
     result = Session(load_project(forgotten(tmp_path))).run()
     (alarm,) = result.report["alarms"]
-    assert (alarm["code"], alarm["line"], alarm["category"]) == ("RBL517", 60, 1)
+    assert (alarm["code"], alarm["number"], alarm["category"]) == ("RBL517", 60, 1)
     declared, estimated, sigma = map(float, re.findall(r"\d+\.\d+", alarm["message"]))
     assert declared == HAND
     assert abs(estimated - HAND_AND_PART) < 2.0 * sigma < 0.5
@@ -194,7 +194,7 @@ def test_a_forgotten_load_droops_and_a_right_one_does_not(tmp_path, result):
     project = project.with_profile(dataclasses.replace(project.profile, supervision=supervision))
     other = Session(project).run()
     assert other.ok
-    assert [(entry["code"], entry["line"]) for entry in other.report["warnings"]] == [("RBL517", 60)]
+    assert [(entry["code"], entry["number"]) for entry in other.report["warnings"]] == [("RBL517", 60)]
     carried = ticks(other, 70)
     same = ticks(result, 70)[: len(carried)]
     np.testing.assert_array_equal(other.log["q_plan"][carried[:100]], result.log["q_plan"][same[:100]])
@@ -219,7 +219,7 @@ def test_peak_torque_is_what_the_motors_gave(session, result):
 
 
 def test_a_move_waits_until_the_arm_is_in_position_and_says_when_it_never_is():
-    """Without gravity compensation the arm hangs 0.1 deg low: every MOVE waits its time-out out and notes RBL523."""
+    """Without gravity compensation the arm hangs 0.1 deg low: every MOVE waits its time-out out and warns RBL523."""
     project = load_project(PROGRAM, options={"servo.gravity_compensation": ("test", 0.0),
                                              "supervision.enabled": ("test", False)})  # fmt: skip
     entry = statement(Session(project).run(), 30)

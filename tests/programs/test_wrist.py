@@ -37,7 +37,7 @@ def test_the_move_ends_as_taught_on_its_line_with_the_scheduled_servo(done):
     assert np.abs(np.degrees(result.log["q_plan"][-1]) - MOVES[name]).max() < 1e-9
     assert move["path_deviation_mm"] < 0.3
     assert move["tool_error_mm"] < 0.35
-    planned = result.log["q_plan"][np.flatnonzero(result.log["line"] == 20)]
+    planned = result.log["q_plan"][np.flatnonzero(result.log["number"] == 20)]
     places = session.controller.tool_poses(planned)[:, :3, 3]
     assert session.record.statements[-1].path.deviation(places).max() < 1e-9
 
@@ -84,7 +84,7 @@ def test_hold_is_mode_2_and_is_said(tmp_path):
     _, result = run("seam", folder=tmp_path, physics=False)
     moves = result.report["statements"]
     assert moves[-1]["wrist"]["held"] in ([], ["TILT"])
-    modes = set(result.log["wrist_mode"][result.log["line"] == 50])
+    modes = set(result.log["wrist_mode"][result.log["number"] == 50])
     assert modes <= {0, 1, 2}
     assert (2 in modes) == (moves[-1]["wrist"]["held"] == ["TILT"])
 
@@ -98,12 +98,12 @@ def test_the_seam_is_followed_and_the_end_is_where_the_sensor_saw_it():
     assert 1.9 < weld["seam"]["largest_deg"] < 2.05
     assert weld["seam"]["lost_readings"] > 10
     assert weld["path_deviation_mm"] < 0.3  # from the line that the sensor saw
-    rows = np.flatnonzero(result.log["line"] == 30)
+    rows = np.flatnonzero(result.log["number"] == 30)
     last, deviation = result.log["q_plan"][rows[-1]], result.log["seam_deviation"][rows[-1]]
     taught = session.controller.tool_poses(np.radians(MOVES["e2"]))
     np.testing.assert_allclose(session.controller.tool_poses(last), superposed(taught, deviation), atol=1e-9)
     assert np.abs(np.degrees(last) - MOVES["e2"]).max() < 15.0
-    assert not result.log["seam_deviation"][result.log["line"] == 50].any()
+    assert not result.log["seam_deviation"][result.log["number"] == 50].any()
 
 
 @pytest.mark.parametrize(("edit", "code", "said"), [
@@ -116,7 +116,7 @@ def test_a_seam_that_cannot_be_followed_stops_the_arm_on_its_path_at_the_line(tm
     session, result = run("seam", folder=tmp_path, physics=False)
     assert not result.ok
     alarm = result.report["alarms"][0]
-    assert (alarm["code"], alarm["line"], alarm["category"]) == (code, 30, 1)
+    assert (alarm["code"], alarm["number"], alarm["category"]) == (code, 30, 1)
     assert said in alarm["message"]
     spec = session.controller.spec
     t, q = result.log["t"], result.log["q_cmd"]
@@ -151,7 +151,7 @@ def test_the_lamp_is_in_the_progress_lines_of_the_command(tmp_path):
     shown = robolang("run", FOLDER / "e1.rbl", "--no-physics").stderr
     assert "[WRIST]  MOVE P2" in shown
     held = robolang("run", FOLDER / "seam.rbl", "--no-physics").stderr
-    assert "line 30   [WRIST]  MOVE P2" in held
+    assert "(number 30) [WRIST]  MOVE P2" in held
 
 
 def test_two_runs_under_a_noisy_sensor_give_the_same_log():

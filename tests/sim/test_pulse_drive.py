@@ -11,6 +11,7 @@ from robolang.project import load_cell_and_settings
 from robolang.pulse_drive import RAMP_S, drive, set_points, start_angles
 from runtime.controller import Controller
 from runtime.faults import Fault
+from runtime.program_line import ProgramLine
 from runtime.pulses.folder import read_export
 from runtime.pulses.replay import replay
 from runtime.robot.kinematics import Kinematics
@@ -73,8 +74,8 @@ def test_the_arm_follows_the_tables(tmp_path, physics):
     found = read(tmp_path, export)
     result = drive(found, CELL, PROFILE, physics)
     assert (result.alarms, result.warnings) == ((), ())
-    assert [(move.line, move.number, move.text, move.notes) for move in result.moves] == [
-        (3, 30, "MOVE P1", ()), (4, 40, "MOVE P1", ())]  # fmt: skip
+    assert [(move.line, move.number, move.text) for move in result.moves] == [
+        (3, 30, "MOVE P1"), (4, 40, "MOVE P1")]  # fmt: skip
     for driven, played in zip(result.moves, replay(found), strict=True):
         assert played.rows_mm == pytest.approx(sagitta_mm(10.0), abs=0.02)
         assert driven.error_mm == pytest.approx(sagitta_mm(10.0), abs=0.2)
@@ -117,11 +118,11 @@ def test_load_and_hand_are_carried_out_in_their_places(tmp_path, monkeypatch):
 
     class Watched(Controller):
         def load(self, payload):
-            done.append((self.time_us, self.line, payload.mass, payload.cog.tolist()))
+            done.append((self.time_us, self.statement.number, payload.mass, payload.cog.tolist()))
             super().load(payload)
 
         def hand(self, closed):
-            done.append((self.time_us, self.line, closed))
+            done.append((self.time_us, self.statement.number, closed))
             super().hand(closed)
 
     monkeypatch.setattr("robolang.pulse_drive.Controller", Watched)
@@ -147,7 +148,8 @@ def test_an_arm_with_the_wrong_load_does_not_come_into_position(tmp_path):
     result = drive(read(tmp_path, export), CELL, PROFILE)
     (move,) = result.moves
     assert move.seconds == pytest.approx(STEPS * STEP_S + 0.4, abs=0.1)
-    assert move.notes == (f"RBL523 not in position: {move.notes[0].split()[4]} deg left after 0.4 s",)
+    (warning,) = result.warnings
+    assert (warning.code, warning.statement) == ("RBL523", ProgramLine(line=2, number=20))
     assert move.end_mm > 0.3
 
 
@@ -161,7 +163,7 @@ def test_an_alarm_ends_the_drive_at_its_move(tmp_path):
     export.move(3, tool_mm(2.0), tool_mm(50.0), J1=[there + 3000 * k for k in range(1, 17)])
     swing(4, export, 2.0)
     result = drive(read(tmp_path, export), CELL, PROFILE)
-    assert [alarm.line for alarm in result.alarms] == [30]
+    assert [alarm.statement for alarm in result.alarms] == [ProgramLine(line=3, number=30)]
     assert result.alarms[0].code in ("RBL511", "RBL512", "RBL513", "RBL516")
     assert [move.line for move in result.moves] == [2, 3]
     assert result.moves[1].seconds < 0.3

@@ -26,14 +26,14 @@ def program(tmp_path, monkeypatch):
 def test_progress_goes_to_stderr_and_the_table_to_stdout(program):
     result = dry("p.rbl")
     assert [line.split(None, 2)[2] for line in result.stderr.splitlines()] == [
-        "line 10   HAND ON",
-        "line 20   LOAD (0, 0, 60), 0.8",
-        "line 30   MOVE P5",
+        "line 1 (number 10) HAND ON",
+        "line 2 (number 20) LOAD (0, 0, 60), 0.8",
+        "line 3 (number 30) MOVE P5",
     ]
-    rows = [line.split()[0] for line in result.stdout.splitlines() if re.match(r" +\d+ ", line)]
-    assert rows == ["10", "20", "30"]
+    rows = [line.split()[:2] for line in result.stdout.splitlines() if re.match(r" +\d+ ", line)]
+    assert rows == [["1", "10"], ["2", "20"], ["3", "30"]]
     assert result.stdout.startswith("p.rbl on puma560\n")
-    assert "line 10: closed on nothing" in result.stdout
+    assert "line 1 (number 10): closed on nothing" in result.stdout
 
 
 def test_quiet_prints_nothing(program):
@@ -49,7 +49,7 @@ def test_quiet_still_prints_errors(program):
 
 def report(**changes):
     statement = {
-        "line": 99_999, "number": None, "text": LONG[4:], "start_s": 3599.123, "duration_s": 3600.123,
+        "line": 99_999, "number": None, "text": LONG[4:], "begun": True, "start_s": 3599.123, "duration_s": 3600.123,
         "joint_error_deg": 123.4567, "tool_error_mm": 12.3456, "path_deviation_mm": 12.3456, "peak_torque_pct": 100.0,
         "notes": [],
     }  # fmt: skip
@@ -134,9 +134,9 @@ def test_on_a_terminal_progress_is_one_live_line(program):
     os.close(master)
     table, _ = process.communicate(timeout=HANG_S)
     assert process.returncode == 0
-    assert "20  MOVE P5" in table
-    assert "line 10   MOVE P1" in shown
-    assert "line 20   MOVE P5" in shown
+    assert re.search(r"^ +2 +20 +MOVE P5 ", table, re.M)
+    assert "line 1 (number 10) MOVE P1" in shown
+    assert "line 2 (number 20) MOVE P5" in shown
     assert shown.partition("p.rbl:")[0].count("\n") <= 2  # rewritten in place, not one line after the other
     assert "\x1b[2K" in shown or "\x1b[K" in shown
     assert shown.rstrip().endswith("\x1b[?25h") or "\x1b[?25h" in shown  # the cursor is given back

@@ -18,12 +18,12 @@ REPORT_KEYS = {
     "warnings",
 }  # fmt: skip
 STATEMENT_KEYS = {
-    "line", "number", "text", "start_s", "duration_s", "planned_s", "joint_error_deg", "tool_error_mm",
-    "path_deviation_mm", "peak_torque_pct", "wrist", "seam", "notes",
+    "line", "number", "text", "begun", "start_s", "duration_s", "planned_s", "joint_error_deg", "tool_error_mm",
+    "path_deviation_mm", "peak_torque_pct", "wrist", "seam", "notes", "touched",
 }  # fmt: skip
 SIGNALS = {
     "t", "q_plan", "q_cmd", "dq_cmd", "tau_cmd", "tau_sat", "q_fb", "dq_fb", "X_world_tool_fb", "D", "T", "D_age",
-    "T_age", "payload_mass", "line", "wrist_mode", "seam_deviation", "q_link", "X_world_tool",
+    "T_age", "payload_mass", "line", "number", "wrist_mode", "seam_deviation", "q_link", "X_world_tool",
 }  # fmt: skip
 PROGRAMS = {
     "move": "10 LOAD (0, 0, 60), 0.8\n20 MOVE P1\n",
@@ -87,7 +87,8 @@ def test_the_report_of_a_move_says_what_was_measured(results):
     assert move["duration_s"] >= move["planned_s"] > 0.5
     assert 0.0 < move["path_deviation_mm"] <= move["tool_error_mm"]
     assert load["tool_error_mm"] is None
-    assert report["payload_history"] == [{"time_s": 0.0, "line": 10, "mass_kg": 0.8, "cog_mm": [0.0, 0.0, 60.0]}]
+    (declared,) = report["payload_history"]
+    assert declared == {"time_s": 0.0, "line": 1, "number": 10, "mass_kg": 0.8, "cog_mm": [0.0, 0.0, 60.0]}
     assert report["cycles"] == len(np.load(results["move"][0] / "l.npz")["t"]) // 8 > 80
 
 
@@ -106,7 +107,7 @@ def test_the_npz_has_every_signal_with_the_ticks_first(results, name):
     assert ticks == (0 if name != "move" else strict(results[name][0] / "r.json")["cycles"] * 8)
     for signal in SIGNALS:
         shape = {"X_world_tool_fb": (4, 4), "X_world_tool": (4, 4)}.get(
-            signal, () if signal in ("t", "payload_mass", "line", "wrist_mode") else (6,)
+            signal, () if signal in ("t", "payload_mass", "line", "number", "wrist_mode") else (6,)
         )
         assert log[signal].shape == (ticks, *shape), signal
         assert np.isfinite(log[signal]).all(), signal

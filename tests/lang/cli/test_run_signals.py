@@ -38,7 +38,7 @@ def test_the_first_signal_ends_the_run_with_complete_files(tmp_path, number, cod
     assert process.returncode == code
     assert "p.rbl:2:4: error RBL530" in stderr
     report = json.loads((tmp_path / "r.json").read_text())
-    assert [(alarm["code"], alarm["line"]) for alarm in report["alarms"]] == [("RBL530", 20)]
+    assert [(alarm["code"], alarm["line"], alarm["number"]) for alarm in report["alarms"]] == [("RBL530", 2, 20)]
     assert report["ok"] is False
     assert 0.1 <= report["sim_time_s"] < 60.0  # before the move has ended
     assert report["alarms"][0]["category"] == 1

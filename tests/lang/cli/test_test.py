@@ -62,7 +62,7 @@ def test_a_golden_log_names_the_first_line_and_tick_that_differ(tmp_path):
     program.write_text(text.replace("70  MOVE P3", "70  MOVE P3, SPEED 200"), "utf-8")
     result = robolang("test", program, code=1)
     assert "golden: " in result.stdout
-    assert "line 70" in result.stdout
+    assert "line 10 (number 70)" in result.stdout
     assert "first at tick 2" in result.stdout
 
 

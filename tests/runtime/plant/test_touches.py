@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from runtime.plant.touches import GAP, LOST_CYCLES, SETTLING, Bodies, Touches
+from runtime.program_line import ProgramLine
 
 PADS = {("pad_left", "part:a"), ("pad_right", "part:a")}
 TABLE = {("obstacle:table", "part:a"), ("obstacle:table", "part:b")}
@@ -24,7 +25,8 @@ class Cell:
     def run(self, pairs, cycles=1):
         lost = None
         for _ in range(cycles):
-            lost = self.touches.cycle(self.tick, self.line, frozenset(tuple(sorted(pair)) for pair in pairs)) or lost
+            found = frozenset(tuple(sorted(pair)) for pair in pairs)
+            lost = self.touches.cycle(self.tick, ProgramLine(line=self.line), found) or lost
             self.tick += 8
         return lost
 
@@ -34,7 +36,7 @@ class Cell:
 
     @property
     def found(self):
-        return [(touch.line, touch.by[0], touch.what) for touch in self.touches.records if touch.noticed]
+        return [(touch.place.line, touch.by[0], touch.what) for touch in self.touches.records if touch.noticed]
 
 
 @pytest.mark.parametrize("away", [0.021, np.nan])
@@ -44,7 +46,7 @@ def test_a_part_that_has_moved_in_the_hand_is_lost(away):
     cell.line = 20
     cell.bodies.p[0, 2] = away
     lost = cell.run(PADS)
-    assert (lost.part, lost.line, lost.gripped_line) == ("a", 20, 10)
+    assert (lost.part, lost.place.line, lost.gripped.line) == ("a", 20, 10)
     assert cell.run(PADS, 50) is None  # once
 
 
@@ -66,7 +68,7 @@ def test_the_line_of_a_loss_is_that_in_which_the_pads_let_go():
     cell.line = 30
     cell.bodies.p[0, 2] = -0.001
     lost = cell.run(())
-    assert (lost.line, lost.tick) == (20, began)
+    assert (lost.place.line, lost.tick) == (20, began)
 
 
 def test_pads_that_jump_back_from_a_part_have_not_lost_it():
