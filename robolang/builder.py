@@ -5,6 +5,7 @@ place of its text. Called by ``parser`` alone.
 """
 
 from collections.abc import Iterable
+from dataclasses import replace
 from sys import intern
 
 from lark import Token, Transformer, v_args
@@ -43,8 +44,8 @@ class _Builder(Transformer[Token, nodes.Node]):
         text, at = comment.rstrip(), span_of(comment).start
         return label, statement, nodes.Comment(text=text, span=Span(at, at + len(text)))
 
-    def label(self, star: Token, name: nodes.Name) -> nodes.Name:
-        return nodes.Name(text=name.text, span=_over(star, name))
+    def label(self, star: Token, name: Token) -> nodes.Name:
+        return nodes.Name(text=intern(str(name)), span=_over(star, name))
 
     # --- motion ------------------------------------------------------------------------------------------------------
 
@@ -169,11 +170,13 @@ class _Builder(Transformer[Token, nodes.Node]):
 
     def sub(self, word: Token, name: nodes.Name, *parts: Token | nodes.Name | None) -> nodes.Sub:
         parameters = tuple(part for part in parts if isinstance(part, nodes.Name))
-        return nodes.Sub(name=name, parameters=parameters, span=_over(word, _last(name, parts)))
+        last = _last(name, parts)
+        return nodes.Sub(name=name, parameters=parameters, parentheses=int(last is not name), span=_over(word, last))
 
     def call_sub(self, word: Token, name: nodes.Name, *parts: Token | Expression | None) -> nodes.CallSub:
         arguments = tuple(part for part in parts if isinstance(part, nodes.Node))
-        return nodes.CallSub(name=name, arguments=arguments, span=_over(word, _last(name, parts)))
+        last = _last(name, parts)
+        return nodes.CallSub(name=name, arguments=arguments, parentheses=int(last is not name), span=_over(word, last))
 
     def jump(self, word: Token, target: nodes.Target) -> nodes.Jump:
         return nodes.Jump(word=str(word.type), target=target, span=_over(word, target))
@@ -208,7 +211,7 @@ class _Builder(Transformer[Token, nodes.Node]):
         return operand
 
     def group(self, left: Token, value: Expression, right: Token) -> Expression:
-        return value
+        return replace(value, parentheses=value.parentheses + 1)
 
     def vector(self, left: Token, *parts: Expression | Token) -> nodes.Vector:
         *items, right = parts
@@ -226,7 +229,7 @@ class _Builder(Transformer[Token, nodes.Node]):
         return nodes.Number(value=float(token), text=intern(str(token)), span=span_of(token))
 
     def text(self, token: Token) -> nodes.Text:
-        return nodes.Text(value=str(token)[1:-1], span=span_of(token))
+        return nodes.Text(value=str(token)[1:-1].replace('""', '"'), span=span_of(token))
 
     def name(self, token: Token) -> nodes.Name:
         return nodes.Name(text=intern(str(token)), span=span_of(token))

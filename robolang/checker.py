@@ -6,7 +6,8 @@ the cell that need no kinematics: its names (taught points, sensors, tools, fram
 carry. Values of numbers alone are worked out (``evaluator``), so ``SPEED 2 * 50`` is checked like ``SPEED 100``; what
 depends on a variable is checked when it runs. Blocks and jumps are ``structure``'s, what the order of statements shows
 is ``flow_check``'s, names that nothing reads are ``usage_check``'s: both look at programs without errors only, in which
-one mistake does not look like many. Time is linear in the program.
+one mistake does not look like many. What a statement shows alone (``wait_check``, ``rounding_check``) is reported
+beside errors of other lines as well. Time is linear in the program.
 """
 
 from collections.abc import Collection, Iterator
@@ -16,10 +17,11 @@ from robolang.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related, Severity,
 from robolang.flow_check import flow_check
 from robolang.names import Defined, Facts
 from robolang.nodes import Line, Program, Unparsed
+from robolang.rounding_check import rounding_check
 from robolang.source import Span
 from robolang.statement_check import StatementCheck
 from robolang.structure import structure_of
-from robolang.usage_check import usage_check
+from robolang.usage_check import usage_check, wait_check
 
 
 def check(program: Program, *, points: Collection[str] | None = None, rated_payload_kg: float | None = None,
@@ -41,6 +43,7 @@ def check(program: Program, *, points: Collection[str] | None = None, rated_payl
     structure = structure_of(program)
     found = list(islice(chain(_line_numbers(program), _emptiness(program), structure.diagnostics,
                               _statements(program, facts)), MAX_DIAGNOSTICS + 1))  # fmt: skip
+    found += chain(wait_check(program), rounding_check(program))
     if not has_errors(found) and not any(isinstance(line.statement, Unparsed) for line in program.statements):
         found += chain(flow_check(program, structure), usage_check(program))
     return in_order(islice(found, MAX_DIAGNOSTICS + 1))

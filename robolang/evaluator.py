@@ -144,13 +144,21 @@ class Evaluator:
         sign = node.rest[0][0]
         if sign == "^":
             return self._power(node)
-        if sign in ("AND", "OR"):
-            decides = sign == "OR"
-            parts = (node.first, *(part for _, part in node.rest))
-            return float(decides if any(self.true(part) is decides for part in parts) else not decides)
+        if sign in ("AND", "OR", "XOR"):
+            return float(self._condition(node))
         value = self.value(node.first)
         for sign, operand in node.rest:
             value = self._place(value, sign, operand) if isinstance(value, Place) else self._apply(value, sign, operand)
+        return value
+
+    def _condition(self, node: Chain) -> bool:
+        """Return the value of AND, or of OR and XOR, from the left; what can change nothing any more is not asked."""
+        value = self.true(node.first)
+        for sign, operand in node.rest:
+            if sign == "XOR":
+                value = value is not self.true(operand)
+            elif value is not (sign == "OR"):
+                value = self.true(operand)
         return value
 
     def _place(self, place: Place, sign: str, operand: Expression) -> Place:

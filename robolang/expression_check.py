@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from functools import cached_property
 
 from robolang.constants import fixed, no_value
-from robolang.diagnostics import Diagnostic
+from robolang.diagnostics import Diagnostic, Severity
 from robolang.evaluator import COMPONENTS6
 from robolang.names import Defined, Facts, hint_for
 from robolang.nodes import (
@@ -20,6 +20,7 @@ from robolang.nodes import (
     Vector,
     walk,
 )
+from robolang.printer import print_expression
 from robolang.words import ARGUMENTS, near
 
 
@@ -102,6 +103,7 @@ class ExpressionCheck:
 
     def _chain(self, node: Chain) -> Iterator[Diagnostic]:
         """Check the kinds of the operands, and that ways in parentheses stand behind poses."""
+        yield from _mixed_product(node)
         left = self.kind(node.first)
         if isinstance(node.first, Vector):
             return  # said of the vector itself
@@ -163,6 +165,19 @@ class ExpressionCheck:
         kind = self.kind(node)
         if kind is not None and kind != wanted:
             yield Diagnostic(code="RBL217", message=f"{kind} stands where {wanted} is needed", span=node.span)
+
+
+def _mixed_product(node: Chain) -> Iterator[Diagnostic]:
+    """Report MOD beside * or / without parentheses (RBL231)."""
+    signs = {sign for sign, _ in node.rest}
+    if "MOD" not in signs or signs == {"MOD"}:
+        return
+    message = "MOD stands beside * or /; they are worked out from the left"
+    hint = ""
+    if len(node.rest) == 2:
+        (sign, second), last = node.rest
+        hint = f"write {print_expression(Chain(first=Chain(first=node.first, rest=((sign, second),)), rest=(last,)))}"
+    yield Diagnostic(code="RBL231", severity=Severity.WARNING, message=message, span=node.span, hint=hint)
 
 
 def _component(node: Component6) -> Iterator[Diagnostic]:

@@ -39,7 +39,8 @@ from robolang.nodes import (
 
 _NEVER = (Block, Hand, Jump, Load, LoadNamed, OnError, Seam, Setting, Sub, Wrist)
 _WORDS = frozenset({"END", "STOP", "PAUSE", "ON ERROR STOP"})
-_HARMLESS = frozenset({"IN", "TIMER", "ERR", "HERE", "+", "-", "*", "AND", "OR", "=", "<>", "<", ">", "<=", ">="})
+_COMPUTES = ("+", "-", "*", "AND", "OR", "XOR", "=", "<>", "<", ">", "<=", ">=")
+_HARMLESS = frozenset({"IN", "TIMER", "ERR", "HERE", *_COMPUTES})
 """Functions and signs that have a value wherever what they are of has one."""
 
 

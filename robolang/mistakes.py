@@ -32,7 +32,7 @@ _OPTIONS = frozenset(OPTIONS)
 _HAND_WORDS = frozenset({"OPEN", "CLOSE", "GRASP", "GRIP", "RELEASE"})
 _SIGNS = {"RPAR": "')'", "EQ": "'='", "_COMMA": "','", "$END": "the end of the line"}
 _VALUE = frozenset({"NUMBER", "FUNCTION"})
-_OPERATORS = frozenset({"OR", "AND", "NOT", "MOD", "PLUS", "MINUS", "STAR", "SLASH", "CARET"})
+_OPERATORS = frozenset({"OR", "XOR", "AND", "NOT", "MOD", "PLUS", "MINUS", "STAR", "SLASH", "CARET"})
 _LAST_WORD = re.compile(r"(?:[\w.$]+|[^\s\w])[ \t]*\Z")
 _QUOTE = 30
 _JOINED = {("END", "IF"): "ENDIF", ("END", "SELECT"): "ENDSELECT", ("END", "SUB"): "ENDSUB", ("ELSE", "IF"): "ELSEIF"}

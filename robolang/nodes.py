@@ -1,6 +1,7 @@
 """The syntax tree: frozen values, one class for each rule of ``grammar.lark``.
 
-Two trees are equal when they mean the same text; places (``span``, ``source_line``) take no part. Names keep
+Two trees are equal when they mean the same; places (``span``, ``source_line``) and parentheses that change
+nothing take no part. Names keep
 the user's spelling in ``text`` and compare by ``key``, since the language ignores case. A line that could not
 be parsed is kept as ``Unparsed``, so that line numbers and the formatter see every line; blank lines are not
 kept, they are the gaps between the ``source_line`` of neighbours.
@@ -19,7 +20,14 @@ from robolang.tree import walk as walk
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Number(Node):
+class Operand(Node):
+    """A part of an expression; ``parentheses``: how many pairs are written around it, which change nothing of it."""
+
+    parentheses: int = field(default=0, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Number(Operand):
     """A literal; ``text`` is its spelling."""
 
     value: float
@@ -27,14 +35,14 @@ class Number(Node):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Text(Node):
-    """A literal between double quotes, ``value`` without them."""
+class Text(Operand):
+    """A literal between double quotes, ``value`` without them; ``""`` in it is one of its double quotes."""
 
     value: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Name(Node):
+class Name(Operand):
     """The name of a point, a sensor or a value; ``key`` is the spelling that is compared and looked up."""
 
     text: str = field(compare=False)
@@ -46,24 +54,25 @@ class Name(Node):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Negate(Node):
+class Negate(Operand):
     """``-operand``."""
 
     operand: "Expression"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Not(Node):
+class Not(Operand):
     """``NOT operand``."""
 
     operand: "Expression"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Chain(Node):
+class Chain(Operand):
     """Operands of one precedence with the signs between them: ``first rest[0] rest[1] ...``; flat, however long.
 
-    Signs are ``OR AND = <> < > <= >= + - * / MOD ^``. From the left, but ``^``, whose base is what stands left of it.
+    Signs are ``OR XOR AND = <> < > <= >= + - * / MOD ^``. From the left, but ``^``, whose base is what
+    stands left of it.
     """
 
     first: "Expression"
@@ -71,7 +80,7 @@ class Chain(Node):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Call(Node):
+class Call(Operand):
     """A function of the language, or an element of an array: ``ABS(x)``, ``POSE(...)``, ``HERE``, ``a(3)``.
 
     ``name.key`` says which; a word such as HERE or TIMER has no arguments.
@@ -82,7 +91,7 @@ class Call(Node):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Component6(Node):
+class Component6(Operand):
     """``base.X`` to ``base.RZ``: a component of a pose, mm or deg."""
 
     base: "Expression"
@@ -90,7 +99,7 @@ class Component6(Node):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Vector(Node):
+class Vector(Operand):
     """``(x, y, z)``, or six values: a way and a turn."""
 
     items: tuple["Expression", ...]
@@ -392,18 +401,23 @@ class Jump(Node):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sub(Node):
-    """``SUB name [(a, b)]``: the subroutine's lines follow, to ENDSUB; parameters and locals are its own."""
+    """``SUB name [(a, b)]``: the subroutine's lines follow, to ENDSUB; parameters and locals are its own.
+
+    ``parentheses``: 1 where they are written, without a parameter as well.
+    """
 
     name: Name
     parameters: tuple[Name, ...] = ()
+    parentheses: int = field(default=0, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CallSub(Node):
-    """``CALL name [(e, e)]``."""
+    """``CALL name [(e, e)]``; ``parentheses`` as of ``Sub``."""
 
     name: Name
     arguments: tuple[Expression, ...] = ()
+    parentheses: int = field(default=0, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -20,6 +20,7 @@ from robolang.diagnostics import HIDDEN, MAX_DIAGNOSTICS, Diagnostic, Severity, 
 from robolang.grammar import line_parser
 from robolang.mistakes import Unexpected, explain, quote, suspicious
 from robolang.source import MAX_BYTES, Source, Span
+from robolang.words import NEW
 
 MAX_LINE = 10_000
 MAX_DEPTH = 100
@@ -156,6 +157,8 @@ def _parse_statement(code: str, base: int, line: Span) -> Parsed | Diagnostic:
         for token in session.iter_parse():
             token.start_pos = base + (token.start_pos or 0)
             token.end_pos = base + (token.end_pos or 0)
+            if token.type in NEW and token.type not in session.choices():  # type: ignore[no-untyped-call]
+                token.type = "NAME"
         result: Parsed = session.feed_eof(token)  # type: ignore[no-untyped-call]
     except UnexpectedToken as error:
         accepts: set[str] = session.accepts()  # type: ignore[no-untyped-call]

@@ -1,9 +1,9 @@
 """Canonical text of the tree: keywords in capitals, names and numbers as spelt, one space between words.
 
-What is printed parses back to an equal tree. Parentheses stand where the grammar needs them and nowhere else: an
-operand is put into them when its level is lower than the lowest that its place can hold. The levels are the rules of
-``grammar.lark`` from the loosest to the tightest, ``OR AND NOT = + * MOD -x ^``; a chain is flat, so an operand of the
-chain's own level came from parentheses and keeps them, in front as well: ``(a - b) - c`` is another tree than
+What is printed parses back to an equal tree. Parentheses stand where the author wrote them and where the grammar needs
+them: an operand without any is put into them when its level is lower than the lowest that its place can hold. The
+levels are the rules of ``grammar.lark`` from the loosest to the tightest, ``OR AND NOT = + * -x ^``; a chain is flat,
+so an operand of the chain's own level needs parentheses, in front as well: ``(a - b) - c`` is another tree than
 ``a - b - c``. An exponent is an operand with signs before it, so ``2^-x`` stands as it is and ``2^-(x^3)`` needs them.
 
 Expressions are printed with a stack and not by recursion: parentheses in one another, at most 100, may hold ten levels
@@ -16,14 +16,15 @@ from robolang import nodes
 from robolang.nodes import Expression, Option, Statement
 from robolang.words import FUNCTIONS, VALUES
 
-_OR, _AND, _NOT, _COMPARE, _SUM, _PRODUCT, _MOD, _SIGNED, _POWER, _EXPONENT, _OPERAND = range(11)
+_OR, _AND, _NOT, _COMPARE, _SUM, _PRODUCT, _SIGNED, _POWER, _EXPONENT, _OPERAND = range(10)
 _SIGNS = {
-    "OR": _OR, "AND": _AND, **dict.fromkeys(("=", "<>", "<", ">", "<=", ">="), _COMPARE),
-    "+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT, "MOD": _MOD, "^": _POWER,
+    "OR": _OR, "XOR": _OR, "AND": _AND, **dict.fromkeys(("=", "<>", "<", ">", "<=", ">="), _COMPARE),
+    "+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT, "MOD": _PRODUCT, "^": _POWER,
 }  # fmt: skip
-_OPERAND_OF = {_OR: _AND, _AND: _NOT, _COMPARE: _SUM, _SUM: _PRODUCT, _PRODUCT: _MOD, _MOD: _SIGNED, _POWER: _OPERAND}
+_OPERAND_OF = {_OR: _AND, _AND: _NOT, _COMPARE: _SUM, _SUM: _PRODUCT, _PRODUCT: _SIGNED, _POWER: _OPERAND}
 """The lowest level of an operand of a chain, by the level of the chain."""
 _WORDS = FUNCTIONS | VALUES
+_QUOTE = '"'
 
 _Piece: TypeAlias = str | tuple[Expression, int]
 """Text, or an expression with the lowest level that its place can hold."""
@@ -168,9 +169,9 @@ def _control(node: _Control) -> str:
         case nodes.Jump():
             return f"{node.word} {_target(node.target)}"
         case nodes.Sub():
-            return f"SUB {node.name.text}{_bracketed(*node.parameters)}"
+            return f"SUB {node.name.text}{_bracketed(node.parameters, node.parentheses)}"
         case nodes.CallSub():
-            return f"CALL {node.name.text}{_bracketed(*node.arguments)}"
+            return f"CALL {node.name.text}{_bracketed(node.arguments, node.parentheses)}"
         case nodes.OnError():
             return f"ON ERROR GOTO {_target(node.target)}"
         case _:
@@ -194,8 +195,8 @@ def _comma(*values: Expression | None) -> str:
     return ", ".join(print_expression(value) for value in values if value is not None)
 
 
-def _bracketed(*values: Expression) -> str:
-    return f"({_comma(*values)})" if values else ""
+def _bracketed(values: tuple[Expression, ...], written: int) -> str:
+    return f"({_comma(*values)})" if values or written else ""
 
 
 # --- expressions -----------------------------------------------------------------------------------------------------
@@ -211,11 +212,16 @@ def print_expression(expression: Expression) -> str:
             found.append(piece)
             continue
         node, lowest = piece
-        if _level(node) < lowest and not (lowest == _EXPONENT and isinstance(node, nodes.Negate)):
-            stack += [")", (node, _OR), "("]
+        around = node.parentheses or int(_needs_parentheses(node, lowest))
+        if around:
+            stack += [")" * around, *reversed(_pieces(node, _OR)), "(" * around]
         else:
             stack.extend(reversed(_pieces(node, lowest)))
     return "".join(found)
+
+
+def _needs_parentheses(node: Expression, lowest: int) -> bool:
+    return _level(node) < lowest and not (lowest == _EXPONENT and isinstance(node, nodes.Negate))
 
 
 def _level(node: Expression) -> int:
@@ -236,7 +242,7 @@ def _pieces(node: Expression, lowest: int) -> list[_Piece]:
         case nodes.Number() | nodes.Name():
             return [node.text]
         case nodes.Text():
-            return [f'"{node.value}"']
+            return [f'"{node.value.replace(_QUOTE, 2 * _QUOTE)}"']
         case nodes.Not():
             return ["NOT ", (node.operand, _NOT)]
         case nodes.Negate():

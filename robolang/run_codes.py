@@ -158,6 +158,18 @@ register(
         remedy="Put the LOAD where the arm stands, behind the HAND, or end the move before it with FINE.",
     ),
     Code(
+        code="RBL231",
+        name="mod-beside-product",
+        meaning="MOD stands beside * or / without parentheses.",
+        remedy="Put parentheses around what belongs together, as in (a * b) MOD c.",
+    ),
+    Code(
+        code="RBL232",
+        name="rounded-comparison",
+        meaning="A comparison by = or <> of a number that may be rounded.",
+        remedy="Compare the difference with a small number, as in ABS(x - 0.3) < 1E-6.",
+    ),
+    Code(
         code="RBL413",
         name="blend-at-the-end",
         meaning="A move has a ZONE, and no move follows that it could blend into.",

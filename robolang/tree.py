@@ -19,13 +19,14 @@ class Node:
     span: Span = field(default=NOWHERE, compare=False, repr=False)
 
 
+_OTHER = frozenset({"span", "text", "key", "parentheses"})
 _NAMES: dict[type, tuple[str, ...]] = {}
 
 
 def _names(kind: type[Node]) -> tuple[str, ...]:
     """Return the fields of a kind of node that may hold nodes."""
     if kind not in _NAMES:
-        _NAMES[kind] = tuple(item.name for item in fields(kind) if item.name not in ("span", "text", "key"))
+        _NAMES[kind] = tuple(item.name for item in fields(kind) if item.name not in _OTHER)
     return _NAMES[kind]
 
 

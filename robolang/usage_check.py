@@ -10,21 +10,18 @@ from robolang.nodes import Assign, Call, Const, Dim, If, Name, Node, Program, St
 from robolang.words import near
 
 
-def usage_check(program: Program) -> Iterator[Diagnostic]:
-    """Report WAITs without a TIMEOUT (RBL223), and values and arrays that nothing reads (RBL225), as warnings.
-
-    Called for programs without errors.
-    """
+def wait_check(program: Program) -> Iterator[Diagnostic]:
+    """Report WAITs without a TIMEOUT (RBL223), as warnings."""
     for line in program.statements:
         for node in _statements(line.statement):
             if isinstance(node, Wait) and node.timeout is None:
                 yield Diagnostic(code="RBL223", severity=Severity.WARNING, span=node.span,
                                  message="this WAIT has no TIMEOUT: where its signal never comes, the program stands "
                                  "here for ever")  # fmt: skip
-    yield from _unread(program)
 
 
-def _unread(program: Program) -> Iterator[Diagnostic]:
+def usage_check(program: Program) -> Iterator[Diagnostic]:
+    """Report values and arrays that nothing reads (RBL225), as warnings; called for programs without errors."""
     given: dict[str, Name] = {}
     read: set[str] = set()
     for line in program.statements:

@@ -1,6 +1,6 @@
 """The vocabulary of the language, and characters and words that are easily taken for it.
 
-``KEYWORDS``, ``FUNCTIONS`` and ``VALUES`` cannot be names. ``look_alike`` follows the
+``KEYWORDS``, ``FUNCTIONS`` and ``VALUES`` cannot be names, but ``NEW`` can. ``look_alike`` follows the
 idea of Unicode report 39, restricted to what can be mistaken for a character that the language reads.
 """
 
@@ -19,7 +19,7 @@ OPTIONS = ("SPEED", "ACCEL", "TIME", "ZONE", "FINE", "WRIST")
 MOTIONS = frozenset({"MOVE", "MOVEJ", "MOVEC", "APPROACH", "DEPART"})
 COMPONENTS = ("TILT", "ADVANCE", "ROTATION")
 _BETWEEN = ("TIMEOUT", "GOTO", "STOP", "THEN", "ELSE", "TO", "STEP", "CASE", "NEXT", "ERROR")
-_SIGN_WORDS = ("NOT", "AND", "OR", "MOD")
+_SIGN_WORDS = ("NOT", "AND", "OR", "XOR", "MOD")
 INNER_WORDS = ("ON", "OFF", *OPTIONS, "KEEP", "AUTO", "HOLD", *COMPONENTS, *_BETWEEN, *_SIGN_WORDS)
 """Words that stand behind an instruction, in the order in which messages list them."""
 KEYWORDS = INSTRUCTIONS | frozenset(INNER_WORDS)
@@ -70,7 +70,10 @@ _FORMS = {
     "RESUME": "RESUME or RESUME NEXT",
     "ON": "ON ERROR GOTO *LABEL or ON ERROR STOP",
 }
-RESERVED = KEYWORDS | FUNCTIONS | VALUES | {"REM", "NAN", "INF"}
+NEW = frozenset({"XOR"})
+"""Keywords that came after edition 1: they are read as keywords where the grammar has one, and are names elsewhere, so
+that older points, cells and programs keep their names (docs/decisions/0029)."""
+RESERVED = (KEYWORDS - NEW) | FUNCTIONS | VALUES | {"REM", "NAN", "INF"}
 
 _PHRASES = {
     "ON ERROR GOTO", "ON ERROR STOP", "RESUME NEXT", "CASE ELSE", "HAND ON", "HAND OFF", "WRIST KEEP", "WRIST AUTO",

@@ -199,4 +199,22 @@ RULES = (
         good="10 LOAD (0, 0, 60), 0.8\n20 MOVE P1, ZONE 20\n30 MOVE P2\n",
         line=2,
     ),
+    Rule(
+        code="RBL231",
+        severity=Severity.WARNING,
+        why="MOD is worked out from the left with * and /, as in RAPID, KAREL and C; in other languages it binds more "
+        "loosely, and in edition 1 of this one it bound more tightly. Parentheses say it to every reader.",
+        bad="10 N = 4\n20 PRINT 2 * N MOD 3\n",
+        good="10 N = 4\n20 PRINT (2 * N) MOD 3\n",
+        line=2,
+    ),
+    Rule(
+        code="RBL232",
+        severity=Severity.WARNING,
+        why="A decimal fraction such as 0.1 has no exact binary value, so 0.1 + 0.2 prints as 0.3 and is not 0.3. The "
+        "branch that waits for equality is not taken, or a loop does not end.",
+        bad='10 X = 0.1 + 0.2\n20 IF X = 0.3 THEN PRINT "equal"\n',
+        good='10 X = 0.1 + 0.2\n20 IF ABS(X - 0.3) < 1E-6 THEN PRINT "equal"\n',
+        line=2,
+    ),
 )

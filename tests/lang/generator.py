@@ -6,11 +6,12 @@ somewhere only when it times out, THEN and ELSE of one line hold no block. ``EXP
 """
 
 import re
+from dataclasses import replace
 
 from hypothesis import strategies as st
 
 from robolang import nodes
-from robolang.words import ARGUMENTS, RESERVED, VALUES
+from robolang.words import ARGUMENTS, NEW, RESERVED, VALUES
 
 
 def make(kind, **parts):
@@ -40,18 +41,18 @@ literals = st.one_of(
 )
 numbers = literals.map(lambda text: nodes.Number(value=float(text), text=text))
 names = (
-    st.from_regex(r"[A-Za-z_][A-Za-z0-9_]{0,6}\$?", fullmatch=True)
+    (st.from_regex(r"[A-Za-z_][A-Za-z0-9_]{0,6}\$?", fullmatch=True) | st.sampled_from(sorted(NEW)))
     .filter(lambda text: text.upper() not in RESERVED and text.upper() != "REM$")
     .map(lambda text: nodes.Name(text=text))
 )
 parts = st.sampled_from(["X", "y", "Z", "rx", "RY", "RZ", "Q"]).map(lambda text: nodes.Name(text=text))
 strings = st.text(
-    st.characters(categories=["L", "N", "P", "S"], include_characters=" ", exclude_characters='"'), max_size=8
+    st.characters(categories=["L", "N", "P", "S"], include_characters=' "') | st.just('"'), max_size=8
 )
 words = st.sampled_from(sorted(VALUES)).map(lambda word: nodes.Call(name=nodes.Name(text=word)))
 functions = st.sampled_from(sorted(ARGUMENTS)).map(lambda word: nodes.Name(text=word))
 
-LEVELS = (("OR",), ("AND",), ("+", "-"), ("*", "/"), ("MOD",), ("^",))
+LEVELS = (("OR", "XOR"), ("AND",), ("+", "-"), ("*", "/", "MOD"), ("^",))
 COMPARISONS = ("=", "<>", "<", ">", "<=", ">=")
 
 
@@ -85,7 +86,7 @@ expressions = brief(
         st.one_of(numbers, names, numbers, names, simple_values[nodes.Text], words),
         lambda inner: brief(st.one_of(chains(inner), *compound(inner).values())),
         max_leaves=8,
-    )
+    ).flatmap(lambda node: st.integers(0, 2).map(lambda count: replace(node, parentheses=count)))
 )
 EXPRESSIONS = {**simple_values, **compound(expressions)}
 vectors = EXPRESSIONS[nodes.Vector]

@@ -1,0 +1,256 @@
+"""Comparisons by = and <> of numbers that rounding may part (RBL232), in ``CASE`` as well.
+
+A float holds 0.1 to 17 digits, so 0.1 + 0.2 is not the float next to 0.3. Numbers are classified by how far that goes
+(``Kind``): whole numbers and binary fractions are exact, so are counters, inputs and what is computed of them alone;
+a decimal fraction as written, or one division, is the float nearest to its value and equals another that is nearest to
+the same; what is computed further may differ in the last digits, and only that is reported. The kind of a name is the
+worst of all that is assigned to it anywhere. Only names that a comparison can depend on are followed, in
+``MAX_PASSES`` passes at most, so the time is linear in the program.
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from enum import IntEnum
+
+from robolang.diagnostics import Diagnostic, Related, Severity
+from robolang.nodes import (
+    Assign,
+    Call,
+    CallSub,
+    Case,
+    Chain,
+    Component6,
+    Const,
+    Expression,
+    For,
+    Head,
+    If,
+    Name,
+    Negate,
+    Number,
+    Program,
+    Statement,
+    Sub,
+    Vector,
+)
+from robolang.printer import print_expression
+from robolang.tree import walk
+
+MAX_PASSES = 20
+SMALL = "1E-6"
+"""Difference below which the remedy takes two numbers for equal."""
+
+
+class Kind(IntEnum):
+    """How near a number is to the value that the text means."""
+
+    EXACT = 0
+    NEAREST = 1
+    ROUNDED = 2
+
+
+_FUNCTIONS = {
+    **dict.fromkeys(("SQR", "SIN", "COS", "TAN", "ATN2", "DEG", "RAD", "DIST", "TIMER"), Kind.ROUNDED),
+    **dict.fromkeys(("INT", "SGN", "LEN", "IN", "ERR", "STR$", "HERE", "POSE", "JOINT"), Kind.EXACT),
+    "VAL": Kind.NEAREST,
+}
+_OF_ARGUMENTS = ("ABS", "MIN", "MAX")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Giving:
+    """A statement that gives ``key`` a value: of one expression, or ``counts`` from the first by the second."""
+
+    key: str
+    values: tuple[Expression, ...]
+    counts: bool = False
+
+
+@dataclass(slots=True)
+class _Kinds:
+    """Kinds of names and arrays, by ``_key``, and the first expression that made a name ``ROUNDED``."""
+
+    names: dict[str, Kind] = field(default_factory=dict)
+    causes: dict[str, Expression] = field(default_factory=dict)
+
+    def of(self, node: Expression) -> Kind:
+        """Return the kind of an expression; without recursion, its parts before itself."""
+        found: dict[int, Kind] = {}
+        for part in reversed(list(walk(node))):
+            found[id(part)] = self._kind(part, found)  # type: ignore[arg-type]
+        return found[id(node)]
+
+    def take(self, giving: _Giving) -> bool:
+        """Let a statement raise the kind of its name; return whether it did."""
+        kinds = [self.of(value) for value in giving.values]
+        kind = max(kinds)
+        if giving.counts and kind is not Kind.EXACT:
+            kind = Kind.ROUNDED
+        if kind <= self.names.get(giving.key, Kind.EXACT):
+            return False
+        self.names[giving.key] = kind
+        if kind is Kind.ROUNDED:
+            self.causes[giving.key] = giving.values[kinds.index(max(kinds))]
+        return True
+
+    def _kind(self, node: Expression, found: dict[int, Kind]) -> Kind:
+        if isinstance(node, Number):
+            return Kind.EXACT if (node.value * 2.0**20).is_integer() else Kind.NEAREST
+        if isinstance(node, Component6):
+            return Kind.ROUNDED
+        if isinstance(node, Negate):
+            return found[id(node.operand)]
+        if isinstance(node, Call):
+            return self._of_call(node, [found[id(argument)] for argument in node.arguments])
+        if isinstance(node, Chain):
+            return _of_chain(node, found)
+        return self.names.get(node.key, Kind.EXACT) if isinstance(node, Name) else Kind.EXACT
+
+    def _of_call(self, node: Call, arguments: list[Kind]) -> Kind:
+        key = node.name.key
+        if key in _OF_ARGUMENTS:
+            return max(arguments, default=Kind.EXACT)
+        if key == "ROUND":
+            return Kind.EXACT if len(arguments) == 1 else Kind.NEAREST
+        return _FUNCTIONS.get(key, self.names.get(_key(node), Kind.EXACT))
+
+
+def _of_chain(node: Chain, found: dict[int, Kind]) -> Kind:
+    kind = found[id(node.first)]
+    for sign, operand in node.rest:
+        if isinstance(operand, Vector) or sign not in _COMPUTES:
+            return Kind.EXACT
+        kind = _COMPUTES[sign](kind, node.first, found[id(operand)], operand)
+    return kind
+
+
+def _joined(left: Kind, first: Expression, right: Kind, operand: Expression) -> Kind:
+    return Kind.EXACT if max(left, right) is Kind.EXACT else Kind.ROUNDED
+
+
+def _multiplied(left: Kind, first: Expression, right: Kind, operand: Expression) -> Kind:
+    if _is_power_of_two(operand):
+        return left
+    return right if _is_power_of_two(first) and left is Kind.EXACT else _joined(left, first, right, operand)
+
+
+def _divided(left: Kind, first: Expression, right: Kind, operand: Expression) -> Kind:
+    if _is_power_of_two(operand):
+        return left
+    return Kind.NEAREST if max(left, right) is Kind.EXACT else Kind.ROUNDED
+
+
+_COMPUTES: dict[str, Callable[[Kind, Expression, Kind, Expression], Kind]] = {
+    "+": _joined, "-": _joined, "MOD": _joined, "^": _joined, "*": _multiplied, "/": _divided,
+}  # fmt: skip
+
+
+def _is_power_of_two(node: Expression) -> bool:
+    """Return whether a product with an expression changes the exponent of a float only."""
+    return isinstance(node, Number) and node.value in (0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
+
+
+def rounding_check(program: Program) -> Iterator[Diagnostic]:
+    """Report comparisons by = and <>, and SELECTs, of numbers that rounding may part (RBL232), as warnings."""
+    statements = [node for line in program.statements for node in _parts(line.statement)]
+    compared = list(_compared(statements))
+    if not compared:
+        return
+    kinds = _kinds(statements, [side for _, sides, _ in compared for side in sides])
+    for place, sides, sign in compared:
+        rounded = next((side for side in sides if kinds.of(side) is Kind.ROUNDED), None)
+        if rounded is not None:
+            yield _finding(place, sides, sign, rounded, kinds)
+
+
+_Compared = tuple[Expression, tuple[Expression, ...], str]
+"""Where a comparison stands, its sides, and its sign; ``CASE`` for a sign where SELECT compares."""
+
+
+def _compared(statements: list[Statement]) -> Iterator[_Compared]:
+    for node in statements:
+        parts = (node.condition,) if isinstance(node, If) else (node,)
+        for each in (each for part in parts for each in walk(part)):
+            if isinstance(each, Chain) and each.rest[0][0] in ("=", "<>"):
+                sign, other = each.rest[0]
+                yield each, (each.first, other), sign
+        if isinstance(node, Head) and node.word == "SELECT":
+            yield node.value, (node.value,), "CASE"
+        elif isinstance(node, Case):
+            yield from ((value, (value,), "CASE") for value in node.values)
+
+
+def _finding(place: Expression, sides: tuple[Expression, ...], sign: str, rounded: Expression,
+             kinds: _Kinds) -> Diagnostic:  # fmt: skip
+    cause = kinds.causes.get(_key(rounded))
+    shown = print_expression(rounded)
+    related = () if cause is None else (Related(span=cause.span, message=f"{shown} is computed here"),)
+    if sign == "CASE":
+        hint = f"compare with IF and a small difference: IF ABS({shown} - value) < {SMALL} THEN"
+    else:
+        left, right = sides
+        zero = isinstance(right, Number) and right.value == 0.0
+        difference = print_expression(left if zero else Chain(first=left, rest=(("-", right),)))
+        hint = f"write ABS({difference}) {'<' if sign == '=' else '>='} {SMALL}"
+    message = f"{sign} compares {shown}, which may be rounded: equal values may differ in the last digit"
+    return Diagnostic(code="RBL232", severity=Severity.WARNING, span=place.span, message=message, hint=hint,
+                      related=related)  # fmt: skip
+
+
+# --- names -----------------------------------------------------------------------------------------------------------
+
+
+def _key(node: Expression | Name) -> str:
+    """Return under what a name or an array is kept: the two are different things of one spelling."""
+    if isinstance(node, Call):
+        return f"{node.name.key}()"
+    return node.key if isinstance(node, Name) else ""
+
+
+def _kinds(statements: list[Statement], sides: Iterable[Expression]) -> _Kinds:
+    """Return the kinds of the names that some expressions depend on."""
+    by_key: dict[str, list[_Giving]] = {}
+    for giving in _givings(statements):
+        by_key.setdefault(giving.key, []).append(giving)
+    todo, followed, givings = [_key(name) for side in sides for name in _read(side)], set[str](), list[_Giving]()
+    while todo:
+        key = todo.pop()
+        if key not in followed:
+            followed.add(key)
+            for giving in by_key.get(key, ()):
+                givings.append(giving)
+                todo += [_key(name) for value in giving.values for name in _read(value)]
+    kinds = _Kinds()
+    for _ in range(MAX_PASSES):
+        if not sum(kinds.take(giving) for giving in givings):
+            break
+    return kinds
+
+
+def _read(node: Expression) -> Iterator[Expression]:
+    """Yield the names and the calls in an expression."""
+    return (each for each in walk(node) if isinstance(each, Name | Call))
+
+
+def _givings(statements: list[Statement]) -> Iterator[_Giving]:
+    subs = {node.name.key: node for node in statements if isinstance(node, Sub)}
+    for node in statements:
+        if isinstance(node, Assign):
+            yield _Giving(key=_key(node.target), values=(node.value,))
+        elif isinstance(node, Const):
+            yield _Giving(key=node.name.key, values=(node.value,))
+        elif isinstance(node, For):
+            step = () if node.step is None else (node.step,)
+            yield _Giving(key=node.variable.key, values=(node.first, *step), counts=True)
+        elif isinstance(node, CallSub) and (sub := subs.get(node.name.key)) is not None:
+            for parameter, value in zip(sub.parameters, node.arguments, strict=False):
+                yield _Giving(key=parameter.key, values=(value,))
+
+
+def _parts(node: Statement | None) -> Iterator[Statement]:
+    """Yield a statement and those of a one-line IF."""
+    if node is not None:
+        yield node
+    if isinstance(node, If):
+        yield from _parts(node.then)
+        yield from _parts(node.otherwise)
