@@ -10,6 +10,7 @@ one mistake does not look like many. What a statement shows alone (``wait_check`
 beside errors of other lines as well. Time is linear in the program.
 """
 
+from bisect import bisect_left, bisect_right
 from collections.abc import Collection, Iterator
 from itertools import chain, islice
 
@@ -43,10 +44,18 @@ def check(program: Program, *, points: Collection[str] | None = None, rated_payl
     structure = structure_of(program)
     found = list(islice(chain(_line_numbers(program), _emptiness(program), structure.diagnostics,
                               _statements(program, facts)), MAX_DIAGNOSTICS + 1))  # fmt: skip
-    found += chain(wait_check(program), rounding_check(program))
+    found += _beside(found, chain(wait_check(program), rounding_check(program)))
     if not has_errors(found) and not any(isinstance(line.statement, Unparsed) for line in program.statements):
         found += chain(flow_check(program, structure), usage_check(program))
     return in_order(islice(found, MAX_DIAGNOSTICS + 1))
+
+
+def _beside(found: list[Diagnostic], more: Iterator[Diagnostic]) -> list[Diagnostic]:
+    """Return those of ``more`` in whose text nothing else was found: a statement is corrected one thing at a time."""
+    starts = sorted(item.span.start for item in found)
+    free = (item for item in more
+            if bisect_left(starts, item.span.start) == bisect_right(starts, item.span.end))  # fmt: skip
+    return list(islice(free, MAX_DIAGNOSTICS + 1))
 
 
 def _keys(names: Collection[str] | None) -> frozenset[str] | None:
