@@ -88,14 +88,24 @@ class RehearsedMove:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class RehearsedHand:
+    """A HAND of the rehearsal: its effect, ``after`` how many moves it comes, and q (n,) rad where the arm then is."""
+
+    effect: SetHand
+    after: int
+    q: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Rehearsal:
-    """What a rehearsal found: ``moves`` in order, ``total_us``, and the refusal that ended it.
+    """What a rehearsal found: ``moves`` and ``hands`` in order, ``total_us``, and the refusal that ended it.
 
     ``times_us`` and ``runs`` give by line of the file what statements that take time took, and how often they ran;
     ``tried`` the places of all moves that were asked for, those that were refused and caught by ON ERROR among them.
     """
 
     moves: tuple[RehearsedMove, ...]
+    hands: tuple[RehearsedHand, ...]
     times_us: dict[int, int]
     total_us: int
     refused: tuple[Diagnostic, ...]
@@ -139,6 +149,7 @@ class _Rehearsal:
         self._chain: list[tuple[MoveTo, Command, LinePlan]] = []
         self._q_next: Array = np.array(cell.home)
         self._moves: list[RehearsedMove] = []
+        self._hands: list[RehearsedHand] = []
         self._tried: set[Span] = set()
         self._runs: Counter[int] = Counter()
         self._times: dict[int, int] = {}
@@ -165,8 +176,9 @@ class _Rehearsal:
             except Fault as found:
                 fault = found
         self._finish_motion()
-        return Rehearsal(moves=tuple(self._moves), times_us=self._times, total_us=self._now_us, refused=refused,
-                         tried=frozenset(self._tried), runs=dict(self._runs))  # fmt: skip
+        return Rehearsal(moves=tuple(self._moves), hands=tuple(self._hands), times_us=self._times,
+                         total_us=self._now_us, refused=refused, tried=frozenset(self._tried),
+                         runs=dict(self._runs))  # fmt: skip
 
     def _take(self, effect: Effect) -> bool:
         # a WAIT passes time cycle by cycle, but lets motion end once
@@ -184,6 +196,7 @@ class _Rehearsal:
             self._payload = lowering.payload(effect, self._project.cell)
         elif isinstance(effect, SetHand):
             seconds = lowering.dwell_s(effect, self._project.cell)
+            self._hands.append(RehearsedHand(effect=effect, after=len(self._moves), q=self._q_next))
             self._spend(effect, -(-round(seconds * 1e6) // self._period_us))
         elif isinstance(effect, Pass):
             self._spend(effect, max(1, -(-round(effect.seconds * 1e6) // self._period_us)))

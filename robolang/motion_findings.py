@@ -2,7 +2,6 @@
 
     RBL419   a move that ends in other joint angles than taught
     RBL414   a zone that takes more than half of a move at its corner: the blend is smaller than asked for
-    RBL421   the arm or the hand in the floor or an obstacle of the cell
     RBL422   a joint near the end of its range
     RBL423   a program that takes longer than it may
     RBL424   the arm in itself
@@ -11,12 +10,11 @@
     RBL428   a path on which the tool leaves its posture to change the wrist, where the program does not say so
     RBL429   a move that takes far longer than the program asked for, and what rules it
 
-Looked at are the set-points as they are carried out, blends included, 8 ms apart, in the shapes that MuJoCo has of the
-cell, without physics. Parts are not looked at: which of them are where is for a run. Of one code there is one finding
-for a statement, the worst or the first on its way.
+Checks the executed set-points, blends included, 8 ms apart. Obstacles and parts that they touch are in
+``part_findings``. Of one code there is one finding for a statement, the worst or the first in time.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -26,11 +24,10 @@ from robolang.diagnostics import Diagnostic, Severity
 from robolang.exploration import Detour
 from robolang.line_times import range_margin
 from robolang.motion_check import Rehearsal, RehearsedMove
+from robolang.part_findings import CellTouches
 from robolang.project import Project
 from robolang.source import Span
-from runtime.frames import Array
 from runtime.motion.planner import FOLLOWS
-from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.load import ratings, wrist_load
 from runtime.robot.singularity import singularities
@@ -66,6 +63,8 @@ def findings(project: Project, rehearsal: Rehearsal, max_cycle_s: float | None =
     for detour in detours:
         refused = (item for item in detour.rehearsal.refused if item.code.startswith(("RBL3", "RBL4")))
         for item in (*refused, *moves.findings(detour.rehearsal)):
+            if item.code == "RBL441":  # where the program went another way, parts may be elsewhere as well
+                continue
             told = replace(item, message=f"{item.message} ({_way(project, detour)})")
             found.setdefault((item.code, item.span), told)
     return (*found.values(), *_cycle(rehearsal, max_cycle_s))
@@ -96,14 +95,15 @@ class _Moves:
     def __init__(self, project: Project) -> None:
         self._spec, self._period_s = project.cell.robot, project.profile.period_s
         self._kinematics = Kinematics(self._spec)
-        self._shapes = MujocoPlant(self._spec, project.cell, project.profile.tick_s)
+        self._cell = CellTouches(project)
         self._project = project
         self._seen: set[tuple[object, ...]] = set()
 
     def findings(self, rehearsal: Rehearsal) -> Found:
         """Yield what the moves of a rehearsal show, those of one check after those of another."""
+        yield from self._cell.follow(rehearsal)
         new = [move for move in rehearsal.moves if self._is_new(move)]
-        for check in (self.touches, self.folds, self.near_range, self.near_singular, self.wrist_changes,
+        for check in (self.folds, self.near_range, self.near_singular, self.wrist_changes,
                       self.ends_otherwise, self.slowed):
             first: dict[Span, Diagnostic] = {}
             for move in new:
@@ -120,20 +120,12 @@ class _Moves:
         self._seen.add(key)
         return not known
 
-    def touches(self, move: RehearsedMove) -> Found:
-        """Report the first obstacle that the arm would be in."""
-        yield from self._first(move, "RBL421", self._shapes.in_cell)
-
     def folds(self, move: RehearsedMove) -> Found:
         """Report the first of its links that the arm would be in."""
-        yield from self._first(move, "RBL424", self._shapes.folded)
-
-    def _first(self, move: RehearsedMove, code: str, meets: Callable[[Array], tuple[str, str] | None]) -> Found:
         for row, q in enumerate(move.q):
-            if (pair := meets(q)) is not None:
-                what, where = pair[0], pair[1].removeprefix("obstacle:")
-                message = f"at {move.share(row):.1f} % of the way {what} would be in {where}"
-                yield _at(code, move, message, Severity.ERROR)
+            if (pair := self._cell.shapes.folded(q)) is not None:
+                message = f"at {move.share(row):.1f} % of the way {pair[0]} would be in {pair[1]}"
+                yield _at("RBL424", move, message, Severity.ERROR)
                 return
 
     def near_range(self, move: RehearsedMove) -> Found:

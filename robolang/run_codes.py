@@ -248,6 +248,21 @@ register(
         remedy="Lower its SPEED, or move the path away from where the joint has to turn fast.",
     ),
     Code(
+        code="RBL440",
+        name="part-ahead",
+        meaning="A move would lead the arm or the hand into a part that lies in the cell, or a carried part into "
+        "another part, an obstacle, the floor or the arm.",
+        remedy="Go there over a via point, from another side, or lift the part before it is moved; the cell file "
+        "has where parts lie at the start.",
+    ),
+    Code(
+        code="RBL441",
+        name="nothing-to-grip",
+        meaning="HAND ON closes where no part of the cell is between the fingers.",
+        remedy="Check the point, the tool and the frame against where the part lies, and the size of the part against "
+        "the stroke of the hand.",
+    ),
+    Code(
         code="RBL501",
         name="division-by-zero",
         meaning="A program divided by zero.",

@@ -54,4 +54,25 @@ RULES = (
         bad="10 MOVE P1, ZONE -5\n20 MOVE P2\n",
         good="10 MOVE P1, ZONE 5\n20 MOVE P2\n",
     ),
+    Rule(
+        code="RBL440",
+        severity=Severity.WARNING,
+        why="What is pushed is no longer where the program will look for it, and a part that is pulled over the table "
+        "before it is lifted shifts between the fingers. Parts are followed from where the cell puts them: gripped, "
+        "carried, put down.",
+        bad="10 MOVE P5 + (0, 80, 0)\n20 MOVE P1 + (0, 80, 0)\n30 MOVE P1 + (0, 50, 0)\n",
+        good="10 MOVE P5 + (0, 80, 0)\n20 MOVE P1 + (0, 80, 0)\n30 MOVE P1 + (0, 70, 0)\n",
+        line=3,
+        motion=True,
+    ),
+    Rule(
+        code="RBL441",
+        severity=Severity.WARNING,
+        why="The program goes on as if the hand had a part. Parts are followed from where the cell puts them; a cell "
+        "without parts, or one whose part was dropped, gives no such finding.",
+        bad="10 MOVE P5\n20 HAND ON\n",
+        good="10 MOVE P1\n20 HAND ON\n",
+        line=2,
+        motion=True,
+    ),
 )

@@ -16,6 +16,7 @@ motor's, which the encoder sees, ``q_link`` the link's; the physics step is then
 torque (see ``mjcf``).
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, cast
@@ -27,7 +28,7 @@ from runtime.frames import Array, pose
 from runtime.linear import dot, norm
 from runtime.plant.cell import CellSpec
 from runtime.plant.gears import elastic_axes, physics_steps
-from runtime.plant.hand import FINGERS
+from runtime.plant.hand import FINGERS, finger_sign
 from runtime.plant.mjcf import build_mjcf, friction_bias, gear_joint, joint_name
 from runtime.plant.plant import HandState
 from runtime.plant.touches import Bodies, Pair
@@ -63,7 +64,7 @@ class MujocoPlant:
         self._data: Any = mujoco.MjData(self._model)
         self._qpos, self._qvel = cast(Array, self._data.qpos), cast(Array, self._data.qvel)
         self._tau, self._finger_force = self._data.ctrl[:n], self._data.ctrl[n:]
-        self._grip_force = cell.hand.grip_force
+        self._grip_force, self._stroke = cell.hand.grip_force, cell.hand.stroke
         self._motors = _addresses(self._model, [joint_name(axis) for axis in range(n)])
         self._elastic = elastic_axes(spec)
         self._gears = _addresses(self._model, [gear_joint(axis) for axis in self._elastic])
@@ -252,29 +253,87 @@ class MujocoPlant:
         if not pairs <= self._touched:
             self._touched |= pairs
 
-    def in_cell(self, q: Array) -> tuple[str, str] | None:
-        """Return what of the arm would be in the floor or in an obstacle at joint angles q (n,) rad, and in which.
+    # as a plant that stands for the shapes of the cell and is not run -------------------------------------------------
 
-        Nothing moves by itself: for a plant that stands for the cell's shapes and is not run. Parts are passed over.
+    def lay(self, parts: Mapping[str, Array], opening: float) -> None:
+        """Put parts to X_world_part (4, 4), all others out of the way, and the fingers ``opening`` m apart."""
+        quaternion = np.empty(4)
+        for name, at in self._part_address.items():
+            X = parts.get(name, AWAY)
+            mujoco.mju_mat2Quat(quaternion, X[:3, :3].ravel())
+            self._qpos[at : at + 3], self._qpos[at + 3 : at + 7] = X[:3, 3], quaternion
+            self._model.geom(f"part:{name}").margin = MARGIN
+        self._qpos[self._fingers] = opening / 2.0
+
+    def meeting(self, q: Array, held: Mapping[str, Array]) -> tuple[bytes, Array]:
+        """Return which shapes meet at joint angles q (n,) rad, and the distances (k,) m, negative inside one another.
+
+        The held parts are put to X_world_part (4, 4), those that ``lay`` has put stay. ``pairs_of`` names the shapes.
         """
+        quaternion = np.empty(4)
+        for name, X in held.items():
+            at = self._part_address[name]
+            mujoco.mju_mat2Quat(quaternion, X[:3, :3].ravel())
+            self._qpos[at : at + 3], self._qpos[at + 3 : at + 7] = X[:3, 3], quaternion
         self._qpos[self._motors] = q
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_collision(self._model, self._data)
-        for index in range(self._data.ncon):
-            contact = self._data.contact[index]
-            if contact.dist < -CLEARANCE:
-                first, second = (str(self._model.geom(geom).name) for geom in contact.geom)
-                for fixed, moving in ((first, second), (second, first)):
-                    if _is_fixed(fixed) and not _is_fixed(moving) and not moving.startswith("part:"):
-                        return moving, fixed
-        return None
+        contact = self._data.contact
+        return contact.geom.tobytes(), contact.dist
+
+    def pairs_of(self, meeting: bytes) -> list[Pair]:
+        """Return the names of the shapes of a ``meeting``, in the order of its distances."""
+        names = self._geom_names
+        return [(names[a], names[b]) for a, b in np.frombuffer(meeting, dtype=np.int32).reshape(-1, 2).tolist()]
+
+    def faces(self, q: Array, name: str) -> tuple[float, float] | None:
+        """Return from where to where a part reaches between the pads along y of the tool, m; None: it is not there.
+
+        Each pad goes inwards by its distance from the part until it meets it (conservative advancement).
+        """
+        self._qpos[self._motors] = q
+        part, ends = int(self._model.geom(f"part:{name}").id), []
+        stroke = self._stroke
+        for index, side in enumerate(FINGERS):
+            pad, at = int(self._model.geom(f"pad_{side}").id), stroke / 2.0
+            for _ in range(ADVANCES):
+                self._qpos[self._fingers.start + index] = at
+                mujoco.mj_kinematics(self._model, self._data)
+                distance = mujoco.mj_geomDistance(self._model, self._data, pad, part, stroke, None)
+                at -= max(distance, 0.0)
+                if not at >= -stroke / 2.0:
+                    return None
+                if distance <= MET:
+                    break
+            ends.append(finger_sign(side) * at)
+        low, high = sorted(ends)
+        return (low, high) if ends[0] > ends[1] else None
+
+    def gap_below(self, name: str, most: float) -> float | None:
+        """Return how far a part that ``lay`` has put would fall until it rests on something, m; None: over ``most``."""
+        at = self._part_address[name]
+        own = int(self._model.geom(f"part:{name}").id)
+        others = [index for index, other in enumerate(self._geom_names) if index != own and not _of_arm(other)]
+        fallen, z = 0.0, float(self._qpos[at + 2])
+        for _ in range(ADVANCES):
+            self._qpos[at + 2] = z - fallen
+            mujoco.mj_kinematics(self._model, self._data)
+            distance = min(mujoco.mj_geomDistance(self._model, self._data, own, other, 2.0 * most + MARGIN, None)
+                           for other in others)  # fmt: skip
+            if distance <= MET:
+                return fallen
+            fallen += distance
+            if not fallen <= most:
+                return None
+        return fallen
 
     def folded(self, q: Array) -> tuple[str, str] | None:
         """Return what of the arm or the hand would be in another link at joint angles q (n,) rad, and in which.
 
-        Looked at as ``in_cell`` does, for the pairs of ``_pairs``.
+        Checked for the pairs of ``_pairs``, with the hand open.
         """
         self._qpos[self._motors] = q
+        self._qpos[self._fingers] = self._stroke / 2.0
         mujoco.mj_kinematics(self._model, self._data)
         for first, second in self._pairs:
             if mujoco.mj_geomDistance(self._model, self._data, first, second, CLEARANCE, None) < -CLEARANCE:
@@ -321,6 +380,14 @@ SIDEWAYS = 0.7
 """Cosine of the largest angle between a contact and the direction in which the fingers close, of a grip."""
 MOST_KNOWN = 10_000
 """Sets of contacts whose names are remembered."""
+AWAY = pose([0.0, 0.0, 1000.0])
+"""Where a part is put that is not in the cell."""
+MARGIN = 1e-4
+"""Shapes of parts that are nearer than this meet, m."""
+MET = 1e-6
+"""Distance at which a pad has met a part, or a part its support, m."""
+ADVANCES = 100
+"""Most steps of a conservative advancement."""
 CLEARANCE = 1e-4
 """Shapes that meet by less than this touch, m."""
 APART = 3

@@ -68,7 +68,7 @@ def test_what_the_program_decides_alone_goes_its_way(found):
 
 
 def test_a_collision_behind_a_branch(found):
-    said, _ = found("MOVE P2\nIF IN(1) THEN MOVE P1 + (0, 0, -30) ELSE MOVE P1")
+    said, _ = found("MOVE P2\nIF IN(1) THEN MOVE P1 + (0, 0, -30) ELSE MOVE P5")
     assert [(code, line) for code, line, _ in said] == [("RBL421", 2)]
 
 
@@ -157,8 +157,8 @@ def test_a_way_is_queued_once():
 
 def test_moves_with_the_same_load_are_not_looked_at_again(found, monkeypatch):
     looked = []
-    plain = motion_findings._Moves.touches
-    monkeypatch.setattr(motion_findings._Moves, "touches", lambda self, move: looked.append(move) or plain(self, move))
+    plain = motion_findings._Moves.folds
+    monkeypatch.setattr(motion_findings._Moves, "folds", lambda self, move: looked.append(move) or plain(self, move))
     found("FOR i = 1 TO 3\nLOAD (0, 0, 60), 0.8\nMOVE P2\nMOVE P5\nNEXT\nIF IN(1) THEN DELAY 1")
     assert len(looked) == 6  # those of the first rehearsal, and of the detour none
 

@@ -4,47 +4,16 @@ Short programs on MuJoCo in the built-in cell with other parts. How far a part w
 free body before and after the run.
 """
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-from robolang.builtin import cell_text
-from robolang.project import load_project
 from robolang.session import Session
-
-POINTS = Path(__file__).parents[2] / "programs/pick_and_place.points.toml"
-PART = """
-[[parts]]
-name = "{}"
-size_mm = [{}, {}, {}]
-mass_kg = {}
-pose_mm_deg = [{}, {}, {}, 0, 0, 0]
-friction = 0.6
-"""
-OBSTACLE = """
-[[obstacles]]
-name = "{}"
-size_mm = [{}, {}, {}]
-pose_mm_deg = [{}, {}, {}, 0, 0, 0]
-"""
-OWN = ("part", 60, 40, 80, 1.5, 480, -220, 640)
-FIRST = "LOAD (0, 0, 60), 0.8\n"
-GRIP = "MOVE P1\nHAND ON\nLOAD (0, 0, 95), 2.3\n"
+from tests.sim.cells import BESIDE, GRIP, LEDGE, LET_GO, OWN, job
 
 
-def ran(folder, text, *parts, obstacles="", grip_force_n=120):
+def ran(folder, text, *parts, **cell):
     """Run a program; its report, and the displacement of the centre of each part in mm."""
-    whole = cell_text()
-    head, tail = whole[: whole.index("# Steel, ")], whole[whole.index("[loads.empty]") :]
-    cell_toml = head + obstacles + "".join(PART.format(*part) for part in parts) + tail
-    cell_toml = cell_toml.replace("grip_force_n = 120", f"grip_force_n = {grip_force_n}")
-    (folder / "p.rbl").write_text(FIRST + text)
-    (folder / "p.cell.toml").write_text(cell_toml)
-    (folder / "p.points.toml").write_text(POINTS.read_text("utf-8"))
-    project = load_project(folder / "p.rbl")
-    assert project.ok, project.diagnostics
-    session = Session(project)
+    session = Session(job(folder, text, *parts, **cell))
     before = session.controller.plant.parts()
     report = session.run().report
     after = session.controller.plant.parts()
@@ -61,11 +30,6 @@ def pushed(report):
     return [(entry["line"], touch) for entry in report["statements"] for touch in entry["touched"]]
 
 
-BESIDE = "MOVE P5 + (0, 80, 0)\nMOVE P1 + (0, 80, 0)\n"
-"""With the open fingers 12 mm from the part, one after the other in y; the moves that follow are in line 4."""
-LET_GO = "HAND OFF\nLOAD (0, 0, 60), 0.8\n"
-LEDGE = OBSTACLE.format("ledge", 100, 20, 61, 480, -120, 630.5)
-POST = OBSTACLE.format("post", 20, 200, 130, 540, -220, 665)
 ALLOWED = {
     "carry and place on the table": (GRIP + "MOVE P5\nMOVE P4\nMOVE P3\n" + LET_GO + "MOVE P4\n", [OWN]),
     "place on a part": (
@@ -131,7 +95,7 @@ def test_a_part_that_is_knocked_over_counts_to_where_it_comes_to_rest(tmp_path):
 def test_a_touch_that_goes_on_is_told_for_each_statement(tmp_path):
     text = BESIDE + "MOVE P1 + (0, 60, 0), SPEED 50\nMOVE P1 + (0, 55, 0), SPEED 50\n"
     report, moved = ran(tmp_path, text, OWN)
-    assert said(report) == [("RBL535", 4), ("RBL535", 5)]
+    assert [row for row in said(report) if row[0] != "RBL523"] == [("RBL535", 4), ("RBL535", 5)]
     assert sum(touch["moved_mm"] for _, touch in pushed(report)) == pytest.approx(moved["part"], abs=0.1)
 
 

@@ -1,0 +1,239 @@
+"""What the moves of a rehearsal touch: obstacles, and the parts of the cell, lying, carried and put down.
+
+    RBL421   the arm or the hand in the floor or an obstacle of the cell
+    RBL440   the arm or the hand in a lying part; a carried part in a part, an obstacle, the floor or the arm
+    RBL441   a HAND ON with no part between the fingers
+
+Parts lie where the cell puts them until HAND ON finds one between the fingers: the pads meet it from both sides and
+centre it. From there it goes with the tool, to HAND OFF, and rests where it is let go or at most ``DROP`` below. A
+carried part may stand on what is under it, but not slide along an obstacle by more than ``NOTICED``, as in a run.
+
+Where a part is no longer known (dropped from higher up, touched), it is left out of everything that follows: one cause,
+one finding. Shapes are those of ``MujocoPlant``, without physics; the rows are the executed set-points, 8 ms apart.
+"""
+
+from collections.abc import Collection, Generator, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from robolang.diagnostics import Diagnostic, Severity
+from robolang.motion_check import Rehearsal, RehearsedHand, RehearsedMove
+from robolang.project import Project
+from robolang.source import Span
+from runtime.frames import Array, inverse, pose
+from runtime.plant.mujoco_plant import CLEARANCE, MARGIN, MujocoPlant
+from runtime.plant.touches import NOTICED, shape_text
+from runtime.robot.kinematics import Kinematics
+
+DROP = 5e-3
+"""A part that is let go higher than this over its support may land anywhere, m."""
+PRESSED = 1e-3
+"""How far a carried part may be in what it stands on, m: a point is taught no better."""
+ALIKE = 2e-4
+"""Difference in width of parts that are gripped side by side, m."""
+APART = 3
+"""Links fewer joints than this from the flange have shapes too coarse for a carried part."""
+
+Found = Iterator[Diagnostic]
+_PART = "part:"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scene:
+    """Where the parts are: ``lying`` X_world_part, ``held`` X_tool_part, both (4, 4).
+
+    ``opening`` m is that of the hand; ``known``: no part was left out.
+    """
+
+    lying: Mapping[str, Array]
+    held: Mapping[str, Array]
+    opening: float
+    closed: bool
+
+    known: bool = True
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        """What the touches of a move depend on."""
+        poses = (part for parts in (self.lying, self.held) for part in sorted(parts.items()))
+        return (self.opening, *((name, X.tobytes()) for name, X in poses))
+
+    def without(self, names: Collection[str]) -> "Scene":
+        """Return the scene without parts that are nobody knows where."""
+        lying, held = ({key: X for key, X in parts.items() if key not in names} for parts in (self.lying, self.held))
+        return replace(self, lying=lying, held=held, known=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Meeting:
+    """The first row of a move at which something meets: ``by`` which shape or part, in ``what``."""
+
+    row: int
+    by: str
+    what: str
+
+
+Followed = Generator[Diagnostic, None, Scene]
+
+
+class CellTouches:
+    """Follows the parts of a cell through rehearsals; what was checked before is remembered."""
+
+    def __init__(self, project: Project) -> None:
+        cell = project.cell
+        self._cell, self._kinematics = cell, Kinematics(cell.robot)
+        self.shapes = MujocoPlant(cell.robot, cell, project.profile.tick_s)
+        self._swept: dict[tuple[object, ...], tuple[Meeting | None, Meeting | None]] = {}
+        self._sizes = {part.name: part.size for part in cell.parts}
+        self._limits: dict[tuple[object, ...], Array | None] = {}
+        self._start = self._resting(Scene(
+            lying={part.name: np.array(part.X_world_part) for part in cell.parts}, held={}, opening=cell.hand.stroke,
+            closed=False,
+        ), {part.name for part in cell.parts})  # fmt: skip
+
+    def follow(self, rehearsal: Rehearsal) -> Found:
+        """Yield what the moves and HANDs of a rehearsal touch, in order."""
+        scene, hands = self._start, list(rehearsal.hands)
+        for index, move in enumerate(rehearsal.moves):
+            while hands and hands[0].after <= index:
+                scene = yield from self._hand(hands.pop(0), scene)
+            scene = yield from self._move(move, scene)
+        for hand in hands:
+            scene = yield from self._hand(hand, scene)
+
+    def _tool(self, q: Array) -> Array:
+        return np.asarray(self._kinematics.forward(q) @ self._cell.hand.X_flange_tool)
+
+    # moves ----------------------------------------------------------------------------------------------------------
+
+    def _move(self, move: RehearsedMove, scene: Scene) -> Followed:
+        key = (move.q.tobytes(), scene.key)
+        if key not in self._swept:
+            self._swept[key] = self._sweep(move.q, scene)
+        struck, met = self._swept[key]
+        if struck is not None:
+            by, what = struck.by, struck.what.removeprefix("obstacle:")
+            message = f"at {move.share(struck.row):.1f} % of the way {by} would be in {what}"
+            yield _at("RBL421", move.effect.span, message, Severity.ERROR)
+        if met is None or struck is not None:  # where it is stopped by an obstacle, parts are the lesser thing
+            return scene
+        carried = "the carried " if met.by.startswith(_PART) else ""
+        what = f"{carried}{shape_text(met.by)} would touch {shape_text(met.what)}"
+        yield _at("RBL440", move.effect.span, f"at {move.share(met.row):.1f} % of the way {what}")
+        return scene.without({name.removeprefix(_PART) for name in (met.by, met.what) if name.startswith(_PART)})
+
+    def _sweep(self, q: Array, scene: Scene) -> tuple[Meeting | None, Meeting | None]:
+        """Return where the arm first strikes what is fixed, and where something first touches what it should not."""
+        self.shapes.lay(scene.lying, scene.opening)
+        X_world_tool = self._tool(q) if scene.held else np.empty((len(q), 4, 4))
+        held = {name: X_world_tool @ X for name, X in scene.held.items()}
+        found: list[Meeting | None] = [None, None]
+        stood: dict[tuple[str, str], Array] = {}  # where carried parts came to stand on what
+        for row in range(len(q)):
+            carried = {name: X[row] for name, X in held.items()}
+            pairs, distances = self.shapes.meeting(q[row], carried)
+            bounds = self._bounds(pairs, scene) if pairs else None
+            if bounds is None:
+                stood.clear()
+                continue
+            for which, limits in enumerate(bounds[:2]):
+                if found[which] is None and not (distances >= limits).all():
+                    by, what = self._ordered(pairs, int(np.argmin(distances >= limits)), scene)
+                    found[which] = Meeting(row=row, by=by, what=what)
+            if held and found[1] is None:
+                on = {self._ordered(pairs, int(k), scene) for k in np.flatnonzero(~(distances >= bounds[2]))}
+                stood = {pair: stood.get(pair, carried[pair[0].removeprefix(_PART)][:3, 3]) for pair in on}
+                for (by, what), start in stood.items():
+                    if not np.linalg.norm(carried[by.removeprefix(_PART)][:3, 3] - start) <= NOTICED:
+                        found[1] = Meeting(row=row, by=by, what=what)
+        return found[0], found[1]
+
+    def _bounds(self, pairs: bytes, scene: Scene) -> Array | None:
+        """Return the distances (3, k) m below which the k pairs that meet count; None: none of them can.
+
+        In the rows: for RBL421, for RBL440, and for a carried part that stands on what is fixed.
+        """
+        key = (pairs, tuple(scene.held))
+        if key not in self._limits:
+            count = len(self.shapes.pairs_of(pairs))
+            limits = np.array([self._bound(*self._ordered(pairs, k, scene), scene) for k in range(count)]).T
+            self._limits[key] = limits if np.isfinite(limits).any() else None
+        return self._limits[key]
+
+    def _bound(self, by: str, what: str, scene: Scene) -> tuple[float, float, float]:
+        """Return a column of ``_bounds`` for two shapes, what moves first."""
+        part, fixed, link = what.startswith(_PART), not _moves(what), what.startswith("link")
+        if by.removeprefix(_PART) in scene.held:
+            near = link and int(what.removeprefix("link")) > self._cell.robot.n - APART  # too coarse, and it holds it
+            touch = -CLEARANCE if link and not near else -PRESSED if part or fixed else -np.inf
+            return -np.inf, touch, MARGIN if fixed else -np.inf
+        if by.startswith(_PART) or not _moves(by):
+            return -np.inf, -np.inf, -np.inf
+        return -CLEARANCE if fixed else -np.inf, -NOTICED if part else -np.inf, -np.inf
+
+    def _ordered(self, pairs: bytes, k: int, scene: Scene) -> tuple[str, str]:
+        """Return pair k with what moves first: a carried part, then a shape of the arm, then the others."""
+        first, second = sorted(self.shapes.pairs_of(pairs)[k], key=lambda name: (
+            name.removeprefix(_PART) not in scene.held, name.startswith(_PART), not _moves(name)))  # fmt: skip
+        return first, second
+
+    # the hand -------------------------------------------------------------------------------------------------------
+
+    def _hand(self, hand: RehearsedHand, scene: Scene) -> Followed:
+        if hand.effect.closed == scene.closed:
+            return scene
+        if not hand.effect.closed:
+            return (yield from self._release(hand, scene))
+        scene = self._grip(hand, scene)
+        if not scene.held and self._cell.parts and scene.known:
+            yield _at("RBL441", hand.effect.span, "no part is between the fingers here")
+        return scene
+
+    def _grip(self, hand: RehearsedHand, scene: Scene) -> Scene:
+        """Close the hand: what both pads meet is centred between them and held."""
+        spec, X_tool_world = self._cell.hand, inverse(self._tool(hand.q))
+        self.shapes.lay(scene.lying, spec.stroke)
+        faces: dict[str, tuple[float, float]] = {}
+        for name, X in scene.lying.items():
+            reach = float(np.linalg.norm(self._sizes[name])) + spec.stroke
+            if float(np.linalg.norm((X_tool_world @ X)[:3, 3])) <= reach:
+                found = self.shapes.faces(hand.q, name)
+                faces |= {} if found is None else {name: found}
+        widest = max((high - low for low, high in faces.values()), default=0.0)
+        held = {
+            name: pose([0.0, -(low + high) / 2.0, 0.0]) @ X_tool_world @ scene.lying[name]
+            for name, (low, high) in faces.items() if high - low >= widest - ALIKE
+        }  # fmt: skip
+        lying = {name: X for name, X in scene.lying.items() if name not in held}
+        return replace(scene, lying=lying, held=held, opening=widest, closed=True)
+
+    def _release(self, hand: RehearsedHand, scene: Scene) -> Followed:
+        """Open the hand: held parts stay or rest a little lower, and the fingers may meet what is beside them."""
+        X_world_tool, opening = self._tool(hand.q), self._cell.hand.stroke
+        released = {name: X_world_tool @ X for name, X in scene.held.items()}
+        scene = replace(scene, held={}, opening=opening, closed=False)
+        _, met = self._sweep(hand.q[None], scene)
+        if met is not None:
+            yield _at("RBL440", hand.effect.span, f"{shape_text(met.by)} would touch {shape_text(met.what)}")
+            scene = scene.without({met.what.removeprefix(_PART)})
+        return self._resting(replace(scene, lying={**scene.lying, **released}), released)
+
+    def _resting(self, scene: Scene, names: Iterable[str]) -> Scene:
+        """Return a scene in which these parts rest on what is under them; those that would fall far are left out."""
+        for name in sorted(names, key=lambda name: float(scene.lying[name][2, 3])):
+            self.shapes.lay(scene.lying, scene.opening)
+            gap = self.shapes.gap_below(name, DROP)
+            if gap is None:
+                scene = scene.without({name})
+            else:
+                scene = replace(scene, lying={**scene.lying, name: pose([0.0, 0.0, -gap]) @ scene.lying[name]})
+        return scene
+
+
+def _moves(name: str) -> bool:
+    return name != "floor" and not name.startswith("obstacle:")
+
+
+def _at(code: str, span: Span, message: str, severity: Severity = Severity.WARNING) -> Diagnostic:
+    return Diagnostic(code=code, severity=severity, message=message, span=span)
