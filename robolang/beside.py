@@ -1,15 +1,96 @@
-"""The files that stand beside a program: which cell it runs in and which points it may use.
+"""The files that stand beside a program: which cell it runs in, which points it may use and how its controller is set.
 
 ``NAME.rbl`` takes ``NAME.cell.toml``, else ``cell.toml`` of its folder, and ``NAME.points.toml``. With no cell and no
 points it gets the built-in ones (docs/language.md). A link that leads nowhere is there all the same: it is reported,
-not passed over. Imports no numpy: ``robolang check`` uses this too.
+not passed over. ``check`` and a run read these files here, so what one refuses the other refuses. Imports no numpy.
 """
 
+import difflib
 import os
+from dataclasses import dataclass, replace
+from functools import cache
 from importlib import resources
 from pathlib import Path
 
+from robolang.builtin import cell_text
+from robolang.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.points import PointStore, load_points
+from runtime.faults import Fault
+from runtime.plant.cell_file import CellFile, parse_cell_file, read_cell_file
+from runtime.profile import Layer, Settings, check_axes, compensation_file, settle
+from runtime.robot import robot_file
+from runtime.robot.arm_file import ROBOT_ENDINGS, ArmFile, read_arm_file
+from runtime.tomlfile import FileFault, Source, read_source
+from runtime.units import DEG
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Beside:
+    """What stands beside a program; None where it cannot be used, which ``faults`` say, each once."""
+
+    cell: CellFile | None
+    points: PointStore | None
+    settings: Settings | None
+    symbols: CellSymbols
+    faults: tuple[Fault, ...]
+
+
+class CellFiles:
+    """Cell files, each read once: many programs of a folder run in one cell."""
+
+    def __init__(self) -> None:
+        self._read: dict[Path, CellFile | FileFault] = {}
+
+    def cell(self, path: Path | None) -> CellFile:
+        """Return a cell, the built-in one for None; ``FileFault`` RBL6xx."""
+        if path is None:
+            return builtin_cell_file()
+        if path not in self._read:
+            try:
+                self._read[path] = read_cell_file(path)
+            except FileFault as fault:
+                self._read[path] = fault
+        found = self._read[path]
+        if isinstance(found, FileFault):
+            raise found
+        return found
+
+
+@cache
+def builtin_cell_file() -> CellFile:
+    """Return the built-in cell."""
+    return parse_cell_file(Source("cell.toml", cell_text()))
+
+
+def read_beside(program: Path, files: CellFiles | None = None, *, cell: Path | None = None, robot: str | None = None,
+                layers: tuple[Layer, ...] = ()) -> Beside:  # fmt: skip
+    """Read the files of a program.
+
+    ``cell`` is a cell file in place of the one beside the program, ``robot`` a built-in robot or a robot file in place
+    of the cell's, ``layers`` are settings over the cell's. What is wrong is in ``faults``.
+    """
+    faults: list[Fault] = []
+    where = cell_beside(program) if cell is None else cell
+    found: CellFile | None = None
+    settings: Settings | None = None
+    points: PointStore | None = None
+    symbols = NOTHING_KNOWN
+    try:
+        found = (files or CellFiles()).cell(where)
+        if robot is not None:
+            found = with_robot(found, named_arm(robot))
+        symbols = CellSymbols.of(found)
+        if where is None:
+            symbols = replace(symbols, cell_file="")
+        settings = controller_settings(found, layers)
+    except Fault as fault:
+        faults += fault.all
+    try:
+        points = taught_points(program, builtin=where is None, symbols=symbols)
+        symbols = symbols.taught(points.names, str(points_file(program)))
+    except Fault as fault:
+        faults += fault.all
+    return Beside(cell=found, points=points, settings=settings, symbols=symbols, faults=tuple(faults))
 
 
 def cell_beside(program: Path) -> Path | None:
@@ -20,16 +101,61 @@ def cell_beside(program: Path) -> Path | None:
     return None
 
 
-def taught_points(program: Path, *, builtin: bool, robot: str | None = None, axes: int | None = None) -> PointStore:
+def points_file(program: Path) -> Path:
+    """Return where the taught points of a program stand, or would."""
+    return program.with_suffix(".points.toml")
+
+
+def taught_points(program: Path, *, builtin: bool, symbols: CellSymbols = NOTHING_KNOWN) -> PointStore:
     """Return the points of a program; ``FileFault`` RBL30x or RBL311 for a file that cannot be used.
 
-    ``builtin``: without a file of its own it has the built-in points, not none; ``robot`` and ``axes`` as for
-    ``load_points``.
+    ``builtin``: without a file of its own it has the built-in points, not none; ``symbols`` as for ``load_points``.
     """
-    beside = program.with_suffix(".points.toml")
+    beside = points_file(program)
     if os.path.lexists(beside):
-        return load_points(beside, robot=robot, axes=axes)
+        return load_points(beside, symbols)
     if not builtin:
         return PointStore(path=str(beside))
     with resources.as_file(resources.files("robolang.builtin").joinpath("points.toml")) as path:
-        return load_points(path, axes=axes)
+        return load_points(path, replace(symbols, robot=None))
+
+
+def named_arm(name: str) -> ArmFile:
+    """Return the file of a built-in robot by name, or of a robot file by its path; ``Fault`` RBL708, RBL6xx."""
+    if name in robot_file.library():
+        return robot_file.builtin(name)
+    if name.lower().endswith(ROBOT_ENDINGS):
+        return read_arm_file(Path(name))
+    raise no_robot(name)
+
+
+def no_robot(name: str) -> Fault:
+    """Return the fault of a name that no robot has (RBL708)."""
+    near = difflib.get_close_matches(name, robot_file.library(), n=1)
+    guess = f"did you mean {near[0]}? " if near else ""
+    return Fault("RBL708", f"there is no robot '{name}'",
+                 f"{guess}built in: {', '.join(robot_file.library())}; a robot file is named by its path, which ends "
+                 "in .toml, .urdf or .xml")  # fmt: skip
+
+
+def with_robot(cell: CellFile, arm: ArmFile) -> CellFile:
+    """Return a cell with another robot; ``Fault`` RBL709 for one that cannot stand at home there."""
+    if len(arm.limits) != len(cell.home_deg):
+        raise Fault("RBL709", f"{arm.name} has {len(arm.limits)} axes, the cell's home position {len(cell.home_deg)}")
+    for index, (angle, limits) in enumerate(zip(cell.home_deg, arm.limits, strict=True)):
+        if not limits.lower <= angle * DEG <= limits.upper:
+            raise Fault("RBL709", f"the cell's home position is outside the range of J{index + 1} of {arm.name}")
+    return replace(cell, arm=arm)
+
+
+def controller_settings(cell: CellFile, layers: tuple[Layer, ...] = ()) -> Settings:
+    """Return the settings of a cell's controller under others over them; ``FileFault`` or ``Fault`` RBL6xx.
+
+    Whether a compensation file fits and a loop is stable is judged by ``project``: it needs a model of the arm.
+    """
+    settings = settle(cell.controller, *layers)
+    check_axes(settings, len(cell.arm.limits), cell.arm.name)
+    compensation = compensation_file(settings)
+    if compensation is not None:
+        read_source(compensation)
+    return settings

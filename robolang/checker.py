@@ -11,12 +11,13 @@ beside errors of other lines as well. Time is linear in the program.
 """
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from itertools import chain, islice
 
+from robolang.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related, Severity, has_errors, in_order
 from robolang.flow_check import flow_check
-from robolang.names import Defined, Facts
+from robolang.names import Defined
 from robolang.nodes import Line, Program, Unparsed
 from robolang.rounding_check import rounding_check
 from robolang.source import Span
@@ -25,25 +26,14 @@ from robolang.structure import structure_of
 from robolang.usage_check import usage_check, wait_check
 
 
-def check(program: Program, *, points: Collection[str] | None = None, rated_payload_kg: float | None = None,
-          sensors: Collection[str] | None = None, tools: Collection[str] | None = None,
-          frames: Collection[str] | None = None, loads: Collection[str] | None = None,
-          inputs: Collection[int] | None = None) -> tuple[Diagnostic, ...]:  # fmt: skip
-    """Return what is wrong with a program, by place.
+def check(program: Program, symbols: CellSymbols = NOTHING_KNOWN) -> tuple[Diagnostic, ...]:
+    """Return what is wrong with a program in its cell, by place.
 
-    Args:
-        program: the tree; ``Unparsed`` statements are passed over, the parser has reported them.
-        points, sensors, tools, frames, loads: names that the cell and the points file have; None: not known.
-        rated_payload_kg: what the robot may carry; None when the robot is not known.
-        inputs: numbers of the cell's inputs; None when the cell is not known.
+    ``Unparsed`` statements are passed over, the parser has reported them. What is not known of the cell is not checked.
     """
-    facts = Facts(
-        points=_keys(points), rated_payload_kg=rated_payload_kg, sensors=_keys(sensors), tools=_keys(tools),
-        frames=_keys(frames), loads=_keys(loads), inputs=None if inputs is None else frozenset(inputs),
-    )  # fmt: skip
     structure = structure_of(program)
     found = list(islice(chain(_line_numbers(program), _emptiness(program), structure.diagnostics,
-                              _statements(program, facts)), MAX_DIAGNOSTICS + 1))  # fmt: skip
+                              _statements(program, symbols)), MAX_DIAGNOSTICS + 1))  # fmt: skip
     found += _beside(found, chain(wait_check(program), rounding_check(program)))
     if not has_errors(found) and not any(isinstance(line.statement, Unparsed) for line in program.statements):
         found += chain(flow_check(program, structure), usage_check(program))
@@ -58,13 +48,9 @@ def _beside(found: list[Diagnostic], more: Iterator[Diagnostic]) -> list[Diagnos
     return list(islice(free, MAX_DIAGNOSTICS + 1))
 
 
-def _keys(names: Collection[str] | None) -> frozenset[str] | None:
-    return None if names is None else frozenset(name.upper() for name in names)
-
-
-def _statements(program: Program, facts: Facts) -> Iterator[Diagnostic]:
+def _statements(program: Program, symbols: CellSymbols) -> Iterator[Diagnostic]:
     defined = Defined.of(program)
-    found = list(islice(_each_statement(program, StatementCheck(facts, defined)), MAX_DIAGNOSTICS + 1))
+    found = list(islice(_each_statement(program, StatementCheck(symbols, defined)), MAX_DIAGNOSTICS + 1))
     for code in ("RBL213", "RBL215"):
         found = defined.missing.noted(found, code)
     yield from found

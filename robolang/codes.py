@@ -171,8 +171,8 @@ _POINTS = (
     (
         "RBL309",
         "points-value-out-of-range",
-        "A value of a point is not finite or beyond any robot.",
-        "Positions are in mm, angles in degrees.",
+        "A value of a point is not finite or beyond any robot, or a joint angle is outside of the range of its joint.",
+        "Positions are in mm, angles in degrees; teach the point within the ranges of the robot.",
     ),
     (
         "RBL310",

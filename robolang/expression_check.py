@@ -3,10 +3,11 @@
 from collections.abc import Iterator
 from functools import cached_property
 
+from robolang.cell_symbols import CellSymbols
 from robolang.constants import fixed, no_value
 from robolang.diagnostics import Diagnostic, Severity
 from robolang.evaluator import COMPONENTS6
-from robolang.names import Defined, Facts, hint_for
+from robolang.names import Defined, hint_for
 from robolang.nodes import (
     Call,
     Chain,
@@ -22,18 +23,19 @@ from robolang.nodes import (
 )
 from robolang.printer import print_expression
 from robolang.words import ARGUMENTS, near
+from runtime.robot.drives import beyond_range
 
 
 class ExpressionCheck:
-    """Checks the expressions of a program that has ``defined`` names in a cell of ``facts``."""
+    """Checks the expressions of a program that has ``defined`` names in a cell of ``symbols``."""
 
-    def __init__(self, facts: Facts, defined: Defined) -> None:
-        self._facts, self._defined = facts, defined
+    def __init__(self, symbols: CellSymbols, defined: Defined) -> None:
+        self._symbols, self._defined = symbols, defined
 
     @cached_property
     def _known(self) -> frozenset[str]:
         """Every name that has a value somewhere."""
-        return frozenset((self._facts.points or frozenset()) | self._defined.values)
+        return frozenset((self._symbols.points or frozenset()) | self._defined.values)
 
     def check(self, node: Expression) -> Iterator[Diagnostic]:
         """Report what is wrong in an expression and in everything inside of it."""
@@ -63,7 +65,7 @@ class ExpressionCheck:
     def _name(self, node: Name) -> Iterator[Diagnostic]:
         if node.key in self._defined.values or node.key in ("NAN", "INF"):
             return
-        points = self._facts.points
+        points = self._symbols.points
         if points is not None and node.key not in points and self._defined.is_missing(node):
             message = f"{node.text} has no value: nothing gives it a first one, and it is no taught point"
             yield Diagnostic(code="RBL215", message=message, span=node.span, hint=hint_for(node, self._known))
@@ -84,6 +86,8 @@ class ExpressionCheck:
                 yield from self.must_be(argument, wanted_kind)
             if key == "IN":
                 yield from self._input(node.arguments[0])
+            elif key == "JOINT":
+                yield from self._joints(node)
         elif key not in self._defined.arrays:
             if not self._defined.is_missing(node.name):
                 return
@@ -94,8 +98,19 @@ class ExpressionCheck:
         elif count != 1:
             yield Diagnostic(code="RBL214", message=f"an element has one number, not {count}", span=node.span)
 
+    def _joints(self, node: Call) -> Iterator[Diagnostic]:
+        """Report joint angles of another number than the arm has axes, and angles outside of their range."""
+        axes, angles = self._symbols.axes, [fixed(item) for item in node.arguments]
+        if axes is not None and len(angles) != axes:
+            message = f"JOINT has {len(angles)} values, the robot {axes} axes"
+            yield Diagnostic(code="RBL307", message=message, span=node.span)
+            return
+        beyond = beyond_range(angles, self._symbols.limits or ())
+        if beyond:
+            yield Diagnostic(code="RBL309", message=beyond, span=node.span)
+
     def _input(self, node: Expression) -> Iterator[Diagnostic]:
-        number, inputs = fixed(node), self._facts.inputs
+        number, inputs = fixed(node), self._symbols.inputs
         if number is not None and inputs is not None and number not in inputs:
             known = ", ".join(map(str, sorted(inputs))) or "none"
             message = f"the cell has no input {number:g} (known: {known})"
@@ -142,7 +157,7 @@ class ExpressionCheck:
         if isinstance(node, Name):
             if node.key.endswith("$"):
                 return "a text"
-            taught = self._facts.points is not None and node.key in self._facts.points
+            taught = self._symbols.points is not None and node.key in self._symbols.points
             return "a pose" if taught and node.key not in self._defined.values else None
         if isinstance(node, Call):
             if node.name.key in ("POSE", "JOINT", "HERE"):

@@ -27,6 +27,7 @@ from runtime.linear import matmul
 from runtime.motion.commands import Component, MoveArc, MoveJoint, MoveLinear, Wrist
 from runtime.motion.speed import MAX_DURATION
 from runtime.plant.cell import CellSpec
+from runtime.robot.drives import beyond_range
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.payload import Payload, declared
 from runtime.units import DEG, MM, PERCENT
@@ -149,6 +150,9 @@ def _base(place: Place, around: Surroundings) -> _Goal:
     if place.joints is not None:
         if len(place.joints) != around.cell.robot.n:
             raise Fault("RBL307", f"JOINT has {len(place.joints)} values, the robot {around.cell.robot.n} axes")
+        beyond = beyond_range(place.joints, [axis.limits for axis in around.cell.robot.axes])
+        if beyond:
+            raise Fault("RBL309", beyond)
         q = np.array(place.joints) * DEG
         return _Goal(X=_forward(q, around), q_end=q)
     if place.last:

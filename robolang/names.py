@@ -5,9 +5,10 @@ in ``FOR i = 1 TO 4`` is not followed by a mistake for each use of i.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 
+from robolang.cell_symbols import CellSymbols
 from robolang.diagnostics import Diagnostic
 from robolang.nodes import Assign, Const, Dim, Expression, For, If, Name, Program, Statement, Sub, Unparsed
 from robolang.repeats import Repeats
@@ -21,19 +22,6 @@ _TEXTS = re.compile(r"\"[^\"]*\"?|'.*|(?<!\w)REM(?!\w).*", re.IGNORECASE)
 _FIRST = re.compile(r"[ \t]*(\w+)")
 _WORD = re.compile(r"(?<!\w)[A-Za-z]\w*+\$?")
 _ASSIGNED = re.compile(r"(?<!\w)([A-Za-z]\w*+\$?)[ \t]*(?:\([^()=]*\)[ \t]*)?=")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Facts:
-    """What is known of the cell; None: not known, not checked. Names in any case."""
-
-    points: frozenset[str] | None = None
-    rated_payload_kg: float | None = None
-    sensors: frozenset[str] | None = None
-    tools: frozenset[str] | None = None
-    frames: frozenset[str] | None = None
-    loads: frozenset[str] | None = None
-    inputs: frozenset[int] | None = None
 
 
 @dataclass(slots=True)
@@ -107,11 +95,13 @@ def seems_to_define(text: str) -> frozenset[str]:
     return frozenset(found[1].upper() for found in _ASSIGNED.finditer(plain)) - RESERVED
 
 
-def of_cell(name: Name, known: frozenset[str] | None, what: str) -> Iterator[Diagnostic]:
-    """Report a name of something that the cell does not have (RBL305); ``known`` None: not known."""
+def of_cell(name: Name, known: Collection[str] | None, kind: str, symbols: CellSymbols,
+            code: str = "RBL305") -> Iterator[Diagnostic]:  # fmt: skip
+    """Report a name of something that the cell does not have; ``known`` None: not known."""
     if known is not None and name.key not in known:
-        hint = names_hint(name, known, known=f"{what}s", none=f"the cell has no {what}")
-        yield Diagnostic(code="RBL305", message=f"the cell has no {what} {name.text}", span=name.span, hint=hint)
+        hint = hint_for(name, frozenset(known)) or symbols.where_to_add(kind, name.text)
+        what = "seam sensor" if kind == "sensor" else kind
+        yield Diagnostic(code=code, message=f"the cell has no {what} {name.text}", span=name.span, hint=hint)
 
 
 def hint_for(name: Name, names: frozenset[str]) -> str:

@@ -11,7 +11,9 @@
     turns = [0, 0, 0]                       # optional
 
 Orientation is RX RY RZ about the fixed axes. Names ignore case. Every error is a ``FileFault`` with its place and a
-code RBL30x or RBL311; the codes of the TOML reader are translated, since they speak of robot and cell files.
+code RBL30x or RBL311; the codes of the TOML reader are translated, since they speak of robot and cell files. All that
+is wrong with a file is found at once; with the facts of the cell also joints that the robot cannot have, and frames and
+tools that are not there.
 Teaching, which writes this file, is not here.
 """
 
@@ -23,7 +25,9 @@ from pathlib import Path
 from types import MappingProxyType
 
 import robolang.codes  # noqa: F401 - the codes raised here must be registered
+from robolang.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.words import RESERVED, near
+from runtime.robot.drives import beyond_range
 from runtime.tomlfile import FileFault, Source, Table, load_table, read_source
 
 SCHEMA = 1
@@ -76,23 +80,19 @@ class PointStore:
         return self.points.get(name.upper())
 
 
-def load_points(path: Path | str, *, robot: str | None = None, axes: int | None = None) -> PointStore:
-    """Read a file of taught points.
+def load_points(path: Path | str, symbols: CellSymbols = NOTHING_KNOWN) -> PointStore:
+    """Read a file of taught points; ``symbols`` are the facts of the cell in which they shall be used.
 
-    Args:
-        path: the file.
-        robot: name of the robot that will run; a file taught on another is refused. None: not checked.
-        axes: number of its axes, which ``joints`` must match. None: any number from 2 to 7.
-
-    Raises ``FileFault``: RBL302 missing, RBL303 damaged, RBL304 newer schema, RBL307 wrong count, RBL308 unknown
-    key or word, RBL309 value out of range, RBL310 other robot, RBL311 not a regular file of this folder.
+    Raises ``FileFault``, the first with all others: RBL302 missing, RBL303 damaged, RBL304 newer schema, RBL305 frame
+    or tool unknown, RBL307 wrong count, RBL308 unknown key or word, RBL309 value out of range, RBL310 other robot,
+    RBL311 not a regular file of this folder.
     """
     where = Path(path)
     with _translated(where):
-        table = load_table(_source(where))
+        table = load_table(_source(where), gather=True)
         _schema(table)
-        store = _store(table, robot, axes)
-        table.done()
+        store = _store(table, symbols)
+        table.finish()
     return store
 
 
@@ -118,23 +118,22 @@ def _translated(path: Path) -> Iterator[None]:
     try:
         yield
     except FileFault as fault:
-        code = _TRANSLATED.get(fault.code, fault.code)
-        copy = path.with_name(f"{path.name}.bak")
-        hint = f"{copy.name} may hold an intact copy" if code == "RBL303" and copy.is_file() else ""
-        if code == fault.code and not hint:
-            raise
-        kept = fault.hint if fault.code in ("RBL609", "RBL608") else ""
-        raise FileFault(
-            code,
-            fault.message,
-            hint or kept,
-            path=fault.path,
-            line=fault.line,
-            column=fault.column,
-            excerpt=fault.excerpt,
-        ) from None
+        first, *others = (_as_point_fault(each, path) for each in fault.all if isinstance(each, FileFault))
+        first.others = tuple(others)
+        raise first from None
     except ValueError as error:  # tomllib lets int() refuse a literal of thousands of digits
         Source(str(path), "").fail("RBL303", f"{path} is not a file of points: {error}")
+
+
+def _as_point_fault(fault: FileFault, path: Path) -> FileFault:
+    code = _TRANSLATED.get(fault.code, fault.code)
+    copy = path.with_name(f"{path.name}.bak")
+    hint = f"{copy.name} may hold an intact copy" if code == "RBL303" and copy.is_file() else ""
+    if code == fault.code and not hint:
+        return fault
+    kept = fault.hint if fault.code in ("RBL609", "RBL608") else ""
+    return FileFault(code, fault.message, hint or kept, path=fault.path, line=fault.line, column=fault.column,
+                     excerpt=fault.excerpt)  # fmt: skip
 
 
 def _schema(table: Table) -> None:
@@ -143,35 +142,45 @@ def _schema(table: Table) -> None:
         table.fail("RBL304", f"the file has schema {schema}; this version reads {SCHEMA}", key="schema")
 
 
-def _store(table: Table, robot: str | None, axes: int | None) -> PointStore:
+def _store(table: Table, symbols: CellSymbols) -> PointStore:
     taught_on = table.text("robot", "")
-    if robot is not None and taught_on and taught_on.casefold() != robot.casefold():
-        table.fail("RBL310", f"the points were taught on '{taught_on}', the robot is '{robot}'", key="robot")
+    if symbols.robot is not None and taught_on and taught_on.casefold() != symbols.robot.casefold():
+        table.fail("RBL310", f"the points were taught on '{taught_on}', the robot is '{symbols.robot}'", key="robot")
     points: dict[str, Point] = {}
     for name, entry in table.named_tables("points").items():
-        if not _NAME.fullmatch(name) or name.upper() in RESERVED:
-            entry.fail("RBL303", f"'{name}' cannot be the name of a point")
-        if name.upper() in points:
-            entry.fail("RBL303", f"point '{name}' is there twice: names ignore case")
-        points[name.upper()] = _point(name, entry, axes)
+        point = entry.gather(lambda entry, name=name: _point(name, entry, symbols, points))  # type: ignore[misc]
+        if point is not None:
+            points[name.upper()] = point
     return PointStore(path=table.source.path, robot=taught_on, points=MappingProxyType(points))
 
 
-def _point(name: str, entry: Table, axes: int | None) -> Point:
+def _point(name: str, entry: Table, symbols: CellSymbols, others: Mapping[str, Point]) -> Point:
+    if not _NAME.fullmatch(name) or name.upper() in RESERVED:
+        entry.fail("RBL303", f"'{name}' cannot be the name of a point")
+    if name.upper() in others:
+        entry.fail("RBL303", f"point '{name}' is there twice: names ignore case")
     if ("pose" in entry) == ("joints" in entry):
         entry.fail("RBL303", f"point '{name}' must have either 'pose' or 'joints'")
     point = Point(
         name=name,
-        pose=_pose(entry) if "pose" in entry else None,
-        joints=_joints(entry, axes) if "joints" in entry else None,
-        frame=entry.text("frame", ""),
-        tool=entry.text("tool", ""),
-        configuration=_configuration(entry),
-        turns=_turns(entry, axes),
+        pose=entry.attempt(lambda: _pose(entry)) if "pose" in entry else None,
+        joints=entry.attempt(lambda: _joints(entry, symbols)) if "joints" in entry else None,
+        frame=entry.attempt(lambda: _named(entry, "frame", symbols.frames, symbols)) or "",
+        tool=entry.attempt(lambda: _named(entry, "tool", symbols.tools, symbols)) or "",
+        configuration=entry.attempt(lambda: _configuration(entry)) or (),
+        turns=entry.attempt(lambda: _turns(entry, symbols.axes)) or (),
         comment=entry.text("comment", ""),
     )
     entry.done()
     return point
+
+
+def _named(entry: Table, key: str, known: frozenset[str] | None, symbols: CellSymbols) -> str:
+    """Read the name of a frame or a tool of the cell."""
+    name = entry.text(key, "")
+    if name and known is not None and name.upper() not in known:
+        entry.fail("RBL305", f"the cell has no {key} '{name}'", symbols.where_to_add(key, name), key=key)
+    return name
 
 
 def _pose(entry: Table) -> tuple[float, float, float, float, float, float]:
@@ -184,12 +193,15 @@ def _pose(entry: Table) -> tuple[float, float, float, float, float, float]:
     return x, y, z, rx, ry, rz
 
 
-def _joints(entry: Table, axes: int | None) -> tuple[float, ...]:
-    values = entry.numbers("joints", None, low=-MAX_DEG, high=MAX_DEG)
+def _joints(entry: Table, symbols: CellSymbols) -> tuple[float, ...]:
+    values, axes = entry.numbers("joints", None, low=-MAX_DEG, high=MAX_DEG), symbols.axes
     fits = 2 <= len(values) <= 7 if axes is None else len(values) == axes
     if not fits:
         wanted = "2 to 7" if axes is None else str(axes)
         entry.fail("RBL307", f"'joints' has {len(values)} values; it needs {wanted}", key="joints")
+    beyond = beyond_range(values, symbols.limits or ())
+    if beyond:
+        entry.fail("RBL309", beyond, "teach the point within the range of the joint", key="joints")
     return values
 
 

@@ -4,16 +4,13 @@ Which files those are is in ``beside``. With none of them a program runs on the 
 hand, a table and a part, with P1 to P5 taught (docs/language.md).
 """
 
-import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from robolang.beside import cell_beside, taught_points
+from robolang import beside
+from robolang.beside import CellFiles, controller_settings, read_beside
 from robolang.checker import check
 from robolang.diagnostics import Diagnostic, has_errors, in_order
 from robolang.nodes import Program
@@ -23,12 +20,22 @@ from robolang.source import Source, read_program
 from runtime.dynamics.compensation import load_compensation
 from runtime.faults import Fault
 from runtime.frames import Array
-from runtime.plant.cell import CellSpec, load_cell, parse_cell
-from runtime.profile import Profile, ServoMode, Settings, load_profile_file, read_layer, read_options, settle
-from runtime.robot import importer, loader
+from runtime.plant import cell as cells
+from runtime.plant.cell import CellSpec
+from runtime.profile import (
+    Layer,
+    Profile,
+    ServoMode,
+    Settings,
+    check_axes,
+    compensation_file,
+    load_profile_file,
+    read_options,
+    settle,
+)
+from runtime.robot import importer, loader, robot_file
+from runtime.robot.arm_file import ROBOT_ENDINGS
 from runtime.robot.spec import RobotSpec
-from runtime.tomlfile import Source as TomlSource
-from runtime.tomlfile import Table, inside
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,20 +77,21 @@ def load_project(path: Path | str, cell: Path | str | None = None, robot: str | 
     source = read_program(path)
     where = Path(path)
     given = {**({} if servo is None else {"servo.mode": ("--servo", servo)}), **(options or {})}
-    cell_path = _cell_path(where, cell)
-    cell_spec, settings = load_cell_and_settings(where, cell, robot, profile, given)
-    used = cell_spec.robot
-    points = taught_points(where, builtin=cell_path is None, robot=used.name, axes=used.n)
+    found = read_beside(where, cell=None if cell is None else Path(cell), robot=robot, layers=_layers(profile, given))
+    if found.faults:
+        first, *others = found.faults
+        first.others = tuple(others)
+        raise first
+    assert found.cell is not None and found.points is not None and found.settings is not None
+    spec = cells.build(found.cell)
+    settings = judged(spec.robot, spec.hand.X_flange_tool, found.settings)
     parsed = parse(source)
-    found = check(parsed.program, points=points.names, rated_payload_kg=used.rated_payload, sensors=cell_spec.sensors,
-                  tools=cell_spec.tools, frames=cell_spec.frames, loads=cell_spec.loads,
-                  inputs=cell_spec.inputs)  # fmt: skip
     return Project(
         source=source,
         program=parsed.program,
-        diagnostics=in_order((*parsed.diagnostics, *found)),
-        cell=cell_spec,
-        points=points,
+        diagnostics=in_order((*parsed.diagnostics, *check(parsed.program, found.symbols))),
+        cell=spec,
+        points=found.points,
         settings=settings,
     )
 
@@ -93,71 +101,55 @@ def load_any_robot(name: str) -> RobotSpec:
 
     A file is a robot file (``.toml``), or a URDF or MJCF file (``.urdf``, ``.xml``) with its sidecar.
     """
-    if name in loader.library():
+    if name in robot_file.library():
         return loader.load_builtin(name)
-    if name.lower().endswith(importer.ROBOT_ENDINGS):
+    if name.lower().endswith(ROBOT_ENDINGS):
         return importer.load_file(Path(name))
-    near = difflib.get_close_matches(name, loader.library(), n=1)
-    guess = f"did you mean {near[0]}? " if near else ""
-    raise Fault(
-        "RBL708",
-        f"there is no robot '{name}'",
-        f"{guess}built in: {', '.join(loader.library())}; a robot file is named by its path, which ends in .toml, "
-        ".urdf or .xml",
-    )
+    raise beside.no_robot(name)
 
 
 def builtin_cell() -> CellSpec:
     """Return the built-in cell."""
-    return parse_cell(TomlSource("cell.toml", _builtin("cell.toml")))
-
-
-def _builtin(name: str) -> str:
-    return resources.files("robolang.builtin").joinpath(name).read_text("utf-8")
-
-
-def _cell_path(program: Path | None, cell: Path | str | None) -> Path | None:
-    if cell is not None:
-        return Path(cell)
-    return None if program is None else cell_beside(program)
+    return cells.build(beside.builtin_cell_file())
 
 
 def load_cell_and_settings(program: Path | None, cell: Path | str | None, robot: str | None,
                            profile: Path | str | None, options: Mapping[str, tuple[str, Any]],
                            ) -> tuple[CellSpec, Settings]:  # fmt: skip
     """Return the cell of a program (None: the built-in cell) and the settings in force; see ``load_project``."""
-    cell_path = _cell_path(program, cell)
-    cell_spec = load_cell(cell_path) if cell_path is not None else builtin_cell()
+    where = Path(cell) if cell is not None else None if program is None else beside.cell_beside(program)
+    file = CellFiles().cell(where)
     if robot is not None:
-        cell_spec = _with_robot(cell_spec, load_any_robot(robot))
-    return cell_spec, load_settings(
-        cell_spec.robot, cell_spec.hand.X_flange_tool, cell_spec.controller, profile, options
-    )
+        file = beside.with_robot(file, beside.named_arm(robot))
+    settings = controller_settings(file, _layers(profile, options))
+    spec = cells.build(file)
+    return spec, judged(spec.robot, spec.hand.X_flange_tool, settings)
 
 
-def load_settings(robot: RobotSpec, X_flange_tool: Array, controller: Table | None, profile: Path | str | None,
+def load_settings(robot: RobotSpec, X_flange_tool: Array, profile: Path | str | None,
                   options: Mapping[str, tuple[str, Any]]) -> Settings:  # fmt: skip
-    """Return the controller's settings: cell, then profile file, then options; ``FileFault`` or ``Fault`` RBL6xx."""
-    file = load_profile_file(Path(profile)) if profile is not None else {}
-    settings = settle(read_layer(controller), file, read_options(options))
-    for name in ("position", "velocity"):
-        given = settings[f"servo.{name}_bandwidth_rad_s"]
-        if len(given.value) not in (0, 1, robot.n):
-            given.fail("RBL613", f"'servo.{name}_bandwidth_rad_s' has {len(given.value)} entries; {robot.name} has "
-                       f"{robot.n} axes", "give one number for all axes or one for each")  # fmt: skip
+    """Return the settings of a controller without a cell: profile file, then options; ``Fault`` RBL6xx."""
+    settings = settle(*_layers(profile, options))
+    check_axes(settings, robot.n, robot.name)
+    return judged(robot, X_flange_tool, settings)
+
+
+def _layers(profile: Path | str | None, options: Mapping[str, tuple[str, Any]]) -> tuple[Layer, Layer]:
+    return ({} if profile is None else load_profile_file(Path(profile))), read_options(options)
+
+
+def judged(robot: RobotSpec, X_flange_tool: Array, settings: Settings) -> Settings:
+    """Return settings with their compensation file; ``FileFault`` or ``Fault`` RBL61x where they do not fit the arm."""
     settings = _compensated(robot, settings)
     _check_gains(robot, X_flange_tool, settings)
     return settings
 
 
 def _compensated(robot: RobotSpec, settings: Settings) -> Settings:
-    """Give the servo the compensation file that is named: inside the folder of the file that names it."""
-    given = settings["servo.compensation"]
-    if not given.value:
+    """Give the servo the compensation file that is named."""
+    path = compensation_file(settings)
+    if path is None:
         return settings
-    path = Path(given.value)
-    if given.table is not None:
-        path = inside(given.table, given.value, Path(given.table.source.path).parent, given.name)
     found = load_compensation(path, robot)
     servo = replace(settings.profile.servo, rotors=tuple(found.rotors(robot).tolist()),
                     rotor_tables=found.rotor_tables(robot), first_moments=found.first_moments)  # fmt: skip
@@ -182,12 +174,3 @@ def _check_gains(robot: RobotSpec, X_flange_tool: Array, settings: Settings) -> 
         if given is None:
             raise Fault("RBL616", message)
         given.fail("RBL616", message)
-
-
-def _with_robot(cell: CellSpec, robot: RobotSpec) -> CellSpec:
-    if robot.n != len(cell.home):
-        raise Fault("RBL709", f"{robot.name} has {robot.n} axes, the cell's home position {len(cell.home)}")
-    if not ((robot.lower <= cell.home) & (cell.home <= robot.upper)).all():
-        axis = int(np.argmax(np.maximum(robot.lower - cell.home, cell.home - robot.upper)))
-        raise Fault("RBL709", f"the cell's home position is outside the range of J{axis + 1} of {robot.name}")
-    return replace(cell, robot=robot)

@@ -7,10 +7,11 @@ here are those that hold for every robot, and what the arm may carry.
 import math
 from collections.abc import Callable, Iterator
 
+from robolang.cell_symbols import CellSymbols
 from robolang.constants import fixed
 from robolang.diagnostics import Diagnostic, Related, Severity
 from robolang.expression_check import ExpressionCheck
-from robolang.names import Defined, Facts, names_hint, of_cell
+from robolang.names import Defined, hint_for, names_hint, of_cell
 from robolang.nodes import (
     Accel,
     Approach,
@@ -57,8 +58,10 @@ from robolang.nodes import (
     Zone,
 )
 from robolang.source import Span
+from runtime.faults import Fault
+from runtime.robot.load_rules import centre_fault, inertia_fault, load_fault, mass_fault
+from runtime.units import MM
 
-MAX_COG_MM = 2000.0
 MAX_SPEED_MM_S = 10_000.0
 MAX_ACCEL_PCT = 100.0
 MAX_SECONDS = 600.0
@@ -68,11 +71,11 @@ MAX_OUTPUT = 1024
 
 
 class StatementCheck:
-    """Checks the statements of a program one by one; ``defined`` are its names, ``facts`` those of its cell."""
+    """Checks the statements of a program one by one; ``defined`` are its names, ``symbols`` those of its cell."""
 
-    def __init__(self, facts: Facts, defined: Defined) -> None:
-        self._facts, self._defined = facts, defined
-        self._expressions = ExpressionCheck(facts, defined)
+    def __init__(self, symbols: CellSymbols, defined: Defined) -> None:
+        self._symbols, self._defined = symbols, defined
+        self._expressions = ExpressionCheck(symbols, defined)
         self._selected: list[str | None] = []
 
     def check(self, node: Statement) -> Iterator[Diagnostic]:
@@ -118,10 +121,10 @@ class StatementCheck:
             yield Diagnostic(code="RBL119", message=message, span=seen[Speed].span, related=related)
 
     def _place(self, node: Expression) -> Iterator[Diagnostic]:
-        points = self._facts.points
+        points = self._symbols.points
         if isinstance(node, Name) and node.key not in self._defined.values:
             if points is not None and node.key not in points:
-                hint = names_hint(node, points, known="taught", none="no point is taught")
+                hint = hint_for(node, points) or self._symbols.where_to_teach(node.text)
                 yield Diagnostic(code="RBL301", message=f"point {node.text} is not taught", span=node.span, hint=hint)
             return
         kind = self._expressions.kind(node)
@@ -172,19 +175,16 @@ class StatementCheck:
             seen.setdefault(component, place)
 
     def _seam(self, node: Seam) -> Iterator[Diagnostic]:
-        sensor = node.sensor
-        if sensor is not None and self._facts.sensors is not None and sensor.key not in self._facts.sensors:
-            hint = names_hint(sensor, self._facts.sensors, known="seam sensors", none="the cell has no seam sensor")
-            message = f"the cell has no seam sensor {sensor.text}"
-            yield Diagnostic(code="RBL306", message=message, span=sensor.span, hint=hint)
+        if node.sensor is not None:
+            yield from of_cell(node.sensor, self._symbols.sensors, "sensor", self._symbols, "RBL306")
 
     def _setting(self, node: Setting) -> Iterator[Diagnostic]:
         assert node.value is not None
         if node.word in ("TOOL", "FRAME"):
-            names = self._facts.tools if node.word == "TOOL" else self._facts.frames
+            names = self._symbols.tools if node.word == "TOOL" else self._symbols.frames
             if isinstance(node.value, Name):
-                if node.value.key not in self._defined.values | (self._facts.points or frozenset()):
-                    yield from of_cell(node.value, names, node.word.lower())
+                if node.value.key not in self._defined.values | (self._symbols.points or frozenset()):
+                    yield from of_cell(node.value, names, node.word.lower(), self._symbols)
             else:
                 yield from self._expressions.must_be(node.value, "a pose")
         elif node.word == "ZONE":
@@ -203,20 +203,21 @@ class StatementCheck:
                 return
         for part in (*node.cog.items, node.mass, *(node.inertia.items if node.inertia else ())):
             yield from self._expressions.must_be(part, "a number")
-        mass = fixed(node.mass)
+        mass, cog = fixed(node.mass), _fixed(node.cog)
+        inertia = None if node.inertia is None else _fixed(node.inertia)
         if mass is not None:
-            yield from _mass(mass, node.mass, self._facts)
-        cog = [value for value in map(fixed, node.cog.items) if value is not None]
-        if len(cog) == 3:
-            yield from _centre(cog, mass, node.cog)
-        if node.inertia is not None:
-            inertia = [value for value in map(fixed, node.inertia.items) if value is not None]
-            if len(inertia) == 6 and not _is_inertia(*inertia):
-                message = "no body has this inertia: no principal moment is negative or over the sum of the others"
-                yield Diagnostic(code="RBL403", message=message, span=node.inertia.span)
+            yield from _refused(mass_fault(mass, self._symbols.rated_payload), node.mass)
+        if cog is not None:
+            yield from _refused(centre_fault([value * MM for value in cog]), node.cog)
+        if inertia is not None and node.inertia is not None:
+            yield from _refused(inertia_fault(inertia), node.inertia)
 
     def _load_named(self, node: LoadNamed) -> Iterator[Diagnostic]:
-        yield from of_cell(node.name, self._facts.loads, "load")
+        loads, rated = self._symbols.loads, self._symbols.rated_payload
+        yield from of_cell(node.name, loads, "load", self._symbols)
+        load = None if loads is None else loads.get(node.name.key)
+        if load is not None and rated is not None:
+            yield from _refused(load_fault(load.mass_kg, [value * MM for value in load.cog_mm], None, rated), node.name)
 
     def _hand(self, node: Hand) -> Iterator[Diagnostic]:
         if node.dwell is not None:
@@ -370,44 +371,13 @@ def _range(option: Speed | Accel | Time, *, joint: bool) -> tuple[float, str]:
     return (MAX_ACCEL_PCT, "%") if isinstance(option, Accel) else (MAX_SECONDS, "s")
 
 
-def _mass(mass: float, place: Expression, facts: Facts) -> Iterator[Diagnostic]:
-    if not (mass >= 0.0 and math.isfinite(mass)):
-        message = f"a payload of {mass:g} kg is not a mass"
-        yield Diagnostic(code="RBL401", message=message, span=place.span)
-    elif facts.rated_payload_kg is not None and not mass <= facts.rated_payload_kg:
-        grams = mass / 1000.0 <= facts.rated_payload_kg and mass >= 50.0
-        hint = f"LOAD takes kg: {mass:g} g is {mass / 1000.0:g} kg" if grams else ""
-        message = f"a payload of {mass:g} kg is more than the {facts.rated_payload_kg:g} kg the robot is rated for"
-        yield Diagnostic(code="RBL402", message=message, span=place.span, hint=hint)
+def _fixed(node: Vector) -> list[float] | None:
+    """Return the values of a vector of numbers alone; None when one of them needs more."""
+    values = [value for value in map(fixed, node.items) if value is not None]
+    return values if len(values) == len(node.items) else None
 
 
-def _centre(cog: list[float], mass: float | None, place: Node) -> Iterator[Diagnostic]:
-    distance = math.hypot(*cog)
-    shown = ", ".join(f"{value:g}" for value in cog)
-    if not all(map(math.isfinite, cog)):
-        yield Diagnostic(code="RBL403", message=f"the centre of gravity ({shown}) mm is not a place", span=place.span)
-    elif mass != 0.0 and not distance <= MAX_COG_MM:
-        message = f"the centre of gravity is {distance:g} mm from the flange, more than {MAX_COG_MM:g} mm"
-        yield Diagnostic(code="RBL403", message=message, span=place.span)
-
-
-def _is_inertia(xx: float, yy: float, zz: float, xy: float, xz: float, yz: float) -> bool:
-    """Return whether a body can have this inertia about its centre of gravity, kg m2, products as matrix elements.
-
-    It can if and only if E tr/2 - I, the second moments of its mass, has no negative principal minor (Wensing, Kim,
-    Slotine, "Linear matrix inequalities for physically consistent inertial parameter identification", 2018).
-    The planner asks the same of the principal moments, with less tolerance.
-    """
-    if not all(map(math.isfinite, (xx, yy, zz, xy, xz, yz))):
-        return False
-    half = (xx + yy + zz) / 2.0
-    a, b, c = half - xx, half - yy, half - zz
-    scale = max(map(abs, (xx, yy, zz, xy, xz, yz)))
-    ones = (a, b, c)
-    twos = (a * b - xy * xy, a * c - xz * xz, b * c - yz * yz)
-    three = a * twos[2] - b * xz * xz - c * xy * xy - 2.0 * xy * xz * yz
-    orders = ((1, ones), (2, twos), (3, (three,)))
-    return all(minor >= -_ROUNDING * scale**order for order, minors in orders for minor in minors)
-
-
-_ROUNDING = 1e-6
+def _refused(fault: Fault | None, place: Node) -> Iterator[Diagnostic]:
+    """Report what a rule of the robot says of a payload, at its place."""
+    if fault is not None:
+        yield Diagnostic(code=fault.code, message=fault.message, span=place.span, hint=fault.hint)

@@ -72,7 +72,8 @@ class Alarm:
 class Fault(Exception):  # noqa: N818 - the field calls it a fault
     """A request that cannot be carried out; it has changed nothing.
 
-    ``code`` is registered, ``message`` says what is wrong with numbers and units, ``hint`` what would help.
+    ``code`` is registered, ``message`` says what is wrong with numbers and units, ``hint`` what would help. ``others``:
+    what else is wrong, where a reader of files looks for everything at once.
     """
 
     def __init__(self, code: str, message: str, hint: str = "") -> None:
@@ -80,6 +81,12 @@ class Fault(Exception):  # noqa: N818 - the field calls it a fault
         self.code = lookup(code).code
         self.message = message
         self.hint = hint or lookup(code).remedy
+        self.others: tuple[Fault, ...] = ()
+
+    @property
+    def all(self) -> tuple["Fault", ...]:
+        """This fault and the others, in order."""
+        return (self, *self.others)
 
 
 register(

@@ -15,9 +15,9 @@ from typing import Any, Literal, NoReturn, cast
 
 from runtime.faults import Fault
 from runtime.robot.joint_table import JointTable
-from runtime.robot.model import LoadMode
+from runtime.robot.load_rules import LoadMode
 from runtime.supervision.limits import Reaction, SupervisionLimits
-from runtime.tomlfile import FileFault, Source, Table, load_table, read_source
+from runtime.tomlfile import FileFault, Source, Table, inside, load_table, read_source
 from runtime.units import DEG, MM
 
 ServoMode = Literal["scheduled", "fixed"]
@@ -181,12 +181,7 @@ def _three(key: str, unit: str, default: tuple[float, ...]) -> Setting:
 def _one_or_each(table: Table, name: str) -> tuple[float, ...]:
     """Read a positive number for all axes, or a list with one for each."""
     limits: dict[str, Any] = {"positive": True, "high": 1e5}
-    try:
-        return table.numbers(name, None, **limits)
-    except FileFault as fault:
-        if fault.code != "RBL613":
-            raise
-    return (table.number(name, **limits),)
+    return table.numbers(name, None, **limits) if table.is_list(name) else (table.number(name, **limits),)
 
 
 def _servo_period(table: Table, name: str) -> float:
@@ -376,6 +371,28 @@ def settle(*layers: Layer) -> Settings:
                 "RBL605", "'controller.servo.coupling' must be \"diagonal\" when the gains are fixed",
                 "fixed gains hold the inertia of each axis alone")  # fmt: skip
     return Settings(given=given, profile=_profile({key: item.value for key, item in given.items()}))
+
+
+def check_axes(settings: Settings, axes: int, robot: str) -> None:
+    """Refuse a setting for each axis that has another number of entries than the robot axes (RBL613)."""
+    for name in ("position", "velocity"):
+        given = settings[f"servo.{name}_bandwidth_rad_s"]
+        if len(given.value) not in (0, 1, axes):
+            given.fail("RBL613", f"'servo.{name}_bandwidth_rad_s' has {len(given.value)} entries; {robot} has "
+                       f"{axes} axes", "give one number for all axes or one for each")  # fmt: skip
+
+
+def compensation_file(settings: Settings) -> Path | None:
+    """Return the compensation file that is named, None for none; ``FileFault`` RBL602.
+
+    A file names one inside of its own folder only, an option any.
+    """
+    given = settings["servo.compensation"]
+    if not given.value:
+        return None
+    if given.table is None:
+        return Path(given.value)
+    return inside(given.table, given.value, Path(given.table.source.path).parent, given.name)
 
 
 def parse_profile(table: Table | None) -> Profile:

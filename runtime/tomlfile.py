@@ -11,114 +11,16 @@ import os
 import re
 import stat
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath, PureWindowsPath
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TypeVar
 
-from runtime.faults import Code, Fault, register
+import runtime.file_codes  # noqa: F401 - registers what is raised here
+from runtime.faults import Fault
 
 MAX_BYTES = 1_000_000
 MAX_ABS = 1e9
-
-register(
-    Code(
-        code="RBL311",
-        name="points-not-a-file",
-        meaning="The file of taught points is not a regular file that can be read.",
-        remedy="Name an ordinary file inside the project.",
-    ),
-    Code(
-        code="RBL600",
-        name="file-not-readable",
-        meaning="A robot or cell file is missing, is not a regular file, is too large or is not UTF-8 text.",
-        remedy="Name an ordinary TOML file of at most 1 MB.",
-    ),
-    Code(
-        code="RBL601",
-        name="file-syntax",
-        meaning="A robot or cell file is not valid TOML.",
-        remedy="Correct the line that is named.",
-    ),
-    Code(
-        code="RBL602",
-        name="path-outside-folder",
-        meaning="A file refers to another file outside its own folder.",
-        remedy="Put the file beside the one that names it and use a relative path without '..'.",
-    ),
-    Code(
-        code="RBL604",
-        name="value-not-finite",
-        meaning="A number in a robot or cell file is NaN, infinite or beyond any physical size.",
-        remedy="Give an ordinary number in the unit that ends the key's name.",
-    ),
-    Code(
-        code="RBL605",
-        name="value-out-of-range",
-        meaning="A number in a robot or cell file is outside the range that makes sense for it.",
-        remedy="Give a value in the range named in the message.",
-    ),
-    Code(
-        code="RBL606",
-        name="inertia-not-physical",
-        meaning="An inertia is one that no body can have: not positive, or breaking the triangle inequality.",
-        remedy="Each principal moment must be positive and at most the sum of the other two.",
-    ),
-    Code(
-        code="RBL607",
-        name="limits-inverted",
-        meaning="The lower limit of a joint is not below its upper limit.",
-        remedy="Write the range as [lower, upper].",
-    ),
-    Code(
-        code="RBL608",
-        name="key-missing",
-        meaning="A key that a robot or cell file must have is missing; limits are never guessed.",
-        remedy="Add the key that is named.",
-    ),
-    Code(
-        code="RBL609",
-        name="key-unknown",
-        meaning="A robot or cell file has a key that nothing reads.",
-        remedy="Correct the spelling or remove the key.",
-    ),
-    Code(
-        code="RBL610",
-        name="name-taken-or-unknown",
-        meaning="A name in a robot or cell file is used twice, or names something that does not exist.",
-        remedy="Use one of the names in the message.",
-    ),
-    Code(
-        code="RBL613",
-        name="value-wrong-type",
-        meaning="A value in a robot or cell file has the wrong type or the wrong number of entries.",
-        remedy="Give the type named in the message.",
-    ),
-    Code(
-        code="RBL615",
-        name="geometry-inconsistent",
-        meaning="The closed-form geometry of a robot file does not describe the same arm as its axes.",
-        remedy="Check the OPW parameters, offsets and signs against the axis table.",
-    ),
-    Code(
-        code="RBL616",
-        name="gains-unstable",
-        meaning="The controller profile gives gains with which a servo loop cannot be stable.",
-        remedy="Lower the velocity bandwidth or shorten the servo period, as the message says.",
-    ),
-    Code(
-        code="RBL617",
-        name="compensation-other-robot",
-        meaning="A compensation file was identified on another robot.",
-        remedy="Name the file of this robot, or write it with robolang identify.",
-    ),
-    Code(
-        code="RBL618",
-        name="compensation-schema",
-        meaning="A compensation file was written by an older or newer version.",
-        remedy="Update robolang, or write the file anew with robolang identify.",
-    ),
-)
 
 
 class FileFault(Fault):
@@ -189,10 +91,10 @@ def _not_text(path: Path, raw: bytes, start: int, code: str) -> NoReturn:
     raise FileFault(code, message, "", path=str(path), line=len(before), column=len(before[-1]) + 1, excerpt=excerpt)
 
 
-def load_table(source: Source, code: str = "RBL601") -> "Table":
-    """Parse TOML; ``FileFault`` with ``code`` at the line of a syntax error."""
+def load_table(source: Source, code: str = "RBL601", *, gather: bool = False) -> "Table":
+    """Parse TOML; ``FileFault`` with ``code`` at the line of a syntax error. ``gather``: see ``Table``."""
     try:
-        return Table(source, tomllib.loads(source.text), ())
+        return Table(source, tomllib.loads(source.text), (), [] if gather else None)
     except tomllib.TOMLDecodeError as error:
         text = str(error)
         found = re.search(r"at line (\d+), column (\d+)", text)
@@ -213,14 +115,38 @@ def lines_of(text: str) -> list[str]:
     return lines[:-1] if len(lines) > 1 and not lines[-1] else lines
 
 
-class Table:
-    """One TOML table being read: typed getters, each key at most once, unknown keys rejected by ``done``."""
+@dataclass(frozen=True, slots=True)
+class _Missing:
+    """A key that a table lacks, noted by a reader that goes on."""
 
-    def __init__(self, source: Source, data: dict[str, Any], keys: tuple[str | int, ...]) -> None:
+    table: "Table"
+    key: str
+
+
+class _NotedError(Exception):
+    """A key that cannot be had, and has been noted."""
+
+
+T = TypeVar("T")
+
+
+class Table:
+    """One TOML table being read: typed getters, each key at most once, unknown keys rejected by ``done``.
+
+    With ``gathered`` a reader looks for everything that is wrong: a getter that fails notes it there and returns a
+    value that is as good as any, and ``finish`` of the whole file raises what was noted. What a reader says itself
+    (``fail``) ends its part of the file: ``attempt`` notes it, unless something was noted in that part before, since
+    it may follow from that.
+    """
+
+    def __init__(self, source: Source, data: dict[str, Any], keys: tuple[str | int, ...],
+                 gathered: "list[FileFault | _Missing] | None" = None, *, absent: bool = False) -> None:  # fmt: skip
         self.source = source
         self.keys = keys
         self._data = data
         self._asked: set[str] = set()
+        self._gathered = gathered
+        self._absent = absent
 
     def __contains__(self, key: str) -> bool:
         return key in self._data
@@ -243,12 +169,80 @@ class Table:
         parts = [str(k + 1) if isinstance(k, int) else k for k in self.keys]
         return ".".join([*parts, key] if key else parts)
 
+    # --- everything that is wrong at once ----------------------------------------------------------------------------
+
+    def attempt(self, read: Callable[[], T]) -> T | None:
+        """Return what reads a part of the file, None when something in it is wrong (noted, or raised: see above)."""
+        if self._gathered is None:
+            return read()
+        before = len(self._gathered)
+        try:
+            found = read()
+        except FileFault as fault:
+            if len(self._gathered) == before:
+                self._gathered += [each for each in fault.all if isinstance(each, FileFault)]
+            return None
+        return found if len(self._gathered) == before else None
+
+    def gather(self, read: "Callable[[Table], T]") -> T | None:
+        """Return what reads this table; None when it is not there or something in it is wrong."""
+        return None if self._absent else self.attempt(lambda: read(self))
+
+    def finish(self) -> None:
+        """Reject unknown keys and raise what was noted: the first by its place, with the ``others``."""
+        self.done()
+        if self._gathered:
+            tables = {id(note.table): note.table for note in self._gathered if isinstance(note, _Missing)}
+            faults = [note for note in self._gathered if isinstance(note, FileFault)]
+            faults += [table._lacking() for table in tables.values()]
+            faults.sort(key=lambda fault: (fault.path != self.source.path, fault.line, fault.column))
+            faults[0].others = tuple(faults[1:])
+            raise faults[0]
+
+    def _noted(self, read: Callable[[], T], instead: T) -> T:
+        """Return what a getter reads; ``instead`` where it fails and the reader goes on."""
+        if self._gathered is None:
+            return read()
+        try:
+            return read()
+        except _NotedError:
+            return instead
+        except FileFault as fault:
+            self._gathered.append(fault)
+            return instead
+
+    def _missing_keys(self) -> list[str]:
+        noted = self._gathered or ()
+        return [note.key for note in noted if isinstance(note, _Missing) and note.table is self]
+
+    def _lacking(self) -> FileFault:
+        """Return the one fault that names every key which this table lacks."""
+        keys = self._missing_keys()
+        near = {key: self._looks_like(key) for key in keys}
+        hint = "; ".join(f"'{found}' looks like '{key}'" for key, found in near.items() if found)
+        if len(keys) == 1:
+            return self._lacks(keys[0])
+        names = [f"'{self.name(key)}'" for key in keys]
+        return self.fault("RBL608", f"{', '.join(names[:-1])} and {names[-1]} are missing", hint)
+
+    def _looks_like(self, key: str) -> str:
+        """Return the unknown key that may be a misspelt one, or nothing."""
+        return next(iter(difflib.get_close_matches(key, set(self._data) - self._asked, n=1)), "")
+
+    def _lacks(self, key: str) -> FileFault:
+        near = self._looks_like(key)
+        return self.fault("RBL608", f"'{self.name(key)}' is missing", f"'{near}' looks like it" if near else "")
+
+    # --- values ------------------------------------------------------------------------------------------------------
+
     def _take(self, key: str) -> Any:
         self._asked.add(key)
         if key not in self._data:
-            near = difflib.get_close_matches(key, set(self._data) - self._asked, n=1)
-            hint = f"'{near[0]}' looks like it" if near else ""
-            self.fail("RBL608", f"'{self.name(key)}' is missing", hint)
+            if self._gathered is None:
+                raise self._lacks(key)
+            if not self._absent:
+                self._gathered.append(_Missing(self, key))
+            raise _NotedError
         return self._data[key]
 
     def number(self, key: str, default: float | None = None, *, low: float = -MAX_ABS, high: float = MAX_ABS,
@@ -257,7 +251,7 @@ class Table:
         if key not in self._data and default is not None:
             self._asked.add(key)
             return default
-        return self._checked(key, self._take(key), low, high, positive)
+        return self._noted(lambda: self._checked(key, self._take(key), low, high, positive), _within(low, high))
 
     def _checked(self, key: str, value: Any, low: float, high: float, positive: bool) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float):
@@ -276,6 +270,9 @@ class Table:
         if key not in self._data and default is not None:
             self._asked.add(key)
             return tuple(default)
+        return self._noted(lambda: self._numbers(key, count, low, high, positive), (_within(low, high),) * (count or 0))
+
+    def _numbers(self, key: str, count: int | None, low: float, high: float, positive: bool) -> tuple[float, ...]:
         value = self._take(key)
         if not isinstance(value, list) or (count is not None and len(value) != count):
             got = f"{len(value)} entries" if isinstance(value, list) else _kind(value)
@@ -283,9 +280,16 @@ class Table:
             self.fail("RBL613", f"'{self.name(key)}' must be {wanted}, not {got}", key=key)
         return tuple(self._checked(key, item, low, high, positive) for item in value)
 
+    def is_list(self, key: str) -> bool:
+        """Return whether a key is there and holds a list."""
+        return isinstance(self._data.get(key), list)
+
     def raw_list(self, key: str) -> list[Any]:
         """Return an optional list as it stands (empty when missing)."""
         self._asked.add(key)
+        return self._noted(lambda: self._list(key), [])
+
+    def _list(self, key: str) -> list[Any]:
         value = self._data.get(key, [])
         if not isinstance(value, list):
             self.fail("RBL613", f"'{self.name(key)}' must be a list, not {_kind(value)}", key=key)
@@ -294,15 +298,21 @@ class Table:
     def integer(self, key: str, default: int | None = None, *, low: int, high: int) -> int:
         """Return an integer in ``[low, high]``."""
         value = self.number(key, None if default is None else float(default), low=low, high=high)
+        return self._noted(lambda: self._whole(key, value), low)
+
+    def _whole(self, key: str, value: float) -> int:
         if value != int(value):
             self.fail("RBL613", f"'{self.name(key)}' must be a whole number", key=key)
         return int(value)
 
     def text(self, key: str, default: str | None = None, *, choices: Sequence[str] = ()) -> str:
-        """Return a string, one of ``choices`` when given."""
+        """Return a text, one of ``choices`` when given."""
         if key not in self._data and default is not None:
             self._asked.add(key)
             return default
+        return self._noted(lambda: self._text(key, choices), choices[0] if choices else "")
+
+    def _text(self, key: str, choices: Sequence[str]) -> str:
         value = self._take(key)
         if not isinstance(value, str):
             self.fail("RBL613", f"'{self.name(key)}' must be a text, not {_kind(value)}", key=key)
@@ -315,6 +325,9 @@ class Table:
     def flag(self, key: str, default: bool) -> bool:
         """Return a boolean."""
         self._asked.add(key)
+        return self._noted(lambda: self._flag(key, default), default)
+
+    def _flag(self, key: str, default: bool) -> bool:
         value = self._data.get(key, default)
         if not isinstance(value, bool):
             self.fail("RBL613", f"'{self.name(key)}' must be true or false, not {_kind(value)}", key=key)
@@ -324,21 +337,28 @@ class Table:
         """Return a sub-table (empty when it is optional and missing)."""
         if not required and key not in self._data:
             self._asked.add(key)
-            return Table(self.source, {}, (*self.keys, key))
+            return Table(self.source, {}, (*self.keys, key), self._gathered)
+        nothing = Table(self.source, {}, (*self.keys, key), self._gathered, absent=True)
+        return self._noted(lambda: self._table(key), nothing)
+
+    def _table(self, key: str) -> "Table":
         value = self._take(key)
         if not isinstance(value, dict):
             self.fail("RBL613", f"'{self.name(key)}' must be a table, not {_kind(value)}", key=key)
-        return Table(self.source, value, (*self.keys, key))
+        return Table(self.source, value, (*self.keys, key), self._gathered)
 
     def tables(self, key: str, *, required: bool = True) -> list["Table"]:
         """Return the entries of an array of tables ``[[key]]``."""
         if not required and key not in self._data:
             self._asked.add(key)
             return []
+        return self._noted(lambda: self._tables(key), [])
+
+    def _tables(self, key: str) -> list["Table"]:
         value = self._take(key)
         if not isinstance(value, list) or not all(isinstance(item, dict) for item in value):
             self.fail("RBL613", f"'{self.name(key)}' must be written as [[{key}]] tables", key=key)
-        return [Table(self.source, item, (*self.keys, key, index)) for index, item in enumerate(value)]
+        return [Table(self.source, item, (*self.keys, key, index), self._gathered) for index, item in enumerate(value)]
 
     def named_tables(self, key: str) -> dict[str, "Table"]:
         """Return the sub-tables ``[key.NAME]`` by name (empty when there are none)."""
@@ -355,13 +375,23 @@ class Table:
 
     def done(self) -> None:
         """Reject every key that was not asked for."""
+        missing = self._missing_keys()
         for key in self._data:
-            if key not in self._asked:
-                near = difflib.get_close_matches(key, self._asked - set(self._data), n=1) or difflib.get_close_matches(
-                    key, self._asked, n=1
-                )
-                hint = f"did you mean '{near[0]}'?" if near else f"known here: {', '.join(sorted(self._asked))}"
-                self.fail("RBL609", f"'{self.name(key)}' is not a key of this file", hint, key=key)
+            if key in self._asked or difflib.get_close_matches(key, missing, n=1):
+                continue  # a key that looks like a missing one is named with that
+            near = difflib.get_close_matches(key, self._asked - set(self._data), n=1) or difflib.get_close_matches(
+                key, self._asked, n=1
+            )
+            hint = f"did you mean '{near[0]}'?" if near else f"known here: {', '.join(sorted(self._asked))}"
+            fault = self.fault("RBL609", f"'{self.name(key)}' is not a key of this file", hint, key=key)
+            if self._gathered is None:
+                raise fault
+            self._gathered.append(fault)
+
+
+def _within(low: float, high: float) -> float:
+    """Return a number of a range, 1 where it may be."""
+    return min(max(low, 1.0), high)
 
 
 def _kind(value: object) -> str:

@@ -12,7 +12,8 @@ from pathlib import Path
 
 import typer
 
-from robolang.cli.errors import DIAGNOSTICS, reader_may_leave, say, say_warnings
+from robolang.beside import CellFiles
+from robolang.cli.errors import DIAGNOSTICS, reader_may_leave, say, say_all, say_warnings
 from robolang.cli.rewrite import Loaded, load, store, unified
 from robolang.diagnostics import Diagnostic, Severity, has_errors, in_order, safe
 from robolang.lint.apply import fix_all
@@ -72,7 +73,7 @@ def watched(job: Job) -> int:
         try:
             code = run_once(job)
         except Fault as fault:
-            code = say(fault)
+            code = say_all(fault)
         typer.echo("watching; Ctrl-C ends", err=True)
         return code
 
@@ -90,7 +91,8 @@ def run_once(job: Job) -> int:
     names = programs(job.paths, excludes=settings.excludes)
     if not names:
         typer.echo(f"no programs (*.rbl) in {safe(', '.join(job.paths))}", err=True)
-    outcomes = [_examined(name, job, settings) for name in names]
+    files = CellFiles()
+    outcomes = [_examined(name, job, settings, files) for name in names]
     if job.fix and not job.diff:
         outcomes = [_written(outcome) for outcome in outcomes]
     outcomes = [replace(outcome, points=_points(outcome, job, settings)) for outcome in outcomes]
@@ -103,13 +105,26 @@ def run_once(job: Job) -> int:
                 outcomes[number] = _planned(outcome, job, settings)
     if job.times is not None:
         _write_times(job.times, outcomes)
+    outcomes = _once(outcomes)
     _print(job, outcomes)
     say_warnings(warning for outcome in outcomes for warning in outcome.warnings)
     worst = max([0, *(say(fault) for outcome in outcomes for fault in outcome.checked.faults)])
     return max(worst, _judged(job, outcomes))
 
 
-def _examined(name: str, job: Job, settings: Settings) -> _Outcome:
+def _once(outcomes: Sequence[_Outcome]) -> list[_Outcome]:
+    """Return the outcomes with each fault once: many programs may run in one cell."""
+    seen: set[tuple[str, ...]] = set()
+    found = []
+    for outcome in outcomes:
+        new = {(fault.code, str(fault)): fault for fault in outcome.checked.faults}
+        kept = tuple(fault for key, fault in new.items() if key not in seen)
+        seen.update(new)
+        found.append(replace(outcome, checked=replace(outcome.checked, faults=kept)))
+    return found
+
+
+def _examined(name: str, job: Job, settings: Settings, files: CellFiles) -> _Outcome:
     """Return what was found in one program and what its fixes make of it; nothing is written."""
     shown = job.stdin_name if name == STANDARD_INPUT else name
     try:
@@ -119,14 +134,14 @@ def _examined(name: str, job: Job, settings: Settings) -> _Outcome:
         return _Outcome(checked=Checked(source=nothing, faults=(fault,)),
                         before=Loaded(name=name, mark=b"", source=nothing))  # fmt: skip
     selection = _selection(shown, job, settings)
-    checked = check_source(loaded.source, selection)
+    checked = check_source(loaded.source, selection, files)
     if not (job.fix or job.diff) or not any(item.fix is not None and item.fix.safe for item in checked.diagnostics):
         return _Outcome(checked=checked, before=loaded)
     seen = {loaded.source.text: checked}
 
     def found(source: Source) -> tuple[Diagnostic, ...]:
         if source.text not in seen:
-            seen[source.text] = check_source(source, selection)
+            seen[source.text] = check_source(source, selection, files)
         return seen[source.text].diagnostics
 
     fixed = fix_all(loaded.source, found)
@@ -161,7 +176,7 @@ def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
     try:
         plan = planned(checked.source.path, job.max_cycle_s)
     except Fault as fault:
-        return replace(outcome, checked=replace(checked, faults=(*checked.faults, fault)))
+        return replace(outcome, checked=replace(checked, faults=(*checked.faults, *fault.all)))
     known = {(item.code, item.span) for item in checked.diagnostics}
     later = [item for item in plan.diagnostics if (item.code, item.span) not in known]
     diagnostics = in_order(filter(selection.keeps, add_later(checked.source, checked.diagnostics, later)))

@@ -54,6 +54,11 @@ def say_warnings(warnings: Iterable[FileFault], said: set[str] | None = None) ->
             typer.echo(text, err=True)
 
 
+def say_all(fault: Fault) -> int:
+    """Print a fault and what else was found with it, and return the worst exit code."""
+    return max(say(each) for each in fault.all)
+
+
 @contextmanager
 def reader_may_leave() -> Iterator[None]:
     """Go on when nobody reads the standard output any more; what is printed from then on is dropped."""
@@ -69,7 +74,7 @@ def reported() -> Iterator[None]:
     try:
         yield
     except Fault as fault:
-        raise typer.Exit(say(fault)) from None
+        raise typer.Exit(say_all(fault)) from None
     except KeyboardInterrupt:
         raise typer.Exit(INTERRUPTED) from None
     except BrokenPipeError:

@@ -24,7 +24,8 @@ app = typer.Typer(no_args_is_help=True, help="The robot library.")
 @app.command("list")
 def list_robots() -> None:
     """List the built-in robots."""
-    from runtime.robot.loader import library, load_builtin
+    from runtime.robot.loader import load_builtin
+    from runtime.robot.robot_file import library
 
     with reported():
         names = library()
@@ -39,8 +40,8 @@ def show(robot: Annotated[str, typer.Argument(help="Built-in robot, or a .toml, 
     with reported():
         from robolang.cli.console import Console
         from robolang.project import load_any_robot
-        from runtime.robot.importer import is_model
-        from runtime.robot.sidecar import sidecar_path
+        from runtime.robot.arm_file import is_model
+        from runtime.robot.sidecar_file import sidecar_path
 
         if is_model(robot) and not os.path.lexists(sidecar_path(Path(robot))):
             _show_model(robot)
@@ -74,7 +75,8 @@ def import_model(
     with reported():
         from robolang.storage import write_atomic
         from runtime.robot.importer import read_model
-        from runtime.robot.sidecar import NO_OVERLAY, sidecar_path, template
+        from runtime.robot.sidecar import template
+        from runtime.robot.sidecar_file import NO_OVERLAY, sidecar_path
 
         target = output if output is not None else sidecar_path(file)
         arm = read_model(file, replace(NO_OVERLAY, flange=flange))
@@ -92,7 +94,7 @@ def _show_model(robot: str) -> None:
     from robolang.cli.console import Console
     from runtime.robot.importer import read_model
     from runtime.robot.kinematics import Kinematics
-    from runtime.robot.sidecar import sidecar_path
+    from runtime.robot.sidecar_file import sidecar_path
 
     path = Path(robot)
     arm = read_model(path)

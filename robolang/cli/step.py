@@ -66,7 +66,7 @@ def step(
         spec = load_any_robot(robot)
         say_warnings(spec.warnings)
         tool_point = np.array(numbers(tool, option="--tool", names=("x", "y", "z"))) * MM
-        in_force = load_settings(spec, pose(tool_point, np.eye(3)), None, profile, options)
+        in_force = load_settings(spec, pose(tool_point, np.eye(3)), profile, options)
         if not (abs(size) <= 360.0):
             raise OptionValueError("--size", f"{size:g} is not between -360 and 360 deg")
         if not seconds <= MOST_S:

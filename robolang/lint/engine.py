@@ -1,15 +1,15 @@
 """Checking one program with everything that ``robolang check`` reports: parse, check, suppress, select, fixes.
 
-The same list is what an editor shows. A file that cannot be used is a fault beside the findings: with a points file
-that cannot be read the text is checked all the same, without the names of its points.
+The same list is what an editor shows. A cell or points file that cannot be used is a fault beside the findings: the
+text is checked all the same, without the names that such a file has.
 """
 
 import os
-from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
-from robolang.beside import cell_beside, taught_points
+from robolang.beside import CellFiles, read_beside
+from robolang.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.checker import check
 from robolang.diagnostics import Diagnostic, Severity, in_order
 from robolang.lint.fixes import with_fix
@@ -32,34 +32,32 @@ class Checked:
     faults: tuple[Fault, ...] = ()
 
 
-def lint(source: Source, *, points: Collection[str] | None, selection: Selection | None = None,
+def lint(source: Source, symbols: CellSymbols = NOTHING_KNOWN, *, selection: Selection | None = None,
          complete: bool = True) -> tuple[Diagnostic, ...]:  # fmt: skip
     """Return the findings of a text by place, with their fixes.
 
     Args:
         source: the text.
-        points: names of the taught points; None when they are not known.
+        symbols: what is known of the cell and the taught points.
         selection: which codes are reported; None: all.
         complete: False when what is known of the files beside it is not all there is; see ``suppress``.
     """
     parsed = parse(source)
     too_large = any(item.code == "RBL106" for item in parsed.diagnostics)  # nothing of it was read
-    found = parsed.diagnostics if too_large else (*parsed.diagnostics, *check(parsed.program, points=points))
+    found = parsed.diagnostics if too_large else (*parsed.diagnostics, *check(parsed.program, symbols))
     kept = suppress(source, found, complete=complete)
     chosen = kept if selection is None else filter(selection.keeps, kept)
     return in_order(with_fix(item, source) for item in chosen)
 
 
-def check_source(source: Source, selection: Selection | None = None) -> Checked:
-    """Check a text with the points that a program of its name has."""
-    where = Path(source.path)
-    try:
-        points = taught_points(where, builtin=cell_beside(where) is None).names
-    except Fault as fault:
-        found = lint(source, points=None, selection=selection, complete=False)
-        return Checked(source=source, diagnostics=found, faults=(fault,))
-    return Checked(source=source, diagnostics=lint(source, points=points, selection=selection))
+def check_source(source: Source, selection: Selection | None = None, files: CellFiles | None = None) -> Checked:
+    """Check a text with the cell and the points that a program of its name has; ``files`` keeps cells that were read.
 
+    The faults of these files are those that keep a run from starting.
+    """
+    found = read_beside(Path(source.path), files)
+    diagnostics = lint(source, found.symbols, selection=selection, complete=not found.faults)
+    return Checked(source=source, diagnostics=diagnostics, faults=found.faults)
 
 
 def check_points(checked: Checked, selection: Selection | None = None) -> Checked | None:

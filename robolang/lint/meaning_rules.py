@@ -152,7 +152,7 @@ RULES = (
         why="A point that no line names is left over from another version, or the line that should name it names "
         "another. Whoever teaches the cell anew teaches it for nothing. The finding stands in the points file.",
         bad="schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\n"
-        "[points.OLD]\njoints = [0, 45, 180, 0, 45, 0]\n",
+        "[points.OLD]\njoints = [0, 45, -180, 0, 45, 0]\n",
         good="schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\n",
         line=4,
         points=True,

@@ -17,7 +17,6 @@ RULES = (
         "was given in grams.",
         bad="10 LOAD (0, 0, 60), 800\n",
         good="10 LOAD (0, 0, 60), 0.8\n",
-        by_run=True,
     ),
     Rule(
         code="RBL403",

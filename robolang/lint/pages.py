@@ -9,8 +9,6 @@ from pathlib import Path
 from robolang.lint.registry import Rule, rule, rules
 from runtime.faults import lookup
 
-_CELL = ", which reads the cell"
-
 _INDEX = """\
 # Rules
 
@@ -62,7 +60,7 @@ def write(folder: Path) -> None:
 
 def _summary(known: Rule) -> str:
     fix = "safe fix" if known.fix else "no fix"
-    return f"{known.severity.value} · {fix} · found by `robolang {known.found_by}`{_CELL if known.by_run else ''}"
+    return f"{known.severity.value} · {fix} · found by `robolang {known.found_by}`"
 
 
 def _story(known: Rule) -> list[str]:

@@ -17,8 +17,9 @@ RULES = (
     Rule(
         code="RBL411",
         why="The place can be reached, but a joint would have to turn further than it can, at the end or on the way.",
-        bad="10 MOVEJ JOINT(0, 60, -190, 0, 110, 0)\n",
-        good="10 MOVEJ JOINT(0, 60, -190, 0, 90, 0)\n",
+        bad="10 MOVEJ JOINT(0, 60, -190, 0, 95, 0)\n20 MOVE HERE * (0, 0, 0, 0, -15, 0), WRIST KEEP\n",
+        good="10 MOVEJ JOINT(0, 60, -190, 0, 95, 0)\n20 MOVE HERE * (0, 0, 0, 0, 15, 0), WRIST KEEP\n",
+        line=2,
         motion=True,
     ),
     Rule(
@@ -51,8 +52,8 @@ RULES = (
         severity=Severity.WARNING,
         why="The tool is where it was taught, J4 and J6 half a turn away from it. The next joint move starts "
         "from there, hoses wind up, and after some rounds an axis is at the end of its range.",
-        bad="10 MOVEJ JOINT(0, 60, -190, 20, -30, 0)\n20 MOVE JOINT(10, 60, -190, -160, 30, 180), WRIST KEEP\n",
-        good="10 MOVEJ JOINT(0, 60, -190, 20, -30, 0)\n20 MOVE JOINT(10, 60, -190, 20, -30, 0), WRIST KEEP\n",
+        bad="10 MOVEJ JOINT(0, 60, -190, -30, -30, 0)\n20 MOVE JOINT(10, 60, -190, 150, 30, 180), WRIST KEEP\n",
+        good="10 MOVEJ JOINT(0, 60, -190, -30, -30, 0)\n20 MOVE JOINT(10, 60, -190, -30, -30, 0), WRIST KEEP\n",
         line=2,
         motion=True,
     ),

@@ -42,14 +42,12 @@ RULES = (
         "would go somewhere that nobody has taught.",
         bad="10 TOOL GRIPER\n20 MOVE P1\n",
         good="10 TOOL GRIPPER\n20 MOVE P1\n",
-        by_run=True,
     ),
     Rule(
         code="RBL306",
         why="A seam cannot be followed with a sensor that is not there; the arm would weld beside it.",
         bad="10 SEAM ON, LASR\n20 MOVE P1\n30 SEAM OFF\n",
         good="10 SEAM ON, LASER\n20 MOVE P1\n30 SEAM OFF\n",
-        by_run=True,
     ),
     Rule(
         code="RBL307",
@@ -62,16 +60,17 @@ RULES = (
     ),
     Rule(
         code="RBL308",
-        why="A misspelt key is not read, and the point would silently be another one: here in the world in place of "
-        "the table.",
-        bad='schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\nframme = "TABLE"\n',
-        good='schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\nframe = "TABLE"\n',
+        why="A misspelt key is not read, and the point would silently be another one: here of another tool "
+        "than it was taught with.",
+        bad='schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\ntooll = "GRIP"\n',
+        good='schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\ntool = "GRIP"\n',
         line=4,
         points=True,
     ),
     Rule(
         code="RBL309",
-        why="A point half a kilometre away is a slip of the unit or of a comma.",
+        why="A point half a kilometre away is a slip of the unit or of a comma. Joint angles outside of the ranges of "
+        "the robot are those of another robot, or slips as well: it can never stand there.",
         bad="schema = 1\n[points.P1]\npose = [450000, -150, 200, 180, 0, 90]\n",
         good="schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\n",
         line=3,
@@ -80,10 +79,9 @@ RULES = (
     Rule(
         code="RBL310",
         why="The same joint angles are another place on another arm, and the same place may be out of its reach.",
-        bad='schema = 1\nrobot = "irb2400"\n[points.P1]\njoints = [0, 45, 180, 0, 45, 0]\n',
-        good='schema = 1\nrobot = "puma560"\n[points.P1]\njoints = [0, 45, 180, 0, 45, 0]\n',
+        bad='schema = 1\nrobot = "irb2400"\n[points.P1]\njoints = [0, 45, -180, 0, 45, 0]\n',
+        good='schema = 1\nrobot = "puma560"\n[points.P1]\njoints = [0, 45, -180, 0, 45, 0]\n',
         line=2,
-        by_run=True,
         points=True,
     ),
     Rule(

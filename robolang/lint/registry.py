@@ -25,8 +25,8 @@ OF_THE_MOTION = frozenset({"RBL410", "RBL411", "RBL412", "RBL414", "RBL416", "RB
                            "RBL424", "RBL425", "RBL426", "RBL427", "RBL428", "RBL429", "RBL440", "RBL441"})  # fmt: skip
 """Codes that only planning the motion finds: ``robolang check --motion``, and of refusals ``robolang run``."""
 
-OF_THE_CELL = frozenset({"RBL305", "RBL306", "RBL401", "RBL402", "RBL403", "RBL404", "RBL405", "RBL415", "RBL534"})
-"""Codes that need the cell or the motion, at least in part: reading the text alone does not find all of them."""
+OF_THE_RUN = frozenset({"RBL307", "RBL309", "RBL401", "RBL402", "RBL403", "RBL404", "RBL405", "RBL415", "RBL534"})
+"""Codes of values, which a run may work out: checking finds those of numbers alone."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,8 +36,7 @@ class Rule:
     ``bad`` is a program that yields the code at 1-based ``line`` and nowhere else, ``good`` its correction. ``shown``
     is printed in place of a ``bad`` that cannot be: too long, or with invisible characters; a byte that is not UTF-8
     is written as its surrogate, ``\\udcb0`` for B0. ``fix`` says what ``--fix`` does; empty: there is none.
-    ``by_run``: the finding needs the cell, which ``robolang run`` reads and ``robolang check`` does not; ``motion``: it
-    needs the motion as well, in the built-in cell. ``points``: ``bad`` and ``good`` are the points file
+    ``motion``: the finding needs the motion, in the built-in cell. ``points``: ``bad`` and ``good`` are the points file
     ``pick.points.toml`` beside a program; ``line`` 0: there is no such file, and ``bad`` shows the folder.
     """
 
@@ -49,14 +48,13 @@ class Rule:
     line: int = 1
     shown: str = ""
     fix: str = ""
-    by_run: bool = False
     motion: bool = False
     points: bool = False
 
     @property
     def found_by(self) -> str:
         """Option and command with which a finding appears."""
-        return "check --motion" if self.motion else "run" if self.by_run else "check"
+        return "check --motion" if self.motion else "check"
 
     @property
     def entry(self) -> Code:
@@ -86,8 +84,8 @@ def is_rule(code: str) -> bool:
 
 
 def is_looked_for(code: str) -> bool:
-    """Return whether a check of text and points alone finds a code wherever it is; else its absence says nothing."""
-    return code.startswith(CHECKED) and code not in OF_THE_CELL
+    """Return whether a check without motion finds a code wherever it is; else its absence says nothing."""
+    return code.startswith(CHECKED) and code not in OF_THE_RUN
 
 
 def codes() -> list[Code]:

@@ -44,7 +44,7 @@ from runtime.robot.payload import NO_PAYLOAD, Payload
 from runtime.robot.spec import Body, RobotSpec
 
 if TYPE_CHECKING:
-    from runtime.robot.model import LoadMode
+    from runtime.robot.load_rules import LoadMode
 
 _Z = frozen([0.0, 0.0, 1.0])
 _NOTHING = frozen(np.zeros(3))

@@ -18,7 +18,8 @@ from runtime.dynamics.motor_inertia import inertia_row, link_chain
 from runtime.frames import Array, frozen
 from runtime.profile import InertiaSource
 from runtime.robot.joint_table import JointTable
-from runtime.robot.model import ArmModel, LoadMode
+from runtime.robot.load_rules import LoadMode
+from runtime.robot.model import ArmModel
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
 

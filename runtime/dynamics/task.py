@@ -14,7 +14,8 @@ from runtime.areas import Areas, AxisLoad
 from runtime.dynamics.equations import axis_gravity, axis_row
 from runtime.dynamics.source import InertiaRows
 from runtime.frames import Array
-from runtime.robot.model import ArmModel, LoadMode
+from runtime.robot.load_rules import LoadMode
+from runtime.robot.model import ArmModel
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -39,9 +39,10 @@ from runtime.motion.speed import MAX_DURATION, SpeedLimits, bound, profile
 from runtime.motion.wrist import CONDITIONS, SAME_ANGLES, Condition
 from runtime.motion.wrist_planner import Choice, choose, ends, explained, posture_deviation
 from runtime.profile import Profile
+from runtime.robot.drives import PathLimits
 from runtime.robot.frozen_wrist import MAIN_AXES, WRIST_AXES
 from runtime.robot.kinematics import Kinematics
-from runtime.robot.spec import PathLimits, RobotSpec
+from runtime.robot.spec import RobotSpec
 from runtime.units import DEG, MM
 
 FOLLOWS, EXCEPTION, HELD = 0, 1, 2

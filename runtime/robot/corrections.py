@@ -14,6 +14,7 @@ may therefore state a correction of three kinds, none larger than it must be (do
 import numpy as np
 
 from runtime.frames import Array, frozen
+from runtime.robot.robot_file import CorrectionRow
 from runtime.robot.spec import AxisSpec, Body, Correction, inertia_defect, shift_between_links
 from runtime.tomlfile import Table
 
@@ -26,16 +27,12 @@ TOKEN_MASS = 1e-6
 TOKEN_INERTIA = 1e-12
 """The moments that a correction may give to a body published as a point, kg m2."""
 
-def correct(table: Table, axes: list[AxisSpec], index: int) -> Correction:
+def correct(row: CorrectionRow, axes: list[AxisSpec], index: int) -> Correction:
     """Apply the correction of the last axis in ``axes``; ``FileFault`` RBL606 for one needless or too large."""
-    shift = table.number("inertia_shift_kg_m2", low=0.0)
-    mass = table.number("added_mass_kg", low=0.0)
-    moments = table.number("added_inertia_kg_m2", 0.0, low=0.0)
-    reason = table.text("reason")
-    table.done()
+    shift, mass, moments = row.inertia_shift, row.added_mass, row.added_inertia
     axis = axes[index]
-    correction = Correction(axis=index, inertia_shift=shift, added_mass=mass, added_inertia=moments, reason=reason)
-    _check_need(table, axis.body, correction)
+    correction = Correction(axis=index, inertia_shift=shift, added_mass=mass, added_inertia=moments, reason=row.reason)
+    _check_need(row.table, axis.body, correction)
     before = axes[index - 1].body if index else axis.body
     own, other = shift_between_links(axis, before, shift)
     axes[index] = _with_body(axis, _body(own.mass + mass, own.cog, own.inertia + moments * np.eye(3)))

@@ -19,20 +19,14 @@ about its own axis, which no result depends on; this one keeps right angles exac
 
 import math
 from dataclasses import dataclass
-from typing import Literal, cast
 
 import numpy as np
 
 from runtime.frames import Array, inverse, pose
 from runtime.linear import matmul, norm
+from runtime.robot.robot_file import DhRow, FlangeRow, LineRow, RobotFile
 from runtime.robot.spec import dh_transform
-from runtime.tomlfile import Table
 from runtime.units import DEG
-
-Form = Literal["dh", "lines"]
-
-SHORTEST_DIRECTION = 1e-6
-"""A direction shorter than this has lost its digits."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,39 +42,32 @@ class Geometry:
     X_last_flange: Array
 
 
-def read_form(kinematics: Table) -> Form:
-    """Return the form of geometry that a robot file uses; ``FileFault`` when it is none of them."""
-    return cast(Form, kinematics.text("form", choices=("dh", "lines")))
+def geometry_of(file: RobotFile) -> Geometry:
+    """Return the frames of the arm that a robot file describes."""
+    rows = [axis.row for axis in file.axes]
+    if file.flange is None:
+        return _dh([row for row in rows if isinstance(row, DhRow)])
+    return _lines([row for row in rows if isinstance(row, LineRow)], file.flange)
 
 
-def read_geometry(form: Form, table: Table, axes: list[Table]) -> Geometry:
-    """Read the geometry of the file ``table`` with the tables of its ``axes``; ``FileFault`` where it is wrong."""
-    return _dh(axes) if form == "dh" else _lines(axes, table.table("flange"))
-
-
-def _dh(tables: list[Table]) -> Geometry:
+def _dh(rows: list[DhRow]) -> Geometry:
     placements, bodies = [], []
     placement = np.eye(4)
-    for table in tables:
-        X_joint_dh = dh_transform(
-            table.number("d_m", low=-10.0, high=10.0),
-            table.number("a_m", low=-10.0, high=10.0),
-            table.number("alpha_deg", low=-360.0, high=360.0) * DEG,
-        )
-        offset = table.number("theta_offset_deg", 0.0, low=-360.0, high=360.0) * DEG
-        placements.append(matmul(placement, _turn(offset)))
+    for row in rows:
+        X_joint_dh = dh_transform(row.d_m, row.a_m, row.alpha_deg * DEG)
+        placements.append(matmul(placement, _turn(row.theta_offset_deg * DEG)))
         bodies.append(X_joint_dh)
         placement = X_joint_dh
     return Geometry(placements=tuple(placements), X_joint_body=tuple(bodies), X_last_flange=placement)
 
 
-def _lines(tables: list[Table], flange: Table) -> Geometry:
+def _lines(rows: list[LineRow], flange: FlangeRow) -> Geometry:
     placements, bodies = [], []
     X_base_before = np.eye(4)
-    for table in tables:
-        origin = np.array(table.numbers("origin_m", 3, low=-10.0, high=10.0))
-        R_base_joint = _frame_about(_direction(table))
-        X_base_joint = pose(origin, R_base_joint)
+    for row in rows:
+        direction = np.array(row.direction)
+        R_base_joint = _frame_about(direction / norm(direction))
+        X_base_joint = pose(np.array(row.origin_m), R_base_joint)
         placements.append(matmul(inverse(X_base_before), X_base_joint))
         bodies.append(pose(rotation=R_base_joint.T))
         X_base_before = X_base_joint
@@ -91,15 +78,6 @@ def _lines(tables: list[Table], flange: Table) -> Geometry:
     )
 
 
-def _direction(table: Table) -> Array:
-    direction = np.array(table.numbers("direction", 3, low=-10.0, high=10.0))
-    length = norm(direction)
-    if not length >= SHORTEST_DIRECTION:
-        table.fail("RBL605", f"'{table.name('direction')}' has no direction", "write a vector such as [0, 1, 0]",
-                   key="direction")  # fmt: skip
-    return np.asarray(direction / length)
-
-
 def _frame_about(z: Array) -> Array:
     x = np.eye(3)[int(np.argmin(np.abs(z)))]
     x = x - matmul(x, z) * z
@@ -107,12 +85,10 @@ def _frame_about(z: Array) -> Array:
     return np.stack([x, np.cross(z, x), z], axis=1)
 
 
-def _flange(table: Table) -> Array:
-    """Return X_base_flange at the zero pose from a position and turns about the fixed x, y and z axes."""
-    position = table.numbers("position_m", 3, low=-10.0, high=10.0)
-    rx, ry, rz = (angle * DEG for angle in table.numbers("rotation_deg", 3, low=-360.0, high=360.0))
-    table.done()
-    return pose(position, matmul(_about(2, rz), _about(1, ry), _about(0, rx)))
+def _flange(row: FlangeRow) -> Array:
+    """Return X_base_flange at the zero pose."""
+    rx, ry, rz = (angle * DEG for angle in row.rotation_deg)
+    return pose(row.position_m, matmul(_about(2, rz), _about(1, ry), _about(0, rx)))
 
 
 def _about(axis: int, angle: float) -> Array:

@@ -22,7 +22,8 @@ import numpy as np
 from runtime.frames import Array, frozen, inverse, pose, rotation_about, skew
 from runtime.linear import matmul
 from runtime.robot.corrections import flat
-from runtime.robot.spec import Body, OpwParameters, inertia_defect, joint_label
+from runtime.robot.drives import joint_label
+from runtime.robot.spec import Body, OpwParameters, inertia_defect
 from runtime.robot.xmlfile import Element
 from runtime.tomlfile import FileFault
 

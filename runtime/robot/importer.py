@@ -1,9 +1,9 @@
 """Arms from URDF and MJCF files, with the sidecar beside them.
 
-``read_arm`` gives the geometry, bodies and ranges of a model file, which is all that kinematics needs; ``load_arm`` the
-whole robot, for which the sidecar must give the drives; ``load_file`` takes any robot file by its ending. The
-text is checked here in full (``xmlfile``, ``urdf``, ``mjcf_import``, ``imported``); neither Pinocchio nor MuJoCo reads
-it: both get the ``RobotSpec``. Which of the two languages it is says the root element, not the file's name.
+``read_arm`` gives the geometry, bodies and ranges of a model file, which is all that kinematics needs; ``load_file``
+the whole robot of any robot file, for which the sidecar of a model file must give the drives. The text is checked here
+in full (``xmlfile``, ``urdf``, ``mjcf_import``, ``imported``); neither Pinocchio nor MuJoCo reads it: both get the
+``RobotSpec``. Which of the two languages it is says the root element, not the file's name.
 """
 
 import math
@@ -15,42 +15,42 @@ from typing import NoReturn
 import numpy as np
 
 from runtime.frames import Array, frozen
+from runtime.robot import loader
+from runtime.robot.arm_file import ArmFile, is_model, model_root, read_arm_file, sidecar_source
 from runtime.robot.closed_form import find_opw
+from runtime.robot.drives import joint_label
 from runtime.robot.imported import ImportedArm, serial_chain
-from runtime.robot.loader import load_robot
 from runtime.robot.mjcf_import import read_mjcf
 from runtime.robot.plausibility import Turning, What, doubt_bodies, doubt_drives, doubt_turning, offsets, weight_moment
-from runtime.robot.sidecar import NO_OVERLAY, Overlay, complete, missing_in_template, read_overlay, sidecar_path
-from runtime.robot.spec import RobotSpec, joint_label
+from runtime.robot.robot_file import RobotFile
+from runtime.robot.sidecar import complete, missing_in_template
+from runtime.robot.sidecar_file import NO_OVERLAY, Overlay, read_overlay, sidecar_path
+from runtime.robot.spec import RobotSpec
 from runtime.robot.urdf import read_urdf
-from runtime.robot.xmlfile import fault_at, parse_xml
+from runtime.robot.xmlfile import fault_at
 from runtime.tomlfile import FileFault, Source, read_source
 
 UNIT_SLACK = 1e-3
 """Rounding of the length of an axis."""
 
-MODEL_ENDINGS = (".urdf", ".xml")
-ROBOT_ENDINGS = (".toml", *MODEL_ENDINGS)
-"""How the name of a robot file ends."""
-
-
-def is_model(name: str) -> bool:
-    """Return whether a name is that of a URDF or MJCF file."""
-    return name.lower().endswith(MODEL_ENDINGS)
-
 
 def load_file(path: Path) -> RobotSpec:
-    """Return the robot of a file, by its ending; ``FileFault`` RBL6xx."""
-    return load_arm(path) if is_model(path.name) else load_robot(path)
+    """Return the robot of a file, by its ending; ``FileFault`` RBL6xx, RBL608 without a complete sidecar."""
+    if is_model(path.name):
+        arm, sidecar = _with_sidecar(path)
+        if sidecar is None:  # the chain is known here, so every gap can be named
+            _refuse_without_sidecar(arm, path)
+    return build(read_arm_file(path))
 
 
-def load_arm(path: Path) -> RobotSpec:
-    """Return the robot of a model file and its sidecar; ``FileFault`` RBL6xx, RBL608 without a complete sidecar."""
-    arm, sidecar = _with_sidecar(path)
-    if sidecar is None:
-        _refuse_without_sidecar(arm, path)
-    _check(arm, read_overlay(sidecar))
-    return complete(arm, sidecar)
+def build(file: ArmFile) -> RobotSpec:
+    """Return the robot of a file that has been read; ``FileFault`` RBL6xx where its arm cannot be."""
+    if isinstance(file, RobotFile):
+        return loader.build(file)
+    overlay = read_overlay(file.sidecar.table.source)
+    arm = parse_model(file.source, overlay)
+    _check(arm, overlay)
+    return complete(arm, file.sidecar)
 
 
 def read_arm(path: Path) -> ImportedArm:
@@ -71,13 +71,8 @@ def parse_model(source: Source, overlay: Overlay = NO_OVERLAY) -> ImportedArm:
 
     Its limits are not doubted yet: a sidecar may state others.
     """
-    root = parse_xml(source)
-    if root.tag == "robot":
-        name, tree = read_urdf(root)
-    elif root.tag == "mujoco":
-        name, tree = read_mjcf(root, Path(source.path).name)
-    else:
-        root.fail("RBL621", f"<{root.tag}> is neither URDF (<robot>) nor MJCF (<mujoco>)")
+    root = model_root(source)
+    name, tree = read_urdf(root) if root.tag == "robot" else read_mjcf(root, Path(source.path).name)
     arm = serial_chain(tree, source.path, name, overlay.flange)
     ranges = [overlay.ranges.get(axis.name, (low, high)) for axis, low, high in
               zip(arm.axes, arm.lower, arm.upper, strict=True)]  # fmt: skip
@@ -134,9 +129,7 @@ def _with_limits_doubted(arm: ImportedArm, overlay: Overlay) -> ImportedArm:
 
 
 def _with_sidecar(path: Path) -> tuple[ImportedArm, Source | None]:
-    beside = sidecar_path(path)
-    source = read_source(path)
-    sidecar = read_source(beside) if beside.is_symlink() or beside.exists() else None
+    source, sidecar = read_source(path), sidecar_source(path)
     return parse_model(source, NO_OVERLAY if sidecar is None else read_overlay(sidecar)), sidecar
 
 

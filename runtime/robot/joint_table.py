@@ -3,8 +3,13 @@
 from bisect import bisect_right
 from dataclasses import dataclass
 from math import prod
+from typing import Protocol, SupportsFloat
 
-from runtime.frames import Array
+
+class Angles(Protocol):
+    """Joint angles by their 0-based joint, rad: an array (n,), or anything that is indexed like one."""
+
+    def __getitem__(self, joint: int, /) -> SupportsFloat: ...
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,7 +28,7 @@ class JointTable:
         if len(sizes) != len(self.joints) or min(sizes, default=0) < 2 or prod(sizes) != len(self.values):
             raise ValueError(f"{len(self.joints)} joints, a grid of {sizes} and {len(self.values)} values do not fit")
 
-    def at(self, q: Array) -> float:
+    def at(self, q: Angles) -> float:
         """Return the value at joint angles q (n,) rad, multilinear; an angle off the grid counts as its end."""
         values = self.values
         for joint, angles in zip(self.joints, self.grid, strict=True):

@@ -6,18 +6,18 @@ N^2 J itself (docs/servo.md). With ``rotors`` it is in the model, for the ideal 
 identification found beyond the bodies, first moments, is in ``gravity`` and ``torque`` alone (docs/identification.md).
 """
 
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
 from runtime.frames import Array
+from runtime.robot.load_rules import LoadMode
 from runtime.robot.payload import NO_PAYLOAD, Payload
 from runtime.robot.spec import Body, RobotSpec
 from runtime.units import GRAVITY
 
 _NO_MASS = 1e-9
-LoadMode = Literal["add", "replace"]
 
 
 class ArmModel:

@@ -5,19 +5,13 @@ point mass there, ``I(origin) = m (|r|^2 E - r r')``, unless an own inertia is g
 structure of the last link; ``replace`` is the literal reading of the document, where it takes the link's place.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from runtime.faults import Fault
 from runtime.frames import Array, frozen
-from runtime.linear import norm
-from runtime.robot.spec import inertia_defect
-
-MAX_COG_DISTANCE = 2.0
-"""Farthest centre of gravity from the flange that is believed, m."""
+from runtime.robot.load_rules import load_fault
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,14 +31,9 @@ def declared(mass: float, cog: Sequence[float] | Array, rated: float, inertia: A
 
     mass kg, cog (3,) m in the flange frame, rated kg of the robot, inertia (3, 3) about the cog in kg m2.
     """
-    if not (math.isfinite(mass) and mass >= 0.0):
-        raise Fault("RBL401", f"a payload of {mass:g} kg is not a mass")
-    if not mass <= rated:
-        raise Fault("RBL402", f"the payload of {mass:g} kg is over the rated {rated:g} kg")
     r = np.asarray(cog, dtype=np.float64)
-    if not norm(r) <= MAX_COG_DISTANCE:
-        raise Fault("RBL403", f"the centre of gravity {tuple(r * 1000.0)} mm is not on this arm")
     own = np.zeros((3, 3)) if inertia is None else np.asarray(inertia, dtype=np.float64)
-    if not np.isfinite(own).all() or inertia_defect(own) > 1e-9:
-        raise Fault("RBL403", "the inertia of the payload is not a body's")
+    fault = load_fault(mass, r.tolist(), own[(0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)].tolist(), rated)
+    if fault is not None:
+        raise fault
     return Payload(mass=float(mass), cog=frozen(r), inertia=frozen(own))

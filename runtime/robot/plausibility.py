@@ -22,7 +22,8 @@ import numpy as np
 
 from runtime.frames import Array
 from runtime.linear import norm
-from runtime.robot.spec import AxisSpec, Body, joint_label
+from runtime.robot.drives import joint_label
+from runtime.robot.spec import AxisSpec, Body
 from runtime.tomlfile import FileFault, Table
 from runtime.units import DEG, GRAVITY, MM
 

@@ -15,6 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from runtime.frames import Array
+from runtime.robot.drives import Bandwidths, Limits, Motor, PathLimits
+from runtime.robot.load_rules import moments_defect
 from runtime.tomlfile import FileFault
 
 
@@ -28,81 +30,6 @@ class Body:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Motor:
-    """The drive of one axis, motor side.
-
-    ``gear_ratio`` N is signed (motor turns per joint turn), ``rotor_inertia`` kg m2, ``torque_constant`` N m/A,
-    ``max_current`` A, ``viscous_friction`` N m s/rad, ``coulomb_friction`` N m (turning forward, backward, both
-    positive), ``encoder_counts`` per motor turn, ``current_bandwidth`` rad/s. ``stiffness`` N m/rad and ``damping``
-    N m s/rad are those of the gear between motor and link, at the joint; infinite stiffness is a rigid gear.
-    """
-
-    gear_ratio: float
-    rotor_inertia: float
-    torque_constant: float
-    max_current: float
-    viscous_friction: float
-    coulomb_friction: tuple[float, float]
-    encoder_counts: int
-    current_bandwidth: float
-    stiffness: float = math.inf
-    damping: float = 0.0
-
-    @property
-    def elastic(self) -> bool:
-        """Whether the gear is a spring between motor and link."""
-        return math.isfinite(self.stiffness)
-
-    @property
-    def reflected_inertia(self) -> float:
-        """Rotor inertia at the joint, N^2 J, kg m2 (docs/servo.md: the document omits N)."""
-        return self.gear_ratio**2 * self.rotor_inertia
-
-    @property
-    def joint_torque_constant(self) -> float:
-        """Ktn: joint torque per motor current, N m/A. Positive: the current is counted in joint direction."""
-        return abs(self.gear_ratio) * self.torque_constant
-
-    @property
-    def joint_viscous_friction(self) -> float:
-        """N^2 B, N m s/rad at the joint."""
-        return self.gear_ratio**2 * self.viscous_friction
-
-    @property
-    def joint_coulomb_friction(self) -> tuple[float, float]:
-        """|N| Tc at the joint, N m, (joint turning forward, joint turning backward)."""
-        forward, backward = self.coulomb_friction
-        if self.gear_ratio < 0.0:
-            forward, backward = backward, forward
-        return abs(self.gear_ratio) * forward, abs(self.gear_ratio) * backward
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Limits:
-    """Joint limits: range rad, speed rad/s, acceleration rad/s2, torque N m (at the joint).
-
-    ``rated_moment`` N m and ``rated_inertia`` kg m2 that a payload may have about the axis; None: not published
-    (``runtime.robot.load`` estimates them).
-    """
-
-    lower: float
-    upper: float
-    speed: float
-    acceleration: float
-    torque: float
-    rated_moment: float | None = None
-    rated_inertia: float | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Bandwidths:
-    """What the loop gains of an axis derive from: Kp = ``position`` 1/s, Kv = K Ktn = ``velocity`` 1/s."""
-
-    position: float
-    velocity: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class AxisSpec:
     """One axis: its name, joint placement (4, 4), body, motor, limits and bandwidths."""
 
@@ -112,19 +39,6 @@ class AxisSpec:
     motor: Motor
     limits: Limits
     bandwidths: Bandwidths
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PathLimits:
-    """Limits and defaults of the tool point on a straight move, m/s, m/s2, m/s3 and rad/s, rad/s2, rad/s3."""
-
-    default_speed: float
-    max_speed: float
-    acceleration: float
-    jerk: float
-    rotation_speed: float
-    rotation_acceleration: float
-    rotation_jerk: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -209,8 +123,7 @@ def inertia_defect(inertia: Array) -> float:
 
     Principal moments must be positive and each at most the sum of the other two.
     """
-    moments = np.linalg.eigvalsh(inertia)
-    return max(0.0, float(moments[2] - moments[1] - moments[0]), float(-moments[0]))
+    return moments_defect(np.linalg.eigvalsh(inertia).tolist())
 
 
 def shift_between_links(axis_spec: AxisSpec, before: Body, shift: float) -> tuple[Body, Body]:
@@ -228,8 +141,3 @@ def shift_between_links(axis_spec: AxisSpec, before: Body, shift: float) -> tupl
         Body(mass=axis_spec.body.mass, cog=axis_spec.body.cog, inertia=own),
         Body(mass=before.mass, cog=before.cog, inertia=other),
     )
-
-
-def joint_label(index: int, name: str) -> str:
-    """Return ``J2 shoulder_lift``: the number people use, from 1, and the name in the file."""
-    return f"J{index + 1} {name}"

@@ -35,7 +35,8 @@ import pinocchio as pin
 from runtime.decompositions import inverse_of, solve
 from runtime.frames import Array
 from runtime.linear import dot, matmul
-from runtime.robot.model import ArmModel, LoadMode, spec_rotors
+from runtime.robot.load_rules import LoadMode
+from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
 from runtime.supervision.limits import SupervisionLimits

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from runtime.frames import Array
-from runtime.robot.model import LoadMode
+from runtime.robot.load_rules import LoadMode
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
 from runtime.supervision.finding import Finding

@@ -20,6 +20,7 @@ from typer.main import get_command
 
 import robolang
 import runtime
+from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
 from robolang.cli.main import app
 from robolang.diagnostics import has_errors
@@ -234,7 +235,10 @@ def keys_of(value: object) -> set[str]:
     return {key for item in value for key in keys_of(item)} if isinstance(value, list) else set()
 
 
-@pytest.mark.parametrize("module", ["runtime/plant/cell.py", "runtime/profile.py", "robolang/points.py"])
+@pytest.mark.parametrize(
+    "module",
+    ["runtime/plant/cell_file.py", "runtime/plant/sensor_file.py", "runtime/profile.py", "robolang/points.py"],
+)
 def test_every_key_of_the_files_is_explained(module):
     getters = r"(?:numbers?|integer|text|flag|tables?|named_tables|raw_list|_pose|_point|_size|_named)"
     source = (ROOT / module).read_text("utf-8")
@@ -257,7 +261,8 @@ def test_programs_in_the_pages_have_no_errors():
     assert len(programs) >= 2
     for page, text in programs:
         parsed = parse(Source(name(page), text))
-        found = (*parsed.diagnostics, *check(parsed.program, points=["P1", "P2", "P3", "P5"], rated_payload_kg=2.5))
+        symbols = CellSymbols.named(points=["P1", "P2", "P3", "P5"], rated_payload_kg=2.5)
+        found = (*parsed.diagnostics, *check(parsed.program, symbols))
         assert not has_errors(found), (name(page), [item.message for item in found])
 
 

@@ -12,7 +12,8 @@ from robolang.session import Session
 from robolang.words import INSTRUCTIONS
 from runtime.profile import Profile
 from runtime.robot.imported import FEWEST_AXES, MOST_AXES
-from runtime.robot.loader import library, load_builtin
+from runtime.robot.loader import load_builtin
+from runtime.robot.robot_file import library
 
 ROOT = Path(__file__).parents[2]
 SECTION = (ROOT / "README.md").read_text("utf-8").partition("Limits to know")[2].partition("\n## ")[0]

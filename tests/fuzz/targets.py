@@ -11,6 +11,8 @@ from pathlib import Path
 from tempfile import mkdtemp
 
 from robolang import checker, formatter, nodes
+from robolang.beside import builtin_cell_file
+from robolang.cell_symbols import CellSymbols
 from robolang.diagnostics import Severity, render, to_json
 from robolang.grammar import line_parser
 from robolang.lint import engine
@@ -69,11 +71,12 @@ def check(data):
     source = _program(data)
     if source is None:
         return
-    _assert_located(source, engine.lint(source, points=_POINTS))
+    _assert_located(source, engine.lint(source, CellSymbols.named(points=_POINTS)))
     program = parse(source).program
     _assert_located(source, checker.check(program))
-    _assert_located(source, checker.check(program, points=_POINTS, rated_payload_kg=2.5, sensors=["TORCH"],
-                                          tools=["T1"], frames=["F1"], loads=["L1"], inputs=[1, 2]))  # fmt: skip
+    _assert_located(source, checker.check(program, CellSymbols.named(
+        points=_POINTS, rated_payload_kg=2.5, sensors=["TORCH"], tools=["T1"], frames=["F1"], loads=["L1"],
+        inputs=[1, 2])))  # fmt: skip
 
 
 def format(data):
@@ -96,7 +99,7 @@ def points(data):
     path = _FOLDER / "fuzz.points.toml"
     path.write_bytes(data)
     with _located(path, data):
-        load_points(path, robot="puma560", axes=6)
+        load_points(path, CellSymbols.of(builtin_cell_file()))
 
 
 def cell(data):

@@ -1,5 +1,6 @@
 """Short ways to parse a text and to say what was found where."""
 
+from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
 from robolang.diagnostics import Diagnostic
 from robolang.nodes import Program
@@ -42,4 +43,4 @@ def only(text: str) -> Diagnostic:
 
 def checked(text: str, points: tuple[str, ...] | None = None, rated: float | None = None,
             sensors: tuple[str, ...] | None = None) -> Found:  # fmt: skip
-    return places(text, check(parsed(text), points=points, rated_payload_kg=rated, sensors=sensors))
+    return places(text, check(parsed(text), CellSymbols.named(points=points, rated_payload_kg=rated, sensors=sensors)))

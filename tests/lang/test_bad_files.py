@@ -10,14 +10,18 @@ from pathlib import Path
 
 import pytest
 
+from robolang.beside import builtin_cell_file
+from robolang.cell_symbols import CellSymbols
 from robolang.lint.settings import Settings
 from robolang.points import load_points
 from robolang.source import read_program
-from runtime.robot.importer import load_arm, load_file, read_arm
+from runtime.robot.importer import load_file, read_arm
 from runtime.tomlfile import FileFault
 from tests.lang.cli.commands import ROOT, flat, robolang
 from tests.runtime.robot.models import ANGLES, chain
 from tests.steps import calls, guarded
+
+PUMA = CellSymbols(robot="puma560", limits=builtin_cell_file().arm.limits)
 
 POINT = "schema = 1\n[points.P1]\n"
 POSE = "pose = [450, -150, 200, 180, 0, 90]\n"
@@ -57,7 +61,7 @@ def test_points(tmp_path, text, expected):
     path = tmp_path / "pick.points.toml"
     path.write_bytes(text.encode("utf-8", "surrogateescape"))
     before = path.read_bytes()
-    assert place(load_points, path, robot="puma560", axes=6) == expected
+    assert place(load_points, path, PUMA) == expected
     assert path.read_bytes() == before
 
 
@@ -117,7 +121,7 @@ ROBOTS = [
 def test_robots(tmp_path, name, text, expected):
     path = tmp_path / name
     path.write_text(text, "utf-8")
-    assert place(load_arm, path) == expected
+    assert place(load_file, path) == expected
 
 
 @pytest.mark.parametrize(("bomb", "few", "many"), [(laughs, 2, 8), (nested, 200, 5000)])
@@ -126,7 +130,7 @@ def test_a_robot_file_that_grows_when_it_is_read_is_refused_where_it_begins_to(b
     small, large = tmp_path / "small.xml", tmp_path / "large.xml"
     small.write_text(bomb(few), "utf-8")
     large.write_text(bomb(many), "utf-8")
-    assert calls(place, load_arm, large) <= calls(place, load_arm, small) + 100
+    assert calls(place, load_file, large) <= calls(place, load_file, small) + 100
 
 
 def test_joints_without_limits_are_listed(tmp_path):

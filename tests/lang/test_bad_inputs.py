@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from robolang import actions, effects, evaluator, interpreter, scope
+from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
 from robolang.interpreter import ProgramFault, execute
 from robolang.parser import parse
@@ -23,8 +24,8 @@ def problems(text, points=POINTS):
     """Code, line, column and length of all that reading and checking find."""
     where = Source("pick.rbl", text)
     parsed = parse(where)
-    return sorted(places(text, (*parsed.diagnostics, *check(parsed.program, points=points, rated_payload_kg=2.5))),
-                  key=lambda item: item[1:])  # fmt: skip
+    found = check(parsed.program, CellSymbols.named(points=points, rated_payload_kg=2.5))
+    return sorted(places(text, (*parsed.diagnostics, *found)), key=lambda item: item[1:])
 
 
 GOLDEN = [

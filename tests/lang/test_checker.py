@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
 from robolang.diagnostics import MAX_DIAGNOSTICS, Severity
 from robolang.parser import parse
@@ -9,7 +10,7 @@ from tests.lang.helpers import checked, parsed, places, source
 
 
 def first(text, **facts):
-    (diagnostic,) = check(parsed(text), **facts)
+    (diagnostic,) = check(parsed(text), CellSymbols.named(**facts))
     return diagnostic
 
 
@@ -66,7 +67,7 @@ def test_centre_of_gravity(cog):
 
 def test_centre_of_gravity_at_the_limit():
     assert checked("LOAD (0, 0, 2000), 1") == []
-    assert checked("LOAD (0, 0, 9000), 0") == []
+    assert checked("LOAD (0, 0, 9000), 0") == [("RBL403", 1, 6, 12)]  # one rule, whatever the mass
     assert checked("LOAD (0, 0, NAN), 0") == [("RBL403", 1, 6, 11)]
 
 
@@ -149,9 +150,8 @@ def test_sensors():
     ("sensors", "hint"),
     [
         (("torch", "arc"), "did you mean TORCH?"),
-        (("B", "A"), "seam sensors: A, B"),
-        ((), "the cell has no seam sensor"),
-        (tuple("ABDEFGIJKLM"), "Add [sensors.NAME] to the cell file, or correct the name."),
+        (("B", "A"), "sensors of the cell: A, B; a cell file beside the program, NAME.cell.toml, can define more"),
+        ((), "the cell has no sensors; a cell file beside the program, NAME.cell.toml, can define more"),
     ],
 )
 def test_near_sensors_are_suggested(sensors, hint):
@@ -214,7 +214,7 @@ ALL = {
 
 
 def found(text):
-    return places(text, check(parsed(text), **ALL))
+    return places(text, check(parsed(text), CellSymbols.named(**ALL)))
 
 
 @pytest.mark.parametrize(

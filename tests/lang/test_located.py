@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from robolang.cell_symbols import CellSymbols
 from robolang.diagnostics import Diagnostic, render, to_json
 from robolang.lint.engine import Checked, lint
 from robolang.lint.registry import rules
@@ -73,7 +74,7 @@ def test_a_finding_outside_its_text_is_noticed(span):
 
 @pytest.mark.parametrize("text", CATALOGUE, ids=range(len(CATALOGUE)))
 def test_the_catalogue_is_located(text):
-    assert_located(text, lint(Source("p.rbl", text), points=POINTS))
+    assert_located(text, lint(Source("p.rbl", text), CellSymbols.named(points=POINTS)))
 
 
 def some_lines(chance: random.Random) -> str:
@@ -119,7 +120,7 @@ def test_mutants_of_programs_are_located(part):
     codes, damaged = set(), 0
     for _ in range(NUMBER // PARTS):
         text = mutated(some_lines(chance), chance)
-        found = lint(Source("p.rbl", text), points=POINTS)
+        found = lint(Source("p.rbl", text), CellSymbols.named(points=POINTS))
         assert_located(text, found)
         codes |= {item.code for item in found}
         damaged += bool(found)

@@ -2,6 +2,7 @@
 
 import pytest
 
+from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
 from robolang.names import seems_to_define
 from robolang.parser import parse
@@ -10,7 +11,7 @@ from tests.lang.helpers import places, source
 
 
 def found(text, points=("P1",)):
-    return places(text, check(parse(source(text)).program, points=points))
+    return places(text, check(parse(source(text)).program, CellSymbols.named(points=points)))
 
 
 @pytest.mark.parametrize(
@@ -33,7 +34,7 @@ def test_what_a_line_with_an_error_seems_to_define(text, names):
 
 def test_an_undefined_name_is_said_at_its_first_use():
     text = "\n".join(["x = cuont", *["PRINT Cuont; cuont"] * 9, "PRINT other"])
-    diagnostics = check(parse(source(text)).program, points=())
+    diagnostics = check(parse(source(text)).program, CellSymbols.named(points=()))
     assert places(text, diagnostics) == [("RBL215", 1, 5, 5), ("RBL215", 11, 7, 5)]
     assert [source(text).place(note.span.start).line for note in diagnostics[0].related] == [2, 2, 3, 3, 4][:MAX_NOTES]
     assert diagnostics[1].related == ()

@@ -2,8 +2,12 @@ import os
 
 import pytest
 
+from robolang.beside import builtin_cell_file
+from robolang.cell_symbols import CellSymbols
 from robolang.points import Point, load_points
 from runtime.tomlfile import FileFault
+
+PUMA = builtin_cell_file().arm.limits
 
 GOOD = """schema = 1
 robot = "puma560"   # kept
@@ -31,12 +35,12 @@ def write(tmp_path):
 
 def fault_of(path, **facts):
     with pytest.raises(FileFault) as caught:
-        load_points(path, **facts)
+        load_points(path, CellSymbols(**facts))
     return caught.value
 
 
 def test_a_good_file(write):
-    store = load_points(write(GOOD), robot="PUMA560", axes=6)
+    store = load_points(write(GOOD), CellSymbols(robot="PUMA560", limits=PUMA))
     assert store.robot == "puma560"
     assert store.names == {"P1", "HOME"}
     assert store.get("p1") == Point(
@@ -114,7 +118,7 @@ def test_another_robot(write):
 
 
 def test_another_number_of_axes(write):
-    fault = fault_of(write(GOOD), axes=7)
+    fault = fault_of(write(GOOD), limits=(*PUMA, PUMA[0]))
     assert (fault.code, fault.line) == ("RBL307", 11)
     assert "6 values; it needs 7" in fault.message
 

@@ -10,6 +10,7 @@ from hypothesis import Phase, example, given, settings
 from hypothesis import strategies as st
 
 from robolang import nodes, printer
+from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
 from robolang.diagnostics import has_errors, render, to_json
 from robolang.formatter import format_source
@@ -259,7 +260,8 @@ def test_any_text_gives_a_tree_and_located_diagnostics(text):
     unparsed = [line for line in result.program.lines if isinstance(line.statement, Unparsed)]
     assert {line.source_line for line in unparsed} == bad
     assert len(unparsed) == sum(item.code != "RBL110" for item in result.diagnostics)
-    for item in (*result.diagnostics, *check(result.program, points=["P1"], rated_payload_kg=2.5, sensors=["P2"])):
+    for item in (*result.diagnostics, *check(
+            result.program, CellSymbols.named(points=["P1"], rated_payload_kg=2.5, sensors=["P2"]))):
         assert 0 <= item.span.start <= item.span.end <= len(text)
         assert render(item, where).isprintable() or "\n" in render(item, where)
         assert "\x1b" not in render(item, where)

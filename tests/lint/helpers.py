@@ -1,5 +1,6 @@
 """Short ways to lint a text in this process and to say what was found where."""
 
+from robolang.cell_symbols import CellSymbols
 from robolang.diagnostics import Diagnostic
 from robolang.lint.engine import Checked, lint
 from robolang.lint.selection import Layer, Selection, selector
@@ -10,7 +11,7 @@ POINTS = ("P1", "P2", "P3", "P4", "P5")
 
 def found(text: str, **options) -> tuple[Diagnostic, ...]:
     """The findings of a text with P1 to P5 taught."""
-    return lint(Source("pick.rbl", text), points=POINTS, **options)
+    return lint(Source("pick.rbl", text), CellSymbols.named(points=POINTS), **options)
 
 
 def places(text: str, **options) -> list[tuple[str, int, int]]:

@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import pytest
 
+from robolang.cell_symbols import CellSymbols
 from robolang.diagnostics import Diagnostic, Edit, Fix
 from robolang.lint.apply import edited, fix_all
 from robolang.lint.engine import lint
@@ -13,7 +14,7 @@ from tests.lint.helpers import POINTS, found
 
 
 def fixed(text):
-    return fix_all(Source("pick.rbl", text), lambda source: lint(source, points=POINTS)).source.text
+    return fix_all(Source("pick.rbl", text), lambda source: lint(source, CellSymbols.named(points=POINTS))).source.text
 
 
 def codes(text):

@@ -7,6 +7,7 @@ from pathlib import Path
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from robolang.cell_symbols import CellSymbols
 from robolang.diagnostics import MAX_DIAGNOSTICS
 from robolang.lint.apply import fix_all
 from robolang.lint.engine import Checked, lint
@@ -32,7 +33,7 @@ programs = st.lists(lines, max_size=12).map("".join)
 
 
 def find(source):
-    return lint(source, points=POINTS)
+    return lint(source, CellSymbols.named(points=POINTS))
 
 
 @given(programs)

@@ -2,16 +2,14 @@
 
 import pytest
 
-from robolang.checker import check
+from robolang.cell_symbols import CellSymbols
 from robolang.diagnostics import Severity, has_errors
 from robolang.lint import meaning_rules, motion_rules, planning_rules, point_rules, run_rules, text_rules
 from robolang.lint.apply import fix_all
 from robolang.lint.engine import check_points, check_source, lint
-from robolang.lint.registry import OF_THE_CELL, OF_THE_MOTION, codes, is_looked_for, rule, rules
+from robolang.lint.registry import OF_THE_MOTION, OF_THE_RUN, codes, is_looked_for, rule, rules
 from robolang.motion_check import rehearse
 from robolang.motion_findings import findings
-from robolang.parser import parse
-from robolang.points import load_points
 from robolang.project import load_project
 from robolang.source import Source, read_program
 from runtime.faults import Fault, lookup
@@ -32,12 +30,6 @@ def points_fault(text, item, folder):
         (folder / "pick.points.toml").symlink_to("none.points.toml")
     else:
         (folder / "pick.points.toml").write_bytes(text.encode("utf-8", "surrogateescape"))
-    if item.by_run:
-        try:
-            load_points(folder / "pick.points.toml", robot="puma560", axes=6)
-        except Fault as fault:
-            return fault.code, fault.line
-        return None
     result = check_source(read_program(folder / "pick.rbl"))
     assert result.diagnostics == ()
     if (in_points := check_points(result)) is not None:
@@ -54,12 +46,9 @@ def examine(text, item, folder):
         project = load_project(folder / "pick.rbl")
         assert not has_errors(project.diagnostics)
         found = (*project.diagnostics, *findings(project, rehearse(project), 3.0 if item.code == "RBL423" else None))
-    elif item.by_run:
-        parsed = parse(source)
-        found = check(parsed.program, points=POINTS, rated_payload_kg=2.5, sensors=["LASER"], tools=["GRIPPER"])
-        found = (*parsed.diagnostics, *found)
     else:
-        found = lint(source, points=POINTS)
+        found = lint(source, CellSymbols.named(points=POINTS, rated_payload_kg=2.5, sensors=["LASER"],
+                                               tools=["GRIPPER"]))  # fmt: skip
     return [(one.code, source.place(one.span.start).line, one.severity) for one in found]
 
 
@@ -72,11 +61,9 @@ def test_every_page_is_of_a_code_that_checking_can_find():
     assert set(rules()) <= {entry.code for entry in codes()}
 
 
-def test_what_only_a_run_finds_needs_the_cell():
-    of_points = {item.code for item in RULES if item.points}
-    assert {item.code for item in RULES if item.by_run} - of_points <= OF_THE_CELL
+def test_what_a_run_or_the_motion_finds_is_no_unused_suppression():
     assert {item.code for item in RULES if item.motion} == OF_THE_MOTION
-    assert not any(is_looked_for(code) for code in OF_THE_CELL | OF_THE_MOTION)
+    assert not any(is_looked_for(code) for code in OF_THE_RUN | OF_THE_MOTION)
     assert is_looked_for("RBL301")
 
 
@@ -108,7 +95,7 @@ def test_the_corrected_example_has_no_finding(item, tmp_path):
 
 @pytest.mark.parametrize("item", WITH_FIX, ids=name)
 def test_a_fix_that_is_promised_makes_the_correction_of_the_example(item):
-    fixed = fix_all(Source("pick.rbl", item.bad), lambda source: lint(source, points=POINTS))
+    fixed = fix_all(Source("pick.rbl", item.bad), lambda source: lint(source, CellSymbols.named(points=POINTS)))
     assert fixed.counts == {item.code: 1}
     assert fixed.source.text == item.good
 
@@ -116,7 +103,7 @@ def test_a_fix_that_is_promised_makes_the_correction_of_the_example(item):
 @pytest.mark.parametrize("item", [item for item in RULES if not item.fix], ids=name)
 def test_a_rule_without_a_fix_has_none(item):
     if item.code != "RBL104" and not item.points:
-        assert all(found.fix is None for found in lint(Source("pick.rbl", item.bad), points=POINTS))
+        assert all(found.fix is None for found in lint(Source("pick.rbl", item.bad), CellSymbols.named(points=POINTS)))
 
 
 @pytest.mark.parametrize("item", RULES, ids=name)

@@ -2,6 +2,7 @@
 
 import pytest
 
+from robolang.cell_symbols import CellSymbols
 from robolang.diagnostics import MAX_DIAGNOSTICS, Diagnostic
 from robolang.lint.apply import fix_all
 from robolang.lint.engine import lint
@@ -11,7 +12,7 @@ from tests.lint.helpers import POINTS, found, layer, marked, places, selection
 
 
 def fixed(text):
-    return fix_all(Source("pick.rbl", text), lambda source: lint(source, points=POINTS)).source.text
+    return fix_all(Source("pick.rbl", text), lambda source: lint(source, CellSymbols.named(points=POINTS))).source.text
 
 
 @pytest.mark.parametrize(
@@ -131,8 +132,8 @@ def test_with_an_error_of_syntax_nothing_is_called_unused():
 
 def test_without_the_points_nothing_is_called_unused():
     source = Source("pick.rbl", "MOVE P1 ' noqa: RBL301\n")
-    assert lint(source, points=None, complete=False) == ()
-    assert [item.code for item in lint(source, points=POINTS)] == ["RBL190"]
+    assert lint(source, complete=False) == ()
+    assert [item.code for item in lint(source, CellSymbols.named(points=POINTS))] == ["RBL190"]
 
 
 @pytest.mark.parametrize("code", ["RBL412", "RBL402", "RBL534", "wrist-singularity"])
@@ -143,7 +144,7 @@ def test_a_code_that_needs_the_cell_or_the_motion_is_not_called_unused(code):
 
 def test_what_is_found_later_is_suppressed_as_well():
     source = Source("pick.rbl", "MOVE P1 ' noqa\nMOVE P2 ' noqa: RBL412, RBL30\nMOVE P3\nMOVE P4 ' noqa\n")
-    before = lint(source, points=POINTS)
+    before = lint(source, CellSymbols.named(points=POINTS))
     assert [item.code for item in before] == ["RBL190", "RBL191", "RBL190"]
     later = [Diagnostic(code="RBL412", message="", span=Span(at, at + 1)) for at in (0, 15, 45)]
     found = sorted(add_later(source, before, later), key=lambda item: item.span)

@@ -2,7 +2,8 @@ import os
 
 import pytest
 
-from runtime.robot.loader import library, load_builtin
+from runtime.robot.loader import load_builtin
+from runtime.robot.robot_file import library
 from tests.lang.cli.commands import PUMA, robolang
 
 

@@ -31,7 +31,7 @@ def test_json_holds_the_text_of_the_pages():
     by_code = {item["code"]: item for item in found}
     assert by_code["RBL190"]["fix"].startswith("The codes that are not found are removed")
     assert by_code["RBL112"]["fix"] is None
-    assert (by_code["RBL402"]["found_by"], by_code["RBL401"]["found_by"]) == ("run", "check")
+    assert (by_code["RBL402"]["found_by"], by_code["RBL401"]["found_by"]) == ("check", "check")
     assert all(item["why"] and item["example"] and item["instead"] for item in found)
 
 

@@ -45,7 +45,7 @@ def test_builtin_cell_in_si() -> None:
     np.testing.assert_allclose(part.X_world_part, pose_from_xyzrpy([0.48, -0.22, 0.64, 0.0, 0.0, 0.0]))
     np.testing.assert_allclose(part.size, [0.06, 0.04, 0.08])
     assert cell.loads["hand_and_part"].mass == pytest.approx(cell.hand.mass + part.mass)
-    assert cell.controller is None
+    assert cell.controller == {}
     table = cell.obstacles[0]
     assert table.X_world_obstacle[2, 3] + table.size[2] / 2.0 == pytest.approx(0.6, abs=1e-12)
 
@@ -66,11 +66,11 @@ def test_arrays_are_read_only() -> None:
 
 
 def test_frames_and_controller_are_handed_on() -> None:
-    text = cell_text() + "\n[frames.bench]\npose_mm_deg = [1000, 0, 500, 0, 0, 90]\n[controller]\nanything = 3\n"
+    text = f"{cell_text()}\n[frames.bench]\npose_mm_deg = [1000, 0, 500, 0, 0, 90]\n"
+    text += "[controller]\nservo_period_ms = 0.5\n"
     cell = parse(text)
     np.testing.assert_allclose(cell.frames["bench"], pose_from_xyzrpy([1.0, 0.0, 0.5, 0.0, 0.0, math.pi / 2]))
-    assert cell.controller is not None
-    assert cell.controller.integer("anything", low=0, high=9) == 3
+    assert {key: given.value for key, given in cell.controller.items()} == {"servo_period_ms": 0.5}
 
 
 @pytest.mark.parametrize(

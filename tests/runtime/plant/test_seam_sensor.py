@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from runtime.plant.seam_sensor import SeamSensor, read_sensor
+from runtime.plant.seam_sensor import SeamSensor, SensorSpec
+from runtime.plant.sensor_file import read_sensor_file
 from runtime.tomlfile import FileFault, Source, load_table
 from runtime.units import DEG, MM
 
@@ -12,7 +13,7 @@ X = np.array([1.0, 0.0, 0.0])
 
 
 def sensor(text, folder=None):
-    return SeamSensor(read_sensor(load_table(Source("cell.toml", text)), folder))
+    return SeamSensor(SensorSpec.of(read_sensor_file(load_table(Source("cell.toml", text)), folder)))
 
 
 def test_a_ramp_rises_over_its_way_and_stays():

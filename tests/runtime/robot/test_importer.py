@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from runtime.frames import pose
-from runtime.robot.importer import load_arm, load_file, parse_model, read_arm, read_model
+from runtime.robot.importer import load_file, parse_model, read_arm, read_model
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.model import ArmModel
 from runtime.robot.sidecar import template
@@ -22,7 +22,7 @@ def robot(path, tmp_path):
     copy = tmp_path / path.name
     copy.write_text(path.read_text())
     (tmp_path / f"{path.stem}.robot.toml").write_text(fill(template(read_model(copy))))
-    return load_arm(copy)
+    return load_file(copy)
 
 
 def poses(n, seed=1992):
@@ -70,7 +70,7 @@ def test_an_mjcf_is_the_arm_that_mujoco_reads(tmp_path):
     copy = tmp_path / "angles.xml"
     copy.write_text(ANGLES.read_text())
     (tmp_path / "angles.robot.toml").write_text(fill(template(read_arm(copy))))
-    spec = load_arm(copy)
+    spec = load_file(copy)
     assert spec.n == 5
     for q in poses(5):
         same(spec, q, mujoco_says(ANGLES, q, "tip"))
@@ -257,7 +257,7 @@ def test_a_body_that_cannot_be_is_refused_unless_the_sidecar_corrects_it(tmp_pat
     sidecar = tmp_path / "a.robot.toml"
     sidecar.write_text(text)
     with pytest.raises(FileFault, match="RBL606"):
-        load_arm(path)
+        load_file(path)
     frames = [((0, 0, 0.3), (0, 0, 0), (0, 0, 1)), ((0, 0, 0.2), (0, 0, 0), (0, 1, 0))]
     massless = chain(frames, bodies=["", inertial()])
     path.write_text(massless)
@@ -276,7 +276,7 @@ def test_a_correction_in_the_sidecar_makes_a_published_body_possible(tmp_path):
     start = lines.index("# [axes.correction]")
     lines[start : start + 4] = [line.removeprefix("# ") for line in lines[start : start + 4]]
     sidecar.write_text("\n".join(lines))
-    spec = load_arm(path)
+    spec = load_file(path)
     assert spec.corrections[0].axis == 1
     assert spec.corrections[0].inertia_shift == pytest.approx(0.07, abs=1e-8)
     for q in poses(2):  # the same motion as the body that cannot be
@@ -310,9 +310,9 @@ def test_a_template_is_refused_until_each_gap_is_filled(tmp_path):
     sidecar.write_text(text)
     assert read_arm(path).n == 7  # kinematics needs no drives
     with pytest.raises(FileFault, match=r"RBL608 .*rated_payload_kg; all of \[path\].*every axis: max_acc"):
-        load_arm(path)
+        load_file(path)
     sidecar.write_text(fill(text))
-    spec = load_arm(path)
+    spec = load_file(path)
     np.testing.assert_allclose(np.rad2deg(spec.upper), [170, 120, 170, 120, 170, 120, 175], atol=1e-4)
     np.testing.assert_allclose(spec.per_axis("limits", "torque"), [320, 320, 176, 176, 110, 40, 40])
     assert spec.axes[0].motor.gear_ratio == 100.0
@@ -320,7 +320,7 @@ def test_a_template_is_refused_until_each_gap_is_filled(tmp_path):
         if " = " in line and line.split(" = ")[0] not in ("flange", "title") and not line.startswith("#"):
             sidecar.write_text(fill(text).replace(line + "\n", "", 1))
             with pytest.raises(FileFault, match=r"RBL608|RBL610"):
-                load_arm(path)
+                load_file(path)
 
 
 @pytest.mark.parametrize(
@@ -340,7 +340,7 @@ def test_a_sidecar_that_cannot_be_used_is_refused(tmp_path, code, old, new):
     assert old in text
     (tmp_path / "seven.robot.toml").write_text(text.replace(old, new, 1))
     with pytest.raises(FileFault) as caught:
-        load_arm(path)
+        load_file(path)
     assert caught.value.code == code
     assert caught.value.path.endswith("seven.robot.toml")
 
@@ -352,7 +352,7 @@ def test_a_range_in_the_sidecar_rules(tmp_path):
         read_arm(path)
     text = fill(template(read_model(path)), range_deg="[-45, 60]")
     (tmp_path / "seven.robot.toml").write_text(text)
-    assert read_arm(path).upper[0] == load_arm(path).upper[0] == np.deg2rad(60)
+    assert read_arm(path).upper[0] == load_file(path).upper[0] == np.deg2rad(60)
 
 
 def test_a_file_of_any_name_is_a_file(tmp_path):

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from runtime.numerals import number_in
-from runtime.robot.importer import load_arm, parse_model, read_arm, read_model
-from runtime.robot.loader import library, load_builtin, parse_robot
+from runtime.robot.importer import load_file, parse_model, read_arm, read_model
+from runtime.robot.loader import load_builtin, parse_robot
 from runtime.robot.plausibility import LEAST_ANGLE, MOST_TURNS, Turning, doubt_turning
+from runtime.robot.robot_file import library
 from runtime.robot.sidecar import template
 from runtime.tomlfile import FileFault, Source
 from tests.runtime.robot.models import ANGLES, SEVEN, chain, fill, inertial
@@ -96,7 +97,7 @@ def test_an_mjcf_of_degrees_with_radians_in_it():
 
 def with_limits(text):
     from runtime.robot.importer import _with_limits_doubted
-    from runtime.robot.sidecar import NO_OVERLAY
+    from runtime.robot.sidecar_file import NO_OVERLAY
 
     return _with_limits_doubted(parse_model(Source("a.xml", text)), NO_OVERLAY).warnings
 
@@ -126,12 +127,12 @@ def test_a_sidecar_is_doubted_where_it_rules(tmp_path):
     text = template(read_model(path))
     assert "# range_deg =   # MISSING" in text  # what could not be read back is not written
     sidecar = written(tmp_path, fill(text), "seven.robot.toml")
-    assert load_arm(path).warnings == read_arm(path).warnings == ()
+    assert load_file(path).warnings == read_arm(path).warnings == ()
     sidecar.write_text(fill(text).replace("gear_ratio = 100", "gear_ratio = 0.01", 1))
-    (doubt,) = load_arm(path).warnings
+    (doubt,) = load_file(path).warnings
     assert (doubt.code, doubt.path) == ("RBL629", str(sidecar))
     sidecar.write_text(fill(text, range_deg="[-900, 900]"))
-    for doubts in (load_arm(path).warnings, read_arm(path).warnings):
+    for doubts in (load_file(path).warnings, read_arm(path).warnings):
         assert [(fault.code, fault.path) for fault in doubts] == [("RBL627", str(sidecar))]
 
 

@@ -1,0 +1,104 @@
+"""What a program may name and what its arm may do: the facts of the cell that need no numerics.
+
+One ``CellSymbols.of(cell)`` with the taught points of the program serves ``check``, a run and the linter, so that they
+cannot disagree. A fact that is None is not known and not checked. Names are in capitals.
+"""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+
+from runtime.plant.cell_file import CellFile, LoadFile
+from runtime.robot.drives import Limits
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CellSymbols:
+    """Names of a cell and of its taught points, what the arm may carry (kg) and the ``limits`` of its axes.
+
+    ``loads`` have their numbers where these are known. ``cell_file`` and ``points_file`` are the paths that a remedy
+    names; empty: not known.
+    """
+
+    robot: str | None = None
+    limits: tuple[Limits, ...] | None = None
+    rated_payload: float | None = None
+    sensors: frozenset[str] | None = None
+    tools: frozenset[str] | None = None
+    frames: frozenset[str] | None = None
+    loads: Mapping[str, LoadFile | None] | None = None
+    inputs: frozenset[int] | None = None
+    points: frozenset[str] | None = None
+    cell_file: str = ""
+    points_file: str = ""
+
+    @staticmethod
+    def of(cell: CellFile) -> "CellSymbols":
+        """Return what a cell file gives."""
+        return CellSymbols(
+            robot=cell.arm.name,
+            limits=cell.arm.limits,
+            rated_payload=cell.arm.rated_payload,
+            sensors=_keys(cell.sensors),
+            tools=_keys(cell.tools),
+            frames=_keys(cell.frames),
+            loads={name.upper(): load for name, load in cell.loads.items()},
+            inputs=frozenset(cell.inputs),
+            cell_file=cell.path,
+        )
+
+    @staticmethod
+    def named(*, points: Collection[str] | None = None, rated_payload_kg: float | None = None,
+              sensors: Collection[str] | None = None, tools: Collection[str] | None = None,
+              frames: Collection[str] | None = None, loads: Collection[str] | None = None,
+              inputs: Collection[int] | None = None) -> "CellSymbols":  # fmt: skip
+        """Return symbols of names alone, in any case."""
+        return CellSymbols(
+            points=_keys(points), rated_payload=rated_payload_kg, sensors=_keys(sensors), tools=_keys(tools),
+            frames=_keys(frames), loads=None if loads is None else dict.fromkeys(name.upper() for name in loads),
+            inputs=None if inputs is None else frozenset(inputs),
+        )  # fmt: skip
+
+    def taught(self, points: Collection[str], file: str) -> "CellSymbols":
+        """Return the symbols with the names of taught points, and the file in which points would be taught."""
+        return replace(self, points=_keys(points), points_file=file)
+
+    @property
+    def axes(self) -> int | None:
+        """Number of axes of the arm."""
+        return None if self.limits is None else len(self.limits)
+
+    def where_to_add(self, kind: str, name: str) -> str:
+        """Return what to do about the name of a tool, frame, load or sensor that the cell does not have."""
+        known = {"tool": self.tools, "frame": self.frames, "load": self.loads, "sensor": self.sensors}[kind]
+        there = f"{kind}s of the cell: {', '.join(sorted(known))}" if known else f"the cell has no {kind}s"
+        if not self.cell_file:
+            return f"{there}; a cell file beside the program, NAME.cell.toml, can define more"
+        return f"{there}; to add it, write into {self.cell_file}: [{kind}s.{name}] {_KEYS[kind]}"
+
+    def where_to_teach(self, name: str) -> str:
+        """Return how to teach a point of a name; empty where nothing is known of the points."""
+        if self.points is None or len(self.points) > _MANY:
+            known = ""
+        else:
+            known = f"taught: {', '.join(sorted(self.points))}" if self.points else "no point is taught"
+        if not self.points_file:
+            return known
+        first = "" if self.points else "schema = 1, then "
+        return (f"{known}{'; ' * bool(known)}to teach it, write into {self.points_file}: {first}[points.{name}] "
+                "pose = [x, y, z, rx, ry, rz] in mm and deg")  # fmt: skip
+
+
+_MANY = 10
+_KEYS = {
+    "tool": "pose_mm_deg = [x, y, z, rx, ry, rz]",
+    "frame": "pose_mm_deg = [x, y, z, rx, ry, rz]",
+    "load": "mass_kg = 1.0, cog_mm = [0, 0, 60]",
+    "sensor": 'kind = "ramp", ...',
+}
+"""What an entry of each kind needs in the cell file."""
+
+NOTHING_KNOWN = CellSymbols()
+
+
+def _keys(names: Collection[str] | None) -> frozenset[str] | None:
+    return None if names is None else frozenset(name.upper() for name in names)

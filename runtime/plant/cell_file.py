@@ -1,0 +1,236 @@
+"""The cell file as it is written: every key known, every value of its kind and in its range, in the units of its keys.
+
+``cell`` has the meaning and makes arrays of it. Imports no numerics: ``robolang check`` reads the same ``CellFile`` as
+a run, so what is wrong with a cell is the same for both, and all of it is found at once. The robot is a built-in name
+or a file inside the cell file's own folder: nothing outside that folder is ever opened, whatever the file says.
+"""
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import TypeVar
+
+from runtime.plant.sensor_file import SensorFile, read_sensor_file
+from runtime.plant.signals import InputSpec, read_inputs
+from runtime.profile import Layer, read_layer
+from runtime.robot import robot_file
+from runtime.robot.arm_file import ROBOT_ENDINGS, ArmFile, read_arm_file
+from runtime.tomlfile import Source, Table, inside, load_table, read_source
+from runtime.units import DEG
+
+SCHEMA = 1
+REACH_MM = 20_000.0
+"""No coordinate of a cell is further away than this, mm."""
+
+HEAVIEST_KG = 5000.0
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,62}")
+
+T = TypeVar("T")
+Numbers = tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HandFile:
+    """``[hand]``: see ``runtime.plant.cell.HandSpec``."""
+
+    mass_kg: float
+    cog_mm: Numbers
+    tcp_mm_deg: Numbers
+    stroke_mm: float
+    grip_force_n: float
+    dwell_s: float
+    pad_mm: Numbers
+    finger_length_mm: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PartFile:
+    """One ``[[parts]]``: a loose box."""
+
+    name: str
+    size_mm: Numbers
+    pose_mm_deg: Numbers
+    mass_kg: float
+    friction: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ObstacleFile:
+    """One ``[[obstacles]]``: a fixed box."""
+
+    name: str
+    size_mm: Numbers
+    pose_mm_deg: Numbers
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoadFile:
+    """``[loads.NAME]``: a load that a program may declare by name, in the flange frame."""
+
+    mass_kg: float
+    cog_mm: Numbers
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CellFile:
+    """A cell file. ``tools``, ``frames``: poses (6,) mm and deg by name; ``controller``: what ``[controller]`` sets."""
+
+    path: str
+    arm: ArmFile
+    home_deg: Numbers
+    hand: HandFile
+    parts: tuple[PartFile, ...]
+    obstacles: tuple[ObstacleFile, ...]
+    loads: Mapping[str, LoadFile]
+    tools: Mapping[str, Numbers]
+    frames: Mapping[str, Numbers]
+    sensors: Mapping[str, SensorFile]
+    inputs: Mapping[int, InputSpec]
+    controller: Layer
+
+
+def read_cell_file(path: Path) -> CellFile:
+    """Read a cell file; ``FileFault`` (RBL6xx) at the first line that is wrong, with all others."""
+    return parse_cell_file(read_source(path), path.parent)
+
+
+def parse_cell_file(source: Source, folder: Path | None = None) -> CellFile:
+    """Return what the text of a cell file says; ``FileFault`` at the first line that is wrong, with all others.
+
+    ``folder`` is where the file stands; without one (a cell held as text) only built-in robots can be named.
+    """
+    table = load_table(source, gather=True)
+    table.integer("schema", low=SCHEMA, high=SCHEMA)
+    arm = table.attempt(lambda: _arm(table, folder))
+    home = table.table("home").gather(lambda home: _home(home, arm))
+    hand = table.table("hand").gather(_hand)
+    parts, obstacles = (table.tables(key, required=False) for key in ("parts", "obstacles"))
+    _words(((item.text("name"), item) for item in (*obstacles, *parts)), "of a part or obstacle")
+    found = (
+        [item.gather(_part) for item in parts],
+        [item.gather(_obstacle) for item in obstacles],
+        _named(table, "loads", _load),
+        _named(table, "tools", _only_pose),
+        _named(table, "frames", _only_pose),
+        _named(table, "sensors", lambda item: read_sensor_file(item, folder)),
+    )
+    inputs = table.attempt(lambda: read_inputs(table.named_tables("inputs")))
+    controller = table.table("controller").gather(read_layer) if "controller" in table else {}
+    table.finish()
+    assert arm is not None and home is not None and hand is not None and inputs is not None and controller is not None
+    return CellFile(
+        path=source.path,
+        arm=arm,
+        home_deg=home,
+        hand=hand,
+        parts=tuple(each for each in found[0] if each is not None),
+        obstacles=tuple(each for each in found[1] if each is not None),
+        loads=found[2],
+        tools=found[3],
+        frames=found[4],
+        sensors=found[5],
+        inputs=MappingProxyType(inputs),
+        controller=controller,
+    )
+
+
+def _arm(table: Table, folder: Path | None) -> ArmFile:
+    name = table.text("robot")
+    if not name.lower().endswith(ROBOT_ENDINGS):
+        return robot_file.builtin(table.text("robot", choices=robot_file.library()))
+    return read_arm_file(inside(table, name, folder, "robot"))
+
+
+def _home(table: Table, arm: ArmFile | None) -> Numbers:
+    q_deg = table.numbers("joints_deg", None if arm is None else len(arm.limits), low=-3600.0, high=3600.0)
+    table.done()
+    for index, (angle, limits) in enumerate(zip(q_deg, arm.limits if arm else (), strict=False)):
+        if not limits.lower <= angle * DEG <= limits.upper:
+            table.fail("RBL605", f"J{index + 1} at home is {angle:g} deg and must be between {limits.lower / DEG:g} "
+                       f"and {limits.upper / DEG:g}", key="joints_deg")  # fmt: skip
+    return q_deg
+
+
+def _hand(table: Table) -> HandFile:
+    hand = HandFile(
+        mass_kg=table.number("mass_kg", positive=True, high=HEAVIEST_KG),
+        cog_mm=_point(table, "cog_mm"),
+        tcp_mm_deg=_pose(table, "tcp_mm_deg"),
+        stroke_mm=table.number("stroke_mm", positive=True, high=1000.0),
+        grip_force_n=table.number("grip_force_n", positive=True, high=20_000.0),
+        dwell_s=table.number("dwell_s", low=0.0, high=60.0),
+        pad_mm=_size(table, "pad_mm", (20.0, 8.0, 40.0)),
+        finger_length_mm=table.number("finger_length_mm", 52.0, positive=True, high=1000.0),
+    )
+    table.done()
+    return hand
+
+
+def _part(table: Table) -> PartFile:
+    part = PartFile(
+        name=table.text("name"),
+        size_mm=_size(table, "size_mm"),
+        mass_kg=table.number("mass_kg", low=1e-4, high=HEAVIEST_KG),
+        pose_mm_deg=_pose(table, "pose_mm_deg"),
+        friction=table.number("friction", 0.5, positive=True, high=5.0),
+    )
+    table.done()
+    return part
+
+
+def _obstacle(table: Table) -> ObstacleFile:
+    obstacle = ObstacleFile(
+        name=table.text("name"), size_mm=_size(table, "size_mm"), pose_mm_deg=_pose(table, "pose_mm_deg")
+    )
+    table.done()
+    return obstacle
+
+
+def _load(table: Table) -> LoadFile:
+    load = LoadFile(mass_kg=table.number("mass_kg", low=0.0, high=HEAVIEST_KG), cog_mm=_point(table, "cog_mm"))
+    table.done()
+    return load
+
+
+def _only_pose(table: Table) -> Numbers:
+    pose = _pose(table, "pose_mm_deg")
+    table.done()
+    return pose
+
+
+def _pose(table: Table, key: str) -> Numbers:
+    return table.numbers(key, 6, low=-REACH_MM, high=REACH_MM)
+
+
+def _point(table: Table, key: str) -> Numbers:
+    return table.numbers(key, 3, low=-REACH_MM, high=REACH_MM)
+
+
+def _size(table: Table, key: str, default: Numbers | None = None) -> Numbers:
+    return table.numbers(key, 3, default, low=0.1, high=REACH_MM)
+
+
+def _named(table: Table, key: str, read: Callable[[Table], T]) -> Mapping[str, T]:
+    """Read the tables ``[key.NAME]``; names are words of the language, which does not tell capitals apart."""
+    tables = table.named_tables(key)
+    _words(tables.items(), f"of [{key}]")
+    found = {name: item.gather(read) for name, item in tables.items()}
+    return MappingProxyType({name: each for name, each in found.items() if each is not None})
+
+
+def _words(names: Iterable[tuple[str, Table]], where: str) -> None:
+    """Refuse names that a program could not write, and names that are there twice."""
+    seen: set[str] = set()
+    for name, item in names:
+        item.gather(lambda item, name=name: _word(name, item, where, seen))  # type: ignore[misc]
+
+
+def _word(name: str, item: Table, where: str, seen: set[str]) -> None:
+    key = "name" if "name" in item else None
+    if not _NAME.fullmatch(name):
+        item.fail("RBL613", f"the name '{name}' {where} must be letters, digits and '_'", key=key)
+    if name.upper() in seen:
+        item.fail("RBL610", f"the name '{name}' {where} is used twice", key=key)
+    seen.add(name.upper())

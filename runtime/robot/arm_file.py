@@ -1,0 +1,81 @@
+"""The file of an arm, by its ending: a robot file in TOML, or a model file (URDF, MJCF) with its sidecar.
+
+Either says without numerics what the arm may do: its axes, their ranges, what it may carry. ``importer`` makes a robot
+of it. Nothing outside of the folder of a file is opened.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from runtime.robot import robot_file
+from runtime.robot.drives import Limits
+from runtime.robot.robot_file import RobotFile
+from runtime.robot.sidecar_file import SidecarFile, read_sidecar, sidecar_path
+from runtime.robot.xmlfile import Element, parse_xml
+from runtime.tomlfile import Source, read_source
+
+MODEL_ENDINGS = (".urdf", ".xml")
+ROBOT_ENDINGS = (".toml", *MODEL_ENDINGS)
+"""How the name of a robot file ends."""
+_TAGS = ("robot", "mujoco")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModelFile:
+    """A model file, well-formed, and its sidecar."""
+
+    source: Source
+    name: str
+    sidecar: SidecarFile
+
+    @property
+    def rated_payload(self) -> float:
+        """Heaviest load at the flange, kg."""
+        return self.sidecar.rated_payload
+
+    @property
+    def limits(self) -> tuple[Limits, ...]:
+        """Limits of every axis."""
+        return tuple(axis.limits for axis in self.sidecar.axes)
+
+
+ArmFile = RobotFile | ModelFile
+
+
+def is_model(name: str) -> bool:
+    """Return whether a name is that of a URDF or MJCF file."""
+    return name.lower().endswith(MODEL_ENDINGS)
+
+
+def read_arm_file(path: Path) -> ArmFile:
+    """Return what the file of an arm says; ``FileFault`` RBL6xx, RBL608 for a model file without a complete sidecar."""
+    source = read_source(path)
+    if not is_model(path.name):
+        return robot_file.parse(source)
+    root = model_root(source)
+    sidecar = sidecar_source(path)
+    if sidecar is None:
+        beside = sidecar_path(path).name
+        first_joint(root).fail("RBL608", f"no drives, path limits and rated payload: there is no {beside}",
+                               f"'robolang robot import {path.name}' writes {beside}; fill in what it marks MISSING")
+    key = "name" if root.tag == "robot" else "model"
+    return ModelFile(source=source, name=root.text(key, "robot"), sidecar=read_sidecar(sidecar, path.name))
+
+
+def model_root(source: Source) -> Element:
+    """Return the root element of a model file; ``FileFault`` RBL621 for XML of another kind."""
+    root = parse_xml(source)
+    if root.tag not in _TAGS:
+        root.fail("RBL621", f"<{root.tag}> is neither URDF (<robot>) nor MJCF (<mujoco>)")
+    return root
+
+
+def sidecar_source(model: Path) -> Source | None:
+    """Return the text of the sidecar of a model file, None where there is none; ``FileFault`` RBL600."""
+    beside = sidecar_path(model)
+    return read_source(beside) if beside.is_symlink() or beside.exists() else None
+
+
+def first_joint(root: Element) -> Element:
+    """Return the element at which a missing sidecar is reported: the first joint, the root where there is none."""
+    return next((element for element in root.walk() if element.tag == "joint"), root)

@@ -1,0 +1,237 @@
+"""Drives and limits of an arm: motor, range, speed and loop bandwidths of every axis, and what the tool point may do.
+
+Robot files and the sidecars of model files state them with the same keys (docs/robots.md); both are read here, in mm
+and deg, and kept in SI. Imports no numerics: ``robolang check`` reads the ranges of a robot with it.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from runtime.tomlfile import Table
+from runtime.units import DEG, MM
+
+STIFFEST = 1e8
+"""No gear is stiffer than this at the joint, N m/rad."""
+
+FASTEST_SPRING = 1e4
+"""A rotor that swings faster against its gear, rad/s, needs physics steps below 25 us: such a gear is rigid."""
+
+RANGE_ROUNDING = 1e-9
+"""An angle may pass the end of its range by as much, rad: rounding of deg."""
+
+WIDEST = 3600.0 * DEG
+"""No joint turns further than ten turns to a side, rad."""
+
+FASTEST_LOOP = 8000.0
+"""No loop is stable beyond this at the shortest servo period: bandwidth times 0.25 ms is 2, 1/s (see ``project``)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Motor:
+    """The drive of one axis, motor side.
+
+    ``gear_ratio`` N is signed (motor turns per joint turn), ``rotor_inertia`` kg m2, ``torque_constant`` N m/A,
+    ``max_current`` A, ``viscous_friction`` N m s/rad, ``coulomb_friction`` N m (turning forward, backward, both
+    positive), ``encoder_counts`` per motor turn, ``current_bandwidth`` rad/s. ``stiffness`` N m/rad and ``damping``
+    N m s/rad are those of the gear between motor and link, at the joint; infinite stiffness is a rigid gear.
+    """
+
+    gear_ratio: float
+    rotor_inertia: float
+    torque_constant: float
+    max_current: float
+    viscous_friction: float
+    coulomb_friction: tuple[float, float]
+    encoder_counts: int
+    current_bandwidth: float
+    stiffness: float = math.inf
+    damping: float = 0.0
+
+    @property
+    def elastic(self) -> bool:
+        """Whether the gear is a spring between motor and link."""
+        return math.isfinite(self.stiffness)
+
+    @property
+    def reflected_inertia(self) -> float:
+        """Rotor inertia at the joint, N^2 J, kg m2 (docs/servo.md: the document omits N)."""
+        return self.gear_ratio**2 * self.rotor_inertia
+
+    @property
+    def joint_torque_constant(self) -> float:
+        """Ktn: joint torque per motor current, N m/A. Positive: the current is counted in joint direction."""
+        return abs(self.gear_ratio) * self.torque_constant
+
+    @property
+    def joint_viscous_friction(self) -> float:
+        """N^2 B, N m s/rad at the joint."""
+        return self.gear_ratio**2 * self.viscous_friction
+
+    @property
+    def joint_coulomb_friction(self) -> tuple[float, float]:
+        """|N| Tc at the joint, N m, (joint turning forward, joint turning backward)."""
+        forward, backward = self.coulomb_friction
+        if self.gear_ratio < 0.0:
+            forward, backward = backward, forward
+        return abs(self.gear_ratio) * forward, abs(self.gear_ratio) * backward
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """Joint limits: range rad, speed rad/s, acceleration rad/s2, torque N m (at the joint).
+
+    ``rated_moment`` N m and ``rated_inertia`` kg m2 that a payload may have about the axis; None: not published
+    (``runtime.robot.load`` estimates them).
+    """
+
+    lower: float
+    upper: float
+    speed: float
+    acceleration: float
+    torque: float
+    rated_moment: float | None = None
+    rated_inertia: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bandwidths:
+    """What the loop gains of an axis derive from: Kp = ``position`` 1/s, Kv = K Ktn = ``velocity`` 1/s."""
+
+    position: float
+    velocity: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PathLimits:
+    """Limits and defaults of the tool point on a straight move, m/s, m/s2, m/s3 and rad/s, rad/s2, rad/s3."""
+
+    default_speed: float
+    max_speed: float
+    acceleration: float
+    jerk: float
+    rotation_speed: float
+    rotation_acceleration: float
+    rotation_jerk: float
+
+
+def path_limits(table: Table) -> PathLimits:
+    """Read ``[path]`` in mm and deg into SI; ``FileFault`` RBL60x."""
+    limits = PathLimits(
+        default_speed=table.number("default_speed_mm_s", positive=True) * MM,
+        max_speed=table.number("max_speed_mm_s", positive=True) * MM,
+        acceleration=table.number("acceleration_mm_s2", positive=True) * MM,
+        jerk=table.number("jerk_mm_s3", positive=True) * MM,
+        rotation_speed=table.number("rotation_speed_deg_s", positive=True) * DEG,
+        rotation_acceleration=table.number("rotation_acceleration_deg_s2", positive=True) * DEG,
+        rotation_jerk=table.number("rotation_jerk_deg_s3", positive=True) * DEG,
+    )
+    if limits.default_speed > limits.max_speed:
+        table.fail("RBL605", "'path.default_speed_mm_s' is above 'path.max_speed_mm_s'", key="default_speed_mm_s")
+    table.done()
+    return limits
+
+
+def motor(table: Table) -> Motor:
+    """Read ``[axes.motor]``, motor side; ``FileFault`` RBL60x."""
+    ratio = table.number("gear_ratio", low=-10000.0, high=10000.0)
+    if not abs(ratio) >= 1e-3:
+        table.fail("RBL605", f"'{table.name('gear_ratio')}' is {ratio:g} and must not be zero", key="gear_ratio")
+    forward, backward = table.numbers("coulomb_friction_nm", 2, low=0.0)
+    elastic = "joint_stiffness_nm_rad" in table or "joint_damping_nm_s_rad" in table
+    motor = Motor(
+        gear_ratio=ratio,
+        rotor_inertia=table.number("rotor_inertia_kg_m2", low=0.0),
+        torque_constant=table.number("torque_constant_nm_a", positive=True),
+        max_current=table.number("max_current_a", positive=True),
+        viscous_friction=table.number("viscous_friction_nm_s", low=0.0),
+        coulomb_friction=(forward, backward),
+        encoder_counts=table.integer("encoder_counts", low=4, high=2**30),
+        current_bandwidth=table.number("current_bandwidth_hz", positive=True) * 2.0 * math.pi,
+        stiffness=table.number("joint_stiffness_nm_rad", positive=True, high=STIFFEST) if elastic else math.inf,
+        damping=table.number("joint_damping_nm_s_rad", low=0.0) if elastic else 0.0,
+    )
+    _check_spring(table, motor)
+    table.done()
+    return motor
+
+
+def _check_spring(table: Table, motor: Motor) -> None:
+    """Refuse a spring without a mass on the motor's side, or one that swings too fast to be simulated."""
+    if not motor.elastic:
+        return
+    if not motor.rotor_inertia > 0.0:
+        table.fail("RBL605", f"'{table.name('rotor_inertia_kg_m2')}' is 0, and the spring of the gear needs a rotor",
+                   key="rotor_inertia_kg_m2")  # fmt: skip
+    if not motor.stiffness <= motor.reflected_inertia * FASTEST_SPRING**2:
+        table.fail("RBL605", f"the spring of {motor.stiffness:g} N m/rad swings the rotor too fast to be simulated",
+                   "a gear as stiff as that is rigid: leave out joint_stiffness_nm_rad and joint_damping_nm_s_rad",
+                   key="joint_stiffness_nm_rad")  # fmt: skip
+
+
+def limits(table: Table) -> Limits:
+    """Read the range, speed, acceleration and torque of an axis in deg and N m; ``FileFault`` RBL60x."""
+    lower, upper = joint_range(table)
+    return Limits(
+        lower=lower,
+        upper=upper,
+        speed=table.number("max_speed_deg_s", positive=True) * DEG,
+        acceleration=table.number("max_acceleration_deg_s2", positive=True) * DEG,
+        torque=table.number("max_torque_nm", positive=True),
+        rated_moment=_optional(table, "rated_moment_nm"),
+        rated_inertia=_optional(table, "rated_inertia_kg_m2"),
+    )
+
+
+def joint_range(table: Table) -> tuple[float, float]:
+    """Read ``range_deg`` of an axis, rad; ``FileFault`` RBL60x."""
+    lower, upper = table.numbers("range_deg", 2, low=-WIDEST / DEG, high=WIDEST / DEG)
+    if not lower < upper:
+        table.fail("RBL607", f"'{table.name('range_deg')}' goes from {lower:g} to {upper:g}", key="range_deg")
+    return lower * DEG, upper * DEG
+
+
+def _optional(table: Table, key: str) -> float | None:
+    """Return a number above 0, None where the file has none."""
+    table.ask(key)
+    return table.number(key, positive=True) if key in table else None
+
+
+def bandwidths(table: Table) -> Bandwidths:
+    """Read ``[axes.servo]``, 1/s; ``FileFault`` RBL60x."""
+    bandwidths = Bandwidths(
+        position=table.number("position_bandwidth_rad_s", positive=True, high=FASTEST_LOOP),
+        velocity=table.number("velocity_bandwidth_rad_s", positive=True, high=FASTEST_LOOP),
+    )
+    table.done()
+    return bandwidths
+
+
+def texts(table: Table, key: str) -> tuple[str, ...]:
+    """Return an optional list of texts; ``FileFault`` RBL613."""
+    value = table.raw_list(key)
+    if not all(isinstance(item, str) for item in value):
+        table.fail("RBL613", f"'{key}' must be a list of texts", key=key)
+    return tuple(value)
+
+
+def beyond_range(q_deg: Sequence[float | None], limits: Sequence[Limits]) -> str:
+    """Return which joint stands furthest outside of its range at angles (n,) deg, and by how much; empty for none.
+
+    An angle that is None is not known; neither are ``limits`` that are not there.
+    """
+    worst, found = RANGE_ROUNDING, ""
+    for index, (angle, axis) in enumerate(zip(q_deg, limits, strict=False)):
+        if angle is None:
+            continue
+        excess = max(axis.lower - angle * DEG, angle * DEG - axis.upper)
+        if not excess <= worst:
+            worst = excess
+            found = (f"J{index + 1} is at {angle:g} deg, {excess / DEG:.4g} deg outside of its range of "
+                     f"{axis.lower / DEG:g} to {axis.upper / DEG:g} deg")  # fmt: skip
+    return found
+
+
+def joint_label(index: int, name: str) -> str:
+    """Return ``J2 shoulder_lift``: the number people use, from 1, and the name in the file."""
+    return f"J{index + 1} {name}"

@@ -1,0 +1,239 @@
+"""The robot file as it is written: every key known, every limit present, every value of its kind and in its range.
+
+This is the reading of a file ``NAME.toml``, in the units of its keys, without numerics: ``robolang check`` and a run
+read the same ``RobotFile``. What needs vectors is judged from it by ``loader``: whether bodies are possible, whether
+the closed form describes the same arm. Nothing is guessed: a missing limit is an error that names the axis and the
+key, and so is a key nobody reads. The geometry comes as Denavit-Hartenberg rows or as joint lines in space
+(``geometry`` has the meaning of both).
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from typing import Literal, cast
+
+from runtime.robot import drives
+from runtime.robot.drives import Bandwidths, Limits, Motor, PathLimits
+from runtime.tomlfile import Source, Table, load_table
+
+SCHEMA = 1
+MOST_AXES = 7
+SHORTEST_DIRECTION = 1e-6
+"""A direction shorter than this has lost its digits."""
+
+_LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DhRow:
+    """A row of standard Denavit-Hartenberg: m and deg."""
+
+    d_m: float
+    a_m: float
+    alpha_deg: float
+    theta_offset_deg: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LineRow:
+    """A joint axis as a line in the base frame at the zero pose: a point on it, m, and its direction of any length."""
+
+    origin_m: tuple[float, ...]
+    direction: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FlangeRow:
+    """The flange in the base frame at the zero pose: m, and turns about the fixed x, y and z axes, deg."""
+
+    position_m: tuple[float, ...]
+    rotation_deg: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OpwRow:
+    """The closed form of ``[kinematics.opw]``: lengths m of a1, a2, b, c1 to c4; offsets deg; signs 1 or -1."""
+
+    lengths_m: tuple[float, ...]
+    offsets_deg: tuple[float, ...]
+    signs: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CorrectionRow:
+    """A change to published body data, kg m2 and kg, with its reason; ``table`` to refuse it at its place."""
+
+    inertia_shift: float
+    added_mass: float
+    added_inertia: float
+    reason: str
+    table: Table
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AxisFile:
+    """One ``[[axes]]``: ``cog_m`` (3,) and ``inertia`` (3 or 6,) kg m2 in the frame of the row, ``table`` its place."""
+
+    name: str
+    row: DhRow | LineRow
+    mass_kg: float
+    cog_m: tuple[float, ...]
+    inertia_kg_m2: tuple[float, ...]
+    motor: Motor
+    limits: Limits
+    bandwidths: Bandwidths
+    correction: CorrectionRow | None
+    table: Table
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RobotFile:
+    """A robot file; ``flange`` stands in the form of lines only. ``table`` is the whole file, for places."""
+
+    name: str
+    title: str
+    sources: tuple[str, ...]
+    notes: tuple[str, ...]
+    rated_payload: float
+    axes: tuple[AxisFile, ...]
+    flange: FlangeRow | None
+    path: PathLimits
+    opw: OpwRow | None
+    table: Table
+
+    @property
+    def limits(self) -> tuple[Limits, ...]:
+        """Limits of every axis."""
+        return tuple(axis.limits for axis in self.axes)
+
+
+def library() -> list[str]:
+    """Return the names of the built-in robots."""
+    files = resources.files("runtime.robot.library")
+    return sorted(item.name.removesuffix(".toml") for item in files.iterdir() if item.name.endswith(".toml"))
+
+
+@cache
+def builtin(name: str) -> RobotFile:
+    """Return the file of a built-in robot; ``KeyError`` when there is none of that name."""
+    if name not in library():
+        raise KeyError(name)
+    text = resources.files("runtime.robot.library").joinpath(f"{name}.toml").read_text("utf-8")
+    return parse(Source(f"{name}.toml", text))
+
+
+def parse(source: Source) -> RobotFile:
+    """Return what the text of a robot file says; ``FileFault`` (RBL6xx) at the line that is wrong."""
+    table = load_table(source)
+    table.integer("schema", low=SCHEMA, high=SCHEMA)
+    name, title = table.text("name"), table.text("title")
+    kinematics = table.table("kinematics")
+    form = cast(Literal["dh", "lines"], kinematics.text("form", choices=("dh", "lines")))
+    opw = _opw(kinematics.table("opw")) if "opw" in kinematics else None
+    kinematics.done()
+    path = drives.path_limits(table.table("path"))
+    tables = table.tables("axes")
+    if not 1 <= len(tables) <= MOST_AXES:
+        table.fail("RBL605", f"a robot has 1 to {MOST_AXES} axes, not {len(tables)}", key="axes")
+    names: set[str] = set()
+    found = RobotFile(
+        name=name,
+        title=title,
+        sources=drives.texts(table, "sources"),
+        notes=drives.texts(table, "notes"),
+        rated_payload=rated_payload(table),
+        flange=_flange(table.table("flange")) if form == "lines" else None,
+        axes=tuple(_axis(each, form, names) for each in tables),
+        path=path,
+        opw=opw,
+        table=table,
+    )
+    table.done()
+    if opw is not None and len(tables) != 6:
+        table.fail("RBL615", f"the closed form is for 6 axes, not {len(tables)}", key="kinematics")
+    return found
+
+
+def rated_payload(table: Table) -> float:
+    """Return the heaviest load at the flange, kg; ``FileFault`` RBL60x."""
+    return table.number("rated_payload_kg", low=0.0, high=5000.0)
+
+
+def correction(table: Table) -> CorrectionRow | None:
+    """Return the ``[axes.correction]`` of an axis, None without one; ``FileFault`` RBL60x."""
+    if "correction" not in table:
+        return None
+    inner = table.table("correction")
+    found = CorrectionRow(
+        inertia_shift=inner.number("inertia_shift_kg_m2", low=0.0),
+        added_mass=inner.number("added_mass_kg", low=0.0),
+        added_inertia=inner.number("added_inertia_kg_m2", 0.0, low=0.0),
+        reason=inner.text("reason"),
+        table=inner,
+    )
+    inner.done()
+    return found
+
+
+def _axis(table: Table, form: Literal["dh", "lines"], names: set[str]) -> AxisFile:
+    row = _dh(table) if form == "dh" else _line(table)
+    name = table.text("name")
+    if name in names:
+        table.fail("RBL610", f"two axes are named '{name}'", key="name")
+    names.add(name)
+    mass = table.number("mass_kg", low=0.0, high=10000.0)
+    cog = table.numbers("cog_m", 3, low=-10.0, high=10.0)
+    inertia = table.numbers("inertia_kg_m2", None, low=-1e5, high=1e5)
+    if len(inertia) not in (3, 6):
+        table.fail("RBL613", f"'{table.name('inertia_kg_m2')}' needs xx, yy, zz or xx, yy, zz, xy, xz, yz",
+                   key="inertia_kg_m2")  # fmt: skip
+    found = AxisFile(
+        name=name,
+        row=row,
+        mass_kg=mass,
+        cog_m=cog,
+        inertia_kg_m2=inertia,
+        motor=drives.motor(table.table("motor")),
+        limits=drives.limits(table),
+        bandwidths=drives.bandwidths(table.table("servo")),
+        correction=correction(table),
+        table=table,
+    )
+    table.done()
+    return found
+
+
+def _dh(table: Table) -> DhRow:
+    return DhRow(
+        d_m=table.number("d_m", low=-10.0, high=10.0),
+        a_m=table.number("a_m", low=-10.0, high=10.0),
+        alpha_deg=table.number("alpha_deg", low=-360.0, high=360.0),
+        theta_offset_deg=table.number("theta_offset_deg", 0.0, low=-360.0, high=360.0),
+    )
+
+
+def _line(table: Table) -> LineRow:
+    row = LineRow(origin_m=table.numbers("origin_m", 3, low=-10.0, high=10.0),
+                  direction=table.numbers("direction", 3, low=-10.0, high=10.0))  # fmt: skip
+    if not math.hypot(*row.direction) >= SHORTEST_DIRECTION:
+        table.fail("RBL605", f"'{table.name('direction')}' has no direction", "write a vector such as [0, 1, 0]",
+                   key="direction")  # fmt: skip
+    return row
+
+
+def _flange(table: Table) -> FlangeRow:
+    found = FlangeRow(position_m=table.numbers("position_m", 3, low=-10.0, high=10.0),
+                      rotation_deg=table.numbers("rotation_deg", 3, low=-360.0, high=360.0))  # fmt: skip
+    table.done()
+    return found
+
+
+def _opw(table: Table) -> OpwRow:
+    lengths = tuple(table.number(f"{key}_m", low=-10.0, high=10.0) for key in _LENGTHS)
+    offsets = table.numbers("offsets_deg", 6, low=-360.0, high=360.0)
+    signs = table.numbers("signs", 6, low=-1.0, high=1.0)
+    if not all(abs(sign) == 1.0 for sign in signs):
+        table.fail("RBL605", "'signs' must be 1 or -1", key="signs")
+    table.done()
+    return OpwRow(lengths_m=lengths, offsets_deg=offsets, signs=signs)
