@@ -263,7 +263,7 @@ POINTS = """schema = 1
 [points.P1]
 pose = [450, -150, 200, 180, 0, 90]
 [points.Old]
-joints = [0, 45, 180, 0, 45, 0]
+joints = [0, 45, -180, 0, 45, 0]
 """
 
 

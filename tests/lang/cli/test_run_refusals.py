@@ -119,7 +119,7 @@ def test_a_point_in_a_frame_that_the_cell_lacks(folder):
     (folder / "p.cell.toml").write_text((BUILTIN / "cell.toml").read_text())
     (folder / "p.points.toml").write_text(f"schema = 1\n[points.A]\n{POINT.format(180)}\nframe = 'BENCH'\n")
     text = refused("p.rbl", code=2)
-    assert places(text) == [(1, 1, "RBL305")]
+    assert places(text) == [(4, 1, "RBL305")]
     assert "BENCH" in text
 
 
