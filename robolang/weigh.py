@@ -29,7 +29,8 @@ from runtime.motion.fine import FineInterpolator
 from runtime.plant.cell import CellSpec
 from runtime.plant.plant import Plant
 from runtime.profile import Profile
-from runtime.robot.payload import MAX_COG_DISTANCE, Payload
+from runtime.robot.load_rules import MAX_COG_DISTANCE
+from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
 from runtime.servo.motor import torque_limit
 from runtime.units import DEG, MM
