@@ -8,7 +8,7 @@
 # make blend-campaign         random chains of moves with zones, counted
 # make pulse-campaign         random moves of four machines as pulse tables, counted
 # make wrist-campaign         random straight moves through the wrist, counted (minutes)
-# make fuzz               readers of programs, points and cells on made-up bytes, FUZZ_SECONDS of each target
+# make fuzz               readers of programs, points, cells, arms and golden logs on made-up bytes, FUZZ_SECONDS of each target
 # make large              time and memory of check and fmt on programs of 1 MB of every kind (minutes)
 # make measured   the figures of docs/measured.md that repeat exactly
 # make help   these lines
@@ -69,7 +69,7 @@ wrist-campaign: $(READY)
 	$(BIN)/python -m tests.bench.wrist_campaign
 
 FUZZ_SECONDS ?= 60
-FUZZ_TARGETS ?= lex parse check format points cell
+FUZZ_TARGETS ?= lex parse check format points cell model golden
 
 fuzz: $(READY)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev,fuzz]'

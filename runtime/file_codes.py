@@ -13,7 +13,7 @@ register(
         code="RBL600",
         name="file-not-readable",
         meaning="A robot or cell file is missing, is not a regular file, is too large or is not UTF-8 text.",
-        remedy="Name an ordinary TOML file of at most 1 MB.",
+        remedy="Name an ordinary file, UTF-8 text of at most 1 MB.",
     ),
     Code(
         code="RBL601",

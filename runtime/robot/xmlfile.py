@@ -19,6 +19,7 @@ import runtime.robot.codes  # noqa: F401 - registers what is raised here
 from runtime.numerals import number_in, why_none
 from runtime.tomlfile import MAX_ABS, FileFault, Source
 
+_LINE_END = re.compile(r"\r\n?|\n")  # XML 2.11: a CR alone ends a line, too
 MAX_DEPTH = 100
 MAX_ELEMENTS = 50_000
 HEAVIEST_LINK = 10_000.0
@@ -155,8 +156,8 @@ def parse_numbers(element: Element, key: str, text: str, count: int) -> tuple[fl
 
 def fault_at(source: Source, line: int, column: int, code: str, message: str, hint: str = "") -> FileFault:
     """Return a ``FileFault`` at a place (1-based) of a source."""
-    lines = source.text.split("\n")
-    excerpt = lines[line - 1].removesuffix("\r") if 0 < line <= len(lines) else ""
+    lines = _LINE_END.split(source.text)
+    excerpt = lines[line - 1] if 0 < line <= len(lines) else ""
     return FileFault(code, message, hint, path=source.path, line=line, column=column, excerpt=excerpt)
 
 

@@ -21,8 +21,15 @@ with atheris.instrument_imports(include=["robolang", "runtime"]):
 
 _TOML = ("schema = 1", "[points.P1]", "pose = [", "joints = [", "]", "robot = ", "[[parts]]", "[home]", "[hand]", "= ",
          "nan", "inf", "1e308", "\\\"\\\"\\\"", "''", "{", "}", "1979-05-27", "0x1F", "true")  # fmt: skip
+_XML = ("<robot name=", "<mujoco>", "<link name=", "<joint name=", " type=", "<origin xyz=", " rpy=", "<axis xyz=",
+        "<limit lower=", " upper=", "<inertial>", "<mass value=", "<inertia ixx=", "<body pos=", " quat=", "<compiler ",
+        "<default>", "</", "/>", "<!--", "-->", "<![CDATA[", "<!DOCTYPE", "&lt;", "&#0;", "nan", "inf", "1e308")
+_ZIP = ("PK\\x03\\x04", "PK\\x01\\x02", "PK\\x05\\x06", "PK\\x06\\x07", "\\x93NUMPY\\x01\\x00", "q.npy", "line.npy",
+        "'descr': ", "'<f4'", "'<i4'", "'|O'", "'shape': (20, 6), ", "'fortran_order': False, ")
 _SIGNS = ("\\x22", "'", "REM ", "noqa: RBL301", "fmt: off", "fmt: on", "\\x0d\\x0a", "\\x0d", "\\xef\\xbb\\xbf",
           "\\xe2\\x80\\xae", "\\xff", "1E999", "<>", "<=", "P1", "P2", "*L", "GOTO *L", ".X")  # fmt: skip
+
+_WORDS = {"points": _TOML, "cell": _TOML, "model": _XML, "golden": _ZIP}
 
 
 def main():
@@ -30,7 +37,7 @@ def main():
     seconds = sys.argv[2] if len(sys.argv) > 2 else "60"
     kept = OUT / target
     kept.mkdir(parents=True, exist_ok=True)
-    words = _TOML if target in targets.SEEDS else (*KEYWORDS, *ARGUMENTS, *VALUES, *_SIGNS)
+    words = _WORDS.get(target, (*KEYWORDS, *ARGUMENTS, *VALUES, *_SIGNS))
     dictionary = OUT / f"{target}.dict"
     dictionary.write_text("".join(f'"{word}"\n' for word in words), encoding="utf-8")
     options = [f"-max_total_time={seconds}", "-max_len=4096", "-timeout=10", f"-dict={dictionary}",

@@ -10,24 +10,29 @@ from dataclasses import replace
 from pathlib import Path
 from tempfile import mkdtemp
 
+import numpy as np
+
 from robolang import checker, formatter, nodes
 from robolang.beside import builtin_cell_file
 from robolang.cell_symbols import CellSymbols
-from robolang.diagnostics import Severity, render, to_json
+from robolang.diagnostics import Severity, render, render_fault, to_json
+from robolang.golden import read_golden
 from robolang.grammar import line_parser
 from robolang.lint import engine
 from robolang.parser import parse
 from robolang.points import load_points
 from robolang.source import Source, decode_program
 from robolang.words import KEYWORDS
-from runtime.faults import lookup
+from runtime.faults import Fault, lookup
 from runtime.plant.cell import load_cell
+from runtime.robot.importer import read_arm
 from runtime.tomlfile import FileFault
 
 _NAME = "fuzz.rbl"
 _POINTS = ("P1", "P2", "P3")
 _LINE = re.compile(r"\r\n?|\n")
 _KINDS = KEYWORDS | {"FUNCTION", "VALUE", "SUSPICIOUS", "HUGE"} | {each.name for each in line_parser().terminals}
+_CYCLES = 20
 _FOLDER = Path(mkdtemp(prefix="fuzz-"))
 
 
@@ -110,8 +115,36 @@ def cell(data):
         load_cell(path)
 
 
-TARGETS = {"lex": lex, "parse": read, "check": check, "format": format, "points": points, "cell": cell}
-SEEDS = {"points": "points", "cell": "cell"}
+def model(data):
+    """A URDF or MJCF file is read as an arm of finite numbers or refused at a place in it."""
+    path = _FOLDER / "fuzz.urdf"
+    path.write_bytes(data)
+    with _located(path, data, _LINE):
+        arm = read_arm(path)
+        assert np.isfinite([arm.lower, arm.upper]).all()
+        assert all(np.isfinite(axis.placement).all() for axis in arm.axes)
+
+
+def golden(data):
+    """A golden log is read, finite and no longer than the run, or refused."""
+    path = _FOLDER / "fuzz.golden.npz"
+    path.write_bytes(data)
+    try:
+        found = read_golden(path, axes=6, most_cycles=_CYCLES)
+    except Fault as fault:
+        assert fault.code in ("RBL600", "RBL711")
+        assert fault.message
+        return
+    assert len(found.q) == len(found.line) == min(found.cycles, _CYCLES)
+    assert np.isfinite(found.q).all()
+    at, said = found.difference(found.q, found.line, 0.0)
+    assert (at is None) == (found.cycles <= _CYCLES)
+    assert said
+
+
+TARGETS = {"lex": lex, "parse": read, "check": check, "format": format, "points": points, "cell": cell,
+           "model": model, "golden": golden}  # fmt: skip
+SEEDS = {each: each for each in ("points", "cell", "model", "golden")}
 """The folder of the corpus for each target; ``program`` for the others."""
 
 
@@ -165,14 +198,17 @@ def _spelt(comment):
 
 
 @contextmanager
-def _located(path, data):
+def _located(path, data, line_end=re.compile("\n")):
     try:
         yield
     except FileFault as fault:
         lookup(fault.code)
         assert fault.message
         assert fault.hint
+        shown = render_fault(fault)
+        assert not re.search(r"[\x00-\x09\x0b-\x1f\x7f]", shown)
         if fault.path == str(path):
-            lines = data.decode("utf-8-sig", "replace").split("\n")
+            line_end = re.compile("\n") if fault.code == "RBL600" else line_end  # what is no text has no XML lines
+            lines = line_end.split(data.decode("utf-8-sig", "replace"))
             assert 1 <= fault.line <= len(lines)
             assert 1 <= fault.column <= len(lines[fault.line - 1]) + 1
