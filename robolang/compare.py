@@ -26,7 +26,7 @@ from robolang.result import StatementRun
 from robolang.session import Alter, Session
 from runtime.frames import Array
 from runtime.linear import norm
-from runtime.units import DEG, MM
+from runtime.units import DEG, MM, badness
 
 BAND = 0.02
 LEAST = 1.0 * DEG
@@ -165,13 +165,13 @@ def measures(log: dict[str, Array], X_cmd: Array, statements: list[StatementRun]
     settled = [row["settling_s"] for row in rows]
     droop = np.array([row["droop_deg"] for row in rows])
     return {
-        "overshoot_pct": max(overshoots, default=None),
+        "overshoot_pct": max(overshoots, key=badness, default=None),
         "settling_s": None if None in settled else max(settled),
         "joint_error_deg": float(joint.max()),
         "joint_rms_deg": float(np.sqrt((joint**2).mean(axis=0)).max()),
         "tool_error_mm": float(tool.max()),
         "tool_rms_mm": float(np.sqrt((tool**2).mean())),
-        "path_deviation_mm": max(row["path_deviation_mm"] for row in rows),
+        "path_deviation_mm": max((row["path_deviation_mm"] for row in rows), key=badness),
         "droop_deg": float(np.abs(droop).max()),
         "per_axis": {
             "joint_error_deg": joint.max(axis=0).tolist(),
@@ -214,7 +214,7 @@ def last_approach(q_cmd: Array, q_link: Array, t: Array) -> tuple[float | None, 
         if not abs(way) >= LEAST:
             continue
         past = float(((q_link[begin:, axis] - end[axis]) / way).max()) * 100.0
-        worst = max(worst or 0.0, past)
+        worst = max(worst or 0.0, past, key=badness)
         outside = np.flatnonzero(~(np.abs(q_link[stop:, axis] - end[axis]) <= BAND * abs(way)))
         if len(outside):
             if outside[-1] == len(q_link) - stop - 1:

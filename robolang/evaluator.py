@@ -311,7 +311,7 @@ def _arithmetic(left: float, sign: str, right: float) -> float:
 
 
 def _root(x: float) -> float:
-    if x < 0.0:
+    if not x >= 0.0:
         raise Fault("RBL502", f"SQR of {shown(x)} is no number")
     return math.sqrt(x)
 

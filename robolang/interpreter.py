@@ -246,7 +246,7 @@ class _Machine:
         began, place = self._world.seconds(), node.condition.span
         forced = self._decisions.of_wait(place, endless=node.timeout is None)
         while forced is not True and not (forced is None and self._values.true(node.condition)):
-            if forced is False or self._world.seconds() - began >= timeout - 1e-9:
+            if forced is False or not self._world.seconds() - began < timeout - 1e-9:
                 self._decisions.took(place, False)
                 if node.target is not None:
                     return self._looped(at, self._line_of(node.target))

@@ -46,7 +46,7 @@ def line_times(project: Project, rehearsal: Rehearsal) -> list[LineTime]:
             shares = np.max([np.abs(np.diff(move.q, axis=0)).max(axis=0, initial=0.0) for move in moves], axis=0)
             shares = shares / project.profile.period_s / speed
             joint, share = f"J{int(np.argmax(shares)) + 1}", 100.0 * float(shares.max())
-            margin = min(range_margin(move, spec.lower, spec.upper)[0] for move in moves) / DEG
+            margin = float(np.min([range_margin(move, spec.lower, spec.upper)[0] for move in moves])) / DEG
             lengths = [move.plan.path.length for move in moves if move.plan.path is not None]
             length = sum(lengths) / MM if lengths else None
         rows.append(LineTime(
@@ -62,7 +62,7 @@ def _wrist_deg(opw: OpwParameters | None, moves: list[RehearsedMove]) -> float |
     paths = [move for move in moves if move.plan.path is not None]
     if opw is None or not paths:
         return None
-    return min(float(singularities(opw, move.q).wrist.min()) for move in paths) / DEG
+    return float(np.min([singularities(opw, move.q).wrist.min() for move in paths])) / DEG
 
 
 def range_margin(move: RehearsedMove, lower: object, upper: object) -> tuple[float, int, int]:

@@ -159,7 +159,7 @@ class _Moves:
     def wrist_changes(self, move: RehearsedMove) -> Found:
         """Report that the tool leaves its posture, where neither the move nor a setting says WRIST."""
         change = move.plan.wrist
-        if change is not None and move.effect.wrist is None and change.deviation >= NOTICED:
+        if change is not None and move.effect.wrist is None and not change.deviation < NOTICED:
             begins, ends = 100.0 * change.share, 100.0 * change.share_end
             yield _at("RBL428", move, f"from {begins:.1f} % to {ends:.1f} % of the way the tool leaves its posture by "
                       f"up to {change.deviation / DEG:.1f} deg, for the wrist to change (condition {change.condition})")
@@ -167,7 +167,7 @@ class _Moves:
     def ends_otherwise(self, move: RehearsedMove) -> Found:
         """Report a move that keeps the wrist and so does not end in the taught joint angles."""
         taught = move.command.q_end
-        if taught is None or not np.abs(move.plan.q[-1] - taught).max() > NOTICED:
+        if taught is None or np.abs(move.plan.q[-1] - taught).max() <= NOTICED:
             return
         axis = int(np.argmax(np.abs(move.plan.q[-1] - taught)))
         yield _at("RBL419", move, f"ends with J{axis + 1} at {float(move.plan.q[-1, axis]) / DEG:.1f} deg, not at the "
@@ -194,7 +194,7 @@ def _zones(moves: Sequence[RehearsedMove]) -> Found:
         if move.corner is None or move.plan.path is None or after.plan.path is None:
             continue
         short, which = min((move.plan.path.length, "the way to"), (after.plan.path.length, "the way from"))
-        if short > 0.0 and not move.corner.radius <= 0.5 * short + 1e-9:
+        if not short <= 0.0 and not move.corner.radius <= 0.5 * short + 1e-9:
             yield _at("RBL414", move, f"a zone of {move.corner.radius / MM:g} mm is more than half of {which} this "
                       f"corner, {short / MM:.1f} mm: the blend begins and ends within "
                       f"{move.corner.reach / MM:.1f} mm")  # fmt: skip
@@ -231,7 +231,7 @@ def worst_loads(project: Project, moves: Sequence[RehearsedMove]) -> list[LoadSh
         for what, values in (("moment", load.moment), ("inertia", load.inertia)):
             for k, row in enumerate(np.argmax(values, axis=0).tolist()):
                 value, axis = float(values[row, k]), load.first + k
-                if value > 0.0 and ((what, k) not in worst or value > worst[what, k].value):
+                if not value <= 0.0 and ((what, k) not in worst or not value <= worst[what, k].value):
                     given = getattr(spec.axes[axis].limits, f"rated_{what}") is not None
                     worst[what, k] = LoadShare(axis=axis, what=what, value=value, limit=float(limits[what][k]),
                                                given=given, move=move, row=row)  # fmt: skip

@@ -78,7 +78,7 @@ def drive(export: Export, cell: CellSpec, profile: Profile, physics: bool = True
     that it cannot carry, RBL509 when it would take too long. What goes wrong while moving is in ``Drive.alarms``.
     """
     start = start_angles(export, cell)
-    if export.seconds * 1e6 > MAX_RUN_US:
+    if not export.seconds * 1e6 <= MAX_RUN_US:
         raise Fault("RBL509", f"the tables last {export.seconds:.0f} s; {MAX_RUN_US / 1e6:g} s are the longest run")
     for item in export.sequence:
         if isinstance(item, Marker) and item.load is not None:

@@ -185,7 +185,7 @@ def _effects(project: Project) -> Iterator[Effect]:
 
 def _command(effect: MoveTo, project: Project, machine: Machine, q: Array) -> MoveLinear:
     point = project.points.get(effect.target.point)
-    if effect.way != "line" or effect.zone_mm > 0.0:
+    if effect.way != "line" or not effect.zone_mm <= 0.0:
         what = "does not stop at its end (ZONE)" if effect.way == "line" else "is not straight"
         raise Fault("RBL431", f"the move {what}; tables hold straight moves from rest to rest", "write MOVE and FINE")
     if not isinstance(machine, RobotArm) and point is not None and point.joints is not None:

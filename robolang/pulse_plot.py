@@ -15,6 +15,7 @@ from robolang.storage import write_atomic
 from runtime.frames import Array
 from runtime.pulses.exported import Export, Move
 from runtime.pulses.replay import MoveReplay
+from runtime.units import badness
 
 _BUCKETS = 195
 """Parts of the time axis of which four points are drawn; a curve keeps four times that whole."""
@@ -46,7 +47,7 @@ def _svgs(program: str, export: Export, replays: list[MoveReplay]) -> list[str]:
         rest = np.zeros(1)
         x, y = _thinned(*_joined([(rest, rest), *parts, (rest + export.seconds, rest)]))
         curves.append(Curve(name=channel.name, x=x, y=y * per_hz, dashed=k >= len(COLOURS)))
-    worst = max((item.worst_mm for item in replays), default=0.0)
+    worst = max((item.worst_mm for item in replays), key=badness, default=0.0)
     mm, per_mm = ("µm", 1e3) if worst < _MICRO_BELOW else ("mm", 1.0)
     x, y = _thinned(*_errors(export, starts, replays))
     error = Curve(name="tool point", x=x, y=y * per_mm)

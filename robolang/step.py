@@ -207,7 +207,7 @@ def _measure(request: StepRequest, controller: Controller, first: int) -> StepRe
     overshoot = settling = rise = None
     if size and stable:
         share = response / float(last.mean())
-        overshoot = max(0.0, float(share.max()) - 1.0)
+        overshoot = float(np.maximum(0.0, share.max() - 1.0))
         outside = np.flatnonzero(~(np.abs(share - 1.0) <= BAND))
         settling = float(outside[-1] + 1) * tick_s if len(outside) else 0.0
         rise = float(np.argmax(share >= 0.9) - np.argmax(share >= 0.1)) * tick_s

@@ -133,7 +133,7 @@ def plan_table(request: Request, payload: Payload, test: Test) -> Grid | None:
     ends = [values[list(span)] for values, span in zip(raster, _largest(fits), strict=True)]
     steps = [values[1] - values[0] for values in raster]
     while True:
-        if any(high - low < LEAST_STROKE for low, high in ends):
+        if not all(high - low >= LEAST_STROKE for low, high in ends):
             over = " and ".join(f"J{joint + 1}" for joint in joints)
             raise Fault("RBL420", f"J{axis + 1} has no room for a table over {over}: too few postures have all of the "
                         "arm over the ground")  # fmt: skip
@@ -189,14 +189,14 @@ def _planned(request: Request, model: ArmModel, axis: int, q: Array, room: tuple
     low, high = _usable(spec, axis, room)
     before = float(quintic(np.array(PEAK)))
     stroke = min(STROKE, (high - low) / 2.0)
-    if stroke < LEAST_STROKE:
+    if not stroke >= LEAST_STROKE:
         raise Fault("RBL420", f"J{axis + 1} has {max(0.0, high - low) / DEG:.1f} deg that are over the ground and "
                     f"{MARGIN / DEG:g} deg off the ends of its range, {limits.lower / DEG:.1f} to "
                     f"{limits.upper / DEG:.1f} deg; the test motions need {2.0 * LEAST_STROKE / DEG:.1f}")  # fmt: skip
     reach = stroke * (1.0 - before)
     positions = np.linspace(low + reach, high - reach, places) if places > 1 else np.array(
         [0.5 * (low + high)])  # fmt: skip
-    shortest = max(np.sqrt(_PEAK_ACCELERATION * stroke / (SHARE * limits.acceleration)),
+    shortest = np.maximum(np.sqrt(_PEAK_ACCELERATION * stroke / (SHARE * limits.acceleration)),
                    _PEAK_SPEED * stroke / (SHARE * limits.speed))  # fmt: skip
     for slower in np.geomspace(1.0, LONGEST, 8):
         cycles = int(np.ceil(slower * shortest / profile.period_s))

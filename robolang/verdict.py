@@ -4,7 +4,6 @@ Every comparison is written so that NaN fails it, and so that nothing to compare
 could miss is none. A difference from the golden log is named by the first line and tick at which it is too large.
 """
 
-import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,7 +19,7 @@ from runtime.faults import Fault
 from runtime.frames import Array, pose_from_xyzrpy, rotation_angles
 from runtime.linear import norm
 from runtime.program_line import named
-from runtime.units import DEG, MM
+from runtime.units import DEG, MM, badness
 
 _LARGEST = (
     ("path_error_mm", "path_deviation_mm", "mm"),
@@ -132,7 +131,7 @@ def _largest(statements: list[dict[str, Any]], key: str, measure: str, most: flo
     name = measure.rpartition("_")[0].replace("_", " ")
     if not rows:
         return Verdict(name=name, ok=False, said="nothing to compare, no statement moves the arm", key=(key,))
-    value, entry = max(rows, key=lambda row: (not math.isfinite(row[0]), row[0]))
+    value, entry = max(rows, key=lambda row: badness(row[0]))
     where = named(entry["line"], entry["number"])
     said = f"{value:.3f} {unit} in {where}, at most {most:g} {unit}"
     return Verdict(name=name, ok=value <= most, said=said, key=(key,))

@@ -147,11 +147,11 @@ def _refuse(robot: RobotSpec, home: Array, wanted: Array, room: Array, most: Arr
         hint = f"an amplitude of {math.floor(10.0 * best) / 10.0:g} deg fits; without one each axis does what it can"
     for axis in np.flatnonzero(moving):
         low, high, by = robot.lower[axis], robot.upper[axis], float(wanted[axis])
-        if by > room[axis]:
+        if not by <= room[axis]:
             end = home[axis] + by if high - home[axis] < home[axis] - low else home[axis] - by
             raise Fault("RBL411", f"J{axis + 1} would swing to {end / DEG:.1f} deg; its range is {low / DEG:g} to "
                         f"{high / DEG:g} deg, with {MARGIN / DEG:g} deg kept free at its ends", hint)  # fmt: skip
-        if by > most[axis]:
+        if not by <= most[axis]:
             raise Fault("RBL404", f"J{axis + 1} would swing by {by / DEG:.1f} deg and can by {most[axis] / DEG:.1f} "
                         "deg in this time without passing its speed or acceleration", hint)  # fmt: skip
 
@@ -240,7 +240,7 @@ def _play(controller: Controller, rows: Array) -> None:
 def _explained(found: WeighedPayload, torque: Array) -> None:
     share = found.peak / torque
     axis = int(np.argmax(share))
-    if share[axis] > UNEXPLAINED:
+    if not share[axis] <= UNEXPLAINED:
         raise Fault("RBL516", f"up to {found.peak[axis]:.1f} N m of J{axis + 1} in the exercise belong to no payload",
                     "clear the space about home; then look at the drive, brake and friction of the axis")  # fmt: skip
 

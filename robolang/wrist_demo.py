@@ -178,7 +178,7 @@ def unusable(robot: RobotSpec) -> str:
         return f"{robot.name} has {robot.n} axes, not {MAIN_AXES + WRIST_AXES}"
     for name, ends in MOVES.items():
         for q in np.array(ends) * DEG:
-            outside = (q < robot.lower) | (q > robot.upper)
+            outside = ~((robot.lower <= q) & (q <= robot.upper))
             if outside.any():
                 axis = int(np.argmax(outside))
                 return f"J{axis + 1} of {robot.name} does not get to the {q[axis] / DEG:g} deg of {name}"

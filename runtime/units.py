@@ -13,3 +13,11 @@ PERCENT = 1e-2
 
 GRAVITY = 9.81
 """Standard gravity used by every model here, m/s2 (docs/dynamics.md, acceptance figures use this value)."""
+
+
+def badness(value: float) -> float:
+    """Return an error or a ratio as a key for ``max`` and ``min``: NaN is worse than any number.
+
+    ``max(1.0, nan)`` is 1.0 in Python, since every comparison with NaN is false.
+    """
+    return math.inf if math.isnan(value) else value

@@ -17,6 +17,7 @@ import typer
 from robolang.cli import lines
 from robolang.cli.errors import DIAGNOSTICS, exit_code, reported, say_warnings
 from robolang.cli.values import OptionValueError
+from runtime.units import badness
 
 if TYPE_CHECKING:
     from robolang.project import Project
@@ -103,7 +104,7 @@ def _step_hz(text: str) -> int:
     if not SHORTEST_MS <= ms <= LONGEST_MS:
         raise OptionValueError("--step", f"{ms:g} ms is not between {SHORTEST_MS:g} and {LONGEST_MS:g} ms")
     whole = round(1000.0 / ms)
-    if abs(1000.0 / ms - whole) > 1e-9 * whole:
+    if not abs(1000.0 / ms - whole) <= 1e-9 * whole:
         near = ", ".join(f"{1000.0 / each:g}ms" for each in (whole + 1, max(whole, 1)))
         raise OptionValueError("--step", f"{ms:g} ms does not divide a second, so frequencies would be no whole "
                                f"numbers; near it: {near}")  # fmt: skip
@@ -171,7 +172,7 @@ def _print(found: "Export", out: Path) -> None:
     for note in _notes(moves):
         console.print(safe(note), soft_wrap=True)
     seconds = sum(entry["seconds"] for entry in moves)
-    worst = max((entry["error_mm"] for entry in moves), default=0.0)
+    worst = max((entry["error_mm"] for entry in moves), key=badness, default=0.0)
     console.print(safe(f"{len(found.files)} files in {out}: {len(moves)} moves of {seconds:.2f} s, {len(markers)} "
                        f"markers between them; largest path error {worst:.4f} mm"), soft_wrap=True)  # fmt: skip
 

@@ -27,6 +27,7 @@ from robolang.cli import lines
 from robolang.cli.errors import DIAGNOSTICS, MOTION, reader_may_leave, reported, say, say_warnings
 from robolang.cli.values import OptionValueError
 from runtime.program_line import named
+from runtime.units import badness
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -101,7 +102,7 @@ def _is_too_far(replays: "list[MoveReplay]", max_error: float) -> bool:
     """Name the worst move on stderr when it is further off its line than ``max_error``, mm."""
     from runtime.faults import Fault
 
-    worst = max(replays, key=lambda item: item.worst_mm, default=None)
+    worst = max(replays, key=lambda item: badness(item.worst_mm), default=None)
     if worst is None or worst.worst_mm <= max_error:
         return False
     move = worst.move
@@ -129,7 +130,7 @@ def _figures(folder: Path, export: "Export", replays: "list[MoveReplay]", drive:
         "mechanism": {"kind": export.mechanism.kind, "name": export.mechanism.name},
         "step_s": export.step_s,
         "seconds": export.seconds,
-        "path_error_mm": max((item.worst_mm for item in replays), default=0.0),
+        "path_error_mm": max((item.worst_mm for item in replays), key=badness, default=0.0),
         "channels": _channels(export, replays),
         "sequence": sequence,
         "physics": None if drive is None else {
@@ -160,7 +161,8 @@ def _channels(export: "Export", replays: "list[MoveReplay]") -> list[dict[str, A
     return [
         {"name": channel.name, "unit": channel.unit, "per_pulse": channel.per_pulse,
          "pulses": sum(item.counts[k] for item in replays),
-         "highest_hz": max((float(abs(item.frequency[:, k]).max(initial=0.0)) for item in replays), default=0.0)}
+         "highest_hz": max((float(abs(item.frequency[:, k]).max(initial=0.0)) for item in replays),
+                           key=badness, default=0.0)}
         for k, channel in enumerate(export.channels)
     ]  # fmt: skip
 
@@ -250,15 +252,15 @@ def _totals(found: dict[str, Any]) -> list[str]:
     many = "1 move" if len(moves) == 1 else f"{len(moves)} moves"
     totals = [f"{many}, {sum(row['steps'] for row in moves)} steps, {found['seconds']:.3f} s, {pulses} pulses"]
     if moves:
-        worst = max(moves, key=_worst)
+        worst = max(moves, key=lambda row: badness(_worst(row)))
         totals[0] += f"; at most {_worst(worst):.4f} mm off, in {lines.name(worst)}"
     driven = [row for row in moves if row["real"] is not None]
     if driven:
-        worst = max(driven, key=lambda row: float(row["real"]["error_mm"]))
+        worst = max(driven, key=lambda row: badness(float(row["real"]["error_mm"])))
         totals.append(f"real arm: {found['physics']['seconds']:.3f} s simulated; at most "
                      f"{worst['real']['error_mm']:.3f} mm off, in {lines.name(worst)}")  # fmt: skip
     return totals
 
 
 def _worst(row: dict[str, Any]) -> float:
-    return float(max(row["rows_mm"], row["between_mm"], row["end_mm"]))
+    return float(max(row["rows_mm"], row["between_mm"], row["end_mm"], key=badness))

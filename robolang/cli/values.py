@@ -61,7 +61,7 @@ def payload(text: str, option: str, spec: "RobotSpec", *, heavier: bool = True) 
 def note_overload(carried: "Payload", option: str, spec: "RobotSpec") -> None:
     """Say that a payload is over the rated one; it is taken all the same, for this is the bench."""
     mass, rated = carried.mass, spec.rated_payload
-    if mass > rated:
+    if not mass <= rated:
         typer.echo(f"note: {option} {mass:g} kg is over the rated {rated:g} kg of {spec.name}", err=True)
 
 

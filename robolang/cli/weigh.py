@@ -76,7 +76,7 @@ def weigh(
 
 def _note(mass: float, cell: "CellSpec") -> None:
     rated = cell.robot.rated_payload
-    if mass > rated:
+    if not mass <= rated:
         typer.echo(f"note: hand and --payload weigh {mass:g} kg, over the rated {rated:g} kg of {cell.robot.name}; no "
                    "program can declare that", err=True)  # fmt: skip
 

@@ -12,6 +12,7 @@ import typer
 
 from robolang.cli.errors import reported, say_warnings
 from robolang.cli.values import OptionValueError
+from runtime.units import badness
 
 if TYPE_CHECKING:
     from robolang.plot import Mark
@@ -133,7 +134,7 @@ def _print(robot: str, shown: list["Shown"], out: Path | None) -> None:
     console.print(table)
     console.print("* from the switch on; of the whole move where there is none", style="italic")
     _print_components(console, shown)
-    worst = max(float(run.off_path.max()) for _, runs in shown for run in runs)
+    worst = max((float(run.off_path.max()) for _, runs in shown for run in runs), key=badness)
     console.print(f"tool point at most {worst * 1e3:.0e} mm off its way at any control point")
     if out is not None:
         console.print(safe(f"all plots: {out / 'index.html'}"), soft_wrap=True)

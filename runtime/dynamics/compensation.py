@@ -277,7 +277,7 @@ def _smallest_over(table: JointTable, spec: RobotSpec, axis: int) -> list[float]
     samples = np.random.default_rng(560).uniform(spec.lower, spec.upper, (_FEW, spec.n))
     for angles in product(*table.grid):
         samples[:, table.joints] = angles
-        found.append(min(axis_inertia(model, q, axis) for q in np.clip(samples, spec.lower, spec.upper)))
+        found.append(float(np.min([axis_inertia(model, q, axis) for q in np.clip(samples, spec.lower, spec.upper)])))
     return found
 
 

@@ -74,8 +74,9 @@ class _Tool:
     @classmethod
     def most(cls, *those: "_Tool") -> "_Tool":
         """Return the largest value of each kind."""
-        return cls(speed=max(each.speed for each in those), turning=max(each.turning for each in those),
-                   acceleration=max(each.acceleration for each in those))  # fmt: skip
+        rows = np.array([(each.speed, each.turning, each.acceleration) for each in those])
+        speed, turning, acceleration = rows.max(axis=0).tolist()
+        return cls(speed=speed, turning=turning, acceleration=acceleration)
 
 
 def overlapped(a: Array, b: Array, m: int) -> Array:
@@ -150,7 +151,7 @@ def _joints_hold(rows: Array, arm: Arm, pace: Pace) -> bool:
 
 def _inside(X: Array, corner: Array, zone: float) -> int:
     """Return how many of the poses (N + 1, 4, 4) after the first are in the zone, one after the other."""
-    out = _distances(X, corner) > zone
+    out = ~(_distances(X, corner) <= zone)
     return int(np.argmax(out)) - 1 if out.any() else len(X) - 1
 
 

@@ -101,7 +101,7 @@ class Pace:
                     break
             else:
                 too_fast, worst = cycles, (axis, quantity)
-                if cycles * ratio > MOST_SLOWDOWN * asked:
+                if not cycles * ratio <= MOST_SLOWDOWN * asked:
                     curve.refuse_singular(s, q, axis)
             wanted = max(cycles * ratio * _MARGIN, too_fast + 1)
             if found is not None and wanted >= len(found[0]) - 1:

@@ -82,7 +82,7 @@ class LinePath:
         turns = [np.array(turn) for turn in itertools.product(*map(_shortest_turns, (end - start).tolist()))]
         # no turning rate is above the sum of the three over the path
         return tuple(cls(X_start=ends[0], X_end=ends[1], axis=frozen(axis), length=length, rpy=frozen([start, turn]),
-                         angle=max(angle, float(np.abs(turn).sum()))) for turn in turns)  # fmt: skip
+                         angle=float(np.maximum(angle, np.abs(turn).sum()))) for turn in turns)  # fmt: skip
 
     @property
     def name(self) -> str:

@@ -43,7 +43,7 @@ from runtime.robot.drives import PathLimits
 from runtime.robot.frozen_wrist import MAIN_AXES, WRIST_AXES
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.spec import RobotSpec
-from runtime.units import DEG, MM
+from runtime.units import DEG, MM, badness
 
 FOLLOWS, EXCEPTION, HELD = 0, 1, 2
 """``wrist_mode``: the wrist follows the path, goes to its end angles, does so with posture components held."""
@@ -170,7 +170,7 @@ class LinePlanner:
         arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=self._pace.fine, X_flange_tool=X_flange_tool)
         lines = [LineSolver(arm, path, q_start) for path in self._paths(X_start, command)]
         line, path = lines[0], lines[0].path
-        if max(path.length, path.angle, turn) < NOTHING_TO_DO:
+        if all(extent < NOTHING_TO_DO for extent in (path.length, path.angle, turn)):
             return LineWay(path=path, line=line, limits=None, choice=Choice(solver=line))
         limits = speed_limits(path, command, self._spec.path, self._profile, turn)
         if len(lines) > 1:
@@ -238,7 +238,7 @@ class LinePlanner:
                 continue
             if choice.ratio <= (1.0 if choice.switch is not None else options.posture_first):
                 return choice
-            if best is None or choice.ratio < best.ratio:
+            if best is None or badness(choice.ratio) < badness(best.ratio):
                 best = choice
         if best is None and first is not None:
             raise first
@@ -310,5 +310,5 @@ def speed_limits(path: Path, command: PathMove, robot: PathLimits, profile: Prof
         acceleration = math.sqrt(acceleration**2 - (speed**2 / path.radius) ** 2)
     position = (path.length, speed, acceleration, jerk)
     turning = (robot.rotation_speed, robot.rotation_acceleration * share, robot.rotation_jerk * share)
-    angle = path.angle if max(path.length, path.angle) >= NOTHING_TO_DO else wrist_way
+    angle = wrist_way if path.length < NOTHING_TO_DO and path.angle < NOTHING_TO_DO else path.angle
     return bound([position, (angle, *turning)], profile.speed_shape)

@@ -88,7 +88,7 @@ class SeamTracker:
         if reading is None:
             self.lost += 1
             self._lost_in_a_row += 1
-            if self._lost_in_a_row * self._period_s > limits.lost_s:
+            if not self._lost_in_a_row * self._period_s <= limits.lost_s:
                 raise Fault("RBL525", f"seam sensor {self.name} has given nothing for "
                             f"{self._lost_in_a_row * self._period_s * 1e3:.0f} ms")  # fmt: skip
             return
@@ -209,7 +209,7 @@ class SeamMove:
         """Return whether sample n meets an exception condition with the end as it is seen now, S61."""
         wrist, before = q[-WRIST_AXES:], self.here[-WRIST_AXES:]
         soon = wrist + self._options.look_ahead * (wrist - before)
-        outside = (soon > self._limits.upper) | (soon < self._limits.lower)
+        outside = ~((self._limits.lower <= soon) & (soon <= self._limits.upper))
         met = self._conditions.met(slice(n, n + 1), wrist[None], before[None], end, outside[None])
         return any(bool(where.any()) for where in met.values())
 

@@ -105,9 +105,9 @@ class LineSolver:
 
     def _check_continuity(self, s: Array, q: Array) -> None:
         jumps = np.abs(np.diff(q, axis=0))
-        if np.abs(q[0] - self.q_start).max() > 1e-3:  # the start is itself at a singularity
+        if not np.abs(q[0] - self.q_start).max() <= 1e-3:  # the start is itself at a singularity
             self.refuse_singular(s[:1], q, int(np.argmax(np.abs(q[0] - self.q_start))))
-        if len(jumps) > 4 and jumps.max() > JUMP:
+        if len(jumps) > 4 and not jumps.max() <= JUMP:
             step, axis = np.unravel_index(int(np.argmax(jumps)), jumps.shape)
             self.refuse_singular(s[step : step + 1], q, int(axis))
 

@@ -15,6 +15,7 @@ import ruckig
 from runtime.faults import Fault
 from runtime.frames import Array
 from runtime.profile import SpeedShape
+from runtime.units import badness
 
 MAX_DURATION = 600.0
 """Longest move that is planned, s: its set-points are held in memory as a whole."""
@@ -44,10 +45,11 @@ def bound(extents: list[tuple[float, float, float, float]], shape: SpeedShape) -
 
     An extent of zero bounds nothing; at least one must be above zero (``ValueError``).
     """
-    moving = [limits for limits in extents if limits[0] > 0.0]
+    moving = [limits for limits in extents if not limits[0] <= 0.0]
     if not moving:
         raise ValueError("a path without extent has no speed")
-    speed, acceleration, jerk = (min(item[k] / item[0] for item in moving) for k in (1, 2, 3))
+    shares = [[value / extent for value in most] for extent, *most in moving]
+    speed, acceleration, jerk = np.min(shares, axis=0).tolist()
     return SpeedLimits(
         speed=speed, acceleration=acceleration, jerk=math.inf if shape == "trapezoid" else jerk
     )
@@ -59,9 +61,9 @@ def profile(limits: SpeedLimits, period_s: float, duration: float | None = None)
     ``duration`` s asks for a longer time; the move never gets faster than the limits. ``Fault`` RBL404 when it would
     take more than ``MAX_DURATION``.
     """
-    wanted = max(_shortest(limits), duration or 0.0)
+    wanted = max(_shortest(limits), duration or 0.0, key=badness)
     if wanted <= MAX_DURATION:
-        wanted = max(_trajectory(limits, None).duration, wanted)
+        wanted = max(_trajectory(limits, None).duration, wanted, key=badness)
     if not wanted <= MAX_DURATION:
         raise Fault("RBL404", f"the move would take {wanted:.4g} s and may take at most {MAX_DURATION:g} s")
     cycles = max(1, math.ceil(wanted / period_s - 1e-9))
@@ -73,7 +75,8 @@ def profile(limits: SpeedLimits, period_s: float, duration: float | None = None)
 
 def _shortest(limits: SpeedLimits) -> float:
     """Return a time that no profile within the limits can beat, s."""
-    return max(1.0 / limits.speed, 2.0 * math.sqrt(1.0 / limits.acceleration), math.cbrt(32.0 / limits.jerk))
+    times = 1.0 / limits.speed, 2.0 * math.sqrt(1.0 / limits.acceleration), math.cbrt(32.0 / limits.jerk)
+    return max(times, key=badness)
 
 
 def _trajectory(limits: SpeedLimits, duration: float | None) -> "ruckig.Trajectory":

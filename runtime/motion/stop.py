@@ -15,6 +15,7 @@ import numpy as np
 
 from runtime.frames import Array
 from runtime.motion.fine import FineInterpolator
+from runtime.units import badness
 
 _SHORTEST = 3
 _LONGEST = 250
@@ -39,10 +40,10 @@ def stopping_rows(rows: Array, at: int, fine: FineInterpolator, speed: Array, ac
     while cycles / 2.0 <= left and cycles <= _LONGEST:
         candidate = _curve(rows, at + _progress(cycles))
         ratio = _excess(fine, np.concatenate([sent, candidate]), limits)
-        worst = max(float(ratio[:touched].max()) / max(1.0, 1.1 * rough), float(ratio[touched:].max(initial=0.0)))
+        worst = np.maximum(ratio[:touched].max() / np.maximum(1.0, 1.1 * rough), ratio[touched:].max(initial=0.0))
         if worst <= _SLACK:
             return candidate
-        if best is None or worst < best[0]:
+        if best is None or badness(worst) < badness(best[0]):
             best = worst, candidate
         cycles += max(1, cycles // 8)
     if best is not None and not ends_at_rest:

@@ -43,7 +43,7 @@ from runtime.profile import WristOptions
 from runtime.robot.frozen_wrist import WRIST_AXES
 from runtime.robot.kinematics import LIMIT_ROUNDING, Kinematics
 from runtime.robot.spec import RobotSpec
-from runtime.units import DEG
+from runtime.units import DEG, badness
 
 EARLIER = (0.9, 0.75, 0.6, 0.45, 0.3, 0.15, 0.0)
 """Switches tried when the document's does not do: shares of the way to it."""
@@ -177,7 +177,7 @@ def choose(line: LineSolver, s: Array, q: Array, q_end: Array, period_s: float, 
             failures.append(fault)
             continue
         ratio, axis, quantity = excess(rows)
-        if ratio > MOST_SLOWDOWN:
+        if not ratio <= MOST_SLOWDOWN:
             failures.append(Fault("RBL412", f"J{axis + 1} would pass its limit of {quantity} so far that the move "
                                   f"would have to be slowed {ratio:.0f} times"))  # fmt: skip
             continue
@@ -197,10 +197,11 @@ def choose(line: LineSolver, s: Array, q: Array, q_end: Array, period_s: float, 
         found.append(choice)
     if not found:
         raise _refusal(line, trigger, arrives, failures, _what_would_do(line, s, excess))
-    fastest = min(choice.ratio for choice in found)
+    fastest = min((choice.ratio for choice in found), key=badness)
     slowest = 1.0 if fastest <= 1.0 else max(fastest, options.posture_first)
     quick = [choice for choice in found if choice.ratio <= slowest]
-    return min(quick, key=lambda choice: (round(choice.deviation, 9), round(choice.ratio, 9)))  # no tie by rounding
+    # rounded: no tie is decided by the last digits
+    return min(quick, key=lambda choice: (badness(round(choice.deviation, 9)), round(choice.ratio, 9)))
 
 
 def posture_deviation(line: LineSolver, s: Array, q: Array, held: tuple[Component, ...] = ()) -> float:
@@ -333,7 +334,7 @@ def _what_would_do(line: LineSolver, s: Array, excess: Excess) -> str:
         ratio, _, _ = excess(q)
     except Fault:
         return via
-    if ratio > MOST_SLOWDOWN:
+    if not ratio <= MOST_SLOWDOWN:
         return via
     angles = ", ".join(f"{angle / DEG:.1f}" for angle in q[-1, -WRIST_AXES:])
     slowed = f", slowed {ratio:.1f} times," if ratio > 1.0 else ""

@@ -53,7 +53,7 @@ def fastest_spring(spec: RobotSpec) -> float:
     if not elastic_axes(spec):
         return 0.0
     postures = np.random.default_rng(560).uniform(spec.lower, spec.upper, (POSTURES, spec.n))
-    return max(float(spring_frequencies(spec, q)[-1]) for q in postures)
+    return float(np.max([spring_frequencies(spec, q)[-1] for q in postures]))
 
 
 def physics_steps(spec: RobotSpec, tick_s: float, longest_s: float) -> int:

@@ -113,7 +113,7 @@ def _channel(row: Table, joint: Joint, pulse: float, min_hz: float | None) -> Ch
     )
     row.ask("min_hz")
     row.done()
-    if channel.max_hz < 2.0 * channel.min_hz:
+    if not channel.max_hz >= 2.0 * channel.min_hz:
         row.fail("RBL605", f"'max_hz' of '{joint.name}' is {channel.max_hz:g} and must be at least twice min_hz, "
                  f"{channel.min_hz:g}", key="max_hz" if "max_hz" in row else "joint")  # fmt: skip
     return channel

@@ -67,7 +67,7 @@ def _schema(manifest: Object) -> None:
 
 def _step(manifest: Object) -> float:
     step_s = manifest.number("step_s", 1.0 / HIGHEST_RATE, 1.0)
-    if abs(round(1.0 / step_s) * step_s - 1.0) > 1e-9:
+    if not abs(round(1.0 / step_s) * step_s - 1.0) <= 1e-9:
         manifest.fail("step_s", f"is {step_s:g} s and must be a whole part of a second")
     return step_s
 

@@ -246,7 +246,7 @@ class Object:
             self.fail(key, "must be a pose of 4 rows of 4 numbers")
         X = np.array([self._numbers(f"{key}.{row}", each, 4, -MAX_ABS, MAX_ABS) for row, each in enumerate(value, 1)])
         R = X[:3, :3]
-        off = max(float(np.abs(matmul(R, R.T) - np.eye(3)).max()), float(np.abs(X[3] - (0.0, 0.0, 0.0, 1.0)).max()))
-        if off > POSE_TOLERANCE or np.linalg.det(R) < 0.0:
+        off = np.maximum(np.abs(matmul(R, R.T) - np.eye(3)).max(), np.abs(X[3] - (0.0, 0.0, 0.0, 1.0)).max())
+        if not (off <= POSE_TOLERANCE and np.linalg.det(R) > 0.0):
             self.fail(key, "is not a pose: three rows of a rotation with a position in m, then 0, 0, 0, 1")
         return frozen(X)

@@ -113,7 +113,7 @@ class Mechanism:
         start, end = self.points(stand.q), command.X_world_tool[:3, 3]
         for axis, at in self.fixed:
             k = "xyz".index(axis)
-            if abs(end[k] - at) > SAME:
+            if not abs(end[k] - at) <= SAME:
                 raise Fault("RBL431", f"the {self.name} has no joint for {axis} and stands at {at / MM:g} mm; the "
                             f"point is at {end[k] / MM:g} mm")  # fmt: skip
         turns = self._turns(stand, command)
@@ -129,7 +129,7 @@ class Mechanism:
         if turn:  # as fast as the joint that turns it; what its limits leave of that is found on the steps
             joint = self.joints[-1]
             extents.append((abs(turn), min(joint.speed, _FAST), min(joint.acceleration, _FAST), np.inf))
-        moves = max(length, abs(turn)) > SAME * MM
+        moves = not (length <= SAME * MM and abs(turn) <= SAME * MM)
         limits = bound(extents, "trapezoid") if moves else None
         ways = [MechanismWay(mechanism=self, q_start=stand.q, ends=(start, end), turn=each, limits=limits)
                 for each in turns]  # fmt: skip
@@ -149,7 +149,7 @@ class Mechanism:
         if "theta4" not in self.has:
             raise Fault("RBL431", f"the tool would have to turn by {angle / DEG:.2f} deg, and the {self.name} has no "
                         "joint that turns it")  # fmt: skip
-        if 1.0 - abs(axis[2]) > SAME:
+        if not 1.0 - abs(axis[2]) <= SAME:
             raise Fault("RBL431", f"the tool would have to turn about another axis than z, and the {self.name} has no "
                         "joint for that")  # fmt: skip
         return tuple(math.copysign(angle, axis[2]) for axis, angle in rotations)
@@ -225,7 +225,7 @@ class MechanismWay:
         for k, joint in enumerate(self.mechanism.joints):
             beyond = np.maximum(joint.lower - q[:, k], q[:, k] - joint.upper)
             worst = int(np.argmax(beyond))
-            if beyond[worst] > RANGE_TOLERANCE:
+            if not beyond[worst] <= RANGE_TOLERANCE:
                 unit, name = (DEG, "deg") if joint.rotary else (MM, "mm")
                 raise Fault("RBL411", f"{joint.name} is at {q[worst, k] / unit:.2f} {name} at {100 * s[worst]:.1f} % "
                             f"of the path, beyond {joint.lower / unit:g} to {joint.upper / unit:g} {name}")  # fmt: skip
@@ -237,7 +237,7 @@ class MechanismWay:
             return
         jumps = np.abs(np.diff(q[:, turning], axis=0, prepend=self.q_start[None, turning]))
         step, k = np.unravel_index(int(np.argmax(jumps)), jumps.shape)
-        if jumps[step, k] > JUMP:
+        if not jumps[step, k] <= JUMP:
             name = self.mechanism.joints[turning[int(k)]].name
             raise Fault("RBL412", f"at {100 * s[step]:.1f} % of the straight path {name} would have to turn by "
                         f"{jumps[step, k] / DEG:.0f} deg in one step: the line passes a singularity")  # fmt: skip

@@ -101,7 +101,7 @@ def most_pulses(channel: Channel, step_s: float) -> int:
 
 def _counted(q: Array, channels: tuple[Channel, ...]) -> Pulses:
     found = np.floor(q / [channel.pulse for channel in channels] + 0.5)
-    if np.abs(found).max() >= MOST_PULSES:
+    if not np.abs(found).max() < MOST_PULSES:
         k = int(np.argmax(np.abs(found).max(axis=0)))
         raise Fault("RBL432", f"{channels[k].joint.name} would stand at {np.abs(found[:, k]).max():.4g} pulses from 0")
     return np.array(found, dtype=np.int64)
@@ -139,7 +139,7 @@ def _within_limits(machine: Machine, way: Way, limits: SpeedLimits, step_s: floa
         if factor <= 1.0:
             return steps, q, slowed, ruling
         slowed, ruling = slowed * factor * _MARGIN, name
-        if slowed > MAX_DURATION / step_s:
+        if not slowed <= MAX_DURATION / step_s:
             break
     raise Fault("RBL412", f"no speed keeps the limits of {ruling} on this straight path: it passes a singularity")
 

@@ -18,7 +18,7 @@ import numpy as np
 from runtime.frames import Array, frozen
 from runtime.linear import matmul, norm
 from runtime.pulses.exported import Export, Mechanism, Move, Table
-from runtime.units import MM
+from runtime.units import MM, badness
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,7 +46,7 @@ class MoveReplay:
     @property
     def worst_mm(self) -> float:
         """Largest of the errors, mm."""
-        return max(self.rows_mm, self.between_mm, self.end_mm)
+        return max(self.rows_mm, self.between_mm, self.end_mm, key=badness)
 
     @property
     def fastest(self) -> tuple[float, int]:

@@ -119,7 +119,7 @@ class Rows:
         if not channel.min_hz <= hz <= channel.max_hz:
             self._fail("RBL631", f"{hz} Hz is not between {channel.min_hz:g} and {channel.max_hz:g} Hz, the range of "
                        f"{channel.name}", _FREQUENCY)  # fmt: skip
-        if not hz or abs(abs(change) / hz - self._step_s) > ROW_TOLERANCE_S:
+        if not hz or not abs(abs(change) / hz - self._step_s) <= ROW_TOLERANCE_S:
             lasts = f"lasts {abs(change) / hz * 1e3:.6g} ms" if hz else "never ends"
             self._fail("RBL632", f"from {where} to {target} at {hz} Hz {lasts}; a step has {self._step_s * 1e3:g} ms",
                        _FREQUENCY)  # fmt: skip

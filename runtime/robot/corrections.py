@@ -46,7 +46,7 @@ def _check_need(table: Table, published: Body, correction: Correction) -> None:
     shift, mass, moments = correction.inertia_shift, correction.added_mass, correction.added_inertia
     name = f"J{correction.axis + 1}"
     needed = smallest_shift(published.inertia) or 0.0
-    if shift > needed + SLACK:
+    if not shift <= needed + SLACK:
         table.fail("RBL606", f"the shift of {shift:g} kg m2 is larger than the {needed:.12g} that {name} needs",
                    f"write inertia_shift_kg_m2 = {needed:.12g}", key="inertia_shift_kg_m2")  # fmt: skip
     if mass > 0.0 and published.mass > 0.0:
@@ -115,7 +115,7 @@ def check_bodies(tables: list[Table], axes: list[AxisSpec]) -> None:
     """Refuse a robot with a body that no body can be, naming the correction that mends it (RBL606)."""
     for index, (table, axis) in enumerate(zip(tables, axes, strict=True)):
         defect = inertia_defect(axis.body.inertia)
-        if defect > SLACK:
+        if not defect <= SLACK:
             table.fail(
                 "RBL606",
                 f"the inertia of J{index + 1} is not a body's: {defect:g} kg m2 are missing",

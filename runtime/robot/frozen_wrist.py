@@ -87,7 +87,7 @@ class FrozenWrist:
         else:
             main = self._closed(self._opw, p_base_tool, q_wrist, side)
             main += TURN * np.round((q_before[: self._main] - main) / TURN)
-            if len(main) > 1 and np.abs(np.diff(main, axis=0)).max(initial=0.0) > math.pi:
+            if len(main) > 1 and not np.abs(np.diff(main, axis=0)).max(initial=0.0) <= math.pi:
                 main = np.unwrap(np.concatenate([q_before[None, : self._main], main]), axis=0)[1:]
         return np.concatenate([main, q_wrist], axis=1)
 

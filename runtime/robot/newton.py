@@ -77,7 +77,7 @@ class NewtonSolver:
         e = self._error(X_base_flange, q)
         size, worse = dot(e, e), 1.0
         for _ in range(STEPS):
-            if max(norm(e[:3]), norm(e[3:])) < TOLERANCE:
+            if norm(e[:3]) < TOLERANCE and norm(e[3:]) < TOLERANCE:
                 return q
             if not worse < _WORST_DAMPING:
                 break

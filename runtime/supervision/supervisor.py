@@ -88,7 +88,7 @@ class Supervisor:
         if self._unexpected >= CONFIRMED:
             return self._collided(int(np.argmax(ratio)), tick)
         self._since += 1
-        if self._since >= STRIDE and float((self.watch.peak / self._top).max()) > MOVING:
+        if self._since >= STRIDE and not float((self.watch.peak / self._top).max()) <= MOVING:
             self._since = 0
             observer.learn()
             if observer.steps >= FEWEST:
@@ -113,7 +113,7 @@ class Supervisor:
         mass, sigma = observer.estimate()
         declared = self._payload.mass if self._payload is not None else 0.0
         near = abs(mass - declared) <= limits.payload_tolerance * self._rated
-        self._suspect = self._suspect + 1 if sigma <= SURE * self._rated and not near else 0
+        self._suspect = 0 if near or sigma > SURE * self._rated else self._suspect + 1
         if self._suspect >= CONFIRMED:
             self._warned = True
             return Finding(

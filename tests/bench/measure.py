@@ -19,6 +19,7 @@ from runtime.frames import inverse, pose, principal_axis, rotation_about, rotati
 from runtime.motion.path import LinePath
 from runtime.plant.mjcf import build_mjcf
 from runtime.robot.model import spec_rotors
+from runtime.units import badness
 from tests.bench import figures
 from tests.bench.figures import Row
 from tests.experiments import test_step as bench
@@ -53,7 +54,7 @@ def equations(postures: int) -> Iterator[Row]:
             T_lag = lagrangian.gravity(a2.ROWS, q, payload)
             D_unit = np.array([model.inertia_column(q, i)[i] for i in range(6)])
             pairs = (D_unit, D_geo), (D_unit, D_lag), (D_unit, D), (T, T_geo), (T, T_lag)
-            worst = max(worst, *(np.abs(a - b).max() for a, b in pairs))
+            worst = max(worst, *(np.abs(a - b).max() for a, b in pairs), key=badness)
     yield Row(figure="A2: unit acceleration, geometric form and Lagrangian agree", form="{:.1e}", values=(worst,))
     for figure, load in (
         ("Pinocchio and MuJoCo, 200 poses, bare: mass matrix, gravity, flange", None),
@@ -91,16 +92,16 @@ def principal_axes(pairs: int) -> Iterator[Row]:
         R_a, R_b = rotation_from_rpy(rng.uniform(-math.pi, math.pi, (2, 3)))
         path = LinePath.between(pose(rng.uniform(-1, 1, 3), R_a), pose(rng.uniform(-1, 1, 3), R_b))
         X = path.poses(s)
-        end = max(end, np.abs(X[-1] - path.X_end).max())
+        end = max(end, np.abs(X[-1] - path.X_end).max(), key=badness)
         grown = [rotation_angle(R_a, R) for R in X[1:-1:10, :3, :3]]
-        linear = max(linear, np.abs(grown - s[1:-1:10] * path.angle).max())
-        line = max(line, path.deviation(X[:, :3, 3]).max())
+        linear = max(linear, np.abs(grown - s[1:-1:10] * path.angle).max(), key=badness)
+        line = max(line, path.deviation(X[:, :3, 3]).max(), key=badness)
     for _ in range(pairs):
         k = rng.normal(size=3)
         R_a = rotation_from_rpy(rng.uniform(-math.pi, math.pi, 3))
         R_b = rotation_about(k / np.linalg.norm(k), math.pi) @ R_a
         axis, theta = principal_axis(R_a, R_b)
-        half = max(half, np.abs(rotation_about(axis, theta) @ R_a - R_b).max())
+        half = max(half, np.abs(rotation_about(axis, theta) @ R_a - R_b).max(), key=badness)
     yield Row(figure="A6: end pose; half turns", form="{:.1e}; {:.1e}", values=(end, half))
     yield Row(figure="A6: angle from linear; off the line", form="{:.1e} rad; {:.1e} m", values=(linear, line))
 
@@ -187,7 +188,7 @@ def planned(session: Session, result: RunResult) -> Row:
     for run in session.record.statements:
         if run.path is not None:
             q = result.log["q_plan"][result.log["line"] == run.origin.line]
-            worst = max(worst, run.path.deviation(session.controller.tool_poses(q)[:, :3, 3]).max())
+            worst = max(worst, run.path.deviation(session.controller.tool_poses(q)[:, :3, 3]).max(), key=badness)
     return Row(
         figure="planned path of every MOVE off its line, at the 8 ms set-points",
         form="{:.1e} mm",
@@ -300,7 +301,7 @@ def alike(axes: int, postures: int) -> Row:
         for axis in range(axes):
             times, overshoots = bench.over_the_range(axis, False, coupling, postures)
             found.append(100.0 * (max(times) / min(times) - 1.0))
-            most = max(most, 100.0 * max(overshoots)) if coupling == "full" else most
+            most = max(most, 100.0 * max(overshoots, key=badness), key=badness) if coupling == "full" else most
             details.append(
                 f"J{axis + 1}, {coupling}: settling {min(times):.4f} to {max(times):.4f} s, overshoot at most "
                 f"{100 * max(overshoots):.3f} %"

@@ -108,17 +108,17 @@ class Bench:
             q = WristSolver(line, law_from(q, s, k, end[3:], "linear"), q[k], end).rows(s)
         if not np.isfinite(q).all():
             return "no solution (H1)"
-        if np.abs(q[-1] - end).max() > np.radians(1e-6):
+        if not np.abs(q[-1] - end).max() <= np.radians(1e-6):
             return "other configuration at the end (H2)"
         rate = np.abs(np.diff(q, axis=0)).max(axis=0) / self.profile.period_s
-        if (rate[3:] > self.speed[3:] * (1 + 1e-9)).any():
+        if not (rate[3:] <= self.speed[3:] * (1 + 1e-9)).all():
             return "wrist too fast (H3)"
-        if (rate[:3] > self.speed[:3] * (1 + 1e-9)).any():
+        if not (rate[:3] <= self.speed[:3] * (1 + 1e-9)).all():
             return "main axis too fast (H4)"
         if not ((q >= self.spec.lower - 1e-9) & (q <= self.spec.upper + 1e-9)).all():
             return "range left"
         ddq = np.abs(self.fine.expand(q)[2]).max(axis=0)
-        return "executed, with a step of speed" if (ddq > self.acceleration).any() else "executed"
+        return "executed" if (ddq <= self.acceleration).all() else "executed, with a step of speed"
 
     def violations(self, plan: LinePlan, end: np.ndarray) -> list[str]:
         """Return what a plan does wrong, from its rows alone."""

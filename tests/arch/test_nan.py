@@ -1,0 +1,197 @@
+"""Limits are compared so that NaN fails them: ``if not x <= limit: refuse``, never ``if x > limit: refuse``.
+
+Every ordered comparison with NaN is false, so the second form lets NaN pass; and Python's ``max(1.0, nan)`` is 1.0. The
+source is searched for both, and for masks of bad rows. What the source shows to be a whole number cannot be NaN and is
+left out; the rest is listed with the reason.
+"""
+
+import ast
+import importlib
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+FILES = [path for folder in ("robolang", "runtime") for path in sorted((ROOT / folder).rglob("*.py"))]
+ORDERED = ast.Lt | ast.Gt | ast.LtE | ast.GtE
+REFUSING = re.compile(r"_?(Fault|FileFault|Alarm|Diagnostic|Finding|Verdict|fail|alarm|refuse\w*|warn\w*|_at|at)")
+MASKS = {"bad", "out", "outside", "over", "beyond", "lost", "wrong"}
+MEASURE = re.compile(r"\w+_(mm|deg|pct|hz)|speed|acceleration|jerk|ratio|length|angle|deviation|duration|error")
+
+FILE = "read from a file, and what is read is finite"
+WHOLE = "whole numbers"
+OPEN = {
+    "robolang/checker.py: line.number < previous": WHOLE,
+    "robolang/golden.py: size < _END.size": WHOLE,
+    "robolang/interpreter.py: rounds > MAX_ROUNDS": "the language has no NaN",
+    "runtime/plant/signals.py: round(seconds * 1000000.0) <= changes[-1][0]": WHOLE,
+    "runtime/pulses/folder.py: steps > most": WHOLE,
+    "runtime/robot/corrections.py: mass > 0.0": FILE,
+    "runtime/robot/corrections.py: mass > TOKEN_MASS": FILE,
+    "runtime/robot/corrections.py: moments > 0.0": FILE,
+    "runtime/robot/corrections.py: moments > TOKEN_INERTIA": FILE,
+    "runtime/robot/corrections.py: published.mass > 0.0": FILE,
+    "runtime/robot/mjcf_import.py: geom.number('mass', 1.0, low=0.0) > 0.0": FILE,
+    "runtime/supervision/supervisor.py: self._late >= self._limits.overruns": WHOLE,
+}
+"""Refusals by an open comparison, with what makes NaN impossible or harmless there."""
+
+REACH = "NaN is out of reach, which is a condition of its own"
+JUMPED = "a speed that is NaN has jumped, which is judged in the same tick"
+MASKED = {
+    "runtime/motion/wrist.py: away > SAME_ANGLES": REACH,
+    "runtime/motion/wrist.py: wrist < limits.lower": REACH,
+    "runtime/motion/wrist.py: wrist > limits.upper": REACH,
+    "runtime/supervision/watch.py: away[k, 3] > CATCH_UP * command": JUMPED,
+    "runtime/supervision/watch.py: command > self._fast": JUMPED,
+}
+"""Masks of bad rows by an open comparison, with the reason."""
+
+PLANNED = "of moves that are planned: theirs is finite"
+SOLVED = "no solution of the inverse kinematics has a NaN"
+EXTREMES = {
+    "robolang/cli/export.py: max((move['highest_hz'] for move in moves), default=0)": WHOLE,
+    "robolang/compare.py: max(settled, float(t[stop + outside[-1] + 1] - t[stop]))": "times of ticks",
+    "robolang/pulse_plot.py: max(float(x[-1] - x[0]), 1e-09)": "a width of a drawing",
+    "robolang/step.py: max(_LOST * abs(request.size), np.pi)": "the size of a step is checked to be finite",
+    "robolang/motion_findings.py: min((move.plan.path.length, 'the way to'), (after.plan.path.length, 'the way from'))":
+        PLANNED,
+    "runtime/motion/chain.py: max(before.acceleration, after.acceleration)": PLANNED,
+    "runtime/pulses/mechanism.py: min(joint.acceleration, _FAST)": FILE,
+    "runtime/pulses/mechanism.py: min(joint.speed, _FAST)": FILE,
+    "runtime/pulses/move.py: min(limits.speed, math.sqrt(limits.acceleration))": PLANNED,
+    "runtime/motion/joint_planner.py: max(fitting, key=lambda q: float(kinematics.limit_margin(q)))": SOLVED,
+    "runtime/motion/joint_planner.py: min(found, key=lambda q: float((np.abs(q - q_start) / self._pace.speed).max()))":
+        SOLVED,
+}  # fmt: skip
+"""``max`` and ``min`` of measures, with the reason."""
+
+
+@cache
+def constants(path):
+    """Names of a module that are whole numbers."""
+    name = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+    return {key for key, value in vars(importlib.import_module(name)).items() if isinstance(value, int)}
+
+
+def called(node):
+    """The name that a call is of; ``""`` for what is no call."""
+    function = node.func if isinstance(node, ast.Call) else None
+    return function.id if isinstance(function, ast.Name) else getattr(function, "attr", "")
+
+
+def refuses(body):
+    """Whether statements refuse something: raise, or make or report a fault, an alarm or a finding."""
+    nodes = [node for statement in body for node in ast.walk(statement)]
+    return any(isinstance(node, ast.Raise) or REFUSING.fullmatch(called(node)) for node in nodes)
+
+
+def open_comparisons(test):
+    """Yield the ordered comparisons by which a condition becomes true; those under ``not`` and ``~`` are left out."""
+    if isinstance(test, ast.BoolOp):
+        parts = test.values
+    elif isinstance(test, ast.BinOp) and isinstance(test.op, ast.BitOr | ast.BitAnd):
+        parts = [test.left, test.right]
+    elif isinstance(test, ast.Call):  # (x > most).any(), bool(x > most), any(x > most for x in found)
+        parts = [*test.args, *([test.func.value] if isinstance(test.func, ast.Attribute) else [])]
+    elif isinstance(test, ast.GeneratorExp):
+        parts = [test.elt]
+    else:
+        parts = []
+    for part in parts:
+        yield from open_comparisons(part)
+    if isinstance(test, ast.Compare) and any(isinstance(each, ORDERED) for each in test.ops):
+        yield test
+
+
+def whole(comparison, path):
+    """Whether the source shows that a comparison is of whole numbers."""
+    return any(
+        called(side) in ("len", "int", "count")
+        or (isinstance(side, ast.Constant) and isinstance(side.value, int))
+        or (isinstance(side, ast.Name) and side.id in constants(path))
+        or (isinstance(side, ast.Attribute) and (side.attr.endswith("_us") or side.attr == "st_size"))
+        for side in (comparison.left, *comparison.comparators)
+    )
+
+
+def key(path, node):
+    return f"{path.relative_to(ROOT)}: {ast.unparse(node)}"
+
+
+def open_refusals(path, tree):
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and refuses(node.body):
+            yield from (key(path, each) for each in open_comparisons(node.test) if not whole(each, path))
+
+
+def open_masks(path, tree):
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name) and node.targets[0].id in MASKS:
+            yield from (key(path, each) for each in open_comparisons(node.value) if not whole(each, path))
+
+
+def measures(node):
+    """Whether an expression is of measured numbers: ``float()``, numpy, a name with a unit."""
+    return any(
+        called(each) == "float"
+        or (isinstance(each, ast.Name) and each.id == "np")
+        or (isinstance(each, ast.Attribute) and MEASURE.fullmatch(each.attr))
+        or (isinstance(each, ast.Constant) and isinstance(each.value, str) and MEASURE.fullmatch(each.value))
+        for each in ast.walk(node)
+    )
+
+
+def blind_extremes(path, tree):
+    for node in ast.walk(tree):
+        if called(node) in ("max", "min") and isinstance(node.func, ast.Name):
+            guarded = any(item.arg == "key" and "badness" in ast.unparse(item.value) for item in node.keywords)
+            if (
+                measures(node)
+                and not guarded
+                and not any(called(each) in ("len", "int") for argument in node.args for each in ast.walk(argument))
+            ):
+                yield key(path, node)
+
+
+RULES = {"open_refusals": (open_refusals, OPEN), "open_masks": (open_masks, MASKED),
+         "blind_extremes": (blind_extremes, EXTREMES)}  # fmt: skip
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_nan_passes_no_limit(rule):
+    find, known = RULES[rule]
+    found = [each for path in FILES for each in find(path, ast.parse(path.read_text("utf-8")))]
+    assert sorted(set(found)) == sorted(known)
+
+
+@pytest.mark.parametrize(
+    ("rule", "text"),
+    [
+        ("open_refusals", "if x > limit:\n    raise Fault('RBL404')"),
+        ("open_refusals", "if known and (x > limit).any():\n    self.fail('no')"),
+        ("open_refusals", "if any(x > limit for x in found):\n    findings.append(Diagnostic())"),
+        ("open_masks", "bad = (q > upper) | (q < lower)"),
+        ("blind_extremes", "worst = max(a.error_mm, b.error_mm)"),
+        ("blind_extremes", "worst = max(1.0, float(x.max()))"),
+    ],
+)
+def test_what_nan_would_pass_is_noticed(rule, text):
+    assert list(RULES[rule][0](FILES[0], ast.parse(text)))
+
+
+@pytest.mark.parametrize(
+    ("rule", "text"),
+    [
+        ("open_refusals", "if not x <= limit:\n    raise Fault('RBL404')"),
+        ("open_refusals", "if not (x <= limit).all() or len(x) > 3:\n    self.fail('no')"),
+        ("open_refusals", "if x > limit:\n    slow = True"),
+        ("open_masks", "bad = ~((lower <= q) & (q <= upper))"),
+        ("blind_extremes", "worst = max((a.error_mm for a in rows), key=badness)"),
+        ("blind_extremes", "worst = np.maximum(a.error_mm, b.error_mm)"),
+    ],
+)
+def test_what_nan_would_fail_is_passed_over(rule, text):
+    assert not list(RULES[rule][0](FILES[0], ast.parse(text)))
