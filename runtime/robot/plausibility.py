@@ -144,7 +144,7 @@ def doubt_bodies(labels: Sequence[str], bodies: Sequence[Body | None], offsets: 
         looks = "it looks like mm" if reach > LONGEST else "its joints are all in one place"
         message = f"the arm is {reach / MM:.4g} mm from its first joint to the flange: {looks}"
         doubts.append(place("length", int(np.argmax(lengths[1:])))("RBL628", message, "lengths are in m"))
-    size = max(float(lengths.sum()), SMALLEST)
+    size = float(np.maximum(lengths.sum(), SMALLEST))
     known = [(axis, body) for axis, body in enumerate(bodies) if body is not None and body.mass > 0.0]
     for code, unlikely, tail, hint in _BODY_RULES:
         axes = [axis for axis, body in known if unlikely(body, size)]
@@ -217,7 +217,7 @@ def _far(body: Body, size: float) -> bool:
 
 
 def _spread(body: Body, size: float) -> bool:
-    return not math.sqrt(max(0.0, float(np.linalg.eigvalsh(body.inertia)[2])) / body.mass) <= size
+    return not math.sqrt(float(np.maximum(0.0, np.linalg.eigvalsh(body.inertia)[2])) / body.mass) <= size
 
 
 def _dense(body: Body, size: float) -> bool:
