@@ -121,7 +121,7 @@ def program(physics: bool) -> Iterator[Row]:
     """The 1992 program on MuJoCo; its variants on the ideal arm instead where only the bench is tested."""
     text = PROGRAM.read_text()
     session, result = run_text(text)
-    order = ", ".join(f"{run.number} {run.text.split(' (')[0]}" for run in session.record.statements)
+    order = ", ".join(f"{run.origin.number} {run.text.split(' (')[0]}" for run in session.record.statements)
     yield Row(
         figure="A1: order of the statements",
         form="{} statements",
