@@ -126,7 +126,7 @@ def path_limits(table: Table) -> PathLimits:
         rotation_acceleration=table.number("rotation_acceleration_deg_s2", positive=True) * DEG,
         rotation_jerk=table.number("rotation_jerk_deg_s3", positive=True) * DEG,
     )
-    if limits.default_speed > limits.max_speed:
+    if not limits.default_speed <= limits.max_speed:
         table.fail("RBL605", "'path.default_speed_mm_s' is above 'path.max_speed_mm_s'", key="default_speed_mm_s")
     table.done()
     return limits
