@@ -7,7 +7,8 @@ evaluated then, in the units of the text.
 """
 
 from collections.abc import Callable
-from typing import Any, TypeAlias
+from dataclasses import replace
+from typing import Any, TypeAlias, TypeGuard
 
 from robolang import effects
 from robolang.effects import Effect, origin
@@ -38,12 +39,14 @@ from robolang.nodes import (
     WristMode,
     Zone,
 )
-from robolang.places import Frame, Place, Shift
+from robolang.places import Frame, Place, Shift, Six
 from robolang.scope import Scopes
 from runtime.faults import Fault
 
 Action: TypeAlias = Moving | Load | LoadNamed | Hand | Wrist | Seam | Setting | Out | Pulse
 
+WORLD = "WORLD"
+"""The frame that every cell has, and none may define; its tool is FLANGE (``runtime.plant.cell_file``)."""
 _SETTINGS = {
     "SPEED": (0.0, 10_000.0, "mm/s", "speed_mm_s"),
     "SPEEDJ": (0.0, 100.0, "%", "speed_pct"),
@@ -155,7 +158,7 @@ class Actions:
 
     def _setting(self, line: Line, node: Setting) -> Effect | None:
         if node.word == "TOOL":
-            return effects.SetTool(**origin(line, node), tool=self._frame(node.value))
+            return effects.SetTool(**origin(line, node), tool=self._tool(node.value))
         if node.word == "FRAME":
             self._values.frame = self._frame(node.value)
             return None
@@ -169,14 +172,29 @@ class Actions:
         return None
 
     def _frame(self, node: Expression) -> Frame:
-        """Return the frame or tool that an expression names: a name of the cell, else a pose."""
-        if isinstance(node, Name) and self._scopes.value(node.key) is None:
-            return node.key
-        place, frame = self._values.place(node), self._values.frame
-        self._values.frame = ""
+        """Return the frame that an expression names: a name of the cell, "" for ``WORLD``, else a pose in the world."""
+        if self._is_of_cell(node):
+            return "" if node.key == WORLD else node.key
+        return self._in_the_world(node)
+
+    def _tool(self, node: Expression) -> Frame:
+        """Return the tool that an expression names: a name of the cell, else a pose in the flange."""
+        return node.key if self._is_of_cell(node) else self._in_the_world(node, of_flange=True)
+
+    def _is_of_cell(self, node: Expression) -> TypeGuard[Name]:
+        """Return whether a name has no value in the program, so that it must be one of the cell."""
+        return isinstance(node, Name) and self._scopes.value(node.key) is None
+
+    def _in_the_world(self, node: Expression, *, of_flange: bool = False) -> Six:
+        """Return the numbers of a pose, whatever frame is active; of a flange's those that it was made of."""
+        frame, self._values.frame = self._values.frame, ""
         try:
-            plain = place.pose is not None and not (place.shifts or place.frame)
-            return place.pose if plain and place.pose is not None else self._values.six(place)
+            place = self._values.place(node)
+            if of_flange and place.pose is not None:
+                place = replace(place, frame="", shifts=tuple(replace(shift, frame="") for shift in place.shifts))
+            if place.pose is not None and not (place.shifts or place.frame):
+                return place.pose
+            return self._values.six(place)
         finally:
             self._values.frame = frame
 

@@ -9,6 +9,7 @@ such a value somewhere. What depends on numbers of the program alone goes the wa
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from robolang.names import names_in
 from robolang.nodes import (
     Assign,
     Call,
@@ -19,14 +20,13 @@ from robolang.nodes import (
     For,
     Head,
     If,
-    Name,
     Program,
     Statement,
     Sub,
     Wait,
 )
 from robolang.source import Span
-from robolang.tree import Node, walk
+from robolang.tree import Node
 
 _OUTSIDE = frozenset({"IN", "TIMER", "ERR"})
 
@@ -144,4 +144,4 @@ def _is_outside(node: Node, names: frozenset[str]) -> bool:
 
 
 def _names(node: Node) -> Iterator[str]:
-    return (each.key for each in walk(node) if isinstance(each, Name))
+    return (name.key for name in names_in(node))

@@ -10,7 +10,22 @@ from dataclasses import dataclass, field
 
 from robolang.cell_symbols import CellSymbols
 from robolang.diagnostics import Diagnostic
-from robolang.nodes import Assign, Const, Dim, Expression, For, If, Name, Program, Statement, Sub, Unparsed
+from robolang.nodes import (
+    Assign,
+    Call,
+    Component6,
+    Const,
+    Dim,
+    Expression,
+    For,
+    If,
+    Name,
+    Node,
+    Program,
+    Statement,
+    Sub,
+    Unparsed,
+)
 from robolang.repeats import Repeats
 from robolang.source import Span
 from robolang.tree import walk
@@ -58,7 +73,7 @@ class Defined:
                 if part is not None:
                     self._take(part)
         elif isinstance(node, Assign) and isinstance(node.target, Name):
-            if not _reads(node.value, node.target.key):  # n = n + 1 gives n no first value
+            if all(name.key != node.target.key for name in values_read(node.value)):  # n = n + 1 gives no first value
                 self.values.add(node.target.key)
         elif isinstance(node, For):
             self.values.add(node.variable.key)
@@ -77,8 +92,20 @@ class Defined:
             self.arrays |= found
 
 
-def _reads(node: Expression, key: str) -> bool:
-    return any(isinstance(each, Name) and each.key == key for each in walk(node))
+def names_in(node: Node) -> Iterator[Name]:
+    """Yield the names in a node, of arrays and functions as well; ``X`` of ``P1.X`` is none, it names no value."""
+    components: set[int] = set()
+    for each in walk(node):
+        if isinstance(each, Component6):
+            components.add(id(each.name))
+        elif isinstance(each, Name) and id(each) not in components:
+            yield each
+
+
+def values_read(node: Expression) -> Iterator[Name]:
+    """Yield the names whose values an expression reads: an array or a function of the same name is another thing."""
+    calls = {id(each.name) for each in walk(node) if isinstance(each, Call)}
+    return (name for name in names_in(node) if id(name) not in calls)
 
 
 def seems_to_define(text: str) -> frozenset[str]:

@@ -6,7 +6,8 @@ Taught points that nothing names are found with ``named``; their finding stands 
 from collections.abc import Iterator
 
 from robolang.diagnostics import Diagnostic, Severity
-from robolang.nodes import Assign, Call, Const, Dim, If, Name, Node, Program, Statement, Wait, walk
+from robolang.names import names_in
+from robolang.nodes import Assign, Call, Const, Dim, If, Name, Node, Program, Statement, Wait
 from robolang.words import near
 
 
@@ -76,4 +77,4 @@ def _reads(node: Statement) -> Iterator[str]:
 
 
 def _keys(node: Node) -> Iterator[str]:
-    return (each.key for each in walk(node) if isinstance(each, Name))
+    return (name.key for name in names_in(node))

@@ -65,8 +65,8 @@ _FORMS = {
     "ACCEL": "ACCEL %",
     "OVERRIDE": "OVERRIDE %",
     "ZONE": "ZONE mm",
-    "TOOL": "TOOL name or TOOL pose",
-    "FRAME": "FRAME name or FRAME pose",
+    "TOOL": "TOOL name, TOOL pose or TOOL FLANGE",
+    "FRAME": "FRAME name, FRAME pose or FRAME WORLD",
     "RESUME": "RESUME or RESUME NEXT",
     "ON": "ON ERROR GOTO *LABEL or ON ERROR STOP",
 }

@@ -75,7 +75,8 @@ class LoadFile:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CellFile:
-    """A cell file. ``tools``, ``frames``: poses (6,) mm and deg by name; ``controller``: what ``[controller]`` sets."""
+    """A cell file. ``tools``, ``frames``: poses (6,) mm and deg by name, FLANGE and WORLD among them; ``controller``:
+    what ``[controller]`` sets."""
 
     path: str
     arm: ArmFile
@@ -112,8 +113,8 @@ def parse_cell_file(source: Source, folder: Path | None = None) -> CellFile:
         [item.gather(_part) for item in parts],
         [item.gather(_obstacle) for item in obstacles],
         _named(table, "loads", _load),
-        _named(table, "tools", _only_pose),
-        _named(table, "frames", _only_pose),
+        _poses(table, "tools", "FLANGE"),
+        _poses(table, "frames", "WORLD"),
         _named(table, "sensors", lambda item: read_sensor_file(item, folder)),
     )
     inputs = table.attempt(lambda: read_inputs(table.named_tables("inputs")))
@@ -218,6 +219,17 @@ def _named(table: Table, key: str, read: Callable[[Table], T]) -> Mapping[str, T
     _words(tables.items(), f"of [{key}]")
     found = {name: item.gather(read) for name, item in tables.items()}
     return MappingProxyType({name: each for name, each in found.items() if each is not None})
+
+
+def _poses(table: Table, key: str, origin: str) -> Mapping[str, Numbers]:
+    """Read the poses of the tables ``[key.NAME]``, and add ``origin``, which every cell has and none may define."""
+
+    def read(item: Table) -> Numbers:
+        if (name := str(item.keys[-1])).upper() == origin:
+            item.fail("RBL610", f"the name '{name}' of [{key}] is that of the {origin.lower()} itself")
+        return _only_pose(item)
+
+    return MappingProxyType({origin: (0.0,) * 6, **_named(table, key, read)})
 
 
 def _words(names: Iterable[tuple[str, Table]], where: str) -> None:

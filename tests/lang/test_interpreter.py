@@ -181,6 +181,39 @@ def test_the_frame_is_that_of_the_place_in_the_program():
     assert move.target.frame == (1.0, 2.0, 3.0, 0.0, 0.0, 0.0)
 
 
+BENCH = "FRAME POSE(100, 50, 0, 0, 0, 90)\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "frame"),
+    [
+        ("", ""),
+        (BENCH, (100.0, 50.0, 0.0, 0.0, 0.0, 90.0)),
+        (BENCH + BENCH, (100.0, 50.0, 0.0, 0.0, 0.0, 90.0)),
+        (BENCH + "FRAME POSE(0, 0, 0, 0, 0, 0)\n", (0.0,) * 6),
+        (BENCH + "FRAME WORLD\n", ""),
+        (BENCH + "FRAME bench\n", "BENCH"),
+        ("FRAME bench\nx = 100\n" + BENCH.replace("100", "x"), (100.0, 50.0, 0.0, 0.0, 0.0, 90.0)),
+    ],
+)
+def test_a_frame_is_given_in_the_world_whatever_is_active(text, frame):
+    (*_, move) = ran(text + "MOVE POSE(1, 2, 3, 0, 0, 0)")
+    assert move.target.frame == frame
+
+
+@pytest.mark.parametrize(
+    ("text", "tool"),
+    [
+        ("TOOL FLANGE", "FLANGE"),
+        (BENCH + "TOOL POSE(1, 2, 3, 0, 0, 0)", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0)),
+        (BENCH + "t = POSE(1, 2, 3, 0, 0, 0)\nTOOL t\nTOOL t", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0)),
+        (BENCH + "FLANGE = POSE(1, 2, 3, 0, 0, 0)\nTOOL FLANGE", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0)),
+    ],
+)
+def test_a_tool_is_given_in_the_flange_whatever_is_active(text, tool):
+    assert ran(text)[-1].tool == tool
+
+
 @pytest.mark.parametrize(
     ("text", "code"),
     [

@@ -80,6 +80,17 @@ def test_a_frame_turns_the_way_and_carries_the_pose(around):
     assert np.subtract(shifted[:3], plain[:3]) == pytest.approx((0, 10, 0), abs=1e-9)
 
 
+def test_frames_said_twice_and_the_world_and_the_flange(around):
+    bench, move = "FRAME POSE(100, 50, 0, 0, 0, 90)\n", "MOVE POSE(10, 20, 30, 0, 0, 0)"
+    once = six(bench + move, around)
+    assert once == pytest.approx((80, 60, 30, 0, 0, 90), abs=1e-9)
+    assert six(bench + bench + move, around) == pytest.approx(once)
+    for back in ("FRAME WORLD\n", "FRAME POSE(0, 0, 0, 0, 0, 0)\n"):
+        assert six(bench + back + move, around) == pytest.approx(six(move, around), abs=1e-9)
+    assert np.array_equal(lowering.tool("FLANGE", around.cell), np.eye(4))
+    assert np.array_equal(around.cell.frames["WORLD"], np.eye(4))
+
+
 def test_approach_and_depart_go_back_along_the_tool(around):
     plain = np.array(six("MOVE POSE(400, -200, 800, 180, 0, 0)", around))
     approach = six("APPROACH POSE(400, -200, 800, 180, 0, 0), 50", around)

@@ -91,6 +91,8 @@ def test_frames_and_controller_are_handed_on() -> None:
         ("dwell_s = 0.3", "dwell_s = 1e9", "RBL605"),
         ('name = "part"', 'name = "table"', "RBL610"),
         ('name = "part"', 'name = "TABLE"', "RBL610"),
+        ("[hand]", "[frames.World]\npose_mm_deg = [0, 0, 0, 0, 0, 0]\n[hand]", "RBL610"),
+        ("[hand]", "[tools.FLANGE]\npose_mm_deg = [0, 0, 0, 0, 0, 0]\n[hand]", "RBL610"),
         ('name = "part"', 'name = "a part"', "RBL613"),
     ],
 )
