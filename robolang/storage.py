@@ -1,7 +1,7 @@
 """Writing results: a file is there whole or not at all, the old one or the new one, whenever the process is killed.
 
 Data go to a temporary file in the same folder, private until it has the mode and the owner of the file that it
-replaces; it is flushed to the disk, takes the final name in one step, and the folder is flushed. The
+replaces; it is flushed to the disk, takes the final name in one step, and the folder is flushed (decision 0026). The
 temporary file is locked while it is written: one that nothing locks was left by a process that was killed, and the next
 save in that folder removes it. What cannot be written is a ``Fault`` RBL706, and the folder is checked before a run
 starts. Only an ordinary file is ever replaced: not a device, a pipe or a folder, and of a link the file it leads to.

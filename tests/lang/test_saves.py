@@ -1,4 +1,4 @@
-"""Saves that are cut off: the process is killed before and after each call of the system, or the call fails.
+"""Saves that are cut off (attack_11): the process is killed before and after each system call, or the call fails.
 
 Every call that ``robolang.storage`` makes of ``os``, ``fcntl`` and ``tempfile`` while it saves is a step. In each crash
 state the file is the old or the new text, as private as it was, and the next save leaves nothing else in the folder.
@@ -113,14 +113,22 @@ def killed(words, step, moment):
         if (number, when) == (step, moment):
             os.kill(os.getpid(), signal.SIGKILL)
 
+    def command():
+        with pytest.MonkeyPatch.context() as patch:
+            stepped(patch, kill)
+            robolang(*words)
+
+    in_a_child(command)
+
+
+def in_a_child(call):
+    """Call a function in a process of its own, which must be killed before the function returns."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # threads of other libraries; the child runs none of them
         child = os.fork()
     if not child:
         try:
-            with pytest.MonkeyPatch.context() as patch:
-                stepped(patch, kill)
-                robolang(*words)
+            call()
         finally:
             os._exit(1)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == -signal.SIGKILL
@@ -269,4 +277,25 @@ def test_what_a_killed_process_left_of_a_folder_is_removed(tmp_path):
     left.mkdir()
     (left / "manifest.json").write_text("half")
     write_folder(tmp_path / "x", {"manifest.json": b"new"}, lambda name: True)
+    assert [path.name for path in tmp_path.iterdir()] == ["x"]
+
+
+@pytest.mark.parametrize("moment", ["before", "after"])
+def test_a_folder_that_is_killed_is_the_old_one_or_the_new_one(tmp_path, moment):
+    folder, real = tmp_path / "x", storage._exchange
+    write_folder(folder, {"manifest.json": b"old"}, lambda name: True)
+
+    def exchange(one, other):
+        if moment == "after":
+            real(one, other)
+        os.kill(os.getpid(), signal.SIGKILL)
+
+    def replaced():
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(storage, "_exchange", exchange)
+            write_folder(folder, {"manifest.json": b"new"}, lambda name: True)
+
+    in_a_child(replaced)
+    assert (folder / "manifest.json").read_bytes() == (b"old" if moment == "before" else b"new")
+    write_folder(folder, {"manifest.json": b"newer"}, lambda name: True)
     assert [path.name for path in tmp_path.iterdir()] == ["x"]

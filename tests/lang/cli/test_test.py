@@ -53,6 +53,19 @@ def test_what_is_not_as_expected_is_named(tmp_path):
     assert lines[-1] == "0 of 1 programs as expected"
 
 
+@pytest.mark.parametrize(
+    ("expect", "code"),
+    [("", 0), ('["RBL523", "RBL517"]', 0), ("[]", 1), ('["RBL523"]', 1), ('["RBL516", "RBL517", "RBL523"]', 1)],
+)
+def test_warnings_can_be_demanded_and_forbidden(tmp_path, expect, code):
+    program = copied(tmp_path, f"warnings = {expect}" if expect else "", "MOVE P1\nMOVE P2\n")  # without LOAD
+    with program.with_name("job.cell.toml").open("a") as cell:
+        cell.write("\n[controller]\nin_position_deg = 1e-12\nsettle_timeout_s = 0\n")
+    said = robolang("test", program, code=code).stdout
+    assert ("job.test.toml:4:1: warnings: RBL517, RBL523 (2 times), expected " in said) == bool(code)
+    assert ("neither expected nor forbidden" in said) == (not expect)
+
+
 def test_a_golden_log_names_the_first_line_and_tick_that_differ(tmp_path):
     program = copied(tmp_path, "golden_deg = 0.001")
     assert "RBL600" in robolang("test", program, code=2).stderr  # not written yet
