@@ -10,9 +10,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, TypeAlias, TypeGuard
 
-from robolang import effects
+from robolang import effects, limits
 from robolang.effects import Effect, origin
-from robolang.evaluator import Evaluator, finite, shown
+from robolang.evaluator import Evaluator, finite
 from robolang.nodes import (
     Accel,
     Approach,
@@ -47,14 +47,9 @@ Action: TypeAlias = Moving | Load | LoadNamed | Hand | Wrist | Seam | Setting | 
 
 WORLD = "WORLD"
 """The frame that every cell has, and none may define; its tool is FLANGE (``runtime.plant.cell_file``)."""
-_SETTINGS = {
-    "SPEED": (0.0, 10_000.0, "mm/s", "speed_mm_s"),
-    "SPEEDJ": (0.0, 100.0, "%", "speed_pct"),
-    "ACCEL": (0.0, 100.0, "%", "accel_pct"),
-    "OVERRIDE": (0.0, 100.0, "%", "override_pct"),
-    "ZONE": (0.0, 1e5, "mm", "zone_mm"),
-}
-"""Of each setting: above what (a ZONE may be that) and up to what it may be, its unit, and what it sets."""
+_SET = {"SPEED": "speed_mm_s", "SPEEDJ": "speed_pct", "ACCEL": "accel_pct", "OVERRIDE": "override_pct",
+        "ZONE": "zone_mm"}  # fmt: skip
+"""What each setting sets."""
 
 
 class _Settings:
@@ -99,10 +94,7 @@ class Actions:
         return place.shifted(_back(self._distance(node.distance))) if isinstance(node, Approach) else place
 
     def _distance(self, node: Expression) -> float:
-        distance = self._values.number(node)
-        if not 0.0 <= distance <= 1e5:
-            raise Fault("RBL404", f"a distance of {shown(distance)} mm is not between 0 and 100000 mm")
-        return distance
+        return limits.DISTANCE.checked(self._values.number(node))
 
     def _options(self, node: Moving) -> tuple[dict[str, Any], Wrist | None]:
         """Return the values of a move: its options', else those that were set."""
@@ -113,15 +105,13 @@ class Actions:
             if isinstance(option, Wrist):
                 wrist = option
             elif isinstance(option, Speed):
-                speed = self._values.number(option.value)
+                speed = (limits.SPEED_PCT if joint else limits.SPEED).checked(self._values.number(option.value))
             elif isinstance(option, Accel):
-                accel = self._values.number(option.value)
+                accel = limits.ACCEL.checked(self._values.number(option.value))
             elif isinstance(option, Time):
-                time = self._values.number(option.value)
+                time = limits.TIME.checked(self._values.number(option.value))
             elif isinstance(option, Zone):
-                zone = 0.0 if option.value is None else self._values.number(option.value)
-        if not zone >= 0.0:
-            raise Fault("RBL415", f"a blend radius of {shown(zone)} mm is not 0 or more")
+                zone = 0.0 if option.value is None else limits.ZONE.checked(self._values.number(option.value))
         if time is None and speed is None:
             speed = found.speed_pct if joint else found.speed_mm_s
         return {
@@ -145,7 +135,8 @@ class Actions:
 
     def _hand(self, line: Line, node: Hand) -> Effect:
         return effects.SetHand(**origin(line, node), closed=node.state is HandState.ON,
-                               dwell_s=None if node.dwell is None else self._values.number(node.dwell))  # fmt: skip
+                               dwell_s=None if node.dwell is None else limits.DWELL.checked(
+                                   self._values.number(node.dwell)))  # fmt: skip
 
     def _wrist(self, line: Line, node: Wrist) -> Effect:
         self._set.wrist = node
@@ -162,13 +153,7 @@ class Actions:
         if node.word == "FRAME":
             self._values.frame = self._frame(node.value)
             return None
-        value = self._values.number(node.value)
-        low, high, unit, name = _SETTINGS[node.word]
-        if not (low < value <= high or (node.word == "ZONE" and value == 0.0)):
-            code = "RBL415" if node.word == "ZONE" else "RBL404"
-            bound = "0 or more" if node.word == "ZONE" else f"above 0 and at most {high:g} {unit}"
-            raise Fault(code, f"{node.word} is {shown(value)} {unit} and must be {bound}")
-        setattr(self._set, name, value)
+        setattr(self._set, _SET[node.word], limits.SETTINGS[node.word].checked(self._values.number(node.value)))
         return None
 
     def _frame(self, node: Expression) -> Frame:
@@ -206,13 +191,10 @@ class Actions:
 
     def _pulse(self, line: Line, node: Pulse) -> Effect:
         return effects.SetOutput(**origin(line, node), output=self._output(node.index), value=1.0,
-                                 seconds=seconds(self._values, node.seconds, "PULSE"))  # fmt: skip
+                                 seconds=limits.PULSE.checked(self._values.number(node.seconds)))  # fmt: skip
 
     def _output(self, node: Expression) -> int:
-        number = self._values.whole(node, "the number of an output")
-        if not 1 <= number <= 1024:
-            raise Fault("RBL534", f"there is no output {number}: they are 1 to 1024")
-        return number
+        return int(limits.OUTPUT.checked(self._values.number(node)))
 
 
 _EFFECT: dict[type, Callable[..., Effect | None]] = {
@@ -223,14 +205,6 @@ _EFFECT: dict[type, Callable[..., Effect | None]] = {
 
 ACTIONS = tuple(_EFFECT)
 """The kinds of statements that ``Actions.effect`` takes."""
-
-
-def seconds(values: Evaluator, node: Expression, word: str) -> float:
-    """Return a time to wait, s; ``Fault`` RBL405 unless it is between 0 and a day."""
-    found = values.number(node)
-    if not 0.0 <= found <= 86400.0:
-        raise Fault("RBL405", f"{word} of {shown(found)} s is not between 0 and 86400 s")
-    return found
 
 
 def _back(distance: float) -> Shift:

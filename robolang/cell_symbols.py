@@ -8,12 +8,13 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 from runtime.plant.cell_file import CellFile, LoadFile
-from runtime.robot.drives import Limits
+from runtime.robot.drives import SPEED_ROUNDING, Limits
+from runtime.units import MM
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CellSymbols:
-    """Names of a cell and of its taught points, what the arm may carry (kg) and the ``limits`` of its axes.
+    """Names of a cell and of its taught points, what the arm may carry (kg), and the limits of its axes and its tool.
 
     ``loads`` have their numbers where these are known. ``cell_file`` and ``points_file`` are the paths that a remedy
     names; empty: not known.
@@ -22,6 +23,7 @@ class CellSymbols:
     robot: str | None = None
     limits: tuple[Limits, ...] | None = None
     rated_payload: float | None = None
+    max_speed_mm_s: float | None = None
     sensors: frozenset[str] | None = None
     tools: frozenset[str] | None = None
     frames: frozenset[str] | None = None
@@ -38,6 +40,7 @@ class CellSymbols:
             robot=cell.arm.name,
             limits=cell.arm.limits,
             rated_payload=cell.arm.rated_payload,
+            max_speed_mm_s=cell.arm.path.max_speed / MM * (1.0 + SPEED_ROUNDING),
             sensors=_keys(cell.sensors),
             tools=_keys(cell.tools),
             frames=_keys(cell.frames),

@@ -22,7 +22,7 @@ from robolang.nodes import Line, Program, Unparsed
 from robolang.rounding_check import rounding_check
 from robolang.source import Span
 from robolang.statement_check import StatementCheck
-from robolang.structure import structure_of
+from robolang.structure import Structure, structure_of
 from robolang.usage_check import usage_check, wait_check
 
 
@@ -33,7 +33,7 @@ def check(program: Program, symbols: CellSymbols = NOTHING_KNOWN) -> tuple[Diagn
     """
     structure = structure_of(program)
     found = list(islice(chain(_line_numbers(program), _emptiness(program), structure.diagnostics,
-                              _statements(program, symbols)), MAX_DIAGNOSTICS + 1))  # fmt: skip
+                              _statements(program, structure, symbols)), MAX_DIAGNOSTICS + 1))  # fmt: skip
     found += _beside(found, chain(wait_check(program), rounding_check(program)))
     if not has_errors(found) and not any(isinstance(line.statement, Unparsed) for line in program.statements):
         found += chain(flow_check(program, structure), usage_check(program))
@@ -48,17 +48,21 @@ def _beside(found: list[Diagnostic], more: Iterator[Diagnostic]) -> list[Diagnos
     return list(islice(free, MAX_DIAGNOSTICS + 1))
 
 
-def _statements(program: Program, symbols: CellSymbols) -> Iterator[Diagnostic]:
-    defined = Defined.of(program)
-    found = list(islice(_each_statement(program, StatementCheck(symbols, defined)), MAX_DIAGNOSTICS + 1))
+def _statements(program: Program, structure: Structure, symbols: CellSymbols) -> Iterator[Diagnostic]:
+    defined = Defined.of(program, {} if structure.diagnostics else structure.owner)
+    checks = StatementCheck(symbols, defined)
+    found = list(islice(_each_statement(program, structure, defined, checks), MAX_DIAGNOSTICS + 1))
     for code in ("RBL213", "RBL215"):
         found = defined.missing.noted(found, code)
     yield from found
 
 
-def _each_statement(program: Program, checks: StatementCheck) -> Iterator[Diagnostic]:
-    for line in program.statements:
-        assert line.statement is not None
+def _each_statement(program: Program, structure: Structure, defined: Defined,
+                    checks: StatementCheck) -> Iterator[Diagnostic]:  # fmt: skip
+    for index, line in enumerate(program.lines):
+        if line.statement is None:
+            continue
+        defined.look_from(structure.owner.get(index))
         said: set[tuple[str, Span]] = set()  # two rules may look at one expression
         for found in checks.check(line.statement):
             if (found.code, found.span) not in said:

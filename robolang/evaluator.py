@@ -18,8 +18,6 @@ from runtime.numerals import number_in
 
 MAX_TEXT = 10_000
 """Longest text that a program may make, characters."""
-MAX_ELEMENTS = 100_000
-"""Largest array."""
 MAX_SHIFTS = 1000
 """Most ways and turns that a pose can have behind it."""
 COMPONENTS6 = ("X", "Y", "Z", "RX", "RY", "RZ")
@@ -229,7 +227,10 @@ class Evaluator:
             raise Fault("RBL531", f"{node.name.text} takes another number of values than {len(node.arguments)}")
 
     def _do_in(self, node: Call) -> Value:
-        return self._world.input(self.whole(node.arguments[0], "the number of an input"))
+        number = self.number(node.arguments[0])
+        if not (math.isfinite(number) and number == math.floor(number)):
+            raise Fault("RBL534", f"there is no input {number:g}: its number is whole")
+        return self._world.input(int(number))
 
     def _do_timer(self, node: Call) -> Value:
         return self._world.seconds()

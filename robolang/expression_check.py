@@ -1,7 +1,7 @@
 """Expressions: undefined names, values of the wrong kind, calls with the wrong count, and what has no value at all."""
 
+import math
 from collections.abc import Iterator
-from functools import cached_property
 
 from robolang.cell_symbols import CellSymbols
 from robolang.constants import fixed, no_value
@@ -32,9 +32,9 @@ class ExpressionCheck:
     def __init__(self, symbols: CellSymbols, defined: Defined) -> None:
         self._symbols, self._defined = symbols, defined
 
-    @cached_property
+    @property
     def _known(self) -> frozenset[str]:
-        """Every name that has a value somewhere."""
+        """Every name that has a value here."""
         return frozenset((self._symbols.points or frozenset()) | self._defined.values)
 
     def check(self, node: Expression) -> Iterator[Diagnostic]:
@@ -60,15 +60,28 @@ class ExpressionCheck:
             elif isinstance(each, Vector) and id(each) not in behind:
                 message = "a way in parentheses stands behind a pose and + or *, as in P1 + (0, 0, 50)"
                 yield Diagnostic(code="RBL217", message=message, span=each.span)
+            if isinstance(each, Vector):
+                for item in each.items:
+                    yield from self.finite(item)
         yield from no_value(node)
 
+    def finite(self, node: Expression) -> Iterator[Diagnostic]:
+        """Report a number that is none, NAN or INF, where only a finite one can stand."""
+        value = fixed(node)
+        if value is not None and not math.isfinite(value):
+            yield Diagnostic(code="RBL209", message=f"this has no value: {value:g} is not finite", span=node.span)
+
     def _name(self, node: Name) -> Iterator[Diagnostic]:
-        if node.key in self._defined.values or node.key in ("NAN", "INF"):
+        if self._defined.has_value(node.key) or node.key in ("NAN", "INF"):
             return
         points = self._symbols.points
         if points is not None and node.key not in points and self._defined.is_missing(node):
             message = f"{node.text} has no value: nothing gives it a first one, and it is no taught point"
-            yield Diagnostic(code="RBL215", message=message, span=node.span, hint=hint_for(node, self._known))
+            hint = hint_for(node, self._known)
+            if self._defined.is_of_a_sub(node.key):
+                message = f"{node.text} has no value here: only a SUB gives it one, which ends with the SUB"
+                hint = f"give {node.text} a first value in the main program"
+            yield Diagnostic(code="RBL215", message=message, span=node.span, hint=hint)
 
     def _call(self, node: Call) -> Iterator[Diagnostic]:
         key, count = node.name.key, len(node.arguments)
@@ -88,7 +101,7 @@ class ExpressionCheck:
                 yield from self._input(node.arguments[0])
             elif key == "JOINT":
                 yield from self._joints(node)
-        elif key not in self._defined.arrays:
+        elif not self._defined.has_array(key):
             if not self._defined.is_missing(node.name):
                 return
             guess = near(key, ARGUMENTS)
@@ -158,7 +171,7 @@ class ExpressionCheck:
             if node.key.endswith("$"):
                 return "a text"
             taught = self._symbols.points is not None and node.key in self._symbols.points
-            return "a pose" if taught and node.key not in self._defined.values else None
+            return "a pose" if taught and not self._defined.has_value(node.key) else None
         if isinstance(node, Call):
             if node.name.key in ("POSE", "JOINT", "HERE"):
                 return "a pose"

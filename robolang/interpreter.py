@@ -20,7 +20,8 @@ head; ``MAX_STEPS`` statements are RBL505; ``MAX_CALLS`` CALLs or GOSUBs within 
 import math
 from collections.abc import Callable, Collection, Generator
 
-from robolang.actions import ACTIONS, Action, Actions, seconds
+from robolang import limits
+from robolang.actions import ACTIONS, Action, Actions
 from robolang.branches import Decisions
 from robolang.effects import Drain, Effect, Halt, Origin, Pass, Show, origin
 from robolang.evaluator import Evaluator, Nowhere, World, finite, shown
@@ -227,7 +228,7 @@ class _Machine:
         return None
 
     def _dim(self, line: Line, node: Dim, at: int) -> int | None:
-        self._scopes.make(node.name.key, self._values.whole(node.size, "the size of an array"))
+        self._scopes.make(node.name.key, int(limits.SIZE.checked(self._values.number(node.size))))
         return None
 
     def _const(self, line: Line, node: Const, at: int) -> int | None:
@@ -235,14 +236,14 @@ class _Machine:
         return None
 
     def _delay(self, line: Line, node: Delay, at: int) -> Run:
-        time = seconds(self._values, node.seconds, "DELAY")
+        time = limits.DELAY.checked(self._values.number(node.seconds))
         self._taking_time()
         yield Pass(**origin(line, node), seconds=time)
         return None
 
     def _wait(self, line: Line, node: Wait, at: int) -> Run:
         yield Drain(**origin(line, node))
-        timeout = math.inf if node.timeout is None else seconds(self._values, node.timeout, "TIMEOUT")
+        timeout = math.inf if node.timeout is None else limits.TIMEOUT.checked(self._values.number(node.timeout))
         began, place = self._world.seconds(), node.condition.span
         forced = self._decisions.of_wait(place, endless=node.timeout is None)
         while forced is not True and not (forced is None and self._values.true(node.condition)):

@@ -19,13 +19,13 @@ from typing import cast
 import numpy as np
 
 from robolang.effects import MoveTo, SetHand, SetPayload
+from robolang.limits import DWELL
 from robolang.places import Frame, Place, Shift, Six
 from robolang.points import Point, PointStore
 from runtime.faults import Fault
 from runtime.frames import Array, inverse, pose_from_xyzrpy, xyzrpy_from_pose
 from runtime.linear import matmul
 from runtime.motion.commands import Component, MoveArc, MoveJoint, MoveLinear, Wrist
-from runtime.motion.speed import MAX_DURATION
 from runtime.plant.cell import CellSpec
 from runtime.robot.drives import beyond_range
 from runtime.robot.kinematics import Kinematics
@@ -212,7 +212,4 @@ def _named(table: Mapping[str, Array], name: str, what: str) -> Array:
 
 def dwell_s(effect: SetHand, cell: CellSpec) -> float:
     """Return the waiting time of a HAND statement, s; ``Fault`` RBL405."""
-    seconds = cell.hand.dwell if effect.dwell_s is None else effect.dwell_s
-    if not 0.0 <= seconds <= MAX_DURATION:
-        raise Fault("RBL405", f"a dwell of {seconds:g} s is not between 0 and {MAX_DURATION:g} s")
-    return seconds
+    return DWELL.checked(cell.hand.dwell if effect.dwell_s is None else effect.dwell_s)

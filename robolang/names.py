@@ -5,7 +5,7 @@ in ``FOR i = 1 TO 4`` is not followed by a mistake for each use of i.
 """
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from robolang.cell_symbols import CellSymbols
@@ -40,56 +40,91 @@ _ASSIGNED = re.compile(r"(?<!\w)([A-Za-z]\w*+\$?)[ \t]*(?:\([^()=]*\)[ \t]*)?=")
 
 
 @dataclass(slots=True)
-class Defined:
-    """Names that a program gives values: variables, arrays, constants, and subroutines with their parameters.
-
-    ``seeming`` are those that lines with an error seem to define, whatever they are used as; ``missing`` are the names
-    that are used and not defined.
-    """
+class _Own:
+    """What the lines of the main program, or of one SUB, define."""
 
     values: set[str] = field(default_factory=set)
     arrays: set[str] = field(default_factory=set)
     constants: dict[str, Span] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class Defined:
+    """Names that a program gives values: variables, arrays, constants, and subroutines with their parameters.
+
+    A SUB sees the names of the main program and its own; what it gives a value ends with it, so the main program and
+    other SUBs do not see that (``scope``): the answers are those for the part that ``look_from`` was called with last.
+    ``seeming`` are those that lines with an error seem to define, whatever they are used as;
+    ``missing`` are the names that are used and not defined.
+    """
+
     subs: dict[str, Sub] = field(default_factory=dict)
     seeming: set[str] = field(default_factory=set)
     missing: Repeats = field(default_factory=Repeats)
+    _own: dict[int | None, _Own] = field(default_factory=lambda: {None: _Own()})
+    _here: _Own = field(default_factory=_Own)
 
     @staticmethod
-    def of(program: Program) -> "Defined":
-        """Return what the statements of a program define, wherever they stand."""
+    def of(program: Program, owner: Mapping[int, int]) -> "Defined":
+        """Return what the statements of a program define; ``owner``: by line the line of the SUB that it is in."""
         found = Defined()
-        for line in program.statements:
-            assert line.statement is not None
-            found._take(line.statement)
+        subs = frozenset(owner.values())
+        for index, line in enumerate(program.lines):
+            if line.statement is not None:
+                part = index if index in subs else owner.get(index)
+                found._take(line.statement, found._own.setdefault(part, _Own()))
+        found.look_from(None)
         return found
+
+    @property
+    def values(self) -> frozenset[str]:
+        """Names with a value, all that are seen from here."""
+        return frozenset(self._own[None].values | self._here.values | self.seeming)
+
+    def look_from(self, sub: int | None) -> None:
+        """See the names as the SUB that begins on a line does; None: as the main program does."""
+        self._here = self._own.get(sub) or _Own()
+
+    def has_value(self, key: str) -> bool:
+        """Return whether a variable, constant or parameter of a name is seen from here."""
+        return key in self._here.values or key in self._own[None].values or key in self.seeming
+
+    def has_array(self, key: str) -> bool:
+        """Return whether an array of a name is seen from here."""
+        return key in self._here.arrays or key in self._own[None].arrays or key in self.seeming
+
+    def constant(self, key: str) -> Span | None:
+        """Return where the constant of a name that is seen from here is fixed, None when there is none."""
+        return self._own[None].constants.get(key) or self._here.constants.get(key)
+
+    def is_of_a_sub(self, key: str) -> bool:
+        """Return whether a name that is not seen from here has a value in some SUB."""
+        return any(key in own.values or key in own.arrays for own in self._own.values())
 
     def is_missing(self, name: Name) -> bool:
         """Return whether a name that is not defined is to be said: at its first use."""
         return name.key not in self.seeming and self.missing.is_first(name.key, name.span)
 
-    def _take(self, node: Statement) -> None:
+    def _take(self, node: Statement, own: _Own) -> None:
         if isinstance(node, If):
             for part in (node.then, node.otherwise):
                 if part is not None:
-                    self._take(part)
+                    self._take(part, own)
         elif isinstance(node, Assign) and isinstance(node.target, Name):
             if all(name.key != node.target.key for name in values_read(node.value)):  # n = n + 1 gives no first value
-                self.values.add(node.target.key)
+                own.values.add(node.target.key)
         elif isinstance(node, For):
-            self.values.add(node.variable.key)
+            own.values.add(node.variable.key)
         elif isinstance(node, Const):
-            self.values.add(node.name.key)
-            self.constants.setdefault(node.name.key, node.name.span)
+            own.values.add(node.name.key)
+            own.constants.setdefault(node.name.key, node.name.span)
         elif isinstance(node, Dim):
-            self.arrays.add(node.name.key)
+            own.arrays.add(node.name.key)
         elif isinstance(node, Sub):
             self.subs.setdefault(node.name.key, node)
-            self.values.update(parameter.key for parameter in node.parameters)
+            own.values.update(parameter.key for parameter in node.parameters)
         elif isinstance(node, Unparsed):
-            found = seems_to_define(node.text)
-            self.seeming |= found
-            self.values |= found
-            self.arrays |= found
+            self.seeming |= seems_to_define(node.text)
 
 
 def names_in(node: Node) -> Iterator[Name]:

@@ -16,7 +16,7 @@ RBL507), and what texts and the ways behind poses hold beyond that (``MAX_TEXTS`
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from robolang.evaluator import MAX_ELEMENTS
+from robolang.limits import SIZE
 from robolang.places import Place, Value, kind_of
 from runtime.faults import Fault
 
@@ -173,8 +173,7 @@ class Scopes:
 
     def make(self, key: str, largest: int) -> None:
         """Make an array of elements 0 to ``largest``, all 0 or empty; ``Fault`` RBL507."""
-        if not 0 <= largest < MAX_ELEMENTS:
-            raise Fault("RBL507", f"an array of {largest + 1} elements: 1 to {MAX_ELEMENTS} are possible")
+        SIZE.checked(largest)
         here = self.here
         old = here.arrays.get(key, [])
         self._charge(here, largest + 1 - len(old), -sum(map(characters, old)))

@@ -7,10 +7,12 @@ here are those that hold for every robot, and what the arm may carry.
 import math
 from collections.abc import Callable, Iterator
 
+from robolang import limits
 from robolang.cell_symbols import CellSymbols
 from robolang.constants import fixed
 from robolang.diagnostics import Diagnostic, Related, Severity
 from robolang.expression_check import ExpressionCheck
+from robolang.limits import Limit
 from robolang.names import Defined, hint_for, names_hint, of_cell
 from robolang.nodes import (
     Accel,
@@ -62,12 +64,7 @@ from runtime.faults import Fault
 from runtime.robot.load_rules import centre_fault, inertia_fault, load_fault, mass_fault
 from runtime.units import MM
 
-MAX_SPEED_MM_S = 10_000.0
-MAX_ACCEL_PCT = 100.0
-MAX_SECONDS = 600.0
-MAX_WAIT_S = 86_400.0
 MAX_HELD = 2
-MAX_OUTPUT = 1024
 
 
 class StatementCheck:
@@ -107,7 +104,7 @@ class StatementCheck:
         ):
             yield from self._place(target)
         if isinstance(node, Approach | Depart):
-            yield from self._in_range(node.distance, node.distance, 0.0, 1e5, "a distance", "mm", "RBL404")
+            yield from self._within(node.distance, limits.DISTANCE)
         seen: dict[type, Option] = {}
         for option in node.options:
             word = type(option).__name__.upper()
@@ -122,7 +119,7 @@ class StatementCheck:
 
     def _place(self, node: Expression) -> Iterator[Diagnostic]:
         points = self._symbols.points
-        if isinstance(node, Name) and node.key not in self._defined.values:
+        if isinstance(node, Name) and not self._defined.has_value(node.key):
             if points is not None and node.key not in points:
                 hint = hint_for(node, points) or self._symbols.where_to_teach(node.text)
                 yield Diagnostic(code="RBL301", message=f"point {node.text} is not taught", span=node.span, hint=hint)
@@ -136,33 +133,17 @@ class StatementCheck:
             yield from self._wrist(option)
         elif isinstance(option, Zone):
             if option.value is not None:
-                yield from self._radius(option.value)
+                yield from self._within(option.value, limits.ZONE)
         else:
-            high, unit = _range(option, joint=joint)
-            yield from self._above(option.value, high, word, unit)
+            yield from self._within(option.value, _limit(option, joint=joint))
 
-    def _above(self, node: Expression, high: float, word: str, unit: str) -> Iterator[Diagnostic]:
+    def _within(self, node: Expression, limit: Limit) -> Iterator[Diagnostic]:
+        """Report a value that is no number, or out of a range."""
         yield from self._expressions.must_be(node, "a number")
         value = fixed(node)
-        if value is not None and not 0.0 < value <= high:
-            message = f"{word} is {value:g} {unit} and must be above 0 and at most {high:g} {unit}"
-            yield Diagnostic(code="RBL404", message=message, span=node.span)
-
-    def _radius(self, node: Expression) -> Iterator[Diagnostic]:
-        yield from self._expressions.must_be(node, "a number")
-        value = fixed(node)
-        if value is not None and not 0.0 <= value <= 1e5:
-            message = f"a blend radius of {value:g} mm is not 0 or more"
-            yield Diagnostic(code="RBL415", message=message, span=node.span)
-
-    def _in_range(self, node: Expression, place: Node, low: float, high: float, what: str, unit: str,
-                  code: str) -> Iterator[Diagnostic]:  # fmt: skip
-        yield from self._expressions.must_be(node, "a number")
-        value = fixed(node)
-        if value is not None and not low <= value <= high:
-            message = f"{what} of {value:g} {unit} is not between {low:g} {unit} and {high:g} {unit}"
-            hint = f"give {low:g} to {high:g} {unit}"
-            yield Diagnostic(code=code, message=message, span=place.span, hint=hint)
+        if value is not None:
+            most = self._symbols.max_speed_mm_s if limit is limits.SPEED else None
+            yield from _refused(limit.fault(value, most), node)
 
     def _wrist(self, node: Wrist) -> Iterator[Diagnostic]:
         seen: dict[Component, Span] = {}
@@ -183,15 +164,13 @@ class StatementCheck:
         if node.word in ("TOOL", "FRAME"):
             names = self._symbols.tools if node.word == "TOOL" else self._symbols.frames
             if isinstance(node.value, Name):
-                if node.value.key not in self._defined.values | (self._symbols.points or frozenset()):
+                key = node.value.key
+                if not self._defined.has_value(key) and key not in (self._symbols.points or ()):
                     yield from of_cell(node.value, names, node.word.lower(), self._symbols)
             else:
                 yield from self._expressions.must_be(node.value, "a pose")
-        elif node.word == "ZONE":
-            yield from self._radius(node.value)
         else:
-            high, unit = (MAX_SPEED_MM_S, "mm/s") if node.word == "SPEED" else (100.0, "%")
-            yield from self._above(node.value, high, node.word, unit)
+            yield from self._within(node.value, limits.SETTINGS[node.word])
 
     # --- payload and hand --------------------------------------------------------------------------------------------
 
@@ -221,17 +200,17 @@ class StatementCheck:
 
     def _hand(self, node: Hand) -> Iterator[Diagnostic]:
         if node.dwell is not None:
-            yield from self._in_range(node.dwell, node.dwell, 0.0, MAX_SECONDS, "a wait", "s", "RBL405")
+            yield from self._within(node.dwell, limits.DWELL)
 
     # --- values and control ------------------------------------------------------------------------------------------
 
     def _assign(self, node: Assign) -> Iterator[Diagnostic]:
         name = node.target.name if isinstance(node.target, Call) else node.target
-        if name.key in self._defined.constants:
-            related = (Related(span=self._defined.constants[name.key], message="fixed here"),)
+        if fixed_at := self._defined.constant(name.key):
+            related = (Related(span=fixed_at, message="fixed here"),)
             yield Diagnostic(code="RBL216", message=f"{name.text} is a constant", span=name.span, related=related)
         yield from self._fits(name, node.value)
-        is_element = isinstance(node.target, Call) and name.key not in self._defined.arrays
+        is_element = isinstance(node.target, Call) and not self._defined.has_array(name.key)
         if is_element and self._defined.is_missing(name):
             message = f"there is no array {name.text}"
             yield Diagnostic(code="RBL215", message=message, span=name.span, hint=f"DIM {name.text}(n) makes one")
@@ -244,15 +223,15 @@ class StatementCheck:
             yield Diagnostic(code="RBL217", message=message, span=value.span)
 
     def _const(self, node: Const) -> Iterator[Diagnostic]:
-        first = self._defined.constants[node.name.key]
-        if first != node.name.span:
+        first = self._defined.constant(node.name.key)
+        if first is not None and first != node.name.span:
             related = (Related(span=first, message="fixed here"),)
             message = f"{node.name.text} is a constant already"
             yield Diagnostic(code="RBL216", message=message, span=node.name.span, related=related)
         yield from self._fits(node.name, node.value)
 
     def _dim(self, node: Dim) -> Iterator[Diagnostic]:
-        yield from self._expressions.must_be(node.size, "a number")
+        yield from self._within(node.size, limits.SIZE)
 
     def _case(self, node: Case) -> Iterator[Diagnostic]:
         selected = self._selected[-1] if self._selected else None
@@ -274,26 +253,23 @@ class StatementCheck:
             yield from self._expressions.must_be(node.value, "a number")
 
     def _out(self, node: Out | Pulse) -> Iterator[Diagnostic]:
-        yield from self._expressions.must_be(node.index, "a number")
-        number = fixed(node.index)
-        if number is not None and not (number == math.floor(number) and 1 <= number <= MAX_OUTPUT):
-            message = f"there is no output {number:g}: they are 1 to {MAX_OUTPUT}"
-            yield Diagnostic(code="RBL534", message=message, span=node.index.span)
+        yield from self._within(node.index, limits.OUTPUT)
         if isinstance(node, Pulse):
-            yield from self._in_range(node.seconds, node.seconds, 0.0, MAX_WAIT_S, "a pulse", "s", "RBL405")
+            yield from self._within(node.seconds, limits.PULSE)
         else:
             yield from self._expressions.must_be(node.value, "a number")
+            yield from self._expressions.finite(node.value)
 
     def _delay(self, node: Delay) -> Iterator[Diagnostic]:
-        yield from self._in_range(node.seconds, node.seconds, 0.0, MAX_WAIT_S, "a delay", "s", "RBL405")
+        yield from self._within(node.seconds, limits.DELAY)
 
     def _wait(self, node: Wait) -> Iterator[Diagnostic]:
         yield from self._expressions.must_be(node.condition, "a number")
         if node.timeout is not None:
-            yield from self._in_range(node.timeout, node.timeout, 0.0, MAX_WAIT_S, "a time-out", "s", "RBL405")
+            yield from self._within(node.timeout, limits.TIMEOUT)
 
     def _for(self, node: For) -> Iterator[Diagnostic]:
-        if node.variable.key in self._defined.constants:
+        if self._defined.constant(node.variable.key) is not None:
             message = f"{node.variable.text} is a constant"
             yield Diagnostic(code="RBL216", message=message, span=node.variable.span)
         yield from self._fits(node.variable, node.first)
@@ -365,10 +341,10 @@ def _twice(word: str, place: Span, first: Span) -> Diagnostic:
     return Diagnostic(code="RBL118", message=f"{word} is given twice", span=place, related=related)
 
 
-def _range(option: Speed | Accel | Time, *, joint: bool) -> tuple[float, str]:
+def _limit(option: Speed | Accel | Time, *, joint: bool) -> Limit:
     if isinstance(option, Speed):
-        return (100.0, "%") if joint else (MAX_SPEED_MM_S, "mm/s")
-    return (MAX_ACCEL_PCT, "%") if isinstance(option, Accel) else (MAX_SECONDS, "s")
+        return limits.SPEED_PCT if joint else limits.SPEED
+    return limits.ACCEL if isinstance(option, Accel) else limits.TIME
 
 
 def _fixed(node: Vector) -> list[float] | None:

@@ -17,7 +17,7 @@ from runtime.faults import Code, all_codes, lookup
 
 _MOST_LINES = 20
 
-CHECKED = ("RBL1", "RBL2", "RBL3", "RBL40", "RBL413", "RBL415", "RBL534")
+CHECKED = ("RBL1", "RBL2", "RBL3", "RBL40", "RBL413", "RBL415", "RBL507", "RBL534")
 """Beginnings of the codes that reading and checking a program can find."""
 
 
@@ -25,7 +25,8 @@ OF_THE_MOTION = frozenset({"RBL410", "RBL411", "RBL412", "RBL414", "RBL416", "RB
                            "RBL424", "RBL425", "RBL426", "RBL427", "RBL428", "RBL429", "RBL440", "RBL441"})  # fmt: skip
 """Codes that only planning the motion finds: ``robolang check --motion``, and of refusals ``robolang run``."""
 
-OF_THE_RUN = frozenset({"RBL307", "RBL309", "RBL401", "RBL402", "RBL403", "RBL404", "RBL405", "RBL415", "RBL534"})
+OF_THE_RUN = frozenset({"RBL307", "RBL309", "RBL401", "RBL402", "RBL403", "RBL404", "RBL405", "RBL415", "RBL507",
+                        "RBL534"})  # fmt: skip
 """Codes of values, which a run may work out: checking finds those of numbers alone."""
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from runtime.robot import robot_file
-from runtime.robot.drives import Limits
+from runtime.robot.drives import Limits, PathLimits
 from runtime.robot.robot_file import RobotFile
 from runtime.robot.sidecar_file import SidecarFile, read_sidecar, sidecar_path
 from runtime.robot.xmlfile import Element, parse_xml
@@ -32,6 +32,11 @@ class ModelFile:
     def rated_payload(self) -> float:
         """Heaviest load at the flange, kg."""
         return self.sidecar.rated_payload
+
+    @property
+    def path(self) -> PathLimits:
+        """Limits of the tool point."""
+        return self.sidecar.path
 
     @property
     def limits(self) -> tuple[Limits, ...]:

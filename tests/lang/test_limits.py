@@ -1,15 +1,25 @@
 """Every limit of a run, at the limit and one beyond it; those of the text are in ``test_parse_errors``."""
 
+import math
+
 import pytest
 
-from robolang import interpreter, motion_check, session
-from robolang.evaluator import MAX_ELEMENTS, MAX_TEXT
-from robolang.interpreter import MAX_CALLS, MAX_ROUNDS
+from robolang import interpreter, limits, motion_check, session
+from robolang.checker import check
+from robolang.diagnostics import Severity
+from robolang.evaluator import MAX_TEXT
+from robolang.interpreter import MAX_CALLS, MAX_ROUNDS, execute
+from robolang.limits import SIZE
 from robolang.motion_check import rehearse
+from robolang.parser import parse
 from robolang.project import load_project
 from robolang.scope import MAX_CELLS, MAX_TEXTS
 from robolang.session import Session
+from runtime.faults import Fault
+from tests.lang.helpers import source
 from tests.lang.running import fault, ran
+
+MAX_ELEMENTS = int(SIZE.high) + 1
 
 LONG = f't$ = "{"x" * (MAX_TEXT // 2)}"\nt$ = t$ + t$\n'
 FULL = LONG + f"DIM a$(2000)\nFOR i = 1 TO {MAX_TEXTS // MAX_TEXT - 1}\na$(i) = t$\nNEXT\n"
@@ -84,3 +94,35 @@ def test_no_handler_outlives_the_simulated_time(tmp_path, monkeypatch):
     found = rehearse(project)
     assert [item.code for item in found.refused] == ["RBL509"]
     assert found.total_us == 400_000
+
+
+@pytest.mark.parametrize("limit", [each for each in vars(limits).values() if isinstance(each, limits.Limit)],
+                         ids=lambda limit: limit.name)  # fmt: skip
+def test_every_range_holds_its_ends_and_nothing_beyond(limit):
+    least = 0.5 if limit.above else limit.low
+    assert limit.fault(least) is limit.fault(limit.high) is None
+    beyond = (limit.low - 1.0, limit.low if limit.above else limit.low - 1e-9, limit.high * (1 + 1e-9), math.nan,
+              math.inf, -math.inf, *([1.5] if limit.whole else []))  # fmt: skip
+    assert {limit.fault(value).code for value in beyond} == {limit.code}
+    assert limit.fault(limit.high, limit.high / 2).code == limit.code
+    assert limit.fault(limit.high / 4, math.nan if limit.whole else limit.high / 2) is None or limit.whole
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("MOVE P1, SPEED {}", "RBL404"), ("MOVEJ P1, SPEED {}", "RBL404"), ("MOVE P1, ACCEL {}", "RBL404"),
+        ("MOVE P1, TIME {}", "RBL404"), ("MOVE P1, ZONE {}", "RBL415"), ("ZONE {}", "RBL415"), ("SPEED {}", "RBL404"),
+        ("OVERRIDE {}", "RBL404"), ("APPROACH P1, {}", "RBL404"), ("DEPART {}", "RBL404"), ("HAND ON, {}", "RBL405"),
+        ("DELAY {}", "RBL405"), ("PULSE 1, {}", "RBL405"), ("OUT({}) = 1", "RBL534"), ("DIM a({})", "RBL507"),
+        ("WAIT 1, TIMEOUT {}", "RBL405"),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("value", ["0 - 1", "1E8", "NAN", "INF"])
+def test_check_and_a_run_judge_a_value_alike(text, code, value):
+    """As a constant it is refused by check, out of a variable by the run, with one code."""
+    program = parse(source(text.format(value))).program
+    assert [item.code for item in check(program) if item.severity is Severity.ERROR] == [code]
+    with pytest.raises(Fault) as caught:
+        list(execute(parse(source(f"v = {value}\n{text.format('v')}")).program, points=("P1",)))
+    assert caught.value.code == code

@@ -4,6 +4,8 @@ import pytest
 
 from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
+from robolang.diagnostics import Severity
+from robolang.interpreter import execute
 from robolang.names import seems_to_define
 from robolang.parser import parse
 from robolang.repeats import MAX_NOTES
@@ -62,3 +64,29 @@ def test_a_mistyped_definition_is_one_mistake(text):
 
 def test_a_use_in_a_line_with_an_error_defines_nothing():
     assert found("MOV P9\nMOVE P9\nPRINT x y\nPRINT x") == [("RBL301", 2, 6, 2), ("RBL215", 4, 7, 1)]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("CALL s\nPRINT a\nSUB s\na = 1\nENDSUB", [("RBL215", 2, 7, 1)]),
+        ("CALL s\nCALL t\nSUB s\na = 1\nENDSUB\nSUB t\nPRINT a\nENDSUB", [("RBL215", 7, 7, 1)]),
+        ("CALL s\nPRINT a(1)\nSUB s\nDIM a(2)\nENDSUB", [("RBL215", 2, 7, 1)]),
+        ("CALL s(1)\nPRINT n\nSUB s(n)\nPRINT n\nENDSUB", [("RBL215", 2, 7, 1)]),
+        ("a = 1\nCALL s\nSUB s\nPRINT a\na = 2\nENDSUB", []),
+        ("k = 1\nPRINT k\nCALL s\nSUB s\nCONST k = 2\nPRINT k\nENDSUB", []),
+        ("CONST k = 1\nPRINT k\nCALL s\nSUB s\nk = 2\nENDSUB", [("RBL216", 5, 1, 1)]),
+        ("CALL s\nCALL t\nSUB s\nCONST k = 2\nPRINT k\nENDSUB\nSUB t\nCONST k = 3\nPRINT k\nENDSUB", []),
+    ],
+)  # fmt: skip
+def test_a_name_is_seen_where_a_run_sees_it(text, expected):
+    """What a SUB gives a value ends with the SUB; a run of the accepted ones has no fault (RBL532)."""
+    errors = [item for item in check(parse(source(text)).program, CellSymbols.named(points=()))
+              if item.severity is Severity.ERROR]  # fmt: skip
+    assert places(text, errors) == expected
+    if not expected:
+        list(execute(parse(source(text)).program))
+
+
+def test_names_are_not_scoped_by_blocks_that_are_broken():
+    assert [code for code, *_ in found("SUB s\na = 1\nPRINT a\nCALL s\nPRINT a")] == ["RBL211"]

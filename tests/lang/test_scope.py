@@ -1,10 +1,12 @@
 import pytest
 
 import robolang.scope as scope_module
-from robolang.evaluator import MAX_ELEMENTS
+from robolang.limits import SIZE
 from robolang.places import Place, Shift
 from robolang.scope import WAY, Scopes
 from runtime.faults import Fault
+
+MAX_ELEMENTS = int(SIZE.high) + 1
 
 
 @pytest.fixture
