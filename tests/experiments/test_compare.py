@@ -75,7 +75,7 @@ def test_a_wrong_load_never_changes_the_commanded_path():
                 if run.path is not None:
                     q = log["q_plan"][run.first_tick : run.end_tick]
                     moving = np.flatnonzero((np.diff(q, axis=0) != 0.0).any(axis=1))
-                    plans.append((run.number, q[moving]))
+                    plans.append((run.origin.number, q[moving]))
     by_line = {}
     for line, q in plans:
         by_line.setdefault(line, []).append(q)

@@ -227,14 +227,18 @@ def clean_profile(rng: np.random.Generator) -> Profile:
 
 
 def clean_campaign(runs: int, mujoco_share: float = 0.5, seed: int = 3) -> int:
-    """Return how many clean runs raised an alarm or a warning, after printing each."""
+    """Return how many clean runs raised an alarm or a warning of the supervision, after printing each.
+
+    RBL523 is none: some of these profiles leave more than the in-position window between arm and command.
+    """
     rng = np.random.default_rng(seed)
     tripped = 0
     for k in range(runs):
         profile = clean_profile(rng)
         project = variant(rng, 0.0, profile)
         result = Session(project, physics=k < mujoco_share * runs).run()
-        raised = result.report["alarms"] + result.report["warnings"]
+        found = result.report["alarms"] + result.report["warnings"]
+        raised = [item for item in found if item["code"] != "RBL523"]
         tripped += bool(raised)
         if raised:
             print(f"    run {k}, {profile.servo.mode} {profile.servo.source} {profile.tick_us} us:", raised)

@@ -105,7 +105,7 @@ def planned_tool_points(result: RunResult, number: int) -> Array:
 
 @pytest.mark.parametrize("number", [30, 60, 70, 100, 110])
 def test_the_planned_path_of_every_move_is_the_straight_line(session, result, number):
-    run = next(run for run in session.record.statements if run.number == number)
+    run = next(run for run in session.record.statements if run.origin.number == number)
     deviation = run.path.deviation(planned_tool_points(result, number))
     assert len(deviation) > 50
     assert deviation.max() < 1e-9  # 1e-6 mm
@@ -194,7 +194,9 @@ def test_a_forgotten_load_droops_and_a_right_one_does_not(tmp_path, result):
     project = project.with_profile(dataclasses.replace(project.profile, supervision=supervision))
     other = Session(project).run()
     assert other.ok
-    assert [(entry["code"], entry["number"]) for entry in other.report["warnings"]] == [("RBL517", 60)]
+    warned = [(entry["code"], entry["number"]) for entry in other.report["warnings"]]
+    assert [each for each in warned if each[0] == "RBL517"] == [("RBL517", 60)]
+    assert ("RBL523", 70) in warned  # it hangs too low to come into position
     carried = ticks(other, 70)
     same = ticks(result, 70)[: len(carried)]
     np.testing.assert_array_equal(other.log["q_plan"][carried[:100]], result.log["q_plan"][same[:100]])
@@ -222,7 +224,11 @@ def test_a_move_waits_until_the_arm_is_in_position_and_says_when_it_never_is():
     """Without gravity compensation the arm hangs 0.1 deg low: every MOVE waits its time-out out and warns RBL523."""
     project = load_project(PROGRAM, options={"servo.gravity_compensation": ("test", 0.0),
                                              "supervision.enabled": ("test", False)})  # fmt: skip
-    entry = statement(Session(project).run(), 30)
+    found = Session(project).run()
+    entry = statement(found, 30)
     waited = entry["duration_s"] - entry["planned_s"]
     assert waited == pytest.approx(project.profile.settle_timeout_us / 1e6 + 0.032, abs=0.009)
-    assert any(note.startswith("RBL523 not in position") for note in entry["notes"])
+    assert found.ok
+    first = found.report["warnings"][0]
+    assert (first["code"], first["line"], first["column"], first["number"]) == ("RBL523", entry["line"], 5, 30)
+    assert len(found.warnings) == sum(each["planned_s"] is not None for each in found.report["statements"])
