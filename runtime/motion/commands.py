@@ -84,8 +84,9 @@ class MoveArc(PathMotion):
 class MoveJoint(Motion):
     """Turn all joints together to ``q_end`` (n,) rad, each in proportion to its way; the tool goes where that takes it.
 
-    Where ``q_end`` is None, to the solution of ``X_world_tool`` (4, 4) that fits ``configuration`` and ``turns`` and is
-    reached first. ``speed`` and ``acceleration`` are shares of the joints' limits in (0, 1] (``speed`` None: 1).
+    Where ``q_end`` is None, to the solution of ``X_world_tool`` (4, 4) that fits ``configuration`` and ``turns``, keeps
+    the rest of the arm's configuration where that can be, and is reached first. ``speed`` and ``acceleration`` are
+    shares of the joints' limits in (0, 1] (``speed`` None: 1).
     """
 
     X_world_tool: Array | None = None

@@ -12,8 +12,9 @@ robots (30 m/s3 to 3 m/s2). Fine interpolation makes the acceleration at the ser
 are eased by it first; what is then still too fast is slowed as every move (``pacing``).
 
 Where only a pose is given, its solutions are those of all configurations, each joint turned into its range. Of those
-that fit what the point is taught with, the one is taken to which the slowest joint gets soonest. Refused: no solution
-(RBL410), none in the ranges (RBL411), none as taught (RBL412). Called by ``runtime.motion.chain``; rad, s.
+that fit what the point is taught with, only those count in which the arm keeps the configuration that it is in, where
+there are any; of these the one is taken to which the slowest joint gets soonest (docs/decisions/0030). Refused: no
+solution (RBL410), none in the ranges (RBL411), none as taught (RBL412). Called by ``runtime.motion.chain``; rad, s.
 """
 
 from dataclasses import replace
@@ -37,6 +38,9 @@ from runtime.units import DEG, MM
 
 RISE_S = 0.1
 """Time in which the acceleration of a joint builds up, s."""
+
+SAME_TIME_S = 1e-9
+"""Solutions whose times differ by less, s, are as soon there: rounding must not decide which one is taken."""
 
 _EASINGS = 3
 _MARGIN = 1.0 + 1e-6
@@ -97,7 +101,10 @@ class JointPlanner:
             return q_end
         assert command.X_world_tool is not None  # a command has at least one of the two
         found = self._solutions(matmul(command.X_world_tool, inverse(X_flange_tool)), q_start, command)
-        return min(found, key=lambda q: float((np.abs(q - q_start) / self._pace.speed).max()))
+        kept = [q for q in found if not changed(self._kinematics, q_start, q, command)]
+        times = [float((np.abs(q - q_start) / self._pace.speed).max()) for q in kept or found]
+        soonest = min(times) + SAME_TIME_S
+        return next(q for q, time in zip(kept or found, times, strict=True) if time <= soonest)
 
     def _solutions(self, X_world_flange: Array, q_start: Array, command: MoveJoint) -> list[Array]:
         kinematics = self._kinematics
@@ -142,6 +149,17 @@ class JointPlanner:
                 break
             limits = replace(limits, acceleration=limits.acceleration / ratio, jerk=limits.jerk / ratio)
         return limits
+
+
+def changed(kinematics: Kinematics, q_start: Array, q_end: Array, command: MoveJoint) -> tuple[tuple[str, str], ...]:
+    """Return what of its configuration an arm changes from q_start (n,) to q_end (n,) rad that is not asked for.
+
+    Names before and after, such as RIGHTY and LEFTY. A point may name a part of the configuration only.
+    """
+    if command.q_end is not None:
+        return ()
+    found = kinematics.changes(q_start, q_end)
+    return tuple((before, after) for before, after in found if after not in command.configuration)
 
 
 def _share(command: MoveJoint) -> float:

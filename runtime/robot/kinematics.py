@@ -155,6 +155,10 @@ class Kinematics:
             return NUMERIC
         return opw.branch_of(self._opw, q)
 
+    def changes(self, q_from: ArrayLike, q_to: ArrayLike) -> tuple[tuple[str, str], ...]:
+        """Return what of the branch two joint vectors (n,) rad differ in, as ``opw.changes``; () without branches."""
+        return () if self._opw is None else opw.changes(self._opw, q_from, q_to)
+
     def limit_margin(self, q: ArrayLike) -> Array:
         """Return the smallest distance to a joint limit (...,) rad of joint angles (..., n), negative outside."""
         angles = np.asarray(q, dtype=np.float64)

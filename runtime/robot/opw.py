@@ -72,6 +72,10 @@ ROUNDING = 5e-13
 """A length in m or a sine below this is rounding: a pose out of reach by less is on the border, an arm within it of
 a singularity is at the singularity. Small enough that a pose is met to 1e-12 m all the same."""
 
+BORDER = 1e-4
+"""A posture this near to the border of two branches has both names: m from axis 1, sines of elbow and wrist (0.1 mm,
+0.006 deg). Taught angles have three decimals, and rounding must not decide in which of the two the arm stands."""
+
 TURN = 2.0 * math.pi
 
 _Z = np.array([0.0, 0.0, 1.0])
@@ -221,15 +225,31 @@ def mismatch(spec: Geometry) -> float:
 
 def branch_of(params: OpwParameters, q: ArrayLike) -> Branch:
     """Return the branch of one joint vector q (6,) rad; on a border (see the module) RIGHTY, ABOVE, NOFLIP."""
+    r, elbow, wrist = _sides(params, q)
+    return Branch(
+        arm=Arm.RIGHTY if r >= -ROUNDING else Arm.LEFTY,
+        elbow=Elbow.ABOVE if elbow >= -ROUNDING else Elbow.BELOW,
+        wrist=Wrist.NOFLIP if wrist >= -ROUNDING else Wrist.FLIP,
+    )
+
+
+def changes(params: OpwParameters, q_from: ArrayLike, q_to: ArrayLike) -> tuple[tuple[str, str], ...]:
+    """Return what of the branch two joint vectors (6,) rad differ in: the names before and after.
+
+    A posture on a border has both names and differs from neither.
+    """
+    before, after = branch_of(params, q_from), branch_of(params, q_to)
+    clear = [min(abs(a), abs(b)) > BORDER for a, b in zip(_sides(params, q_from), _sides(params, q_to), strict=True)]
+    pairs = ((before.arm, after.arm), (before.elbow, after.elbow), (before.wrist, after.wrist))
+    return tuple((a.name, b.name) for (a, b), sure in zip(pairs, clear, strict=True) if sure and a is not b)
+
+
+def _sides(params: OpwParameters, q: ArrayLike) -> tuple[float, float, float]:
+    """Return the numbers whose signs are the branch: r in m, and sines of the elbow (seen from the arm) and of J5."""
     theta = params.signs * np.asarray(q, dtype=np.float64) + params.offsets
     k, g = math.hypot(params.a2, params.c3), theta[2] + math.atan2(params.a2, params.c3)
     r = params.a1 + params.c2 * math.sin(theta[1]) + k * math.sin(theta[1] + g)
-    arm = Arm.RIGHTY if r >= -ROUNDING else Arm.LEFTY
-    return Branch(
-        arm=arm,
-        elbow=Elbow.ABOVE if arm.value * math.sin(g) >= -ROUNDING else Elbow.BELOW,
-        wrist=Wrist.NOFLIP if params.signs[4] * math.sin(theta[4]) >= -ROUNDING else Wrist.FLIP,
-    )
+    return r, math.sin(g) if r >= -ROUNDING else -math.sin(g), params.signs[4] * math.sin(theta[4])
 
 
 def inverse(params: OpwParameters, X_base_flange: Array, near: ArrayLike | None = None) -> Array:
