@@ -1,14 +1,12 @@
 """What a rehearsal shows beyond refusals: every finding at its statement, with path fraction, joint, value and limit.
 
-    RBL419   a move that ends in other joint angles than taught
-    RBL414   a zone that takes more than half of a move at its corner: the blend is smaller than asked for
     RBL422   a joint near the end of its range
     RBL423   a program that takes longer than it may
     RBL424   the arm in itself
     RBL425, RBL426   moment or inertia of the payload about a wrist axis over what that may carry
     RBL427   a path that comes near a singular posture
-    RBL428   a path on which the tool leaves its posture to change the wrist, where the program does not say so
-    RBL429   a move that takes far longer than the program asked for, and what rules it
+
+and what ``plan_findings`` finds, where the motion is not the one that the program states.
 
 Checks the executed set-points, blends included, 8 ms apart. Obstacles and parts that they touch are in
 ``part_findings``. Of one code there is one finding for a statement, the worst or the first in time.
@@ -16,7 +14,6 @@ Checks the executed set-points, blends included, 8 ms apart. Obstacles and parts
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 
@@ -25,13 +22,14 @@ from robolang.exploration import Detour
 from robolang.line_times import range_margin
 from robolang.motion_check import Rehearsal, RehearsedMove
 from robolang.part_findings import CellTouches
+from robolang.plan_findings import PlanFindings, PlannedMove
 from robolang.project import Project
 from robolang.source import Span
 from runtime.motion.planner import FOLLOWS
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.load import ratings, wrist_load
 from runtime.robot.singularity import singularities
-from runtime.units import DEG, MM, PERCENT
+from runtime.units import DEG, MM
 
 NEAR = 0.5 * DEG
 """A joint nearer than this to the end of its range is named, rad."""
@@ -39,12 +37,8 @@ NEAR_SINGULAR = 2.0 * DEG
 """A wrist or elbow nearer than this to a singular posture is named, rad."""
 NEAR_SHOULDER = 20.0 * MM
 """The same for the wrist centre over axis 1, m."""
-NOTICED = 0.1 * DEG
-"""A tool that turns less from its posture keeps it, rad."""
 OVERLOAD, NOTHING = 1e-3, 1e-6
 """A payload that is over its limit by less than this share and so many N m or kg m2 is within it."""
-SLOWED = 1.5
-"""A move that takes this many times as long as its programmed speed or time asks for is named."""
 
 Found = Iterator[Diagnostic]
 
@@ -96,6 +90,7 @@ class _Moves:
         self._spec, self._period_s = project.cell.robot, project.profile.period_s
         self._kinematics = Kinematics(self._spec)
         self._cell = CellTouches(project)
+        self._plans = PlanFindings(project)
         self._project = project
         self._seen: set[tuple[object, ...]] = set()
 
@@ -103,14 +98,16 @@ class _Moves:
         """Yield what the moves of a rehearsal show, those of one check after those of another."""
         yield from self._cell.follow(rehearsal)
         new = [move for move in rehearsal.moves if self._is_new(move)]
-        for check in (self.folds, self.near_range, self.near_singular, self.wrist_changes,
-                      self.ends_otherwise, self.slowed):
+        for check in (self.folds, self.near_range, self.near_singular):
             first: dict[Span, Diagnostic] = {}
             for move in new:
                 if move.effect.span not in first:
                     first.update((item.span, item) for item in check(move))
             yield from first.values()
-        yield from _zones(rehearsal.moves)
+        fresh = {id(move) for move in new}
+        for move, after in zip(rehearsal.moves, (*rehearsal.moves[1:], None), strict=False):
+            if id(move) in fresh:
+                yield from self.otherwise(move, after)
         yield from _loads(self._project, new)
 
     def _is_new(self, move: RehearsedMove) -> bool:
@@ -127,6 +124,13 @@ class _Moves:
                 message = f"at {move.share(row):.1f} % of the way {pair[0]} would be in {pair[1]}"
                 yield _at("RBL424", move, message, Severity.ERROR)
                 return
+
+    def otherwise(self, move: RehearsedMove, after: RehearsedMove | None) -> Found:
+        """Report where the motion is not the one that the program states."""
+        planned = PlannedMove(effect=move.effect, command=move.command, plan=move.plan, corner=move.corner,
+                              after=None if move.corner is None or after is None else after.plan)  # fmt: skip
+        for found in self._plans.of(planned):
+            yield replace(_at(found.code, move, found.message), hint=found.hint)
 
     def near_range(self, move: RehearsedMove) -> Found:
         """Report the joint that comes nearest to the end of its range."""
@@ -155,49 +159,6 @@ class _Moves:
                           f"{float(values[row]) / size:.2f} {unit} from where its {name}, which is singular; keep "
                           f"{least / size:g} {unit} away")  # fmt: skip
                 return
-
-    def wrist_changes(self, move: RehearsedMove) -> Found:
-        """Report that the tool leaves its posture, where neither the move nor a setting says WRIST."""
-        change = move.plan.wrist
-        if change is not None and move.effect.wrist is None and not change.deviation < NOTICED:
-            begins, ends = 100.0 * change.share, 100.0 * change.share_end
-            yield _at("RBL428", move, f"from {begins:.1f} % to {ends:.1f} % of the way the tool leaves its posture by "
-                      f"up to {change.deviation / DEG:.1f} deg, for the wrist to change (condition {change.condition})")
-
-    def ends_otherwise(self, move: RehearsedMove) -> Found:
-        """Report a move that keeps the wrist and so does not end in the taught joint angles."""
-        taught = move.command.q_end
-        if taught is None or np.abs(move.plan.q[-1] - taught).max() <= NOTICED:
-            return
-        axis = int(np.argmax(np.abs(move.plan.q[-1] - taught)))
-        yield _at("RBL419", move, f"ends with J{axis + 1} at {float(move.plan.q[-1, axis]) / DEG:.1f} deg, not at the "
-                  f"taught {float(taught[axis]) / DEG:.1f} deg: WRIST KEEP keeps the sign of J5")  # fmt: skip
-
-    def slowed(self, move: RehearsedMove) -> Found:
-        """Report a move that takes far longer than the program asked for, and what rules it."""
-        slow, effect = move.plan.slowdown, move.effect
-        asked_s = None if effect.time_s is None else effect.time_s / (effect.override_pct * PERCENT)
-        takes_s = (len(move.plan.q) - 1) * self._period_s
-        factor = takes_s / asked_s if asked_s else 1.0 if slow is None or effect.speed_mm_s is None else slow.factor
-        if not factor <= SLOWED:
-            ruled = "the path limits of the robot rule it"
-            if slow is not None:
-                limits = self._spec.axes[slow.axis].limits
-                value, unit = (limits.speed, "deg/s") if slow.quantity == "speed" else (limits.acceleration, "deg/s2")
-                ruled = f"J{slow.axis + 1} is at its {slow.quantity} limit of {value / DEG:g} {unit}"
-            yield _at("RBL429", move, f"takes {takes_s:.3f} s, {factor:.2f} times as long as asked for: {ruled}")
-
-
-def _zones(moves: Sequence[RehearsedMove]) -> Found:
-    """Report zones that leave no room for the blends at both ends of a move."""
-    for move, after in pairwise(moves):
-        if move.corner is None or move.plan.path is None or after.plan.path is None:
-            continue
-        short, which = min((move.plan.path.length, "the way to"), (after.plan.path.length, "the way from"))
-        if not short <= 0.0 and not move.corner.radius <= 0.5 * short + 1e-9:
-            yield _at("RBL414", move, f"a zone of {move.corner.radius / MM:g} mm is more than half of {which} this "
-                      f"corner, {short / MM:.1f} mm: the blend begins and ends within "
-                      f"{move.corner.reach / MM:.1f} mm")  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -244,8 +244,24 @@ register(
     Code(
         code="RBL429",
         name="slower-than-asked",
-        meaning="A move takes far longer than the program asks for, since a limit of the robot rules it.",
-        remedy="Lower its SPEED, or move the path away from where the joint has to turn fast.",
+        meaning="A move does not keep its TIME, or does not reach its SPEED and takes more than 1.2 times as long as "
+        "SPEED alone needs: the turning of the tool, an arc or a joint rules it.",
+        remedy="Lower its SPEED or give it more TIME, or change what the message names.",
+    ),
+    Code(
+        code="RBL434",
+        name="configuration-changes",
+        meaning="A MOVEJ to a pose changes the configuration of the arm: RIGHTY and LEFTY, ABOVE and BELOW, or NOFLIP "
+        "and FLIP. The configuration that the arm is in does not reach the pose within the ranges of the joints.",
+        remedy="Teach the point with its configuration or as joint angles if the change is meant; otherwise go there "
+        "over a point between, or move the work piece.",
+    ),
+    Code(
+        code="RBL435",
+        name="turns-the-long-way",
+        meaning="A MOVEJ to a pose turns a joint by more than half a turn, since the nearer angle is beyond its range.",
+        remedy="Turn the joint back on an earlier move, where there is room for it; teach the point as joint angles if "
+        "this turn is meant.",
     ),
     Code(
         code="RBL440",

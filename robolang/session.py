@@ -5,7 +5,7 @@ command has come to rest and the arm is in position, a HAND after its dwell, a L
 the whole program is planned once (``motion_check``), so a plannable fault is found while the arm stands still.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -33,14 +33,17 @@ from robolang.interpreter import ProgramFault, execute
 from robolang.lowering import Command
 from robolang.motion_check import MAX_CHAIN, MAX_RUN_US, motion_check
 from robolang.nodes import Wait
+from robolang.plan_findings import PlanFindings, PlannedMove
 from robolang.printer import describe
 from robolang.project import Project, load_project
 from robolang.report import build_report
 from robolang.result import RunRecord, RunResult, StatementRun
+from robolang.source import Span
 from robolang.surroundings import RobotWorld
 from runtime.clock import PacedClock, VirtualClock, wall_s
 from runtime.controller import Controller
 from runtime.faults import Fault
+from runtime.motion.chain import ChainPlan
 from runtime.motion.seam import SeamTracker
 from runtime.plant.plant import Plant
 from runtime.plant.seam_sensor import SeamSensor
@@ -102,6 +105,8 @@ class Session:
         self.record = RunRecord(project=project, controller=self.controller, physics=physics)
         self.world = RobotWorld(project.points, cell, self._kinematics, lambda: self.controller.time_us)
         self._chain: list[tuple[MoveTo, Command]] = []
+        self._plans = PlanFindings(project)
+        self._warned: set[tuple[str, Span]] = set()
 
     def request_stop(self) -> None:
         """Ask the run for a controlled stop from the next cycle on; safe to call from a signal handler."""
@@ -196,11 +201,23 @@ class Session:
             run.path, run.notes = part.path, [*run.notes, *part.notes]
             run.planned_s = part.planned_s
             run.wrist, run.seam, run.begun = part.wrist, self._tracker, False
+        self._warn(chain, plan)
         self._cycles(self._follow(runs), *runs)
         self.world.q_last = np.array(self.controller.areas.ina)
         for run in runs:
             run.end_tick = run.end_tick or self.controller.recorder.tick
         return not self.controller.alarms
+
+    def _warn(self, chain: Sequence[tuple[MoveTo, Command]], plan: ChainPlan) -> None:
+        """Warn where the motion is not the one that the program states, once for a code and a statement."""
+        plans = [part.plan for part in plan.parts]
+        rows = zip(chain, plans, (*plan.corners, None), (*plans[1:], None), strict=True)
+        for (effect, command), own, corner, after in rows:
+            move = PlannedMove(effect=effect, command=command, plan=own, corner=corner, after=after)
+            for found in self._plans.of(move):
+                if (found.code, effect.span) not in self._warned:
+                    self._warned.add((found.code, effect.span))
+                    self.controller.warn(found.code, found.message, found.hint, effect.origin)
 
     def _begin(self, effect: Effect) -> StatementRun:
         run = StatementRun(origin=effect.origin, text=describe(effect.node), first_tick=self.controller.recorder.tick)

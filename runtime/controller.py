@@ -459,9 +459,10 @@ class Controller:
         found = Finding(code=code, message=message, axis=axis, tick=self.recorder.tick)
         self._stop_by(self._alarm_of(found, hint=hint, calls=calls))
 
-    def warn(self, code: str, message: str, axis: int | None = None) -> None:
-        """Keep a warning at the running statement and the current tick; the arm goes on."""
-        self._latch(Finding(code=code, message=message, axis=axis, tick=self.recorder.tick, warning=True))
+    def warn(self, code: str, message: str, hint: str = "", statement: ProgramLine | None = None) -> None:
+        """Keep a warning at a statement, None: the running one, and the current tick; the arm goes on."""
+        found = Finding(code=code, message=message, tick=self.recorder.tick, warning=True)
+        self.warnings.append(self._alarm_of(found, statement, hint))
 
     def warn_of_touches(self) -> None:
         """Take what has been touched so far and should not have been into ``warnings``; once, at the end of a run."""

@@ -138,4 +138,23 @@ RULES = (
         good="10 MOVE P2, TIME 1.5\n",
         motion=True,
     ),
+    Rule(
+        code="RBL434",
+        severity=Severity.WARNING,
+        why="The arm swings round, through places that nobody thought of, for a target that is close to where the tool "
+        "stands.",
+        bad="10 MOVEJ JOINT(0, 80, -190, 0, 60, 0)\n20 MOVEJ P5\n",
+        good="10 MOVEJ JOINT(0, 80, -190, 0, -60, 0)\n20 MOVEJ P5\n",
+        line=2,
+        motion=True,
+    ),
+    Rule(
+        code="RBL435",
+        severity=Severity.WARNING,
+        why="The tool turns nearly once round for a small change of its angle, and hoses and cables with it.",
+        bad="10 MOVEJ JOINT(0, 60, -190, 0, 60, 250)\n20 MOVEJ HERE * (0, 0, 0, 0, 0, 40)\n",
+        good="10 MOVEJ JOINT(0, 60, -190, 0, 60, 200)\n20 MOVEJ HERE * (0, 0, 0, 0, 0, 40)\n",
+        line=2,
+        motion=True,
+    ),
 )

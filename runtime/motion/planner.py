@@ -287,6 +287,12 @@ def _kept_notes(command: PathMove, q: Array) -> tuple[str, ...]:
             f"{command.q_end[axis] / DEG:.1f} deg",)  # fmt: skip
 
 
+def arc_limits(speed: float, acceleration: float, jerk: float, radius: float) -> tuple[float, float]:
+    """Return the speed m/s on an arc of ``radius`` m and the acceleration m/s2 that it leaves along the arc."""
+    speed = min(speed, math.sqrt(ACROSS * acceleration * radius), math.cbrt(jerk * radius**2))
+    return speed, math.sqrt(acceleration**2 - (speed**2 / radius) ** 2)
+
+
 def speed_limits(path: Path, command: PathMove, robot: PathLimits, profile: Profile,
                  wrist_way: float = 0.0) -> SpeedLimits:  # fmt: skip
     """Return the bounds of the path parameter for a command; ``Fault`` RBL404 when it asks for the impossible.
@@ -306,8 +312,7 @@ def speed_limits(path: Path, command: PathMove, robot: PathLimits, profile: Prof
     share = command.acceleration
     acceleration, jerk = robot.acceleration * share, robot.jerk * share
     if isinstance(path, ArcPath):
-        speed = min(speed, math.sqrt(ACROSS * acceleration * path.radius), math.cbrt(jerk * path.radius**2))
-        acceleration = math.sqrt(acceleration**2 - (speed**2 / path.radius) ** 2)
+        speed, acceleration = arc_limits(speed, acceleration, jerk, path.radius)
     position = (path.length, speed, acceleration, jerk)
     turning = (robot.rotation_speed, robot.rotation_acceleration * share, robot.rotation_jerk * share)
     angle = wrist_way if path.length < NOTHING_TO_DO and path.angle < NOTHING_TO_DO else path.angle

@@ -73,6 +73,11 @@ def profile(limits: SpeedLimits, period_s: float, duration: float | None = None)
     return np.asarray(np.clip(s, 0.0, 1.0))
 
 
+def shortest_s(limits: SpeedLimits) -> float:
+    """Return the time of the fastest profile within the limits, s; ``Fault`` RBL404 where there is none."""
+    return float(_trajectory(limits, None).duration)
+
+
 def _shortest(limits: SpeedLimits) -> float:
     """Return a time that no profile within the limits can beat, s."""
     times = 1.0 / limits.speed, 2.0 * math.sqrt(1.0 / limits.acceleration), math.cbrt(32.0 / limits.jerk)

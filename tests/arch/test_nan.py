@@ -57,15 +57,11 @@ EXTREMES = {
     "robolang/compare.py: max(settled, float(t[stop + outside[-1] + 1] - t[stop]))": "times of ticks",
     "robolang/pulse_plot.py: max(float(x[-1] - x[0]), 1e-09)": "a width of a drawing",
     "robolang/step.py: max(_LOST * abs(request.size), np.pi)": "the size of a step is checked to be finite",
-    "robolang/motion_findings.py: min((move.plan.path.length, 'the way to'), (after.plan.path.length, 'the way from'))":
-        PLANNED,
     "runtime/motion/chain.py: max(before.acceleration, after.acceleration)": PLANNED,
     "runtime/pulses/mechanism.py: min(joint.acceleration, _FAST)": FILE,
     "runtime/pulses/mechanism.py: min(joint.speed, _FAST)": FILE,
     "runtime/pulses/move.py: min(limits.speed, math.sqrt(limits.acceleration))": PLANNED,
     "runtime/motion/joint_planner.py: max(fitting, key=lambda q: float(kinematics.limit_margin(q)))": SOLVED,
-    "runtime/motion/joint_planner.py: min(found, key=lambda q: float((np.abs(q - q_start) / self._pace.speed).max()))":
-        SOLVED,
 }  # fmt: skip
 """``max`` and ``min`` of measures, with the reason."""
 

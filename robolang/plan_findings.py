@@ -1,0 +1,180 @@
+"""Where the planned motion of a move is not the one that the program states, with the reason and a remedy.
+
+    RBL414   a zone without room for the blend: the blend is smaller than its zone, or the arm stops at the corner
+    RBL419   a move that keeps the wrist and does not end as the point is taught
+    RBL428   a path on which the tool leaves its posture to change the wrist, where the program does not say so
+    RBL429   a TIME or a SPEED that is not kept, and which limit rules
+    RBL434   a joint move to a pose that changes the arm configuration
+    RBL435   a joint move to a pose that turns a joint by more than half a turn, since the nearer angle is out of range
+
+The plan that is checked is the plan that runs: ``robolang check --motion`` reports these as findings, a run as warnings
+(docs/decisions/0030). A move that is too short to reach its SPEED is none of them.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from robolang.effects import MoveTo
+from robolang.lowering import Command
+from robolang.project import Project
+from runtime.frames import Array
+from runtime.motion.blend import Corner
+from runtime.motion.commands import MoveJoint
+from runtime.motion.joint_planner import changed
+from runtime.motion.planner import LinePlan
+from runtime.motion.ruling import Ruling, ruling
+from runtime.motion.wrist_planner import as_taught
+from runtime.robot.kinematics import Kinematics
+from runtime.rounding import beside, down, up
+from runtime.units import DEG, MM
+
+NOTICED = 0.1 * DEG
+"""A tool or a joint that is turned less from where it should be keeps it, rad."""
+SLOWED = 1.2
+"""A move that takes this many times as long as its SPEED alone needs is named. A bead is then a fifth thicker, which
+shows; the programs of ``programs/`` stay below 1.02, and moves slowed a little by a joint are no fault."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlannedMove:
+    """A move with its plan. ``corner`` and ``after``: the blend at its end and the plan of the next move, None: it
+    stops there."""
+
+    effect: MoveTo
+    command: Command
+    plan: LinePlan
+    corner: Corner | None = None
+    after: LinePlan | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanFinding:
+    """A difference between a program and its motion; ``hint`` "": the remedy of the code."""
+
+    code: str
+    message: str
+    hint: str = ""
+
+
+Found = Iterator[PlanFinding]
+
+
+class PlanFindings:
+    """Finds what the plans of one project's moves do otherwise than its program says."""
+
+    def __init__(self, project: Project) -> None:
+        self._spec, self._profile = project.cell.robot, project.profile
+        self._kinematics = Kinematics(self._spec)
+
+    def of(self, move: PlannedMove) -> Found:
+        """Yield the findings of a move, at most one of a code."""
+        if len(move.plan.q) > 1:
+            yield from self.configuration(move)
+            yield from self.long_turn(move)
+            yield from self.wrist_change(move)
+            yield from self.slowed(move)
+            yield from self.zone(move)
+        yield from self.end(move)
+
+    def configuration(self, move: PlannedMove) -> Found:
+        """Find a joint move that leaves the arm configuration, though its target does not say so."""
+        command, q = move.command, move.plan.q
+        words = changed(self._kinematics, q[0], q[-1], command) if isinstance(command, MoveJoint) else ()
+        if words:
+            change = " and ".join(f"{before} to {after}" for before, after in words)
+            yield PlanFinding(code="RBL434", message=f"changes the arm configuration from {change}: "
+                              f"{_largest_turn(q[0], q[-1])}; the configuration of the start does not reach the target "
+                              "within the ranges of the joints")  # fmt: skip
+
+    def long_turn(self, move: PlannedMove) -> Found:
+        """Find a joint move to a pose that turns a joint the long way round."""
+        command, start, end = move.command, move.plan.q[0], move.plan.q[-1]
+        if not isinstance(command, MoveJoint) or command.q_end is not None or command.turns:
+            return
+        nearer = self._kinematics.nearest_turns(end, start)
+        axis = int(np.argmax(np.abs(end - start) - np.abs(nearer - start)))
+        if not np.abs(end - start)[axis] <= np.abs(nearer - start)[axis] + NOTICED:
+            limits = self._spec.axes[axis].limits
+            yield PlanFinding(code="RBL435", message=f"{_turn(start, end, axis)}: the nearer angle of "
+                              f"{nearer[axis] / DEG:.1f} deg is beyond the range {limits.lower / DEG:g} to "
+                              f"{limits.upper / DEG:g} deg")  # fmt: skip
+
+    def wrist_change(self, move: PlannedMove) -> Found:
+        """Find that the tool leaves its posture, where neither the move nor a setting says WRIST."""
+        change = move.plan.wrist
+        if change is not None and move.effect.wrist is None and not change.deviation < NOTICED:
+            begins, ends = 100.0 * change.share, 100.0 * change.share_end
+            yield PlanFinding(code="RBL428", message=f"from {begins:.1f} % to {ends:.1f} % of the path the tool leaves "
+                              f"its posture by up to {change.deviation / DEG:.1f} deg, for the wrist to change "
+                              f"(condition {change.condition})")  # fmt: skip
+
+    def end(self, move: PlannedMove) -> Found:
+        """Find a move that keeps the wrist and does not end as its point is taught."""
+        command, end = move.command, move.plan.q[-1]
+        if command.q_end is not None:
+            if not np.abs(end - command.q_end).max() <= NOTICED:
+                axis = int(np.argmax(np.abs(end - command.q_end)))
+                yield PlanFinding(code="RBL419", message=f"ends with J{axis + 1} at {end[axis] / DEG:.1f} deg, not at "
+                                  f"the taught {command.q_end[axis] / DEG:.1f} deg: WRIST KEEP keeps the sign of J5")
+        elif (command.configuration or command.turns) and not as_taught(self._kinematics, end, command):
+            turns = np.round(end / (2.0 * np.pi)).astype(int).tolist()
+            taught = " ".join([*command.configuration, *([f"turns {list(command.turns)}"] if command.turns else [])])
+            yield PlanFinding(code="RBL419", message=f"ends {self._kinematics.branch_of(end)} with turns {turns}, not "
+                              f"{taught} as taught: WRIST KEEP keeps the sign of J5")  # fmt: skip
+
+    def slowed(self, move: PlannedMove) -> Found:
+        """Find a TIME that is not kept, and a SPEED that is not reached for another reason than a short path."""
+        effect, period_s, override = move.effect, self._profile.period_s, move.plan.override
+        takes_s = (len(move.plan.q) - 1) * period_s
+        under = f" under OVERRIDE {effect.override_pct:g}" if effect.override_pct != 100.0 else ""
+        if effect.time_s is not None:
+            asked_s = effect.time_s / override
+            if not takes_s <= asked_s + period_s:
+                ruled = self._ruling(move)
+                takes, asked = beside(takes_s, asked_s)
+                yield PlanFinding(code="RBL429", message=f"takes {takes} s, not the {asked} s of TIME "
+                                  f"{effect.time_s:g}{under}: {ruled.why}",
+                                  hint=f"Give TIME {up(takes_s * override):g} or more; or "
+                                  f"{ruled.remedy}.")  # fmt: skip
+        elif effect.speed_mm_s is not None and move.plan.path is not None:
+            ruled = self._ruling(move)
+            if ruled.asked_s > 0.0 and not takes_s <= max(ruled.asked_s, period_s) * SLOWED:
+                yield PlanFinding(code="RBL429", message=f"reaches {ruled.peak / MM:.1f} mm/s at most, not SPEED "
+                                  f"{effect.speed_mm_s:g}{under}, and takes {takes_s:.3f} s instead of "
+                                  f"{ruled.asked_s:.3f} s: {ruled.why}",
+                                  hint=f"Give SPEED {down(ruled.keeps / MM):g}, which takes as long; or {ruled.remedy}."
+                                  if ruled.keeps > 0.0 else f"Lower SPEED, or {ruled.remedy}.")  # fmt: skip
+
+    def _ruling(self, move: PlannedMove) -> Ruling:
+        return ruling(move.plan, move.command, self._spec, self._profile)
+
+    def zone(self, move: PlannedMove) -> Found:
+        """Find a zone that leaves no room for the blends at both ends of a move, or in which the arm stops."""
+        corner, effect = move.corner, move.effect
+        if move.after is None or corner is None or not corner.radius > 0.0:
+            if effect.zone_mm > 0.0 and not move.command.zone > 0.0:
+                yield PlanFinding(code="RBL414", message="the arm stops at the end of this move: moves under a seam "
+                                  "sensor do not blend", hint="Write FINE, or SEAM OFF before the move.")  # fmt: skip
+            return
+        paths = [(plan.path.length, which) for plan, which in ((move.plan, "to"), (move.after, "from"))
+                 if plan.path is not None and not plan.path.length <= 0.0]  # fmt: skip
+        zone = f"a zone of {corner.radius / MM:g} mm"
+        if corner.cycles == 0:
+            yield PlanFinding(code="RBL414", message=f"{zone} leaves no room for a blend: the arm stops at the corner",
+                              hint="Make the moves at the corner longer, or write FINE where the stop is meant.")
+        elif len(paths) == 2 and not corner.radius <= 0.5 * min(paths)[0] + 1e-9:
+            short, which = min(paths)
+            yield PlanFinding(code="RBL414", message=f"{zone} is more than half of the path {which} this corner, "
+                              f"{short / MM:.1f} mm: the blend begins and ends within "
+                              f"{corner.reach / MM:.1f} mm")  # fmt: skip
+
+
+def _largest_turn(start: Array, end: Array) -> str:
+    return _turn(start, end, int(np.argmax(np.abs(end - start))))
+
+
+def _turn(start: Array, end: Array, axis: int) -> str:
+    by = abs(float(end[axis] - start[axis])) / DEG
+    return f"J{axis + 1} turns by {by:.1f} deg, from {start[axis] / DEG:.1f} to {end[axis] / DEG:.1f} deg"
