@@ -104,7 +104,7 @@ def test_a_time_is_asked_for_under_the_override(tmp_path):
 
 
 def test_an_end_in_other_joint_angles_is_named(tmp_path):
-    text = "MOVEJ JOINT(0, 60, -190, 20, -30, 0)\nMOVE JOINT(10, 60, -190, -160, 30, 180), WRIST KEEP\n"
+    text = "MOVEJ JOINT(0, 60, -190, -30, -30, 0)\nMOVE JOINT(10, 60, -190, 150, 30, 180), WRIST KEEP\n"
     ((line, message, _),) = found(tmp_path, text, "RBL419")
     assert line == 2
     assert re.fullmatch(r"ends with J\d at -?\d+\.\d deg, not at the taught -?\d+\.\d deg: WRIST KEEP .*", message)
