@@ -57,6 +57,8 @@ AT_REST = 0.01
 LONGEST_REST_US = 500_000
 """Longest time that a stopped command waits for the arm to stand before the brakes hold it, us."""
 _RUNS_AWAY = ("RBL513", "RBL514", "RBL515")
+_BLOCKED = ("RBL511", "RBL512", "RBL515", "RBL516")
+"""Alarms of an axis that something may have stopped."""
 
 
 class Controller:
@@ -173,7 +175,7 @@ class Controller:
         self.plant.close_hand(closed)
         self._supervisor.hand_moves()
         if self.touches is not None:
-            self.touches.hand(closed)
+            self.touches.hand(closed, self.statement)
 
     def move(self, command: Command) -> LinePlan:
         """Plan a move from the commanded position and start it; ``Fault`` RBL4xx before anything moves."""
@@ -481,6 +483,8 @@ class Controller:
                      statement=statement or self.statement, calls=calls, hint=hint or entry.remedy)  # fmt: skip
 
     def _stop_by(self, alarm: Alarm) -> None:
+        if self.touches is not None and alarm.code in _BLOCKED:
+            self.touches.blocked()
         self.alarms.append(alarm)
         self._waiting = []
         if alarm.category == 0:

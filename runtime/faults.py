@@ -254,7 +254,7 @@ register(
         code="RBL535",
         name="part-pushed",
         meaning="The arm, the hand or a held part has touched a part that it should not touch, and moved it by more "
-        "than 0.5 mm.",
+        "than 0.5 mm or was stopped by it.",
         remedy="Keep clear of it: go there from another side, open the hand where there is room, or hold the part "
         "elsewhere.",
     ),

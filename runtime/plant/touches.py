@@ -33,7 +33,7 @@ NOTICED = 0.5e-3
 LOST_CYCLES = 3
 """Cycles without a pad on a part in which it is only off the pads: fingers that close fast jump back from it."""
 SETTLING = 5
-"""Cycles from the first touch of both pads in which the hand still aligns the part."""
+"""Cycles from the first touch of both pads in which the hand aligns the part, and longer while HAND ON waits."""
 GAP = 10
 """Cycles without a contact that end a touch: what slides also hops."""
 TURNED = 0.1 * DEG
@@ -69,6 +69,7 @@ class Touch:
 
     ``reach`` m is the largest displacement of a corner of the touched part, ``moved`` m and ``turned`` rad what its
     centre and its orientation had changed by then; ``slid`` m is how far a held part slid along what it touched.
+    ``blocked``: it did not give way, and the drives were stopped by it.
     """
 
     by: list[str]
@@ -80,6 +81,7 @@ class Touch:
     turned: float = 0.0
     reach: float = 0.0
     slid: float = 0.0
+    blocked: bool = False
 
     @property
     def message(self) -> str:
@@ -88,6 +90,8 @@ class Touch:
         if self.fixed:
             slid = f", along which it slid {self.slid / MM:.1f} mm" if self.by_part else ""
             return f"{by} touched {what}{slid}"
+        if self.reach <= NOTICED:
+            return f"{by} touched {what} and was stopped by it"
         turned = f" and turned it by {self.turned / DEG:.1f} deg" if self.turned >= TURNED else ""
         return f"{by} touched {what}, moved it {self.moved / MM:.1f} mm{turned}"
 
@@ -103,8 +107,8 @@ class Touch:
 
     @property
     def noticed(self) -> bool:
-        """Whether it is a finding: something moved, or the arm or the hand struck what is fixed."""
-        return (self.fixed and not self.by_part) or not (self.reach <= NOTICED and self.slid <= NOTICED)
+        """Whether it is a finding: something moved, or the arm or the hand struck what is fixed or does not move."""
+        return self.blocked or (self.fixed and not self.by_part) or not (self.reach <= NOTICED and self.slid <= NOTICED)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -178,6 +182,7 @@ class Touches:
         self._pairs: frozenset[Pair] | None = None
         self._seen = _Seen()
         self._closed = False
+        self._closing: ProgramLine | None = None
         self._held: dict[str, _Grip] = {}
         self._lost: set[str] = set()
         self._free: set[str] = set()  # let go: they move by themselves until they rest
@@ -185,15 +190,20 @@ class Touches:
         self._place: ProgramLine | None = None
         self._statement = 0
 
-    def hand(self, closed: bool) -> None:
-        """HAND ON or HAND OFF begins; OFF lets go what is held."""
+    def hand(self, closed: bool, place: ProgramLine | None) -> None:
+        """HAND ON or HAND OFF begins, a statement; OFF lets go what is held."""
         if not closed:
             self._free |= self._held.keys()
             self._held.clear()
         self._free |= self._lost
         self._lost.clear()
-        self._closed = closed
+        self._closed, self._closing = closed, place if closed else None
         self._pairs = None
+
+    def blocked(self) -> None:
+        """The drives have been stopped: what the arm and the hand touch now may be why."""
+        for going in self._open.values():
+            going.touch.blocked = not going.gap and not going.touch.by_part
 
     def cycle(self, tick: int, place: ProgramLine | None, pairs: frozenset[Pair]) -> Loss | None:
         """Take the contacts of the cycle from ``tick`` on and the statement that ran; a part that was lost, if any."""
@@ -214,7 +224,8 @@ class Touches:
         self._grip(seen)
         lost = self._lose(seen, tick)
         touched = {self._push(by, what, tick) for by, what in self._pushes(seen)}
-        touched |= {self._slide(by, what, tick) for by, what in seen.parts_on_fixed if by in self._held}
+        sliding = [pair for pair in seen.parts_on_fixed if pair[0] in self._held and not self._settles(pair[0])]
+        touched |= {self._slide(by, what, tick) for by, what in sliding}
         for by, what in seen.on_fixed:
             self._strike(by, what, tick)
         self._measure(touched)
@@ -244,18 +255,26 @@ class Touches:
                 if going is not None and going.gripping:
                     self.records.remove(going.touch)
 
+    def _settles(self, part: str) -> bool:
+        """Return whether the closing hand still aligns a part, while HAND ON waits."""
+        return self._held[part].age <= SETTLING or (self._closing is not None and self._place == self._closing)
+
     def _lose(self, seen: _Seen, tick: int) -> Loss | None:
-        for part, grip in self._held.items():
+        for part, grip in list(self._held.items()):
             grip.age += 1
-            here = self._in_hand(part)
-            if grip.age <= SETTLING:
-                grip.place = here
             if part in seen.pads:
                 grip.bare = 0
             elif not grip.bare:
                 grip.bare, grip.since = 1, (tick, self._place)
             else:
                 grip.bare += 1
+            here = self._in_hand(part)
+            if self._settles(part):
+                grip.place = here
+                if grip.bare >= LOST_CYCLES:  # squeezed out of the closing hand, which has closed on nothing then
+                    self._free.add(part)
+                    del self._held[part]
+                continue
             distance = math.hypot(*(here - grip.place).tolist())
             most = NOTICED if grip.bare >= LOST_CYCLES else max(SLIPPED, self._bodies.pad_length / 2.0)
             if not distance <= most:

@@ -118,6 +118,15 @@ def test_a_held_part_pushes_another(tmp_path):
     assert touch["moved_mm"] == pytest.approx(moved["other"], abs=0.2)
 
 
+def test_a_part_that_the_hand_is_stopped_by(tmp_path):
+    """The finger comes down on its edge: it cannot give way, and the torques say that something is there."""
+    report, moved = ran(tmp_path, "MOVE P5 + (0, 44, 0)\nMOVE P1 + (0, 44, 10), SPEED 60\n", OWN)
+    assert moved["part"] < 0.5
+    assert ("RBL535", 3) in said(report)
+    assert {code for code, _ in said(report)} & {"RBL511", "RBL512", "RBL515", "RBL516"}
+    assert report["warnings"][0]["message"] == "the right finger touched part and was stopped by it"
+
+
 def test_an_obstacle_is_struck_by_a_finger(tmp_path):
     text = "MOVE P1 + (0, 150, 0)\nMOVE P1 + (0, 150, -20.3), SPEED 20\nMOVE P1 + (0, 150, 0)\n"
     report, _ = ran(tmp_path, text, OWN)

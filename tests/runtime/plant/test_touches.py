@@ -31,7 +31,7 @@ class Cell:
         return lost
 
     def grip(self):
-        self.touches.hand(True)
+        self.touches.hand(True, None)
         assert self.run(PADS, SETTLING + 1) is None
 
     @property
@@ -71,6 +71,42 @@ def test_the_line_of_a_loss_is_that_in_which_the_pads_let_go():
     assert (lost.place.line, lost.tick) == (20, began)
 
 
+def test_the_hand_aligns_a_part_as_long_as_its_statement_waits():
+    cell = Cell()
+    cell.touches.hand(True, ProgramLine(line=10))
+    for _ in range(30):
+        cell.bodies.p[0, 1] += 0.001
+        assert cell.run(PADS | TABLE) is None
+    assert cell.found == []
+    cell.line = 20
+    cell.run(PADS | TABLE)
+    cell.bodies.p[0, 1] += 0.001
+    assert cell.run(PADS | TABLE) is None
+    assert cell.found == [(20, "part:a", "obstacle:table")]
+
+
+def test_a_part_that_escapes_the_closing_hand_was_never_held():
+    cell = Cell()
+    cell.touches.hand(True, ProgramLine(line=10))
+    cell.run(PADS, 10)
+    cell.run((), 10)
+    cell.line = 20
+    cell.bodies.p_tool[2] += 0.3
+    assert cell.run((), 10) is None
+
+
+@pytest.mark.parametrize(("by", "blocked"), [("pad_left", True), ("part:a", False)])
+def test_what_stops_the_drives_is_said_though_it_has_not_moved(by, blocked):
+    cell = Cell()
+    cell.grip()
+    cell.run(PADS | {(by, "part:b")})
+    assert cell.found == []
+    cell.touches.blocked()
+    assert cell.found == ([(10, by, "part:b")] if blocked else [])
+    if blocked:
+        assert cell.touches.records[0].message == "the left finger touched b and was stopped by it"
+
+
 def test_pads_that_jump_back_from_a_part_have_not_lost_it():
     cell = Cell()
     cell.grip()
@@ -81,7 +117,7 @@ def test_pads_that_jump_back_from_a_part_have_not_lost_it():
 def test_a_hand_that_has_let_go_loses_nothing():
     cell = Cell()
     cell.grip()
-    cell.touches.hand(False)
+    cell.touches.hand(False, None)
     cell.bodies.p[0, 2] = -0.3
     assert cell.run(PADS) is None
     assert cell.found == []
@@ -95,7 +131,7 @@ def test_a_hand_that_has_let_go_loses_nothing():
 @pytest.mark.parametrize("gripped", [True, False])
 def test_what_a_closing_finger_pushes_is_its_grasp_only_where_it_ends_in_one(gripped):
     cell = Cell()
-    cell.touches.hand(True)
+    cell.touches.hand(True, None)
     for _ in range(5):
         cell.bodies.p[0, 1] += 0.001
         cell.run({("pad_left", "part:a")})
