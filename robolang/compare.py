@@ -12,6 +12,7 @@ same tick:
 - droop: joint error that is left when a MOVE is done. There is no integrator that would take it away.
 """
 
+import hashlib
 import multiprocessing
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
@@ -21,11 +22,14 @@ from typing import Any
 import numpy as np
 
 from robolang.effects import Effect, SetPayload
+from robolang.lowering import payload
 from robolang.project import Project, load_project
 from robolang.result import StatementRun
-from robolang.session import Alter, Session
+from robolang.session import Session
 from runtime.frames import Array
 from runtime.linear import norm
+from runtime.plant.cell import CellSpec
+from runtime.robot.payload import NO_PAYLOAD, Payload
 from runtime.units import DEG, MM, badness
 
 BAND = 0.02
@@ -37,6 +41,10 @@ STARVED_COST_MS = 50.0
 """Declared cost of one axis of a starved dynamics task, ms."""
 
 _OF_ALARM = ("code", "message", "file", "line", "column", "number", "time_s")
+
+FIGURES = ("overshoot_pct", "settling_s", "joint_error_deg", "joint_rms_deg", "tool_error_mm", "tool_rms_mm",
+           "path_deviation_mm", "droop_deg", "per_axis", "moves")  # fmt: skip
+"""What is measured of a variant."""
 
 Options = dict[str, tuple[str, Any]]
 
@@ -75,6 +83,9 @@ VARIANTS = (
             settings={"servo.mode": "scheduled", "servo.gravity_compensation": 0.0}),
 )  # fmt: skip
 
+BASE = VARIANTS[0]
+"""What the others are compared with."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Request:
@@ -105,20 +116,21 @@ def compare(request: Request, variants: tuple[Variant, ...] = VARIANTS, jobs: in
         for variant in variants:
             rows.append(run_variant(request, variant))
             done(variant.title)
-        return rows
+        return _without_equals(rows)
     # spawn: a forked child would share the locks of whatever threads the libraries have started
     with ProcessPoolExecutor(min(jobs, len(variants)), mp_context=multiprocessing.get_context("spawn")) as pool:
         futures = [pool.submit(run_variant, request, variant) for variant in variants]
         for variant, future in zip(variants, futures, strict=True):
             future.result()
             done(variant.title)
-        return [future.result() for future in futures]
+        return _without_equals([future.result() for future in futures])
 
 
 def run_variant(request: Request, variant: Variant) -> dict[str, Any]:
-    """Run one variant and measure it."""
+    """Run one variant and measure it; ``motion`` is a digest of how the arm moved, ``idle`` what changed nothing."""
     project = request.project(variant)
-    session = Session(project, physics=request.physics, alter=_alter(variant, project.cell.robot.rated_payload))
+    loads = _Loads(variant.load, project.cell)
+    session = Session(project, physics=request.physics, alter=loads.alter)
     result = session.run()
     alarms: Any = result.report["alarms"]
     return {
@@ -127,17 +139,83 @@ def run_variant(request: Request, variant: Variant) -> dict[str, Any]:
         "ok": result.ok,
         "alarms": [{key: alarm[key] for key in _OF_ALARM} for alarm in alarms],
         "sim_time_s": result.report["sim_time_s"],
+        "motion": _digest(result.log),
+        "idle": _idle(variant, project.profile == request.project(BASE).profile, loads),
         **measures(result.log, session.controller.tool_poses(result.log["q_cmd"]), session.record.statements),
     }
 
 
-def _alter(variant: Variant, rated: float) -> Alter:
-    def altered(effect: Effect) -> Effect | None:
-        if not isinstance(effect, SetPayload) or variant.load == "as written":
-            return effect
-        return replace(effect, mass_kg=wrong_mass(effect.mass_kg, rated)) if variant.load == "wrong" else None
+def _idle(variant: Variant, same_settings: bool, loads: "_Loads") -> list[str]:
+    """Return what of a variant changes nothing in comparison with ``BASE``, in words."""
+    found = []
+    if same_settings and variant.settings != BASE.settings:
+        found.append("these settings are in force already")
+    if variant.load != "as written" and not loads.changed:
+        found.append("no LOAD of the program becomes another one" if loads.seen else "the program has no LOAD")
+    return found
 
-    return altered
+
+def _without_equals(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the rows with a ``note`` in each; one whose variant changes nothing has no figures beside it.
+
+    A variant changes nothing when its settings and every LOAD are those of ``BASE``, or when the arm moves as in the
+    row of ``BASE`` to the last bit.
+    """
+    motions = {row["variant"]: row["motion"] for row in rows}
+    by_name = {variant.name: variant for variant in VARIANTS}
+    found = []
+    for row in rows:
+        motion, idle = row.pop("motion"), row.pop("idle")
+        variant = by_name.get(row["variant"], BASE)
+        parts = (variant.settings != BASE.settings) + (variant.load != "as written")
+        reason = "; ".join(idle)
+        if variant != BASE and len(idle) < parts and motion == motions.get(BASE.name):
+            idle, reason = [""] * parts, f"the arm moves exactly as with {BASE.title}"
+        nothing = variant != BASE and len(idle) == parts
+        note = f"changes nothing: {reason}" if nothing else reason
+        found.append({**row, **(dict.fromkeys(FIGURES) if nothing else {}), "changes": not nothing, "note": note})
+    return found
+
+
+def _digest(log: dict[str, Array]) -> str:
+    digest = hashlib.sha256()
+    for name in ("q_cmd", "q_link", "X_world_tool"):
+        digest.update(np.ascontiguousarray(log[name]).tobytes())
+    return digest.hexdigest()
+
+
+class _Loads:
+    """What becomes of the LOADs of a run, and whether any payload was another one than the program declares."""
+
+    def __init__(self, load: str, cell: CellSpec) -> None:
+        self._load, self._cell = load, cell
+        self._declared = self._carried = NO_PAYLOAD
+        self.seen = self.changed = False
+
+    def alter(self, effect: Effect) -> Effect | None:
+        """Return the LOAD to carry out in place of another, None for none; other effects stay."""
+        if not isinstance(effect, SetPayload):
+            return effect
+        self.seen = True
+        self._declared = payload(effect, self._cell)
+        altered = self._altered(effect)
+        if altered is not None:
+            self._carried = payload(altered, self._cell)
+        self.changed = self.changed or not _same(self._declared, self._carried)
+        return altered
+
+    def _altered(self, effect: SetPayload) -> SetPayload | None:
+        if self._load == "omitted":
+            return None
+        if self._load != "wrong":
+            return effect
+        declared, rated = self._declared, self._cell.robot.rated_payload
+        x, y, z = (declared.cog / MM).tolist()
+        return replace(effect, name="", cog_mm=(x, y, z), mass_kg=wrong_mass(declared.mass, rated))
+
+
+def _same(one: Payload, other: Payload) -> bool:
+    return one.mass == other.mass and np.array_equal(one.cog, other.cog) and np.array_equal(one.inertia, other.inertia)
 
 
 def wrong_mass(mass: float, rated: float) -> float:
@@ -153,8 +231,7 @@ def measures(log: dict[str, Array], X_cmd: Array, statements: list[StatementRun]
     """Return the figures of a run, in deg, mm, s and %, over all its MOVEs; None where there is none."""
     moves = [run for run in statements if run.begun and run.path is not None and run.end_tick > run.first_tick]
     if not moves:
-        return dict.fromkeys(("overshoot_pct", "settling_s", "joint_error_deg", "joint_rms_deg", "tool_error_mm",
-                              "tool_rms_mm", "path_deviation_mm", "droop_deg", "per_axis", "moves"))  # fmt: skip
+        return dict.fromkeys(FIGURES)
     ticks = np.concatenate([np.arange(run.first_tick, run.end_tick) for run in moves])
     joint = np.abs(log["q_cmd"][ticks] - log["q_link"][ticks]) / DEG
     p_tool = log["X_world_tool"][:, :3, 3]

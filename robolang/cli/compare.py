@@ -91,10 +91,13 @@ def _print(program: str, rows: list[dict[str, Any]]) -> None:
     for heading, _, _ in _COLUMNS:
         table.add_column(heading, justify="right", no_wrap=True)
     for row in rows:
-        table.add_row(row["title"], *("-" if row[key] is None else form.format(row[key]) for _, key, form in _COLUMNS))
+        title = row["title"] if row["changes"] else f"{row['title']}: changes nothing"
+        table.add_row(title, *("-" if row[key] is None else form.format(row[key]) for _, key, form in _COLUMNS))
     console.print(table)
     _print_axes(console, rows)
     for row in rows:
+        if row["note"]:
+            console.print(safe(f"{row['title']}: {row['note']}"), soft_wrap=True)
         for alarm in row["alarms"]:
             place = f"{alarm['file']}:{alarm['line']}:{alarm['column']}"
             text = f"{row['title']}: stopped at {place}, {alarm['time_s']:.3f} s: {alarm['code']} {alarm['message']}"

@@ -62,14 +62,14 @@ def test_an_omitted_load_leaves_a_droop_and_never_settles(rows):
 
 
 def test_a_wrong_load_never_changes_the_commanded_path():
-    from robolang.compare import _alter
+    from robolang.compare import _Loads
 
     request = Request(program=PROGRAM, physics=False)
     plans = []
     for variant in VARIANTS:
         if variant.name in ("scheduled", "load-omitted", "load-wrong"):
             project = request.project(variant)
-            session = Session(project, physics=False, alter=_alter(variant, project.cell.robot.rated_payload))
+            session = Session(project, physics=False, alter=_Loads(variant.load, project.cell).alter)
             log = session.run().log
             for run in session.record.statements:
                 if run.path is not None:
@@ -96,6 +96,54 @@ def test_a_load_is_wrong_by_thirty_percent_of_the_rated_one():
     assert wrong_mass(0.8, 2.5) == pytest.approx(1.55)
     assert wrong_mass(2.3, 2.5) == pytest.approx(1.55)
     assert wrong_mass(0.5, 100.0) == 30.5
+
+
+def variants(*names):
+    return tuple(variant for variant in VARIANTS if variant.name in names)
+
+
+def test_a_load_declared_by_name_is_made_wrong_too(tmp_path):
+    """LOAD by its name and LOAD by numbers are one payload, so they are made wrong alike."""
+    text = "LOAD {}\nMOVE P2\n"
+    rows = []
+    for name, load in (("named", "hand_and_part"), ("numbers", "(0, 0, 95), 2.3")):
+        program = tmp_path / f"{name}.rbl"
+        program.write_text(text.format(load))
+        rows.append(compare(Request(program=str(program)), variants("scheduled", "load-omitted", "load-wrong")))
+    named, numbers = rows
+    assert named == numbers
+    assert all(row["changes"] and not row["note"] for row in named)
+    assert named[2]["tool_rms_mm"] != named[0]["tool_rms_mm"]
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "options"),
+    [
+        ("MOVE P2\n", "load-omitted", {}),
+        ("MOVE P2\n", "load-wrong", {}),
+        ("LOAD (0, 0, 0), 0\nMOVE P2\n", "load-omitted", {}),
+        ("LOAD (0, 0, 60), 0.8\nMOVE P2\n", "starved", {"dynamics_cost_per_axis_ms": ("--set", 50.0)}),
+        ("LOAD (0, 0, 60), 0.8\nMOVE P2\n", "no-lead", {}),  # an arm without gear springs, and without physics
+    ],
+)
+def test_a_variant_that_changes_nothing_says_so_and_has_no_figures(tmp_path, text, name, options):
+    program = tmp_path / "p.rbl"
+    program.write_text(text)
+    request = Request(program=str(program), options=options, physics=False)
+    base, row = compare(request, variants("scheduled", name))
+    assert (base["changes"], base["note"]) == (True, "")
+    assert base["tool_rms_mm"] is not None
+    assert not row["changes"]
+    assert row["note"].startswith("changes nothing: ")
+    assert row["tool_rms_mm"] is row["moves"] is None
+
+
+def test_a_part_of_a_variant_that_changes_nothing_is_named(tmp_path):
+    program = tmp_path / "p.rbl"
+    program.write_text("MOVE P2\n")
+    _, row = compare(Request(program=str(program)), variants("scheduled", "fixed-mid-load-omitted"))
+    assert (row["changes"], row["note"]) == (True, "the program has no LOAD")
+    assert row["tool_rms_mm"] is not None
 
 
 def test_overshoot_and_settling_of_a_made_up_move():
