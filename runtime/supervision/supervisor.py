@@ -57,18 +57,22 @@ class Supervisor:
         """LOAD: from here on this is what should hang on the flange."""
         self._payload = payload
         self.observer.declare(payload, mode)
-        self._warned = False
+        self._weigh_anew()
 
     def hand_moves(self) -> None:
         """HAND ON or OFF: what was weighed no longer counts."""
         self.observer.restart()
-        self._warned = False
+        self._weigh_anew()
+
+    def _weigh_anew(self) -> None:
+        """Forget what earlier estimates said of another payload."""
+        self._warned, self._suspect = False, 0
 
     def restart(self, tick: int) -> None:
         """Begin anew after an acknowledged fault; rows before ``tick`` no longer count."""
         self.observer.restart()
         self._first_tick = tick
-        self._since = self._unexpected = 0
+        self._since = self._unexpected = self._suspect = 0
 
     def judge(self, rows: Array, q_cmd: Array, dq_cmd: Array, end_tick: int) -> Finding | None:
         """Judge the cycle that ended before ``end_tick``; rows (.., 4 n) end with it, commands are (ticks, n)."""
