@@ -10,6 +10,7 @@
 # make wrist-campaign         random straight moves through the wrist, counted (minutes)
 # make fuzz               readers of programs, points, cells, arms and golden logs on made-up bytes, FUZZ_SECONDS of each target
 # make large              time and memory of check and fmt on programs of 1 MB of every kind (minutes)
+# make mutants          mutants of supervision, stops, payload and areas that no test finds (minutes)
 # make measured   the figures of docs/measured.md that repeat exactly
 # make help   these lines
 
@@ -20,7 +21,7 @@ READY := $(VENV)/.ready
 
 # A row that is not as promised ends a bench or a campaign with an error.
 
-.PHONY: help demo test gates bench measured plots fault-campaign supervision-campaign wrist-campaign pulse-campaign blend-campaign fuzz large clean
+.PHONY: help demo test gates bench measured plots fault-campaign supervision-campaign wrist-campaign pulse-campaign blend-campaign fuzz large mutants clean
 
 demo: $(READY)
 	$(BIN)/robolang run programs/pick_and_place.rbl
@@ -78,5 +79,11 @@ fuzz: $(READY)
 large: $(READY)
 	$(BIN)/python -m tests.fuzz.large
 
+mutants: $(READY)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev,mutants]'
+	rm -rf mutants
+	$(BIN)/mutmut run
+	$(BIN)/mutmut results
+
 clean:
-	rm -rf $(VENV) out
+	rm -rf $(VENV) out mutants
