@@ -14,7 +14,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-FILES = [path for folder in ("robolang", "runtime") for path in sorted((ROOT / folder).rglob("*.py"))]
+FOLDERS = ("robolang", "runtime", "tests/bench", "tests/faults")
+FILES = [path for folder in FOLDERS for path in sorted((ROOT / folder).rglob("*.py"))]
 ORDERED = ast.Lt | ast.Gt | ast.LtE | ast.GtE
 REFUSING = re.compile(r"_?(Fault|FileFault|Alarm|Diagnostic|Finding|Verdict|fail|alarm|refuse\w*|warn\w*|_at|at)")
 MASKS = {"bad", "out", "outside", "over", "beyond", "lost", "wrong"}

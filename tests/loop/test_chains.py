@@ -123,7 +123,7 @@ def off_way(robot: Controller, chain: ChainPlan, q: Array) -> float:
     run_out(twin)
     way = twin.tool_poses(signals(twin)["q_cmd"])[:, :3, 3]
     points = robot.tool_poses(q)[:, :3, 3]
-    return max(float(np.linalg.norm(way - p, axis=1).min()) for p in points[::4])
+    return float(np.max([np.linalg.norm(way - p, axis=1).min() for p in points[::4]]))
 
 
 @pytest.mark.parametrize("shift", [-12, -4, -1, 0, 3, 8])

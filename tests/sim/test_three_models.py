@@ -81,8 +81,8 @@ class Models:
 
 def spread(values: list[np.ndarray]) -> float:
     """The largest difference between any two of the three, over the largest value."""
-    scale = max(float(np.abs(v).max()) for v in values)
-    return max(float(np.abs(a - b).max()) for a in values for b in values) / scale
+    scale = np.max([np.abs(v).max() for v in values])
+    return float(np.max([np.abs(a - b).max() for a in values for b in values]) / scale)
 
 
 @pytest.fixture(scope="module", params=[(n, full) for n in ROBOTS for full in (False, True)], ids=str)

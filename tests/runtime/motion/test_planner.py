@@ -81,7 +81,7 @@ def past_the_waist(**options) -> LinePlan:
 
 def used(result: LinePlan) -> float:
     _, dq, ddq = np.abs(at_the_servo(result)).max(axis=1)
-    return max((dq / SPEED).max(), np.sqrt((ddq / ACCELERATION).max()))
+    return np.maximum((dq / SPEED).max(), np.sqrt((ddq / ACCELERATION).max()))
 
 
 @pytest.mark.parametrize("options", [{"speed": 1.0}, {"speed": 0.8, "acceleration": 0.5}, {"duration": 1.3}])

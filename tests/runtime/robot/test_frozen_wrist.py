@@ -38,7 +38,7 @@ def test_the_main_axes_of_a_posture_are_found_again_from_its_tool_point_and_wris
     for q in postures(kinematics, 500):
         p = (kinematics.forward(q) @ TOOL)[None, :3, 3]
         found = frozen.solve(p, q[None, 3:], q + 0.01, frozen.side_of(q))[0]
-        worst = max(worst, float(np.abs(found - q).max()))
+        worst = float(np.maximum(worst, np.abs(found - q).max()))
     assert worst < 1e-7  # beside a stretched arm the digits are fewer; most are at 1e-15
 
 

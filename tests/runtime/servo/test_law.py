@@ -33,11 +33,11 @@ def step_response(D_model, D_true, *, tick_s=5e-4, Kf=0.0, Ka=0.0, source="comma
 
 
 def overshoot(alpha, size=0.1):
-    return max(0.0, float(alpha.max()) / size - 1.0)
+    return float(np.maximum(0.0, alpha.max() / size - 1.0))
 
 
 def settling(alpha, tick_s=5e-4, size=0.1):
-    outside = np.flatnonzero(np.abs(alpha - size) > 0.02 * size)
+    outside = np.flatnonzero(~(np.abs(alpha - size) <= 0.02 * size))
     return (outside[-1] + 1) * tick_s
 
 
