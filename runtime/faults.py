@@ -268,8 +268,8 @@ register(
     Code(
         code="RBL537",
         name="obstacle-touched",
-        meaning="The arm or the hand has touched an obstacle of the cell or the floor, or a held part has slid along "
-        "one.",
+        meaning="The arm or the hand has touched an obstacle of the cell, the floor or a link of the arm, or a held "
+        "part has slid along an obstacle.",
         remedy="Lift the part before it is moved, go there over a via point, or correct the obstacle in the cell file.",
     ),
 )

@@ -60,7 +60,7 @@ def planned(program: str, max_cycle_s: float | None) -> Planned:
     return Planned(
         diagnostics=found,
         warnings=project.cell.robot.warnings,
-        table=_table(project, explored.rehearsal, rows) + _ways(project, explored),
+        table=_table(project, explored.rehearsal, rows) + _ways(project, explored) + _shapes(project),
         times=_times(project, explored, rows),
     )
 
@@ -77,6 +77,7 @@ def _times(project: Project, explored: Exploration, rows: Sequence[LineTime]) ->
                      "estimated": not share.given} for share in shares],
         "other_ways": len(explored.detours),
         "not_planned": _missed(project, explored),
+        "self_collision_checked": bool(project.cell.robot.link_radii),
     }  # fmt: skip
 
 
@@ -112,6 +113,15 @@ def _ways(project: Project, explored: Exploration) -> str:
         missed = ", ".join(map(str, _missed(project, explored)))
         text += f"not planned, since no way led there: the moves in line {missed}\n"
     return text
+
+
+def _shapes(project: Project) -> str:
+    """Return what to say of an arm whose shapes are not known."""
+    robot = project.cell.robot
+    if robot.link_radii:
+        return ""
+    return (f"not checked: the arm against itself, since {safe(robot.name)} has no shapes (link_radius_mm); against "
+            "obstacles its links are taken as thin capsules\n")  # fmt: skip
 
 
 def _wrist(project: Project, rehearsal: Rehearsal) -> list[str]:

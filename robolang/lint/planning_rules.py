@@ -84,7 +84,8 @@ RULES = (
     Rule(
         code="RBL424",
         why="Ranges of single joints do not keep a folded arm out of itself. The shapes are coarse; where this is "
-        "found, a hand, a hose or a cable is in the way for certain.",
+        "found, a hand, a hose or a cable is in the way for certain, and a run with physics is stopped by the contact. "
+        "An arm whose file gives no link_radius_mm has no shapes: it is not checked, and the table says so.",
         bad="10 MOVEJ JOINT(-60, 210, 25, -70, 65, -75)\n",
         good="10 MOVEJ JOINT(-60, 180, 25, -70, 65, -75)\n",
         motion=True,

@@ -76,7 +76,14 @@ _CONTACT = "0.99 0.99 0.001 0.5 2"
 """Impedance of contacts: the part sinks 0.4 um into the table."""
 
 _LINK_RADIUS = (0.06, 0.04)
-"""Radius of the link capsules of the first three axes and of the wrist, m: looks, and a coarse collision body."""
+"""Radius of the links of the first three axes and of the wrist, m, of an arm whose shapes are not known: looks, and a
+coarse body that meets obstacles and parts."""
+
+APART = 3
+"""Joints between two links from which on they may meet one another."""
+
+FINGER = ("pad", "shank")
+"""Shapes of a finger."""
 
 
 def build_mjcf(
@@ -104,7 +111,7 @@ def build_mjcf(
     for part in cell.parts if cell else ():
         _part(world, part)
     if cell is not None:
-        _grip(root, cell, timestep)
+        _contacts(root, spec, cell, timestep)
         _coupling(root, timestep)
     _actuators(root, spec, cell is not None)
     ET.indent(root)
@@ -188,7 +195,7 @@ def _arm(world: ET.Element, spec: RobotSpec, timestep: float) -> ET.Element:
         if axis.motor.elastic:
             _gear_spring(parent, index, axis)
         end = spec.axes[index + 1].placement if index + 1 < spec.n else spec.X_last_flange
-        _link_geom(parent, index, end[:3, 3])
+        _link_geom(parent, index, end[:3, 3], spec.link_radii[index] if spec.link_radii else _radius(index))
     return parent
 
 
@@ -224,9 +231,13 @@ def _gear_spring(body: ET.Element, index: int, axis: AxisSpec) -> None:
     )
 
 
-def _link_geom(body: ET.Element, index: int, end: Array) -> None:
+def _radius(index: int) -> float:
+    """Return the radius of a link of an arm whose shapes are not known, m."""
+    return _LINK_RADIUS[0] if index < 3 else _LINK_RADIUS[1]
+
+
+def _link_geom(body: ET.Element, index: int, end: Array, radius: float) -> None:
     """Draw a link as a capsule to the next joint; only links beyond the first can run into something."""
-    radius = _LINK_RADIUS[0] if index < 3 else _LINK_RADIUS[1]
     group, name = ("arm" if index else "", f"link{index + 1}")
     if norm(end) < 1e-3:
         _geom(body, name, group, type="sphere", size=repr(radius), rgba="0.95 0.75 0.2 1")
@@ -271,9 +282,34 @@ def _finger(flange: ET.Element, hand: HandSpec, side: str, timestep: float) -> N
     _geom(finger, f"shank_{side}", "hand", shank, type="box", size=_row(shank_size / 2.0), rgba="0.4 0.42 0.45 1")
 
 
-def _grip(root: ET.Element, cell: CellSpec, timestep: float) -> None:
-    """State the contacts of pads and parts, whose slip must be damped faster than MuJoCo's time constants allow."""
+def own_pairs(spec: RobotSpec) -> list[tuple[str, str]]:
+    """Return which shapes of the arm and its hand may meet one another: links ``APART`` joints or more apart.
+
+    Nearer ones are kept off one another by the ranges of their joints; the hand counts as the last link. Empty for an
+    arm whose shapes are not known.
+    """
+    if not spec.link_radii:
+        return []
+    shapes = [(f"link{axis + 1}", axis) for axis in range(spec.n)]
+    shapes += [(name, spec.n - 1) for name in ("palm", *(f"{part}_{side}" for side in FINGERS for part in FINGER))]
+    return [(a, b) for a, one in shapes for b, other in shapes if one + APART <= other]
+
+
+def own_pair_name(first: str, second: str) -> str:
+    """Return the name of a pair of ``own_pairs``."""
+    return f"{first}+{second}"
+
+
+def _contacts(root: ET.Element, spec: RobotSpec, cell: CellSpec, timestep: float) -> None:
     contact = ET.SubElement(root, "contact")
+    for first, second in own_pairs(spec):
+        ET.SubElement(contact, "pair", name=own_pair_name(first, second), geom1=first, geom2=second, condim="1",
+                      solimp=_CONTACT, solref=f"{CONTACT_TIME * timestep!r} 1")  # fmt: skip
+    _grip(contact, cell, timestep)
+
+
+def _grip(contact: ET.Element, cell: CellSpec, timestep: float) -> None:
+    """State the contacts of pads and parts, whose slip must be damped faster than MuJoCo's time constants allow."""
     for part in cell.parts:
         for side in FINGERS:
             ET.SubElement(

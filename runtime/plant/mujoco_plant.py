@@ -18,7 +18,7 @@ torque (see ``mjcf``).
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import lru_cache
 from typing import Any, cast
 
 import mujoco
@@ -29,7 +29,7 @@ from runtime.linear import dot, norm
 from runtime.plant.cell import CellSpec
 from runtime.plant.gears import elastic_axes, physics_steps
 from runtime.plant.hand import FINGERS, finger_sign
-from runtime.plant.mjcf import build_mjcf, friction_bias, gear_joint, joint_name
+from runtime.plant.mjcf import build_mjcf, friction_bias, gear_joint, joint_name, own_pair_name, own_pairs
 from runtime.plant.plant import HandState
 from runtime.plant.touches import Bodies, Pair
 from runtime.robot.spec import RobotSpec
@@ -60,7 +60,9 @@ class MujocoPlant:
         self._spec, self._home = spec, cell.home
         self._tick_s = tick_s
         self._substeps = physics_steps(spec, tick_s, MAX_PHYSICS_STEP)
-        self._model: Any = mujoco.MjModel.from_xml_string(build_mjcf(spec, cell, timestep=tick_s / self._substeps))
+        xml = build_mjcf(spec, cell, timestep=tick_s / self._substeps)
+        self._model: Any = mujoco.MjModel.from_xml_string(xml)
+        self._own_pairs = _keep_off_itself(self._model, xml, spec, cell.home)
         self._data: Any = mujoco.MjData(self._model)
         self._qpos, self._qvel = cast(Array, self._data.qpos), cast(Array, self._data.qvel)
         self._tau, self._finger_force = self._data.ctrl[:n], self._data.ctrl[n:]
@@ -330,38 +332,15 @@ class MujocoPlant:
     def folded(self, q: Array) -> tuple[str, str] | None:
         """Return what of the arm or the hand would be in another link at joint angles q (n,) rad, and in which.
 
-        Checked for the pairs of ``_pairs``, with the hand open.
+        Checked with the hand open, for the pairs that meet in a run as well: none of an arm whose shapes are not known.
         """
         self._qpos[self._motors] = q
         self._qpos[self._fingers] = self._stroke / 2.0
         mujoco.mj_kinematics(self._model, self._data)
-        for first, second in self._pairs:
+        for first, second in self._own_pairs:
             if mujoco.mj_geomDistance(self._model, self._data, first, second, CLEARANCE, None) < -CLEARANCE:
                 return str(self._model.geom(second).name), str(self._model.geom(first).name)
         return None
-
-    @cached_property
-    def _pairs(self) -> list[tuple[int, int]]:
-        """Pairs of shapes of the arm and the hand that may meet.
-
-        The shapes are coarse: links fewer than ``APART`` joints apart are kept off one another by the ranges of these
-        joints, and pairs that meet at home or in more than ``OFTEN`` of some postures say nothing.
-        """
-        spec = self._spec
-        rows = np.random.default_rng(0).uniform(spec.lower, spec.upper, (POSTURES, spec.n))
-        shapes = [(index, self._model.geom(index)) for index in range(self._model.ngeom)]
-        bodies = {f"link{axis + 1}": axis for axis in range(spec.n)}
-        names = [(index, str(shape.name)) for index, shape in shapes if _of_arm(str(shape.name))]
-        links = [(index, bodies.get(name, spec.n - 1)) for index, name in names]
-        pairs = [(a, b) for a, one in links for b, other in links if one + APART <= other]
-        met = np.zeros((POSTURES + 1, len(pairs)), dtype=bool)
-        for row, q in enumerate([self._home, *rows]):
-            self._qpos[self._motors] = q
-            mujoco.mj_kinematics(self._model, self._data)
-            met[row] = [mujoco.mj_geomDistance(self._model, self._data, a, b, CLEARANCE, None) < -CLEARANCE
-                        for a, b in pairs]  # fmt: skip
-        kept = ~met[0] & (met[1:].mean(axis=0) <= OFTEN)
-        return [pair for pair, keep in zip(pairs, kept, strict=True) if keep]
 
     def parts(self) -> dict[str, Array]:
         """Return the pose X_world_part (4, 4) of every part by name."""
@@ -390,12 +369,46 @@ ADVANCES = 100
 """Most steps of a conservative advancement."""
 CLEARANCE = 1e-4
 """Shapes that meet by less than this touch, m."""
-APART = 3
-"""Joints between two links from which on they are looked at; the hand counts as the last link."""
 POSTURES = 200
 """Postures in which it is looked which shapes meet anyway."""
 OFTEN = 0.5
 """Share of them from which on a pair says nothing."""
+NEVER = -1e3
+"""Distance of shapes that is never reached, m."""
+
+
+def _keep_off_itself(model: Any, xml: str, spec: RobotSpec, home: Array) -> list[tuple[int, int]]:
+    """Return the geoms of the arm and the hand that may meet one another, and let all other pairs of them never meet.
+
+    The shapes are coarse: pairs that meet at home or in more than ``OFTEN`` of some postures say nothing.
+    """
+    pairs = own_pairs(spec)
+    if not pairs:
+        return []
+    rows = np.random.default_rng(0).uniform(spec.lower, spec.upper, (POSTURES, spec.n))
+    kept = []
+    for name, keep in zip(pairs, _tell(xml, tuple(pairs), np.vstack([home, rows]).tobytes(), spec.n), strict=True):
+        pair = model.pair(own_pair_name(*name))
+        if keep:
+            kept.append((int(model.geom(name[0]).id), int(model.geom(name[1]).id)))
+        else:
+            pair.margin = NEVER
+    return kept
+
+
+@lru_cache(maxsize=32)
+def _tell(xml: str, pairs: tuple[tuple[str, str], ...], postures: bytes, n: int) -> tuple[bool, ...]:
+    """Return of which pairs it says something that they meet; ``postures``: home and others, rows of n angles, rad."""
+    model: Any = mujoco.MjModel.from_xml_string(xml)
+    data: Any = mujoco.MjData(model)
+    joints = _addresses(model, [joint_name(axis) for axis in range(n)])
+    geoms = [(int(model.geom(a).id), int(model.geom(b).id)) for a, b in pairs]
+    met = []
+    for q in np.frombuffer(postures).reshape(-1, n):
+        data.qpos[joints] = q
+        mujoco.mj_kinematics(model, data)
+        met.append([mujoco.mj_geomDistance(model, data, a, b, CLEARANCE, None) < -CLEARANCE for a, b in geoms])
+    return tuple((~np.array(met[0]) & (np.mean(met[1:], axis=0) <= OFTEN)).tolist())
 
 
 def _of_arm(name: str) -> bool:

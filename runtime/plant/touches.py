@@ -6,7 +6,7 @@ The plant says every 8 ms cycle which shapes have touched, by name (``Touching``
     allowed     pads and part from HAND ON to HAND OFF; a held part on its support where it is gripped and put down;
                 parts that rest on the table or on one another
     pushed      anything else of the arm, the hand or a held part on a part, and what that part pushes in turn
-    struck      the arm or the hand on an obstacle or the floor; a held part that slides along one
+    struck      the arm or the hand on an obstacle, the floor or another link; a held part that slides along one
     lost        a part that has moved in the closed hand from where it was gripped: by more than half the length of a
                 pad, or by more than ``NOTICED`` when no pad has touched it for ``LOST_CYCLES``
 
@@ -97,7 +97,7 @@ class Touch:
 
     @property
     def fixed(self) -> bool:
-        """Whether an obstacle or the floor was touched, which nothing moves."""
+        """Whether an obstacle, the floor or a link of the arm was touched, which nothing pushes."""
         return not self.what.startswith(_PART)
 
     @property
@@ -405,6 +405,9 @@ def _sorted(pairs: frozenset[Pair]) -> _Seen:
                     seen.pads[part].add(other)
         elif any(fixed):
             seen.on_fixed.append((pair[fixed.index(False)], pair[fixed.index(True)]))
+        else:  # the arm in itself: the shape that is nearer to its base counts as fixed
+            inner, outer = sorted(pair, key=lambda name: (not name.startswith("link"), name))
+            seen.on_fixed.append((outer, inner))
     return seen
 
 

@@ -194,6 +194,20 @@ def joint_range(table: Table) -> tuple[float, float]:
     return lower * DEG, upper * DEG
 
 
+def link_radii(tables: Sequence[Table]) -> tuple[float, ...]:
+    """Return the radii of the links, m, of axes with a table each; empty when none has one; ``FileFault``.
+
+    RBL608 at an axis without one where others have it.
+    """
+    radii = [_optional(table, "link_radius_mm") for table in tables]
+    given = [radius * MM for radius in radii if radius is not None]
+    if given and len(given) < len(radii):
+        table = tables[radii.index(None)]
+        table.fail("RBL608", f"'{table.name('link_radius_mm')}' is missing",
+                   "other axes have it: give it for all of them or for none")  # fmt: skip
+    return tuple(given)
+
+
 def _optional(table: Table, key: str) -> float | None:
     """Return a number above 0, None where the file has none."""
     table.ask(key)

@@ -56,6 +56,7 @@ def build(file: RobotFile) -> RobotSpec:
         opw=None if file.opw is None else _opw(file.opw),
         corrections=corrections,
         published=published,
+        link_radii=file.link_radii,
         warnings=_doubts(axes, published, corrections, geometry, [axis.table for axis in file.axes]),
     )
     _check_opw(spec, file.table)

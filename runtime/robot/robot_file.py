@@ -89,7 +89,10 @@ class AxisFile:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotFile:
-    """A robot file; ``flange`` stands in the form of lines only. ``table`` is the whole file, for places."""
+    """A robot file; ``flange`` stands in the form of lines only. ``table`` is the whole file, for places.
+
+    ``link_radii`` m are those of the capsules that stand for the links; empty: the file gives none.
+    """
 
     name: str
     title: str
@@ -100,6 +103,7 @@ class RobotFile:
     flange: FlangeRow | None
     path: PathLimits
     opw: OpwRow | None
+    link_radii: tuple[float, ...]
     table: Table
 
     @property
@@ -144,6 +148,7 @@ def parse(source: Source) -> RobotFile:
         notes=drives.texts(table, "notes"),
         rated_payload=rated_payload(table),
         flange=_flange(table.table("flange")) if form == "lines" else None,
+        link_radii=drives.link_radii(tables),
         axes=tuple(_axis(each, form, names) for each in tables),
         path=path,
         opw=opw,

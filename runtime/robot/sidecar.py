@@ -41,6 +41,7 @@ def complete(arm: ImportedArm, file: SidecarFile) -> RobotSpec:
         opw=arm.opw,
         corrections=corrections,
         published=tuple(axis.body for axis in arm.axes),
+        link_radii=file.link_radii,
         warnings=(*arm.warnings,
                   *doubt_limits_and_drives(built, arm.X_last_flange, [axis.table for axis in file.axes])),
     )  # fmt: skip
@@ -102,6 +103,7 @@ def template(arm: ImportedArm) -> str:
     lines += [_gap(key, unit) for key, unit in PATH_KEYS.items()]
     for index, axis in enumerate(arm.axes):
         lines += ["", f"# J{index + 1}", "[[axes]]", f"name = {quoted(axis.name)}", *_limit_lines(axis)]
+        lines += ["# link_radius_mm = ...  # of the link, of all axes or none: to check the arm against itself"]
         if axis.impossible is not None:
             lines += _correction_lines(axis)
         lines += ["[axes.motor]", *_motor_notes(axis)]

@@ -110,6 +110,7 @@ class SidecarFile:
     rated_payload: float
     axes: tuple[AxisDrive, ...]
     path: PathLimits
+    link_radii: tuple[float, ...]
     table: Table
 
 
@@ -126,6 +127,7 @@ def read_sidecar(source: Source, model: str) -> SidecarFile:
         sources=drives.texts(table, "sources"),
         notes=drives.texts(table, "notes"),
         rated_payload=rated_payload(table),
+        link_radii=drives.link_radii(axes),
         axes=tuple(_axis(axis) for axis in axes),
         path=drives.path_limits(table.table("path")),
         table=table,

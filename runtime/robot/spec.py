@@ -75,7 +75,8 @@ class RobotSpec:
     """A robot of ``n`` axes. ``X_last_flange`` (4, 4) is the flange in the frame of the last axis.
 
     ``published`` holds the bodies as the source prints them, before ``corrections``. ``warnings`` are what is unlikely
-    about its files, each at its place (``plausibility``).
+    about its files, each at its place (``plausibility``). ``link_radii`` m, one for each axis: of the capsules from
+    joint to joint that stand for the links; empty: the shapes of the arm are not known.
     """
 
     name: str
@@ -90,6 +91,7 @@ class RobotSpec:
     published: tuple[Body, ...]
     notes: tuple[str, ...]
     warnings: tuple[FileFault, ...] = ()
+    link_radii: tuple[float, ...] = ()
 
     @property
     def n(self) -> int:

@@ -119,7 +119,7 @@ def test_a_robot_that_cannot_be_shown(tmp_path, monkeypatch, name, code, said):
     (tmp_path / "folder.toml").mkdir()
     os.mkfifo(tmp_path / "pipe.toml")
     (tmp_path / "empty.toml").touch()
-    (tmp_path / "short.toml").write_bytes(PUMA.read_bytes()[:3000])
+    (tmp_path / "short.toml").write_bytes(PUMA.read_bytes().partition(b"0.126")[0])
     result = robolang("robot", "show", name, code=2)
     assert code in result.stderr
     assert said in result.stderr
