@@ -55,6 +55,7 @@ from robolang.nodes import (
 )
 from robolang.places import Place
 from robolang.reading import reads_state
+from robolang.rounds import Rounds
 from robolang.scope import STOPS, Loop, Scopes
 from robolang.structure import Structure, structure_of
 from robolang.tree import Node
@@ -113,25 +114,27 @@ def execute(program: Program, world: World | None = None,
     Raises ``ValueError`` at a statement with an error: such a program must not be run. ``Fault`` where a statement has
     no value, and where one was thrown in that no ON ERROR catches.
     """
-    return _Machine(program, world or Nowhere(), points, decisions or Decisions()).run()
+    return Machine(program, world or Nowhere(), points, decisions).run()
 
 
-class _Machine:
-    """A program that runs."""
+class Machine:
+    """A program that runs; see ``execute``."""
 
-    def __init__(self, program: Program, world: World, points: Collection[str], decisions: Decisions) -> None:
-        self._decisions = decisions
+    def __init__(self, program: Program, world: World, points: Collection[str],
+                 decisions: Decisions | None = None) -> None:  # fmt: skip
+        self._decisions = decisions or Decisions()
         self._lines = program.lines
         self._structure: Structure = structure_of(program)
         self._scopes = Scopes(frozenset(point.upper() for point in points))
         self._values = Evaluator(self._scopes, world)
         self._actions = Actions(self._values, self._scopes)
         self._steps = self._shown = self._loop = 0
-        self._rounds: dict[int, int] = {}
+        self._rounds = Rounds()
+        self._waits_since = 0.0
         self._world = world
         self._reads: dict[int, bool] = {}
-        self._now: tuple[Line, Node]
-        """The line that runs, and the part of it that is carried out: of an IF on one line its branch, for instance."""
+        self._now: tuple[int, Node]
+        """The line that runs, from 0, and the part of it that is carried out, as the branch of an IF on one line."""
 
     def run(self) -> Generator[Effect, None, None]:
         """Yield the effects to the end of the program."""
@@ -141,7 +144,7 @@ class _Machine:
             if line.statement is None:
                 at += 1
                 continue
-            self._now = line, line.statement
+            self._now = at, line.statement
             try:
                 self._count(at)
                 jump = yield from self._statement(line, line.statement, at)
@@ -164,28 +167,50 @@ class _Machine:
 
     def _located(self, fault: Fault) -> ProgramFault:
         """Return a fault that nothing caught at the part of the statement that failed, an idle loop at its head."""
-        line, part = self._now
+        if isinstance(fault, ProgramFault):
+            return fault
+        at, part = self._now
+        line = self._lines[at]
         if fault.code == "RBL508":
             line = self._lines[self._loop]
             part = line.statement or line
-        return ProgramFault(fault, _at(line, part), self._calls())
+        calls = tuple(_at(each, _calling(each)) for each in (self._lines[at] for at in self._calls()))
+        return ProgramFault(fault, _at(line, part), calls)
 
-    def _calls(self) -> tuple[Origin, ...]:
-        """Return the CALLs and GOSUBs that have not come back, the outermost first."""
-        backs = [back for scope in self._scopes.stack for back in (scope.back, *scope.returns) if back > 0]
-        return tuple(_at(line, _calling(line)) for line in (self._lines[back - 1] for back in backs))
+    def _calls(self) -> list[int]:
+        """Return the lines of the CALLs and GOSUBs that have not come back, the outermost first."""
+        return [back - 1 for scope in self._scopes.stack for back in (scope.back, *scope.returns) if back > 0]
+
+    def too_long(self, running: Origin, seconds: float) -> ProgramFault:
+        """Return the fault of a run that has not ended after so long, s: at its endless loop, else at what runs."""
+        at, node = self._now
+        calls, since = self._calls(), self._waits_since
+        message = f"the run is not over after {seconds:g} s of simulated time"
+        loop = self._rounds.endless((*calls, at), self._steps)
+        if isinstance(node, Wait) and node.span == running.span and seconds - since >= seconds / 2.0:
+            message += f": this WAIT has not come true since {since:.3f} s"
+            hint = "Let an input of the cell change so that the condition comes true, or give the WAIT a TIMEOUT."
+        elif loop is not None:
+            head, rounds = loop
+            message += f": this loop has gone round {rounds} times"
+            hint = "Give the loop an end that a simulation reaches: a count of rounds, TIMER, or an input of the cell."
+            running = _at(self._lines[head], self._lines[head].statement or self._lines[head])
+        else:
+            hint = "Split the program, or shorten its DELAYs; the log and the report end here."
+        return ProgramFault(Fault("RBL509", message, hint), running)
 
     def _count(self, at: int) -> None:
         self._steps += 1
         if self._steps > MAX_STEPS:
             raise Fault("RBL505", f"more than {MAX_STEPS} statements")
 
-    def _looped(self, at: int, to: int) -> int:
+    def _looped(self, at: int, to: int, *, calls: bool = False) -> int:
         """Return where a jump leads; ``Fault`` RBL508 when the program goes round and round without taking time."""
         if to > at:
             return to
-        self._rounds[to] = rounds = self._rounds.get(to, 0) + 1
-        if rounds > MAX_IDLE:
+        if not calls:
+            self._rounds.turn(to, at, self._steps)
+        if self._rounds.idle(to) > MAX_IDLE:
             self._loop = to
             where = named(self._lines[to].source_line, self._lines[to].number)
             raise Fault("RBL508", f"the loop that begins at {where} has gone round {MAX_IDLE} times without a "
@@ -204,7 +229,7 @@ class _Machine:
         return (yield from _carried_out(_DO[type(node)](self, line, node, at)))
 
     def _taking_time(self) -> None:
-        self._rounds.clear()
+        self._rounds.take_time()
 
     def _act(self, line: Line, node: Action, at: int) -> Run:
         effect = self._actions.effect(line, node)
@@ -217,9 +242,9 @@ class _Machine:
     # --- values, inputs and time -------------------------------------------------------------------------------------
 
     def _assign(self, line: Line, node: Assign, at: int) -> int | None:
-        self._now = line, node.value
+        self._now = at, node.value
         value = self._values.value(node.value)
-        self._now = line, node
+        self._now = at, node
         name = node.target.name if isinstance(node.target, Call) else node.target
         if isinstance(node.target, Call):
             self._scopes.put(name.key, self._values.whole(node.target.arguments[0], "the number of an element"), value)
@@ -245,6 +270,7 @@ class _Machine:
         yield Drain(**origin(line, node))
         timeout = math.inf if node.timeout is None else limits.TIMEOUT.checked(self._values.number(node.timeout))
         began, place = self._world.seconds(), node.condition.span
+        self._waits_since = began
         forced = self._decisions.of_wait(place, endless=node.timeout is None)
         while forced is not True and not (forced is None and self._values.true(node.condition)):
             if forced is False or not self._world.seconds() - began < timeout - 1e-9:
@@ -282,11 +308,11 @@ class _Machine:
         return found
 
     def _if(self, line: Line, node: If, at: int) -> Run:
-        self._now = line, node.condition
+        self._now = at, node.condition
         chosen = node.then if self._is_true(node.condition) else node.otherwise
         if chosen is None:
             return None
-        self._now = line, chosen
+        self._now = at, chosen
         if reads_state(chosen):
             yield Drain(**origin(line, chosen))
         return (yield from _carried_out(_DO[type(chosen)](self, line, chosen, at)))
@@ -301,7 +327,7 @@ class _Machine:
         if node.word == "WHILE":
             if self._is_true(node.value):
                 return None
-            self._rounds.pop(at, None)
+            self._rounds.leave(at)
             return structure.end[at] + 1
         if node.word == "SELECT":
             return (yield from self._case_of(line, node, at))
@@ -311,7 +337,7 @@ class _Machine:
             if not isinstance(following, Head):  # ELSE, or ENDIF
                 break
             node = following
-            self._now = line, node
+            self._now = at, node
             if reads_state(node.value):
                 yield Drain(**origin(line, node))
         return at + 1
@@ -324,7 +350,7 @@ class _Machine:
             line, statement = self._lines[at], self._lines[at].statement
             if not isinstance(statement, Case):
                 break
-            self._now = line, statement
+            self._now = at, statement
             if reads_state(statement):
                 yield Drain(**origin(line, statement))
             if self._decisions.of(statement.span, any(self._values.value(each) == chosen for each in statement.values)):
@@ -356,7 +382,7 @@ class _Machine:
             loops.pop()
         if len(loops) >= MAX_LOOPS:
             raise Fault("RBL504", f"more than {MAX_LOOPS} FORs have been begun and not ended")
-        self._rounds.pop(at, None)
+        self._rounds.leave(at)
         loops.append(Loop(line=at, variable=node.variable.key, rounds=rounds - 1, step=step))
         return None
 
@@ -384,7 +410,7 @@ class _Machine:
             returns = self._scopes.here.returns
             self._check_depth(sum(len(scope.returns) for scope in self._scopes.stack))
             returns.append(at + 1)
-        return self._looped(at, to)
+        return self._looped(at, to, calls=node.word == "GOSUB")
 
     def _check_depth(self, depth: int) -> None:
         if depth >= MAX_CALLS:
@@ -401,9 +427,9 @@ class _Machine:
             raise Fault("RBL533", f"there is no SUB {node.name.text} of {len(node.arguments)} parameters")
         self._check_depth(len(self._scopes.stack) - 1)
         values = [self._values.value(argument) for argument in node.arguments]
-        self._looped(at, to)
-        named = zip((parameter.key for parameter in sub.parameters), values, strict=True)
-        self._scopes.enter(at + 1, dict(named))
+        self._looped(at, to, calls=True)
+        given = zip((parameter.key for parameter in sub.parameters), values, strict=True)
+        self._scopes.enter(at + 1, dict(given))
         return to + 1
 
     def _leave(self) -> int:
@@ -448,9 +474,9 @@ class _Machine:
 
 
 _DO: dict[type, Callable[..., Run | int | None]] = {
-    **dict.fromkeys(ACTIONS, _Machine._act),
-    Assign: _Machine._assign, Dim: _Machine._dim, Const: _Machine._const, Delay: _Machine._delay,
-    Wait: _Machine._wait, Print: _Machine._print, If: _Machine._if, Head: _Machine._head, Block: _Machine._block,
-    Case: _Machine._block, For: _Machine._for, Next: _Machine._next, Jump: _Machine._jump, Sub: _Machine._sub,
-    CallSub: _Machine._call_sub, Word: _Machine._word, OnError: _Machine._on_error,
+    **dict.fromkeys(ACTIONS, Machine._act),
+    Assign: Machine._assign, Dim: Machine._dim, Const: Machine._const, Delay: Machine._delay,
+    Wait: Machine._wait, Print: Machine._print, If: Machine._if, Head: Machine._head, Block: Machine._block,
+    Case: Machine._block, For: Machine._for, Next: Machine._next, Jump: Machine._jump, Sub: Machine._sub,
+    CallSub: Machine._call_sub, Word: Machine._word, OnError: Machine._on_error,
 }  # fmt: skip

@@ -31,7 +31,7 @@ from robolang.effects import (
     SetTool,
     SetWrist,
 )
-from robolang.interpreter import ProgramFault, execute
+from robolang.interpreter import Machine, ProgramFault
 from robolang.lowering import Command
 from robolang.nodes import Delay, Wait
 from robolang.project import Project
@@ -141,9 +141,10 @@ class _Rehearsal:
                  most_us: int) -> None:  # fmt: skip
         cell = project.cell
         self._project, self._period_us, self._planner = project, project.profile.period_us, planner
-        self._decisions, self._most_us = decisions, most_us
+        self._most_us = most_us
         self._now_us = 0
         self._world = RobotWorld(project.points, cell, kinematics, lambda: self._now_us)
+        self._machine = Machine(project.program, self._world, project.points.names, decisions)
         self._tracked = False
         self._payload = NO_PAYLOAD
         self._chain: list[tuple[MoveTo, Command, LinePlan]] = []
@@ -156,8 +157,7 @@ class _Rehearsal:
 
     def run(self) -> Rehearsal:
         """Rehearse to the end."""
-        project = self._project
-        program = execute(project.program, self._world, project.points.names, self._decisions)
+        program = self._machine.run()
         fault: Fault | None = None
         refused: tuple[Diagnostic, ...] = ()
         while True:
@@ -213,7 +213,7 @@ class _Rehearsal:
         self._times[effect.line] = self._times.get(effect.line, 0) + spent
         self._now_us += spent
         if self._now_us >= self._most_us:
-            raise Fault("RBL509", f"the run would last {self._most_us / 1e6:g} s of simulated time and is not over")
+            raise self._machine.too_long(effect.origin, self._most_us / 1e6)
 
     def _move(self, effect: MoveTo) -> None:
         self._tried.add(effect.span)

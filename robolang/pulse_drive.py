@@ -79,7 +79,8 @@ def drive(export: Export, cell: CellSpec, profile: Profile, physics: bool = True
     """
     start = start_angles(export, cell)
     if not export.seconds * 1e6 <= MAX_RUN_US:
-        raise Fault("RBL509", f"the tables last {export.seconds:.0f} s; {MAX_RUN_US / 1e6:g} s are the longest run")
+        message = f"the tables last {export.seconds:.0f} s; {MAX_RUN_US / 1e6:g} s are the longest run"
+        raise Fault("RBL509", message, "Export the program in parts.")
     for item in export.sequence:
         if isinstance(item, Marker) and item.load is not None:
             _payload(item.load, cell)

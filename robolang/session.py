@@ -20,6 +20,7 @@ from robolang.effects import (
     Effect,
     Halt,
     MoveTo,
+    Origin,
     Pass,
     SetHand,
     SetOutput,
@@ -29,7 +30,7 @@ from robolang.effects import (
     SetWrist,
     Show,
 )
-from robolang.interpreter import ProgramFault, execute
+from robolang.interpreter import Machine, ProgramFault
 from robolang.lowering import Command
 from robolang.motion_check import MAX_CHAIN, MAX_RUN_US, motion_check
 from robolang.nodes import Wait
@@ -104,6 +105,7 @@ class Session:
         )
         self.record = RunRecord(project=project, controller=self.controller, physics=physics)
         self.world = RobotWorld(project.points, cell, self._kinematics, lambda: self.controller.time_us)
+        self._machine = Machine(project.program, self.world, project.points.names)
         self._chain: list[tuple[MoveTo, Command]] = []
         self._plans = PlanFindings(project)
         self._warned: set[tuple[str, Span]] = set()
@@ -134,7 +136,7 @@ class Session:
 
     def _run_program(self) -> None:
         """Take one effect after another; a request that cannot be carried out goes back to the program (ON ERROR)."""
-        program = execute(self.project.program, self.world, self.project.points.names)
+        program = self._machine.run()
         fault: Fault | None = None
         while True:
             try:
@@ -287,7 +289,9 @@ class Session:
             if self._stop_requested or not controller.cycle() or controller.alarms:
                 break
             if controller.time_us >= MAX_RUN_US:
-                controller.alarm("RBL509", f"the run has lasted {MAX_RUN_US / 1e6:g} s of simulated time")
+                assert isinstance(controller.statement, Origin)
+                fault = self._machine.too_long(controller.statement, MAX_RUN_US / 1e6)
+                controller.alarm(fault.code, fault.message, hint=fault.hint, statement=fault.origin)
             if controller.recorder.cycle % _PROGRESS_CYCLES == 0 and runs[0].path is None:
                 self._progress(runs[0], controller.time_us)
         if runs[0].planned_s is not None:

@@ -456,10 +456,10 @@ class Controller:
             self._stop_by(self._alarm_of(found))
 
     def alarm(self, code: str, message: str, axis: int | None = None, *, hint: str = "",
-              calls: tuple[ProgramLine, ...] = ()) -> None:  # fmt: skip
-        """Latch an alarm at the running statement and the current tick, and stop the arm by its category."""
+              statement: ProgramLine | None = None, calls: tuple[ProgramLine, ...] = ()) -> None:  # fmt: skip
+        """Latch an alarm at a statement, by default the one that runs, and stop the arm by its category."""
         found = Finding(code=code, message=message, axis=axis, tick=self.recorder.tick)
-        self._stop_by(self._alarm_of(found, hint=hint, calls=calls))
+        self._stop_by(self._alarm_of(found, statement, hint, calls))
 
     def warn(self, code: str, message: str, hint: str = "", statement: ProgramLine | None = None) -> None:
         """Keep a warning at a statement, None: the running one, and the current tick; the arm goes on."""

@@ -143,7 +143,7 @@ register(
         code="RBL509",
         name="run-too-long",
         meaning="The run has reached the longest simulated time that is recorded.",
-        remedy="Split the program; the log and the report hold everything up to here.",
+        remedy="Give a loop an end and a WAIT a TIMEOUT, or split the program; log and report hold all up to here.",
     ),
     Code(
         code="RBL510",

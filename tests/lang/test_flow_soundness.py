@@ -19,7 +19,7 @@ from robolang.checker import check
 from robolang.diagnostics import has_errors
 from robolang.effects import MoveTo, SetHand, SetPayload, Show
 from robolang.flow import facts_before, ways_of
-from robolang.interpreter import ProgramFault, _Machine
+from robolang.interpreter import Machine, ProgramFault
 from robolang.nodes import Hand, HandState, LoadNamed, Move, Print
 from robolang.structure import structure_of, word_of
 from tests.lang.helpers import parsed
@@ -159,7 +159,7 @@ class EnoughError(Exception):
     """A run has been long enough."""
 
 
-class Followed(_Machine):
+class Followed(Machine):
     """A program that runs, with the facts before every line that it came to."""
 
     def __init__(self, program, world, decisions):
