@@ -12,7 +12,7 @@ from typing import NoReturn, Protocol
 
 from robolang.nodes import Call, Chain, Component6, Expression, Name, Negate, Not, Number, Text, Vector
 from robolang.places import Frame, Place, Shift, Six, Value, kind_of
-from robolang.words import ARGUMENTS, VALUES
+from robolang.words import ARGUMENTS, COMPONENTS6, VALUES
 from runtime.faults import Fault
 from runtime.numerals import number_in
 
@@ -20,7 +20,6 @@ MAX_TEXT = 10_000
 """Longest text that a program may make, characters."""
 MAX_SHIFTS = 1000
 """Most ways and turns that a pose can have behind it."""
-COMPONENTS6 = ("X", "Y", "Z", "RX", "RY", "RZ")
 
 class World(Protocol):
     """What a program can read of the robot and its cell."""

@@ -3,10 +3,10 @@
 import math
 from collections.abc import Iterator
 
+from robolang import other_languages
 from robolang.cell_symbols import CellSymbols
 from robolang.constants import fixed, no_value
 from robolang.diagnostics import Diagnostic, Severity
-from robolang.evaluator import COMPONENTS6
 from robolang.names import Defined, hint_for
 from robolang.nodes import (
     Call,
@@ -22,7 +22,7 @@ from robolang.nodes import (
     walk,
 )
 from robolang.printer import print_expression
-from robolang.words import ARGUMENTS, near
+from robolang.words import ARGUMENTS, COMPONENTS6, near
 from runtime.robot.drives import beyond_range
 
 
@@ -77,7 +77,7 @@ class ExpressionCheck:
         points = self._symbols.points
         if points is not None and node.key not in points and self._defined.is_missing(node):
             message = f"{node.text} has no value: nothing gives it a first one, and it is no taught point"
-            hint = hint_for(node, self._known)
+            hint = other_languages.VALUES.get(node.key) or hint_for(node, self._known)
             if self._defined.is_of_a_sub(node.key):
                 message = f"{node.text} has no value here: only a SUB gives it one, which ends with the SUB"
                 hint = f"give {node.text} a first value in the main program"
@@ -104,7 +104,7 @@ class ExpressionCheck:
         elif not self._defined.has_array(key):
             if not self._defined.is_missing(node.name):
                 return
-            guess = near(key, ARGUMENTS)
+            guess = other_languages.function(key) or near(key, ARGUMENTS)
             hint = f"did you mean {guess}?" if guess else f"DIM {node.name.text}(n) makes an array"
             message = f"{node.name.text} is no array and no function"
             yield Diagnostic(code="RBL215", message=message, span=node.name.span, hint=hint)

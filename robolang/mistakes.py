@@ -9,10 +9,12 @@ import re
 from collections.abc import Set
 from dataclasses import dataclass
 
+from robolang import other_languages
 from robolang.diagnostics import Diagnostic
 from robolang.source import Span
 from robolang.words import (
     COMPONENTS,
+    COMPONENTS6,
     INNER_WORDS,
     INSTRUCTIONS,
     KEYWORDS,
@@ -34,8 +36,16 @@ _SIGNS = {"RPAR": "')'", "EQ": "'='", "_COMMA": "','", "$END": "the end of the l
 _VALUE = frozenset({"NUMBER", "FUNCTION"})
 _OPERATORS = frozenset({"OR", "XOR", "AND", "NOT", "MOD", "PLUS", "MINUS", "STAR", "SLASH", "CARET"})
 _LAST_WORD = re.compile(r"(?:[\w.$]+|[^\s\w])[ \t]*\Z")
+_ASSIGNS = re.compile(r":[ \t]*(?:\Z|'|=)|([-+*/])(?:=|\1[ \t]*\Z)")
+"""What follows the name in an assignment or a label of another language: ``:=``, ``+=``, ``++``, ``:`` at the end."""
+_SETTINGS = frozenset({"SPEED", "SPEEDJ", "ACCEL", "OVERRIDE", "ZONE", "TOOL", "FRAME", "DELAY", "LOAD", "TIME",
+                       "TIMEOUT"})  # fmt: skip
+_WAIT_TIME = re.compile(r"(?i)WAIT[ \t]+(?:SEC|TIME|[\d.]+)")
 _QUOTE = 30
-_JOINED = {("END", "IF"): "ENDIF", ("END", "SELECT"): "ENDSELECT", ("END", "SUB"): "ENDSUB", ("ELSE", "IF"): "ELSEIF"}
+_JOINED = {
+    ("END", "IF"): "ENDIF", ("END", "SELECT"): "ENDSELECT", ("END", "SUB"): "ENDSUB", ("ELSE", "IF"): "ELSEIF",
+    ("END", "FOR"): "NEXT", ("END", "WHILE"): "WEND",
+}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,7 +83,7 @@ def explain(found: Unexpected) -> Diagnostic:
         return Diagnostic(code="RBL114", message=message, span=found.span)
     if found.kind == "MALFORMED":
         return _malformed(found)
-    return _unknown(found) or _unexpected(found)
+    return _component(found) or _unknown(found) or _unexpected(found)
 
 
 def suspicious(text: str, start: int) -> Diagnostic:
@@ -102,10 +112,27 @@ def _malformed(found: Unexpected) -> Diagnostic:
     return Diagnostic(code="RBL115", message=f"'{quote(text)}' is not a number", span=found.span, hint=hint)
 
 
+def _is_after_first_name(found: Unexpected) -> bool:
+    """Return whether a statement begins with a name and the token is what follows it."""
+    return ({"EQ", "LPAR"} <= found.accepts and "LESS" not in found.accepts
+            and re.fullmatch(r"[^\W\d]\w*\$?", _last_word(found.before)) is not None)  # fmt: skip
+
+
+def _component(found: Unexpected) -> Diagnostic | None:
+    """Return RBL111 for a component of a pose that a value is assigned to."""
+    part = re.match(r"(?i)(x|y|z|rx|ry|rz)[ \t]*=", found.after)
+    if found.kind != "_DOT" or part is None or not _is_after_first_name(found):
+        return None
+    pose, end = _last_word(found.before), found.span.end + len(part[1])
+    values = ", ".join("value" if each == part[1].upper() else f"{pose}.{each}" for each in COMPONENTS6)
+    return Diagnostic(code="RBL111", message=f"a component of a pose cannot be assigned: {pose}.{part[1].upper()}",
+                      span=Span(found.span.start, end), hint=f"write {pose} = POSE({values})")  # fmt: skip
+
+
 def _unknown(found: Unexpected) -> Diagnostic | None:
     """Return RBL112 for a name that begins a statement and is not assigned to."""
     word = _last_word(found.before)
-    if not ({"EQ", "LPAR"} <= found.accepts and "LESS" not in found.accepts and re.fullmatch(r"[^\W\d]\w*\$?", word)):
+    if not _is_after_first_name(found) or _ASSIGNS.match(found.text + found.after):
         return None
     start = found.span.start - len(found.before) + len(found.before.rstrip(" \t")) - len(word)
     message = f"unknown instruction '{quote(word)}'"
@@ -160,6 +187,8 @@ def _after(before: str) -> str:
 def _hint(found: Unexpected) -> str:
     """Return the likeliest correction, or ``""``."""
     word = found.text.upper()
+    if elsewhere := _elsewhere(found, word):
+        return elsewhere
     if found.is_first:
         whole = found.kind == "NUMBER"
         if word in RESERVED - KEYWORDS and found.after.lstrip().startswith("="):
@@ -184,6 +213,53 @@ def _hint(found: Unexpected) -> str:
     if "NAME" in found.accepts and word in RESERVED:
         return f"{word} is a word of the language and cannot be a name"
     return form_of("WRIST" if _last_word(found.before).upper() in ("WRIST", "HOLD") else found.instruction)
+
+
+def _elsewhere(found: Unexpected, word: str) -> str:
+    """Return the remedy where a word or sign of another language stands, or ``""``."""
+    before, rest = found.before.rstrip(" \t"), found.text + found.after
+    if (sign := re.match(":?=", rest)) and (setting := _last_word(before).upper()) in _SETTINGS:
+        return f"leave {sign[0]} out: {form_of(before) or f'{setting} value'}"
+    if found.text == "=":
+        return other_languages.sign("==") if found.before.endswith("=") else ""
+    if assigns := _ASSIGNS.match(rest):
+        name = _last_word(before)
+        if assigns[1]:
+            return f"write {name} = {name} {assigns[1]} {'value' if rest[1] == '=' else '1'}"
+        return f"= assigns: {name} =" if "=" in assigns[0] else f"*{name} at the start of a line is a label"
+    if found.kind == "_SEMICOLON" and (found.is_first or "$END" in found.accepts):
+        return "a comment begins with ' or REM, and no ; ends a line"
+    if found.kind == "OTHER" or (found.is_first and found.kind in ("SLASH", "MINUS")):
+        return other_languages.sign(rest)
+    if found.accepts >= _VALUE and word in other_languages.VALUES:
+        return other_languages.VALUES[word]
+    return _instead(found, word, before)
+
+
+def _instead(found: Unexpected, word: str, before: str) -> str:
+    """Return what is written in place of a word of another language, by the instruction that it follows."""
+    if found.is_first:
+        if word == "INT" and not found.after.lstrip().startswith(("=", "(")):
+            return other_languages.instruction("VAR")
+        return "IN reads an input: x = IN(1)" if word == "IN" else ""
+    if found.instruction == "WAIT" and (word == "FOR" or _WAIT_TIME.fullmatch(before)):
+        return other_languages.instruction("WAITUNTIL" if word == "FOR" else "SLEEP")
+    if found.kind == "_COMMA" and found.instruction == "PRINT":
+        return "; stands between the values of PRINT"
+    if "THEN" in found.accepts and word in INSTRUCTIONS:
+        return f"write THEN before {word}"
+    if found.kind == "ENDIF" and found.instruction == "IF":
+        return "an IF on one line has no ENDIF"
+    if found.kind != "NAME":
+        return other_languages.instruction(found.instruction)
+    if found.instruction in ("GOTO", "GOSUB"):
+        return f"a label is written with *: {found.instruction} *{found.text}"
+    if word == "DIV":
+        return "INT(a / b) is the whole part of a quotient"
+    if word in ("DO", "BEGIN") and "$END" in found.accepts:
+        return f"leave {found.text} out"
+    instead = other_languages.setting(found.text) if found.instruction in MOTIONS else ""
+    return instead or other_languages.instruction(found.instruction)
 
 
 def _lacks_comma(found: Unexpected, word: str) -> bool:

@@ -170,6 +170,12 @@ register(
         remedy="Compare the difference with a small number, as in ABS(x - 0.3) < 1E-6.",
     ),
     Code(
+        code="RBL233",
+        name="wait-for-a-number",
+        meaning="The condition of a WAIT is a number that is not 0, so it is true at once.",
+        remedy="Wait for a time with DELAY, for a signal with a condition such as IN(1) = 1.",
+    ),
+    Code(
         code="RBL413",
         name="blend-at-the-end",
         meaning="A move has a ZONE, and no move follows that it could blend into.",

@@ -7,7 +7,7 @@ here are those that hold for every robot, and what the arm may carry.
 import math
 from collections.abc import Callable, Iterator
 
-from robolang import limits
+from robolang import limits, other_languages
 from robolang.cell_symbols import CellSymbols
 from robolang.constants import fixed
 from robolang.diagnostics import Diagnostic, Related, Severity
@@ -213,7 +213,8 @@ class StatementCheck:
         is_element = isinstance(node.target, Call) and not self._defined.has_array(name.key)
         if is_element and self._defined.is_missing(name):
             message = f"there is no array {name.text}"
-            yield Diagnostic(code="RBL215", message=message, span=name.span, hint=f"DIM {name.text}(n) makes one")
+            yield Diagnostic(code="RBL215", message=message, span=name.span,
+                             hint=other_languages.instruction(name.key) or f"DIM {name.text}(n) makes one")  # fmt: skip
 
     def _fits(self, name: Name, value: Expression) -> Iterator[Diagnostic]:
         """Report a value of another kind than a name holds."""

@@ -5,6 +5,9 @@ ENDSELECT, SUB to ENDSUB), line numbers and labels are looked up, and jumps that
 goes by the tables, so nothing is searched while a program runs. One pass over the lines with a stack of open blocks:
 linear in the text. Places are indices into ``Program.lines``.
 
+A line with an error takes part as what it seems to be, so that what it began or ended is not missed. That is a guess,
+and no error follows from it: not of the line itself, nor of one that belongs to another block without it.
+
 A block is left by GOTO freely and entered by its head only: a jump to a line inside a block that the jump is not in
 itself is RBL204, since a NEXT without its FOR has nothing to count.
 """
@@ -14,6 +17,7 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from robolang import other_languages
 from robolang.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related
 from robolang.nodes import (
     Block,
@@ -154,7 +158,7 @@ def _span_of(line: Line, *, is_label: bool) -> Span:
 class _Open:
     """A block that is not closed yet: its head's word, and the lines of it so far.
 
-    ``guessed``: its head is missing, which is said; the lines that go with it are not mistakes of their own.
+    ``guessed``: its head is missing, which is said, or has an error; what goes with it is no mistake of its own.
     """
 
     word: str
@@ -166,6 +170,7 @@ class _Open:
 def _blocks(program: Program, found: Structure) -> None:
     """Match heads with what divides and closes them."""
     stack: list[_Open] = []
+    doubtful: Counter[str] = Counter()
     for index, line in enumerate(program.lines):
         word = _block_word(line.statement)
         closes = word in _CLOSES or word in _DIVIDES
@@ -179,11 +184,12 @@ def _blocks(program: Program, found: Structure) -> None:
             if len(stack) >= MAX_BLOCKS:
                 _too_deep(found, program, index, word)
                 return
-            if word == "SUB" and stack:
+            guessed = isinstance(line.statement, Unparsed)
+            if word == "SUB" and stack and not guessed:
                 _wrong(found, "RBL219", "a SUB stands outside of every block", line, program, stack[-1])
-            stack.append(_Open(word=word, lines=[index]))
+            stack.append(_Open(word=word, lines=[index], guessed=guessed))
         else:
-            _continue(program, found, stack, index, word)
+            _continue(program, found, stack, index, word, doubtful)
     for block in stack:
         _not_closed(program, found, block)
 
@@ -194,12 +200,13 @@ def _block_word(statement: Statement | None) -> str:
         return word_of(statement)
     text = _SPLIT_END.sub("END", statement.text)
     first = _FIRST.match(text)
-    if first and first[1].upper() in KEYWORDS - _WORDS:
-        return ""
-    word = near(first[1], _WORDS, cutoff=0.75) if first else ""
+    upper = first[1].upper() if first else ""
+    if upper in other_languages.WORDS or upper in KEYWORDS - _WORDS:
+        return other_languages.ENDS.get(upper, "")
+    word = near(upper, _WORDS, cutoff=0.75)
     if not word and _RANGE.search(text):
         return "FOR"
-    if word == "IF" and (_ONE_LINE.search(statement.text) or first is None or first[1].upper() != "IF"):
+    if word == "IF" and (_ONE_LINE.search(statement.text) or upper != "IF"):
         return ""
     return "CASE ELSE" if word == "CASE" and "ELSE" in statement.text.upper() else word
 
@@ -213,19 +220,28 @@ def _too_deep(found: Structure, program: Program, index: int, word: str) -> None
     found.inside.extend(() for _ in range(len(program.lines) - len(found.inside)))
 
 
-def _continue(program: Program, found: Structure, stack: list[_Open], index: int, word: str) -> None:
-    """Take a line that divides or closes a block."""
+def _continue(program: Program, found: Structure, stack: list[_Open], index: int, word: str,
+              doubtful: Counter[str]) -> None:  # fmt: skip
+    """Take a line that divides or closes a block; ``doubtful`` are the words whose block a guess has closed."""
     line = program.lines[index]
+    guessed = isinstance(line.statement, Unparsed)
     head = _CLOSES.get(word) or _DIVIDES[word]
+    if guessed and not (stack and stack[-1].word == head):
+        return
+    if guessed and word in _CLOSES:
+        doubtful[word] += 1
     _give_up_inner(program, found, stack, head)
     if not stack or stack[-1].word != head:
+        if doubtful[word]:
+            doubtful[word] -= 1
+            return
         _wrong(found, "RBL212", f"{word} has no {head} above it", line, program, stack[-1] if stack else None)
         if word in _DIVIDES:
             stack.append(_Open(word=head, lines=[index], last=word in _LAST, guessed=True))
         return
     block = stack[-1]
     if word in _DIVIDES:
-        if block.last:
+        if block.last and not guessed:
             _wrong(found, "RBL212", f"{word} comes after the ELSE of its block", line, program, block)
         block.last = block.last or word in _LAST
         block.lines.append(index)
@@ -242,8 +258,8 @@ def _continue(program: Program, found: Structure, stack: list[_Open], index: int
 
 def _give_up_inner(program: Program, found: Structure, stack: list[_Open], head: str) -> None:
     """Report the open blocks above the one that a line belongs to, so that one missing end is one mistake."""
-    words = [block.word for block in stack]
-    inner = words[len(words) - words[::-1].index("SUB") :] if "SUB" in words and head != "SUB" else words
+    bounds = [index for index, block in enumerate(stack) if block.word == "SUB" and not block.guessed]
+    inner = [block.word for block in (stack[bounds[-1] + 1 :] if bounds and head != "SUB" else stack)]
     if head in inner:
         while stack[-1].word != head:
             _not_closed(program, found, stack.pop())
@@ -277,7 +293,10 @@ def _check_jump(program: Program, found: Structure, index: int, target: Target) 
         if found.missing.is_first(cause, target.span):
             found.report(Diagnostic(code="RBL202", message=f"there is no {name} to go to", span=target.span))
         return
-    if found.owner.get(where) != found.owner.get(index):
+    owners = found.owner.get(where), found.owner.get(index)
+    if owners[0] != owners[1]:
+        if any(owner is not None and isinstance(program.lines[owner].statement, Unparsed) for owner in owners):
+            return
         inside = where in found.owner
         message = f"the target is {'in a' if inside else 'outside of the'} SUB that the jump is {'not ' * inside}in"
         found.report(Diagnostic(code="RBL204", message=message, span=target.span))

@@ -5,6 +5,8 @@ Taught points that nothing names are found with ``named``; their finding stands 
 
 from collections.abc import Iterator
 
+from robolang import limits, other_languages
+from robolang.constants import fixed
 from robolang.diagnostics import Diagnostic, Severity
 from robolang.names import names_in
 from robolang.nodes import Assign, Call, Const, Dim, If, Name, Node, Program, Statement, Wait
@@ -12,10 +14,14 @@ from robolang.words import near
 
 
 def wait_check(program: Program) -> Iterator[Diagnostic]:
-    """Report WAITs without a TIMEOUT (RBL223), as warnings."""
+    """Report WAITs without a TIMEOUT (RBL223) and WAITs for a number (RBL233), as warnings."""
     for line in program.statements:
         for node in _statements(line.statement):
-            if isinstance(node, Wait) and node.timeout is None:
+            if isinstance(node, Wait) and (value := fixed(node.condition)):
+                delay = f"DELAY {value:g} waits for {value:g} s" if 0.0 < value <= limits.DELAY.high else ""
+                message = f"WAIT {value:g} waits for nothing: its condition is a number that is not 0"
+                yield Diagnostic(code="RBL233", severity=Severity.WARNING, span=node.span, message=message, hint=delay)
+            elif isinstance(node, Wait) and node.timeout is None:
                 yield Diagnostic(code="RBL223", severity=Severity.WARNING, span=node.span,
                                  message="this WAIT has no TIMEOUT: where its signal never comes, the program stands "
                                  "here for ever")  # fmt: skip
@@ -33,9 +39,10 @@ def usage_check(program: Program) -> Iterator[Diagnostic]:
             read.update(_reads(node))
     for key, name in given.items():
         if key not in read:
-            guess = near(key, read)
+            guess, elsewhere = near(key, read), other_languages.instruction(key)
             yield Diagnostic(code="RBL225", severity=Severity.WARNING, span=name.span,
-                             message=f"nothing reads {name.text}", hint=f"did you mean {guess}?" if guess else "")
+                             message=f"nothing reads {name.text}",
+                             hint=f"did you mean {guess}?" if guess else elsewhere)  # fmt: skip
 
 
 def named(program: Program) -> frozenset[str]:

@@ -9,6 +9,8 @@ import re
 import unicodedata
 from collections.abc import Iterable
 
+from robolang import other_languages
+
 _INSTRUCTIONS = """
     MOVE MOVEJ MOVEC APPROACH DEPART LOAD HAND WRIST SEAM SPEED SPEEDJ ACCEL OVERRIDE ZONE TOOL FRAME OUT WAIT DELAY
     PULSE DIM CONST IF ELSEIF ELSE ENDIF FOR NEXT WHILE WEND SELECT CASE ENDSELECT GOTO GOSUB RETURN SUB ENDSUB CALL
@@ -18,6 +20,8 @@ INSTRUCTIONS = frozenset(_INSTRUCTIONS.split())
 OPTIONS = ("SPEED", "ACCEL", "TIME", "ZONE", "FINE", "WRIST")
 MOTIONS = frozenset({"MOVE", "MOVEJ", "MOVEC", "APPROACH", "DEPART"})
 COMPONENTS = ("TILT", "ADVANCE", "ROTATION")
+COMPONENTS6 = ("X", "Y", "Z", "RX", "RY", "RZ")
+"""Components of a pose, as in P1.X."""
 _BETWEEN = ("TIMEOUT", "GOTO", "STOP", "THEN", "ELSE", "TO", "STEP", "CASE", "NEXT", "ERROR")
 _SIGN_WORDS = ("NOT", "AND", "OR", "XOR", "MOD")
 INNER_WORDS = ("ON", "OFF", *OPTIONS, "KEEP", "AUTO", "HOLD", *COMPONENTS, *_BETWEEN, *_SIGN_WORDS)
@@ -79,18 +83,6 @@ _PHRASES = {
     "ON ERROR GOTO", "ON ERROR STOP", "RESUME NEXT", "CASE ELSE", "HAND ON", "HAND OFF", "WRIST KEEP", "WRIST AUTO",
     "WRIST HOLD", "SEAM ON", "SEAM OFF",
 }  # fmt: skip
-_OTHER_LANGUAGES = {
-    "CLOSE": "HAND ON closes the hand",
-    "GRASP": "HAND ON closes the hand",
-    "GRIP": "HAND ON closes the hand",
-    "OPEN": "HAND OFF opens the hand",
-    "RELEASE": "HAND OFF opens the hand",
-    "LIN": "MOVE is a straight move",
-    "MOVEL": "MOVE is a straight move",
-    "MOVS": "MOVE is a straight move",
-    "PAYLOAD": "LOAD (x, y, z), mass declares the payload",
-}
-
 MAX_CHOICES = 300
 """Among more names than this nothing is suggested."""
 
@@ -135,7 +127,7 @@ def near(word: str, choices: Iterable[str], cutoff: float = 0.6) -> str:
 
 def instruction_hint(word: str) -> str:
     """Return what a word that is no instruction was probably meant to be, or ``""``."""
-    if known := _OTHER_LANGUAGES.get(word.upper()):
+    if known := other_languages.instruction(word):
         return known
     if joined := re.fullmatch(r"(MOVE|LOAD|HAND)(\w*\d)", word.upper()):
         return f"leave a space: {joined[1]} {joined[2]}"

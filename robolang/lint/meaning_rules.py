@@ -217,4 +217,12 @@ RULES = (
         good='10 X = 0.1 + 0.2\n20 IF ABS(X - 0.3) < 1E-6 THEN PRINT "equal"\n',
         line=2,
     ),
+    Rule(
+        code="RBL233",
+        severity=Severity.WARNING,
+        why="In other languages WAIT with a number is a pause. Here it waits for a condition, and every number but 0 "
+        "is true: the program goes on at once, before a valve or a gripper has moved.",
+        bad="10 WAIT 2\n20 MOVE P1\n",
+        good="10 DELAY 2\n20 MOVE P1\n",
+    ),
 )

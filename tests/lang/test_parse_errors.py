@@ -171,7 +171,7 @@ def test_bad_lines(text, found):
         ("DEPART", "expected a value after DEPART", "the form is DEPART mm"),
         ("MOVEC P1 P2", "expected ',' after P1, not P2", "the form is MOVEC via, point"),
         ("WAIT x, 5", "expected TIMEOUT after ',', not 5", "the form is WAIT condition [, TIMEOUT s [, GOTO target]]"),
-        ("GOTO L", "expected a line number or *LABEL after GOTO, not L", "the form is GOTO line or GOTO *LABEL"),
+        ("GOTO L", "expected a line number or *LABEL after GOTO, not L", "a label is written with *: GOTO *L"),
         ("FOR i = 1", "expected TO after 1", "the form is FOR v = a TO b [STEP s]"),
         ("WHILE", "expected a value after WHILE", "the form is WHILE condition"),
         ('x = "abc', "expected a value after '=', not '\"'", 'a text ends with "'),
