@@ -9,6 +9,7 @@
 # make pulse-campaign         random moves of four machines as pulse tables, counted
 # make wrist-campaign         random straight moves through the wrist, counted (minutes)
 # make fuzz               readers of programs, points, cells, arms and golden logs on made-up bytes, FUZZ_SECONDS of each target
+# make verdict-campaign     do check and a run judge alike? 2,000 made-up programs with their files, counted
 # make large              time and memory of check and fmt on programs of 1 MB of every kind (minutes)
 # make mutants          mutants of supervision, stops, payload and areas that no test finds (minutes)
 # make measured   the figures of docs/measured.md that repeat exactly
@@ -21,7 +22,7 @@ READY := $(VENV)/.ready
 
 # A row that is not as promised ends a bench or a campaign with an error.
 
-.PHONY: help demo test gates bench measured plots fault-campaign supervision-campaign wrist-campaign pulse-campaign blend-campaign fuzz large mutants clean
+.PHONY: help demo test gates bench measured plots fault-campaign supervision-campaign verdict-campaign wrist-campaign pulse-campaign blend-campaign fuzz large mutants clean
 
 demo: $(READY)
 	$(BIN)/robolang run programs/pick_and_place.rbl
@@ -59,6 +60,9 @@ fault-campaign: $(READY)
 
 supervision-campaign: $(READY)
 	$(BIN)/python -m tests.faults.campaign payload
+
+verdict-campaign: $(READY)
+	$(BIN)/python -m tests.lang.verdicts 2000
 
 blend-campaign: $(READY)
 	$(BIN)/python -m tests.bench.blend_campaign
