@@ -229,7 +229,8 @@ def clean_profile(rng: np.random.Generator) -> Profile:
 def clean_campaign(runs: int, mujoco_share: float = 0.5, seed: int = 3) -> int:
     """Return how many clean runs raised an alarm or a warning of the supervision, after printing each.
 
-    RBL523 is none: some of these profiles leave more than the in-position window between arm and command.
+    RBL523 is none: some of these profiles leave more than the in-position window between arm and command. What a plan
+    says of its motion (RBL4xx), such as that a speed is not reached, is none either.
     """
     rng = np.random.default_rng(seed)
     tripped = 0
@@ -238,7 +239,7 @@ def clean_campaign(runs: int, mujoco_share: float = 0.5, seed: int = 3) -> int:
         project = variant(rng, 0.0, profile)
         result = Session(project, physics=k < mujoco_share * runs).run()
         found = result.report["alarms"] + result.report["warnings"]
-        raised = [item for item in found if item["code"] != "RBL523"]
+        raised = [item for item in found if item["code"] != "RBL523" and not item["code"].startswith("RBL4")]
         tripped += bool(raised)
         if raised:
             print(f"    run {k}, {profile.servo.mode} {profile.servo.source} {profile.tick_us} us:", raised)
