@@ -8,8 +8,9 @@ Parts lie where the cell puts them until HAND ON finds one between the fingers: 
 centre it. From there it goes with the tool, to HAND OFF, and rests where it is let go or at most ``DROP`` below. A
 carried part may stand on what is under it, but not slide along an obstacle by more than ``NOTICED``, as in a run.
 
-Where a part is no longer known (dropped from higher up, touched), it is left out of everything that follows: one cause,
-one finding. Shapes are those of ``MujocoPlant``, without physics; the rows are the executed set-points, 8 ms apart.
+Where a part is not known (dropped from higher up, touched, put into something else by the cell), it is left out of
+everything that follows: one cause, one finding. Shapes are those of ``MujocoPlant``, without physics; the rows are the
+executed set-points, 8 ms apart.
 """
 
 from collections.abc import Collection, Generator, Iterable, Iterator, Mapping
@@ -221,14 +222,15 @@ class CellTouches:
 
     def _resting(self, scene: Scene, names: Iterable[str]) -> Scene:
         """Return a scene in which these parts rest on what is under them; those that would fall far are left out."""
-        for name in sorted(names, key=lambda name: float(scene.lying[name][2, 3])):
+        unknown = set()
+        for name in sorted(names, key=lambda name: (float(scene.lying[name][2, 3]), name)):  # the lower ones first
             self.shapes.lay(scene.lying, scene.opening)
-            gap = self.shapes.gap_below(name, DROP)
+            gap = self.shapes.gap_below(name, DROP, PRESSED)
             if gap is None:
-                scene = scene.without({name})
+                unknown.add(name)
             else:
                 scene = replace(scene, lying={**scene.lying, name: pose([0.0, 0.0, -gap]) @ scene.lying[name]})
-        return scene
+        return scene.without(unknown) if unknown else scene
 
 
 def _moves(name: str) -> bool:

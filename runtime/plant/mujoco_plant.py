@@ -311,8 +311,11 @@ class MujocoPlant:
         low, high = sorted(ends)
         return (low, high) if ends[0] > ends[1] else None
 
-    def gap_below(self, name: str, most: float) -> float | None:
-        """Return how far a part that ``lay`` has put would fall until it rests on something, m; None: over ``most``."""
+    def gap_below(self, name: str, most: float, inside: float) -> float | None:
+        """Return how far a part that ``lay`` has put would fall until it rests on something, m.
+
+        None: over ``most``, or it is in something by more than ``inside``, and physics would throw it out.
+        """
         at = self._part_address[name]
         own = int(self._model.geom(f"part:{name}").id)
         others = [index for index, other in enumerate(self._geom_names) if index != own and not _of_arm(other)]
@@ -323,7 +326,7 @@ class MujocoPlant:
             distance = min(mujoco.mj_geomDistance(self._model, self._data, own, other, 2.0 * most + MARGIN, None)
                            for other in others)  # fmt: skip
             if distance <= MET:
-                return fallen
+                return fallen if distance >= -inside else None
             fallen += distance
             if not fallen <= most:
                 return None

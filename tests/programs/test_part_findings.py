@@ -104,6 +104,13 @@ def test_a_part_that_was_dropped_is_not_known_any_more(tmp_path):
     assert found(tmp_path, text, OWN) == ([], [])
 
 
+def test_a_part_that_the_cell_puts_into_another_is_not_known(tmp_path):
+    """Physics throws both out at the start."""
+    text = BESIDE + "MOVE P1 + (0, 55, 0)\n"
+    assert found(tmp_path, text, OWN, ("other", 60, 40, 80, 1.5, 480, -250, 640)) == ([], [])
+    assert found(tmp_path, text, OWN, ("other", 60, 40, 80, 1.5, 480, -260.5, 640))[0] == [("RBL440", 4)]
+
+
 def test_the_fingers_centre_what_they_close_on(tmp_path):
     """10 mm off, the part is pulled over by as much: its face is 20 mm from the tool then, and not 10."""
     text = "MOVE P1 + (0, 10, 0)\nHAND ON\nLOAD (0, 0, 95), 2.3\nMOVE P1 + (0, 10, 50)\nMOVE P1 + (0, 85, 50)\n"
