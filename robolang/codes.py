@@ -124,7 +124,8 @@ _POINTS = (
         "RBL301",
         "point-undefined",
         "A point is used that has not been taught.",
-        "Correct the name, or add the point to the file of taught points.",
+        "Correct the name, or write [points.NAME] with pose = [x, y, z, rx, ry, rz] into NAME.points.toml beside the "
+        "program.",
     ),
     (
         "RBL302",
@@ -147,8 +148,8 @@ _POINTS = (
     (
         "RBL305",
         "point-frame-or-tool-unknown",
-        "A point was taught in a frame or with a tool that the cell does not have.",
-        "Add the frame or the tool to the cell file, or correct the name in the file of points.",
+        "A program or a point names a frame, a tool or a load that the cell does not have.",
+        "Correct the name, or add [frames.NAME], [tools.NAME] or [loads.NAME] to the cell file.",
     ),
     (
         "RBL306",

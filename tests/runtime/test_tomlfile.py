@@ -240,3 +240,46 @@ def test_an_empty_table_belongs_to_a_missing_optional_one():
     assert t.tables("parts", required=False) == []
     assert isinstance(t, Table)
     assert fault(t.table, "servo").code == "RBL608"
+
+
+# everything at once -------------------------------------------------------------------------------------------------
+
+
+def gathered(text, read):
+    """What a reader of a whole file finds, and the value that it returns."""
+    whole = load_table(Source("f.toml", text), gather=True)
+    value = whole.attempt(lambda: read(whole))
+    found = fault(whole.finish)
+    return [(each.code, each.line, each.message) for each in found.all], value
+
+
+def test_every_value_that_is_wrong_is_found_and_every_key():
+    text = "a = nan\nb = 'x'\nc = [1, inf]\nd = true\n[e]\nf = 11\n[[g]]\nzzz = 1\n"
+    found, value = gathered(text, lambda table: (
+        table.number("a"), table.number("b"), table.numbers("c", 2), table.text("d"),
+        table.table("e").number("f", high=10.0), [each.done() for each in table.tables("g")],
+    ))  # fmt: skip
+    assert [each[:2] for each in found] == [("RBL604", 1), ("RBL613", 2), ("RBL604", 3), ("RBL613", 4), ("RBL605", 6),
+                                            ("RBL609", 8)]  # fmt: skip
+    assert value is None
+
+
+def test_the_keys_that_a_table_lacks_are_one_fault():
+    text = "[hand]\nmas = 1\n"
+    found, _ = gathered(text, lambda table: [table.table("hand").gather(lambda hand: (
+        hand.number("mass"), hand.number("stroke"), hand.table("inner").number("deep"), hand.done()))])  # fmt: skip
+    assert found == [("RBL608", 1, "'hand.mass', 'hand.stroke' and 'hand.inner' are missing")]
+
+
+def test_what_follows_from_a_mistake_is_none_of_its_own():
+    def read(table):
+        low, high = table.number("low"), table.number("high")
+        if not low < high:
+            table.fail("RBL607", "inverted")
+
+    assert [each[:2] for each in gathered("low = nan\nhigh = 0\n", read)[0]] == [("RBL604", 1)]
+    assert [each[:2] for each in gathered("low = 1\nhigh = 0\n", read)[0]] == [("RBL607", 1)]
+
+
+def test_without_gathering_the_first_fault_is_raised():
+    assert len(fault(table("a = nan\nb = nan\n").number, "a").all) == 1
