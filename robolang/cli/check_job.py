@@ -107,7 +107,7 @@ def run_once(job: Job) -> int:
         _write_times(job.times, outcomes)
     outcomes = _once(outcomes)
     _print(job, outcomes)
-    say_warnings(warning for outcome in outcomes for warning in outcome.warnings)
+    say_warnings(warning for outcome in outcomes for warning in (*outcome.checked.warnings, *outcome.warnings))
     worst = max([0, *(say(fault) for outcome in outcomes for fault in outcome.checked.faults)])
     return max(worst, _judged(job, outcomes))
 
@@ -262,5 +262,5 @@ def _judged(job: Job, outcomes: Sequence[_Outcome]) -> int:
         return DIAGNOSTICS if any(outcome.fixed for outcome in outcomes) else 0
     found = [item for result in _results(outcomes) for item in result.diagnostics]
     warned = job.strict and (any(item.severity is Severity.WARNING for item in found)
-                             or any(outcome.warnings for outcome in outcomes))  # fmt: skip
+                             or any(outcome.checked.warnings or outcome.warnings for outcome in outcomes))  # fmt: skip
     return DIAGNOSTICS if warned or has_errors(found) else 0

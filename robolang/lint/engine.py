@@ -20,16 +20,20 @@ from robolang.points import load_points
 from robolang.source import Source, Span
 from robolang.usage_check import named
 from runtime.faults import Fault
-from runtime.tomlfile import locate, read_source
+from runtime.tomlfile import FileFault, locate, read_source
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Checked:
-    """What was found in one program, by place. A program that could not be read has an empty ``source``."""
+    """What was found in one program, by place. A program that could not be read has an empty ``source``.
+
+    ``warnings`` are about the files of its robot.
+    """
 
     source: Source
     diagnostics: tuple[Diagnostic, ...] = ()
     faults: tuple[Fault, ...] = ()
+    warnings: tuple[FileFault, ...] = ()
 
 
 def lint(source: Source, symbols: CellSymbols = NOTHING_KNOWN, *, selection: Selection | None = None,
@@ -57,7 +61,8 @@ def check_source(source: Source, selection: Selection | None = None, files: Cell
     """
     found = read_beside(Path(source.path), files)
     diagnostics = lint(source, found.symbols, selection=selection, complete=not found.faults)
-    return Checked(source=source, diagnostics=diagnostics, faults=found.faults)
+    warnings = () if found.cell is None else found.cell.arm.warnings
+    return Checked(source=source, diagnostics=diagnostics, faults=found.faults, warnings=warnings)
 
 
 def check_points(checked: Checked, selection: Selection | None = None) -> Checked | None:

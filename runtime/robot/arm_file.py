@@ -9,10 +9,11 @@ from pathlib import Path
 
 from runtime.robot import robot_file
 from runtime.robot.drives import Limits, PathLimits
+from runtime.robot.plausibility import doubt_axes
 from runtime.robot.robot_file import RobotFile
 from runtime.robot.sidecar_file import SidecarFile, read_sidecar, sidecar_path
 from runtime.robot.xmlfile import Element, parse_xml
-from runtime.tomlfile import Source, read_source
+from runtime.tomlfile import FileFault, Source, read_source
 
 MODEL_ENDINGS = (".urdf", ".xml")
 ROBOT_ENDINGS = (".toml", *MODEL_ENDINGS)
@@ -42,6 +43,11 @@ class ModelFile:
     def limits(self) -> tuple[Limits, ...]:
         """Limits of every axis."""
         return tuple(axis.limits for axis in self.sidecar.axes)
+
+    @property
+    def warnings(self) -> tuple[FileFault, ...]:
+        """What is unlikely about its sidecar, as far as that shows without numerics."""
+        return doubt_axes(self.sidecar.axes)
 
 
 ArmFile = RobotFile | ModelFile

@@ -17,11 +17,12 @@ import numpy as np
 from runtime.frames import Array, frozen
 from runtime.robot import loader
 from runtime.robot.arm_file import ArmFile, is_model, model_root, read_arm_file, sidecar_source
+from runtime.robot.body_plausibility import doubt_bodies, doubt_torques, offsets, weight_moment
 from runtime.robot.closed_form import find_opw
 from runtime.robot.drives import joint_label
 from runtime.robot.imported import ImportedArm, serial_chain
 from runtime.robot.mjcf_import import read_mjcf
-from runtime.robot.plausibility import Turning, What, doubt_bodies, doubt_drives, doubt_turning, offsets, weight_moment
+from runtime.robot.plausibility import Turning, What, doubt_turning
 from runtime.robot.robot_file import RobotFile
 from runtime.robot.sidecar import complete, missing_in_template
 from runtime.robot.sidecar_file import NO_OVERLAY, Overlay, read_overlay, sidecar_path
@@ -118,13 +119,14 @@ def _with_limits_doubted(arm: ImportedArm, overlay: Overlay) -> ImportedArm:
         Turning(
             label=joint_label(index, axis.name), lower=lower, upper=upper,
             speed=math.nan if axis.hinge.speed is None else axis.hinge.speed,
-            torque=math.nan if axis.hinge.effort is None else axis.hinge.effort,
             in_degrees=axis.hinge.in_degrees or axis.name in overlay.tables,
         )
         for index, (axis, lower, upper) in enumerate(zip(arm.axes, arm.lower.tolist(), arm.upper.tolist(), strict=True))
     ]  # fmt: skip
     weight = weight_moment([axis.body for axis in arm.axes], _offsets(arm))
-    doubts = (*doubt_turning(joints, place), *doubt_drives(joints, [math.nan] * arm.n, weight, place))
+    torques = [math.nan if axis.hinge.effort is None else axis.hinge.effort for axis in arm.axes]
+    labels = [joint.label for joint in joints]
+    doubts = (*doubt_turning(joints, place), *doubt_torques(labels, torques, weight, place))
     return replace(arm, warnings=(*arm.warnings, *doubts))
 
 

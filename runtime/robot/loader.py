@@ -14,10 +14,11 @@ import numpy as np
 from runtime.frames import Array, frozen
 from runtime.linear import matmul
 from runtime.robot import robot_file
+from runtime.robot.body_plausibility import doubt_bodies, doubt_torques, offsets, weight_moment
 from runtime.robot.corrections import check_bodies, correct
 from runtime.robot.drives import joint_label
 from runtime.robot.geometry import Geometry, geometry_of
-from runtime.robot.plausibility import doubt_bodies, doubt_limits_and_drives, in_tables, offsets
+from runtime.robot.plausibility import in_tables
 from runtime.robot.robot_file import AxisFile, OpwRow, RobotFile
 from runtime.robot.spec import AxisSpec, Body, Correction, OpwParameters, RobotSpec
 from runtime.tomlfile import FileFault, Source, Table, read_source
@@ -57,22 +58,24 @@ def build(file: RobotFile) -> RobotSpec:
         corrections=corrections,
         published=published,
         link_radii=file.link_radii,
-        warnings=_doubts(axes, published, corrections, geometry, [axis.table for axis in file.axes]),
+        warnings=_doubts(file, axes, published, corrections, geometry),
     )
     _check_opw(spec, file.table)
     return spec
 
 
-def _doubts(axes: Sequence[AxisSpec], published: Sequence[Body], corrections: Sequence[Correction], geometry: Geometry,
-            tables: Sequence[Table]) -> tuple[FileFault, ...]:  # fmt: skip
+def _doubts(file: RobotFile, axes: Sequence[AxisSpec], published: Sequence[Body], corrections: Sequence[Correction],
+            geometry: Geometry) -> tuple[FileFault, ...]:  # fmt: skip
     """Return what is unlikely about a robot file; a corrected body is not judged."""
     corrected = {item.axis for item in corrections}
     labels = [joint_label(k, axis.name) for k, axis in enumerate(axes)]
     bodies = [None if k in corrected else body for k, body in enumerate(published)]
-    lengths = offsets(geometry.placements, geometry.X_last_flange)
+    lengths, place = offsets(geometry.placements, geometry.X_last_flange), in_tables([axis.table for axis in file.axes])
+    weight = weight_moment([axis.body for axis in axes], lengths)
     return (
-        *doubt_bodies(labels, bodies, lengths, in_tables(tables)),
-        *doubt_limits_and_drives(axes, geometry.X_last_flange, tables),
+        *doubt_bodies(labels, bodies, lengths, place),
+        *file.warnings,
+        *doubt_torques(labels, [axis.limits.torque for axis in axes], weight, place),
     )
 
 

@@ -15,7 +15,8 @@ from typing import Literal, cast
 
 from runtime.robot import drives
 from runtime.robot.drives import Bandwidths, Limits, Motor, PathLimits
-from runtime.tomlfile import Source, Table, load_table
+from runtime.robot.plausibility import doubt_axes
+from runtime.tomlfile import FileFault, Source, Table, load_table
 
 SCHEMA = 1
 MOST_AXES = 7
@@ -110,6 +111,11 @@ class RobotFile:
     def limits(self) -> tuple[Limits, ...]:
         """Limits of every axis."""
         return tuple(axis.limits for axis in self.axes)
+
+    @property
+    def warnings(self) -> tuple[FileFault, ...]:
+        """What is unlikely about it, as far as that shows without numerics."""
+        return doubt_axes(self.axes)
 
 
 def library() -> list[str]:

@@ -8,9 +8,10 @@ drive data are never guessed.
 from pathlib import Path
 
 from runtime.robot import corrections as rules
-from runtime.robot.drives import WIDEST
+from runtime.robot.body_plausibility import doubt_torques, offsets, weight_moment
+from runtime.robot.drives import WIDEST, joint_label
 from runtime.robot.imported import ImportedArm, ImportedAxis
-from runtime.robot.plausibility import doubt_limits_and_drives
+from runtime.robot.plausibility import doubt_axes, in_tables
 from runtime.robot.sidecar_file import (
     GROUPS,
     LIMIT_KEYS,
@@ -22,6 +23,7 @@ from runtime.robot.sidecar_file import (
     lacking,
 )
 from runtime.robot.spec import AxisSpec, Correction, RobotSpec
+from runtime.tomlfile import FileFault
 from runtime.units import DEG
 
 
@@ -42,9 +44,16 @@ def complete(arm: ImportedArm, file: SidecarFile) -> RobotSpec:
         corrections=corrections,
         published=tuple(axis.body for axis in arm.axes),
         link_radii=file.link_radii,
-        warnings=(*arm.warnings,
-                  *doubt_limits_and_drives(built, arm.X_last_flange, [axis.table for axis in file.axes])),
-    )  # fmt: skip
+        warnings=(*arm.warnings, *doubt_axes(file.axes), *_doubted_torques(arm, file)),
+    )
+
+
+def _doubted_torques(arm: ImportedArm, file: SidecarFile) -> list[FileFault]:
+    labels = [joint_label(k, axis.name) for k, axis in enumerate(arm.axes)]
+    lengths = offsets([axis.placement for axis in arm.axes], arm.X_last_flange)
+    weight = weight_moment([axis.body for axis in arm.axes], lengths)
+    place = in_tables([axis.table for axis in file.axes])
+    return doubt_torques(labels, [axis.limits.torque for axis in file.axes], weight, place)
 
 
 def _check_names(file: SidecarFile, arm: ImportedArm) -> None:

@@ -27,6 +27,8 @@ def shop(tmp_path):
         ("config show a.rbl", 0),
         ("inertia --robot odd.toml", 0),
         ("check --motion a.rbl b.rbl", 0),
+        ("check a.rbl b.rbl", 0),
+        ("check --strict a.rbl", 1),
         ("check --motion --strict a.rbl", 1),
     ],
 )

@@ -138,7 +138,7 @@ def test_a_sidecar_is_doubted_where_it_rules(tmp_path):
 
 @pytest.mark.parametrize("lower", [math.nan, -3.0, -MOST_TURNS, -LEAST_ANGLE * 1.001])
 def test_what_is_not_known_or_at_the_bound_is_not_doubted(lower):
-    joint = Turning(label="J1", lower=lower, upper=LEAST_ANGLE, speed=math.nan, torque=math.nan, in_degrees=False)
+    joint = Turning(label="J1", lower=lower, upper=LEAST_ANGLE, speed=math.nan, in_degrees=False)
     assert doubt_turning([joint], lambda what, axis: pytest.fail) == []
 
 

@@ -1,0 +1,106 @@
+"""Lengths, bodies and torques of a robot file that are possible and unlikely; see ``plausibility``.
+
+    RBL628   a reach above ``LONGEST`` or below ``SHORTEST``; a centre of gravity further off than the whole arm
+    RBL629   bodies heavier than ``HEAVIEST`` times the cube of the reach, denser than ``DENSEST``, or with a radius of
+             gyration above the reach; a torque above ``STRONGEST`` times the arm's own weight
+
+Reach is the sum of the distances from joint to joint and to the flange.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from runtime.frames import Array
+from runtime.linear import norm
+from runtime.robot.plausibility import Place
+from runtime.robot.spec import Body
+from runtime.tomlfile import FileFault
+from runtime.units import GRAVITY, MM
+
+LONGEST, SHORTEST = 8.0, 0.02
+"""Reach of an arm, m: the longest built reach about 5 m."""
+HEAVIEST = 1000.0
+"""Mass of an arm over the cube of its reach, kg/m3; built arms have 5 to 250."""
+SMALLEST = 0.5
+"""Reach below which the mass is judged as at this one, m."""
+DENSEST = 20_000.0
+"""Density of tungsten and gold, kg/m3."""
+STRONGEST = 50.0
+"""Torque of an axis over weight times reach of the arm; built arms have up to 2."""
+
+
+def doubt_bodies(labels: Sequence[str], bodies: Sequence[Body | None], offsets: Array, place: Place) -> list[FileFault]:
+    """Return what is unlikely about lengths (RBL628) and bodies (RBL629).
+
+    ``bodies`` in their axis frames, None for one that is corrected; ``offsets`` (n + 1, 3) m from each joint to the
+    next, from the base first and to the flange last.
+    """
+    lengths = np.linalg.norm(offsets, axis=1)
+    reach, doubts = float(lengths[1:].sum()), []
+    if not SHORTEST <= reach <= LONGEST:
+        looks = "it looks like mm" if reach > LONGEST else "its joints are all in one place"
+        message = f"the arm is {reach / MM:.4g} mm from its first joint to the flange: {looks}"
+        doubts.append(place("length", int(np.argmax(lengths[1:])))("RBL628", message, "lengths are in m"))
+    size = float(np.maximum(lengths.sum(), SMALLEST))
+    known = [(axis, body) for axis, body in enumerate(bodies) if body is not None and body.mass > 0.0]
+    for code, unlikely, tail, hint in _BODY_RULES:
+        axes = [axis for axis, body in known if unlikely(body, size)]
+        if axes:
+            listed = ", ".join(f"{labels[axis]} {_body(bodies[axis], code)}" for axis in axes)
+            doubts.append(place("body", axes[0])(code, f"{tail}: {listed}", hint))
+    mass = sum(body.mass for _, body in known)
+    if not mass <= HEAVIEST * size**3:
+        message = f"masses look like grams: {mass:g} kg in all, and the arm is {size / MM:.4g} mm long"
+        doubts.append(place("body", int(max(known, key=lambda each: each[1].mass)[0]))("RBL629", message, _KG))
+    return doubts
+
+
+def doubt_torques(labels: Sequence[str], torques: Sequence[float], weight: float, place: Place) -> list[FileFault]:
+    """Return what is unlikely about torques, N m, NaN where none is known (RBL629); ``weight``: ``weight_moment``."""
+    strong = [axis for axis, torque in enumerate(torques) if torque > STRONGEST * weight > 0.0]
+    if not strong:
+        return []
+    listed = ", ".join(f"{labels[axis]} {torques[axis]:g} N m" for axis in strong)
+    message = f"torques look like N mm: {listed}; to hold the whole arm takes less than {weight:.3g} N m"
+    return [place("torque", strong[0])("RBL629", message, "torques are in N m")]
+
+
+def offsets(placements: Sequence[Array], X_last_flange: Array) -> Array:
+    """Return the way from each joint to the next (n + 1, 3) m, from the base first and to the flange last."""
+    return np.array([X[:3, 3] for X in (*placements, X_last_flange)])
+
+
+def weight_moment(bodies: Sequence[Body], offsets: Array) -> float:
+    """Return the largest moment that the weight of an arm could have about one of its joints, N m."""
+    return float(sum(body.mass for body in bodies)) * GRAVITY * float(np.linalg.norm(offsets, axis=1).sum())
+
+
+def _far(body: Body, size: float) -> bool:
+    return not norm(body.cog) <= size
+
+
+def _spread(body: Body, size: float) -> bool:
+    return not math.sqrt(float(np.maximum(0.0, np.linalg.eigvalsh(body.inertia)[2])) / body.mass) <= size
+
+
+def _dense(body: Body, size: float) -> bool:
+    """A ball has the least inertia of all bodies of its mass and density."""
+    radius = (0.75 * body.mass / (math.pi * DENSEST)) ** (1.0 / 3.0)
+    return not float(np.trace(body.inertia)) >= 3.0 * 0.4 * body.mass * radius**2
+
+
+_KG = "masses are in kg, inertias in kg m2"
+_BODY_RULES = (
+    ("RBL628", _far, "centres of gravity are further off than the arm is long", "positions are in m"),
+    ("RBL629", _spread, "inertias are too large for the mass and look like kg mm2 or g mm2", _KG),
+    ("RBL629", _dense, "inertias are too small for the mass, as of a body denser than gold", _KG),
+)
+
+
+def _body(body: Body | None, code: str) -> str:
+    assert body is not None
+    if code == "RBL628":
+        return f"{norm(body.cog) / MM:.4g} mm"
+    return f"{body.mass:g} kg with {float(np.linalg.eigvalsh(body.inertia)[2]):.3g} kg m2"
