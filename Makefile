@@ -1,6 +1,7 @@
 # make demo   the main job: install into .venv and run the 1992 program
 # make test   the tests; prints their processor time by folder
 # make gates  style, types, import floors
+# make campaign   the tests at full size, of which make test runs a sample (minutes)
 # make bench  the figures of docs/measured.md that are times or ratios of times
 # make plots   the plots of docs/servo.md, drawn anew
 # make fault-campaign         every injected fault and 200 clean runs, counted (minutes)
@@ -22,7 +23,7 @@ READY := $(VENV)/.ready
 
 # A row that is not as promised ends a bench or a campaign with an error.
 
-.PHONY: help demo test gates bench measured plots fault-campaign supervision-campaign verdict-campaign wrist-campaign pulse-campaign blend-campaign fuzz large mutants clean
+.PHONY: $(shell sed -n 's/^\([a-z-]*\):.*/\1/p' $(firstword $(MAKEFILE_LIST)))
 
 demo: $(READY)
 	$(BIN)/robolang run programs/pick_and_place.rbl
@@ -31,7 +32,10 @@ help:
 	@sed -n 's/^# make/make/p' $(MAKEFILE_LIST)
 
 test: $(READY)
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 --dist loadgroup
+
+campaign: $(READY)
+	CAMPAIGN=1 $(BIN)/python -m pytest -n 2 --dist loadgroup
 
 gates: $(READY)
 	$(BIN)/ruff check .

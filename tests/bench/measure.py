@@ -294,12 +294,12 @@ def side_by_side(figure, shown, ideal: StepResult, real: StepResult) -> Row:
     return Row(figure=figure, form=f"{form}; MuJoCo {form}", values=(*first, *second))
 
 
-def alike(axes: int, postures: int) -> Row:
+def alike(axes: int, whole: bool) -> Row:
     """Measure the step responses of all axes over the joint ranges."""
     details, spread, most = [], {"diagonal": [], "full": []}, 0.0
     for coupling, found in spread.items():
         for axis in range(axes):
-            times, overshoots = bench.over_the_range(axis, False, coupling, postures)
+            times, overshoots = bench.over_the_range(axis, False, coupling, whole)
             found.append(100.0 * (max(times) / min(times) - 1.0))
             most = max(most, 100.0 * max(overshoots, key=badness), key=badness) if coupling == "full" else most
             details.append(
@@ -324,7 +324,7 @@ def rows(smallest: bool) -> Iterator[Row]:
     yield from program(physics=not smallest)
     yield held(1.0 if smallest else 5.0)
     yield from servo(0.6 if smallest else 1.5)
-    yield alike(1 if smallest else 6, 1 if smallest else 8)
+    yield alike(1 if smallest else 6, not smallest)
 
 
 if __name__ == "__main__":

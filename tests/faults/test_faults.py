@@ -107,10 +107,10 @@ def test_driving_into_the_table_stops_at_the_line_of_the_move(speed):
 
 
 def test_wrong_payloads_are_found_and_small_errors_are_not():
-    found, runs = payload_campaign(8, 2, 0.3)
+    found, runs = payload_campaign(3, 1, 0.3)
     assert found == runs
-    assert payload_campaign(8, 2, 0.05) == (0, runs)
+    assert payload_campaign(3, 1, 0.05) == (0, runs)
 
 
 def test_clean_runs_raise_nothing():
-    assert clean_campaign(10, seed=11) == 0
+    assert clean_campaign(4, seed=11) == 0

@@ -14,6 +14,7 @@ from robolang.parser import parse
 from robolang.source import Source, decode_program
 from robolang.words import FUNCTIONS, VALUES
 from runtime.faults import Fault
+from tests.campaign import size
 from tests.lang.helpers import places
 from tests.steps import assert_linear
 
@@ -224,8 +225,9 @@ def test_one_typo_costs_few_diagnostics_and_hides_nothing_behind_it():
     extra = []
     lines = GOOD.splitlines()
     for index in range(len(lines)):
-        for _ in range(20):
-            changed = "\n".join([*lines[:index], typo(lines[index], chance), *lines[index + 1 :]]) + PLANTED
+        typos = [typo(lines[index], chance) for _ in range(20)]
+        for wrong in typos[: size(20, 5)]:
+            changed = "\n".join([*lines[:index], wrong, *lines[index + 1 :]]) + PLANTED
             found = problems(changed)
             assert ("RBL301", 41, 10, 3) in found, changed
             errors = [item for item in found if item[0] != "RBL116"]

@@ -2,7 +2,7 @@ import json
 import unicodedata
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from robolang.diagnostics import (
@@ -22,6 +22,7 @@ from robolang.diagnostics import (
 from robolang.source import Span
 from runtime.faults import lookup
 from runtime.tomlfile import FileFault
+from tests.campaign import examples
 from tests.lang.helpers import only, source
 
 
@@ -76,7 +77,7 @@ LINES = st.text(max_size=40) | st.lists(st.sampled_from(PIECES), max_size=60).ma
 
 
 @given(LINES, st.integers(-3, 400), st.integers(-3, 400))
-@settings(max_examples=200, deadline=None)
+@examples(200)
 @example("x" * 200, 286, 287)  # the place is one of the whole line, the text a part of it
 @example("", 0, 0)
 @example("\t" * 97, 96, 99)

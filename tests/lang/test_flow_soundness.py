@@ -11,7 +11,7 @@ value, and memory that runs out.
 import random
 from collections import defaultdict
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from robolang.branches import Decisions, open_conditions
@@ -22,6 +22,7 @@ from robolang.flow import facts_before, ways_of
 from robolang.interpreter import Machine, ProgramFault
 from robolang.nodes import Hand, HandState, LoadNamed, Move, Print
 from robolang.structure import structure_of, word_of
+from tests.campaign import examples
 from tests.lang.helpers import parsed
 from tests.lang.test_branches import Still
 
@@ -243,13 +244,13 @@ def assert_sound(text, chance):
 
 
 @given(programs(loops=True), st.integers(0, 10**6))
-@settings(max_examples=150, deadline=None)
+@examples(150)
 def test_what_is_true_in_a_run_is_found(text, seed):
     assert_sound(text, random.Random(seed))
 
 
 @given(programs(loops=True, errors=True), st.integers(0, 10**6))
-@settings(max_examples=300, deadline=None)
+@examples(300)
 def test_what_is_true_in_a_run_with_errors_is_found(text, seed):
     assert_sound(text, random.Random(seed))
 
@@ -273,7 +274,7 @@ def every_run(program):
 
 
 @given(programs(loops=False))
-@settings(max_examples=100, deadline=None)
+@examples(100)
 def test_without_loops_the_facts_are_those_of_all_runs(text):
     program = parsed(text)
     expected, facts = every_run(program), found_by_flow(program)

@@ -20,13 +20,14 @@ from robolang.source import Source, Span
 from runtime.faults import lookup
 from runtime.plant.cell import load_cell
 from runtime.tomlfile import FileFault, lines_of
+from tests.campaign import size
 from tests.lang.test_bad_inputs import GOLDEN, GOOD
 
 ROOT = Path(__file__).parents[2]
-NUMBER = 10_000
-PARTS = 8
+NUMBER = size(10_000, 2000)
+PARTS = size(8, 2)
 assert NUMBER % PARTS == 0
-FILES = 1000
+FILES = size(1000, 200)
 POINTS = ("P1", "P2", "P3", "FEED", "HOME")
 CATALOGUE = [rule.bad for rule in rules().values() if not rule.points and "\udcb0" not in rule.bad]
 CATALOGUE += [row[1] for row in GOLDEN if len(row[1]) < 100_000]

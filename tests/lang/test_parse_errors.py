@@ -259,8 +259,10 @@ def test_line_number_limit_is_exact():
 
 
 def test_source_size_limit_is_exact():
-    parsed("\n" * 1_000_000)
-    assert parse_found("\n" * 1_000_001) == [("RBL106", 1, 1, 0)]
+    largest = f"'{'x' * 9998}\n" * 100
+    assert len(largest) == 1_000_000
+    parsed(largest)
+    assert parse_found(largest + "\n") == [("RBL106", 1, 1, 0)]
 
 
 def test_the_list_of_problems_is_bounded():

@@ -9,18 +9,24 @@ from robolang.lowering import pose_si
 from robolang.project import load_project
 from robolang.session import RunResult, Session
 from runtime.frames import inverse, rotation_angle
+from tests.programs.runs import run
 
 PROGRAMS = sorted((Path(__file__).parents[2] / "programs").glob("*.rbl"))
 
 
 @pytest.fixture(scope="module", params=PROGRAMS, ids=lambda path: path.stem)
-def session(request) -> Session:
-    return Session(load_project(request.param))
+def program(request) -> Path:
+    return request.param
 
 
-@pytest.fixture(scope="module")
-def result(session) -> RunResult:
-    return session.run()
+@pytest.fixture
+def session(program) -> Session:
+    return run(program.name)[0]
+
+
+@pytest.fixture
+def result(program) -> RunResult:
+    return run(program.name)[1]
 
 
 

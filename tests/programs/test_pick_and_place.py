@@ -22,6 +22,7 @@ from runtime import recorder
 from runtime.frames import Array, inverse, rotation_angle
 from runtime.robot.kinematics import Kinematics
 from runtime.servo.motor import torque_limit
+from tests.programs.runs import run
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = ROOT / "programs" / "pick_and_place.rbl"
@@ -30,12 +31,12 @@ HAND, HAND_AND_PART = 0.8, 2.3
 
 @pytest.fixture(scope="module")
 def session() -> Session:
-    return Session(load_project(PROGRAM))
+    return run("pick_and_place.rbl")[0]
 
 
 @pytest.fixture(scope="module")
-def result(session: Session) -> RunResult:
-    return session.run()
+def result() -> RunResult:
+    return run("pick_and_place.rbl")[1]
 
 
 def statement(result: RunResult, number: int) -> dict:

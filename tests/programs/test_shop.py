@@ -1,26 +1,15 @@
 """The programs of programs/shop on MuJoCo: what they do to the parts, what they print, how long they take."""
 
 import re
-from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from robolang.motion_check import rehearse
-from robolang.project import load_project
-from robolang.session import Session
+from tests.programs.runs import ROOT, run
 
-ROOT = Path(__file__).parents[2] / "programs"
 SHOP = sorted(path.stem for path in (ROOT / "shop").glob("*.rbl"))
 ALL = sorted(str(path.relative_to(ROOT)) for path in ROOT.rglob("*.rbl"))
-
-
-@cache
-def run(name):
-    project = load_project(ROOT / name)
-    session = Session(project)
-    return session, session.run()
 
 
 def printed(name):

@@ -1,6 +1,5 @@
 """The programs of programs/wrist on MuJoCo: they end as taught, on their line, and say what the wrist did."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,16 +10,16 @@ from robolang.session import Session
 from runtime.motion.seam import superposed
 from runtime.units import MM
 from tests.lang.cli.commands import robolang
+from tests.programs import runs
 
 FOLDER = Path(__file__).parents[2] / "programs" / "wrist"
 MOVES = {"e1": (0, -10, 45, -55, -65, 85), "e2": (25, 15, 0, -45, 10, 35), "e3": (-15, -10, 0, 30, -10, 50)}
 
 
-def run(name: str, text: str | None = None, folder: Path = FOLDER, changes=None, **options):
-    project = load_project(folder / f"{name}.rbl")
-    if changes:
-        project = project.with_profile(replace(project.profile, **changes))
-    session = Session(project, **options)
+def run(name: str, folder: Path = FOLDER, **options):
+    if folder == FOLDER and not options:
+        return runs.run(f"wrist/{name}.rbl")
+    session = Session(load_project(folder / f"{name}.rbl"), **options)
     return session, session.run()
 
 

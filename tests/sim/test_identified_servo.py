@@ -13,7 +13,8 @@ from robolang.trial_motion import Request
 from runtime.controller import Controller
 from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.kinematics import Kinematics
-from tests.sim.identified import ROOT, SPEC
+from tests.campaign import size
+from tests.sim.identified import POSITIONS, ROOT, SPEC
 
 
 @cache
@@ -61,15 +62,15 @@ def robot_of(real):
 
 
 @cache
-def found_for(real, axes):
-    request = Request(robot=SPEC, axes=axes, real=robot_of(real))
+def found_for(real, axes, positions=POSITIONS):
+    request = Request(robot=SPEC, axes=axes, real=robot_of(real), positions=positions)
     return compensation_of(request, identify(request))
 
 
 @pytest.mark.slow
 def test_inertia_of_reducers_is_found_and_taken_off_the_tracking_error():
     """60 % more than the rotors of the file: as far as the arm can tell, the model is right again."""
-    found = found_for("reducers", tuple(range(6)))
+    found = found_for("reducers", tuple(range(6)), size(5, 2))
     Jc = np.array([axis.compensation for axis in found.axes])
     np.testing.assert_allclose(Jc, 1.6 * SPEC.per_axis("motor", "rotor_inertia"), rtol=4e-3)
     exact, without, with_it = (

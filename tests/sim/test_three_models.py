@@ -16,11 +16,12 @@ from runtime.robot.loader import load_builtin
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import Payload
 from runtime.robot.spec import Body, RobotSpec
+from tests.campaign import size
 from tests.runtime.dynamics import lagrangian
 
 ROBOTS = ["puma560", "manutec_r3"]
 LOADS = {"puma560": (2.3, (0.01, -0.02, 0.095)), "manutec_r3": (13.5, (0.02, -0.03, 0.14))}
-POSTURES = 25
+POSTURES = size(25, 6)
 
 
 def rigid(spec: RobotSpec) -> RobotSpec:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.campaign import some
 from tests.lang.cli.commands import ROOT
 from tests.steps import HANG_S
 
@@ -55,7 +56,7 @@ def test_a_planted_module_is_noticed_when_it_is_imported(folder, name):
     ],
     ids=" ".join,
 )  # fmt: skip
-@pytest.mark.parametrize("form", ["script", "module"])
+@pytest.mark.parametrize("form", some(["script", "module"], 0))
 def test_nothing_is_imported_from_the_working_folder(folder, form, words):
     if form == "script":
         plant(folder, "robolang")  # with python -m it would be what -m names: that is the rule of Python
@@ -66,7 +67,7 @@ def test_nothing_is_imported_from_the_working_folder(folder, form, words):
     assert "Traceback" not in result.stderr
 
 
-@pytest.mark.parametrize("form", ["script", "module"])
+@pytest.mark.parametrize("form", some(["script", "module"], 1))
 def test_processes_that_a_command_starts_import_nothing_from_it(folder, form):
     (folder / "job.rbl").write_text("MOVE P1\n")
     before = [str(SCRIPT)] if form == "script" else [sys.executable, "-m", "robolang"]

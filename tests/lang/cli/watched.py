@@ -1,9 +1,9 @@
-"""A run under an audit hook: ``python -m tests.lang.cli.watched PROGRAM [SEED]`` prints what Python was asked for.
+"""Runs under an audit hook: ``python -m tests.lang.cli.watched PROGRAM [SEED ...]`` prints what Python is asked.
 
 CPython announces every file that is opened, every socket, process and text that is compiled, and a hook cannot be taken
-out again (PEP 578). What a program asks for on the ideal arm is printed as a JSON list ``[event, first argument]``.
-With ``SEED`` the number that PRINT shows is made by code that breaks the promise, so that one sees the hook notice it.
-``PROGRAM`` is a file, or with ``-`` the arguments behind it are a whole command line of ``robolang``.
+out again (PEP 578). What a program asks for on the ideal arm is printed as JSON, by seed, each ``[event, first
+argument]``. With a ``SEED`` the number that PRINT shows is made by code that breaks the promise, so that one sees the
+hook notice it. ``PROGRAM`` is a file, or with ``-`` the arguments behind it are a whole command line of ``robolang``.
 """
 
 import json
@@ -63,8 +63,9 @@ def watched(program: str, seed: str) -> list[tuple[str, str]]:
     assert motion_check(project) == ()
     printed: list[str] = []
     session = Session(project, physics=False, show=printed.append)
+    plain = evaluator.shown
     if seed:
-        plain, violate = evaluator.shown, SEEDS[seed]
+        violate = SEEDS[seed]
 
         def shown(value: float) -> str:
             violate()
@@ -75,6 +76,7 @@ def watched(program: str, seed: str) -> list[tuple[str, str]]:
     watch.on = True
     result = session.run()
     watch.on = False
+    evaluator.shown = plain
     assert result.ok, result.report["alarms"]
     assert printed
     return watch.seen
@@ -105,5 +107,8 @@ def command(words: list[str]) -> list[tuple[str, str]]:
 
 if __name__ == "__main__":
     words = sys.argv[1:]
-    found = command(words[1:]) if words[0] == "-" else watched(words[0], words[1] if words[1:] else "")
+    if words[0] == "-":
+        found = {"": command(words[1:])}
+    else:
+        found = {seed: watched(words[0], seed) for seed in words[1:] or ("",)}
     sys.stderr.write(json.dumps(found) + "\n")

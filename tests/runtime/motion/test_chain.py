@@ -11,6 +11,7 @@ from runtime.motion.blend import overlapped
 from runtime.motion.chain import ChainFault, ChainPlan
 from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
 from runtime.motion.planner import EXCEPTION, LinePlanner
+from tests.campaign import size
 from tests.runtime.motion.motions import (
     ROBOTS,
     TOOL,
@@ -22,7 +23,7 @@ from tests.runtime.motion.motions import (
     random_chain,
 )
 
-CHAINS, MOVES = 34, 5
+CHAINS, MOVES = size(34, 8), 5
 
 
 def by(robot: Bench, *steps, zone: float = 0.0, **options) -> list[Command]:

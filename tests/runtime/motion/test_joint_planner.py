@@ -10,6 +10,7 @@ from runtime.frames import inverse
 from runtime.motion.commands import MoveJoint
 from runtime.motion.joint_planner import changed
 from runtime.motion.planner import FOLLOWS, LinePlan
+from tests.campaign import size
 from tests.runtime.motion.motions import ROBOTS, TOOL, bench, limits_broken
 
 DEG = math.pi / 180.0
@@ -90,7 +91,7 @@ def test_a_pose_is_reached_in_the_configuration_of_the_start_where_that_can_be_i
     """Against all solutions of all whole turns, listed without the planner."""
     robot, random = bench(name), np.random.default_rng(2)
     spec = robot.spec
-    for _ in range(40):
+    for _ in range(size(40, 10)):
         start, meant = random.uniform(spec.lower, spec.upper, (2, spec.n))
         X = robot.tool(meant)
         found = robot.planner.joints.end(start, MoveJoint(X_world_tool=X), TOOL)

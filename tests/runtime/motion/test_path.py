@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from runtime.frames import pose, principal_axis, rotation_about, rotation_angle, rotation_from_rpy, rpy_from_rotation
 from runtime.motion.path import LinePath
+from tests.campaign import examples
 
 S = np.linspace(0.0, 1.0, 101)
 angles = st.floats(-math.pi, math.pi)
@@ -21,7 +22,7 @@ def chord(angle: float) -> float:
 
 
 @given(rotations, rotations)
-@settings(max_examples=200, deadline=None)
+@examples(200)
 def test_end_pose_is_exact_and_the_angle_grows_linearly(R_start, R_end):
     path = LinePath.between(pose((0.1, 0.2, 0.3), R_start), pose((0.5, -0.2, 0.4), R_end))
     X = path.poses(S)
@@ -53,7 +54,7 @@ def test_small_and_no_turns(angle):
 
 
 @given(rotations)
-@settings(max_examples=200, deadline=None)
+@examples(200)
 def test_surface_angles_come_back_as_the_same_rotation(R):
     np.testing.assert_allclose(rotation_from_rpy(rpy_from_rotation(R)), R, atol=2e-9)
 

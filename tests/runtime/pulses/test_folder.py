@@ -4,13 +4,14 @@ import json
 import os
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from runtime.faults import lookup
 from runtime.pulses.folder import read_export
 from runtime.pulses.replay import replay
 from runtime.tomlfile import FileFault
+from tests.campaign import examples
 from tests.runtime.pulses import ARM, X_TABLE, Y_TABLE, Handmade, csv, pose, rows, staircase
 
 
@@ -357,7 +358,7 @@ def outcome(path, raw):
     return None
 
 
-@settings(max_examples=400)
+@examples(400)
 @given(data=st.data())
 def test_a_corrupt_byte_anywhere_is_read_or_a_fault(folder, data):
     path = folder / data.draw(st.sampled_from(sorted(path.name for path in folder.iterdir())))
@@ -367,7 +368,7 @@ def test_a_corrupt_byte_anywhere_is_read_or_a_fault(folder, data):
     outcome(path, raw)
 
 
-@settings(max_examples=300)
+@examples(300)
 @given(data=st.data())
 def test_no_byte_of_the_rows_can_change_unnoticed(folder, data):
     """Every byte of header and rows but the last line end; carriage returns before a line end are not told apart."""
@@ -378,7 +379,7 @@ def test_no_byte_of_the_rows_can_change_unnoticed(folder, data):
     assert outcome(path, raw) is not None
 
 
-@settings(max_examples=200)
+@examples(200)
 @given(data=st.data())
 def test_a_file_that_is_cut_off_is_a_fault(folder, data):
     path = folder / data.draw(st.sampled_from(sorted(path.name for path in folder.iterdir())))
@@ -386,7 +387,7 @@ def test_a_file_that_is_cut_off_is_a_fault(folder, data):
     assert outcome(path, raw[: data.draw(st.integers(0, len(raw) - 1))]) is not None
 
 
-@settings(max_examples=200)
+@examples(200)
 @given(text=st.text(max_size=60), name=st.sampled_from(["manifest.json", X_TABLE]))
 def test_any_text_in_place_of_a_file_is_a_fault(folder, text, name):
     assert outcome(folder / name, text.encode("utf-8", "surrogatepass")) is not None

@@ -5,12 +5,13 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from runtime.pulses.exported import Marker, Move
 from runtime.pulses.folder import read_export
 from runtime.pulses.replay import distances, positions, replay, tool_points
+from tests.campaign import examples
 from tests.runtime.pulses import ARM, Y_TABLE, Handmade, pose, staircase, turntable
 
 DEGREE = math.pi / 180.0
@@ -171,7 +172,7 @@ def test_an_arm_of_two_axes_is_replayed(tmp_path):
 WALK = st.lists(st.integers(-300, 300), min_size=1, max_size=30)
 
 
-@settings(max_examples=100)
+@examples(100)
 @given(walks=st.tuples(WALK, WALK))
 def test_any_walk_is_played_through_its_targets(tmp_path_factory, walks):
     """Positions at the row ends are the targets, pulses sent are the sum of all changes, whatever the walk."""

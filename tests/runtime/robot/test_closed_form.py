@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from runtime.frames import inverse, pose, rotation_about, rotation_from_rpy
@@ -12,6 +12,7 @@ from runtime.robot.importer import parse_model
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.opw import BRANCHES, PlacedOpw
 from runtime.tomlfile import Source
+from tests.campaign import examples
 from tests.runtime.robot.models import chain
 
 Y, Z = np.eye(3)[1:]
@@ -66,7 +67,7 @@ angles = st.floats(-3.0, 3.0, allow_subnormal=False)
 sixes = st.tuples(*[angles] * 6)
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(before=sixes, behind=sixes, slides=sixes, rolls=sixes, seed=st.integers(0, 10**6))
 def test_arms_in_any_frames_are_solved_in_closed_form(params, before, behind, slides, rolls, seed):
     X_before, X_behind = (pose(x[:3], rotation_from_rpy(x[3:])) for x in (before, behind))

@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pinocchio as pin
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from runtime.frames import pose
@@ -14,6 +14,7 @@ from runtime.robot.model import ArmModel
 from runtime.robot.sidecar import template
 from runtime.tomlfile import FileFault, Source
 from runtime.units import GRAVITY
+from tests.campaign import examples
 from tests.runtime.robot.models import ANGLES, DATA, SEVEN, chain, fill, inertial, joint, urdf
 
 
@@ -81,7 +82,7 @@ triples = st.tuples(numbers, numbers, numbers)
 directions = triples.filter(lambda v: np.linalg.norm(v) > 0.1)
 
 
-@settings(max_examples=40, deadline=None)
+@examples(40)
 @given(st.lists(st.tuples(triples, triples, directions), min_size=2, max_size=7), triples, triples, st.integers(0, 99))
 def test_arms_of_any_form_are_those_that_pinocchio_reads(frames, xyz, rpy, seed):
     text = chain(frames, (xyz, rpy), [inertial(cog=frame[0], rpy=frame[1]) for frame in frames])
@@ -374,7 +375,7 @@ PIECES = (
 pieces = st.sampled_from(PIECES.split())
 
 
-@settings(max_examples=300, deadline=None)
+@examples(300)
 @given(st.one_of(st.lists(pieces, max_size=40).map(" ".join), st.text(max_size=200)))
 def test_any_text_is_an_arm_or_a_located_fault(text):
     for name in ("a.urdf", "a.xml"):
@@ -385,7 +386,7 @@ def test_any_text_is_an_arm_or_a_located_fault(text):
             assert fault.column >= 1
 
 
-@settings(max_examples=300, deadline=None)
+@examples(300)
 @given(st.data(), st.sampled_from([MJCF, SEVEN.read_text()]))
 def test_a_damaged_file_is_an_arm_or_a_located_fault(data, text):
     start = data.draw(st.integers(0, len(text)))
@@ -397,7 +398,7 @@ def test_a_damaged_file_is_an_arm_or_a_located_fault(data, text):
         assert fault.line >= 1
 
 
-@settings(max_examples=100, deadline=None)
+@examples(100)
 @given(raw=st.binary(max_size=300))
 def test_any_bytes_are_an_arm_or_a_fault(tmp_path_factory, raw):
     path = tmp_path_factory.getbasetemp() / "raw.xml"

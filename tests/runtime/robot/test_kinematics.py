@@ -8,6 +8,7 @@ from runtime.frames import frozen, pose, rotation_about
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.opw import BRANCHES, Branch, wrapped
 from runtime.robot.spec import RobotSpec
+from tests.campaign import size
 from tests.runtime.robot.arms import DEG, Irb2400
 
 HOME = np.array([10, 60, -210, -20, 40, 30]) * DEG
@@ -99,7 +100,7 @@ def test_many_at_once_are_each_alone(kinematics):
 
 
 def test_joint_angles_within_limits_come_back(kinematics):
-    q = within_limits(kinematics.spec, 5, 500)
+    q = within_limits(kinematics.spec, 5, size(500, 100))
     q = q[np.abs(np.sin(q[:, 4])) > 0.05]
     for one in q:
         X = kinematics.forward(one)

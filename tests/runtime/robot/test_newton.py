@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from runtime.frames import rotation_about, rotation_angle
@@ -12,6 +12,7 @@ from runtime.robot.kinematics import Kinematics
 from runtime.robot.newton import TOLERANCE
 from runtime.robot.opw import BRANCHES, NUMERIC
 from runtime.tomlfile import Source
+from tests.campaign import examples
 from tests.runtime.robot.models import ANGLES, SEVEN, chain
 
 SEVEN_AXES = Kinematics(read_arm(SEVEN))
@@ -30,7 +31,7 @@ def arm_of(n, seed):
     return Kinematics(parse_model(Source("made.urdf", chain(frames, ((0.1, 0.2, 0.1), (0.3, 0.2, 0.1))))))
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(st.integers(2, 7), st.integers(0, 10**6))
 def test_a_pose_near_by_is_met(n, seed):
     kinematics = arm_of(n, seed)
