@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from robolang.builtin import cell_text
 from robolang.exploration import explore
 from robolang.motion_findings import findings
 from robolang.project import load_project
@@ -37,12 +38,15 @@ DEPART 30
 """
 
 
+INPUTS = "\n[inputs.1]\nchanges = [[0, 0]]\n[inputs.3]\nchanges = [[0, 0]]\n"
+
+
 def text(lines: int) -> str:
     """Return a program of so many lines without a finding."""
     blocks = (lines - 4) // 10
     body = "".join(BLOCK.format(block, 1 + block % 5) for block in range(blocks))
     rest = "' and so on\n" * (lines - 4 - 10 * blocks)
-    return f"SPEED 250\nSPEEDJ 50\ntotal = 0\n{body}{rest}PRINT total\n"
+    return f"SPEED 250\nSPEEDJ 50\ntotal = 0\n{body}{rest}MOVE P5\n"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,6 +63,8 @@ def cold(lines: int, processes: int) -> Cost:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "job.rbl"
         path.write_text(text(lines))
+        path.with_name("cell.toml").write_text(cell_text() + INPUTS)
+        path.with_suffix(".points.toml").write_text((PROGRAMS / "pick_and_place.points.toml").read_text())
         for _ in range(processes):
             began, before = time.perf_counter(), os.times()
             done = subprocess.run([COMMAND, "check", path], capture_output=True, text=True, check=False)
