@@ -18,6 +18,9 @@ from runtime.pulses.mechanism import load_builtin
 from runtime.pulses.replay import MoveReplay
 from runtime.robot.newton import NewtonSolver
 from runtime.robot.payload import declared
+from runtime.supervision.limits import SupervisionLimits
+from runtime.supervision.observer import Observer
+from runtime.supervision.supervisor import CONFIRMED, Supervisor
 from runtime.units import badness
 from tests.runtime.motion.test_planner import HOME, HOME_POSE, KINEMATICS, PROFILE, SPEC, TOOL
 
@@ -89,3 +92,13 @@ def test_an_error_of_nan_is_the_worst_of_a_replay(key):
 def test_a_payload_of_nan_is_refused(values):
     with pytest.raises(Fault):
         declared(**{"mass": 1.0, "cog": (0.0, 0.0, 0.1), "rated": 2.5, **values})
+
+
+@pytest.mark.parametrize("estimate", [(NAN, 0.01), (1.5, NAN), (NAN, NAN)])
+def test_an_estimate_of_nan_is_no_declared_payload(estimate, monkeypatch):
+    motors = {"torque": SPEC.per_axis("limits", "torque"), "resolution": np.full(6, 1e-6), "lag": np.zeros(6)}
+    supervisor = Supervisor(SPEC, SupervisionLimits(), **motors, ticks=8, tick_s=1e-3, friction=0.0)
+    monkeypatch.setattr(Observer, "estimate", lambda self: estimate)
+    found = [supervisor._weigh(tick) for tick in range(CONFIRMED)]
+    assert found[:-1] == [None] * (CONFIRMED - 1)
+    assert found[-1].code == "RBL517"
