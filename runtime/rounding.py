@@ -1,20 +1,27 @@
-"""Numbers as messages print them: a value beside its limit, and values that are still on the right side when rounded.
+"""Numbers as messages print them: a value beside its limits, and proposals that are still on the right side.
 
-A message that says "0.0010 mm apart, at least 0.001 mm are needed" contradicts itself. ``beside`` gives both numbers as
-many digits as they need to differ; ``down`` and ``up`` round a proposed value so that it still fits.
+A message that says "0.0010 mm apart, at least 0.001 mm are needed" contradicts itself. ``beside`` gives a value and its
+limits as many digits as they need to differ as they do; ``down`` and ``up`` round a proposed value so that it still
+fits. Called wherever a message compares a value with a limit; standard library only.
 """
 
 import math
 
-MOST_DIGITS = 17
-"""As many digits tell any two numbers of 64 bits apart."""
+FEWEST_DIGITS, MOST_DIGITS = 6, 17
+"""Digits of a number where a few are enough, and so many that any two numbers of 64 bits differ in them."""
 
 
-def beside(value: float, limit: float, digits: int = 4) -> tuple[str, str]:
-    """Return a value and its limit as text with ``digits`` significant digits, or as many more as make them differ."""
-    while digits < MOST_DIGITS and value != limit and float(f"{value:.{digits}g}") == float(f"{limit:.{digits}g}"):
+def beside(value: float, *limits: float, form: str = "g") -> tuple[str, ...]:
+    """Return a value in a format such as ``.3f`` and limits in the format ``g``, or all with as many digits as they need.
+
+    They need so many that the texts compare as the numbers do: below, equal or above.
+    """
+    texts = (f"{value:{form}}", *(f"{limit:g}" for limit in limits))
+    digits = FEWEST_DIGITS
+    while not _compare_as(texts, value, limits) and digits < MOST_DIGITS:
         digits += 1
-    return f"{value:.{digits}g}", f"{limit:.{digits}g}"
+        texts = tuple(f"{each:.{digits}g}" for each in (value, *limits))
+    return texts
 
 
 def down(value: float, digits: int = 3) -> float:
@@ -27,6 +34,15 @@ def up(value: float, digits: int = 4) -> float:
     """Return the smallest number of so many digits that is not below a value > 0."""
     size = _place(value, digits)
     return float(f"{math.ceil(value / size - 1e-9) * size:.{digits}g}")
+
+
+def _compare_as(texts: tuple[str, ...], value: float, limits: tuple[float, ...]) -> bool:
+    shown, *bounds = map(float, texts)
+    return all(_order(shown, bound) == _order(value, limit) for bound, limit in zip(bounds, limits, strict=True))
+
+
+def _order(a: float, b: float) -> int:
+    return (a > b) - (a < b)
 
 
 def _place(value: float, digits: int) -> float:
