@@ -24,6 +24,7 @@ import robolang.codes  # noqa: F401 - RBL711 must be registered
 from robolang.storage import write_atomic
 from runtime.faults import Fault
 from runtime.frames import Array
+from runtime.rounding import beside
 from runtime.units import DEG
 
 _REMEDY = "Write it with robolang test --update."
@@ -69,7 +70,8 @@ class GoldenLog:
             at = int(differs[0])
             if near[at]:
                 return at, f"line {int(line[at])} runs and in the golden log line {int(self.line[at])}"
-            return at, f"{float(off[at]):.3g} deg off, at most {most_deg:g} deg"
+            differs_by, most = beside(float(off[at]), most_deg, form=".3g")
+            return at, f"{differs_by} deg off, at most {most} deg"
         if len(q) != self.cycles:
             return count, f"{len(q)} cycles, the golden log has {self.cycles}"
         return None, f"{count} cycles, at most {float(off.max(initial=0.0)):.2g} deg off"

@@ -8,6 +8,7 @@ import math
 from dataclasses import dataclass
 
 from runtime.faults import Fault
+from runtime.rounding import beside
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,12 +29,13 @@ class Limit:
         inside = (self.low < value if self.above else self.low <= value) and value <= top
         if inside and (not self.whole or value == math.floor(value)):
             return None
-        of = f"{self.name} is {value:.10g}{self._unit}"
+        shown, least, most = beside(value, self.low, top, form=".10g")
+        of = f"{self.name} is {shown}{self._unit}"
         if self.above:
-            return Fault(self.code, f"{of} and must be above {self.low:g} and at most {top:g}{self._unit}")
+            return Fault(self.code, f"{of} and must be above {least} and at most {most}{self._unit}")
         kind = "a whole number from" if self.whole else "from"
-        return Fault(self.code, f"{of} and must be {kind} {self.low:g} to {top:g}{self._unit}",
-                     f"give {self.low:g} to {top:g}{self._unit}")  # fmt: skip
+        return Fault(self.code, f"{of} and must be {kind} {least} to {most}{self._unit}",
+                     f"give {least} to {most}{self._unit}")  # fmt: skip
 
     def checked(self, value: float) -> float:
         """Return a value; ``Fault`` when it is out of range."""

@@ -83,8 +83,6 @@ def move(effect: MoveTo, around: Surroundings) -> Command:
     zone = effect.zone_mm * MM
     if effect.way == "joint":
         share = (100.0 if effect.speed_pct is None else effect.speed_pct) * PERCENT
-        if not 0.0 < share <= 1.0:
-            raise Fault("RBL404", f"SPEED in % is {share * 100.0:g} and must be above 0 and at most 100")
         return MoveJoint(
             q_end=goal.q_end, X_world_tool=goal.X, configuration=goal.configuration, turns=goal.turns,
             speed=share, acceleration=acceleration, duration=duration, zone=zone, override=override,

@@ -29,6 +29,7 @@ from runtime.motion.planner import FOLLOWS
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.load import ratings, wrist_load
 from runtime.robot.singularity import singularities
+from runtime.rounding import beside
 from runtime.units import DEG, MM
 
 NEAR = 0.5 * DEG
@@ -75,7 +76,8 @@ def _way(project: Project, detour: Detour) -> str:
 def _cycle(rehearsal: Rehearsal, most_s: float | None) -> Found:
     total = rehearsal.total_us / 1e6
     if most_s is not None and not total <= most_s and not rehearsal.refused:
-        message = f"the program takes {total:.3f} s, {total - most_s:.3f} s more than {most_s:g} s"
+        takes, most = beside(total, most_s, form=".3f")
+        message = f"the program takes {takes} s, {total - most_s:.3g} s more than {most} s"
         yield Diagnostic(code="RBL423", message=message, span=Span(0, 0))
 
 
@@ -155,9 +157,9 @@ class _Moves:
         ):
             row = int(np.argmin(np.where(follows, values, np.inf)))
             if not values[row] >= least:
-                yield _at("RBL427", move, f"at {100.0 * float(move.plan.s[row]):.1f} % of the way the arm is "
-                          f"{float(values[row]) / size:.2f} {unit} from where its {name}, which is singular; keep "
-                          f"{least / size:g} {unit} away")  # fmt: skip
+                away, keep = beside(float(values[row]) / size, least / size, form=".2f")
+                yield _at("RBL427", move, f"at {100.0 * float(move.plan.s[row]):.1f} % of the way the arm is {away} "
+                          f"{unit} from where its {name}, which is singular; keep {keep} {unit} away")  # fmt: skip
                 return
 
 

@@ -19,6 +19,7 @@ from runtime.profile import Profile
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import NO_PAYLOAD, Payload
 from runtime.robot.spec import RobotSpec
+from runtime.rounding import beside
 from runtime.servo.motor import torque_limit
 from runtime.units import DEG
 
@@ -190,9 +191,10 @@ def _planned(request: Request, model: ArmModel, axis: int, q: Array, room: tuple
     before = float(quintic(np.array(PEAK)))
     stroke = min(STROKE, (high - low) / 2.0)
     if not stroke >= LEAST_STROKE:
-        raise Fault("RBL420", f"J{axis + 1} has {max(0.0, high - low) / DEG:.1f} deg that are over the ground and "
-                    f"{MARGIN / DEG:g} deg off the ends of its range, {limits.lower / DEG:.1f} to "
-                    f"{limits.upper / DEG:.1f} deg; the test motions need {2.0 * LEAST_STROKE / DEG:.1f}")  # fmt: skip
+        there, least = beside(max(0.0, high - low) / DEG, round(2.0 * LEAST_STROKE / DEG, 1), form=".1f")
+        raise Fault("RBL420", f"J{axis + 1} has {there} deg that are over the ground and {MARGIN / DEG:g} deg off the "
+                    f"ends of its range, {limits.lower / DEG:.1f} to {limits.upper / DEG:.1f} deg; the test motions "
+                    f"need {least}")  # fmt: skip
     reach = stroke * (1.0 - before)
     positions = np.linspace(low + reach, high - reach, places) if places > 1 else np.array(
         [0.5 * (low + high)])  # fmt: skip

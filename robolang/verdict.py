@@ -19,6 +19,7 @@ from runtime.faults import Fault
 from runtime.frames import Array, pose_from_xyzrpy, rotation_angles
 from runtime.linear import norm
 from runtime.program_line import named
+from runtime.rounding import beside
 from runtime.units import DEG, MM, badness
 
 _LARGEST = (
@@ -133,7 +134,8 @@ def _largest(statements: list[dict[str, Any]], key: str, measure: str, most: flo
         return Verdict(name=name, ok=False, said="nothing to compare, no statement moves the arm", key=(key,))
     value, entry = max(rows, key=lambda row: badness(row[0]))
     where = named(entry["line"], entry["number"])
-    said = f"{value:.3f} {unit} in {where}, at most {most:g} {unit}"
+    shown, bound = beside(value, most, form=".3f")
+    said = f"{shown} {unit} in {where}, at most {bound} {unit}"
     return Verdict(name=name, ok=value <= most, said=said, key=(key,))
 
 
@@ -150,17 +152,19 @@ def _end(expected: Expectation, X: Array) -> list[Verdict]:
     turned = float(rotation_angles(X[:3, :3], X_expected[:3, :3])) / DEG
     ended = ", ".join(f"{value:.3f}" for value in pose_mm_deg(X))
     most_mm, most_deg = expected.end_mm, expected.end_deg
+    away, bound_mm = beside(far, most_mm, form=".3f")
+    turn, bound_deg = beside(turned, most_deg, form=".3f")
     return [
         Verdict(
             name="end",
             ok=far <= most_mm,
-            said=f"{far:.3f} mm away, at most {most_mm:g} mm: ({ended})",
+            said=f"{away} mm away, at most {bound_mm} mm: ({ended})",
             key=("end_pose",),
         ),
         Verdict(
             name="end turn",
             ok=turned <= most_deg,
-            said=f"turned by {turned:.3f} deg, at most {most_deg:g} deg: ({ended})",
+            said=f"turned by {turn} deg, at most {bound_deg} deg: ({ended})",
             key=("end_pose",),
         ),
     ]
@@ -172,7 +176,8 @@ def _part(objects: dict[str, Any], name: str, place: tuple[float, ...], most: fl
         near = f"; its parts: {', '.join(sorted(objects))}" if objects else ""
         return Verdict(name=title, ok=False, said=f"the cell has no such part{near}", key=key)
     off = norm(np.array(objects[name]["pose_mm_deg"][:3]) - place)
-    return Verdict(name=title, ok=off <= most, said=f"{off:.3f} mm away, at most {most:g} mm", key=key)
+    away, bound = beside(off, most, form=".3f")
+    return Verdict(name=title, ok=off <= most, said=f"{away} mm away, at most {bound} mm", key=key)
 
 
 # --- the golden log --------------------------------------------------------------------------------------------------

@@ -32,6 +32,7 @@ from runtime.profile import Profile
 from runtime.robot.load_rules import MAX_COG_DISTANCE
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
+from runtime.rounding import beside
 from runtime.servo.motor import torque_limit
 from runtime.units import DEG, MM
 
@@ -269,7 +270,8 @@ def load_statement(found: WeighedPayload, rated: float) -> Declaration:
     notes = []
     mass = min(found.mass, rated)
     if not found.mass - rated < BELIEVED * found.mass_sd:
-        notes.append(f"{found.mass:.4g} kg was weighed and at most the rated {rated:g} kg may be declared")
+        weighed, most = beside(found.mass, rated, form=".4g")
+        notes.append(f"{weighed} kg was weighed and at most the rated {most} kg may be declared")
     mass_text = _rounded(mass, found.mass_sd, 3)
     if not float(mass_text) <= rated:  # rounded up
         mass_text = f"{rated:g}"

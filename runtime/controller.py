@@ -34,6 +34,7 @@ from runtime.motion.fine import FineInterpolator
 from runtime.motion.interpolator import Interpolator
 from runtime.motion.planner import FOLLOWS, LinePlan
 from runtime.motion.seam import SeamTracker
+from runtime.motion.speed import check_requests
 from runtime.motion.stop import stopping_rows
 from runtime.plant.plant import Plant
 from runtime.plant.touches import Touches
@@ -228,9 +229,8 @@ class Controller:
 
     @override.setter
     def override(self, share: float) -> None:
-        if not (0.0 < share <= 1.0):
-            raise Fault("RBL404", f"OVERRIDE in % is {share * 100.0:g} and must be above 0 and at most 100")
-        self._override = share
+        check_requests(("OVERRIDE in %", share * 100.0, 100.0))
+        self._override = min(share, 1.0)
 
     def rehearse(self, q_start: Array, command: Command) -> LinePlan:
         """Return the plan of a motion from q_start (n,) rad, without starting it; ``Fault`` RBL4xx."""

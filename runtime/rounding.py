@@ -12,11 +12,11 @@ FEWEST_DIGITS, MOST_DIGITS = 6, 17
 
 
 def beside(value: float, *limits: float, form: str = "g") -> tuple[str, ...]:
-    """Return a value in a format such as ``.3f`` and limits in the format ``g``, or all with as many digits as they need.
+    """Return a value in a format such as ``.3f`` and limits in short, or all with as many digits as they need.
 
     They need so many that the texts compare as the numbers do: below, equal or above.
     """
-    texts = (f"{value:{form}}", *(f"{limit:g}" for limit in limits))
+    texts = (f"{value:{form}}", *(f"{limit:g}" if abs(limit) < 1e6 else f"{limit:.10g}" for limit in limits))
     digits = FEWEST_DIGITS
     while not _compare_as(texts, value, limits) and digits < MOST_DIGITS:
         digits += 1
@@ -42,7 +42,7 @@ def _compare_as(texts: tuple[str, ...], value: float, limits: tuple[float, ...])
 
 
 def _order(a: float, b: float) -> int:
-    return (a > b) - (a < b)
+    return int(a > b) - int(a < b)
 
 
 def _place(value: float, digits: int) -> float:

@@ -18,6 +18,7 @@ from typing import Any, NoReturn, TypeVar
 
 import runtime.file_codes  # noqa: F401 - registers what is raised here
 from runtime.faults import Fault
+from runtime.rounding import beside
 
 MAX_BYTES = 1_000_000
 MAX_ABS = 1e9
@@ -260,8 +261,9 @@ class Table:
         if not math.isfinite(number):
             self.fail("RBL604", f"'{self.name(key)}' is {_shown(value)}, not a finite number", key=key)
         if not (low <= number <= high) or (positive and not number > 0.0):
-            wanted = "above 0" if positive and number <= 0.0 else f"between {low:g} and {high:g}"
-            self.fail("RBL605", f"'{self.name(key)}' is {number:g} and must be {wanted}", key=key)
+            shown, least, most = beside(number, low, high)
+            wanted = "above 0" if positive and number <= 0.0 else f"between {least} and {most}"
+            self.fail("RBL605", f"'{self.name(key)}' is {shown} and must be {wanted}", key=key)
         return number
 
     def numbers(self, key: str, count: int | None, default: Sequence[float] | None = None, *,

@@ -17,6 +17,7 @@ import typer
 from robolang.cli import lines
 from robolang.cli.errors import DIAGNOSTICS, exit_code, reported, say_warnings
 from robolang.cli.values import OptionValueError
+from runtime.rounding import beside
 from runtime.units import badness
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ def pulses(
     if plc not in ("f174", "none"):
         raise OptionValueError("--plc", f"'{plc}' is not one of f174, none")
     if fmin is not None and not 1.0 <= fmin <= 1e5:  # NaN is refused too
-        raise OptionValueError("--fmin", f"{fmin:g} is not between 1 and 100000 Hz")
+        raise OptionValueError("--fmin", f"{beside(fmin, 1.0, 1e5)[0]} is not between 1 and 100000 Hz")
     if plot is not None and plot.suffix not in (".svg", ".html"):
         raise OptionValueError("--plot", f"'{plot}' must end in .svg or .html")
     with reported():
@@ -102,7 +103,8 @@ def _step_hz(text: str) -> int:
         raise OptionValueError("--step", f"'{text[:20]}' is not a time such as 10ms")
     ms = float(found[1]) * (1000.0 if found[2] == "s" else 1.0)
     if not SHORTEST_MS <= ms <= LONGEST_MS:
-        raise OptionValueError("--step", f"{ms:g} ms is not between {SHORTEST_MS:g} and {LONGEST_MS:g} ms")
+        shown, shortest, longest = beside(ms, SHORTEST_MS, LONGEST_MS)
+        raise OptionValueError("--step", f"{shown} ms is not between {shortest} and {longest} ms")
     whole = round(1000.0 / ms)
     if not abs(1000.0 / ms - whole) <= 1e-9 * whole:
         near = ", ".join(f"{1000.0 / each:g}ms" for each in (whole + 1, max(whole, 1)))

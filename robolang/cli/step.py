@@ -10,6 +10,7 @@ from robolang.cli import servo_options as o
 from robolang.cli import values
 from robolang.cli.errors import MOTION, reported, say_warnings
 from robolang.cli.values import OptionValueError, numbers
+from runtime.rounding import beside
 
 if TYPE_CHECKING:
     from robolang.step import PlantName, StepRequest, StepResult
@@ -68,9 +69,9 @@ def step(
         tool_point = np.array(numbers(tool, option="--tool", names=("x", "y", "z"))) * MM
         in_force = load_settings(spec, pose(tool_point, np.eye(3)), profile, options)
         if not (abs(size) <= 360.0):
-            raise OptionValueError("--size", f"{size:g} is not between -360 and 360 deg")
+            raise OptionValueError("--size", f"{beside(size, -360.0, 360.0)[0]} is not between -360 and 360 deg")
         if not seconds <= MOST_S:
-            raise OptionValueError("--seconds", f"{seconds:g} is not between 0.2 and {MOST_S:g} s")
+            raise OptionValueError("--seconds", f"{beside(seconds, MOST_S)[0]} is not between 0.2 and {MOST_S:g} s")
         carried = values.payload(payload, "--payload", spec)
         values.note_overload(carried, "--payload", spec)
         declared = carried

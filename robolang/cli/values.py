@@ -12,6 +12,7 @@ import typer
 
 from robolang.cli.usage import OptionValueError as OptionValueError
 from runtime.numerals import number_in, why_none
+from runtime.rounding import beside
 
 if TYPE_CHECKING:
     from runtime.frames import Array
@@ -62,7 +63,8 @@ def note_overload(carried: "Payload", option: str, spec: "RobotSpec") -> None:
     """Say that a payload is over the rated one; it is taken all the same, for this is the bench."""
     mass, rated = carried.mass, spec.rated_payload
     if not mass <= rated:
-        typer.echo(f"note: {option} {mass:g} kg is over the rated {rated:g} kg of {spec.name}", err=True)
+        shown, most = beside(mass, rated)
+        typer.echo(f"note: {option} {shown} kg is over the rated {most} kg of {spec.name}", err=True)
 
 
 def _number(text: str, option: str, name: str, position: int) -> float:
@@ -76,5 +78,6 @@ def _number(text: str, option: str, name: str, position: int) -> float:
     if not math.isfinite(value):
         refuse(f"is {shown!r}, not a finite number")
     if not abs(value) <= MAX_ABS:
-        refuse(f"is {value:g}, beyond anything a robot has ({MAX_ABS:g})")
+        far, most = beside(value, MAX_ABS)
+        refuse(f"is {far}, beyond anything a robot has ({most})")
     return value

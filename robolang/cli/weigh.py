@@ -21,6 +21,7 @@ import typer
 from robolang.cli import values
 from robolang.cli.errors import reported, say_warnings
 from robolang.cli.values import OptionValueError
+from runtime.rounding import beside
 
 if TYPE_CHECKING:
     from robolang.weigh import PlantName, WeighRequest
@@ -46,7 +47,8 @@ def weigh(
     if plant not in ("mujoco", "rigid"):
         raise OptionValueError("--plant", f"'{plant}' is not one of mujoco, rigid")
     if amplitude is not None and not 0.0 < amplitude <= MOST_AMPLITUDE:  # NaN is refused too
-        raise OptionValueError("--amplitude", f"{amplitude:g} is not above 0 and at most {MOST_AMPLITUDE:g} deg")
+        shown, most = beside(amplitude, MOST_AMPLITUDE)
+        raise OptionValueError("--amplitude", f"{shown} is not above 0 and at most {most} deg")
     if program is not None and not Path(program).exists():
         raise OptionValueError("PROG", f"there is no file '{program}'")
     with reported():
@@ -77,7 +79,8 @@ def weigh(
 def _note(mass: float, cell: "CellSpec") -> None:
     rated = cell.robot.rated_payload
     if not mass <= rated:
-        typer.echo(f"note: hand and --payload weigh {mass:g} kg, over the rated {rated:g} kg of {cell.robot.name}; no "
+        shown, most = beside(mass, rated)
+        typer.echo(f"note: hand and --payload weigh {shown} kg, over the rated {most} kg of {cell.robot.name}; no "
                    "program can declare that", err=True)  # fmt: skip
 
 

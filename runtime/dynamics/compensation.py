@@ -48,6 +48,7 @@ from runtime.robot.joint_table import JointTable
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import NO_PAYLOAD, Payload, declared
 from runtime.robot.spec import RobotSpec
+from runtime.rounding import beside
 from runtime.tomlfile import Table, load_table, read_source
 from runtime.units import DEG, MM
 
@@ -267,8 +268,9 @@ def _believe_moments(found: Compensation, spec: RobotSpec, axes: list[Table]) ->
     for axis, (moment, table) in enumerate(zip(found.first_moments, axes, strict=False)):
         size = norm(np.asarray(moment))
         if not size <= most[axis]:
-            table.fail("RBL605", f"'first_moment_kg_m' of J{axis + 1} is {size:.4g} long; more than {most[axis]:.3g} "
-                       "is not believed of that link", key="first_moment_kg_m")  # fmt: skip
+            long, bound = beside(size, float(most[axis]), form=".4g")
+            table.fail("RBL605", f"'first_moment_kg_m' of J{axis + 1} is {long} long; more than {bound} is not "
+                       "believed of that link", key="first_moment_kg_m")  # fmt: skip
 
 
 def _smallest_over(table: JointTable, spec: RobotSpec, axis: int) -> list[float]:

@@ -29,7 +29,7 @@ from runtime.motion.commands import MoveJoint
 from runtime.motion.pacing import Pace
 from runtime.motion.planner import NOTHING_TO_DO, LinePlan
 from runtime.motion.solver import RANGE_TOLERANCE, Arm, check_range
-from runtime.motion.speed import MAX_DURATION, SpeedLimits, bound, profile
+from runtime.motion.speed import MAX_DURATION, SpeedLimits, bound, check_requests, profile
 from runtime.motion.wrist_planner import as_taught, turned
 from runtime.profile import Profile
 from runtime.robot.kinematics import LIMIT_ROUNDING, Kinematics
@@ -165,11 +165,9 @@ def changed(kinematics: Kinematics, q_start: Array, q_end: Array, command: MoveJ
 def _share(command: MoveJoint) -> float:
     """Return the share of the joints' speeds that a move asks for; ``Fault`` RBL404 for what is none."""
     speed = 1.0 if command.speed is None else command.speed
-    for name, value, most in (
+    check_requests(
         ("SPEED in %", speed * 100.0, 100.0),
         ("ACCEL in %", command.acceleration * 100.0, 100.0),
         ("TIME in s", command.duration if command.duration is not None else 1.0, MAX_DURATION),
-    ):
-        if not (0.0 < value <= most * (1.0 + 1e-12)):
-            raise Fault("RBL404", f"{name} is {value:g} and must be above 0 and at most {most:g}")
+    )
     return 1.0 if command.duration is not None else speed

@@ -43,10 +43,17 @@ from runtime.frames import (
 )
 from runtime.linear import dot, matmul, norm
 from runtime.profile import PostureLaw
+from runtime.rounding import beside
 from runtime.units import MM
 
 FLATTEST = 1e-6
 """Least height of the triangle of start, via point and end over its longest side, m."""
+
+FULL_CIRCLE = (
+    "A full circle takes two MOVECs: one over a point of the circle to the point opposite to the start, and one over a "
+    "point of the other half back to the start."
+)
+"""What would help where an arc ends where it starts."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -218,9 +225,11 @@ def _check_points(start: Array, via: Array, end: Array) -> None:
     lengths = {name: norm(side) for name, side in sides.items()}
     for name, length in lengths.items():
         if not length >= FLATTEST:
-            raise Fault("RBL416", f"{name} of the arc are {length / MM:.4f} mm apart: a circle takes at least "
-                        f"{FLATTEST / MM:g} mm")  # fmt: skip
+            apart, least = beside(length / MM, FLATTEST / MM, form=".4f")
+            raise Fault("RBL416", f"{name} of the arc are {apart} mm apart: a circle takes at least {least} mm",
+                        FULL_CIRCLE if name == "start and end" else "")  # fmt: skip
     height = norm(np.cross(via - start, end - start)) / max(lengths.values())
     if not height >= FLATTEST:
-        raise Fault("RBL416", f"start, via point and end of the arc are within {height / MM:.4f} mm of one straight "
-                    f"line: a circle takes at least {FLATTEST / MM:g} mm")  # fmt: skip
+        off, least = beside(height / MM, FLATTEST / MM, form=".4f")
+        raise Fault("RBL416", f"start, via point and end of the arc are within {off} mm of one straight line: a circle "
+                    f"takes at least {least} mm")  # fmt: skip

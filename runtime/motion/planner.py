@@ -35,7 +35,7 @@ from runtime.motion.pacing import Pace, Slowdown
 from runtime.motion.path import ArcPath, LinePath, Path
 from runtime.motion.seam import SeamMove, SeamTracker
 from runtime.motion.solver import Arm, LineSolver, WristSolver
-from runtime.motion.speed import MAX_DURATION, SpeedLimits, bound, profile
+from runtime.motion.speed import MAX_DURATION, SpeedLimits, bound, check_requests, profile
 from runtime.motion.wrist import CONDITIONS, SAME_ANGLES, Condition
 from runtime.motion.wrist_planner import Choice, choose, ends, explained, posture_deviation
 from runtime.profile import Profile
@@ -302,13 +302,11 @@ def speed_limits(path: Path, command: PathMove, robot: PathLimits, profile: Prof
     speed = command.speed if command.speed is not None else robot.default_speed
     if command.duration is not None:
         speed = robot.max_speed
-    for name, value, most in (
+    check_requests(
         ("SPEED in mm/s", speed / MM, robot.max_speed / MM),
         ("ACCEL in %", command.acceleration * 100.0, 100.0),
         ("TIME in s", command.duration if command.duration is not None else 1.0, MAX_DURATION),
-    ):
-        if not (0.0 < value <= most * (1.0 + 1e-12)):
-            raise Fault("RBL404", f"{name} is {value:g} and must be above 0 and at most {most:g}")
+    )
     share = command.acceleration
     acceleration, jerk = robot.acceleration * share, robot.jerk * share
     if isinstance(path, ArcPath):

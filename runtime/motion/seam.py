@@ -33,6 +33,7 @@ from runtime.motion.wrist_planner import wrist_limits
 from runtime.profile import WristOptions
 from runtime.robot.frozen_wrist import MAIN_AXES, WRIST_AXES, FrozenWrist, Side
 from runtime.robot.opw import Branch
+from runtime.rounding import beside
 from runtime.units import DEG, MM
 
 SPEED_SLACK = 1.1
@@ -95,8 +96,10 @@ class SeamTracker:
         self._lost_in_a_row = 0
         far, turned = norm(reading[:3]), float(np.abs(reading[3:]).max())
         if not (far <= limits.most and turned <= limits.most_turn):
-            raise Fault("RBL524", f"seam sensor {self.name} sees the seam {far / MM:.2f} mm and {turned / DEG:.2f} deg "
-                        f"away, more than {limits.most / MM:g} mm or {limits.most_turn / DEG:g} deg")  # fmt: skip
+            away, most = beside(far / MM, limits.most / MM, form=".2f")
+            turn, most_turn = beside(turned / DEG, limits.most_turn / DEG, form=".2f")
+            raise Fault("RBL524", f"seam sensor {self.name} sees the seam {away} mm and {turn} deg away, more than "
+                        f"{most} mm or {most_turn} deg")  # fmt: skip
         self._target = np.array(reading, dtype=np.float64)
 
     def settle(self) -> None:

@@ -15,6 +15,7 @@ import ruckig
 from runtime.faults import Fault
 from runtime.frames import Array
 from runtime.profile import SpeedShape
+from runtime.rounding import beside
 from runtime.units import badness
 
 MAX_DURATION = 600.0
@@ -64,13 +65,27 @@ def profile(limits: SpeedLimits, period_s: float, duration: float | None = None)
     wanted = max(_shortest(limits), duration or 0.0, key=badness)
     if wanted <= MAX_DURATION:
         wanted = max(_trajectory(limits, None).duration, wanted, key=badness)
-    if not wanted <= MAX_DURATION:
-        raise Fault("RBL404", f"the move would take {wanted:.4g} s and may take at most {MAX_DURATION:g} s")
+    check_duration(wanted)
     cycles = max(1, math.ceil(wanted / period_s - 1e-9))
     trajectory = _trajectory(limits, cycles * period_s)
     s = np.array([trajectory.at_time(k * period_s)[0][0] for k in range(cycles + 1)])
     s[0], s[-1] = 0.0, 1.0
     return np.asarray(np.clip(s, 0.0, 1.0))
+
+
+def check_duration(seconds: float) -> None:
+    """Refuse a move that would take too long; ``Fault`` RBL404."""
+    if not seconds <= MAX_DURATION:
+        takes, most = beside(seconds, MAX_DURATION, form=".4g")
+        raise Fault("RBL404", f"the move would take {takes} s and may take at most {most} s")
+
+
+def check_requests(*requests: tuple[str, float, float]) -> None:
+    """Refuse a request (name with unit, value, most) that is not above 0 and at most ``most``; ``Fault`` RBL404."""
+    for name, value, most in requests:
+        if not (0.0 < value <= most * (1.0 + 1e-12)):
+            shown, bound = beside(value, most)
+            raise Fault("RBL404", f"{name} is {shown} and must be above 0 and at most {bound}")
 
 
 def shortest_s(limits: SpeedLimits) -> float:

@@ -43,6 +43,7 @@ from runtime.profile import WristOptions
 from runtime.robot.frozen_wrist import WRIST_AXES
 from runtime.robot.kinematics import LIMIT_ROUNDING, Kinematics
 from runtime.robot.spec import RobotSpec
+from runtime.rounding import beside
 from runtime.units import DEG, badness
 
 EARLIER = (0.9, 0.75, 0.6, 0.45, 0.3, 0.15, 0.0)
@@ -188,8 +189,9 @@ def choose(line: LineSolver, s: Array, q: Array, q_end: Array, period_s: float, 
         else:
             deviation = posture_deviation(line, s, rows)
             if not deviation <= most_deviation:
-                failures.append(Fault("RBL412", f"the tool would turn up to {deviation / DEG:.0f} deg from its posture "
-                                      f"on the path, more than {most_deviation / DEG:g} deg"))  # fmt: skip
+                turn, most = beside(deviation / DEG, most_deviation / DEG, form=".0f")
+                failures.append(Fault("RBL412", f"the tool would turn up to {turn} deg from its posture on the path, "
+                                      f"more than {most} deg"))  # fmt: skip
                 continue
             if ratio <= 1.0 and not choice.remedy and not held:
                 return choice  # as the document has it

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Literal, get_args
 
 from runtime.pulses.machine import Joint
+from runtime.rounding import beside
 from runtime.tomlfile import Table, inside, load_table, read_source
 from runtime.units import DEG, MM
 
@@ -114,8 +115,9 @@ def _channel(row: Table, joint: Joint, pulse: float, min_hz: float | None) -> Ch
     row.ask("min_hz")
     row.done()
     if not channel.max_hz >= 2.0 * channel.min_hz:
-        row.fail("RBL605", f"'max_hz' of '{joint.name}' is {channel.max_hz:g} and must be at least twice min_hz, "
-                 f"{channel.min_hz:g}", key="max_hz" if "max_hz" in row else "joint")  # fmt: skip
+        most, least = beside(channel.max_hz, 2.0 * channel.min_hz)
+        row.fail("RBL605", f"'max_hz' of '{joint.name}' is {most} and must be at least {least}, twice min_hz",
+                 key="max_hz" if "max_hz" in row else "joint")  # fmt: skip
     return channel
 
 

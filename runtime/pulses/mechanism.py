@@ -39,9 +39,10 @@ from runtime.faults import Fault
 from runtime.frames import Array, frozen, principal_axes
 from runtime.linear import norm
 from runtime.motion.commands import MoveLinear
-from runtime.motion.speed import SpeedLimits, bound
+from runtime.motion.speed import SpeedLimits, bound, check_requests
 from runtime.pulses.machine import Joint, Stand
 from runtime.robot.kinematics import SAME_ROOM
+from runtime.rounding import beside
 from runtime.tomlfile import Source, Table, load_table, read_source
 from runtime.units import DEG, MM
 
@@ -120,10 +121,8 @@ class Mechanism:
         turn = turns[0]
         speed = self.speed if command.speed is None else command.speed
         speed = self.max_speed if command.duration is not None else speed
-        for name, value, most in (("SPEED in mm/s", speed / MM, self.max_speed / MM),
-                                  ("ACCEL in %", command.acceleration * 100.0, 100.0)):  # fmt: skip
-            if not 0.0 < value <= most * (1.0 + 1e-12):
-                raise Fault("RBL404", f"{name} is {value:g} and must be above 0 and at most {most:g}")
+        check_requests(("SPEED in mm/s", speed / MM, self.max_speed / MM),
+                       ("ACCEL in %", command.acceleration * 100.0, 100.0))  # fmt: skip
         length = norm(end - start)
         extents = [(length, speed, self.acceleration * command.acceleration, np.inf)]
         if turn:  # as fast as the joint that turns it; what its limits leave of that is found on the steps
@@ -227,8 +226,9 @@ class MechanismWay:
             worst = int(np.argmax(beyond))
             if not beyond[worst] <= RANGE_TOLERANCE:
                 unit, name = (DEG, "deg") if joint.rotary else (MM, "mm")
-                raise Fault("RBL411", f"{joint.name} is at {q[worst, k] / unit:.2f} {name} at {100 * s[worst]:.1f} % "
-                            f"of the path, beyond {joint.lower / unit:g} to {joint.upper / unit:g} {name}")  # fmt: skip
+                at, low, high = beside(q[worst, k] / unit, joint.lower / unit, joint.upper / unit, form=".2f")
+                raise Fault("RBL411", f"{joint.name} is at {at} {name} at {100 * s[worst]:.1f} % of the path, beyond "
+                            f"{low} to {high} {name}")  # fmt: skip
         return q
 
     def _check_jumps(self, s: Array, q: Array) -> None:

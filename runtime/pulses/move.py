@@ -20,11 +20,12 @@ from runtime.faults import Fault
 from runtime.frames import Array
 from runtime.linear import dot, matmul
 from runtime.motion.commands import MoveLinear
-from runtime.motion.speed import MAX_DURATION, SpeedLimits
+from runtime.motion.speed import MAX_DURATION, SpeedLimits, check_duration
 from runtime.pulses.channels import Channel
 from runtime.pulses.emission import Emission, Pulses, emit, least_step
 from runtime.pulses.machine import Machine, Stand, Way
 from runtime.pulses.steps import EqualTimeSteps
+from runtime.rounding import beside, down
 from runtime.units import MM
 
 MOST_PULSES = 2**53
@@ -123,8 +124,7 @@ def _timed(limits: SpeedLimits, duration: float | None) -> tuple[SpeedLimits, tu
 def _steps(limits: SpeedLimits, step_s: float) -> EqualTimeSteps:
     speed = min(limits.speed, math.sqrt(limits.acceleration))  # over a whole path of 1 no triangle is faster
     seconds = 1.0 / speed + speed / limits.acceleration
-    if not seconds <= MAX_DURATION:
-        raise Fault("RBL404", f"the move would take {seconds:.4g} s and may take at most {MAX_DURATION:g} s")
+    check_duration(seconds)
     return EqualTimeSteps.of(1.0, speed, speed / limits.acceleration, step_s)
 
 
@@ -167,9 +167,10 @@ def _check_frequency(machine: Machine, way: Way, limits: SpeedLimits, channels: 
     share = 100.0 * float(steps.distances()[row])
     fits = _fitting(way, limits, channels, most, steps.step_s, float(ratios.max()))
     speed = fits.speed * way.length / MM
-    what = f"SPEED {_down(speed / override):g}" if speed > 0.0 else f"TIME {fits.seconds * override:.3f}"
-    raise Fault("RBL430", f"{channel.joint.name} of the {machine.name} needs {needed:.0f} Hz at {share:.1f} % of the "
-                f"path, its channel gives {channel.max_hz:.0f} Hz at most", f"{what} would fit")  # fmt: skip
+    what = f"SPEED {down(speed / override):g}" if speed > 0.0 else f"TIME {fits.seconds * override:.3f}"
+    needs, gives = beside(needed, channel.max_hz, form=".0f")
+    raise Fault("RBL430", f"{channel.joint.name} of the {machine.name} needs {needs} Hz at {share:.1f} % of the path, "
+                f"its channel gives {gives} Hz at most", f"{what} would fit")  # fmt: skip
 
 
 def _fitting(way: Way, limits: SpeedLimits, channels: tuple[Channel, ...], most: Pulses, step_s: float,
@@ -183,12 +184,6 @@ def _fitting(way: Way, limits: SpeedLimits, channels: tuple[Channel, ...], most:
         ratio = float((wanted / most).max())
         if ratio <= 1.0:
             return steps
-
-
-def _down(value: float) -> float:
-    """Return a number of three digits that is not above ``value``."""
-    size = 10.0 ** (math.floor(math.log10(value)) - 2)
-    return math.floor(value / size + 1e-9) * size
 
 
 def _measured(machine: Machine, way: Way, steps: EqualTimeSteps | None, q: Array, start: Pulses, wanted: Pulses,

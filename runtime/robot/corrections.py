@@ -16,6 +16,7 @@ import numpy as np
 from runtime.frames import Array, frozen
 from runtime.robot.robot_file import CorrectionRow
 from runtime.robot.spec import AxisSpec, Body, Correction, inertia_defect, shift_between_links
+from runtime.rounding import beside
 from runtime.tomlfile import Table
 
 SLACK = 1e-9
@@ -52,13 +53,15 @@ def _check_need(table: Table, published: Body, correction: Correction) -> None:
     if mass > 0.0 and published.mass > 0.0:
         table.fail("RBL606", f"{name} has a mass already", "write added_mass_kg = 0", key="added_mass_kg")
     if mass > TOKEN_MASS:
-        table.fail("RBL606", f"an added mass of {mass:g} kg is more than the {TOKEN_MASS:g} that a body needs",
+        added, token = beside(mass, TOKEN_MASS)
+        table.fail("RBL606", f"an added mass of {added} kg is more than the {token} that a body needs",
                    "if the mass is known, write it as mass_kg with its source", key="added_mass_kg")  # fmt: skip
     if moments > 0.0 and not flat(shifted(published.inertia, shift)):
         table.fail("RBL606", f"{name} has moments about every axis already", "remove added_inertia_kg_m2",
                    key="added_inertia_kg_m2")  # fmt: skip
     if moments > TOKEN_INERTIA:
-        table.fail("RBL606", f"{moments:g} kg m2 are more than the {TOKEN_INERTIA:g} that a body needs",
+        added, token = beside(moments, TOKEN_INERTIA)
+        table.fail("RBL606", f"{added} kg m2 are more than the {token} that a body needs",
                    "if the inertia is known, write it as inertia_kg_m2 with its source",
                    key="added_inertia_kg_m2")  # fmt: skip
     if shift == 0.0 and mass == 0.0 and moments == 0.0:

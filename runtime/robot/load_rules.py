@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from typing import Literal
 
 from runtime.faults import Fault
+from runtime.rounding import beside
 from runtime.units import MM
 
 LoadMode = Literal["add", "replace"]
@@ -44,7 +45,8 @@ def mass_fault(mass: float, rated: float | None) -> Fault | None:
     if rated is None or mass <= rated:
         return None
     grams = mass / 1000.0 <= rated and mass >= _GRAMS
-    return Fault("RBL402", f"a payload of {mass:g} kg is more than the {rated:g} kg the robot is rated for",
+    shown, most = beside(mass, rated)
+    return Fault("RBL402", f"a payload of {shown} kg is more than the {most} kg the robot is rated for",
                  f"LOAD takes kg: {mass:g} g is {mass / 1000.0:g} kg" if grams else "")  # fmt: skip
 
 
@@ -56,8 +58,8 @@ def centre_fault(cog: Sequence[float]) -> Fault | None:
     if not all(map(math.isfinite, cog)):
         shown = ", ".join(f"{value / MM:g}" for value in cog)
         return Fault("RBL403", f"the centre of gravity ({shown}) mm is not a place")
-    return Fault("RBL403", f"the centre of gravity is {distance / MM:g} mm from the flange, more than "
-                 f"{MAX_COG_DISTANCE / MM:g} mm")  # fmt: skip
+    away, most = beside(distance / MM, MAX_COG_DISTANCE / MM)
+    return Fault("RBL403", f"the centre of gravity is {away} mm from the flange, more than {most} mm")
 
 
 def inertia_fault(inertia: Sequence[float]) -> Fault | None:

@@ -14,6 +14,7 @@ from runtime.frames import Array
 from runtime.robot.load_rules import LoadMode
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
+from runtime.rounding import beside
 from runtime.supervision.finding import Finding
 from runtime.supervision.limits import SupervisionLimits
 from runtime.supervision.observer import FEWEST, STRIDE, LoadModel, Observer
@@ -100,11 +101,11 @@ class Supervisor:
         return None
 
     def _collided(self, axis: int, tick: int) -> Finding:
-        torque = self.observer.residual[axis]
+        most = float(self._collision[axis] + 2.0 * self.observer.sigma[axis])
+        torque, bound = beside(float(self.observer.residual[axis]), most, form="+.1f")
         return Finding(
             code="RBL516", tick=tick, axis=axis,
-            message=f"J{axis + 1} needs {torque:+.1f} N m that neither motion nor payload explains, more than "
-            f"{self._collision[axis] + 2.0 * self.observer.sigma[axis]:.1f} N m",
+            message=f"J{axis + 1} needs {torque} N m that neither motion nor payload explains, more than {bound} N m",
         )  # fmt: skip
 
     def _weigh(self, tick: int) -> Finding | None:

@@ -19,6 +19,7 @@ from numpy import absolute, add, less_equal, logical_and, maximum, multiply, sub
 
 from runtime.frames import Array
 from runtime.robot.spec import RobotSpec
+from runtime.rounding import beside
 from runtime.supervision.finding import Finding
 from runtime.supervision.limits import SupervisionLimits
 from runtime.units import DEG
@@ -134,18 +135,18 @@ class Watch:
         for row, code, what, unit in ((3, "RBL513", "turns at", "deg/s"), (2, "RBL514", "is", "deg from mid-range")):
             if not inside[row].all():
                 axis = int(np.argmin(inside[row]))
-                at = self._away[k, row * self._n + axis] / DEG
-                most = self._bound[row * self._n + axis] / DEG
-                return code, axis, f"J{axis + 1} {what} {at:.2f} {unit}, more than {most:.2f} {unit}"
+                at, most = beside(self._away[k, row * self._n + axis] / DEG, self._bound[row * self._n + axis] / DEG,
+                                  form=".2f")  # fmt: skip
+                return code, axis, f"J{axis + 1} {what} {at} {unit}, more than {most} {unit}"
         return None
 
     def _following(self, follows: Array, k: int) -> tuple[str, int, str] | None:
         if follows.all():
             return None
         axis = int(np.argmax(self._error[k] / self.limit))
+        error, most = beside(self._error[k, axis] / DEG, self.limit[axis] / DEG, form=".3f")
         return "RBL511", axis, (
-            f"J{axis + 1} is {self._error[k, axis] / DEG:.3f} deg from its command, more than "
-            f"{self.limit[axis] / DEG:.3f} deg at {self.speed[axis] / DEG:.1f} deg/s"
+            f"J{axis + 1} is {error} deg from its command, more than {most} deg at {self.speed[axis] / DEG:.1f} deg/s"
         )
 
     def _saturation(self, asked: Array) -> tuple[str, int, str] | None:

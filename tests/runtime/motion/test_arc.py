@@ -1,6 +1,7 @@
 """Arcs: the circle through three points, the orientation along it, what is no arc; planned at constant speed."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -203,3 +204,12 @@ def test_an_arc_of_a_large_circle_takes_as_long_as_the_line():
     line = robot.planner.plan(q, MoveLinear(X_world_tool=end, speed=0.2), TOOL)
     arc = robot.planner.plan(q, MoveArc(X_via=via, X_world_tool=end, speed=0.2), TOOL)
     assert len(arc.q) == len(line.q)
+
+
+@pytest.mark.parametrize("off", [0.99999e-6, 1e-6 * (1.0 - 1e-12)])
+def test_a_refusal_does_not_print_a_distance_that_would_do(off):
+    for via in ([off, 0.0, 0.0], [0.05, off, 0.0]):
+        with pytest.raises(Fault) as caught:
+            ArcPath.through(pose((0.0, 0.0, 0.0)), pose(via), pose((0.1, 0.0, 0.0)))
+        value, least = re.findall(r"([\d.]+) mm", caught.value.message)
+        assert float(value) < float(least)

@@ -63,7 +63,7 @@ def test_without_a_file_the_mechanism_says_the_pulses():
         ("pulse_mm = 0.01", "pulse_deg = 0.01", "RBL613", "slides: give pulse_mm", 6),
         ("pulse_mm = 0.01", "pulse_mm = 0", "RBL605", "pulse_mm", 6),
         ("pulse_mm = 0.01", "pulse_mm = nan", "RBL604", "finite", 6),
-        ("max_hz = 20000", "max_hz = 60", "RBL605", "at least twice min_hz, 48", 8),
+        ("max_hz = 20000", "max_hz = 60", "RBL605", "at least 96, twice min_hz", 8),
         ('output = "cw-ccw"', 'output = "up"', "RBL610", "cw-ccw", 9),
         ("min_hz = 48", "minimum = 48", "RBL609", "minimum", 7),
         ("schema = 1", "schema = 3", "RBL605", "schema", 1),
