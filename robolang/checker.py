@@ -23,7 +23,11 @@ from robolang.rounding_check import rounding_check
 from robolang.source import Span
 from robolang.statement_check import StatementCheck
 from robolang.structure import Structure, structure_of
+from robolang.tree import is_deeper
 from robolang.usage_check import usage_check, wait_check
+
+MAX_LEVELS = 150
+"""Deepest tree of a statement: expressions are evaluated by recursion, in at most five calls for a level."""
 
 
 def check(program: Program, symbols: CellSymbols = NOTHING_KNOWN) -> tuple[Diagnostic, ...]:
@@ -63,6 +67,10 @@ def _each_statement(program: Program, structure: Structure, defined: Defined,
         if line.statement is None:
             continue
         defined.look_from(structure.owner.get(index))
+        if is_deeper(line.statement, MAX_LEVELS):
+            message = f"operators and parentheses stand more than {MAX_LEVELS} levels inside one another"
+            yield Diagnostic(code="RBL108", message=message, span=line.statement.span)
+            continue
         said: set[tuple[str, Span]] = set()  # two rules may look at one expression
         for found in checks.check(line.statement):
             if (found.code, found.span) not in said:

@@ -46,7 +46,7 @@ def fixed(node: Expression) -> float | None:
         return value
     try:
         found = _EVALUATOR.value(node)
-    except (_VariableError, Fault):
+    except (_VariableError, Fault, RecursionError):  # too deep: the checker refuses the statement
         return None
     return found if isinstance(found, float) else None
 

@@ -42,6 +42,19 @@ def children(node: Node) -> Iterator[Node]:
                 yield from (part for part in parts if isinstance(part, Node))
 
 
+def is_deeper(node: Node, most: int) -> bool:
+    """Return whether a node has parts more than ``most`` levels below it."""
+    if node.span.end - node.span.start <= most:  # a level is a character at least
+        return False
+    stack = [(node, 0)]
+    while stack:
+        found, level = stack.pop()
+        if level > most:
+            return True
+        stack.extend((child, level + 1) for child in children(found))
+    return False
+
+
 def walk(node: Node) -> Iterator[Node]:
     """Yield a node and everything below it; without recursion, however deep the tree is."""
     stack = [node]

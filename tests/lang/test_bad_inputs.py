@@ -150,6 +150,27 @@ def test_the_longest_lines_are_bounded(start, more):
     assert_linear(problems, start + more * 10_000, start + more * 20_000)
 
 
+NINE_LEVELS = "0 OR 1 AND NOT 1 = 1 + 1 * -1^("
+
+
+@pytest.mark.parametrize(
+    ("text", "codes"),
+    [
+        ("DELAY " + NINE_LEVELS * 99 + "1" + ")" * 99, ["RBL108"]),
+        ("IF " + "(" * 90 + "1" + "^1 * 1 + 1 = 1 AND 1 OR 1)" * 90 + " THEN END", ["RBL108"]),
+        ("WAIT 1\nWAIT " + NINE_LEVELS * 99 + "1" + ")" * 99, ["RBL233", "RBL108"]),
+        ("PRINT " + NINE_LEVELS * 15 + "1" + ")" * 15, []),
+        ("PRINT " + "(1 + " * 99 + "1" + ")" * 99, []),
+        ("PRINT " + "ABS(" * 99 + "1" + ")" * 99, []),
+    ],
+    ids=["nine levels", "in front", "a WAIT", "few of nine", "sums", "calls"],
+)
+def test_what_is_too_deep_to_be_evaluated_is_refused_and_the_rest_runs(text, codes):
+    assert [item[0] for item in problems(text)] == codes
+    if not codes:
+        assert len(printed(text)) == 1
+
+
 @pytest.mark.parametrize("text", ["(", "-", "+", "NOT ", "ABS(", "- (", "(-"])
 def test_one_line_of_any_depth_is_refused_where_it_is_too_deep(text):
     for count in (10_000, 100_000):
@@ -235,6 +256,14 @@ def test_one_typo_costs_few_diagnostics_and_hides_nothing_behind_it():
             extra.append(len(errors) - 1)
     assert sorted(extra)[len(extra) // 2] <= 1
     assert sum(count > 0 for count in extra) > len(extra) / 2  # the typos are real ones
+
+
+def test_a_line_that_does_not_parse_hides_nothing_of_the_others():
+    text = "MOV P1\nMOVE P77\nx = y + 1\nGOTO 50\nDELAY -1\nWAIT IN(1) = 1\nIF 0.1 * 3 = 0.3 THEN END\nNEXT\nCALL f"
+    assert [item[:3] for item in problems(text)] == [
+        ("RBL112", 1, 1), ("RBL301", 2, 6), ("RBL215", 3, 5), ("RBL202", 4, 6), ("RBL405", 5, 7), ("RBL223", 6, 1),
+        ("RBL232", 7, 4), ("RBL212", 8, 1), ("RBL213", 9, 6),
+    ]  # fmt: skip
 
 
 # --- R20: what a program can do --------------------------------------------------------------------------------------

@@ -25,6 +25,7 @@ from robolang.nodes import (
     Wrist,
     WristMode,
 )
+from robolang.points import load_points
 from robolang.printer import describe
 from robolang.source import Span
 from robolang.words import FUNCTIONS, KEYWORDS, VALUES
@@ -318,3 +319,20 @@ def test_labels(text, label, kind):
     (line,) = parsed(text).lines
     assert line.label.key == label
     assert (line.statement if kind is None else type(line.statement)) is kind
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["MOVE XOR", "MOVEC XOR, xor + (0, 0, 1)", "FRAME XOR", "TOOL XOR", "LOAD XOR", "SEAM ON, XOR", "x = XOR XOR XOR",
+     "XOR = 1", "*XOR XOR = 1", "*XOR XOR(1) = XOR(2)", "GOTO *XOR", "CALL XOR(XOR)", "FOR XOR = 1 TO XOR",
+     "PRINT XOR.X", "IF XOR THEN XOR = 2 ELSE MOVE XOR, SPEED XOR", "IF 1 THEN *XOR"],
+)  # fmt: skip
+def test_a_new_word_is_a_name_where_no_sign_can_stand(text):
+    plain = text.replace("XOR XOR XOR", "a + b").replace("XOR", "a")
+    codes = [[item[0] for item in parse_found(each)] for each in (text, plain)]
+    assert codes[0] == codes[1] == (["RBL111"] if text == "IF 1 THEN *XOR" else [])
+
+
+def test_a_point_may_have_the_name_of_a_new_word(tmp_path):
+    (tmp_path / "p.points.toml").write_text("schema = 1\n[points.XOR]\npose = [450, -150, 200, 180, 0, 90]\n")
+    assert load_points(tmp_path / "p.points.toml").get("XOR") is not None
