@@ -82,7 +82,7 @@ def _read(source: Source) -> tuple[Program, tuple[Diagnostic, ...]]:
             problems.append(Diagnostic(code="RBL113", message=message, span=line.number_span, related=related))
     for target in _targets(parsed.program):
         if target.number not in first:
-            message = f"there is no line {quote(source.slice(target.span))} to go to"
+            message = f"there is no line number {quote(source.slice(target.span))} to go to"
             problems.append(Diagnostic(code="RBL202", message=message, span=target.span))
     return parsed.program, in_order(problems)
 

@@ -287,7 +287,7 @@ def _wrong(found: Structure, code: str, message: str, line: Line, program: Progr
 def _check_jump(program: Program, found: Structure, index: int, target: Target) -> None:
     where = found.line_of(target)
     if where is None:
-        name = f"*{target.label.text}" if target.label is not None else f"line {target.number}"
+        name = f"*{target.label.text}" if target.label is not None else f"line number {target.number}"
         name = name if target.number != -1 else "a line number that is not whole"
         cause = target.span if target.number == -1 else name.upper()
         if found.missing.is_first(cause, target.span):

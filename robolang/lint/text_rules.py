@@ -95,7 +95,7 @@ RULES = (
     ),
     Rule(
         code="RBL113",
-        why="A line number that stands twice names no line: a message, a log and a jump could mean either.",
+        why="A line number that stands twice names no line: a jump to it could lead to either.",
         bad="10 MOVE P1\n10 MOVE P2\n",
         good="10 MOVE P1\n20 MOVE P2\n",
         line=2,

@@ -1,6 +1,7 @@
 """Experiment A7: the same program under other gains and LOADs; figures of docs/servo.md."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -171,3 +172,16 @@ def test_a_program_with_errors_is_not_compared(tmp_path):
     program = tmp_path / "bad.rbl"
     program.write_text("MOV P1\n")
     assert "RBL112" in robolang("compare", program, code=1).stderr
+
+
+def test_a_run_that_ends_with_an_alarm_is_placed_in_the_program(tmp_path):
+    program = tmp_path / "p.rbl"
+    program.write_text("2 LOAD (0, 0, 60), 0.8\n3 X = 0\n4 MOVE P1\n5 IF X = 0 THEN PRINT 1 / X\n")
+    words = ("compare", program, "--no-physics", "--only", "scheduled")
+    result = robolang(*words, code=3)
+    assert re.search(rf": stopped at {re.escape(str(program))}:4:17, \d+\.\d+ s: RBL501 ", result.stdout)
+    (row,) = json.loads(robolang(*words, "--json", code=3).stdout)["variants"]
+    (alarm,) = row["alarms"]
+    assert (alarm["code"], alarm["file"], alarm["line"], alarm["column"], alarm["number"]) == (
+        "RBL501", str(program), 4, 17, 5)  # fmt: skip
+    assert [(move["line"], move["number"]) for move in row["moves"]] == [(3, 4)]

@@ -93,7 +93,7 @@ def test_a_duplicate_shows_the_first_one_too():
 
 def test_a_target_that_is_missing_is_named_as_spelt():
     (item,) = renumber(source("GOTO 1.5")).diagnostics
-    assert item.message == "there is no line 1.5 to go to"
+    assert item.message == "there is no line number 1.5 to go to"
 
 
 def test_a_number_has_at_most_nine_digits():

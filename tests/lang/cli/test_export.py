@@ -307,3 +307,10 @@ def test_nothing_heavy_is_imported_for_help():
     result = shell("export", "pulses", "--help")
     assert result.returncode == 0
     assert "--channels" in result.stdout
+
+
+def test_what_has_no_value_is_refused_at_its_statement_with_the_calls_that_led_there(tmp_path):
+    path = program(tmp_path, "3 X = 0\n4 CALL S\n5 END\n6 SUB S\n7 IF X = 0 THEN PRINT 1 / X\n8 ENDSUB\n")
+    result = robolang("export", "pulses", path, "-o", tmp_path / "out", code=3)
+    assert places(result.stderr) == [(5, 17, "RBL501")]
+    assert f"{path}:2:3: note: called here" in result.stderr

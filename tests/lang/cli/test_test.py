@@ -31,6 +31,18 @@ def test_the_programs_do_what_they_are_expected_to():
     assert "7 of 7 programs as expected" in result.stdout
 
 
+def test_an_alarm_and_a_warning_are_placed_in_the_program_also_in_the_report(tmp_path):
+    report = tmp_path / "r.xml"
+    text = "10 LOAD (0, 0, 60), 0.8\n20 X = 0\n30 IF X = 0 THEN PRINT 1 / X\n"
+    result = robolang("test", copied(tmp_path, "", text), "--junit", report, code=1)
+    place = f"{tmp_path / 'job.rbl'}:3:18: RBL501 1 / 0"
+    assert place in result.stdout
+    (failure,) = ET.parse(report).getroot().iter("failure")
+    assert place in failure.get("message")
+    program = copied(tmp_path, "warnings = []", "2 MOVE P1\n3 MOVE P5\n")
+    assert f"{program}:1:3: RBL517 " in robolang("test", program, code=1).stdout
+
+
 def test_what_is_not_as_expected_is_named(tmp_path):
     expected = {
         "cycle_s = [1, 2]": "cycle: 5.",
