@@ -1,5 +1,7 @@
 """The checks by themselves: limits of the file, first tick over a limit, regressor and residual."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -119,3 +121,179 @@ def test_the_residual_of_an_exact_motion_vanishes_and_a_payload_is_weighed():
     mass, sigma = observer.estimate()
     assert mass == pytest.approx(1.3, abs=0.02)
     assert 0.0 < sigma < 0.1
+
+
+# --- one cycle after another through the watch ------------------------------------------------------------------------
+
+
+def numbers(message: str) -> list[float]:
+    """Return the numbers of a message in their order: what it says whatever its words are."""
+    return [float(each) for each in re.findall(r"(?<![\w.])[-+]?\d+(?:\.\d+)?|(?<=J)\d", message)]
+
+
+def turning(speed: float, axis: int = 3) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return rows (8, 24) and commands (8, 6) twice of an axis that turns evenly and is followed exactly, rad/s."""
+    rows, q = still()
+    dq = np.zeros((8, 6))
+    dq[:, axis] = speed
+    rows[:, 18 + axis] = speed
+    return rows, q, dq
+
+
+def judged(cycles, one: Watch | None = None):
+    """Judge cycles one after another; return the first finding."""
+    one = one or watch()
+    found = (one.cycle(*each, 8 * k) for k, each in enumerate(cycles))
+    return next((item for item in found if item is not None), None)
+
+
+@pytest.mark.parametrize("axis", [0, 3, 5])
+def test_a_reading_that_jumps_is_an_encoder_that_jumped_and_by_how_much_is_said(axis):
+    limit = SPEC.axes[axis].limits.speed
+    rows, q, dq = turning(0.0, axis)
+    rows[6, 18 + axis] = -3.001 * limit
+    found = judged([(rows, q, dq)])
+    assert (found.code, found.axis, found.tick) == ("RBL515", axis, 6)
+    assert numbers(found.message) == [axis + 1, pytest.approx(3.001 * limit * 1e-3 / DEG, abs=1e-3)]
+    rows[6, 18 + axis] = 2.999 * limit
+    found = judged([(rows, q, dq)])
+    assert (found.code, found.axis, found.tick) == ("RBL513", axis, 6)
+
+
+@pytest.mark.parametrize(("column", "code", "value", "bound"), [
+    (18, "RBL513", lambda axis: 1.21 * SPEC.axes[axis].limits.speed, lambda axis: 1.2 * SPEC.axes[axis].limits.speed),
+    (12, "RBL514", lambda axis: SPEC.upper[axis] + 1.5 * DEG,
+     lambda axis: (SPEC.upper[axis] - SPEC.lower[axis]) / 2.0 + DEG),
+])  # fmt: skip
+@pytest.mark.parametrize("axis", [0, 1, 4])
+def test_an_excursion_is_said_with_its_axis_value_and_limit(axis, column, code, value, bound):
+    rows, _ = still()
+    rows[3:, column + axis] = value(axis)
+    found = judged([(rows, rows[:, 12:18], np.zeros((8, 6)))])
+    assert (found.code, found.axis, found.tick) == (code, axis, 3)
+    middle = (SPEC.upper[axis] + SPEC.lower[axis]) / 2.0 if column == 12 else 0.0
+    assert numbers(found.message) == [
+        axis + 1, pytest.approx((value(axis) - middle) / DEG, abs=0.006), pytest.approx(bound(axis) / DEG, abs=0.006)
+    ]  # fmt: skip
+
+
+def test_a_following_error_is_said_with_its_axis_its_limit_and_the_speed():
+    rows, q, dq = turning(1.0, 3)
+    rows[:, 12 + 2] -= 1.02 * DEG
+    rows[:, 12 + 3] -= 3.0 * DEG  # 1 deg and 20 ms at 1 rad/s are allowed: 2.146 deg
+    found = judged([(rows, q, dq)])
+    # the axis that is furthest over its own limit: 3.0 / 2.146 is more than 1.02 / 1
+    assert (found.code, found.axis, found.tick) == ("RBL511", 3, 0)
+    limit = 1.0 + SupervisionLimits().following_lag / DEG
+    expected = [4, 3.0, pytest.approx(limit, abs=1e-3), pytest.approx(1.0 / DEG, abs=0.06)]
+    assert numbers(found.message) == expected
+
+
+def test_saturation_is_said_with_its_axis_and_torques_and_counts_ticks_in_a_row():
+    rows, q = still()
+    rows[:, 2] = 1.5 * TORQUE[2]
+    calm, one = still()[0], watch()
+    nothing = np.zeros((8, 6))
+    assert judged([(rows, q, nothing)] * 12, one) is None  # 96 ms
+    assert judged([(calm, q, nothing)], one) is None
+    assert judged([(rows, q, nothing)] * 12, one) is None  # counted anew
+    found = judged([(rows, q, nothing)], one)
+    assert (found.code, found.axis, found.tick) == ("RBL512", 2, 4)  # the 101st tick
+    expected = [3, pytest.approx(TORQUE[2], abs=0.06), pytest.approx(1.5 * TORQUE[2], abs=0.06), 100.0]
+    assert numbers(found.message) == expected
+    part = calm.copy()
+    part[:4, 2] = 1.5 * TORQUE[2]
+    assert judged([(rows, q, nothing)] * 11 + [(part, q, nothing)] + [(rows, q, nothing)] * 12) is None
+
+
+FAST = 2.0 * 100.0 * 1e-6 / 1e-3
+"""Twice the speed from which a reading that does not change is wrong, rad/s: 100 steps of 1e-6 rad a tick."""
+
+
+def frozen(ticks: range, speed: float = FAST, axis: int = 3):
+    """Return a cycle whose encoder repeats its reading in some ticks, and catches up after them."""
+    rows, q, dq = turning(speed, axis)
+    for tick in ticks:
+        rows[tick, 18 + axis] = 0.0
+    return rows, q, dq
+
+
+def catching_up(ticks: range, after: float = 2.0):
+    rows, q, dq = frozen(ticks)
+    rows[ticks.stop, 18 + 3] = after * FAST
+    return rows, q, dq
+
+
+def test_an_encoder_that_stands_while_the_command_turns_is_stuck_after_24_ms():
+    stands = frozen(range(8))
+    found = judged([stands] * 4)
+    assert (found.code, found.axis, found.tick) == ("RBL515", 3, 23)
+    assert numbers(found.message) == [4, 24.0]
+    assert judged([frozen(range(8), speed=0.4 * FAST)] * 6) is None  # below 100 steps a tick nothing is known
+    moves = turning(FAST)
+    assert judged([stands, stands, frozen(range(7)), stands, stands, moves]) is None  # 23 ticks, then a reading
+
+
+def test_a_reading_that_is_lost_twice_is_an_encoder_that_loses_samples():
+    lost = catching_up(range(2, 3))
+    found = judged([lost, turning(FAST), lost])
+    assert found is None  # between them everything was well for a cycle: they are counted anew
+    found = judged([lost, lost])
+    assert (found.code, found.axis, found.tick) == ("RBL515", 3, 11)
+    assert numbers(found.message) == [4]
+
+
+@pytest.mark.parametrize("after", [1.3, 1.0])
+def test_a_reading_after_which_nothing_catches_up_is_no_lost_sample(after):
+    assert judged([catching_up(range(2, 3), after)] * 4) is None
+
+
+def test_an_encoder_that_has_stood_too_long_is_not_a_lost_sample():
+    """An axis that starts again after a stand is not one whose samples are lost."""
+    one = watch()
+    one._longest_stand = 6
+    long = catching_up(range(1, 7))
+    found = judged([long], one)
+    assert (found.code, found.tick) == ("RBL515", 6)
+
+
+def test_what_was_counted_is_forgotten_when_all_is_well_for_a_cycle():
+    stands, moves = frozen(range(8)), turning(FAST)
+    assert judged([stands, stands, moves, stands, stands, moves, stands, stands]) is None
+
+
+def test_the_peak_and_the_held_speed_are_those_of_the_command():
+    rows, q, dq = turning(-0.5)
+    one = watch()
+    one.cycle(rows, q, dq, 0)
+    assert one.peak[3] == one.speed[3] == 0.5
+    calm, q = still()
+    one.cycle(calm, q, np.zeros((8, 6)), 8)
+    assert one.peak[3] == 0.0
+    assert one.speed[3] == pytest.approx(0.5 * np.exp(-0.008 / 0.1))
+
+
+def test_a_lagging_servo_may_lag_and_stand_for_longer():
+    lag = np.full(6, 0.05)
+    one = Watch(SPEC, SupervisionLimits(), TORQUE, RESOLUTION, lag, 8, 1e-3)
+    rows, q, dq = turning(0.5)
+    rows[:, 12 + 3] -= (1.0 * DEG + 0.5 * (0.02 + 0.05)) * 0.999
+    assert judged([(rows, q, dq)], one) is None
+    found = judged([frozen(range(8))] * 12, Watch(SPEC, SupervisionLimits(), TORQUE, RESOLUTION, lag, 8, 1e-3))
+    assert (found.code, found.tick) == ("RBL515", 73)  # 24 ms and 50 ms
+
+
+# --- the estimate -----------------------------------------------------------------------------------------------------
+
+
+def test_what_was_weighed_is_forgotten_with_a_new_declaration():
+    observer = Observer(SPEC, SupervisionLimits(), TORQUE, 8, 1e-3, 0.0)
+    observer.residual[:] = 1.0
+    for _ in range(6):
+        observer.learn()
+    assert observer.steps == 6 and np.abs(observer.leftover).max() > 0.0
+    observer.declare(Payload(mass=0.7, cog=np.array([0.0, 0.0, 0.1])), "add")
+    assert observer.steps == 0 and np.abs(observer.leftover).max() == 0.0
+    mass, sigma = observer.estimate()
+    assert mass == 0.7  # nothing weighed: what was declared, as uncertain as the rated payload
+    assert sigma == pytest.approx(SPEC.rated_payload, rel=0.35)

@@ -9,6 +9,7 @@ from runtime.robot.payload import Payload
 from runtime.supervision.limits import SupervisionLimits
 from runtime.supervision.observer import FEWEST, STRIDE
 from runtime.supervision.supervisor import CONFIRMED, Supervisor
+from tests.runtime.supervision.test_supervision import numbers
 
 SPEC = load_builtin("puma560")
 TORQUE = SPEC.per_axis("limits", "torque")
@@ -62,12 +63,16 @@ def test_a_payload_that_is_right_is_never_reported():
 def test_a_wrong_payload_stops_and_an_undeclared_one_warns_once():
     arm, judge = Swing(HEAVIER), supervisor()
     found, _ = arm.cycles(judge, 120)
-    assert (found.code, found.warning) == ("RBL517", True)
+    assert (found.code, found.warning, found.tick, found.axis) == ("RBL517", True, arm.tick - 1, None)
+    mass, sigma = judge.observer.estimate()
+    assert numbers(found.message) == [pytest.approx(mass, abs=0.006), pytest.approx(sigma, abs=0.006)]
+    assert mass == pytest.approx(2.0, abs=0.2)
     assert arm.cycles(judge, 120) == (None, 120)
     arm, judge = Swing(HEAVIER), supervisor()
     judge.declare(Payload(mass=0.5, cog=np.zeros(3)), "add")
     found, _ = arm.cycles(judge, 120)
     assert (found.code, found.warning) == ("RBL517", False)
+    assert numbers(found.message)[0] == 0.5
 
 
 @pytest.mark.parametrize(("reaction", "expected"), [("warn", True), ("stop", False), ("off", None)])
@@ -98,8 +103,11 @@ def test_an_unexplained_torque_is_a_collision_after_two_residuals_in_a_row():
     judge.declare(HEAVIER, "add")
     assert arm.cycles(judge, 8) == (None, 8)  # too few for an estimate of the payload
     found, cycle = arm.cycles(judge, 20, extra=0.5 * TORQUE[0])
-    assert (found.code, found.axis) == ("RBL516", 0)
+    assert (found.code, found.axis, found.tick) == ("RBL516", 0, arm.tick - 1)
     assert 2 * (CONFIRMED - 1) <= cycle <= 2 * CONFIRMED
+    bound = 0.2 * TORQUE[0] + 2.0 * judge.observer.sigma[0]
+    expected = [1, pytest.approx(0.5 * TORQUE[0], rel=0.01), pytest.approx(bound, abs=0.06)]
+    assert numbers(found.message) == expected
     arm, judge = Swing(HEAVIER), supervisor(collision=np.inf, payload_mismatch="off")
     judge.declare(HEAVIER, "add")
     assert arm.cycles(judge, 40, extra=0.5 * TORQUE[0]) == (None, 40)
@@ -130,8 +138,10 @@ def test_rows_before_an_acknowledgement_no_longer_count():
     ("oldest_us", "payload_us", "why"),
     [
         (400_000.0, 400_000.0, None),
+        (700_000.0, 0.0, "inertia"),
         (400_001.0, 0.0, "inertia"),
         (np.nan, 0.0, "inertia"),
+        (0.0, 900_000.0, "LOAD"),
         (0.0, 400_001.0, "LOAD"),
         (0.0, np.nan, "LOAD"),
     ],
@@ -142,7 +152,9 @@ def test_old_loads_and_a_load_that_does_not_arrive_are_stale(oldest_us, payload_
         assert found is None
     else:
         assert (found.code, found.tick) == ("RBL521", 7)
-        assert why in found.message and "400 ms" in found.message
+        assert why in found.message
+        age = [] if np.isnan(oldest_us + payload_us) else [round((oldest_us + payload_us) / 1000.0)]
+        assert numbers(found.message) == [*age, 400.0]
 
 
 def test_late_cycles_warn_first_and_stop_when_they_do_not_end():
@@ -178,3 +190,33 @@ def test_an_axis_that_loses_its_command_during_a_stop_is_named(error, axis):
     judge.watch.cycle(rows, command, np.zeros((TICKS, 6)), 0)
     found = judge.watch.lost_track(3.0)
     assert found == axis
+
+
+def test_a_torque_that_no_payload_explains_is_named_though_it_is_below_the_collision_limit():
+    """A steady torque on J1 of 10 % of its limit, half of what a collision takes: no payload has that."""
+    arm, judge = Swing(HEAVIER), supervisor()
+    judge.declare(HEAVIER, "add")
+    found, _ = arm.cycles(judge, 120, extra=0.1 * TORQUE[0])
+    assert (found.code, found.axis, found.tick, found.warning) == ("RBL516", 0, arm.tick - 1, False)
+    leftover = abs(judge.observer.leftover[0])
+    expected = [1, pytest.approx(judge.observer.residual[0], abs=0.06), pytest.approx(leftover, abs=0.06)]
+    assert numbers(found.message) == expected
+    assert leftover > 4.0
+
+
+@pytest.mark.parametrize(("mass", "found"), [(2.0 - 0.43, None), (2.0 - 0.5, "RBL517"), (2.0 + 0.5, "RBL517")])
+def test_a_difference_counts_from_the_tolerance_of_the_rated_payload_on(mass, found):
+    """17.5 % of 2.5 kg are 0.4375 kg."""
+    arm, judge = Swing(HEAVIER), supervisor()
+    judge.declare(Payload(mass=mass, cog=HEAVIER.cog), "add")
+    item, _ = arm.cycles(judge, 200)
+    assert (None if item is None else item.code) == found
+
+
+def test_an_arm_that_hardly_moves_is_not_weighed():
+    judge = supervisor()
+    arm = Swing(HEAVIER)
+    judge.watch.cycle = lambda *_: None
+    judge.watch.peak[:] = 0.019 * SPEC.per_axis("limits", "speed").min()
+    assert arm.cycles(judge, 60) == (None, 60)
+    assert judge.observer.steps == 0
