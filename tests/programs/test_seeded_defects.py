@@ -102,7 +102,7 @@ DEFECTS = [
     (DISPENSE, "MOVE START + (R, LONG, 0)", "MOVE START + (R, LONG, -190)", "RBL421"),
     (PICK, "100 MOVE P4", "100 MOVE P4 + (0, 0, 600)", "RBL410"),
     (SORT, "100       TARGET = LEFT", "100       TARGET = LEFT + (0, 0, -80)", "RBL421"),
-    (INSPECT, "MOVEJ HOME", "MOVEJ JOINT(0, 300, 0, 0, 0, 0)", "RBL411"),
+    (INSPECT, "MOVEJ HOME", "MOVEJ JOINT(0, 300, 0, 0, 0, 0)", "RBL309"),
     (PICK, "110 MOVE P5", "110 MOVE P5 * (0, 0, 0, 0, 180, 0)", None),
     (DISPENSE, "START + (WIDE - R + R * SIN(45), R - R * COS(45), 0)", "START + (WIDE - R, 0, 0)", "RBL416"),
     (TEND, "WAIT IN(1) = 1, TIMEOUT 5, GOTO *NOT_READY", "WAIT IN(4) = 1", "RBL509"),

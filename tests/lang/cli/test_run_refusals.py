@@ -39,7 +39,7 @@ BAD_TEXT = [
     ("10 LOAD (0, 0, 10), 1, (1, 1, 5, 0, 0, 0)", (1, 24, "RBL403"), "triangle inequality"),
     ("10 MOVE P1\n20 MOVE P9", (2, 9, "RBL301"), "taught: P1, P2, P3, P4, P5"),
     ("10 MOVE P1, SPEED 0", (1, 19, "RBL404"), "SPEED in mm/s"),
-    ("10 MOVE P1, SPEED 50\n20 MOVE P5, SPEED 5000", (2, 4, "RBL404"), "SPEED in mm/s"),  # the robot's
+    ("10 MOVE P1, SPEED 50\n20 MOVE P5, SPEED 5000", (2, 19, "RBL404"), "SPEED in mm/s"),  # the robot's
     ("10 HAND ON, -1", (1, 13, "RBL405"), "give 0 to 600 s"),
     ("10 MOVE P1\n10 MOVE P1", (2, 1, "RBL113"), "Renumber"),
 ]
