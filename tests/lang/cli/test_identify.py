@@ -86,7 +86,7 @@ def test_without_a_date_the_file_has_none(tmp_path):
         (("--date", "yesterday"), "RBL703 --date"),
         (("--out", "file.toml"), "must end in .compensation.toml"),
         (("--carrying", "1,0,0"), "RBL703 --carrying"),
-        (("--carrying", "9,0,0,0"), "over the rated"),
+        (("--carrying", "9,0,0,0"), "the robot is rated for"),
         (("--positions", "0"), "--positions"),
         (("--error", "x"), "--error"),
         (("--table", "1"), "--table"),
