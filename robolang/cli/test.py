@@ -2,7 +2,7 @@
 
 ``NAME.test.toml`` beside ``NAME.rbl`` (docs/testing.md). A test whose files cannot be used fails, and the others run
 all the same. Exit codes: 0 all as expected; 1 one is not; 2 a file cannot be used, or a path has no test; 4 a file
-cannot be written. ``--junit FILE`` writes the report, in every case, of one test suite for each program.
+cannot be written. ``--junit FILE`` writes the report, of one test suite for each program.
 """
 
 from collections.abc import Iterator
