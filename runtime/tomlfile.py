@@ -263,7 +263,8 @@ class Table:
         if not (low <= number <= high) or (positive and not number > 0.0):
             shown, least, most = beside(number, low, high)
             wanted = "above 0" if positive and number <= 0.0 else f"between {least} and {most}"
-            self.fail("RBL605", f"'{self.name(key)}' is {shown} and must be {wanted}", key=key)
+            mm = f"lengths are in m: write {number / 1e3:g} for {number:g} mm" if key.endswith("_m") else ""
+            self.fail("RBL605", f"'{self.name(key)}' is {shown} and must be {wanted}", mm, key=key)
         return number
 
     def numbers(self, key: str, count: int | None, default: Sequence[float] | None = None, *,

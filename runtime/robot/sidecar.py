@@ -26,6 +26,9 @@ from runtime.robot.spec import AxisSpec, Correction, RobotSpec
 from runtime.tomlfile import FileFault
 from runtime.units import DEG
 
+TYPED = 1e-9
+"""An angle nearer to six decimals of a degree was typed with them, deg."""
+
 
 def complete(arm: ImportedArm, file: SidecarFile) -> RobotSpec:
     """Return the robot of an imported arm and its sidecar; ``FileFault`` RBL610 or RBL606 where they do not fit."""
@@ -148,8 +151,10 @@ def _given_limits(axis: ImportedAxis) -> dict[str, str]:
 
 
 def _degrees(angle: float) -> str:
-    # 15 digits: rad to deg and back loses one, and a range of 180 must not become 180.00000000000003
-    return repr(float(f"{angle / DEG:.15g}"))
+    # as it was typed: 185 deg written with 14 digits of rad must not become 185.000000000028
+    degrees = angle / DEG
+    near = round(degrees, 6)
+    return repr(near + 0.0 if abs(degrees - near) <= TYPED else float(f"{degrees:.15g}"))
 
 
 def _motor_notes(axis: ImportedAxis) -> list[str]:

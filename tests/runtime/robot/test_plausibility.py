@@ -12,6 +12,7 @@ from runtime.robot.loader import load_builtin, parse_robot
 from runtime.robot.plausibility import LEAST_ANGLE, MOST_TURNS, Turning, doubt_turning
 from runtime.robot.robot_file import library
 from runtime.robot.sidecar import template
+from runtime.robot.sidecar_file import read_overlay
 from runtime.tomlfile import FileFault, Source
 from tests.runtime.robot.models import ANGLES, SEVEN, chain, fill, inertial
 from tests.runtime.robot.test_loader import TEXT as PUMA
@@ -120,6 +121,19 @@ def test_a_robot_file_in_toml_is_doubted_at_the_key(old, new, code, key):
     assert doubts[0].excerpt[doubts[0].column - 1 :].startswith(key)
 
 
+def test_an_arm_heavier_than_its_size_is_doubted(tmp_path):
+    heavy = [inertial(mass=1000.0, inertia=(30.0, 30.0, 30.0, 0, 0, 0))] * 3  # as large and dense as bodies are
+    (doubt,) = read_model(written(tmp_path, chain(FRAMES, TIP, heavy))).warnings
+    assert doubt.code == "RBL629"
+    assert "3000 kg" in doubt.message
+
+
+def test_mm_in_a_robot_file_are_named():
+    with pytest.raises(FileFault, match="RBL605") as caught:
+        parse_robot(Source("p.toml", PUMA.replace("a_m = 0.4318", "a_m = 431.8", 1)))
+    assert "0.4318" in caught.value.hint
+
+
 def test_a_sidecar_is_doubted_where_it_rules(tmp_path):
     degrees = SEVEN.read_text().replace('lower="-2.967060" upper="2.967060"', 'lower="-170" upper="170"', 1)
     path = written(tmp_path, degrees, "seven.urdf")
@@ -134,6 +148,26 @@ def test_a_sidecar_is_doubted_where_it_rules(tmp_path):
     sidecar.write_text(fill(text, range_deg="[-900, 900]"))
     for doubts in (load_file(path).warnings, read_arm(path).warnings):
         assert [(fault.code, fault.path) for fault in doubts] == [("RBL627", str(sidecar))]
+
+
+@pytest.mark.parametrize(
+    ("typed", "shown"),
+    [("3.2288591161895", "185.0"), ("-3.141592653589793", "-180.0"), ("-2.967060", "-170.000015"), ("1.2", "68.7549"),
+     ("0.0", "0.0"), ("-170", "MISSING")],
+)  # fmt: skip
+def test_a_range_is_written_as_it_was_typed_and_read_back_the_same(tmp_path, typed, shown):
+    low, high = sorted((typed, "0.5"), key=float)
+    path = written(tmp_path, chain(FRAMES, TIP, limit=f'lower="{low}" upper="{high}"'))
+    arm = read_model(path)
+    text = template(arm)
+    line = next(line for line in text.splitlines() if "range_deg" in line)
+    assert shown in line
+    if "MISSING" not in line:
+        overlay = read_overlay(Source("a.robot.toml", text))
+        assert list(overlay.ranges) == ["j1", "j2", "j3"]
+        for name, (lower, upper) in overlay.ranges.items():
+            index = int(name[1:]) - 1
+            assert (lower, upper) == pytest.approx((arm.lower[index], arm.upper[index]), abs=2e-11)
 
 
 @pytest.mark.parametrize("lower", [math.nan, -3.0, -MOST_TURNS, -LEAST_ANGLE * 1.001])
