@@ -206,9 +206,10 @@ def _loads(project: Project, moves: Sequence[RehearsedMove]) -> Found:
     shares = worst_loads(project, moves)
     for share in sorted(shares, key=lambda share: (not share.given, share.limit / share.value)):  # worst first
         if not share.value <= share.limit * (1.0 + OVERLOAD) + NOTHING:
+            value, limit = beside(share.value, share.limit, form=".3g")
             code = "RBL425" if share.what == "moment" else "RBL426"
             yield _at(code, share.move, f"at {share.move.share(share.row):.1f} % of the way the {share.what} of the "
-                      f"payload of {share.move.payload.mass:g} kg about J{share.axis + 1} is {share.value:.4g} "
+                      f"payload of {share.move.payload.mass:g} kg about J{share.axis + 1} is {value} "
                       f"{share.unit}, {share.value - share.limit:.3g} more than "
-                      f"{'it is rated for' if share.given else 'its drive allows by estimate'}, {share.limit:.4g} "
+                      f"{'it is rated for' if share.given else 'its drive allows by estimate'}, {limit} "
                       f"{share.unit}", Severity.ERROR if share.given else Severity.WARNING)  # fmt: skip
