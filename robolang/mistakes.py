@@ -19,6 +19,7 @@ from robolang.words import (
     INSTRUCTIONS,
     KEYWORDS,
     MOTIONS,
+    NEW,
     OPTIONS,
     RESERVED,
     code_point,
@@ -208,7 +209,7 @@ def _hint(found: Unexpected) -> str:
         return f"write a comma before {word}"
     if "$END" in found.accepts and (word in INSTRUCTIONS or found.kind == "NAME"):
         return "write one instruction on each line"
-    if found.kind == "EQ" and found.instruction in RESERVED:
+    if found.kind == "EQ" and found.instruction in RESERVED | NEW:  # of a new word: an older program's variable
         return f"{found.instruction} is a word of the language and cannot be a name"
     if "NAME" in found.accepts and word in RESERVED:
         return f"{word} is a word of the language and cannot be a name"

@@ -11,10 +11,12 @@ worst of all that is assigned to it anywhere. Only names that a comparison can d
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import IntEnum
+from typing import get_args
 
 from robolang.diagnostics import Diagnostic, Related, Severity
 from robolang.nodes import (
     Assign,
+    Block,
     Call,
     CallSub,
     Case,
@@ -23,15 +25,22 @@ from robolang.nodes import (
     Const,
     Expression,
     For,
+    Hand,
     Head,
     If,
+    Jump,
+    Load,
+    Moving,
     Name,
     Negate,
+    Next,
     Number,
     Program,
     Statement,
     Sub,
     Vector,
+    Word,
+    Wrist,
 )
 from robolang.printer import print_expression
 from robolang.tree import walk
@@ -167,8 +176,14 @@ _Compared = tuple[Expression, tuple[Expression, ...], str]
 """Where a comparison stands, its sides, and its sign; ``CASE`` for a sign where SELECT compares."""
 
 
+_SKIPPED = (*get_args(Moving), Load, Hand, Wrist, Block, Word, Jump, Sub, Next)
+"""Statements that compare nothing, or where nobody does; they are most of a program."""
+
+
 def _compared(statements: list[Statement]) -> Iterator[_Compared]:
     for node in statements:
+        if isinstance(node, _SKIPPED):
+            continue
         parts = (node.condition,) if isinstance(node, If) else (node,)
         for each in (each for part in parts for each in walk(part)):
             if isinstance(each, Chain) and each.rest[0][0] in ("=", "<>"):

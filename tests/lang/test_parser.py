@@ -29,7 +29,7 @@ from robolang.points import load_points
 from robolang.printer import describe
 from robolang.source import Span
 from robolang.words import FUNCTIONS, KEYWORDS, VALUES
-from tests.lang.helpers import parse_found, parsed, source
+from tests.lang.helpers import only, parse_found, parsed, source
 
 
 def statement(text):
@@ -336,3 +336,11 @@ def test_a_new_word_is_a_name_where_no_sign_can_stand(text):
 def test_a_point_may_have_the_name_of_a_new_word(tmp_path):
     (tmp_path / "p.points.toml").write_text("schema = 1\n[points.XOR]\npose = [450, -150, 200, 180, 0, 90]\n")
     assert load_points(tmp_path / "p.points.toml").get("XOR") is not None
+
+
+def test_a_new_instruction_clashes_with_a_variable_in_one_error_that_names_it(monkeypatch):
+    monkeypatch.setattr("robolang.parser.NEW", frozenset({"PULSE"}))
+    for text in ("MOVE PULSE, SPEED PULSE", "*PULSE PULSE 1, 0.5", "FRAME PULSE", "x = PULSE + PULSE", "CALL f(PULSE)"):
+        assert parse_found(text) == []
+    assert parse_found("PULSE = 5") == [("RBL111", 1, 7, 1)]
+    assert only("PULSE = 5").hint == "PULSE is a word of the language and cannot be a name"
