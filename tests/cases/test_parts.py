@@ -23,3 +23,11 @@ def test_the_command_ends_with_a_motion_fault_at_its_place():
     result = CliRunner().invoke(app, ["run", str(LIGHT), "--quiet"])
     assert result.exit_code == 3
     assert f"{LIGHT}:5:1: error RBL536 " in result.stderr
+
+
+def test_no_loss_stops_a_run_without_supervision(tmp_path):
+    for path in LIGHT.parent.iterdir():
+        (tmp_path / path.name).write_text(path.read_text("utf-8"), "utf-8")
+    with (tmp_path / "p.cell.toml").open("a", encoding="utf-8") as cell:
+        cell.write("\n[controller.supervision]\nenabled = false\n")
+    assert run(tmp_path / "p.rbl").report["alarms"] == []

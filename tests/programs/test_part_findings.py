@@ -100,8 +100,20 @@ def test_a_part_is_taken_where_it_was_put_down(tmp_path):
 
 
 def test_a_part_that_was_dropped_is_not_known_any_more(tmp_path):
-    text = GRIP + "MOVE P1 + (0, 0, 50)\n" + LET_GO + "MOVE P1\nHAND ON\n"
-    assert found(tmp_path, text, OWN) == ([], [])
+    dropped = GRIP + "MOVE P1 + (0, 0, 50)\n" + LET_GO
+    assert found(tmp_path, dropped + "MOVE P1\nHAND ON\n", OWN) == ([], [])
+    assert found(tmp_path, dropped + BESIDE + "MOVE P1 + (0, 55, 0)\n", OWN) == ([], [])
+
+
+def test_only_the_widest_of_two_parts_is_gripped(tmp_path):
+    """They stand side by side between the pads; the narrower one stays, and is gripped the next time."""
+    parts = [("wide", 9, 40, 80, 0.5, 475, -220, 640), ("narrow", 9, 30, 80, 0.5, 485, -220, 640)]
+    there = "MOVE P1 + (0, 0, 100)\nMOVE P1 + (0, 150, 100)\nMOVE P1 + (0, 150, 0)\n"
+    place = there + LET_GO + "MOVE P5 + (0, 150, 0)\n"
+    again = "MOVE P5\nMOVE P1\nHAND ON\nLOAD (0, 0, 95), 1.3\nMOVE P5\n"
+    assert found(tmp_path, GRIP + place + again, *parts) == ([], [])
+    parts[1] = (*parts[1][:2], 40, *parts[1][3:])
+    assert [code for code, _ in found(tmp_path, GRIP + place + again, *parts)[0]] == ["RBL441"]
 
 
 def test_a_part_that_the_cell_puts_into_another_is_not_known(tmp_path):
@@ -130,3 +142,21 @@ def test_the_other_branch_is_followed_with_its_own_parts(tmp_path):
     (touched,) = (item for item in items if item.code in CODES)
     assert (touched.code, project.source.place(touched.span.start).line) == ("RBL440", 17)
     assert touched.message.endswith("would touch part (if 'IN(1) = 1' in line 2 is not true)")
+
+
+def test_a_carried_part_meets_the_arm(tmp_path):
+    """A long rod, gripped in its middle, is swung up to the forearm by J5."""
+    rod = ("rod", 850, 40, 40, 1.0, 480, -220, 620)
+    text = "MOVE P1 + (0, 0, 2)\nHAND ON\nLOAD (0, 0, 95), 1.8\nMOVE P5 + (0, 0, 120)\n"
+    rows, (message,) = found(tmp_path, text + "MOVEJ JOINT(-8, 77, -160, 0, 97, -8)\n", rod)
+    assert rows == [("RBL440", 6)]
+    assert message.endswith("the carried rod would touch link 3")
+
+
+def test_nothing_to_grip_is_not_said_of_another_branch(tmp_path):
+    text = "IF IN(1) = 1 THEN MOVE P1 ELSE MOVE P1 + (0, 0, 100)\nHAND ON\n"
+    project = job(tmp_path, text, OWN, obstacles="[inputs.1]\nchanges = [[0, 1]]\n")
+    explored = explore(project)
+    assert len(explored.detours) == 1
+    items = findings(project, explored.rehearsal, None, explored.detours)
+    assert [item.code for item in items if item.code in CODES] == []

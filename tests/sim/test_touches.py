@@ -96,6 +96,8 @@ def test_a_touch_that_goes_on_is_told_for_each_statement(tmp_path):
     text = BESIDE + "MOVE P1 + (0, 60, 0), SPEED 50\nMOVE P1 + (0, 55, 0), SPEED 50\n"
     report, moved = ran(tmp_path, text, OWN)
     assert [row for row in said(report) if row[0] != "RBL523"] == [("RBL535", 4), ("RBL535", 5)]
+    times = [item["time_s"] for item in report["warnings"]]
+    assert times == sorted(times)
     assert sum(touch["moved_mm"] for _, touch in pushed(report)) == pytest.approx(moved["part"], abs=0.1)
 
 

@@ -107,6 +107,14 @@ def test_what_stops_the_drives_is_said_though_it_has_not_moved(by, blocked):
         assert cell.touches.records[0].message == "the left finger touched b and was stopped by it"
 
 
+def test_what_was_touched_before_did_not_stop_the_drives():
+    cell = Cell()
+    cell.run({("palm", "part:b")})
+    cell.run((), 2)
+    cell.touches.blocked()
+    assert cell.found == []
+
+
 def test_pads_that_jump_back_from_a_part_have_not_lost_it():
     cell = Cell()
     cell.grip()
