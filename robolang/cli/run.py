@@ -29,6 +29,10 @@ if TYPE_CHECKING:
     from robolang.session import Progress, RunResult, Session, StatementRun
 
 
+_MOST_SHOWN = 3
+"""Warnings of one code that are printed for one statement; a loop may raise thousands. The report has all."""
+
+
 def run(
     program: Annotated[str, typer.Argument(metavar="PROG", help="Program file (.rbl).")],
     cell: Annotated[str | None, typer.Option(help="Cell file (.toml); default: the one beside the program.")] = None,
@@ -131,13 +135,16 @@ def _write(result: "RunResult", report: Path | None, log: Path | None) -> int:
 
 
 def _print_alarms(project: "Project", result: "RunResult", *, warnings: bool) -> None:
-    """Print what went wrong in a run at its statements; a warning that comes again at one of them with a count."""
+    """Print what went wrong in a run at its statements; of the same code at one of them the first ``_MOST_SHOWN``."""
     report: Any = result.report
-    counts = Counter((item.code, item.span) for item in result.warnings) if warnings else Counter()
-    for item, row in zip(result.warnings, report["warnings"], strict=True):
-        count = counts.pop((item.code, item.span), 0)
-        if count:
-            _print_at(project, item, f"at {row['time_s']:.3f} s{f', {count} times in all' if count > 1 else ''}")
+    counts = Counter((item.code, item.span) for item in result.warnings)
+    shown: Counter[object] = Counter()
+    for item, row in zip(result.warnings, report["warnings"], strict=True) if warnings else ():
+        key = item.code, item.span
+        shown[key] += 1
+        if shown[key] <= _MOST_SHOWN:
+            more = counts[key] - _MOST_SHOWN if shown[key] == _MOST_SHOWN else 0
+            _print_at(project, item, f"at {row['time_s']:.3f} s{f', and {more} more times here' if more > 0 else ''}")
     for item, row in zip(result.alarms, report["alarms"], strict=True):
         _print_at(project, item, f"at {row['time_s']:.3f} s")
 
