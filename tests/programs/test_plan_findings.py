@@ -134,6 +134,20 @@ def test_a_pose_taught_with_a_configuration_that_a_kept_wrist_does_not_reach_is_
     assert message.startswith("ends RIGHTY ABOVE FLIP with turns [0, 0, -1, 0, 0, 0], not RIGHTY ABOVE ")
 
 
+def test_a_zone_of_a_move_under_a_seam_sensor_is_named(tmp_path):
+    """Such moves do not blend, whatever the program says."""
+    for suffix in (".cell.toml", ".points.toml"):
+        (tmp_path / f"p{suffix}").write_text((ROOT / f"programs/wrist/seam{suffix}").read_text("utf-8"), "utf-8")
+    text = (ROOT / "programs/wrist/seam.rbl").read_text("utf-8")
+    (tmp_path / "p.rbl").write_text(text.replace("SPEED 70, WRIST AUTO", "SPEED 70, WRIST AUTO, ZONE 20"), "utf-8")
+    project = load_project(tmp_path / "p.rbl")
+    assert project.ok, project.diagnostics
+    (found,) = [item for item in findings(project, rehearse(project)) if item.code in OTHERWISE]
+    assert (found.code, project.source.place(found.span.start).line) == ("RBL414", 6)
+    report = Session(project, physics=False).run().report
+    assert [row["message"] for row in report["warnings"] if row["code"] == "RBL414"] == [found.message]
+
+
 def test_a_statement_in_a_loop_is_named_once(tmp_path):
     text = "SPEED 250\nFOR n = 1 TO 3\nMOVE (HERE + (0, 40, 0)) * (0, 0, 0, 0, 0, 100)\n" \
            "MOVE (HERE + (0, -40, 0)) * (0, 0, 0, 0, 0, -100)\nNEXT n\n"  # fmt: skip
