@@ -16,7 +16,7 @@ from robolang.builtin import cell_text
 from robolang.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.points import PointStore, load_points
 from runtime.faults import Fault
-from runtime.plant.cell_file import CellFile, parse_cell_file, read_cell_file
+from runtime.plant.cell_file import CellFile, parse_cell_file, read_arm_alone, read_cell_file
 from runtime.profile import Layer, Settings, check_axes, compensation_file, settle
 from runtime.robot import robot_file
 from runtime.robot.arm_file import ROBOT_ENDINGS, ArmFile, read_arm_file
@@ -85,6 +85,8 @@ def read_beside(program: Path, files: CellFiles | None = None, *, cell: Path | N
         settings = controller_settings(found, layers)
     except Fault as fault:
         faults += fault.all
+        if found is None and where is not None and robot is None:
+            symbols = CellSymbols.of_arm(read_arm_alone(where))
     try:
         points = taught_points(program, builtin=where is None, symbols=symbols)
         symbols = symbols.taught(points.names, str(points_file(program)))

@@ -8,6 +8,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 from runtime.plant.cell_file import CellFile, LoadFile
+from runtime.robot.arm_file import ArmFile
 from runtime.robot.drives import SPEED_ROUNDING, Limits
 from runtime.units import MM
 
@@ -36,11 +37,8 @@ class CellSymbols:
     @staticmethod
     def of(cell: CellFile) -> "CellSymbols":
         """Return what a cell file gives."""
-        return CellSymbols(
-            robot=cell.arm.name,
-            limits=cell.arm.limits,
-            rated_payload=cell.arm.rated_payload,
-            max_speed_mm_s=cell.arm.path.max_speed / MM * (1.0 + SPEED_ROUNDING),
+        return replace(
+            CellSymbols.of_arm(cell.arm),
             sensors=_keys(cell.sensors),
             tools=_keys(cell.tools),
             frames=_keys(cell.frames),
@@ -48,6 +46,14 @@ class CellSymbols:
             inputs=frozenset(cell.inputs),
             cell_file=cell.path,
         )
+
+    @staticmethod
+    def of_arm(arm: ArmFile | None) -> "CellSymbols":
+        """Return what the arm alone gives: of its cell nothing more is known, where the file is damaged."""
+        if arm is None:
+            return NOTHING_KNOWN
+        return CellSymbols(robot=arm.name, limits=arm.limits, rated_payload=arm.rated_payload,
+                           max_speed_mm_s=arm.path.max_speed / MM * (1.0 + SPEED_ROUNDING))  # fmt: skip
 
     @staticmethod
     def named(*, points: Collection[str] | None = None, rated_payload_kg: float | None = None,

@@ -1,13 +1,14 @@
 """Meaning: what is wrong with a program that parses.
 
-Every limit is written so that NaN fails it. Limits of the robot's own (reach, joints, speed) belong to the planner
-and are found before the move that breaks them; here are the limits that hold for every robot, and the facts of
-the cell that need no kinematics: its names (taught points, sensors, tools, frames, loads, inputs) and what the arm may
-carry. Values of numbers alone are worked out (``evaluator``), so ``SPEED 2 * 50`` is checked like ``SPEED 100``; what
-depends on a variable is checked when it runs. Blocks and jumps are ``structure``'s, what the order of statements shows
-is ``flow_check``'s, names that nothing reads are ``usage_check``'s: both look at programs without errors only, in which
-one mistake does not look like many. What a statement shows alone (``wait_check``, ``rounding_check``) is reported
-beside errors of other lines as well. Time is linear in the program.
+Every limit is written so that NaN fails it. What needs the geometry of the arm (reach, the joints along a path)
+belongs to the planner and is found before the move that breaks it; here are the limits that hold for every robot, and
+the facts of the cell that need no kinematics (``cell_symbols``): its names (taught points, sensors, tools, frames,
+loads, inputs), what the arm may carry, how fast its tool may be and the ranges of its joints. Values of numbers alone
+are worked out (``evaluator``), so ``SPEED 2 * 50`` is checked like ``SPEED 100``; what depends on a variable is
+checked when it runs. Blocks and jumps are ``structure``'s, what the order of statements shows is ``flow_check``'s,
+names that nothing reads are ``usage_check``'s: both look at programs without errors only, in which one mistake does
+not look like many. What a statement shows alone (``wait_check``, ``rounding_check``) is reported beside errors of
+other lines as well. Time is linear in the program.
 """
 
 from bisect import bisect_left, bisect_right

@@ -1,7 +1,7 @@
 """Statements: values out of range, options that contradict, names of the cell that are none, and wrong arguments.
 
-Every limit is written so that NaN fails it. Limits of the robot's own (reach, joints, speed) belong to the planner;
-here are those that hold for every robot, and what the arm may carry.
+Ranges are those of ``limits``, by which the interpreter judges as well; what the arm may carry is judged by
+``runtime.robot.load_rules``, as in a run.
 """
 
 import math

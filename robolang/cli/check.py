@@ -1,7 +1,7 @@
 """``robolang check [PATHS|-]``: find what is wrong with programs without running them, and correct what is certain.
 
-Text and taught points; with ``--motion`` also the motion, planned as a run plans it (``check_motion``). A file that
-cannot be read does not keep the others from being checked. Without ``--motion`` no numpy, pinocchio, mujoco or rich.
+Text, cell and taught points; with ``--motion`` also the motion, planned as a run plans it (``check_motion``). A file
+that cannot be read does not keep the others from being checked. Without ``--motion`` no numpy, pinocchio, mujoco, rich.
 
 Exit codes (docs/decisions/0005): 0 no errors; 1 errors, with ``--strict`` also warnings, with ``--diff`` something to
 correct; 2 a file, an option or the configuration cannot be used; 4 a file cannot be written. The worst one counts.
@@ -55,7 +55,7 @@ def check(
     ] = None,
     watch: Annotated[bool, typer.Option("--watch", help="Check again whenever a file changes, until Ctrl-C.")] = False,
 ) -> None:
-    """Check programs; exit code 1 when one has an error, 2 when one or its points cannot be read."""
+    """Check programs; exit code 1 when one has an error, 2 when one, its cell or its points cannot be used."""
     with reported():
         from robolang.cli.check_job import Job, run_once, watched
 

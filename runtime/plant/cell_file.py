@@ -17,7 +17,7 @@ from runtime.plant.signals import InputSpec, read_inputs
 from runtime.profile import Layer, read_layer
 from runtime.robot import robot_file
 from runtime.robot.arm_file import ROBOT_ENDINGS, ArmFile, read_arm_file
-from runtime.tomlfile import Source, Table, inside, load_table, read_source
+from runtime.tomlfile import FileFault, Source, Table, inside, load_table, read_source
 from runtime.units import DEG
 
 SCHEMA = 1
@@ -95,6 +95,14 @@ class CellFile:
 def read_cell_file(path: Path) -> CellFile:
     """Read a cell file; ``FileFault`` (RBL6xx) at the first line that is wrong, with all others."""
     return parse_cell_file(read_source(path), path.parent)
+
+
+def read_arm_alone(path: Path) -> ArmFile | None:
+    """Return the arm of a cell file of which something else is wrong, None where the arm cannot be read either."""
+    try:
+        return _arm(load_table(read_source(path)), path.parent)
+    except FileFault:
+        return None
 
 
 def parse_cell_file(source: Source, folder: Path | None = None) -> CellFile:

@@ -55,10 +55,16 @@ def read_inputs(tables: Mapping[str, Table]) -> dict[int, InputSpec]:
     """Read all inputs of a cell by number."""
     found: dict[int, InputSpec] = {}
     for name, table in tables.items():
-        if not (name.isdecimal() and 1 <= int(name[:9]) <= MOST and str(int(name)) == name):
-            table.fail("RBL605", f"an input is a number from 1 to {MOST}, not '{name[:20]}'")
-        found[int(name)] = read_input(table)
+        spec = table.gather(lambda table, name=name: _numbered(name, table))  # type: ignore[misc]
+        if spec is not None:
+            found[int(name)] = spec
     return found
+
+
+def _numbered(name: str, table: Table) -> InputSpec:
+    if not (name.isdecimal() and 1 <= int(name[:9]) <= MOST and str(int(name)) == name):
+        table.fail("RBL605", f"an input is a number from 1 to {MOST}, not '{name[:20]}'")
+    return read_input(table)
 
 
 class Signals:

@@ -1,5 +1,6 @@
 """What ``check`` finds in the files beside a program is what a run refuses, with code and place."""
 
+import re
 import shutil
 from pathlib import Path
 
@@ -83,6 +84,25 @@ def test_all_that_is_wrong_with_a_cell_and_its_points_is_said_at_once(case):
         ("RBL608", 11), ("RBL613", 22), ("RBL604", 29),  # one fault for both keys that [hand] lacks
         ("RBL307", 3), ("RBL307", 5), ("RBL308", 6), ("RBL303", 7),
     ]  # fmt: skip
+
+
+def test_a_damaged_cell_does_not_hide_what_its_arm_shows_of_points_and_program(case):
+    """The robot is known: its ranges, its number of axes and what it may carry."""
+    program = case(CELL)
+    program.write_text("LOAD (0, 0, 60), 9\nMOVEJ JOINT(0, 500, 0, 0, 0, 0)\nTOOL unknown\n")
+    program.with_name("p.points.toml").write_text("schema = 1\n[points.A]\njoints = [0, 500, 0, 0, 0, 0]\n")
+    found = read_beside(program)
+    assert [one[0] for one in places(found.faults)] == ["RBL604", "RBL309"]
+    assert places(found.faults) == of_run(program)
+    shown = robolang("check", "--output-format", "concise", program, code=2).stdout
+    assert re.findall(r"RBL\d+", shown) == ["RBL402", "RBL309"]
+
+
+def test_every_input_that_is_wrong_is_said(case):
+    program = case(CELL)
+    cell = program.with_name("cell.toml")
+    cell.write_text(cell.read_text().replace("nan", "1.5") + "[inputs.0]\nfollows = 1\n[inputs.2]\nfollows = nan\n")
+    assert [one[0] for one in places(read_beside(program).faults)] == ["RBL605", "RBL604"]
 
 
 def test_a_cell_of_many_programs_is_reported_once(case):
