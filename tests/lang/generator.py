@@ -249,5 +249,6 @@ FRAGMENTS = (
     "WHILE ", "WEND", "SELECT ", "CASE ", "ENDSELECT", "SUB F", "ENDSUB", "CALL F", "GOTO ", "GOTO 1.5", "*L", "^",
     " MOD ", "NOT ", " AND ", " OR ", "<>", "<=", '"', '"a\'"', "x", "x=1", ".X", "HERE", "PRINT ", ";", "' fmt: off",
     "' fmt: on", "OUT(1)=", "IN(", "STR$(", "END", "RESUME NEXT", "ON ERROR GOTO *L", "WAIT ", "TIMEOUT ", "DIM A(2)",
+    " XOR ", "XOR", '"a""b"', "((x))", "FRAME WORLD", "TOOL FLANGE", ":=", "EXIT FOR", "P1.Z=1", "WAIT 2",
 )  # fmt: skip
 texts = st.text(max_size=200) | st.lists(st.sampled_from(FRAGMENTS), max_size=60).map("".join)

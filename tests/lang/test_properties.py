@@ -351,7 +351,8 @@ SHAPES = ("10 MOVE P1, SPEED 200 ' x\n", "LOAD (1, -2, 3), 4\n", "'\n", "\n", "M
           "IF x\nFOR i = 1 TO 2\n", "WHILE 1\nENDIF\n", "CASE 1\n", "x = (((1 + 2) * 3)^4 MOD 5)\n", "PRINT x; y ' z\n",
           "IF x THEN GOSUB *L ELSE MOVE P1 + (1, 2, 3)\n", "' fmt: off\n", "x = 1 '" + "long " * 20 + "\n")  # fmt: skip
 REPEATED = (("MOVE P1", ", SPEED 1"), ("MOVE P1", ", WRIST HOLD TILT"), ("MOVE P1, WRIST HOLD TILT", ", TILT"),
-            ("WRIST HOLD TILT", ", TILT"), ("x = 1", " + 1"), ("x = 2", "^2"), ("CASE 1", ", 1"), ("PRINT 1", "; 1"),
+            ("WRIST HOLD TILT", ", TILT"), ("x = 1", " + 1"), ("x = 2", "^2"), ("x = 1", " XOR 1"), ("x = 1", " MOD 1"),
+            ('x$ = "a"', ' + "b""c"'), ("x = 1", " + (1)"), ("CASE 1", ", 1"), ("PRINT 1", "; 1"),
             ("x = MAX(1", ", 1"))  # fmt: skip
 
 
