@@ -133,7 +133,7 @@ class Loss:
 class _Grip:
     """A held part: where it is held (3,) m in the tool frame; cycles held, and without a pad since when and where."""
 
-    place: Array
+    place: tuple[float, float, float]
     gripped: ProgramLine | None
     age: int = 0
     bare: int = 0
@@ -239,9 +239,12 @@ class Touches:
 
     # the grip -------------------------------------------------------------------------------------------------------
 
-    def _in_hand(self, part: str) -> Array:
+    def _in_hand(self, part: str) -> tuple[float, float, float]:
+        """Return the centre of a part in the tool frame, m; as floats, since every cycle with a part needs it."""
         bodies = self._bodies
-        return np.asarray(matmul(bodies.p[self._index[part]] - bodies.p_tool, bodies.R_tool))
+        x, y, z = (bodies.p[self._index[part]] - bodies.p_tool).tolist()
+        (ax, bx, cx), (ay, by, cy), (az, bz, cz) = bodies.R_tool.tolist()
+        return x * ax + y * ay + z * az, x * bx + y * by + z * bz, x * cx + y * cy + z * cz
 
     def _grip(self, seen: _Seen) -> None:
         """Take a part between the pads of the closed hand as held; that it was pushed to there was its grasp."""
@@ -275,7 +278,7 @@ class Touches:
                     self._free.add(part)
                     del self._held[part]
                 continue
-            distance = math.hypot(*(here - grip.place).tolist())
+            distance = math.dist(here, grip.place)
             most = NOTICED if grip.bare >= LOST_CYCLES else max(SLIPPED, self._bodies.pad_length / 2.0)
             if not distance <= most:
                 since, place = grip.since if grip.bare else (tick, self._place)
