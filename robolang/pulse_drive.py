@@ -28,6 +28,7 @@ from runtime.program_line import ProgramLine
 from runtime.pulses.exported import Export, Load, Marker, Move
 from runtime.pulses.replay import distances, joint_values, positions
 from runtime.robot.payload import Payload, declared
+from runtime.rounding import beside
 from runtime.units import DEG, MM
 
 SAME = 1e-9
@@ -79,7 +80,8 @@ def drive(export: Export, cell: CellSpec, profile: Profile, physics: bool = True
     """
     start = start_angles(export, cell)
     if not export.seconds * 1e6 <= MAX_RUN_US:
-        message = f"the tables last {export.seconds:.0f} s; {MAX_RUN_US / 1e6:g} s are the longest run"
+        lasts, most = beside(export.seconds, MAX_RUN_US / 1e6, form=".0f")
+        message = f"the tables last {lasts} s; {most} s are the longest run"
         raise Fault("RBL509", message, "Export the program in parts.")
     for item in export.sequence:
         if isinstance(item, Marker) and item.load is not None:

@@ -10,6 +10,7 @@ and value: RBL631 for a row that no pulse channel can carry out, RBL632 for one 
 out of step; RBL630 for a file that cannot be read or has more than ``MAX_TABLE_BYTES``.
 """
 
+import math
 import re
 from pathlib import Path
 from typing import NoReturn
@@ -19,6 +20,7 @@ import numpy as np
 from runtime.frames import frozen
 from runtime.pulses.exported import Channel, Table
 from runtime.pulses.manifest import fail, quoted, read_text
+from runtime.rounding import beside
 
 HEADER = "control,frequency_hz,target_pulses,steps"
 MAX_TABLE_BYTES = 64_000_000
@@ -120,8 +122,9 @@ class Rows:
             self._fail("RBL631", f"{hz} Hz is not between {channel.min_hz:g} and {channel.max_hz:g} Hz, the range of "
                        f"{channel.name}", _FREQUENCY)  # fmt: skip
         if not hz or not abs(abs(change) / hz - self._step_s) <= ROW_TOLERANCE_S:
-            lasts = f"lasts {abs(change) / hz * 1e3:.6g} ms" if hz else "never ends"
-            self._fail("RBL632", f"from {where} to {target} at {hz} Hz {lasts}; a step has {self._step_s * 1e3:g} ms",
+            takes, step = beside(abs(change) / hz * 1e3 if hz else math.inf, self._step_s * 1e3)
+            lasts = f"lasts {takes} ms" if hz else "never ends"
+            self._fail("RBL632", f"from {where} to {target} at {hz} Hz {lasts}; a step has {step} ms",
                        _FREQUENCY)  # fmt: skip
 
     def _fail(self, code: str, message: str, place: int = 0, column: int | None = None) -> NoReturn:

@@ -138,12 +138,14 @@ class Supervisor:
     def stale(self, oldest_us: float, payload_us: float, tick: int) -> Finding | None:
         """Judge the age of the oldest cell of ITA in use, and how long ago the LOAD was that has not reached it."""
         if not oldest_us <= self._stale_us:
-            why = f"inertia and gravity torque in use are {oldest_us / 1000.0:.0f} ms old"
+            age, most = beside(oldest_us / 1000.0, self._stale_us / 1000.0, form=".0f")
+            why = f"inertia and gravity torque in use are {age} ms old"
         elif not payload_us <= self._stale_us:
-            why = f"the LOAD of {payload_us / 1000.0:.0f} ms ago has not reached all axes"
+            age, most = beside(payload_us / 1000.0, self._stale_us / 1000.0, form=".0f")
+            why = f"the LOAD of {age} ms ago has not reached all axes"
         else:
             return None
-        return Finding(code="RBL521", tick=tick, message=f"{why}, more than {self._stale_us / 1000.0:.0f} ms")
+        return Finding(code="RBL521", tick=tick, message=f"{why}, more than {most} ms")
 
     @property
     def was_late(self) -> bool:

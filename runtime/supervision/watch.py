@@ -153,9 +153,10 @@ class Watch:
         if (self._saturated <= self._most_saturated).all():
             return None
         axis = int(np.argmax(self._saturated))
+        last, most = beside(asked[axis], self._bound[axis], form=".1f")
         return "RBL512", axis, (
-            f"J{axis + 1} was asked for more than its {self._bound[axis]:.1f} N m, last for {asked[axis]:.1f} N m, "
-            f"for {1e3 * self._limits.saturation_s:g} ms"
+            f"J{axis + 1} was asked for more than its {most} N m, last for {last} N m, for "
+            f"{1e3 * self._limits.saturation_s:g} ms"
         )
 
     def lost_track(self, factor: float) -> int | None:
