@@ -35,8 +35,8 @@ OF_NUMERICS = frozenset({"RBL606", "RBL615", "RBL616", "RBL617", "RBL618"})
 OF_MOTION = ("RBL410", "RBL411", "RBL412", "RBL416", "RBL509")
 """Refusals of a plan that need the geometry of the arm."""
 
-NUMBERS = ("0", "1", "-1", "2.5", "100", "100.5", "600", "601", "2000", "2001", "86400", "86401", "1024", "1025", "1E6",
-           "NAN", "INF", "0 - 5", "1 / 0", "2 * 50", "99999", "100000")  # fmt: skip
+NUMBERS = ("0", "1", "-1", "2.5", "100", "100.5", "600", "601", "2000", "2001", "86400", "86401", "1024", "1025",
+           "100001", "NAN", "INF", "0 - 5", "1 / 0", "2 * 50", "99999", "100000")  # fmt: skip
 GOOD = ("SPEED 200", "SPEEDJ 50", "ACCEL 80", "OVERRIDE 50", "ZONE 0", "LOAD empty", "LOAD (0, 0, 60), 0.8",
         "TOOL grip", "MOVE P2", "MOVEJ P3", "x = IN(1)", "OUT(1) = 1", "DIM a(10)", "CONST k = 3", "MOVEJ H",
         "DELAY 0.1",
