@@ -32,10 +32,10 @@ help:
 	@sed -n 's/^# make/make/p' $(MAKEFILE_LIST)
 
 test: $(READY)
-	$(BIN)/python -m pytest -n 2 --dist loadgroup
+	$(BIN)/python -m pytest -n 2
 
 campaign: $(READY)
-	CAMPAIGN=1 $(BIN)/python -m pytest -n 2 --dist loadgroup
+	CAMPAIGN=1 $(BIN)/python -m pytest -n 2
 
 gates: $(READY)
 	$(BIN)/ruff check .

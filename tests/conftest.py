@@ -30,11 +30,16 @@ def pytest_addoption(parser):
     )
 
 
-def pytest_collection_modifyitems(items):
-    """What a file sets up is set up once: its tests run in one process, and so do some files (``--dist loadgroup``)."""
-    for item in items:
-        group = next((shared for shared in SHARED if shared in item.nodeid), item.path.name)
-        item.add_marker(pytest.mark.xdist_group(group))
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """What a file sets up is set up once: its tests run in one process, and so do those of some files together."""
+    from xdist.scheduler import LoadFileScheduling
+
+    class Shared(LoadFileScheduling):
+        def _split_scope(self, nodeid):
+            return next((shared for shared in SHARED if shared in nodeid), super()._split_scope(nodeid))
+
+    return Shared(config, log)
 
 
 def pytest_configure(config):
