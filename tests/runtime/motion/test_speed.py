@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runtime.faults import Fault
-from runtime.motion.speed import bound, profile
+from runtime.motion.speed import SpeedLimits, bound, profile, shortest_s
 
 PERIOD = 0.008
 
@@ -72,3 +72,13 @@ def test_the_longest_move_is_planned_and_a_longer_one_refused():
 def test_very_slow_moves_are_planned(speed, shape):
     s = profile(bound([(0.2, speed, 3.0, 30.0)], shape), PERIOD)
     assert np.diff(s).max() / PERIOD * 0.2 == pytest.approx(speed, rel=1e-3)
+
+
+def test_there_is_a_profile_where_the_plateau_of_acceleration_has_just_no_length():
+    """Rounding leaves the solver between two cases there; 20 of these limits had no profile."""
+    rng = np.random.default_rng(1)
+    for acceleration in 10.0 ** rng.uniform(-2.0, 3.0, 400):
+        jerk = math.sqrt(2.0 * acceleration**3) * (1.0 + rng.integers(-3, 4) * 2.2e-16)
+        limits = SpeedLimits(speed=1e3, acceleration=acceleration, jerk=jerk)
+        # up and down in four equal ramps: 1 = 2 jerk tau^3
+        assert shortest_s(limits) == pytest.approx(4.0 * math.cbrt(0.5 / jerk), rel=1e-6)
