@@ -157,13 +157,21 @@ def program(physics: bool) -> Iterator[Row]:
         *(
             run_text(changed, servo, physics)[1]
             for changed, servo in (
-                (re.sub(r"(?m)^50 .*$", "", text), None),
-                (re.sub(r"(?m)^\d+ LOAD.*$", "", text), None),
+                (without(r"(?m)^ *50 .*$", text), None),
+                (without(r"(?m)^ *\d+ +LOAD.*$", text, 3), None),
                 (text, "fixed"),
             )
         ),
     ]
     yield from moves(variants)
+
+
+def without(pattern: str, text: str, count: int = 1) -> str:
+    """Return a text less what a pattern finds; it must find it ``count`` times, or the variant would be none."""
+    changed, found = re.subn(pattern, "", text)
+    if found != count:
+        raise ValueError(f"{pattern} is there {found} times, not {count}")
+    return changed
 
 
 def placed(session: Session) -> Row:
