@@ -54,7 +54,7 @@ def _beside(found: list[Diagnostic], more: Iterator[Diagnostic]) -> list[Diagnos
 
 
 def _statements(program: Program, structure: Structure, symbols: CellSymbols) -> Iterator[Diagnostic]:
-    defined = Defined.of(program, {} if structure.diagnostics else structure.owner)
+    defined = Defined.of(program, {} if structure.diagnostics else structure.owner, structure.lost_subs)
     checks = StatementCheck(symbols, defined)
     found = list(islice(_each_statement(program, structure, defined, checks), MAX_DIAGNOSTICS + 1))
     for code in ("RBL213", "RBL215"):

@@ -65,14 +65,19 @@ class Defined:
     _here: _Own = field(default_factory=_Own)
 
     @staticmethod
-    def of(program: Program, owner: Mapping[int, int]) -> "Defined":
-        """Return what the statements of a program define; ``owner``: by line the line of the SUB that it is in."""
+    def of(program: Program, owner: Mapping[int, int], lost_subs: Collection[int] = ()) -> "Defined":
+        """Return what the statements of a program define; ``owner``: by line the line of the SUB that it is in.
+
+        ``lost_subs`` are the lines with an error that must be the head of a SUB, whatever they look like.
+        """
         found = Defined()
         subs = frozenset(owner.values())
         for index, line in enumerate(program.lines):
             if line.statement is not None:
                 part = index if index in subs else owner.get(index)
                 found._take(line.statement, found._own.setdefault(part, _Own()))
+            if index in lost_subs and line.statement is not None:
+                found.seeming |= _words(line.statement) - RESERVED
         found.look_from(None)
         return found
 
@@ -125,6 +130,13 @@ class Defined:
             own.values.update(parameter.key for parameter in node.parameters)
         elif isinstance(node, Unparsed):
             self.seeming |= seems_to_define(node.text)
+
+
+def _words(node: Statement) -> frozenset[str]:
+    """Return all words of a statement in capitals, where it has an error, and else its names."""
+    if isinstance(node, Unparsed):
+        return frozenset(word.upper() for word in _WORD.findall(node.text))
+    return frozenset(name.key for name in names_in(node))
 
 
 def names_in(node: Node) -> Iterator[Name]:

@@ -20,13 +20,16 @@ from dataclasses import dataclass, field
 from robolang import other_languages
 from robolang.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related
 from robolang.nodes import (
+    Assign,
     Block,
+    Call,
     Case,
     For,
     Head,
     If,
     Jump,
     Line,
+    Name,
     Next,
     OnError,
     Program,
@@ -38,7 +41,7 @@ from robolang.nodes import (
 )
 from robolang.repeats import Repeats
 from robolang.source import Span
-from robolang.words import KEYWORDS, near
+from robolang.words import INSTRUCTIONS, KEYWORDS, near
 
 _CLOSES = {"ENDIF": "IF", "WEND": "WHILE", "ENDSELECT": "SELECT", "ENDSUB": "SUB", "NEXT": "FOR"}
 _CLOSED_BY = {head: word for word, head in _CLOSES.items()}
@@ -62,14 +65,16 @@ class Structure:
 
     ``after``: of a line of a block the next one of the same block, and of its last one the first (IF -> ELSEIF -> ELSE
     -> ENDIF -> IF). ``end``: of every line of a block the closing one. ``numbers`` and ``labels`` give the line of a
-    target; ``subs`` that of SUB by name. ``owner``: line of the SUB that a line is in. ``inside``: heads of the blocks
-    that a line is in, outermost first.
+    target; ``subs`` that of SUB by name; ``lost_subs`` are lines that an ENDSUB makes the head of a SUB, whatever they
+    look like. ``owner``: line of the SUB that a line is in. ``inside``: heads of the blocks that a line is in,
+    outermost first.
     """
 
     after: dict[int, int] = field(default_factory=dict)
     end: dict[int, int] = field(default_factory=dict)
     numbers: dict[int, int] = field(default_factory=dict)
     labels: dict[str, int] = field(default_factory=dict)
+    lost_subs: set[int] = field(default_factory=set)
     subs: dict[str, int] = field(default_factory=dict)
     owner: dict[int, int] = field(default_factory=dict)
     inside: list[tuple[int, ...]] = field(default_factory=list)
@@ -159,17 +164,20 @@ class _Open:
     """A block that is not closed yet: its head's word, and the lines of it so far.
 
     ``guessed``: its head is missing, which is said, or has an error; what goes with it is no mistake of its own.
+    ``unknown`` is its last line with an error that may be anything, such as the head or end that another line lacks.
     """
 
     word: str
     lines: list[int]
     last: bool = False
     guessed: bool = False
+    unknown: int | None = None
 
 
 def _blocks(program: Program, found: Structure) -> None:
     """Match heads with what divides and closes them."""
     stack: list[_Open] = []
+    outside = _Open(word="", lines=[])
     doubtful: Counter[str] = Counter()
     for index, line in enumerate(program.lines):
         word = _block_word(line.statement)
@@ -179,6 +187,8 @@ def _blocks(program: Program, found: Structure) -> None:
         if owner is not None:
             found.owner[index] = owner
         if not word or line.statement is None:
+            if _may_be_anything(line.statement):
+                (stack[-1] if stack else outside).unknown = index
             continue
         if word in _CLOSED_BY:
             if len(stack) >= MAX_BLOCKS:
@@ -186,10 +196,13 @@ def _blocks(program: Program, found: Structure) -> None:
                 return
             guessed = isinstance(line.statement, Unparsed)
             if word == "SUB" and stack and not guessed:
+                while stack and _may_be_end(program, stack[-1]):
+                    stack.pop()
+            if word == "SUB" and stack and not guessed:
                 _wrong(found, "RBL219", "a SUB stands outside of every block", line, program, stack[-1])
             stack.append(_Open(word=word, lines=[index], guessed=guessed))
         else:
-            _continue(program, found, stack, index, word, doubtful)
+            _continue(program, found, stack, outside, index, word, doubtful)
     for block in stack:
         _not_closed(program, found, block)
 
@@ -211,6 +224,20 @@ def _block_word(statement: Statement | None) -> str:
     return "CASE ELSE" if word == "CASE" and "ELSE" in statement.text.upper() else word
 
 
+def _may_be_anything(statement: Statement | None) -> bool:
+    """Return whether a line has an error that leaves open which instruction it is: S(B, not MOV; or is SU= f(n)."""
+    if isinstance(statement, Assign) and isinstance(statement.target, Name):
+        return isinstance(statement.value, Call) and bool(near(statement.target.key, ("SUB",), cutoff=0.75))
+    first = _FIRST.match(statement.text) if isinstance(statement, Unparsed) else None
+    if first is None:
+        return isinstance(statement, Unparsed)
+    upper = first[1].upper()
+    if upper in other_languages.WORDS or upper in KEYWORDS:
+        return False
+    meant = near(upper, INSTRUCTIONS)
+    return not meant or meant in _WORDS
+
+
 def _too_deep(found: Structure, program: Program, index: int, word: str) -> None:
     """Report a block that is nested too deeply; the lines from it on belong to none, so tables stay linear."""
     statement = program.lines[index].statement
@@ -220,7 +247,7 @@ def _too_deep(found: Structure, program: Program, index: int, word: str) -> None
     found.inside.extend(() for _ in range(len(program.lines) - len(found.inside)))
 
 
-def _continue(program: Program, found: Structure, stack: list[_Open], index: int, word: str,
+def _continue(program: Program, found: Structure, stack: list[_Open], outside: _Open, index: int, word: str,
               doubtful: Counter[str]) -> None:  # fmt: skip
     """Take a line that divides or closes a block; ``doubtful`` are the words whose block a guess has closed."""
     line = program.lines[index]
@@ -235,7 +262,12 @@ def _continue(program: Program, found: Structure, stack: list[_Open], index: int
         if doubtful[word]:
             doubtful[word] -= 1
             return
-        _wrong(found, "RBL212", f"{word} has no {head} above it", line, program, stack[-1] if stack else None)
+        around = stack[-1] if stack else outside
+        unknown, around.unknown = around.unknown, None
+        if unknown is not None:
+            _take_as_head(found, unknown, index, head)
+        if unknown is None or not isinstance(program.lines[unknown].statement, Unparsed):
+            _wrong(found, "RBL212", f"{word} has no {head} above it", line, program, stack[-1] if stack else None)
         if word in _DIVIDES:
             stack.append(_Open(word=head, lines=[index], last=word in _LAST, guessed=True))
         return
@@ -265,8 +297,20 @@ def _give_up_inner(program: Program, found: Structure, stack: list[_Open], head:
             _not_closed(program, found, stack.pop())
 
 
+def _take_as_head(found: Structure, head: int, index: int, word: str) -> None:
+    """Take a line that may be anything as the head that line ``index`` lacks."""
+    if word == "SUB":
+        found.lost_subs.add(head)
+        found.owner.update((line, head) for line in range(head + 1, index + 1))
+
+
+def _may_be_end(program: Program, block: _Open) -> bool:
+    """Return whether the end that a block lacks may be a line with an error in it."""
+    return block.unknown is not None and isinstance(program.lines[block.unknown].statement, Unparsed)
+
+
 def _not_closed(program: Program, found: Structure, block: _Open) -> None:
-    if block.guessed:
+    if block.guessed or _may_be_end(program, block):
         return
     head = program.lines[block.lines[0]]
     assert head.statement is not None

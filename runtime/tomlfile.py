@@ -261,8 +261,7 @@ class Table:
         if not math.isfinite(number):
             self.fail("RBL604", f"'{self.name(key)}' is {_shown(value)}, not a finite number", key=key)
         if not (low <= number <= high) or (positive and not number > 0.0):
-            shown, least, most = beside(number, low, high)
-            wanted = "above 0" if positive and number <= 0.0 else f"between {least} and {most}"
+            shown, wanted = _beside_range(number, low, high, positive)
             mm = f"lengths are in m: write {number / 1e3:g} for {number:g} mm" if key.endswith("_m") else ""
             self.fail("RBL605", f"'{self.name(key)}' is {shown} and must be {wanted}", mm, key=key)
         return number
@@ -390,6 +389,16 @@ class Table:
             if self._gathered is None:
                 raise fault
             self._gathered.append(fault)
+
+
+def _beside_range(number: float, low: float, high: float, positive: bool) -> tuple[str, str]:
+    """Return a number and the range that it is not in, in words; ``MAX_ABS`` is the end of no key's own range."""
+    shown, least, most = beside(number, 0.0 if positive else low, high)
+    if positive:
+        return shown, "above 0" if high >= MAX_ABS else f"above 0 and at most {most}"
+    if low <= -MAX_ABS and high < MAX_ABS:
+        return shown, f"at most {most}"
+    return shown, f"between {least} and {most}"
 
 
 def _within(low: float, high: float) -> float:

@@ -70,7 +70,26 @@ def reader_may_leave() -> Iterator[None]:
 
 @contextmanager
 def reported() -> Iterator[None]:
-    """Print faults to stderr and leave with their exit code."""
+    """Print faults to stderr and leave with their exit code.
+
+    Where showing a fault fails as well, that is shown in its place: RBL900, and exit code 70 even if nothing can be.
+    """
+    try:
+        with _left_with_exit_code():
+            yield
+    except (typer.Exit, typer.Abort, typer.BadParameter):
+        raise
+    except KeyboardInterrupt:
+        raise typer.Exit(INTERRUPTED) from None
+    except Exception as error:
+        fault = internal(error)
+        with suppress(Exception):
+            say(fault)
+        raise typer.Exit(INTERNAL) from None
+
+
+@contextmanager
+def _left_with_exit_code() -> Iterator[None]:
     try:
         yield
     except Fault as fault:

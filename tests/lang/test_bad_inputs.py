@@ -2,6 +2,7 @@
 
 import ast
 import random
+import re
 from pathlib import Path
 
 import pytest
@@ -256,6 +257,45 @@ def test_one_typo_costs_few_diagnostics_and_hides_nothing_behind_it():
             extra.append(len(errors) - 1)
     assert sorted(extra)[len(extra) // 2] <= 1
     assert sum(count > 0 for count in extra) > len(extra) / 2  # the typos are real ones
+
+
+BLOCK_LINES = [index for index, line in enumerate(GOOD.splitlines())
+               if re.match(r"\d+ (SUB|ENDSUB|NEXT|WHILE|WEND|ENDSELECT)", line)]  # fmt: skip
+
+
+def word_typos(line):
+    """A line with each way to leave out, exchange or change one character of its first word."""
+    number, word = line.split()[:2]
+    start, end = len(number) + 1, len(number) + 1 + len(word)
+    for at in range(start, end):
+        yield line[:at] + line[at + 1 :]
+        yield line[:at] + line[at : at + 2][::-1] + line[at + 2 :]
+        yield from (line[:at] + sign + line[at + 1 :] for sign in " (=1")
+
+
+@pytest.mark.parametrize("index", BLOCK_LINES, ids=lambda index: GOOD.splitlines()[index].split()[1])
+def test_a_typo_in_the_word_of_a_block_costs_few_diagnostics(index):
+    """The body of a SUB whose head is damaged is no error: neither its parameters, nor its ENDSUB, nor its CALL."""
+    lines, extra = GOOD.splitlines(), []
+    for wrong in set(word_typos(lines[index])) - {lines[index]}:
+        found = problems("\n".join([*lines[:index], wrong, *lines[index + 1 :]]) + PLANTED)
+        assert ("RBL301", 41, 10, 3) in found, wrong
+        errors = [item for item in found if item[0] != "RBL116"]
+        assert 1 <= len(errors) - 1 <= 3, (wrong, errors)
+        extra.append(len(errors) - 1)
+    assert sorted(extra)[len(extra) // 2] == 1
+
+
+def test_the_head_of_a_sub_is_the_only_error_where_it_is_damaged():
+    body = "CALL blink(1, 0.2)\nEND\n{}\nPULSE n, t\nDELAY t\nENDSUB\n"
+    for head in ("S(B blink(n, t)", "(UB blink(n, t)", "S B blink(n, t)", "SUBblink(n, t)", "SUB blink(n t)"):
+        assert [item[1] for item in problems(body.format(head))] == [3], head
+    assert [item[0] for item in problems(body.format("SU= blink(n, t)"))] == ["RBL214", "RBL212"]
+
+
+def test_what_lacks_a_head_or_an_end_is_found_beside_errors_of_other_kinds():
+    for text in ("MOV P1\nENDSUB", "DELAY\nNEXT", "FOR i = 1 TO 2\nMOV P1", "IF 1 THEN\nS(B a(n)\nENDIF\nWEND"):
+        assert {item[0] for item in problems(text)} & {"RBL211", "RBL212"}, text
 
 
 def test_a_line_that_does_not_parse_hides_nothing_of_the_others():

@@ -4,7 +4,9 @@ import pytest
 import typer
 
 import robolang.project  # noqa: F401 - registers its codes
+from robolang.cli import errors
 from robolang.cli.errors import exit_code, reader_may_leave, reported, say
+from robolang.diagnostics import safe
 from runtime.faults import Fault, all_codes
 from runtime.tomlfile import Source
 
@@ -54,6 +56,31 @@ def test_anything_else_is_an_internal_error_without_a_trace(error, capsys, monke
     assert said.startswith(f"error RBL900 internal error: {type(error).__name__}")
     assert "ROBOLANG_DEBUG=1" in said
     assert "Traceback" not in said
+
+
+class UnprintableError(Exception):
+    def __str__(self):
+        raise RuntimeError("no text")
+
+
+@pytest.mark.parametrize("error", [UnprintableError(), Fault("RBL510", None), OSError(errno.EPERM, "no")])
+def test_a_fault_that_cannot_be_shown_is_an_internal_error(error, capsys, monkeypatch):
+    """Showing it raises: a text that fails, a message that is none, and a printer that fails the first time."""
+    monkeypatch.delenv("ROBOLANG_DEBUG", raising=False)
+    if isinstance(error, OSError):
+        shown = iter([safe])
+        monkeypatch.setattr(errors, "safe", lambda text: safe(text) if next(shown, None) is None else 1 / 0)
+    assert left_with(error) == 70
+    said = capsys.readouterr().err
+    assert said.count("error RBL900 internal error: ") == 1
+    assert "Traceback" not in said
+
+
+@pytest.mark.parametrize("error", [Fault("RBL510", "x"), ValueError("x")])
+def test_where_nothing_can_be_shown_the_exit_code_is_left(error, monkeypatch):
+    monkeypatch.delenv("ROBOLANG_DEBUG", raising=False)
+    monkeypatch.setattr(errors.typer, "echo", lambda *_, **__: 1 / 0)
+    assert left_with(error) == 70
 
 
 def test_robolang_debug_shows_where_it_happened(monkeypatch):
