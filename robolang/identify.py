@@ -37,8 +37,7 @@ from typing import Any
 
 import numpy as np
 
-from robolang.project import builtin_cell
-from robolang.trial_motion import Grid, PlantName, Request, Test, plan, plan_table, quintic
+from robolang.trial_motion import Grid, PlantName, Request, Test, bench, plan, plan_table, quintic
 from runtime.controller import Controller
 from runtime.dynamics.compensation import AxisCompensation, Compensation
 from runtime.dynamics.equations import axis_inertia
@@ -63,8 +62,6 @@ HOLD_S = 0.2
 """Rest before each pass, s."""
 PLACES = 3
 """Fewest places of an axis that tell its weight from its friction."""
-LIGHTEST = 0.01
-"""Mass of the hand that MuJoCo is given where nothing is carried, kg; it is declared as well."""
 Progress = Callable[[int, int, float], None]
 """Told of the axis (0-based), the position's number from 1 and the position, rad, before each position; those of a
 table come last."""
@@ -273,7 +270,7 @@ class _Bench:
             servo = replace(servo, spring_compensation=0.0, gravity_lead=0.0)
         # a model that is wrong is what is looked for here: no collision and no payload can be told from it
         profile = replace(profile, servo=servo, supervision=watched)
-        cell = replace(_cell(request), robot=request.real or spec, home=first)
+        cell = replace(bench(request), robot=request.real or spec, home=first)
         self._plant = _plant(request.plant, cell, profile.tick_s)
         self._controller = Controller(spec, self._plant, profile, np.eye(4))
         self._controller.load(carried)
@@ -336,16 +333,8 @@ def _carried(request: Request) -> Payload:
     """Return what the arm carries: the payload, on MuJoCo as the hand of that mass really is."""
     if request.plant == "rigid":
         return request.payload
-    body = hand_body(_cell(request).hand, _cell(request).hand.stroke)
+    body = hand_body(bench(request).hand, bench(request).hand.stroke)
     return Payload(mass=body.mass, cog=body.cog, inertia=body.inertia)
-
-
-def _cell(request: Request) -> CellSpec:
-    """Return an empty cell whose hand has the mass and the centre of the payload."""
-    cell, payload = builtin_cell(), request.payload
-    mass = max(payload.mass, LIGHTEST if request.plant == "mujoco" else 0.0)
-    hand = replace(cell.hand, mass=mass, cog=payload.cog, X_flange_tool=np.eye(4))
-    return replace(cell, robot=request.robot, hand=hand, parts=(), obstacles=())
 
 
 def _plant(name: PlantName, cell: CellSpec, tick_s: float) -> Plant:

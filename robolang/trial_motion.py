@@ -1,20 +1,25 @@
 """The test motions of an identification, planned and checked before anything moves (``identify``, document 003).
 
+They keep the arm over the ground and, on a plant with contacts, out of itself, by the shapes that such a plant has.
+
 ``plan`` is for one axis: the posture in which the others are held, the places that it passes, and the quintic way past
 them. ``plan_table`` is for the grid of postures over the joints beyond the axis, at each of which it passes one place.
 """
 
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import Literal
 
 import numpy as np
 
+from robolang.project import builtin_cell
 from runtime.dynamics.equations import axis_inertia
 from runtime.faults import Fault
 from runtime.frames import Array
 from runtime.linear import matmul
 from runtime.motion.fine import FineInterpolator
+from runtime.plant.cell import CellSpec
 from runtime.profile import Profile
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import NO_PAYLOAD, Payload
@@ -46,7 +51,12 @@ TABLE_JOINTS = (1, 2)
 RASTER = 25
 """Angles of each joint at which it is looked up where a table may reach."""
 
+LIGHTEST = 0.01
+"""Mass of the hand that MuJoCo is given where nothing is carried, kg; it is declared as well."""
+
 PlantName = Literal["rigid", "mujoco"]
+Folds = Callable[[Array], bool]
+"""Whether the arm would be in itself at joint angles (n,) rad."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -106,15 +116,36 @@ def plan(request: Request, payload: Payload, axis: int) -> Test:
     if not 0 <= axis < spec.n:
         raise Fault("RBL420", f"{spec.name} has the axes 1 to {spec.n}, no J{axis + 1}")
     model = _loaded(spec, payload)
-    return _planned(request, model, axis, *posture(spec, model, axis), request.positions)
+    return _planned(request, model, axis, *posture(spec, model, axis, folds(request)), request.positions)
+
+
+def bench(request: Request) -> CellSpec:
+    """Return the cell of an identification: empty, with a hand of the mass and the centre of the payload."""
+    cell, payload = builtin_cell(), request.payload
+    mass = max(payload.mass, LIGHTEST if request.plant == "mujoco" else 0.0)
+    hand = replace(cell.hand, mass=mass, cog=payload.cog, X_flange_tool=np.eye(4))
+    return replace(cell, robot=request.robot, hand=hand, parts=(), obstacles=())
+
+
+def folds(request: Request) -> Folds:
+    """Return what knows where the arm of a request would be in itself: nowhere on a plant without contacts."""
+    spec = request.robot
+    if request.plant != "mujoco" or not spec.link_radii:
+        return lambda q: False
+    from runtime.plant.mujoco_plant import MujocoPlant
+
+    cell = replace(bench(request), home=0.5 * (spec.lower + spec.upper))
+    plant = MujocoPlant(spec, cell, request.profile.tick_s)
+    return lambda q: plant.folded(q) is not None
 
 
 def plan_table(request: Request, payload: Payload, test: Test) -> Grid | None:
     """Return the tests of an axis' table, None when it has none; ``Fault`` RBL420 when there is no room for one.
 
     The grid spans the largest rectangle of a raster of ``RASTER`` angles of each joint, ``MARGIN`` off the ends of its
-    range, in all of whose postures the axis has room for the least test motion with all of the arm over the ground. As
-    long as a point of the grid itself has none, the rectangle is shrunk by a raster step on every side.
+    range, in all of whose postures the axis has room for the least test motion with all of the arm over the ground and
+    out of itself. As long as a point of the grid itself has none, the rectangle is shrunk by a raster step on every
+    side.
     """
     spec, axis, joints = request.robot, test.axis, _table_joints(request, test.axis)
     if not joints:
@@ -125,8 +156,18 @@ def plan_table(request: Request, payload: Payload, test: Test) -> Grid | None:
         q[list(joints)] = angles
         return q
 
+    folded = folds(request)
+
+    def room(angles: tuple[float, ...], within: float = np.inf) -> tuple[float, float]:
+        q = at(angles)
+        low, high = _room(spec, q, axis)
+        middle = 0.5 * (spec.lower[axis] + spec.upper[axis])
+        return _unfolded(spec, q, axis, (max(low, middle - within), min(high, middle + within)), folded)
+
+    step = (spec.upper[axis] - spec.lower[axis]) / (2 * _SCAN)
+
     def safe(angles: tuple[float, ...]) -> bool:
-        low, high = _usable(spec, axis, _room(spec, at(angles), axis))
+        low, high = _usable(spec, axis, room(angles, 2.0 * LEAST_STROKE + step))  # the rest does not matter
         return high - low >= 2.0 * LEAST_STROKE
 
     raster = [np.linspace(spec.lower[joint] + MARGIN, spec.upper[joint] - MARGIN, RASTER) for joint in joints]
@@ -137,7 +178,7 @@ def plan_table(request: Request, payload: Payload, test: Test) -> Grid | None:
         if not all(high - low >= LEAST_STROKE for low, high in ends):
             over = " and ".join(f"J{joint + 1}" for joint in joints)
             raise Fault("RBL420", f"J{axis + 1} has no room for a table over {over}: too few postures have all of the "
-                        "arm over the ground")  # fmt: skip
+                        "arm over the ground and out of itself")  # fmt: skip
         grid = tuple(np.round(np.linspace(low, high, request.table) / DEG, 2) * DEG for low, high in ends)
         if all(safe(angles) for angles in product(*grid)):
             break
@@ -146,7 +187,7 @@ def plan_table(request: Request, payload: Payload, test: Test) -> Grid | None:
     tests = []
     for angles in product(*grid):
         try:
-            tests.append(_planned(request, model, axis, at(angles), _room(spec, at(angles), axis), 1))
+            tests.append(_planned(request, model, axis, at(angles), room(angles), 1))
         except Fault as fault:
             where = ", ".join(f"J{joint + 1} {angle / DEG:.1f}" for joint, angle in zip(joints, angles, strict=True))
             raise Fault(fault.code, f"{fault.message}, in the posture {where} deg of its table", fault.hint) from None
@@ -192,9 +233,9 @@ def _planned(request: Request, model: ArmModel, axis: int, q: Array, room: tuple
     stroke = min(STROKE, (high - low) / 2.0)
     if not stroke >= LEAST_STROKE:
         there, least = beside(max(0.0, high - low) / DEG, round(2.0 * LEAST_STROKE / DEG, 1), form=".1f")
-        raise Fault("RBL420", f"J{axis + 1} has {there} deg that are over the ground and {MARGIN / DEG:g} deg off the "
-                    f"ends of its range, {limits.lower / DEG:.1f} to {limits.upper / DEG:.1f} deg; the test motions "
-                    f"need {least}")  # fmt: skip
+        raise Fault("RBL420", f"J{axis + 1} has {there} deg over the ground, free of the arm itself and "
+                    f"{MARGIN / DEG:g} deg off the ends of its range, {limits.lower / DEG:.1f} to "
+                    f"{limits.upper / DEG:.1f} deg; the test motions need {least}")  # fmt: skip
     reach = stroke * (1.0 - before)
     positions = np.linspace(low + reach, high - reach, places) if places > 1 else np.array(
         [0.5 * (low + high)])  # fmt: skip
@@ -247,8 +288,10 @@ def _friction(spec: RobotSpec) -> Array:
     return np.array([max(axis.motor.joint_coulomb_friction) for axis in spec.axes])
 
 
-def posture(spec: RobotSpec, model: ArmModel, axis: int) -> tuple[Array, tuple[float, float]]:
-    """Return q (n,) rad at which the other axes are held, and the range of the axis that is over the ground, rad.
+def posture(spec: RobotSpec, model: ArmModel, axis: int, folded: Folds) -> tuple[Array, tuple[float, float]]:
+    """Return q (n,) rad at which the other axes are held, and the range of the axis that is free, rad.
+
+    Free is what is over the ground and where the arm is not in itself.
 
     The posture is one near the middle of the ranges with the model's D_ii near its mean over the ranges, preferably
     such that the axis can go through its whole range.
@@ -259,12 +302,13 @@ def posture(spec: RobotSpec, model: ArmModel, axis: int) -> tuple[Array, tuple[f
     offsets = rng.uniform(-1.0 / 3.0, 1.0 / 3.0, (300, spec.n))
     offsets[:, : axis + 1] = 0.0  # D_ii does not depend on these
     offsets = np.concatenate([np.zeros((1, spec.n)), offsets[np.argsort((offsets**2).sum(axis=1), kind="stable")]])
-    best, room, least = middle, (float(middle[axis]), float(middle[axis])), np.inf
+    best, room, least = middle, (float(middle[axis]), float(middle[axis])), float("inf")
     for q in middle + offsets * width:
-        low, high = _room(spec, q, axis)
-        away = abs(axis_inertia(model, q, axis) / mean - 1.0) + 0.5 * (1.0 - (high - low) / width[axis])
-        if away < least:
-            best, room, least = q, (low, high), away
+        free, off = _room(spec, q, axis), float(abs(axis_inertia(model, q, axis) / mean - 1.0))
+        if off + _lacks(free, width[axis]) < least:  # the shapes take longer
+            free = _unfolded(spec, q, axis, free, folded)
+        if off + _lacks(free, width[axis]) < least:
+            best, room, least = q, free, off + _lacks(free, width[axis])
         if least <= NEAR:
             break
     return np.asarray(best), room
@@ -292,6 +336,27 @@ def _room(spec: RobotSpec, q: Array, axis: int) -> tuple[float, float]:
     first = int(before.max()) + 1 if len(before) else 0
     last = int(after.min()) - 1 if len(after) else 2 * _SCAN
     return (float(own[first, 0]), float(own[last, 0])) if first <= last else (float(own[_SCAN, 0]),) * 2
+
+
+def _lacks(room: tuple[float, float], width: float) -> float:
+    """Return half the share of a range of ``width`` rad that is not free."""
+    return 0.5 * (1.0 - (room[1] - room[0]) / width)
+
+
+def _unfolded(spec: RobotSpec, q: Array, axis: int, room: tuple[float, float], folded: Folds) -> tuple[float, float]:
+    """Return the angles of a room around the middle of an axis' range, rad, where the arm is a step off itself."""
+    own = np.linspace(spec.lower[axis], spec.upper[axis], 2 * _SCAN + 1)
+    inside = np.flatnonzero((own >= room[0]) & (own <= room[1]))
+    row, ends = np.array(q), []
+    for step, end in ((-1, int(inside[0])), (1, int(inside[-1]))):
+        ends.append(end)
+        for index in range(_SCAN, end + step, step):
+            row[axis] = own[index]
+            if folded(row):
+                ends[-1] = index - 2 * step
+                break
+    first, last = (float(own[index]) for index in ends)
+    return (first, last) if first <= last else (float(own[_SCAN]),) * 2
 
 
 def quintic(s: Array) -> Array:

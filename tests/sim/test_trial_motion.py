@@ -7,9 +7,10 @@ import pytest
 
 from robolang.identify import RubbingPlant, identify, with_errors
 from robolang.project import load_project
-from robolang.trial_motion import LEAST_STROKE, MARGIN, Request, plan, plan_table, posture
+from robolang.trial_motion import LEAST_STROKE, MARGIN, Request, bench, folds, plan, plan_table, posture
 from runtime.faults import Fault
 from runtime.motion.fine import FineInterpolator
+from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.loader import load_builtin
 from runtime.robot.model import ArmModel, spec_rotors
@@ -35,11 +36,35 @@ def test_test_motions_keep_every_limit(robot):
         assert np.abs(ddq).max() <= 0.51 * spec.axes[axis].limits.acceleration
 
 
+@pytest.mark.parametrize("robot", ["puma560", "manutec_r3", "irb2400"])
+def test_the_arm_keeps_out_of_itself_in_all_of_its_test_motions(robot):
+    """By the shapes of the very plant that makes the motion."""
+    spec = load_builtin(robot)
+    for axis in range(spec.n):
+        request = Request(robot=spec, axes=(axis,), positions=2)
+        assert_unfolded(request, plan(request, NO_PAYLOAD, axis))
+
+
+def assert_unfolded(request, test):
+    first, last = min(test.starts(test.positions[0])), max(test.starts(test.positions[-1])) + test.stroke
+    q = np.array(test.q)
+    q[test.axis] = test.starts(test.positions[0])[0]  # where the plant begins: shapes that meet there never do
+    plant = MujocoPlant(request.robot, replace(bench(request), home=q))
+    for q[test.axis] in np.linspace(first, last, 50):
+        assert plant.folded(q) is None, (test.axis, q)
+
+
+def test_what_folds_everywhere_leaves_no_room():
+    model = ArmModel(SPEC)
+    _, (low, high) = posture(SPEC, model, 2, lambda q: True)
+    assert low == high
+
+
 def test_other_axes_stand_inside_their_ranges_where_the_inertia_is_near_its_mean():
     model, rng = ArmModel(SPEC), np.random.default_rng(3)
     D = np.array([np.diag(model.mass_matrix(q)) for q in rng.uniform(SPEC.lower, SPEC.upper, (500, 6))]).mean(axis=0)
     for axis in range(6):
-        q, (low, high) = posture(SPEC, model, axis)
+        q, (low, high) = posture(SPEC, model, axis, folds(Request(robot=SPEC, axes=(axis,))))
         assert model.inertia_column(q, axis)[axis] == pytest.approx(D[axis], rel=0.12)
         assert (q > SPEC.lower + MARGIN).all()
         assert (q < SPEC.upper - MARGIN).all()
@@ -55,6 +80,8 @@ def test_the_postures_of_a_table_are_over_the_ground_with_all_of_their_motions(r
     grid = plan_table(request, NO_PAYLOAD, plan(request, NO_PAYLOAD, axis))
     assert grid.joints == joints
     assert len(grid.tests) == 4 ** len(joints)
+    for test in (grid.tests[0], grid.tests[-1]):
+        assert_unfolded(request, test)
     for joint, angles in zip(joints, grid.angles, strict=True):
         assert np.ptp(np.diff(angles)) < np.radians(0.03)
         assert angles[0] > spec.lower[joint] + 0.9 * MARGIN
