@@ -5,26 +5,19 @@ sent there once, and the program rehearsed again; what is new behind it is sent 
 condition has gone both ways or ``MOST_DETOURS`` rehearsals are done. What a detour shows is possible in the cell as far
 as the program goes; that two conditions may exclude one another is not known here.
 
-Plans are remembered by what they depend on, so the part that a detour shares with another rehearsal costs nothing.
+Plans are remembered (``plan_memory``), so the part that a detour shares with another rehearsal costs nothing.
 """
 
 from collections import deque
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
-
-import numpy as np
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 from robolang.branches import Decisions, open_conditions
-from robolang.lowering import Command
 from robolang.motion_check import Rehearsal, rehearse
 from robolang.nodes import If, Moving, Statement
+from robolang.plan_memory import PlanMemory
 from robolang.project import Project
 from robolang.source import Span
-from runtime.faults import Fault
-from runtime.frames import Array
-from runtime.motion.chain import ChainPlan, MotionPlanner
-from runtime.motion.planner import LinePlan
-from runtime.robot.kinematics import Kinematics
 
 MOST_DETOURS = 60
 """Most rehearsals besides the first."""
@@ -51,7 +44,7 @@ class Exploration:
 
 def explore(project: Project) -> Exploration:
     """Rehearse a checked program on every way that it may take."""
-    planner = _Remembering(project)
+    planner = PlanMemory(project)
     conditions = open_conditions(project.program)
     decisions = Decisions()
     first = rehearse(project, decisions=decisions, planner=planner)
@@ -97,38 +90,3 @@ def _moves(project: Project) -> list[Moving]:
         elif isinstance(node, Moving):
             found.append(node)
     return found
-
-
-class _Remembering:
-    """A planner that plans nothing twice."""
-
-    def __init__(self, project: Project) -> None:
-        robot = project.cell.robot
-        self._planner = MotionPlanner(robot, Kinematics(robot), project.profile)
-        self._plans: dict[tuple[object, ...], LinePlan | Fault] = {}
-        self._chains: dict[tuple[object, ...], ChainPlan] = {}
-
-    def plan(self, q_start: Array, command: Command, X_flange_tool: Array, /) -> LinePlan:
-        """Return the plan of one move, as ``MotionPlanner.plan`` does."""
-        key = (q_start.tobytes(), *_key(command), X_flange_tool.tobytes())
-        if key not in self._plans:
-            try:
-                self._plans[key] = self._planner.plan(q_start, command, X_flange_tool)
-            except Fault as fault:
-                self._plans[key] = fault
-        found = self._plans[key]
-        if isinstance(found, Fault):
-            raise Fault(found.code, found.message, found.hint)
-        return found
-
-    def join(self, plans: Sequence[LinePlan], zones: Sequence[float], X_flange_tool: Array, /) -> ChainPlan:
-        """Return moves blended in their zones, as ``MotionPlanner.join`` does."""
-        key = (*(id(plan) for plan in plans), *zones, X_flange_tool.tobytes())  # plans are kept, so ids stay theirs
-        if key not in self._chains:
-            self._chains[key] = self._planner.join(plans, zones, X_flange_tool)
-        return self._chains[key]
-
-
-def _key(command: Command) -> tuple[object, ...]:
-    values = (getattr(command, field.name) for field in fields(command))
-    return (type(command), *(value.tobytes() if isinstance(value, np.ndarray) else value for value in values))

@@ -34,13 +34,14 @@ from robolang.effects import (
 from robolang.interpreter import Machine, ProgramFault
 from robolang.lowering import Command
 from robolang.nodes import Delay, Wait
+from robolang.plan_memory import PlanMemory
 from robolang.project import Project
 from robolang.source import Span
 from robolang.surroundings import RobotWorld
 from runtime.faults import Fault
 from runtime.frames import Array
 from runtime.motion.blend import Corner
-from runtime.motion.chain import ChainPlan, MotionPlanner
+from runtime.motion.chain import ChainPlan
 from runtime.motion.commands import MoveLinear
 from runtime.motion.planner import LinePlan
 from runtime.robot.kinematics import Kinematics
@@ -130,7 +131,7 @@ def rehearse(project: Project, *, decisions: Decisions | None = None, planner: P
     """
     cell = project.cell
     kinematics = Kinematics(cell.robot)
-    return _Rehearsal(project, kinematics, planner or MotionPlanner(cell.robot, kinematics, project.profile),
+    return _Rehearsal(project, kinematics, planner or PlanMemory(project),
                       decisions or Decisions(), MAX_RUN_US if most_us is None else most_us).run()  # fmt: skip
 
 

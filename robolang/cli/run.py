@@ -63,8 +63,9 @@ def run(
         _check_outputs(program, report, log)
         from robolang.project import load_project
 
-        project = load_project(program, cell, robot, profile=profile, options=options)
-        warned = refuse(project, warnings=strict or not quiet)
+        with _handled(_left_before_motion):
+            project = load_project(program, cell, robot, profile=profile, options=options)
+            warned = refuse(project, warnings=strict or not quiet)
         from robolang.session import Session
 
         with _progress(quiet) as progress:
@@ -172,9 +173,23 @@ def _signals(session: "Session") -> Iterator[list[int]]:
         else:
             sys.exit(128 + number)
 
+    with _handled(handle):
+        yield received
+
+
+def _left_before_motion(number: int, _frame: object) -> None:
+    """End the command while the program is read and its motion checked: there is nothing to stop and no log yet."""
+    name = signal.Signals(number).name
+    typer.echo(f"stopped by {name} before the program began: nothing has moved, no file was written", err=True)
+    sys.exit(128 + number)
+
+
+@contextmanager
+def _handled(handle: Callable[[int, object], None]) -> Iterator[None]:
+    """Have SIGINT and SIGTERM handled."""
     before = {number: signal.signal(number, handle) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
-        yield received
+        yield
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

@@ -23,6 +23,7 @@ import runtime
 from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
 from robolang.cli.main import app
+from robolang.cli.run_table import print_result
 from robolang.diagnostics import has_errors
 from robolang.parser import parse
 from robolang.source import Source
@@ -278,19 +279,31 @@ def test_the_python_of_the_readme_runs(monkeypatch):
 def test_the_transcript_of_the_readme_is_what_a_run_gives(run_result):
     """Times exactly; errors roughly, since another processor may round otherwise."""
     transcript = next(text for text in fenced(ROOT / "README.md", "text") if "pick_and_place" in text)
-    rows = [line for line in transcript.splitlines() if re.match(r" +\d+  \w", line)]
+    rows = [line for line in transcript.splitlines() if re.match(r" +\d+ +\d+  \w", line)]
     statements = run_result.report["statements"]
     assert len(rows) == len(statements)
     for row, statement in zip(rows, statements, strict=True):
-        number, text, rest = re.fullmatch(r" +(\d+)  (.*?)  +(\d+\.\d{3} .*)", row).groups()
+        line, number, text, rest = re.fullmatch(r" +(\d+) +(\d+)  (.*?)  +(\d+\.\d{3} .*)", row).groups()
         start, time, *shown = (float(value) for value in rest.split())
-        assert (int(number), text) == (statement["number"], statement["text"])
+        assert (int(line), int(number), text) == (statement["line"], statement["number"], statement["text"])
         assert (start, time) == pytest.approx((statement["start_s"], statement["duration_s"]), abs=5e-4)
         keys = {"joint_error_deg": 2e-3, "tool_error_mm": 0.02, "path_deviation_mm": 0.02, "peak_torque_pct": 0.6}
         keys = {key: tolerance for key, tolerance in keys.items() if statement[key] is not None}
         assert len(shown) == len(keys), text
         for value, (key, tolerance) in zip(shown, keys.items(), strict=True):
             assert value == pytest.approx(statement[key], rel=0.05, abs=tolerance), (text, key)
+
+
+def test_the_transcript_has_the_headings_and_notes_of_a_run(run_result):
+    """Line by line what is printed today, numbers apart: a column that is new or gone shows."""
+    transcript = next(text for text in fenced(ROOT / "README.md", "text") if "pick_and_place" in text)
+    shown = io.StringIO()
+    with redirect_stdout(shown):
+        print_result({**run_result.report, "program": "programs/pick_and_place.rbl"})
+    printed = [line.rstrip() for line in shown.getvalue().splitlines() if line.strip()]
+    words = [[re.sub(r"\d+(\.\d+)?", "0", line).split() for line in lines if line.strip()]
+             for lines in (transcript.splitlines(), printed)]  # fmt: skip
+    assert words[0] == words[1]
 
 
 def test_commands_exist():

@@ -9,8 +9,10 @@ import sys
 import numpy as np
 import pytest
 from mcap.reader import make_reader
+from typer.testing import CliRunner
 
 from robolang import runlog
+from robolang.cli.main import app
 from runtime.controller import Controller
 from tests.lang.cli.commands import ROOT, robolang
 from tests.steps import HANG_S
@@ -114,3 +116,16 @@ def test_the_handlers_of_the_caller_are_put_back(tmp_path):
     before = [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)]
     robolang("run", "--no-physics", "--quiet", tmp_path / "p.rbl")
     assert [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)] == before
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_while_the_motion_is_checked_says_that_nothing_has_moved(tmp_path, monkeypatch, number, code):
+    program = tmp_path / "p.rbl"
+    program.write_text("MOVE P1\n")
+    monkeypatch.setattr("robolang.motion_check.motion_check", lambda project: os.kill(os.getpid(), number) or ())
+    handlers = [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)]
+    found = CliRunner().invoke(app, ["run", "--no-physics", str(program), "--report", str(tmp_path / "r.json")])
+    assert found.exit_code == code
+    assert signal.Signals(number).name in found.output
+    assert not (tmp_path / "r.json").exists()
+    assert [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)] == handlers

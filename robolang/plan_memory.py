@@ -1,0 +1,53 @@
+"""Plans remembered by what they depend on: start, command and tool; chains by their plans and zones.
+
+A program that comes to a move again from where it did before gets the plan, or the refusal, that it got then. Used by
+every rehearsal, so a loop that goes on for ever is found without planning it for ever.
+"""
+
+from collections.abc import Sequence
+from dataclasses import fields
+
+import numpy as np
+
+from robolang.lowering import Command
+from robolang.project import Project
+from runtime.faults import Fault
+from runtime.frames import Array
+from runtime.motion.chain import ChainPlan, MotionPlanner
+from runtime.motion.planner import LinePlan
+from runtime.robot.kinematics import Kinematics
+
+
+class PlanMemory:
+    """A planner of one project that plans nothing twice, refusals included."""
+
+    def __init__(self, project: Project) -> None:
+        robot = project.cell.robot
+        self._planner = MotionPlanner(robot, Kinematics(robot), project.profile)
+        self._plans: dict[tuple[object, ...], LinePlan | Fault] = {}
+        self._chains: dict[tuple[object, ...], ChainPlan] = {}
+
+    def plan(self, q_start: Array, command: Command, X_flange_tool: Array, /) -> LinePlan:
+        """Return the plan of one move, as ``MotionPlanner.plan`` does."""
+        key = (q_start.tobytes(), *_key(command), X_flange_tool.tobytes())
+        if key not in self._plans:
+            try:
+                self._plans[key] = self._planner.plan(q_start, command, X_flange_tool)
+            except Fault as fault:
+                self._plans[key] = fault
+        found = self._plans[key]
+        if isinstance(found, Fault):
+            raise Fault(found.code, found.message, found.hint)
+        return found
+
+    def join(self, plans: Sequence[LinePlan], zones: Sequence[float], X_flange_tool: Array, /) -> ChainPlan:
+        """Return moves blended in their zones, as ``MotionPlanner.join`` does."""
+        key = (*(id(plan) for plan in plans), *zones, X_flange_tool.tobytes())  # plans are kept, so ids stay theirs
+        if key not in self._chains:
+            self._chains[key] = self._planner.join(plans, zones, X_flange_tool)
+        return self._chains[key]
+
+
+def _key(command: Command) -> tuple[object, ...]:
+    values = (getattr(command, field.name) for field in fields(command))
+    return (type(command), *(value.tobytes() if isinstance(value, np.ndarray) else value for value in values))
