@@ -32,7 +32,8 @@ class Limit:
         shown, least, most = beside(value, self.low, top, form=".10g")
         of = f"{self.name} is {shown}{self._unit}"
         if self.above:
-            return Fault(self.code, f"{of} and must be above {least} and at most {most}{self._unit}")
+            return Fault(self.code, f"{of} and must be above {least} and at most {most}{self._unit}",
+                         f"give {self.name} in {self.unit}, above {least} to {most}")  # fmt: skip
         kind = "a whole number from" if self.whole else "from"
         return Fault(self.code, f"{of} and must be {kind} {least} to {most}{self._unit}",
                      f"give {least} to {most}{self._unit}")  # fmt: skip
@@ -50,7 +51,7 @@ class Limit:
 
 
 SPEED = Limit(name="SPEED", unit="mm/s", low=0.0, high=10_000.0, code="RBL404", above=True)
-SPEED_PCT = Limit(name="SPEED", unit="%", low=0.0, high=100.0, code="RBL404", above=True)
+SPEED_PCT = Limit(name="SPEED of MOVEJ", unit="%", low=0.0, high=100.0, code="RBL404", above=True)
 SPEEDJ = Limit(name="SPEEDJ", unit="%", low=0.0, high=100.0, code="RBL404", above=True)
 ACCEL = Limit(name="ACCEL", unit="%", low=0.0, high=100.0, code="RBL404", above=True)
 OVERRIDE = Limit(name="OVERRIDE", unit="%", low=0.0, high=100.0, code="RBL404", above=True)

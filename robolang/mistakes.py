@@ -39,6 +39,7 @@ _OPERATORS = frozenset({"OR", "XOR", "AND", "NOT", "MOD", "PLUS", "MINUS", "STAR
 _LAST_WORD = re.compile(r"(?:[\w.$]+|[^\s\w])[ \t]*\Z")
 _ASSIGNS = re.compile(r":[ \t]*(?:\Z|'|=)|([-+*/])(?:=|\1[ \t]*\Z)")
 """What follows the name in an assignment or a label of another language: ``:=``, ``+=``, ``++``, ``:`` at the end."""
+_ASSIGNMENT = re.compile(r"\w+\$?[ \t]*(?:\([^=]*\)[ \t]*)?=")
 _SETTINGS = frozenset({"SPEED", "SPEEDJ", "ACCEL", "OVERRIDE", "ZONE", "TOOL", "FRAME", "DELAY", "LOAD", "TIME",
                        "TIMEOUT"})  # fmt: skip
 _WAIT_TIME = re.compile(r"(?i)WAIT[ \t]+(?:SEC|TIME|[\d.]+)")
@@ -252,7 +253,7 @@ def _instead(found: Unexpected, word: str, before: str) -> str:
     if found.kind == "ENDIF" and found.instruction == "IF":
         return "an IF on one line has no ENDIF"
     if found.kind != "NAME":
-        return other_languages.instruction(found.instruction)
+        return _of_first_word(found)
     if found.instruction in ("GOTO", "GOSUB"):
         return f"a label is written with *: {found.instruction} *{found.text}"
     if word == "DIV":
@@ -260,7 +261,12 @@ def _instead(found: Unexpected, word: str, before: str) -> str:
     if word in ("DO", "BEGIN") and "$END" in found.accepts:
         return f"leave {found.text} out"
     instead = other_languages.setting(found.text) if found.instruction in MOTIONS else ""
-    return instead or other_languages.instruction(found.instruction)
+    return instead or _of_first_word(found)
+
+
+def _of_first_word(found: Unexpected) -> str:
+    """Return what stands for the word that begins a statement; an ordinary name where a value is assigned to it."""
+    return "" if _ASSIGNMENT.match(found.before) else other_languages.instruction(found.instruction)
 
 
 def _lacks_comma(found: Unexpected, word: str) -> bool:

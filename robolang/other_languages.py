@@ -76,6 +76,10 @@ _HINTS = {
 WORDS = {word: hint for hint, words in _HINTS.items() for word in words.split()}
 """What stands for an instruction of another language, by the word in capitals."""
 
+_NAMES = frozenset({"UFRAME", "UFRAME_NUM", "UTOOL", "UTOOL_NUM"})
+_ELEMENTS = _NAMES | {word for word, hint in WORDS.items() if hint in (_IN, _OUT) or word in ("R", "PR", "SR")}
+"""What other languages assign to, by its name alone or with a number; all other words are ordinary names there too."""
+
 ENDS = {"ENDWHILE": "WEND", "ENDFOR": "NEXT", "ENDSWITCH": "ENDSELECT", "ENDCASE": "ENDSELECT",
         **dict.fromkeys(("ENDPROC", "ENDFUNC", "ENDFUNCTION", "ENDFCT", "ENDROUTINE"), "ENDSUB")}  # fmt: skip
 """Words of other languages that end a block, and the one that does here."""
@@ -121,6 +125,11 @@ _FOLLOWING = {"IN": _IN, "OUT": _OUT, "VEL": _SPEED, "ACC": _ACCEL, "OV_PRO": "O
 def instruction(word: str) -> str:
     """Return what stands for an instruction of another language, or ``""``."""
     return WORDS.get(word.upper(), "")
+
+
+def assigned(word: str, *, element: bool = False) -> str:
+    """Return what stands for a name, or for an ``element``, that another language assigns values to, or ``""``."""
+    return instruction(word) if word.upper() in (_ELEMENTS if element else _NAMES) else ""
 
 
 def function(word: str) -> str:

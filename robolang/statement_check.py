@@ -213,8 +213,8 @@ class StatementCheck:
         is_element = isinstance(node.target, Call) and not self._defined.has_array(name.key)
         if is_element and self._defined.is_missing(name):
             message = f"there is no array {name.text}"
-            yield Diagnostic(code="RBL215", message=message, span=name.span,
-                             hint=other_languages.instruction(name.key) or f"DIM {name.text}(n) makes one")  # fmt: skip
+            hint = other_languages.assigned(name.key, element=True) or f"DIM {name.text}(n) makes one"
+            yield Diagnostic(code="RBL215", message=message, span=name.span, hint=hint)
 
     def _fits(self, name: Name, value: Expression) -> Iterator[Diagnostic]:
         """Report a value of another kind than a name holds."""

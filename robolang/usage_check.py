@@ -39,7 +39,7 @@ def usage_check(program: Program) -> Iterator[Diagnostic]:
             read.update(_reads(node))
     for key, name in given.items():
         if key not in read:
-            guess, elsewhere = near(key, read), other_languages.instruction(key)
+            guess, elsewhere = near(key, read), other_languages.assigned(key)
             yield Diagnostic(code="RBL225", severity=Severity.WARNING, span=name.span,
                              message=f"nothing reads {name.text}",
                              hint=f"did you mean {guess}?" if guess else elsewhere)  # fmt: skip

@@ -112,7 +112,7 @@ register(
         code="RBL404",
         name="speed-out-of-range",
         meaning="A speed, acceleration or duration is not a positive number in the robot's range.",
-        remedy="Give SPEED in mm/s, ACCEL in % (1 to 100), TIME in s.",
+        remedy="Give SPEED in mm/s, SPEED of MOVEJ, SPEEDJ, ACCEL and OVERRIDE in % (above 0 to 100), TIME in s.",
     ),
     Code(
         code="RBL405",

@@ -86,3 +86,32 @@ def test_a_wait_for_a_number_waits_for_nothing():
     assert found("WAIT 2") == [("RBL233", 1, "DELAY 2 waits for 2 s")]
     text = "WAIT -1\nWAIT 1E9, TIMEOUT 1\nWAIT 0, TIMEOUT 2"
     assert [item[:2] for item in found(text)] == [("RBL233", 1), ("RBL233", 2)]
+
+
+@pytest.mark.parametrize("name", ["c", "l", "j", "do", "lin", "v", "run"])
+def test_an_ordinary_name_is_no_word_of_another_language(name):
+    foreign = other_languages.instruction(name)
+    hints = [hint for text in (f"{name} = 5", f"{name} = 5 6", f"{name} = 5 lin") for _, _, hint in found(text)]
+    assert len(hints) == 3
+    assert foreign
+    assert foreign not in hints
+
+
+@pytest.mark.parametrize("name", ["c", "l", "lin", "v", "run"])
+def test_an_element_of_an_ordinary_name_lacks_its_array(name):
+    assert found(f"{name}(1) = 2") == [("RBL215", 1, f"DIM {name}(n) makes one")]
+
+
+@pytest.mark.parametrize(
+    ("text", "remedy"),
+    [
+        ("MOVE P1, SPEED 0", "give SPEED in mm/s, above 0 to 10000"),
+        ("MOVE P1, TIME 0", "give TIME in s, above 0 to 600"),
+        ("MOVEJ P1, SPEED 250", "give SPEED of MOVEJ in %, above 0 to 100"), ("MOVE P1, SPEED NAN", "mm/s"),
+        ("SPEEDJ 150", "give SPEEDJ in %, above 0 to 100"), ("OVERRIDE 0", "give OVERRIDE in %, above 0 to 100"),
+        ("MOVE P1, ACCEL NAN", "give ACCEL in %, above 0 to 100"),
+    ],
+)  # fmt: skip
+def test_the_remedy_of_a_range_names_its_quantity(text, remedy):
+    hints = [hint for code, _, hint in found(text) if code == "RBL404"]
+    assert [remedy in hint for hint in hints] == [True]
