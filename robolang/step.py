@@ -17,6 +17,7 @@ import numpy as np
 from robolang.project import builtin_cell
 from runtime.controller import Controller
 from runtime.dynamics.equations import axis_inertia
+from runtime.faults import Fault
 from runtime.frames import Array, pose
 from runtime.motion.fine import FineInterpolator
 from runtime.plant.cell import CellSpec
@@ -133,7 +134,10 @@ class StepResult:
 
 
 def step(request: StepRequest) -> StepResult:
-    """Run one step experiment; ``ValueError`` for an axis or a posture that the robot has not."""
+    """Run one step experiment; ``ValueError`` for an axis or a posture that the robot has not.
+
+    ``Fault`` RBL516 where the arm touched itself or the floor: its response is not that of the servo then.
+    """
     _check(request)
     robot = ideal_drives(request.robot) if request.ideal else request.robot
     profile = replace(request.profile, supervision=replace(request.profile.supervision, enabled=False))
@@ -148,6 +152,7 @@ def step(request: StepRequest) -> StepResult:
     first = controller.recorder.tick
     controller.areas.ina = request.q + request.size * np.eye(robot.n)[request.axis]
     _run(controller, request.seconds, lost=max(_LOST * abs(request.size), np.pi))
+    _refuse_touch(request, controller)
     return _measure(request, controller, first)
 
 
@@ -188,6 +193,12 @@ def _run(controller: Controller, seconds: float, lost: float = np.inf) -> None:
     for _ in range(round(seconds / controller.profile.period_s)):
         if not controller.cycle() or not controller.position_error < lost:
             return
+
+
+def _refuse_touch(request: StepRequest, controller: Controller) -> None:
+    for touch in [] if controller.touches is None else controller.touches.records:
+        raise Fault("RBL516", f"in the step of J{request.axis + 1}, {touch.message}",
+                    "choose a smaller step, or a posture with more space around it")  # fmt: skip
 
 
 def _measure(request: StepRequest, controller: Controller, first: int) -> StepResult:

@@ -8,6 +8,7 @@ import pytest
 
 from robolang.step import StepRequest, step
 from runtime.dynamics.equations import axis_inertia
+from runtime.faults import Fault
 from runtime.frames import pose
 from runtime.profile import Profile, ServoOptions
 from runtime.robot.loader import load_builtin
@@ -175,3 +176,14 @@ def test_an_axis_or_a_posture_that_the_robot_has_not_is_refused():
         step(experiment(6, STRETCHED, 0.1))
     with pytest.raises(ValueError, match=r"J1 at 160\.1 deg"):
         step(experiment(0, STRETCHED, 160.1 * DEG))
+
+
+def test_a_step_in_which_the_arm_touches_itself_is_no_response_of_the_servo():
+    """The hand is stopped by link 1, 11 deg short of where the step ends."""
+    robot = load_builtin("manutec_r3")
+    request = StepRequest(robot=robot, axis=2, q=np.radians([0, 0, -130, 0, 0, 0]), size=-33 * DEG, plant="mujoco",
+                          ideal=False, seconds=0.6)  # fmt: skip
+    with pytest.raises(Fault, match=r"in the step of J3, .* touched link 1") as caught:
+        step(request)
+    assert caught.value.code == "RBL516"
+    assert step(replace(request, size=-1 * DEG)).stable
