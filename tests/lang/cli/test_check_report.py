@@ -10,6 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from robolang.cli.main import app
+from tests.campaign import some
 from tests.lang.cli.commands import ROOT, flat, places, robolang, shell
 from tests.steps import HANG_S
 
@@ -236,7 +237,9 @@ def python(code, *words, cwd):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("words", [("--help",), ("--no-such-option",), ("--output-format", "x"), ("bad.rbl",), ()])
+@pytest.mark.parametrize(
+    "words", some([("--help",), ("--no-such-option",), ("--output-format", "x"), ("bad.rbl",), ()], 0, 1, 3)
+)
 def test_the_short_way_into_it_is_the_same_command(words, folder):
     code = "sys.argv[0] = 'robolang'; from robolang.cli.{} import run_app; run_app()"
     short, whole = (python(code.format(name), "check", *words, cwd=folder) for name in ("quick", "main"))

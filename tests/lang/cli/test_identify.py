@@ -1,6 +1,7 @@
 """``robolang identify``, and the compensation file in ``run``, a cell and a profile."""
 
 import json
+import pickle
 import re
 import shutil
 
@@ -11,10 +12,42 @@ from robolang import identify as identification
 from robolang.project import builtin_cell, load_project
 from runtime.dynamics.compensation import load_compensation
 from runtime.robot.loader import load_builtin
+from tests.campaign import some
 from tests.lang.cli.commands import BUILTIN, PUMA, ROOT, dry, flat, places, robolang
 
 SPEC = load_builtin("puma560")
 QUICK = ("--plant", "rigid", "--positions", "2")
+TABLE_JOINTS = dict(some(((1, (1, 2)), (2, (2,))), 1))
+"""By the number of an axis, the joints (0-based) of its table."""
+TABLE = ("--axis", ",".join(map(str, (*TABLE_JOINTS, 6))), "--plant", "rigid", "--positions", "1", "--table", "2",
+         "--error", "4")  # fmt: skip
+
+
+@pytest.fixture(scope="module", autouse=True)
+def identified_once():
+    """Commands that ask for the same share one identification: what they print and write of it is tested here."""
+    run, kept = identification.identify, {}
+
+    def identify(request, progress):
+        key = pickle.dumps(request)
+        if key in kept:
+            results, told = kept[key]
+            for where in told:
+                progress(*where)
+            return results
+        told = []
+
+        def tell(*where):
+            told.append(where)
+            progress(*where)
+
+        results = run(request, tell)
+        kept[key] = results, told
+        return results
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(identification, "identify", identify)
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -118,49 +151,41 @@ def test_a_test_motion_that_would_leave_a_limit_is_refused_with_its_joint(tmp_pa
 @pytest.fixture(scope="module")
 def with_table(tmp_path_factory):
     path = tmp_path_factory.mktemp("table") / "arm.compensation.toml"
-    words = ("--axis", "1,2,6", "--plant", "rigid", "--positions", "1", "--table", "2", "--error", "4", "--json")
-    return path, robolang("identify", "puma560", *words, "--out", path)
+    return path, robolang("identify", "puma560", *TABLE, "--json", "--out", path)
 
 
 def test_a_table_is_in_the_file_the_figures_and_the_progress(with_table):
     path, result = with_table
     found, shown = load_compensation(path, SPEC), json.loads(result.stdout)["axes"]
-    assert [axis.table is not None for axis in found.axes] == [True, True, False, False, False, False]
-    for number in (0, 1):
-        table = found.axes[number].table
-        assert table.joints == ((1, 2), (2,))[number]
-        assert [joint - 1 for joint in shown[number]["table"]["joints"]] == list(table.joints)
-        assert shown[number]["table"]["compensation_kg_m2"] == list(table.values)
-        assert np.radians(shown[number]["table"]["deg"]) == pytest.approx(np.array(table.grid))
-        assert found.axes[number].compensation == shown[number]["compensation_kg_m2"] == pytest.approx(table.mean)
-    assert "table" not in shown[2]
-    told = re.findall(r"J(\d), position (\d) of (\d)", result.stderr)
-    assert told == [*(("1", str(k), "5") for k in range(1, 6)), *(("2", str(k), "3") for k in range(1, 4)),
-                    ("6", "1", "1")]  # fmt: skip
+    assert [number for number, axis in enumerate(found.axes, start=1) if axis.table] == list(TABLE_JOINTS)
+    told = []
+    for (number, joints), axis in zip(TABLE_JOINTS.items(), shown, strict=False):
+        table = found.axes[number - 1].table
+        assert table.joints == joints
+        assert [joint - 1 for joint in axis["table"]["joints"]] == list(joints)
+        assert axis["table"]["compensation_kg_m2"] == list(table.values)
+        assert np.radians(axis["table"]["deg"]) == pytest.approx(np.array(table.grid))
+        assert found.axes[number - 1].compensation == axis["compensation_kg_m2"] == pytest.approx(table.mean)
+        places = 1 + 2 ** len(joints)
+        told += [(str(number), str(place), str(places)) for place in range(1, places + 1)]
+    assert "table" not in shown[-1]
+    assert re.findall(r"J(\d), position (\d) of (\d)", result.stderr) == [*told, ("6", "1", "1")]
 
 
 def test_the_heading_names_the_table():
-    words = ("--axis", "2", "--plant", "rigid", "--positions", "1", "--table", "2")
-    assert "1 position of each axis, a table of 2 angles of each joint" in robolang(
-        "identify", "puma560", *words).stdout  # fmt: skip
+    said = robolang("identify", "puma560", *TABLE).stdout
+    assert "1 position of each axis, a table of 2 angles of each joint" in said
 
 
-def test_three_places_tell_friction_and_weight(tmp_path, monkeypatch):
-    run, kept = identification.identify, []
-
-    def once(*words):
-        if not kept:
-            kept.append(run(*words))
-        return kept[0]
-
-    monkeypatch.setattr(identification, "identify", once)  # what is printed of it, and what is written, is tested here
+def test_three_places_tell_friction_and_weight(tmp_path):
+    axes = some((1, 2), 0)
     path = tmp_path / "a.compensation.toml"
-    words = ("--axis", "2,3", "--plant", "rigid", "--positions", "3", "--error", "4")
+    words = ("--axis", ",".join(str(axis + 1) for axis in axes), "--plant", "rigid", "--positions", "3", "--error", "4")
     shown = json.loads(robolang("identify", "puma560", *words, "--json", "--out", path).stdout)
     found = load_compensation(path, SPEC)
     assert [list(moment) for moment in found.first_moments] == shown["first_moments_kg_m"]
     assert np.linalg.norm(found.first_moments[1]) > 0.2
-    for row, axis in zip(shown["axes"], (1, 2), strict=True):
+    for row, axis in zip(shown["axes"], axes, strict=True):
         assert row["friction_nm"] > SPEC.axes[axis].motor.joint_coulomb_friction[0]
         assert row["weight_beyond_nm"] > 0.5
     text = robolang("identify", "puma560", *words).stdout
@@ -221,7 +246,8 @@ def test_a_run_takes_the_table(tmp_path, with_table):
     found, servo = load_compensation(with_table[0], SPEC), load_project(program).profile.servo
     assert servo.rotors == tuple(found.rotors(SPEC))
     assert servo.rotor_tables == found.rotor_tables(SPEC)
-    assert servo.rotor_tables[0].mean == pytest.approx(0.0, abs=1e-12)
+    for number in TABLE_JOINTS:
+        assert servo.rotor_tables[number - 1].mean == pytest.approx(0.0, abs=1e-12)
 
 
 def test_a_profile_names_the_file_beside_itself(tmp_path, made):

@@ -9,6 +9,7 @@ import sys
 import pytest
 
 from robolang.cli import run_table
+from tests.campaign import some
 from tests.lang.cli.commands import ROOT, dry, robolang, shell
 from tests.steps import HANG_S
 
@@ -144,13 +145,14 @@ def test_on_a_terminal_progress_is_one_live_line(program):
 
 def test_a_reader_that_leaves_changes_nothing(program):
     """``robolang run ... | true``: no trace, the exit code of the run, the files written."""
-    for words, code in (
+    commands = (
         (["run", "--no-physics", "p.rbl", "--report", "r.json"], 0),
         (["explain"], 0),
         (["robot", "show", "puma560"], 0),
         (["robot", "list"], 0),
         (["check", "bad.rbl"], 1),
-    ):
+    )
+    for words, code in some(commands, 0, 1, 4):
         (program.parent / "bad.rbl").write_text("MOV P1\n")
         reading, writing = os.pipe()
         os.close(reading)
@@ -176,7 +178,7 @@ def test_closed_streams_and_a_plain_encoding_do_not_stop_a_run(program):
         "import os, sys; os.closerange({}, {}); "
         "os.execv(sys.executable, [sys.executable, '-m', 'robolang', *sys.argv[1:]])"
     )
-    for first, last in ((1, 2), (2, 3), (1, 3)):
+    for first, last in some(((1, 2), (2, 3), (1, 3)), 2):
         words = [sys.executable, "-c", run.format(first, last), "run", "--no-physics", "p.rbl", "--report", "r.json"]
         env = {**os.environ, "PYTHONPATH": str(ROOT)}
         assert subprocess.run(words, cwd=program.parent, env=env, timeout=HANG_S).returncode == 0
