@@ -29,7 +29,8 @@ from pathlib import Path
 
 import robolang.codes  # noqa: F401 - all codes must be registered
 from runtime.faults import all_codes
-from runtime.tomlfile import FileFault, Source, Table, load_table, locate, read_source
+from runtime.toml_places import locate
+from runtime.tomlfile import FileFault, Source, Table, load_table, read_source
 
 SCHEMA = 1
 ENDING = ".test.toml"
@@ -73,20 +74,19 @@ class Expectation:
 
 
 def load_expectation(path: Path) -> Expectation:
-    """Read a test file; ``FileFault`` RBL6xx at its line."""
+    """Read a test file; ``FileFault`` RBL6xx at the first line that is wrong, with all others."""
     source = read_source(path)
-    table = load_table(source)
-    if table.integer("schema", low=0, high=10**6) != SCHEMA:
-        table.fail("RBL605", f"'schema' must be {SCHEMA}", key="schema")
+    table = load_table(source, gather=True)
+    table.attempt(lambda: _schema(table))
     expect = table.table("expect", required=False)
     parts = expect.table("parts", required=False)
     found = Expectation(
         source=source,
         physics=table.flag("physics", True),
-        alarms=_codes(expect, "alarms") or (),
-        warnings=_codes(expect, "warnings"),
-        cycle_s=_pair(expect, "cycle_s"),
-        printed=_texts(expect, "printed"),
+        alarms=expect.attempt(lambda: _codes(expect, "alarms") or ()) or (),
+        warnings=expect.attempt(lambda: _codes(expect, "warnings")),
+        cycle_s=expect.attempt(lambda: _pair(expect, "cycle_s")),
+        printed=expect.attempt(lambda: _texts(expect, "printed")),
         path_error_mm=_most(expect, "path_error_mm"),
         tool_error_mm=_most(expect, "tool_error_mm"),
         torque_pct=_most(expect, "torque_pct"),
@@ -95,20 +95,39 @@ def load_expectation(path: Path) -> Expectation:
         end_deg=expect.number("end_deg", 1.0, positive=True),
         golden_deg=_most(expect, "golden_deg"),
         part_mm=parts.number("part_mm", 1.0, positive=True),
-        parts={name: parts.numbers(name, 3) for name in parts.names() if name != "part_mm"},
-    )
-    for each in (parts, expect, table):
+        parts={name: parts.attempt(lambda name=name: _end_of_part(parts, name)) or ()  # type: ignore[misc]
+               for name in parts.names() if name != "part_mm"},
+    )  # fmt: skip
+    for each in (parts, expect):
         each.done()
-    _without_effect(expect, "end_mm", "end_pose" in expect, "expect.end_pose")
-    _without_effect(expect, "end_deg", "end_pose" in expect, "expect.end_pose")
+    for key in ("end_mm", "end_deg"):
+        _without_effect(expect, key, "end_pose" in expect, "expect.end_pose")
     _without_effect(parts, "part_mm", bool(found.parts), "the place of a part in expect.parts")
+    table.finish()
     return found
+
+
+def _schema(table: Table) -> None:
+    if table.integer("schema", low=0, high=10**6) != SCHEMA:
+        table.fail("RBL605", f"'schema' must be {SCHEMA}", key="schema")
+
+
+def _end_of_part(parts: Table, name: str) -> tuple[float, ...]:
+    """Return where a part ends, mm; a lone number may be a misspelt ``part_mm``."""
+    parts.ask(name)
+    if not parts.is_list(name):
+        hint = "write the place of the part, [x, y, z] in mm"
+        if "part_mm" not in parts:
+            hint += "; did you mean 'part_mm'?"
+        parts.fail("RBL613", f"'{parts.name(name)}' must be a list of 3 numbers", hint, key=name)
+    return parts.numbers(name, 3)
 
 
 def _without_effect(table: Table, key: str, used: bool, needs: str) -> None:
     """Refuse a tolerance of what is not expected: the file would seem to compare something."""
     if key in table and not used:
-        table.fail("RBL608", f"'{table.name(key)}' is a tolerance of {needs}, which is missing", key=key)
+        message = f"'{table.name(key)}' is a tolerance of {needs}, which is missing"
+        table.attempt(lambda: table.fail("RBL608", message, key=key))
 
 
 def _texts(table: Table, key: str) -> tuple[str, ...] | None:

@@ -23,10 +23,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
+from typing import NoReturn
 
 import robolang.codes  # noqa: F401 - the codes raised here must be registered
 from robolang.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.words import RESERVED, near
+from runtime.faults import lookup
 from runtime.robot.drives import beyond_range
 from runtime.tomlfile import FileFault, Source, Table, load_table, read_source
 
@@ -131,7 +133,7 @@ def _as_point_fault(fault: FileFault, path: Path) -> FileFault:
     hint = f"{copy.name} may hold an intact copy" if code == "RBL303" and copy.is_file() else ""
     if code == fault.code and not hint:
         return fault
-    kept = fault.hint if fault.code in ("RBL609", "RBL608") else ""
+    kept = "" if fault.hint == lookup(fault.code).remedy else fault.hint  # the remedy of the new code is better
     return FileFault(code, fault.message, hint or kept, path=fault.path, line=fault.line, column=fault.column,
                      excerpt=fault.excerpt)  # fmt: skip
 
@@ -159,8 +161,10 @@ def _point(name: str, entry: Table, symbols: CellSymbols, others: Mapping[str, P
         entry.fail("RBL303", f"'{name}' cannot be the name of a point")
     if name.upper() in others:
         entry.fail("RBL303", f"point '{name}' is there twice: names ignore case")
-    if ("pose" in entry) == ("joints" in entry):
-        entry.fail("RBL303", f"point '{name}' must have either 'pose' or 'joints'")
+    if "pose" in entry and "joints" in entry:
+        entry.fail("RBL303", f"point '{name}' has 'pose' and 'joints'", "remove one of the two", key="joints")
+    if "pose" not in entry and "joints" not in entry:
+        _without_place(name, entry)
     point = Point(
         name=name,
         pose=entry.attempt(lambda: _pose(entry)) if "pose" in entry else None,
@@ -173,6 +177,14 @@ def _point(name: str, entry: Table, symbols: CellSymbols, others: Mapping[str, P
     )
     entry.done()
     return point
+
+
+def _without_place(name: str, entry: Table) -> NoReturn:
+    """Refuse a point that lies nowhere: at a key that may be a misspelt 'pose' or 'joints', else at its header."""
+    entry.ask("frame", "tool", "configuration", "turns", "comment")
+    entry.done()
+    entry.fail("RBL303", f"point '{name}' has neither 'pose' nor 'joints'",
+               "write pose = [x, y, z, rx, ry, rz] in mm and deg, or joints = [...] in deg")  # fmt: skip
 
 
 def _named(entry: Table, key: str, known: frozenset[str] | None, symbols: CellSymbols) -> str:

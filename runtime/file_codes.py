@@ -67,7 +67,7 @@ register(
         code="RBL610",
         name="name-taken-or-unknown",
         meaning="A name in a robot or cell file is used twice, or names something that does not exist.",
-        remedy="Use one of the names in the message.",
+        remedy="Give each thing a name of its own; for an unknown name, write one that is known.",
     ),
     Code(
         code="RBL613",

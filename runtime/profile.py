@@ -320,20 +320,25 @@ def read_layer(table: Table | None) -> Layer:
 
 def _read(table: Table, settings: Sequence[Setting], prefix: str) -> dict[str, Given]:
     return {
-        prefix + item.key: Given(value=item.read(table, item.key), origin=table.place(item.key), table=table,
+        prefix + item.key: Given(value=_value(table, item), origin=table.place(item.key), table=table,
                                  name=item.key)
         for item in settings
         if item.key in table
     }  # fmt: skip
 
 
+def _value(table: Table, item: Setting) -> Any:
+    """Return the value of a setting, None where it is wrong and everything that is wrong is gathered."""
+    return table.attempt(lambda: item.read(table, item.key))
+
+
 def load_profile_file(path: Path) -> Layer:
     """Read a profile file: ``schema = 1`` and ``[controller]`` as in a cell; ``FileFault`` at what is wrong."""
-    table = load_table(read_source(path))
+    table = load_table(read_source(path), gather=True)
     table.integer("schema", low=1, high=1)
-    layer = read_layer(table.table("controller"))
-    table.done()
-    return layer
+    layer = table.table("controller").gather(read_layer)
+    table.finish()
+    return layer or {}
 
 
 def read_options(values: Mapping[str, tuple[str, Any]]) -> Layer:

@@ -12,6 +12,7 @@ import re
 import stat
 import tomllib
 from collections.abc import Callable, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any, NoReturn, TypeVar
@@ -19,9 +20,15 @@ from typing import Any, NoReturn, TypeVar
 import runtime.file_codes  # noqa: F401 - registers what is raised here
 from runtime.faults import Fault
 from runtime.rounding import beside
+from runtime.toml_places import clash, lines_of, locate
 
 MAX_BYTES = 1_000_000
 MAX_ABS = 1e9
+TWICE = "is given twice"
+"""What the message of a key or table that stands twice says."""
+
+_CLASHES = ("Cannot overwrite a value", "Cannot declare", "Cannot mutate immutable", "Cannot redefine")
+"""How the messages of tomllib begin where a key or table is there already."""
 
 
 class FileFault(Fault):
@@ -101,19 +108,18 @@ def load_table(source: Source, code: str = "RBL601", *, gather: bool = False) ->
         found = re.search(r"at line (\d+), column (\d+)", text)
         lines = lines_of(source.text)
         line, column = (int(found[1]), int(found[2])) if found else (len(lines), len(lines[-1]) + 1)
-        excerpt = lines[line - 1] if line <= len(lines) else ""
         message = re.sub(r" \(at .*\)", "" if found else " at the end of the file", text)
-        raise FileFault(code, message, "", path=source.path, line=line, column=column, excerpt=excerpt) from None
+        hint = ""
+        if text.startswith(_CLASHES):
+            line, column, name, first = clash(source.text, line)
+            message = f"{name} {TWICE}" + (f", first in line {first}" if first is not None else "")
+            hint = "remove one of the two, or put their contents together"
+        excerpt = lines[line - 1] if line <= len(lines) else ""
+        raise FileFault(code, message, hint, path=source.path, line=line, column=column, excerpt=excerpt) from None
     except RecursionError:
         source.fail(code, "the file is nested too deeply")
     except ValueError as error:  # int() refuses a literal of thousands of digits
         source.fail(code, f"a value cannot be read: {error}")
-
-
-def lines_of(text: str) -> list[str]:
-    """Return the lines of a TOML text, split only where TOML and editors do (LF, CRLF); at least one."""
-    lines = [line.removesuffix("\r") for line in text.split("\n")]
-    return lines[:-1] if len(lines) > 1 and not lines[-1] else lines
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,6 +156,8 @@ class Table:
         self._absent = absent
 
     def __contains__(self, key: str) -> bool:
+        if key not in self._data:
+            self._asked.add(key)  # a key that might have been here is known here
         return key in self._data
 
     def names(self) -> list[str]:
@@ -196,6 +204,7 @@ class Table:
             tables = {id(note.table): note.table for note in self._gathered if isinstance(note, _Missing)}
             faults = [note for note in self._gathered if isinstance(note, FileFault)]
             faults += [table._lacking() for table in tables.values()]
+            faults = list({(fault.path, fault.line, fault.column, fault.message): fault for fault in faults}.values())
             faults.sort(key=lambda fault: (fault.path != self.source.path, fault.line, fault.column))
             faults[0].others = tuple(faults[1:])
             raise faults[0]
@@ -214,7 +223,8 @@ class Table:
 
     def _missing_keys(self) -> list[str]:
         noted = self._gathered or ()
-        return [note.key for note in noted if isinstance(note, _Missing) and note.table is self]
+        keys = [note.key for note in noted if isinstance(note, _Missing) and note.table is self]
+        return list(dict.fromkeys(keys))  # a key that is read twice is missing once
 
     def _lacking(self) -> FileFault:
         """Return the one fault that names every key which this table lacks."""
@@ -381,14 +391,21 @@ class Table:
         for key in self._data:
             if key in self._asked or difflib.get_close_matches(key, missing, n=1):
                 continue  # a key that looks like a missing one is named with that
-            near = difflib.get_close_matches(key, self._asked - set(self._data), n=1) or difflib.get_close_matches(
-                key, self._asked, n=1
+            near = _near(key, self._asked - set(self._data)) or next(
+                iter(difflib.get_close_matches(key, self._asked, n=1)), ""
             )
-            hint = f"did you mean '{near[0]}'?" if near else f"known here: {', '.join(sorted(self._asked))}"
+            hint = f"did you mean '{near}'?" if near else f"known here: {', '.join(sorted(self._asked))}"
             fault = self.fault("RBL609", f"'{self.name(key)}' is not a key of this file", hint, key=key)
             if self._gathered is None:
                 raise fault
             self._gathered.append(fault)
+
+
+def _near(key: str, free: AbstractSet[str]) -> str:
+    """Return the key that an unknown one may stand for, or nothing; ``position`` may stand for ``pose``."""
+    close = difflib.get_close_matches(key, free, n=1)
+    begins = [] if close or len(key) < 3 else sorted(each for each in free if each[:3] == key[:3])
+    return next(iter([*close, *begins]), "")
 
 
 def _beside_range(number: float, low: float, high: float, positive: bool) -> tuple[str, str]:
@@ -416,50 +433,6 @@ def _shown(value: float) -> str:
     if isinstance(value, int) and abs(value) >= 10**20:
         return f"a whole number of {value.bit_length()} bits"
     return str(value)
-
-
-_HEADER = re.compile(r"^\s*(\[\[?)\s*([A-Za-z0-9_.\"' -]+?)\s*\]\]?\s*(?:#.*)?$")
-_KEY = re.compile(r"^(\s*)([A-Za-z0-9_.\"'-]+)\s*=")
-
-
-def locate(text: str, keys: Sequence[str | int]) -> tuple[int, int]:
-    """Return the 1-based line and column where a key path stands; the nearest enclosing header otherwise.
-
-    A scan of lines, not a parser: tomllib keeps no positions. Inline tables are located at their own key.
-    """
-    best, place = -1, (1, 1)
-    here: list[str | int] = []
-    counts: dict[tuple[str | int, ...], int] = {}
-    for number, line in enumerate(lines_of(text), start=1):
-        if header := _HEADER.match(line):
-            here = _header_path(header[2], header[1] == "[[", counts)
-            candidate, column = list(here), line.index("[") + 1
-        elif key := _KEY.match(line):
-            candidate, column = [*here, *_split(key[2])], len(key[1]) + 1
-        else:
-            continue
-        depth = len(candidate)
-        if depth > best and depth <= len(keys) and list(keys[:depth]) == candidate:
-            best, place = depth, (number, column)
-    return place
-
-
-def _split(dotted: str) -> list[str]:
-    return [part.strip().strip("\"'") for part in dotted.split(".")]
-
-
-def _header_path(dotted: str, is_array: bool, counts: dict[tuple[str | int, ...], int]) -> list[str | int]:
-    path: list[str | int] = []
-    parts = _split(dotted)
-    for position, part in enumerate(parts):
-        path.append(part)
-        key = tuple(path)
-        if is_array and position == len(parts) - 1:
-            counts[key] = counts.get(key, -1) + 1
-            path.append(counts[key])
-        elif key in counts:
-            path.append(counts[key])
-    return path
 
 
 def inside(table: Table, name: str, folder: Path | None, key: str) -> Path:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robolang.cli.errors import DIAGNOSTICS, USAGE, internal, reported, say
+from robolang.cli.errors import DIAGNOSTICS, USAGE, internal, reported, say_all
 
 if TYPE_CHECKING:
     from robolang.diagnostics import Diagnostic
@@ -153,7 +153,7 @@ def _tell(outcome: _Outcome) -> int:
     typer.echo(safe(f"{'ok  ' if outcome.ok else 'FAIL'} {outcome.name}, {outcome.seconds:.3f} s"))
     for verdict in outcome.verdicts:
         if verdict.fault is not None:
-            code = max(code, USAGE, say(verdict.fault))
+            code = max(code, USAGE, say_all(verdict.fault))
         elif not verdict.ok or verdict.noted:
             typer.echo(safe(f"     {outcome.line(verdict)}"))
     return code
@@ -181,4 +181,5 @@ def _failure(outcome: _Outcome, verdict: "Verdict") -> str:
 
     if verdict.fault is None:
         return f"<failure message={quoted(outcome.line(verdict))}/>"
-    return f"<error type={quoted(verdict.fault.code)} message={quoted(str(verdict.fault))}/>"
+    every = "; ".join(map(str, verdict.fault.all))
+    return f"<error type={quoted(verdict.fault.code)} message={quoted(every)}/>"

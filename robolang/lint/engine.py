@@ -20,7 +20,8 @@ from robolang.points import load_points
 from robolang.source import Source, Span
 from robolang.usage_check import named
 from runtime.faults import Fault
-from runtime.tomlfile import FileFault, locate, read_source
+from runtime.toml_places import locate
+from runtime.tomlfile import FileFault, read_source
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -17,13 +17,11 @@ import os
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import NoReturn
 
 from robolang.lint.selection import Layer, guess, selector
-from runtime.tomlfile import FileFault, Source, Table, lines_of, load_table, read_source
+from runtime.tomlfile import TWICE, FileFault, Source, Table, load_table, read_source
 
 FILE, PYPROJECT = "robolang.toml", "pyproject.toml"
-_TWICE = ("Cannot overwrite a value", "Cannot declare")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -120,17 +118,9 @@ def _table(source: Source) -> Table:
     try:
         return load_table(source)
     except FileFault as fault:
-        if fault.message.startswith(_TWICE):
-            _twice(source, fault)
-        raise
-
-
-def _twice(source: Source, fault: FileFault) -> NoReturn:
-    line = lines_of(source.text)[fault.line - 1]
-    column = len(line) - len(line.lstrip()) + 1
-    name = line.partition("=")[0].strip() if not line.lstrip().startswith("[") else line.strip()
-    raise FileFault("RBL707", f"{name} is given twice", "", path=fault.path, line=fault.line, column=column,
-                    excerpt=line) from None  # fmt: skip
+        if TWICE not in fault.message:
+            raise
+        raise _as_configuration(fault) from None
 
 
 def _done(table: Table) -> None:
@@ -138,5 +128,10 @@ def _done(table: Table) -> None:
     try:
         table.done()
     except FileFault as fault:
-        raise FileFault("RBL707", fault.message, fault.hint, path=fault.path, line=fault.line, column=fault.column,
-                        excerpt=fault.excerpt) from None  # fmt: skip
+        raise _as_configuration(fault) from None
+
+
+def _as_configuration(fault: FileFault) -> FileFault:
+    """Return a fault of the configuration at the place of one of the TOML reader."""
+    return FileFault("RBL707", fault.message, fault.hint, path=fault.path, line=fault.line, column=fault.column,
+                     excerpt=fault.excerpt)  # fmt: skip

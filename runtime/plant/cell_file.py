@@ -234,7 +234,8 @@ def _poses(table: Table, key: str, origin: str) -> Mapping[str, Numbers]:
 
     def read(item: Table) -> Numbers:
         if (name := str(item.keys[-1])).upper() == origin:
-            item.fail("RBL610", f"the name '{name}' of [{key}] is that of the {origin.lower()} itself")
+            item.fail("RBL610", f"the name '{name}' of [{key}] is that of the {origin.lower()} itself",
+                      f"give it another name; every cell has {origin} without a table")  # fmt: skip
         return _only_pose(item)
 
     return MappingProxyType({origin: (0.0,) * 6, **_named(table, key, read)})
@@ -252,5 +253,6 @@ def _word(name: str, item: Table, where: str, seen: set[str]) -> None:
     if not _NAME.fullmatch(name):
         item.fail("RBL613", f"the name '{name}' {where} must be letters, digits and '_'", key=key)
     if name.upper() in seen:
-        item.fail("RBL610", f"the name '{name}' {where} is used twice", key=key)
+        item.fail("RBL610", f"the name '{name}' {where} is used twice",
+                  "give each a name of its own; names ignore case", key=key)  # fmt: skip
     seen.add(name.upper())

@@ -45,9 +45,10 @@ def read_input(table: Table) -> InputSpec:
         if not 0.0 <= seconds <= LONGEST_S or (changes and round(seconds * 1e6) <= changes[-1][0]):
             table.fail("RBL605", f"the times of '{table.name('changes')}' must rise from 0 on", key="changes")
         changes.append((round(seconds * 1e6), state))
-    if not changes:
-        table.fail("RBL608", f"'{table.name()}' needs 'changes' or 'follows'")
     table.done()
+    if not changes:
+        table.fail("RBL608", f"'{table.name()}' needs 'changes' or 'follows'",
+                   "write changes = [[seconds, state], ...] or follows = N, the number of an output")  # fmt: skip
     return InputSpec(changes=tuple(changes))
 
 

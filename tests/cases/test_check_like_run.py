@@ -9,6 +9,8 @@ import pytest
 from robolang.beside import read_beside
 from robolang.project import load_project
 from runtime.faults import Fault
+from runtime.plant.cell_file import read_cell_file
+from runtime.profile import load_profile_file
 from runtime.tomlfile import FileFault
 from tests.lang.cli.commands import robolang
 
@@ -39,6 +41,48 @@ def test_joints_outside_their_range_are_found_in_the_points_file(case, command):
     program = case("attack_08_joints_outside_limits_misnamed")
     assert "p.points.toml:3:1: error RBL309" in robolang(command, program, code=2).stderr
     assert places(read_beside(program).faults) == of_run(program) == [("RBL309", "p.points.toml", 3, 1)]
+
+
+WRONG = """
+[inputs.2]
+follow = 1
+[[obstacle]]
+[frames.WORLD]
+[controller]
+servo_period_ms = 2
+dynamics_cost = 3
+[controller.servo]
+mode = "fix"
+gravity_compensation = nan
+[controller.supervision]
+enabled = "false"
+"""
+FOUND = [("RBL608", 1), ("RBL609", 3), ("RBL609", 4), ("RBL610", 5), ("RBL605", 7), ("RBL609", 8), ("RBL610", 10),
+         ("RBL604", 11), ("RBL613", 13)]  # fmt: skip
+
+
+def test_settings_names_and_inputs_that_are_wrong_are_found_at_once(case):
+    program = case("attack_08_joints_outside_limits_misnamed")
+    cell = program.with_name("cell.toml")
+    text = (CASES / CELL / "cell.toml").read_text("utf-8").replace("mass_kg = nan", "mass_kg = 1.5")
+    cell.write_text(text.replace('robot = "puma560"\n', "") + WRONG, "utf-8")
+    begin = len(text.splitlines()) - 1
+    found = [(fault.code, fault.line) for fault in of_file(cell)]
+    assert found == [(code, 1 if line == 1 else begin + line) for code, line in FOUND]
+
+
+def of_file(cell):
+    with pytest.raises(FileFault) as caught:
+        read_cell_file(cell)
+    return caught.value.all
+
+
+def test_everything_that_is_wrong_with_a_profile_is_found_at_once(tmp_path):
+    profile = tmp_path / "prof.toml"
+    profile.write_text("schema = 1\n" + WRONG[WRONG.index("[controller]") :], "utf-8")
+    with pytest.raises(FileFault) as caught:
+        load_profile_file(profile)
+    assert [fault.code for fault in caught.value.all] == [code for code, _ in FOUND[4:]]
 
 
 @pytest.mark.parametrize("command", ["check", "run"])
@@ -82,7 +126,7 @@ def test_all_that_is_wrong_with_a_cell_and_its_points_is_said_at_once(case):
     assert found == of_run(program)
     assert [(one[0], one[2]) for one in found] == [
         ("RBL608", 11), ("RBL613", 22), ("RBL604", 29),  # one fault for both keys that [hand] lacks
-        ("RBL307", 3), ("RBL307", 5), ("RBL308", 6), ("RBL303", 7),
+        ("RBL307", 3), ("RBL307", 5), ("RBL308", 6), ("RBL308", 8),
     ]  # fmt: skip
 
 

@@ -46,7 +46,7 @@ POINTS = [
     ("B3 inside a key", (POINT + POSE)[:14], ("RBL303", 2, 4)),
     ("B4", "schema = 2\n[points.P1]\n" + POSE, ("RBL304", 1, 1)),
     ("B5", (POINT + POSE).replace("[450", "{450"), ("RBL303", 3, 12)),
-    ("B5 in a key", (POINT + POSE).replace("pose", "qose"), ("RBL303", 2, 1)),
+    ("B5 in a key", (POINT + POSE).replace("pose", "qose"), ("RBL308", 3, 1)),
     ("B5 no text", (POINT + POSE).replace("450", "4\udcb50"), ("RBL311", 3, 10)),
     ("B9", POINT + "pose = [450, -150, 200, 180, 0]\n", ("RBL307", 3, 1)),
     ("B9 joints", POINT + "joints = [1, 2, 3, 4, 5]\n", ("RBL307", 3, 1)),

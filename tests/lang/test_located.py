@@ -19,7 +19,8 @@ from robolang.points import load_points
 from robolang.source import Source, Span
 from runtime.faults import lookup
 from runtime.plant.cell import load_cell
-from runtime.tomlfile import FileFault, lines_of
+from runtime.toml_places import lines_of
+from runtime.tomlfile import FileFault
 from tests.campaign import size
 from tests.lang.test_bad_inputs import GOLDEN, GOOD
 

@@ -126,7 +126,7 @@ def test_messages_name_the_key_and_the_nearest(tmp_path):
     put(tmp_path / "robolang.toml", "[lint]\nignore = []\nignore = []\n")
     with pytest.raises(FileFault) as caught:
         Settings().layer(tmp_path)
-    assert caught.value.message == "ignore is given twice"
+    assert caught.value.message == "'ignore' is given twice, first in line 2"
     assert caught.value.excerpt == "ignore = []"
 
 

@@ -2,7 +2,8 @@ import os
 
 import pytest
 
-from runtime.tomlfile import MAX_BYTES, FileFault, Source, Table, load_table, locate, read_source
+from runtime.toml_places import locate
+from runtime.tomlfile import MAX_BYTES, FileFault, Source, Table, load_table, read_source
 
 TEXT = """\
 # a comment, as robot = "x" would be one
@@ -76,7 +77,7 @@ def test_a_file_of_the_largest_size_and_one_with_a_byte_order_mark_are_read(tmp_
 
 @pytest.mark.parametrize(
     ("text", "line", "column"),
-    [("a = 1\nb = \n", 2, 5), ("a = 1\na = 2\n", 2, 6), ("a = 1\nb = 'x", 2, 7), ("[a\n", 1, 3), ("a = [1, 2", 1, 10)],
+    [("a = 1\nb = \n", 2, 5), ("a = 1\na = 2\n", 2, 1), ("a = 1\nb = 'x", 2, 7), ("[a\n", 1, 3), ("a = [1, 2", 1, 10)],
 )
 def test_a_syntax_error_is_at_its_line(text, line, column):
     found = fault(table, text)
@@ -176,6 +177,16 @@ def test_a_choice_that_is_nearly_right_is_suggested():
 # unknown keys -------------------------------------------------------------------------------------------------------
 
 
+def test_a_key_that_may_be_there_is_known_before_it_is():
+    t = table("alarm = []\npositon = 1\n[[obstacle]]\n")
+    assert not any(key in t for key in ("alarms", "pose", "obstacles"))
+    for key, line, meant in (("alarm", 1, "alarms"), ("positon", 2, "pose"), ("obstacle", 3, "obstacles")):
+        found = fault(t.done)
+        assert place(found) == ("RBL609", line, 1)
+        assert found.hint == f"did you mean '{meant}'?"
+        t.ask(key)
+
+
 def test_a_key_that_nobody_read_is_refused_at_its_place():
     t = table(TEXT).table("hand")
     t.number("mass_kg")
@@ -214,6 +225,39 @@ def test_a_misspelt_key_is_told_the_one_that_is_missing():
 )
 def test_keys_are_found_where_they_stand(keys, line, column):
     assert locate(TEXT, keys) == (line, column)
+
+
+@pytest.mark.parametrize(
+    ("text", "keys", "line"),
+    [
+        ("a = 1\n[[b]]\n[[b]]\n", ["b"], 2),
+        ("a = 1\n[b.c]\n[b]\n", ["b"], 3),
+        ("a = 1\n[b.c]\n", ["b"], 2),
+        ("a = 1\nb.c = 2\n", ["b"], 2),
+        ("a = 1\n[b]\n[b.d]\n", ["b", "c"], 2),
+    ],
+)
+def test_a_key_that_is_only_the_beginning_of_others_is_at_the_first_of_them(text, keys, line):
+    assert locate(text, keys) == (line, 1)
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "message"),
+    [
+        ("[home]\na = 1\n[home] # again\n", 3, "[home] is given twice, first in line 1"),
+        ("a = 1\n  a = 2", 2, "'a' is given twice, first in line 1"),
+        ("a = [1,\n2]\na = [1,\n2]\n", 3, "'a' is given twice, first in line 1"),
+        ("[a]\nb = 1\n[a.b]\n", 3, "[a.b] is given twice, first in line 2"),
+        ("a = {x = 1}\n[a.y]\n", 2, "[a.y] is given twice"),
+        ("a = []\n[[a]]\n", 2, "[[a]] is given twice"),
+        ("[a.b]\n[a]\nb.c = 3\n", 3, "'b.c' is given twice"),
+        ("[[a]]\n[a]\n", 2, "[a] is given twice, first in line 1"),
+    ],
+)
+def test_what_is_there_twice_is_named_with_both_places(text, line, message):
+    found = fault(table, text)
+    assert (found.code, found.line, found.message) == ("RBL601", line, message)
+    assert found.excerpt == text.splitlines()[line - 1]
 
 
 def test_the_rows_of_an_array_are_no_headers():
@@ -269,6 +313,12 @@ def test_the_keys_that_a_table_lacks_are_one_fault():
     found, _ = gathered(text, lambda table: [table.table("hand").gather(lambda hand: (
         hand.number("mass"), hand.number("stroke"), hand.table("inner").number("deep"), hand.done()))])  # fmt: skip
     assert found == [("RBL608", 1, "'hand.mass', 'hand.stroke' and 'hand.inner' are missing")]
+
+
+def test_a_key_that_is_read_twice_is_wrong_once():
+    for text, code in (("", "RBL608"), ("a = 1\n", "RBL613")):
+        found, _ = gathered(text, lambda table: (table.text("a"), table.text("a", choices=("x", "y"))))
+        assert [each[0] for each in found] == [code]
 
 
 def test_what_follows_from_a_mistake_is_none_of_its_own():

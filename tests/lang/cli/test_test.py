@@ -254,6 +254,20 @@ def test_a_test_file_is_refused_at_its_line(tmp_path, text, code, line):
     assert (caught.value.code, caught.value.line) == (code, line)
 
 
+def test_everything_that_is_wrong_with_a_test_file_is_found(tmp_path):
+    path = tmp_path / "a.test.toml"
+    path.write_text("schema = 2\n[expect]\nalarm = []\nprinted = 1\ncycle_s = [2, 1]\n"
+                    "[expect.parts]\npart_ml = 3\npart = [1, nan, 2]\n", "utf-8")  # fmt: skip
+    with pytest.raises(FileFault) as caught:
+        load_expectation(path)
+    found = [(fault.code, fault.line) for fault in caught.value.all if isinstance(fault, FileFault)]
+    assert found == [("RBL605", 1), ("RBL609", 3), ("RBL613", 4), ("RBL607", 5), ("RBL613", 7), ("RBL604", 8)]
+    assert ["alarms" in fault.hint for fault in caught.value.all][1]
+    assert ["'part_mm'" in fault.hint for fault in caught.value.all][4]
+    (tmp_path / "a.rbl").write_text("PRINT 1\n", "utf-8")
+    assert robolang("test", path, code=2).stderr.count("error RBL") == len(found)
+
+
 def test_every_key_of_a_test_file_is_explained():
     explained = (ROOT / "docs" / "testing.md").read_text("utf-8")
     keys = {each.name for each in fields(Expectation)} - {"source", "parts"}
