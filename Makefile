@@ -12,7 +12,7 @@
 # make fuzz               readers of programs, points, cells, arms and golden logs on made-up bytes, FUZZ_SECONDS of each target
 # make verdict-campaign     do check and a run judge alike? 2,000 made-up programs with their files, counted
 # make large              time and memory of check and fmt on programs of 1 MB of every kind (minutes)
-# make mutants          mutants of supervision, stops, payload and areas that no test finds (minutes)
+# make mutants   mutants of supervision, stops, payload and areas: those that no test finds, and how many one finds (minutes)
 # make measured   the figures of docs/measured.md that repeat exactly
 # make help   these lines
 
@@ -92,6 +92,7 @@ mutants: $(READY)
 	rm -rf mutants
 	$(BIN)/mutmut run
 	$(BIN)/mutmut results
+	$(BIN)/python -m tests.bench.mutants
 
 clean:
 	rm -rf $(VENV) out mutants

@@ -79,7 +79,8 @@ def moments_defect(moments: Sequence[float]) -> float:
     """Return by how much principal moments, in order, fail to be a body's: 0 when they are, else kg m2 missing."""
     if not all(map(math.isfinite, moments)):
         return math.inf
-    return max(0.0, moments[2] - moments[1] - moments[0], -moments[0])
+    # the smallest moment is not negative either then: the largest is at least the middle one
+    return max(0.0, moments[2] - moments[1] - moments[0])
 
 
 def principal_moments(inertia: Sequence[float]) -> tuple[float, float, float]:

@@ -92,6 +92,8 @@ class Observer:
         """Torque that the model does not explain (n,), N m."""
         self.sigma = self._base.copy()
         """How well the model is known at this motion (n,), N m."""
+        self.unexplained = np.zeros(spec.n)
+        """What is left of the residual after the best payload, at the last step of the estimate (n,), N m."""
         self._q = np.zeros(spec.n)
         self.restart()
 
@@ -141,8 +143,8 @@ class Observer:
         self._moment += share * (matmul(weighted.T, self.residual) - self._moment)
         if self.steps >= FEWEST:
             difference = solve(self._information + self._prior, self._moment)
-            normal = (self.residual - matmul(Y, difference)) / self.sigma
-            self._leftover += share * (normal - self._leftover)
+            self.unexplained = self.residual - matmul(Y, difference)
+            self._leftover += share * (self.unexplained / self.sigma - self._leftover)
 
     def estimate(self) -> tuple[float, float]:
         """Return (mass really carried, its standard deviation), kg."""

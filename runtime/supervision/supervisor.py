@@ -131,7 +131,7 @@ class Supervisor:
     def _unexplained(self, axis: int, tick: int) -> Finding:
         return Finding(
             code="RBL516", tick=tick, axis=axis,
-            message=f"J{axis + 1} needs {self.observer.residual[axis]:+.1f} N m that neither motion nor any payload "
+            message=f"J{axis + 1} needs {self.observer.unexplained[axis]:+.1f} N m that neither motion nor any payload "
             f"explains, {abs(self.observer.leftover[axis]):.1f} standard deviations in the mean",
         )  # fmt: skip
 

@@ -108,7 +108,7 @@ class Watch:
             self._lost += lost
             self._standing = np.where(frozen, self._standing + 1.0, 0.0)
             found = (
-                self._encoder(away[k, 3], k)
+                self._encoder(away[k, 3])
                 or self._excursion(inside[k], k)
                 or self._following(inside[k, 4], k)
                 or self._saturation(away[k, 0])
@@ -118,7 +118,7 @@ class Watch:
                 return Finding(code=code, message=message, tick=first_tick + k, axis=axis)
         return None
 
-    def _encoder(self, speed: Array, k: int) -> tuple[str, int, str] | None:
+    def _encoder(self, speed: Array) -> tuple[str, int, str] | None:
         for bad, what in (
             (~(speed <= JUMP * self._speed), "jumped"),
             (self._standing >= self._longest_stand,

@@ -1,5 +1,6 @@
 """Every bench and campaign works, at its smallest size, and prints the rows of docs/measured.md that name it."""
 
+import json
 import re
 import sys
 from itertools import groupby
@@ -9,7 +10,18 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tests.bench import blend_campaign, check, figures, inertia, measure, plots, pulse_campaign, run, wrist_campaign
+from tests.bench import (
+    blend_campaign,
+    check,
+    figures,
+    inertia,
+    measure,
+    mutants,
+    plots,
+    pulse_campaign,
+    run,
+    wrist_campaign,
+)
 from tests.bench.figures import Row
 from tests.faults import campaign
 from tests.fuzz import large, targets
@@ -25,6 +37,7 @@ BENCHES = {
     "make pulse-campaign": (pulse_campaign.rows,),
     "make wrist-campaign": (wrist_campaign.rows,),
     "make large": (large.rows,),
+    "make mutants": (mutants.rows,),
 }
 """What measures the rows that a command prints."""
 IN_PROSE = {measure.HELD}
@@ -110,6 +123,20 @@ def test_a_figure_that_is_no_number_ends_a_bench_with_an_error(value, monkeypatc
             figures.run(lambda smallest, row=row: iter([row]))
         assert ended.value.code == code
     assert "NOT AS PROMISED" in capsys.readouterr().out
+
+
+def test_what_no_test_finds_was_not_run_or_is_missing_is_no_mutant_found(tmp_path):
+    """From results as mutmut leaves them: 1, 3 failed, 36 did not end, 0 passed, 33 had no tests, null was not run."""
+    names = mutants.scope()
+    assert "runtime/supervision/watch.py" in names
+    for ends, good in (([1, 3, 36, *[1] * 16, 0], True), ([1] * 17 + [0, 33, None], False), ([], False)):
+        for name in names:
+            path = tmp_path / f"{name}.meta"
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(json.dumps({"exit_code_by_key": {f"m{k}": end for k, end in enumerate(ends)}}), "utf-8")
+        *_, every = mutants.rows(False, tmp_path)
+        assert every.good is good
+        assert every.values[1] == len(ends) * len(names)
 
 
 def test_the_plots_are_drawn(tmp_path):

@@ -19,7 +19,7 @@ def test_every_load_is_a_version():
 def test_refreshes_are_counted_and_timed_by_axis():
     areas = Areas(2, np.array([0.1, 0.2]))
     assert areas.ita == [AxisLoad(D=0.0, T=0.0, read_us=0, version=0, payload_version=0)] * 2
-    assert areas.mean_refresh_us == 0.0
+    assert (areas.mean_refresh_us, areas.longest_refresh_us) == (0.0, 0)
     for axis, now_us in ((0, 100), (1, 150), (0, 1100), (0, 1600), (1, 3150)):
         load = AxisLoad(D=1.0, T=2.0, read_us=now_us - 10, version=1, payload_version=0)
         areas.publish(axis, load, now_us)

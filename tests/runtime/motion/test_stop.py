@@ -139,3 +139,44 @@ def test_the_curve_between_rows_is_that_of_the_fine_interpolator():
         k = int(place)
         weights = FineInterpolator.weights(np.array(place - k))
         assert value == pytest.approx(float(weights @ rows[k - 1 : k + 3, 0]), abs=1e-9)
+
+
+@pytest.mark.parametrize("jerk", [0.0, 0.02])
+def test_a_limit_that_three_cycles_miss_by_a_twentieth_takes_four(jerk):
+    """Also after a jerk that has been played: only what the pipeline still holds may be as rough as it is.
+
+    The motion is slowing down already, so a stop asks most of its first ticks, those that the pipeline reaches.
+    """
+
+    def slowing(u):
+        return np.asarray((u - 50) * PERIOD - 8.0 * ((u - 50) * PERIOD) ** 2)[:, None]
+
+    rows = slowing(np.arange(60))
+    needed = largest(np.concatenate([rows[47:51], slowing(50 + passed(3))]))[1]
+    rows[:47] -= jerk
+    for share, cycles in ((1.01, 3), (0.95, 4)):
+        assert len(stopping_rows(rows, 50, fine(rows), np.array([1.6]), needed * share)) == cycles
+
+
+@pytest.mark.parametrize("left", [36, 57])
+def test_a_stop_may_take_all_that_is_left_and_ends_on_the_last_row(left):
+    rows = line([1.0], 41 + left)
+    found = stopping_rows(rows, 40, fine(rows), np.array([5.0]), np.array([0.1]), False)
+    assert len(found) == 2 * left
+    u = 40 + passed(2 * left)
+    padded = np.concatenate([rows, rows[-1:]])  # the last row is where the arm stays
+    for value, place in zip(found[:, 0], u, strict=True):
+        k = min(int(place), len(rows) - 2)
+        weights = FineInterpolator.weights(np.array(place - k))
+        assert value == pytest.approx(float(weights @ padded[k - 1 : k + 3, 0]), abs=1e-8)
+    assert found[-1, 0] == pytest.approx(rows[-1, 0], abs=1e-12)
+
+
+def test_a_stop_that_is_too_fast_on_its_way_is_none():
+    """The joint gets faster along the path: a stop must not take it over its speed limit."""
+    t = PERIOD * (np.arange(200) - 50)
+    rows, acceleration = (0.9 * t + 7.5 * t**2)[:, None], np.array([25.0])
+    stops = stopping_rows(rows, 50, fine(rows), np.array([10.0]), acceleration)
+    assert len(stops) in CYCLES
+    speed = largest(np.concatenate([rows[47:51], stops]))[0]
+    np.testing.assert_array_equal(stopping_rows(rows, 50, fine(rows), 0.9 * speed, acceleration), rows[51:])

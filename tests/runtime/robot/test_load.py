@@ -1,5 +1,7 @@
 """Moment and inertia of a payload about the wrist axes, against the mass matrix and the gravity of Pinocchio."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -30,6 +32,14 @@ def test_a_payload_adds_its_moment_and_its_inertia_to_the_arm(name):
         inertia = np.diag(carrying.mass_matrix(q) - bare.mass_matrix(q))[3:]
         np.testing.assert_allclose(load.moment[row], gravity, atol=1e-9)
         np.testing.assert_allclose(load.inertia[row], inertia, atol=1e-9)
+
+
+def test_an_arm_of_three_axes_is_loaded_on_all_of_them():
+    spec = load_builtin("manutec_r3")
+    short = replace(spec, axes=spec.axes[3:])
+    load = wrist_load(Kinematics(short), np.zeros(3), PAYLOAD)
+    assert (load.first, load.moment.shape, load.inertia.shape) == (0, (3,), (3,))
+    np.testing.assert_array_equal(ratings(short), ratings(spec))
 
 
 def test_published_ratings_are_used_and_others_estimated():

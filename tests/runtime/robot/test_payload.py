@@ -34,3 +34,12 @@ def test_a_centre_of_gravity_off_the_arm(cog):
 @pytest.mark.parametrize("moments", [(1.0, 1.0, 2.1), (-0.1, 1.0, 1.0), (math.nan, 1.0, 1.0)])
 def test_an_inertia_that_no_body_has(moments):
     assert refusal(1.0, (0, 0, 0.1), 2.5, np.diag(moments)) == "RBL403"
+
+
+def test_what_is_declared_is_kept_in_floating_point():
+    """Whole numbers too: a payload in integers would be one of another kind to everything that computes with it."""
+    bare, whole = declared(1, (0, 0, 1), 2.5), declared(2, (0, 1, 0), 2.5, np.diag([2, 3, 4]))
+    np.testing.assert_array_equal(bare.inertia, np.zeros((3, 3)))
+    np.testing.assert_array_equal(bare.cog, [0, 0, 1])
+    np.testing.assert_array_equal(whole.inertia, np.diag([2, 3, 4]))
+    assert {bare.cog.dtype, bare.inertia.dtype, whole.cog.dtype, whole.inertia.dtype} == {np.dtype(np.float64)}
