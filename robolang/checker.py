@@ -7,8 +7,8 @@ loads, inputs), what the arm may carry, how fast its tool may be and the ranges 
 are worked out (``evaluator``), so ``SPEED 2 * 50`` is checked like ``SPEED 100``; what depends on a variable is
 checked when it runs. Blocks and jumps are ``structure``'s, what the order of statements shows is ``flow_check``'s,
 names that nothing reads are ``usage_check``'s: both look at programs without errors only, in which one mistake does
-not look like many. What a statement shows alone (``wait_check``, ``rounding_check``) is reported beside errors of
-other lines as well. Time is linear in the program.
+not look like many. What a statement shows alone (``wait_check``, ``quote_check``, ``rounding_check``) is reported
+beside errors of other lines as well. Time is linear in the program.
 """
 
 from bisect import bisect_left, bisect_right
@@ -25,7 +25,7 @@ from robolang.source import Span
 from robolang.statement_check import StatementCheck
 from robolang.structure import Structure, structure_of
 from robolang.tree import is_deeper
-from robolang.usage_check import usage_check, wait_check
+from robolang.usage_check import quote_check, usage_check, wait_check
 
 MAX_LEVELS = 150
 """Deepest tree of a statement: expressions are evaluated by recursion, in at most five calls for a level."""
@@ -39,7 +39,7 @@ def check(program: Program, symbols: CellSymbols = NOTHING_KNOWN) -> tuple[Diagn
     structure = structure_of(program)
     found = list(islice(chain(_line_numbers(program), _emptiness(program), structure.diagnostics,
                               _statements(program, structure, symbols)), MAX_DIAGNOSTICS + 1))  # fmt: skip
-    found += _beside(found, chain(wait_check(program), rounding_check(program)))
+    found += _beside(found, chain(wait_check(program), quote_check(program), rounding_check(program)))
     if not has_errors(found) and not any(isinstance(line.statement, Unparsed) for line in program.statements):
         found += chain(flow_check(program, structure), usage_check(program))
     return in_order(islice(found, MAX_DIAGNOSTICS + 1))

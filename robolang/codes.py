@@ -51,7 +51,7 @@ _TEXT = (
         "RBL111",
         "unexpected-token",
         "Something else was expected at this place of the statement.",
-        "Write what the message names.",
+        "Write what is expected at this place, or remove what stands there.",
     ),
     (
         "RBL112",

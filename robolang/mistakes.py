@@ -42,6 +42,27 @@ _ASSIGNS = re.compile(r":[ \t]*(?:\Z|'|=)|([-+*/])(?:=|\1[ \t]*\Z)")
 _ASSIGNMENT = re.compile(r"\w+\$?[ \t]*(?:\([^=]*\)[ \t]*)?=")
 _SETTINGS = frozenset({"SPEED", "SPEEDJ", "ACCEL", "OVERRIDE", "ZONE", "TOOL", "FRAME", "DELAY", "LOAD", "TIME",
                        "TIMEOUT"})  # fmt: skip
+_UNIT_OF = {
+    **dict.fromkeys(("DELAY", "TIME", "TIMEOUT", "PULSE", "HAND"), "s"),
+    **dict.fromkeys(("SPEEDJ", "ACCEL", "OVERRIDE"), "%"),
+    **dict.fromkeys(("ZONE", "APPROACH", "DEPART"), "mm"),
+    "SPEED": "mm/s", "LOAD": "kg",
+}  # fmt: skip
+"""Units of the numbers that follow a word."""
+_SCALES = {
+    "s": {"s": 1.0, "sec": 1.0, "ms": 1e-3, "msec": 1e-3, "min": 60.0}, "%": {"%": 1.0},
+    "mm": {"mm": 1.0, "cm": 10.0, "m": 1000.0}, "kg": {"kg": 1.0, "g": 1e-3},
+    "mm/s": {"mm": 1.0, "mm/s": 1.0, "mm/sec": 1.0, "m/s": 1000.0, "cm/s": 10.0},
+}  # fmt: skip
+"""How many of a unit of the language a unit of the user is."""
+_UNIT = re.compile(r"(%|(?:mm|cm|m)(?:/s(?:ec)?)?|s|sec|ms|msec|min|kg|g|deg|rad)[ \t]*(?=[,)']|\Z)", re.IGNORECASE)
+_NUMBER = re.compile(r"(?<![\w.])(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)[ \t]*\Z")
+_WHOLE = re.compile(r"(?<![\w.])([0-9]+)\Z")
+_FRACTION = re.compile(r"[0-9]+(?![\w.])")
+_OPTION_COMMA = re.compile(r"(?:(?:SPEED|ACCEL|TIME|ZONE|TIMEOUT)[ \t]+|\)[ \t]*,[ \t]*)([0-9]+),\Z", re.IGNORECASE)
+_LISTS = frozenset({"FOR", "PRINT", "GOTO", "GOSUB", "CASE", "ON", "CALL"})
+"""Instructions in which other languages have a comma between two numbers."""
+_QUOTED = re.compile(r"'([^'\"]*)'")
 _WAIT_TIME = re.compile(r"(?i)WAIT[ \t]+(?:SEC|TIME|[\d.]+)")
 _QUOTE = 30
 _JOINED = {
@@ -109,8 +130,8 @@ def _malformed(found: Unexpected) -> Diagnostic:
         hint = "leave a space between the line number and the instruction"
     elif re.fullmatch(r"[0-9.]*[0-9][0-9_.]*", text) and "_" in text:
         hint = f"write {quote(text.replace('_', ''))}"
-    elif unit := re.fullmatch(r"([0-9]*\.?[0-9]+)(mm|deg|kg|g|s|ms|m)", text, re.IGNORECASE):
-        hint = f"a number carries no unit: lengths are in mm, masses in kg, times in s (here: {unit[2]})"
+    elif unit := re.fullmatch(r"([0-9]+(?:\.[0-9]+)?|\.[0-9]+)([a-z]+)", text, re.IGNORECASE):
+        hint = _unit(found.before, unit[1], unit[2] + found.after)
     return Diagnostic(code="RBL115", message=f"'{quote(text)}' is not a number", span=found.span, hint=hint)
 
 
@@ -189,7 +210,7 @@ def _after(before: str) -> str:
 def _hint(found: Unexpected) -> str:
     """Return the likeliest correction, or ``""``."""
     word = found.text.upper()
-    if elsewhere := _elsewhere(found, word):
+    if elsewhere := _slip(found, word) or _elsewhere(found, word):
         return elsewhere
     if found.is_first:
         whole = found.kind == "NUMBER"
@@ -208,13 +229,95 @@ def _hint(found: Unexpected) -> str:
         return f"did you mean {guess}?"
     if "_COMMA" in found.accepts and _lacks_comma(found, word):
         return f"write a comma before {word}"
+    if found.accepts <= _END and word not in INSTRUCTIONS and found.before.strip().upper() in INSTRUCTIONS:
+        return f"{found.instruction} takes no value: remove {quote(found.text)}"
     if "$END" in found.accepts and (word in INSTRUCTIONS or found.kind == "NAME"):
         return "write one instruction on each line"
     if found.kind == "EQ" and found.instruction in RESERVED | NEW:  # of a new word: an older program's variable
         return f"{found.instruction} is a word of the language and cannot be a name"
     if "NAME" in found.accepts and word in RESERVED:
         return f"{word} is a word of the language and cannot be a name"
-    return form_of("WRIST" if _last_word(found.before).upper() in ("WRIST", "HOLD") else found.instruction)
+    form = form_of("WRIST" if _last_word(found.before).upper() in ("WRIST", "HOLD") else found.instruction)
+    return form or _completion(found)
+
+
+def _completion(found: Unexpected) -> str:
+    """Return what makes a statement whole where nothing is known of what was meant."""
+    if found.kind in _END:
+        return f"complete the statement: write {_expected(found)} here"
+    if "$END" not in found.accepts:
+        return f"write {_expected(found)} in place of {quote(found.text)}"
+    sign = ", or write the sign that is missing before it" if "PLUS" in found.accepts else ""
+    return f"remove {quote(found.text)}{sign}"
+
+
+def _slip(found: Unexpected, word: str) -> str:
+    """Return the remedy of a usual slip: a unit, a decimal comma, a parenthesis, a text in single quotes; or ``""``."""
+    before = found.before.rstrip(" \t")
+    number = None if found.accepts >= _VALUE or _WAIT_TIME.match(before) else _NUMBER.search(before)
+    if number is not None and (hint := _unit(before[: number.start()], number[0], found.text + found.after)):
+        return hint
+    if found.kind == "COMMENT" and found.accepts >= _VALUE and (quoted := _QUOTED.match(found.text)):
+        return f"' begins a comment; a text stands in double quotes: \"{quote(quoted[1])}\""
+    if found.text == ":" and re.fullmatch(r"\*[ \t]*\w+", before):
+        return f"a label has no colon: {quote(before)}"
+    return _decimal(found) or _parenthesis(found, word) or _bracket(found, before)
+
+
+def _unit(before: str, number: str, rest: str) -> str:
+    """Return the remedy for a unit that ``rest`` begins with, after a number and the text ``before`` it, or ``""``."""
+    unit = _UNIT.match(rest)
+    if unit is None:
+        return ""
+    words = [each.upper() for each in re.findall(r"[A-Za-z]+", before)]
+    word = next((each for each in reversed(words) if each in _UNIT_OF), "")
+    is_joint = word == "SPEED" and words[0] == "MOVEJ"
+    scale = _SCALES["%" if is_joint else _UNIT_OF[word]].get(unit[1].lower()) if word else None
+    if scale is None:
+        return "write no unit: lengths are in mm, angles in degrees, masses in kg, times in s"
+    return f"write no unit, {word} is in {'%' if is_joint else _UNIT_OF[word]}: {float(number) * scale:.10g}"
+
+
+def _open(before: str) -> int:
+    """Return how many parentheses are open at the end of a text."""
+    plain = re.sub(r'"[^"]*"', "", before)
+    return plain.count("(") - plain.count(")")
+
+
+def _decimal(found: Unexpected) -> str:
+    """Return the remedy for a decimal comma, or ``""``."""
+    if _open(found.before) or found.instruction in _LISTS:
+        return ""
+    if found.kind == "_COMMA":
+        whole, part = _WHOLE.search(found.before), _FRACTION.match(found.after)
+    else:
+        whole, part = _OPTION_COMMA.search(found.before), _FRACTION.fullmatch(found.text)
+    return f"a number has a decimal point: {quote(f'{whole[1]}.{part[0]}')}" if whole and part else ""
+
+
+def _parenthesis(found: Unexpected, word: str) -> str:
+    """Return the remedy for a parenthesis that is missing or one too many, or ``""``."""
+    if found.kind == "RPAR":
+        return "" if _open(found.before) else "remove this ), no ( belongs to it"
+    if "RPAR" not in found.accepts or found.accepts >= _VALUE:
+        return ""
+    if found.kind in _END:
+        return "a ) is missing at the end"
+    return f"a ) is missing before {word}" if word in KEYWORDS else ""
+
+
+def _bracket(found: Unexpected, before: str) -> str:
+    """Return what is written in place of [ of another language by the word that it follows, or ``""``."""
+    if found.text != "[":
+        return ""
+    word = _last_word(before).upper()
+    if found.instruction in MOTIONS and word in ("P", "PR"):
+        number = re.match(r"[ \t]*([0-9]+)[ \t]*\]", found.after)
+        return f"a taught point is a name, as in {found.instruction} P{number[1] if number else 1}"
+    if found.instruction in MOTIONS and before.upper().rstrip(" \t(") == found.instruction:
+        joints = found.instruction == "MOVEJ"
+        return f"write {found.instruction} " + ("JOINT(j1, ..., j6)" if joints else "POSE(x, y, z, rx, ry, rz)")
+    return other_languages.assigned(word, element=True)
 
 
 def _elsewhere(found: Unexpected, word: str) -> str:

@@ -176,6 +176,12 @@ register(
         remedy="Wait for a time with DELAY, for a signal with a condition such as IN(1) = 1.",
     ),
     Code(
+        code="RBL234",
+        name="text-is-a-comment",
+        meaning="What seems to be a text in single quotes is a comment: PRINT shows an empty line.",
+        remedy="Write the text in double quotes.",
+    ),
+    Code(
         code="RBL413",
         name="blend-at-the-end",
         meaning="A move has a ZONE, and no move follows that it could blend into.",

@@ -292,7 +292,8 @@ class StatementCheck:
         if sub is None:
             if not self._defined.is_missing(node.name):
                 return
-            hint = names_hint(node.name, frozenset(self._defined.subs), known="subroutines", none="there is no SUB")
+            hint = names_hint(node.name, frozenset(self._defined.subs), known="subroutines",
+                              none=f"write SUB {node.name.text} and ENDSUB, or correct the name")
             yield Diagnostic(code="RBL213", message=f"there is no SUB {node.name.text}", span=node.name.span, hint=hint)
         elif len(sub.parameters) != len(node.arguments):
             related = (Related(span=sub.span, message="defined here"),)

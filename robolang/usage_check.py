@@ -1,17 +1,21 @@
-"""What is never used, and what may never end: values that nothing reads, and WAITs without a TIMEOUT.
+"""What is never used, may never end, or is never shown: unread values, WAITs without TIMEOUT, texts in single quotes.
 
 Taught points that nothing names are found with ``named``; their finding stands in the points file (``lint.engine``).
 """
 
+import re
 from collections.abc import Iterator
 
 from robolang import limits, other_languages
 from robolang.constants import fixed
 from robolang.diagnostics import Diagnostic, Severity
 from robolang.names import names_in
-from robolang.nodes import Assign, Call, Const, Dim, If, Name, Node, Program, Statement, Wait
+from robolang.nodes import Assign, Call, Const, Dim, If, Name, Node, Print, Program, Statement, Wait
 from robolang.words import near
 
+MAX_SHOWN = 60
+"""Longest text that a remedy repeats, in characters."""
+_QUOTED = re.compile(r"'([^'\"]+)'[ \t]*")
 
 def wait_check(program: Program) -> Iterator[Diagnostic]:
     """Report WAITs without a TIMEOUT (RBL223) and WAITs for a number (RBL233), as warnings."""
@@ -25,6 +29,20 @@ def wait_check(program: Program) -> Iterator[Diagnostic]:
                 yield Diagnostic(code="RBL223", severity=Severity.WARNING, span=node.span,
                                  message="this WAIT has no TIMEOUT: where its signal never comes, the program stands "
                                  "here for ever")  # fmt: skip
+
+
+def quote_check(program: Program) -> Iterator[Diagnostic]:
+    """Report PRINTs without a value that a text in single quotes follows, a comment (RBL234), as warnings."""
+    for line in program.statements:
+        comment = line.comment
+        quoted = None if comment is None else _QUOTED.fullmatch(comment.text)
+        if comment is None or quoted is None:
+            continue
+        *_, last = _statements(line.statement)
+        if isinstance(last, Print) and not last.items:
+            yield Diagnostic(code="RBL234", severity=Severity.WARNING, span=comment.span,
+                             message="this is a comment, not a text: PRINT shows an empty line",
+                             hint=f'write PRINT "{quoted[1]}"' if len(quoted[1]) <= MAX_SHOWN else "")  # fmt: skip
 
 
 def usage_check(program: Program) -> Iterator[Diagnostic]:

@@ -225,4 +225,12 @@ RULES = (
         bad="10 WAIT 2\n20 MOVE P1\n",
         good="10 DELAY 2\n20 MOVE P1\n",
     ),
+    Rule(
+        code="RBL234",
+        severity=Severity.WARNING,
+        why="Other languages write texts in single quotes. Here ' begins a comment, and the message that an operator "
+        "should read is not shown.",
+        bad="10 PRINT 'part is missing'\n",
+        good='10 PRINT "part is missing"\n',
+    ),
 )

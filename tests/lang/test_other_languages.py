@@ -115,3 +115,39 @@ def test_an_element_of_an_ordinary_name_lacks_its_array(name):
 def test_the_remedy_of_a_range_names_its_quantity(text, remedy):
     hints = [hint for code, _, hint in found(text) if code == "RBL404"]
     assert [remedy in hint for hint in hints] == [True]
+
+
+@pytest.mark.parametrize(
+    ("text", "remedy"),
+    [
+        ("MOVE P1, SPEED 200 mm/s", "mm/s: 200"), ("MOVE P1, SPEED 0.2 m/s, ZONE 5", "mm/s: 200"),
+        ("MOVEJ P1, SPEED 50 %", "%: 50"), ("SPEEDJ 50%", "%: 50"), ("DELAY 500 ms", "DELAY is in s: 0.5"),
+        ("DELAY 500ms", "DELAY is in s: 0.5"), ("HAND ON, 1 min", "s: 60"), ("APPROACH P1, 5 cm", "mm: 50"),
+        ("WAIT IN(1) = 1, TIMEOUT 5 s", "s: 5"),
+        ("LOAD (0, 0, 60 mm), 1", "lengths are in mm"), ("x = 5 mm", "no unit"),
+        ("d = 1,5", "1.5"), ("DELAY 0,5", "0.5"), ("MOVE P1, ZONE 1,5", "1.5"), ("LOAD (0, 0, 6), 0,8", "0.8"),
+        ("STOP 1", "STOP takes no value"), ("RETURN x", "RETURN takes no value"),
+        ("y = SIN(90", ") is missing at the end"), ("IF (1 = 2 THEN END", ") is missing before THEN"),
+        ("y = SIN(90))", "remove this )"), ('*A1: PRINT "lab"', "no colon"), ("*A1:", "no colon"),
+        ("WAIT DI[1]=ON", "IN(1)"), ("x = R[1]", "DIM"), ("MOVE P[3]", "MOVE P3"),
+        ("movej([0,0,0,0,0,0], a=1.2)", "MOVEJ JOINT("), ("move([1, 2])", "MOVE POSE("),
+        ("CALL foo", "SUB foo"), ("s$ = 'a'", '"a"'), ("PRINT 'hello'", 'PRINT "hello"'),
+        ("IF 1 THEN PRINT 'hello' ", 'PRINT "hello"'),
+    ],
+)  # fmt: skip
+def test_a_usual_slip_has_its_remedy(text, remedy):
+    ((_, _, hint),) = found(text)
+    assert remedy in hint
+
+
+@pytest.mark.parametrize(
+    "text", ["x = 5 6", "x =", "x = (", "x =, 5", "NEXT 5", "OUT(1, 1) = 1", "FOR i = 1,3", "PRINT 1,5"]
+)
+def test_every_unexpected_token_has_a_remedy_of_its_own(text):
+    hints = [hint for code, _, hint in found(text) if code == "RBL111"]
+    assert [bool(hint) and "decimal" not in hint for hint in hints] == [True]
+
+
+@pytest.mark.parametrize("text", ["PRINT", "PRINT 'an empty line", "PRINT 1 'one'", "DELAY 1 'a second'", "'text'"])
+def test_a_comment_is_no_text(text):
+    assert [code for code, _, _ in found(text) if code == "RBL234"] == []
