@@ -50,7 +50,7 @@ def test_friction_is_told_from_weight():
 def test_the_weight_of_other_robots_is_found(robot):
     request, results = experiment(robot=robot, seed=3, axes=tuple(some(range(6), 2)))
     without, with_it = gravity_errors(request, weight_of(request, results).first_moments)
-    known = some((1, 2), 1)
+    known = some([1, 2], 1)
     assert (with_it[known] < without[known] / 50.0).all(), (without, with_it)
 
 
