@@ -99,4 +99,10 @@ register(
         meaning="A compensation file was written by an older or newer version.",
         remedy="Update robolang, or write the file anew with robolang identify.",
     ),
+    Code(
+        code="RBL640",
+        name="part-not-at-rest",
+        meaning="A part of a cell is inside of another part, an obstacle or the floor, or stands on nothing.",
+        remedy="Correct its pose (the centre of the box, mm) or its size; a physical run would push it or let it fall.",
+    ),
 )

@@ -37,7 +37,7 @@ def told(count: int) -> Iterator[Callable[[int, str], None]]:
 class Planned:
     """The findings in the motion of a program, the table of its times for people, and the same as plain JSON types.
 
-    ``warnings`` are what is unlikely about the files of its robot.
+    ``warnings`` are what is unlikely about its cell and the files of its robot.
     """
 
     diagnostics: tuple[Diagnostic, ...]
@@ -53,13 +53,13 @@ def planned(program: str, max_cycle_s: float | None) -> Planned:
     """
     project = load_project(program)
     if not project.ok:
-        return Planned(diagnostics=project.diagnostics, warnings=project.cell.robot.warnings)
+        return Planned(diagnostics=project.diagnostics, warnings=project.cell.warnings)
     explored = explore(project)
     found = findings(project, explored.rehearsal, max_cycle_s, explored.detours)
     rows = line_times(project, explored.rehearsal)
     return Planned(
         diagnostics=found,
-        warnings=project.cell.robot.warnings,
+        warnings=project.cell.warnings,
         table=_table(project, explored.rehearsal, rows) + _ways(project, explored) + _shapes(project),
         times=_times(project, explored, rows),
     )

@@ -117,7 +117,7 @@ def _refuse(project: "Project") -> None:
     """Print what is wrong with the text; leave when it has errors."""
     from robolang.diagnostics import render
 
-    say_warnings(project.cell.robot.warnings)
+    say_warnings(project.cell.warnings)
     for item in project.diagnostics:
         typer.echo(render(item, project.source), err=True)
     if not project.ok:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def refuse(project: "Project", *, warnings: bool = True) -> bool:
-    """Print the diagnostics and what is unlikely about the robot.
+    """Print the diagnostics and what is unlikely about the robot and the cell.
 
     Leave when the text has errors or a motion cannot be planned. ``warnings`` False: print errors only. Returns whether
     there are warnings, printed or not.
@@ -20,7 +20,7 @@ def refuse(project: "Project", *, warnings: bool = True) -> bool:
 
 
     if warnings:
-        say_warnings(project.cell.robot.warnings)
+        say_warnings(project.cell.warnings)
     for item in project.diagnostics:
         if warnings or item.severity is Severity.ERROR:
             typer.echo(render(item, project.source), err=True)
@@ -33,5 +33,5 @@ def refuse(project: "Project", *, warnings: bool = True) -> bool:
         typer.echo(render(item, project.source), err=True)
     if refused:
         raise typer.Exit(exit_code(refused[0].code))
-    unlikely = bool(project.cell.robot.warnings)
+    unlikely = bool(project.cell.warnings)
     return unlikely or any(item.severity is Severity.WARNING for item in project.diagnostics)

@@ -28,7 +28,7 @@ from runtime.tomlfile import FileFault, read_source
 class Checked:
     """What was found in one program, by place. A program that could not be read has an empty ``source``.
 
-    ``warnings`` are about the files of its robot.
+    ``warnings`` are about its cell and the files of its robot.
     """
 
     source: Source
@@ -62,7 +62,7 @@ def check_source(source: Source, selection: Selection | None = None, files: Cell
     """
     found = read_beside(Path(source.path), files)
     diagnostics = lint(source, found.symbols, selection=selection, complete=not found.faults)
-    warnings = () if found.cell is None else found.cell.arm.warnings
+    warnings = () if found.cell is None else found.cell.warnings
     return Checked(source=source, diagnostics=diagnostics, faults=found.faults, warnings=warnings)
 
 

@@ -22,7 +22,7 @@ from runtime.profile import Layer
 from runtime.robot import importer, robot_file
 from runtime.robot.loader import load_builtin
 from runtime.robot.spec import RobotSpec
-from runtime.tomlfile import Source
+from runtime.tomlfile import FileFault, Source
 from runtime.units import DEG, MM
 
 T = TypeVar("T")
@@ -82,7 +82,8 @@ class CellSpec:
     """A cell in SI: robot, home joints (n,) rad, hand, parts, obstacles and the names a program may use.
 
     ``tools`` are poses X_flange_tool, ``frames`` poses X_world_frame (4, 4), ``sensors`` seam sensors, ``inputs`` what
-    each input does. ``controller`` is what the file sets of the controller profile.
+    each input does. ``controller`` is what the file sets of the controller profile, ``doubts`` are parts that cannot
+    lie where they are.
     """
 
     robot: RobotSpec
@@ -96,6 +97,12 @@ class CellSpec:
     sensors: Mapping[str, SensorSpec]
     inputs: Mapping[int, InputSpec]
     controller: Layer
+    doubts: tuple[FileFault, ...]
+
+    @property
+    def warnings(self) -> tuple[FileFault, ...]:
+        """What is unlikely about the robot and the cell."""
+        return (*self.robot.warnings, *self.doubts)
 
 
 def load_cell(path: Path) -> CellSpec:
@@ -129,6 +136,7 @@ def build(file: CellFile) -> CellSpec:
         sensors=_each(file.sensors, SensorSpec.of),
         inputs=file.inputs,
         controller=file.controller,
+        doubts=file.doubts,
     )  # fmt: skip
 
 

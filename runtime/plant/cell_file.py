@@ -6,12 +6,13 @@ or a file inside the cell file's own folder: nothing outside that folder is ever
 """
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import TypeVar
 
+from runtime.plant.resting import Box, unrest
 from runtime.plant.sensor_file import SensorFile, read_sensor_file
 from runtime.plant.signals import InputSpec, read_inputs
 from runtime.profile import Layer, read_layer
@@ -76,7 +77,7 @@ class LoadFile:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CellFile:
     """A cell file. ``tools``, ``frames``: poses (6,) mm and deg by name, FLANGE and WORLD among them; ``controller``:
-    what ``[controller]`` sets."""
+    what ``[controller]`` sets; ``doubts``: parts that cannot lie where they are (RBL640)."""
 
     path: str
     arm: ArmFile
@@ -90,6 +91,12 @@ class CellFile:
     sensors: Mapping[str, SensorFile]
     inputs: Mapping[int, InputSpec]
     controller: Layer
+    doubts: tuple[FileFault, ...]
+
+    @property
+    def warnings(self) -> tuple[FileFault, ...]:
+        """What is unlikely about the cell and its arm, as far as that shows without numerics."""
+        return (*self.arm.warnings, *self.doubts)
 
 
 def read_cell_file(path: Path) -> CellFile:
@@ -129,20 +136,34 @@ def parse_cell_file(source: Source, folder: Path | None = None) -> CellFile:
     controller = table.table("controller").gather(read_layer) if "controller" in table else {}
     table.finish()
     assert arm is not None and home is not None and hand is not None and inputs is not None and controller is not None
+    lying = tuple(each for each in found[0] if each is not None)
+    fixed = tuple(each for each in found[1] if each is not None)
     return CellFile(
         path=source.path,
         arm=arm,
         home_deg=home,
         hand=hand,
-        parts=tuple(each for each in found[0] if each is not None),
-        obstacles=tuple(each for each in found[1] if each is not None),
+        parts=lying,
+        obstacles=fixed,
         loads=found[2],
         tools=found[3],
         frames=found[4],
         sensors=found[5],
         inputs=MappingProxyType(inputs),
         controller=controller,
+        doubts=tuple(_doubts(lying, fixed, parts)),
     )
+
+
+def _doubts(parts: tuple[PartFile, ...], obstacles: tuple[ObstacleFile, ...], items: list[Table],
+            ) -> Iterator[FileFault]:  # fmt: skip
+    """Yield RBL640 for every part that cannot lie where it is; of two that overlap, at the later one."""
+    fixed = [Box.of(f"obstacle '{each.name}'", each.size_mm, each.pose_mm_deg) for each in obstacles]
+    loose = [Box.of(f"part '{each.name}'", each.size_mm, each.pose_mm_deg) for each in parts]
+    for index, (part, item) in enumerate(zip(loose, items, strict=True)):
+        others = [*fixed, *loose[:index]]
+        if why := unrest(part, others, [*others, *loose[index + 1 :]]):
+            yield item.fault("RBL640", why, key="pose_mm_deg")
 
 
 def _arm(table: Table, folder: Path | None) -> ArmFile:

@@ -176,3 +176,17 @@ def test_a_file_fault_is_a_fault_with_a_place(case):
     with pytest.raises(FileFault) as caught:
         load_project(case(CELL))
     assert caught.value.others == ()
+
+
+@pytest.mark.parametrize("command", ["check", "run"])
+def test_a_part_that_lies_in_the_table_is_doubted(case, command):
+    program = case("attack_08_joints_outside_limits_misnamed")
+    program.write_text("PRINT 1\n", "utf-8")
+    program.with_name("p.points.toml").unlink()
+    text = (CASES / CELL / "cell.toml").read_text("utf-8").replace("mass_kg = nan", "mass_kg = 1.5")
+    program.with_name("cell.toml").write_text(text.replace("-220, 640,", "-220, 600,"), "utf-8")
+    options = [] if command == "check" else ["--no-physics"]
+    assert "cell.toml:31:1: warning RBL640" in robolang(command, program, *options).stderr
+    robolang(command, program, "--strict", *options, code=1)
+    program.with_name("cell.toml").write_text(text, "utf-8")
+    assert "RBL640" not in robolang(command, program, "--strict", *options).stderr

@@ -1,0 +1,101 @@
+"""Whether the parts of a cell can lie where its file puts them: boxes against boxes, the floor and what is below.
+
+Two boxes overlap by the least distance that one must move to leave the other: the least overlap of their shadows on
+the 15 axes of the separating axis theorem, the normals of their faces and the products of their edges (S. Gottschalk,
+M. C. Lin and D. Manocha, "OBBTree", SIGGRAPH 1996). Poses are ``[x, y, z, rx, ry, rz]`` in mm and deg with
+``R = Rz @ Ry @ Rx``. No numerics: ``robolang check`` examines every cell.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Self
+
+OVERLAP_MM = 1.0
+"""A part may be this far in something: contacts of a simulation give way by less."""
+DROP_MM = 5.0
+"""A part may hang this far over what it will stand on."""
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Box:
+    """A box: what people call it, centre mm, unit vectors of its edges in the world, half of their lengths mm."""
+
+    name: str
+    centre: Vector
+    axes: tuple[Vector, Vector, Vector]
+    halves: Vector
+
+    @classmethod
+    def of(cls, name: str, size_mm: Sequence[float], pose_mm_deg: Sequence[float]) -> Self:
+        """Return the box of a size (3,) and the pose (6,) of its centre."""
+        x, y, z, *angles = pose_mm_deg
+        (cx, sx), (cy, sy), (cz, sz) = ((math.cos(a), math.sin(a)) for a in map(math.radians, angles))
+        axes = (
+            (cz * cy, sz * cy, -sy),
+            (cz * sy * sx - sz * cx, sz * sy * sx + cz * cx, cy * sx),
+            (cz * sy * cx + sz * sx, sz * sy * cx - cz * sx, cy * cx),
+        )
+        length, width, height = size_mm
+        return cls(name=name, centre=(x, y, z), axes=axes, halves=(length / 2.0, width / 2.0, height / 2.0))
+
+    def lowered(self, by: float) -> "Box":
+        """Return the box further down, mm."""
+        x, y, z = self.centre
+        return Box(name=self.name, centre=(x, y, z - by), axes=self.axes, halves=self.halves)
+
+    def half_shadow(self, direction: Vector) -> float:
+        """Return half of the length of the shadow on a unit vector, mm."""
+        return sum(half * abs(_dot(axis, direction)) for half, axis in zip(self.halves, self.axes, strict=True))
+
+    @property
+    def bottom(self) -> float:
+        """The height of its lowest corner, mm."""
+        return self.centre[2] - self.half_shadow((0.0, 0.0, 1.0))
+
+
+def unrest(part: Box, others: Sequence[Box], below: Sequence[Box]) -> str:
+    """Return why a part cannot lie where it is, nothing when it can.
+
+    ``others`` are what it may not be in, ``below`` is what it may stand on beside the floor, z = 0.
+    """
+    deepest = max(others, key=lambda other: overlap(part, other), default=None)
+    if deepest is not None and not overlap(part, deepest) <= OVERLAP_MM:
+        return f"{part.name} overlaps {deepest.name} by {overlap(part, deepest):.0f} mm"
+    if not part.bottom >= -OVERLAP_MM:
+        return f"{part.name} is {-part.bottom:.0f} mm deep in the floor, z = 0"
+    lower = part.lowered(DROP_MM)
+    if lower.bottom <= 0.0 or any(overlap(lower, other) > 0.0 for other in below):
+        return ""
+    return f"{part.name} stands on nothing: there is nothing within {DROP_MM:g} mm below it"
+
+
+def overlap(one: Box, other: Box) -> float:
+    """Return how far one box must move to leave the other, mm; 0 where they do not meet."""
+    apart = _minus(other.centre, one.centre)
+    if math.hypot(*apart) >= math.hypot(*one.halves) + math.hypot(*other.halves):
+        return 0.0
+    crossed = (_unit(_cross(a, b)) for a, b in product(one.axes, other.axes))
+    directions = [*one.axes, *other.axes, *(each for each in crossed if each is not None)]
+    return max(0.0, min(one.half_shadow(d) + other.half_shadow(d) - abs(_dot(apart, d)) for d in directions))
+
+
+def _dot(a: Vector, b: Vector) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _minus(a: Vector, b: Vector) -> Vector:
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def _cross(a: Vector, b: Vector) -> Vector:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def _unit(a: Vector) -> Vector | None:
+    """Return a vector of length 1, None for edges that are parallel."""
+    length = math.hypot(*a)
+    return None if length < 1e-6 else (a[0] / length, a[1] / length, a[2] / length)
