@@ -25,7 +25,7 @@ from robolang.source import Span
 from robolang.statement_check import StatementCheck
 from robolang.structure import Structure, structure_of
 from robolang.tree import is_deeper
-from robolang.usage_check import quote_check, usage_check, wait_check
+from robolang.usage_check import loop_check, quote_check, usage_check, wait_check
 
 MAX_LEVELS = 150
 """Deepest tree of a statement: expressions are evaluated by recursion, in at most five calls for a level."""
@@ -41,7 +41,7 @@ def check(program: Program, symbols: CellSymbols = NOTHING_KNOWN) -> tuple[Diagn
                               _statements(program, structure, symbols)), MAX_DIAGNOSTICS + 1))  # fmt: skip
     found += _beside(found, chain(wait_check(program), quote_check(program), rounding_check(program)))
     if not has_errors(found) and not any(isinstance(line.statement, Unparsed) for line in program.statements):
-        found += chain(flow_check(program, structure), usage_check(program))
+        found += chain(flow_check(program, structure), loop_check(program, structure), usage_check(program))
     return in_order(islice(found, MAX_DIAGNOSTICS + 1))
 
 

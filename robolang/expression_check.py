@@ -110,6 +110,16 @@ class ExpressionCheck:
             yield Diagnostic(code="RBL215", message=message, span=node.name.span, hint=hint)
         elif count != 1:
             yield Diagnostic(code="RBL214", message=f"an element has one number, not {count}", span=node.span)
+        else:
+            yield from self.element(node)
+
+    def element(self, node: Call) -> Iterator[Diagnostic]:
+        """Report an element that no array of its name has, whatever the run does (RBL507)."""
+        index, largest = fixed(node.arguments[0]), self._defined.largest(node.name.key)
+        if index is not None and index.is_integer() and not (0.0 <= index <= largest):
+            highest = "" if math.isinf(largest) else f" to {largest:g}"
+            message = f"{node.name.text} has the elements 0{highest}, no {index:.10g}"
+            yield Diagnostic(code="RBL507", message=message, span=node.span)
 
     def _joints(self, node: Call) -> Iterator[Diagnostic]:
         """Report joint angles of another number than the arm has axes, and angles outside of their range."""

@@ -4,11 +4,14 @@ A line with an error may have been a definition. Every name that it seems to def
 in ``FOR i = 1 TO 4`` is not followed by a mistake for each use of i.
 """
 
+import math
 import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
+from robolang import limits
 from robolang.cell_symbols import CellSymbols
+from robolang.constants import fixed
 from robolang.diagnostics import Diagnostic
 from robolang.nodes import (
     Assign,
@@ -41,10 +44,10 @@ _ASSIGNED = re.compile(r"(?<!\w)([A-Za-z]\w*+\$?)[ \t]*(?:\([^()=]*\)[ \t]*)?=")
 
 @dataclass(slots=True)
 class _Own:
-    """What the lines of the main program, or of one SUB, define."""
+    """What the lines of the main program, or of one SUB, define; ``arrays`` with their largest index."""
 
     values: set[str] = field(default_factory=set)
-    arrays: set[str] = field(default_factory=set)
+    arrays: dict[str, float] = field(default_factory=dict)
     constants: dict[str, Span] = field(default_factory=dict)
 
 
@@ -98,6 +101,11 @@ class Defined:
         """Return whether an array of a name is seen from here."""
         return key in self._here.arrays or key in self._own[None].arrays or key in self.seeming
 
+    def largest(self, key: str) -> float:
+        """Return the largest index of the arrays of a name that are seen from here; infinite where a run decides it."""
+        sizes = [own.arrays[key] for own in (self._own[None], self._here) if key in own.arrays]
+        return math.inf if key in self.seeming else max(sizes, default=math.inf)
+
     def constant(self, key: str) -> Span | None:
         """Return where the constant of a name that is seen from here is fixed, None when there is none."""
         return self._own[None].constants.get(key) or self._here.constants.get(key)
@@ -124,7 +132,9 @@ class Defined:
             own.values.add(node.name.key)
             own.constants.setdefault(node.name.key, node.name.span)
         elif isinstance(node, Dim):
-            own.arrays.add(node.name.key)
+            size = fixed(node.size)
+            known = size if size is not None and limits.SIZE.fault(size) is None else math.inf
+            own.arrays[node.name.key] = max(known, own.arrays.get(node.name.key, 0.0))
         elif isinstance(node, Sub):
             self.subs.setdefault(node.name.key, node)
             own.values.update(parameter.key for parameter in node.parameters)

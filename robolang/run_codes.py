@@ -182,6 +182,12 @@ register(
         remedy="Write the text in double quotes.",
     ),
     Code(
+        code="RBL235",
+        name="loop-variable-shared",
+        meaning="A FOR counts with the variable of a FOR around it.",
+        remedy="Count the inner loop with another variable.",
+    ),
+    Code(
         code="RBL413",
         name="blend-at-the-end",
         meaning="A move has a ZONE, and no move follows that it could blend into.",

@@ -215,6 +215,8 @@ class StatementCheck:
             message = f"there is no array {name.text}"
             hint = other_languages.assigned(name.key, element=True) or f"DIM {name.text}(n) makes one"
             yield Diagnostic(code="RBL215", message=message, span=name.span, hint=hint)
+        elif isinstance(node.target, Call) and not is_element and len(node.target.arguments) == 1:
+            yield from self._expressions.element(node.target)
 
     def _fits(self, name: Name, value: Expression) -> Iterator[Diagnostic]:
         """Report a value of another kind than a name holds."""

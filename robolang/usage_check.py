@@ -8,9 +8,10 @@ from collections.abc import Iterator
 
 from robolang import limits, other_languages
 from robolang.constants import fixed
-from robolang.diagnostics import Diagnostic, Severity
+from robolang.diagnostics import Diagnostic, Related, Severity
 from robolang.names import names_in
-from robolang.nodes import Assign, Call, Const, Dim, If, Name, Node, Print, Program, Statement, Wait
+from robolang.nodes import Assign, Call, Const, Dim, For, If, Name, Node, Print, Program, Statement, Wait
+from robolang.structure import Structure
 from robolang.words import near
 
 MAX_SHOWN = 60
@@ -43,6 +44,25 @@ def quote_check(program: Program) -> Iterator[Diagnostic]:
             yield Diagnostic(code="RBL234", severity=Severity.WARNING, span=comment.span,
                              message="this is a comment, not a text: PRINT shows an empty line",
                              hint=f'write PRINT "{quoted[1]}"' if len(quoted[1]) <= MAX_SHOWN else "")  # fmt: skip
+
+
+def loop_check(program: Program, structure: Structure) -> Iterator[Diagnostic]:
+    """Report FORs that count with the variable of a FOR around them (RBL235), as warnings.
+
+    Called for programs without errors.
+    """
+    for line, heads in zip(program.lines, structure.inside, strict=True):
+        node = line.statement
+        if not isinstance(node, For):
+            continue
+        around = (program.lines[head].statement for head in reversed(heads))
+        loops = (each for each in around if isinstance(each, For))
+        outer = next((each for each in loops if each.variable.key == node.variable.key), None)
+        if outer is not None:
+            message = f"{node.variable.text} counts a FOR around this one: its value there is lost"
+            related = (Related(span=outer.variable.span, message=f"{outer.variable.text} counts here"),)
+            yield Diagnostic(code="RBL235", severity=Severity.WARNING, span=node.variable.span, message=message,
+                             related=related)  # fmt: skip
 
 
 def usage_check(program: Program) -> Iterator[Diagnostic]:

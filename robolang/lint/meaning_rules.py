@@ -233,4 +233,13 @@ RULES = (
         bad="10 PRINT 'part is missing'\n",
         good='10 PRINT "part is missing"\n',
     ),
+    Rule(
+        code="RBL235",
+        severity=Severity.WARNING,
+        why="After the inner loop the variable has the inner loop's last value. What the outer loop then does with it, "
+        "such as going to the next place of a row, it does with a wrong number.",
+        bad="10 FOR I = 1 TO 3\n20 FOR I = 1 TO 2\n30 PRINT I\n40 NEXT\n50 NEXT\n",
+        good="10 FOR I = 1 TO 3\n20 FOR K = 1 TO 2\n30 PRINT I; K\n40 NEXT\n50 NEXT\n",
+        line=2,
+    ),
 )

@@ -399,3 +399,32 @@ def test_an_inertia_is_a_body_s_or_not_as_its_principal_moments_say():
         assert found == (["RBL403"] if largest > rest else []), text
         wrong += largest > rest
     assert 50 < wrong < 350
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("DIM b(3)\nb(5) = 1\nPRINT b(1)", [(2, 1)]),
+        ("DIM b(3)\nPRINT b(2 + 2); b(3)", [(2, 7)]),
+        ("DIM b(3)\nb(-1) = b(4)", [(2, 1), (2, 9)]),
+        ("n = 2\nDIM b(n)\nb(-1) = 1\nb(9) = b(0)", [(3, 1)]),
+        ("DIM b(3)\nDIM b(9)\nb(9) = b(0)", []),
+        ("DIM b(3)\nCALL s\nb(3) = 1\nSUB s\nDIM b(9)\nb(9) = b(0)\nENDSUB", []),
+        ("DIM b(9)\nCALL s\nSUB s\nb(9) = b(10)\nENDSUB", [(4, 8)]),
+        ("DIM b(NAN)\nb(5) = b(1)", [(1, 7)]),
+    ],
+)
+def test_elements_that_no_array_has(text, found):
+    assert [item[1:3] for item in checked(text) if item[0] == "RBL507"] == found
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("FOR i = 1 TO 3\nFOR i = 1 TO 2\nPRINT i\nNEXT i\nNEXT i", [(2, 5)]),
+        ("FOR i = 1 TO 3\nWHILE i < 2\nFOR I = 1 TO 2\nNEXT\nWEND\nNEXT", [(3, 5)]),
+        ("FOR i = 1 TO 3\nFOR k = 1 TO 2\nNEXT\nFOR k = 1 TO i\nNEXT\nNEXT\nFOR i = 1 TO 2\nNEXT", []),
+    ],
+)
+def test_a_loop_with_the_variable_of_the_loop_around_it(text, found):
+    assert [item[1:3] for item in checked(text) if item[0] == "RBL235"] == found
