@@ -18,7 +18,7 @@ from robolang.parser import parse
 from robolang.points import PointStore
 from robolang.source import Source, read_program
 from runtime.dynamics.compensation import load_compensation
-from runtime.faults import Fault
+from runtime.faults import Fault, raise_all
 from runtime.frames import Array
 from runtime.plant import cell as cells
 from runtime.plant.cell import CellSpec
@@ -78,10 +78,7 @@ def load_project(path: Path | str, cell: Path | str | None = None, robot: str | 
     where = Path(path)
     given = {**({} if servo is None else {"servo.mode": ("--servo", servo)}), **(options or {})}
     found = read_beside(where, cell=None if cell is None else Path(cell), robot=robot, layers=_layers(profile, given))
-    if found.faults:
-        first, *others = found.faults
-        first.others = tuple(others)
-        raise first
+    raise_all(found.faults)
     assert found.cell is not None and found.points is not None and found.settings is not None
     spec = cells.build(found.cell)
     settings = judged(spec.robot, spec.hand.X_flange_tool, found.settings)

@@ -9,6 +9,7 @@ A *fault* (``Fault``) is raised where a request cannot be carried out; the reque
 as the front end gave it to the controller, so that its place in the program is never looked up a second time.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from runtime.program_line import ProgramLine
@@ -87,6 +88,14 @@ class Fault(Exception):  # noqa: N818 - the field calls it a fault
     def all(self) -> tuple["Fault", ...]:
         """This fault and the others, in order."""
         return (self, *self.others)
+
+
+def raise_all(faults: Sequence[Fault]) -> None:
+    """Raise the first of some faults with all others; nothing when there are none."""
+    if faults:
+        first, *others = faults
+        first.others = tuple(others)
+        raise first
 
 
 register(

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal, NoReturn, cast
 
-from runtime.faults import Fault
+from runtime.faults import Fault, raise_all
 from runtime.robot.joint_table import JointTable
 from runtime.robot.load_rules import LoadMode
 from runtime.supervision.limits import Reaction, SupervisionLimits
@@ -281,11 +281,15 @@ class Given:
     table: Table | None = None
     name: str = ""
 
-    def fail(self, code: str, message: str, hint: str = "") -> NoReturn:
-        """Refuse the value where it was given: ``FileFault`` in a file, else ``Fault`` that names the option."""
+    def fault(self, code: str, message: str, hint: str = "") -> Fault:
+        """Return what refuses the value where it was given: ``FileFault`` in a file, else one that names the option."""
         if self.table is not None:
-            self.table.fail(code, message, hint, key=self.name)
-        raise Fault(code, f"{self.origin}: {message}", hint)
+            return self.table.fault(code, message, hint, key=self.name)
+        return Fault(code, f"{self.origin}: {message}", hint)
+
+    def fail(self, code: str, message: str, hint: str = "") -> NoReturn:
+        """Refuse the value: raise its ``fault``."""
+        raise self.fault(code, message, hint)
 
 
 Layer = Mapping[str, Given]
@@ -361,30 +365,35 @@ def settle(*layers: Layer) -> Settings:
     given = {key: Given(value=item.default, origin="default") for key, item in _BY_KEY.items()}
     asked = {key: value for layer in layers for key, value in layer.items()}
     given.update(asked)
+    faults: list[Fault] = []
     if given["servo.feedforward"].value == "measured":
         for key in _FEEDS_BACK_WHEN_MEASURED:
             if key not in asked:
                 given[key] = Given(value=0.0, origin="default")
             elif key in _IDEAL_WHEN_MEASURED and not given[key].value < 1.0:
-                given[key].fail("RBL616", f"'controller.{key}' must be below 1 when the feed-forward is measured",
-                                'give a value such as 0.9, or write feedforward = "command"')  # fmt: skip
+                faults.append(given[key].fault(
+                    "RBL616", f"'controller.{key}' must be below 1 when the feed-forward is measured",
+                    'give a value such as 0.9, or write feedforward = "command"'))  # fmt: skip
     if given["servo.mode"].value == "fixed":
         if "servo.coupling" not in asked:
             given["servo.coupling"] = Given(value="diagonal", origin="default")
         elif given["servo.coupling"].value == "full":
-            given["servo.coupling"].fail(
+            faults.append(given["servo.coupling"].fault(
                 "RBL605", "'controller.servo.coupling' must be \"diagonal\" when the gains are fixed",
-                "fixed gains hold the inertia of each axis alone")  # fmt: skip
+                "fixed gains hold the inertia of each axis alone"))  # fmt: skip
+    raise_all(faults)
     return Settings(given=given, profile=_profile({key: item.value for key, item in given.items()}))
 
 
 def check_axes(settings: Settings, axes: int, robot: str) -> None:
     """Refuse a setting for each axis that has another number of entries than the robot axes (RBL613)."""
+    faults: list[Fault] = []
     for name in ("position", "velocity"):
         given = settings[f"servo.{name}_bandwidth_rad_s"]
         if len(given.value) not in (0, 1, axes):
-            given.fail("RBL613", f"'servo.{name}_bandwidth_rad_s' has {len(given.value)} entries; {robot} has "
-                       f"{axes} axes", "give one number for all axes or one for each")  # fmt: skip
+            message = f"'servo.{name}_bandwidth_rad_s' has {len(given.value)} entries; {robot} has {axes} axes"
+            faults.append(given.fault("RBL613", message, "give one number for all axes or one for each"))
+    raise_all(faults)
 
 
 def compensation_file(settings: Settings) -> Path | None:

@@ -71,6 +71,25 @@ def test_settings_names_and_inputs_that_are_wrong_are_found_at_once(case):
     assert found == [(code, 1 if line == 1 else begin + line) for code, line in FOUND]
 
 
+@pytest.mark.parametrize(
+    ("servo", "found"),
+    [
+        ('feedforward = "measured"\nvelocity_feedforward = 1\nacceleration_feedforward = 1\nmode = "fixed"\n'
+         'coupling = "full"', [("RBL616", 3), ("RBL616", 4), ("RBL605", 6)]),
+        ("position_bandwidth_rad_s = [1, 2]\nvelocity_bandwidth_rad_s = [1, 2, 3]", [("RBL613", 2), ("RBL613", 3)]),
+    ],
+)  # fmt: skip
+def test_settings_that_do_not_go_together_are_found_at_once(case, servo, found):
+    program = case(CELL)
+    program.with_name("p.points.toml").unlink(missing_ok=True)
+    cell = program.with_name("cell.toml")
+    text = cell.read_text("utf-8").replace("mass_kg = nan", "mass_kg = 1.5")
+    cell.write_text(f"{text}[controller.servo]\n{servo}\n", "utf-8")
+    begin = len(text.splitlines())
+    expected = [(code, "cell.toml", begin + line, 1) for code, line in found]
+    assert places(read_beside(program).faults) == of_run(program) == expected
+
+
 def of_file(cell):
     with pytest.raises(FileFault) as caught:
         read_cell_file(cell)
