@@ -202,34 +202,43 @@ def _loads(program: Program, ways: Ways) -> Iterator[Diagnostic]:
 
 @dataclass(frozen=True, slots=True)
 class _Corner:
-    """Whether ZONE is set, and the place of the move whose end may be passed without a stop; None: the arm stands."""
+    """The place of the ZONE that is set, of the move whose end may be passed without a stop (None: the arm stands), and
+    of the setting by which it may; None: by a ZONE of its own."""
 
-    zone: bool = False
+    zone: Span | None = None
     move: Span | None = None
+    by: Span | None = None
 
 
 @dataclass(slots=True)
 class _Corners:
     """What became of the corners: moves that blended on some way, those that did not, and LOADs within.
 
-    ``zones`` are the ZONEs of moves, by place of the move.
+    ``zones`` are the ZONEs of moves, by place of the move. ``waiting`` are, by place of a setting, moves that read the
+    state of the arm, so that it comes to rest before them although the move before could blend.
     """
 
     zones: dict[Span, Zone]
     used: set[Span] = field(default_factory=set)
     lost: dict[Span, Statement | None] = field(default_factory=dict)
     loads: dict[Span, Span] = field(default_factory=dict)
+    waiting: dict[Span, Moving] = field(default_factory=dict)
 
     def step(self, at: int, node: Statement, corner: _Corner) -> tuple[_Corner]:
         """Follow one statement."""
         if isinstance(node, _MOVES):
             if corner.move is not None and not reads_state(node):
-                self.used.add(corner.move)
+                self.used.add(corner.move if corner.by is None else corner.by)
+            elif corner.by is not None:
+                self.waiting.setdefault(corner.by, node)
             elif corner.move in self.zones:
                 self.lost[corner.move] = node
-            return (_Corner(corner.zone, node.span if _blends(node, corner.zone) else None),)
+            if not _blends(node, corner.zone is not None):
+                return (_Corner(corner.zone),)
+            return (_Corner(corner.zone, node.span, None if node.span in self.zones else corner.zone),)
         if isinstance(node, Setting) and node.word == "ZONE":
-            return (_Corner(node.value is not None and fixed(node.value) != 0.0, corner.move),)
+            is_set = node.value is not None and fixed(node.value) != 0.0
+            return (_Corner(node.span if is_set else None, corner.move, corner.by),)
         if not _stops(node) or corner.move is None:
             return (corner,)
         if isinstance(node, Load | LoadNamed):
@@ -270,6 +279,11 @@ def _corners(program: Program, ways: Ways) -> Iterator[Diagnostic]:
             related = () if stop is None else (Related(span=stop.span, message="the arm comes to rest for this"),)
             yield _warn("RBL413", corners.zones[span].span, "no move follows that this one could blend into: it stops",
                         related)  # fmt: skip
+    for setting, move in corners.waiting.items():
+        if setting not in corners.used:
+            related = (Related(span=move.span, message="this move reads where the arm is"),)
+            hint = "assign HERE to a name before these moves and write them with that name, or remove the ZONE"
+            yield _warn("RBL413", setting, "no move blends by this ZONE: the arm stops before each", related, hint)
     for load, span in corners.loads.items():
         related = (Related(span=span, message="the move that would blend"),)
         yield _warn("RBL229", load, "the arm stops for this LOAD, where the move before it would blend into the next",

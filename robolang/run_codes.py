@@ -190,7 +190,7 @@ register(
     Code(
         code="RBL413",
         name="blend-at-the-end",
-        meaning="A move has a ZONE, and no move follows that it could blend into.",
+        meaning="A move has a ZONE, or one is set, and no move follows that could be blended into.",
         remedy="Give it FINE or no ZONE; the arm stops there in any case.",
     ),
     Code(

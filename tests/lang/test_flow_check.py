@@ -195,3 +195,18 @@ def test_a_program_of_more_lines_than_memory_is_for_gets_none_of_this(monkeypatc
     assert "RBL221" in [item.code for item in check(parsed(text))]
     monkeypatch.setattr(flow_check, "MAX_LINES", 1)
     assert "RBL221" not in [item.code for item in check(parsed(text))]
+
+
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [
+        ("ZONE 50\nFOR i = 1 TO 4\nMOVE HERE + (10, 0, 0)\nNEXT", [1]),
+        ("ZONE 50\nMOVE P1\nMOVE HERE + (10, 0, 0)\nZONE 0\nMOVE HERE + (9, 0, 0)\nMOVE HERE + (9, 0, 0)", [1]),
+        ("ZONE 50\nMOVE P1\nMOVE HERE + (10, 0, 0)\nMOVE P2", []),
+        ("ZONE 50\nFOR i = 1 TO 4\nMOVE P1\nMOVE HERE + (10, 0, 0), FINE\nMOVE P2\nNEXT", []),
+        ("ZONE 50\nMOVE P1\nHAND ON\nMOVE P2\nHAND OFF", []),
+        ("ZONE NAN\nMOVE P1\nMOVE P2", []),
+    ],
+)
+def test_a_setting_by_which_no_move_blends(text, lines):
+    assert found(text, "RBL413") == lines
