@@ -32,8 +32,8 @@ COMMANDS = {
     "`robolang --help`, whole process": ("--help",),
     f"`robolang check {PROGRAM}`, whole process": ("check", PROGRAM),
 }
-WAYS = {"KEEP": {"mode": "keep"}, "document": {"remedies": False}, "all remedies": {}, "HOLD": {}}
-"""Options of the wrist by the name of the method; HOLD is WRIST HOLD TILT in the program."""
+WAYS = {"KEEP": {}, "document": {"remedies": False}, "all remedies": {}, "HOLD": {}}
+"""Options of the profile by the name of the method; KEEP and HOLD are what the move itself says."""
 
 
 class ControlTape(MujocoPlant):
@@ -111,14 +111,15 @@ def wrist_seconds(rounds: int) -> dict[str, tuple[float, float]]:
     times: dict[str, list[tuple[float, float]]] = {way: [] for way in WAYS}
     for _ in range(rounds):
         for way, project in projects.items():
-            times[way].append(wrist_run(project, ("TILT",) if way == "HOLD" else ()))
+            times[way].append(wrist_run(project, way))
     return {way: tuple(statistics.median(column) for column in zip(*rows, strict=True)) for way, rows in times.items()}
 
 
-def wrist_run(project: Project, held: tuple[str, ...]) -> tuple[float, float]:
+def wrist_run(project: Project, way: str) -> tuple[float, float]:
     """Return the time of a cycle, run and planning together, and of planning alone, s."""
+    said = {"held": ("TILT",) if way == "HOLD" else (), "wrist": "keep" if way == "KEEP" else "auto"}
     session = Session(
-        project, alter=lambda effect: replace(effect, held=held) if isinstance(effect, MoveTo) else effect
+        project, alter=lambda effect: replace(effect, **said) if isinstance(effect, MoveTo) else effect
     )
     planner, spent = session.controller._planner, 0.0
     plan = planner.plan
