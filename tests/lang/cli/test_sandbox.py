@@ -30,7 +30,7 @@ ON ERROR GOTO *BAD
 x = VAL(text$)
 text$ = text$ + "/etc/passwd"
 x = VAL(text$)
-a(9) = 1
+a(eval + 3) = 1
 x = 1 / (x * 0)
 MOVE P1 + (0, 0, 9000)
 ON ERROR STOP
