@@ -1,11 +1,12 @@
 """Values that a text alone gives: expressions of numbers, worked out before anything runs."""
 
+import math
 from collections.abc import Iterator
 from typing import NoReturn
 
 from robolang.diagnostics import Diagnostic
 from robolang.evaluator import Evaluator, Nowhere
-from robolang.nodes import Call, Expression, Name, Negate, Number, Text, constant, walk
+from robolang.nodes import Call, Expression, Name, Negate, Number, Text, walk
 from robolang.places import Value
 from runtime.faults import Fault
 
@@ -34,6 +35,23 @@ class _Static(Nowhere):
 _EVALUATOR = Evaluator(_NoNames(), _Static())
 
 
+_CONSTANTS = {"NAN": math.nan, "INF": math.inf}
+
+
+def _number(expression: Expression) -> float | None:
+    """Return the value of an expression of signs and numbers alone; None when it needs more.
+
+    ``NAN`` and ``INF`` are names that the text may contain; the checker refuses them wherever they stand.
+    """
+    sign = 1.0
+    while isinstance(expression, Negate):
+        sign, expression = -sign, expression.operand
+    if isinstance(expression, Number):
+        return sign * expression.value
+    value = _CONSTANTS.get(expression.key) if isinstance(expression, Name) else None
+    return None if value is None else sign * value
+
+
 def _depends(node: Expression) -> bool:
     """Return whether an expression reads ERR, which has a value in a handler only."""
     return any(isinstance(each, Call) and each.name.key == "ERR" for each in walk(node))
@@ -41,7 +59,7 @@ def _depends(node: Expression) -> bool:
 
 def fixed(node: Expression) -> float | None:
     """Return the value of an expression of numbers alone; None when it needs more or has none."""
-    value = constant(node)
+    value = _number(node)
     if value is not None or isinstance(node, Number | Name | Negate) or _depends(node):
         return value
     try:

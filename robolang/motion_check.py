@@ -9,7 +9,7 @@ rehearsal: where the arm would be after it is not known.
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -41,8 +41,7 @@ from robolang.surroundings import RobotWorld
 from runtime.faults import Fault
 from runtime.frames import Array
 from runtime.motion.blend import Corner
-from runtime.motion.chain import ChainPlan
-from runtime.motion.commands import MoveLinear
+from runtime.motion.chain import ChainPlan, tracked
 from runtime.motion.planner import LinePlan
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.payload import NO_PAYLOAD, Payload
@@ -221,9 +220,7 @@ class _Rehearsal:
         self._world.q_last = self._q_next
         command = lowering.move(effect, self._world.around)
         if self._tracked:
-            if type(command) is not MoveLinear:
-                raise Fault("RBL412", "a seam sensor is followed on straight moves only")
-            command = replace(command, tracked=True, zone=0.0)
+            command = tracked(command)
         plan = self._planner.plan(self._q_next, command, self._world.X_flange_tool)
         self._q_next = np.array(plan.q[-1])
         self._chain.append((effect, command, plan))

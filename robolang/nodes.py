@@ -7,7 +7,6 @@ be parsed is kept as ``Unparsed``, so that line numbers and the formatter see ev
 kept, they are the gaps between the ``source_line`` of neighbours.
 """
 
-import math
 from dataclasses import dataclass, field
 from enum import Enum
 from sys import intern
@@ -483,20 +482,3 @@ class Program:
     def statements(self) -> tuple[Line, ...]:
         """The lines that have a statement, in order."""
         return tuple(line for line in self.lines if line.statement is not None)
-
-
-_CONSTANTS = {"NAN": math.nan, "INF": math.inf}
-
-
-def constant(expression: Expression) -> float | None:
-    """Return the value of an expression of signs and numbers alone; None when it needs more.
-
-    ``NAN`` and ``INF`` are names that the text may contain; the checker refuses them wherever they stand.
-    """
-    sign = 1.0
-    while isinstance(expression, Negate):
-        sign, expression = -sign, expression.operand
-    if isinstance(expression, Number):
-        return sign * expression.value
-    value = _CONSTANTS.get(expression.key) if isinstance(expression, Name) else None
-    return None if value is None else sign * value

@@ -25,10 +25,10 @@ from runtime.clock import Clock, VirtualClock
 from runtime.dynamics.equations import axis_gravity, axis_row
 from runtime.dynamics.source import InertiaRows
 from runtime.dynamics.task import StepCosts, dynamics_task
-from runtime.faults import Alarm, Fault, lookup
+from runtime.faults import Alarm, lookup
 from runtime.frames import Array
 from runtime.linear import matmul
-from runtime.motion.chain import ChainFault, ChainPlan, MotionPlanner
+from runtime.motion.chain import ChainPlan, MotionPlanner, tracked_row
 from runtime.motion.commands import Command, MoveLinear
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.interpolator import Interpolator
@@ -197,7 +197,7 @@ class Controller:
             chain = self._planner.chain(here, commands, self.X_flange_tool, self._override)
             self._interpolator.start(chain)
         else:
-            tracked = [_tracked(command, index) for index, command in enumerate(commands)]
+            tracked = tracked_row(commands)
             q_from = here if tracker.q_calculated is None else tracker.q_calculated
             chain = self._planner.chain(q_from, tracked, self.X_flange_tool, self._override)
             if self._interpolator.busy:
@@ -493,10 +493,3 @@ class Controller:
             self._rest_us = 0
             limits = self.spec.per_axis("limits", "speed"), self.spec.per_axis("limits", "acceleration")
             self._interpolator.stop(lambda rows, at, whole: stopping_rows(rows, at, self._fine, *limits, whole))
-
-
-def _tracked(command: Command, index: int) -> MoveLinear:
-    """Return a move of a row as it is planned under a seam sensor; ``ChainFault`` RBL412 where it is not straight."""
-    if not isinstance(command, MoveLinear):
-        raise ChainFault(Fault("RBL412", "a seam sensor is followed on straight moves only"), index)
-    return replace(command, tracked=True, zone=0.0)

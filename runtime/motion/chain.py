@@ -12,7 +12,7 @@ Called by the controller before anything moves, and by the rehearsal of a progra
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from runtime.faults import Fault
 from runtime.frames import Array, frozen
 from runtime.motion.blend import Corner, blend
-from runtime.motion.commands import Command, MoveJoint
+from runtime.motion.commands import Command, MoveJoint, MoveLinear
 from runtime.motion.joint_planner import JointPlanner
 from runtime.motion.pacing import Pace
 from runtime.motion.path import Path
@@ -37,6 +37,24 @@ class ChainFault(Fault):
     def __init__(self, fault: Fault, index: int) -> None:
         super().__init__(fault.code, fault.message, fault.hint)
         self.index = index
+
+
+def tracked(command: Command) -> MoveLinear:
+    """Return a move as it is planned under a seam sensor, without a zone; ``Fault`` RBL412 where it is not straight."""
+    if not isinstance(command, MoveLinear):
+        raise Fault("RBL412", "a seam sensor is followed on straight moves only")
+    return replace(command, tracked=True, zone=0.0)
+
+
+def tracked_row(commands: Sequence[Command]) -> list[MoveLinear]:
+    """Return moves in a row as ``tracked`` has each; ``ChainFault`` RBL412 names the first that is not straight."""
+    moves = []
+    for index, command in enumerate(commands):
+        try:
+            moves.append(tracked(command))
+        except Fault as fault:
+            raise ChainFault(fault, index) from None
+    return moves
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
