@@ -2,6 +2,7 @@
 # make test   the tests; prints their processor time by folder
 # make gates  style, types, import floors
 # make campaign   the tests at full size, of which make test runs a sample (minutes)
+# make format  the layout that the gates ask for
 # make bench  the figures of docs/measured.md that are times or ratios of times
 # make plots   the plots of docs/servo.md, drawn anew
 # make fault-campaign         every injected fault and 200 clean runs, counted (minutes)
@@ -38,9 +39,14 @@ campaign: $(READY)
 	CAMPAIGN=1 $(BIN)/python -m pytest -n 2
 
 gates: $(READY)
+	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+format: $(READY)
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --select I --fix .
 
 bench: $(READY)
 	$(BIN)/python -m tests.bench.run

@@ -47,8 +47,13 @@ Action: TypeAlias = Moving | Load | LoadNamed | Hand | Wrist | Seam | Setting | 
 
 WORLD = "WORLD"
 """The frame that every cell has, and none may define; its tool is FLANGE (``runtime.plant.cell_file``)."""
-_SET = {"SPEED": "speed_mm_s", "SPEEDJ": "speed_pct", "ACCEL": "accel_pct", "OVERRIDE": "override_pct",
-        "ZONE": "zone_mm"}  # fmt: skip
+_SET = {
+    "SPEED": "speed_mm_s",
+    "SPEEDJ": "speed_pct",
+    "ACCEL": "accel_pct",
+    "OVERRIDE": "override_pct",
+    "ZONE": "zone_mm",
+}
 """What each setting sets."""
 
 
@@ -80,12 +85,15 @@ class Actions:
     def _move(self, line: Line, node: Moving) -> Effect:
         values, wrist = self._options(node)
         return effects.MoveTo(
-            **origin(line, node), way="joint" if isinstance(node, MoveJ) else "arc" if isinstance(node, MoveC)
-            else "line", target=self._target(node),
+            **origin(line, node),
+            way="joint" if isinstance(node, MoveJ) else "arc" if isinstance(node, MoveC) else "line",
+            target=self._target(node),
             via=self._values.place(node.via) if isinstance(node, MoveC) else None,
-            wrist=None if wrist is None else _mode(wrist), held=() if wrist is None else _held(wrist),
-            override_pct=self._set.override_pct, **values,
-        )  # fmt: skip
+            wrist=None if wrist is None else _mode(wrist),
+            held=() if wrist is None else _held(wrist),
+            override_pct=self._set.override_pct,
+            **values,
+        )
 
     def _target(self, node: Moving) -> Place:
         if isinstance(node, Depart):
@@ -115,8 +123,11 @@ class Actions:
         if time is None and speed is None:
             speed = found.speed_pct if joint else found.speed_mm_s
         return {
-            "speed_pct" if joint else "speed_mm_s": speed, "accel_pct": accel, "time_s": time, "zone_mm": zone,
-        }, wrist  # fmt: skip
+            "speed_pct" if joint else "speed_mm_s": speed,
+            "accel_pct": accel,
+            "time_s": time,
+            "zone_mm": zone,
+        }, wrist
 
     # --- payload, hand, wrist, seam ----------------------------------------------------------------------------------
 
@@ -124,8 +135,12 @@ class Actions:
         cog, inertia = self._vector(node.cog), () if node.inertia is None else self._vector(node.inertia)
         if len(cog) != 3 or len(inertia) not in (0, 6):
             raise Fault("RBL403", "LOAD takes three coordinates of the centre of gravity, and six of an inertia")
-        return effects.SetPayload(**origin(line, node), cog_mm=(cog[0], cog[1], cog[2]), inertia_kg_m2=tuple(inertia),
-                                  mass_kg=self._values.number(node.mass))  # fmt: skip
+        return effects.SetPayload(
+            **origin(line, node),
+            cog_mm=(cog[0], cog[1], cog[2]),
+            inertia_kg_m2=tuple(inertia),
+            mass_kg=self._values.number(node.mass),
+        )
 
     def _vector(self, node: Vector) -> list[float]:
         return [self._values.number(item) for item in node.items]
@@ -134,9 +149,11 @@ class Actions:
         return effects.SetPayload(**origin(line, node), name=node.name.key)
 
     def _hand(self, line: Line, node: Hand) -> Effect:
-        return effects.SetHand(**origin(line, node), closed=node.state is HandState.ON,
-                               dwell_s=None if node.dwell is None else limits.DWELL.checked(
-                                   self._values.number(node.dwell)))  # fmt: skip
+        return effects.SetHand(
+            **origin(line, node),
+            closed=node.state is HandState.ON,
+            dwell_s=None if node.dwell is None else limits.DWELL.checked(self._values.number(node.dwell)),
+        )
 
     def _wrist(self, line: Line, node: Wrist) -> Effect:
         self._set.wrist = node
@@ -186,22 +203,37 @@ class Actions:
     # --- outputs -----------------------------------------------------------------------------------------------------
 
     def _out(self, line: Line, node: Out) -> Effect:
-        return effects.SetOutput(**origin(line, node), output=self._output(node.index),
-                                 value=finite(self._values.number(node.value), "OUT"))  # fmt: skip
+        return effects.SetOutput(
+            **origin(line, node), output=self._output(node.index), value=finite(self._values.number(node.value), "OUT")
+        )
 
     def _pulse(self, line: Line, node: Pulse) -> Effect:
-        return effects.SetOutput(**origin(line, node), output=self._output(node.index), value=1.0,
-                                 seconds=limits.PULSE.checked(self._values.number(node.seconds)))  # fmt: skip
+        return effects.SetOutput(
+            **origin(line, node),
+            output=self._output(node.index),
+            value=1.0,
+            seconds=limits.PULSE.checked(self._values.number(node.seconds)),
+        )
 
     def _output(self, node: Expression) -> int:
         return int(limits.OUTPUT.checked(self._values.number(node)))
 
 
 _EFFECT: dict[type, Callable[..., Effect | None]] = {
-    Move: Actions._move, MoveJ: Actions._move, MoveC: Actions._move, Approach: Actions._move, Depart: Actions._move,
-    Load: Actions._load, LoadNamed: Actions._load_named, Hand: Actions._hand, Wrist: Actions._wrist,
-    Seam: Actions._seam, Setting: Actions._setting, Out: Actions._out, Pulse: Actions._pulse,
-}  # fmt: skip
+    Move: Actions._move,
+    MoveJ: Actions._move,
+    MoveC: Actions._move,
+    Approach: Actions._move,
+    Depart: Actions._move,
+    Load: Actions._load,
+    LoadNamed: Actions._load_named,
+    Hand: Actions._hand,
+    Wrist: Actions._wrist,
+    Seam: Actions._seam,
+    Setting: Actions._setting,
+    Out: Actions._out,
+    Pulse: Actions._pulse,
+}
 
 ACTIONS = tuple(_EFFECT)
 """The kinds of statements that ``Actions.effect`` takes."""

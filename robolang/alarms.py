@@ -18,8 +18,14 @@ SHOWN_CALLS = 3
 
 def as_diagnostic(alarm: Alarm, severity: Severity) -> Diagnostic:
     """Return an alarm as a diagnostic at its statement."""
-    return Diagnostic(code=alarm.code, severity=severity, message=alarm.message, span=_span(alarm.statement),
-                      hint=alarm.hint, related=calls(alarm.calls))  # fmt: skip
+    return Diagnostic(
+        code=alarm.code,
+        severity=severity,
+        message=alarm.message,
+        span=_span(alarm.statement),
+        hint=alarm.hint,
+        related=calls(alarm.calls),
+    )
 
 
 def as_json(alarm: Alarm, severity: Severity, source: Source, tick_us: int) -> dict[str, object]:

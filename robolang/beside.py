@@ -62,8 +62,14 @@ def builtin_cell_file() -> CellFile:
     return parse_cell_file(Source("cell.toml", cell_text()))
 
 
-def read_beside(program: Path, files: CellFiles | None = None, *, cell: Path | None = None, robot: str | None = None,
-                layers: tuple[Layer, ...] = ()) -> Beside:  # fmt: skip
+def read_beside(
+    program: Path,
+    files: CellFiles | None = None,
+    *,
+    cell: Path | None = None,
+    robot: str | None = None,
+    layers: tuple[Layer, ...] = (),
+) -> Beside:
     """Read the files of a program.
 
     ``cell`` is a cell file in place of the one beside the program, ``robot`` a built-in robot or a robot file in place
@@ -135,9 +141,12 @@ def no_robot(name: str) -> Fault:
     """Return the fault of a name that no robot has (RBL708)."""
     near = difflib.get_close_matches(name, robot_file.library(), n=1)
     guess = f"did you mean {near[0]}? " if near else ""
-    return Fault("RBL708", f"there is no robot '{name}'",
-                 f"{guess}built in: {', '.join(robot_file.library())}; a robot file is named by its path, which ends "
-                 "in .toml, .urdf or .xml")  # fmt: skip
+    return Fault(
+        "RBL708",
+        f"there is no robot '{name}'",
+        f"{guess}built in: {', '.join(robot_file.library())}; a robot file is named by its path, which ends "
+        "in .toml, .urdf or .xml",
+    )
 
 
 def with_robot(cell: CellFile, arm: ArmFile) -> CellFile:

@@ -118,8 +118,9 @@ class _Builder(Transformer[Token, nodes.Node]):
     def const(self, word: Token, name: nodes.Name, sign: Token, value: Expression) -> nodes.Const:
         return nodes.Const(name=name, value=value, span=_over(word, value))
 
-    def out(self, word: Token, left: Token, index: Expression, right: Token, sign: Token,
-            value: Expression) -> nodes.Out:  # fmt: skip
+    def out(
+        self, word: Token, left: Token, index: Expression, right: Token, sign: Token, value: Expression
+    ) -> nodes.Out:
         return nodes.Out(index=index, value=value, span=_over(word, value))
 
     def pulse(self, word: Token, index: Expression, seconds: Expression) -> nodes.Pulse:
@@ -128,10 +129,18 @@ class _Builder(Transformer[Token, nodes.Node]):
     def delay(self, word: Token, seconds: Expression) -> nodes.Delay:
         return nodes.Delay(seconds=seconds, span=_over(word, seconds))
 
-    def wait(self, word: Token, condition: Expression, until: Token | None, timeout: Expression | None,
-             goto: Token | None, target: nodes.Target | None) -> nodes.Wait:  # fmt: skip
-        return nodes.Wait(condition=condition, timeout=timeout, target=target,
-                          span=_over(word, target or timeout or condition))  # fmt: skip
+    def wait(
+        self,
+        word: Token,
+        condition: Expression,
+        until: Token | None,
+        timeout: Expression | None,
+        goto: Token | None,
+        target: nodes.Target | None,
+    ) -> nodes.Wait:
+        return nodes.Wait(
+            condition=condition, timeout=timeout, target=target, span=_over(word, target or timeout or condition)
+        )
 
     def print(self, word: Token, *items: Expression | None) -> nodes.Print:
         found = tuple(item for item in items if item is not None)
@@ -139,10 +148,18 @@ class _Builder(Transformer[Token, nodes.Node]):
 
     # --- control -----------------------------------------------------------------------------------------------------
 
-    def one_line(self, word: Token, condition: Expression, then: Token, statement: nodes.Statement,
-                 other: Token | None, otherwise: nodes.Statement | None) -> nodes.If:  # fmt: skip
-        return nodes.If(condition=condition, then=statement, otherwise=otherwise,
-                        span=_over(word, otherwise or statement))  # fmt: skip
+    def one_line(
+        self,
+        word: Token,
+        condition: Expression,
+        then: Token,
+        statement: nodes.Statement,
+        other: Token | None,
+        otherwise: nodes.Statement | None,
+    ) -> nodes.If:
+        return nodes.If(
+            condition=condition, then=statement, otherwise=otherwise, span=_over(word, otherwise or statement)
+        )
 
     def if_head(self, word: Token, value: Expression, then: Token | None = None) -> nodes.Head:
         return nodes.Head(word=str(word.type), value=value, span=_over(word, then or value))
@@ -161,8 +178,17 @@ class _Builder(Transformer[Token, nodes.Node]):
     def closing(self, word: Token) -> nodes.Block:
         return nodes.Block(word=str(word.type), span=span_of(word))
 
-    def for_head(self, word: Token, variable: nodes.Name, sign: Token, first: Expression, to: Token, last: Expression,
-                 by: Token | None, step: Expression | None) -> nodes.For:  # fmt: skip
+    def for_head(
+        self,
+        word: Token,
+        variable: nodes.Name,
+        sign: Token,
+        first: Expression,
+        to: Token,
+        last: Expression,
+        by: Token | None,
+        step: Expression | None,
+    ) -> nodes.For:
         return nodes.For(variable=variable, first=first, last=last, step=step, span=_over(word, step or last))
 
     def next(self, word: Token, variable: nodes.Name | None) -> nodes.Next:

@@ -52,20 +52,34 @@ class CellSymbols:
         """Return what the arm alone gives: of its cell nothing more is known, where the file is damaged."""
         if arm is None:
             return NOTHING_KNOWN
-        return CellSymbols(robot=arm.name, limits=arm.limits, rated_payload=arm.rated_payload,
-                           max_speed_mm_s=arm.path.max_speed / MM * (1.0 + SPEED_ROUNDING))  # fmt: skip
+        return CellSymbols(
+            robot=arm.name,
+            limits=arm.limits,
+            rated_payload=arm.rated_payload,
+            max_speed_mm_s=arm.path.max_speed / MM * (1.0 + SPEED_ROUNDING),
+        )
 
     @staticmethod
-    def named(*, points: Collection[str] | None = None, rated_payload_kg: float | None = None,
-              sensors: Collection[str] | None = None, tools: Collection[str] | None = None,
-              frames: Collection[str] | None = None, loads: Collection[str] | None = None,
-              inputs: Collection[int] | None = None) -> "CellSymbols":  # fmt: skip
+    def named(
+        *,
+        points: Collection[str] | None = None,
+        rated_payload_kg: float | None = None,
+        sensors: Collection[str] | None = None,
+        tools: Collection[str] | None = None,
+        frames: Collection[str] | None = None,
+        loads: Collection[str] | None = None,
+        inputs: Collection[int] | None = None,
+    ) -> "CellSymbols":
         """Return symbols of names alone, in any case."""
         return CellSymbols(
-            points=_keys(points), rated_payload=rated_payload_kg, sensors=_keys(sensors), tools=_keys(tools),
-            frames=_keys(frames), loads=None if loads is None else dict.fromkeys(name.upper() for name in loads),
+            points=_keys(points),
+            rated_payload=rated_payload_kg,
+            sensors=_keys(sensors),
+            tools=_keys(tools),
+            frames=_keys(frames),
+            loads=None if loads is None else dict.fromkeys(name.upper() for name in loads),
             inputs=None if inputs is None else frozenset(inputs),
-        )  # fmt: skip
+        )
 
     def taught(self, points: Collection[str], file: str) -> "CellSymbols":
         """Return the symbols with the names of taught points, and the file in which points would be taught."""
@@ -93,8 +107,10 @@ class CellSymbols:
         if not self.points_file:
             return known
         first = "" if self.points else "schema = 1, then "
-        return (f"{known}{'; ' * bool(known)}to teach it, write into {self.points_file}: {first}[points.{name}] "
-                "pose = [x, y, z, rx, ry, rz] in mm and deg")  # fmt: skip
+        return (
+            f"{known}{'; ' * bool(known)}to teach it, write into {self.points_file}: {first}[points.{name}] "
+            "pose = [x, y, z, rx, ry, rz] in mm and deg"
+        )
 
 
 _MANY = 10

@@ -37,8 +37,17 @@ def check(program: Program, symbols: CellSymbols = NOTHING_KNOWN) -> tuple[Diagn
     ``Unparsed`` statements are passed over, the parser has reported them. What is not known of the cell is not checked.
     """
     structure = structure_of(program)
-    found = list(islice(chain(_line_numbers(program), _emptiness(program), structure.diagnostics,
-                              _statements(program, structure, symbols)), MAX_DIAGNOSTICS + 1))  # fmt: skip
+    found = list(
+        islice(
+            chain(
+                _line_numbers(program),
+                _emptiness(program),
+                structure.diagnostics,
+                _statements(program, structure, symbols),
+            ),
+            MAX_DIAGNOSTICS + 1,
+        )
+    )
     found += _beside(found, chain(wait_check(program), quote_check(program), rounding_check(program)))
     if not has_errors(found) and not any(isinstance(line.statement, Unparsed) for line in program.statements):
         found += chain(flow_check(program, structure), loop_check(program, structure), usage_check(program))
@@ -48,8 +57,7 @@ def check(program: Program, symbols: CellSymbols = NOTHING_KNOWN) -> tuple[Diagn
 def _beside(found: list[Diagnostic], more: Iterator[Diagnostic]) -> list[Diagnostic]:
     """Return those of ``more`` in whose text nothing else was found: a statement is corrected one thing at a time."""
     starts = sorted(item.span.start for item in found)
-    free = (item for item in more
-            if bisect_left(starts, item.span.start) == bisect_right(starts, item.span.end))  # fmt: skip
+    free = (item for item in more if bisect_left(starts, item.span.start) == bisect_right(starts, item.span.end))
     return list(islice(free, MAX_DIAGNOSTICS + 1))
 
 
@@ -62,8 +70,9 @@ def _statements(program: Program, structure: Structure, symbols: CellSymbols) ->
     yield from found
 
 
-def _each_statement(program: Program, structure: Structure, defined: Defined,
-                    checks: StatementCheck) -> Iterator[Diagnostic]:  # fmt: skip
+def _each_statement(
+    program: Program, structure: Structure, defined: Defined, checks: StatementCheck
+) -> Iterator[Diagnostic]:
     for index, line in enumerate(program.lines):
         if line.statement is None:
             continue

@@ -42,8 +42,18 @@ STARVED_COST_MS = 50.0
 
 _OF_ALARM = ("code", "message", "file", "line", "column", "number", "time_s")
 
-FIGURES = ("overshoot_pct", "settling_s", "joint_error_deg", "joint_rms_deg", "tool_error_mm", "tool_rms_mm",
-           "path_deviation_mm", "droop_deg", "per_axis", "moves")  # fmt: skip
+FIGURES = (
+    "overshoot_pct",
+    "settling_s",
+    "joint_error_deg",
+    "joint_rms_deg",
+    "tool_error_mm",
+    "tool_rms_mm",
+    "path_deviation_mm",
+    "droop_deg",
+    "per_axis",
+    "moves",
+)
 """What is measured of a variant."""
 
 Options = dict[str, tuple[str, Any]]
@@ -62,26 +72,52 @@ class Variant:
 VARIANTS = (
     Variant(name="scheduled", title="scheduled gains", settings={"servo.mode": "scheduled"}),
     *(
-        Variant(name=f"fixed-{at}", title=f"gains fixed at {at}",
-                settings={"servo.mode": "fixed", "servo.fixed_at": at, "servo.coupling": "diagonal"})
+        Variant(
+            name=f"fixed-{at}",
+            title=f"gains fixed at {at}",
+            settings={"servo.mode": "fixed", "servo.fixed_at": at, "servo.coupling": "diagonal"},
+        )
         for at in ("min", "mid", "max")
     ),
-    Variant(name="diagonal", title="scheduled, diagonal",
-            settings={"servo.mode": "scheduled", "servo.coupling": "diagonal"}),
+    Variant(
+        name="diagonal", title="scheduled, diagonal", settings={"servo.mode": "scheduled", "servo.coupling": "diagonal"}
+    ),
     Variant(name="load-omitted", title="LOAD omitted", settings={"servo.mode": "scheduled"}, load="omitted"),
     Variant(name="load-wrong", title="LOAD wrong by 30 %", settings={"servo.mode": "scheduled"}, load="wrong"),
-    Variant(name="fixed-mid-load-omitted", title="fixed at mid, LOAD omitted", load="omitted",
-            settings={"servo.mode": "fixed", "servo.fixed_at": "mid", "servo.coupling": "diagonal"}),
-    Variant(name="no-lead", title="no spring lead",
-            settings={"servo.mode": "scheduled", "servo.spring_compensation": 0.0, "servo.gravity_lead": 0.0}),
-    Variant(name="conventional", title="conventional", load="omitted",
-            settings={"servo.mode": "fixed", "servo.fixed_at": "mid", "servo.coupling": "diagonal",
-                      "servo.spring_compensation": 0.0, "servo.gravity_lead": 0.0}),
-    Variant(name="starved", title="dynamics starved",
-            settings={"servo.mode": "scheduled", "dynamics_cost_per_axis_ms": STARVED_COST_MS}),
-    Variant(name="no-gravity", title="no gravity compensation",
-            settings={"servo.mode": "scheduled", "servo.gravity_compensation": 0.0}),
-)  # fmt: skip
+    Variant(
+        name="fixed-mid-load-omitted",
+        title="fixed at mid, LOAD omitted",
+        load="omitted",
+        settings={"servo.mode": "fixed", "servo.fixed_at": "mid", "servo.coupling": "diagonal"},
+    ),
+    Variant(
+        name="no-lead",
+        title="no spring lead",
+        settings={"servo.mode": "scheduled", "servo.spring_compensation": 0.0, "servo.gravity_lead": 0.0},
+    ),
+    Variant(
+        name="conventional",
+        title="conventional",
+        load="omitted",
+        settings={
+            "servo.mode": "fixed",
+            "servo.fixed_at": "mid",
+            "servo.coupling": "diagonal",
+            "servo.spring_compensation": 0.0,
+            "servo.gravity_lead": 0.0,
+        },
+    ),
+    Variant(
+        name="starved",
+        title="dynamics starved",
+        settings={"servo.mode": "scheduled", "dynamics_cost_per_axis_ms": STARVED_COST_MS},
+    ),
+    Variant(
+        name="no-gravity",
+        title="no gravity compensation",
+        settings={"servo.mode": "scheduled", "servo.gravity_compensation": 0.0},
+    ),
+)
 
 BASE = VARIANTS[0]
 """What the others are compared with."""
@@ -101,15 +137,20 @@ class Request:
     def project(self, variant: Variant) -> Project:
         """Read the project with the settings of a variant over all others."""
         changed = {key: (f"variant {variant.name}", value) for key, value in variant.settings.items()}
-        project = load_project(self.program, self.cell, self.robot, profile=self.profile,
-                               options={**self.options, **changed})  # fmt: skip
+        project = load_project(
+            self.program, self.cell, self.robot, profile=self.profile, options={**self.options, **changed}
+        )
         # most variants are wrong on purpose: what supervision would stop is what is to be seen
         watched = project.profile.supervision
         return project.with_profile(replace(project.profile, supervision=replace(watched, enabled=False)))
 
 
-def compare(request: Request, variants: tuple[Variant, ...] = VARIANTS, jobs: int = 1,
-            done: Callable[[str], None] = lambda name: None) -> list[dict[str, Any]]:  # fmt: skip
+def compare(
+    request: Request,
+    variants: tuple[Variant, ...] = VARIANTS,
+    jobs: int = 1,
+    done: Callable[[str], None] = lambda name: None,
+) -> list[dict[str, Any]]:
     """Return one row for each variant, in their order; ``done`` is told of each that is finished."""
     if jobs <= 1 or len(variants) == 1:
         rows = []

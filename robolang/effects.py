@@ -143,7 +143,7 @@ class Halt(OfStatement):
 
 Effect: TypeAlias = (
     SetPayload | MoveTo | SetHand | SetWrist | SetSeam | SetTool | SetOutput | Pass | Show | Drain | Halt
-)  # fmt: skip
+)
 
 
 def origin(line: Line, node: Statement) -> dict[str, Any]:

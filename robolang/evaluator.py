@@ -21,6 +21,7 @@ MAX_TEXT = 10_000
 MAX_SHIFTS = 1000
 """Most ways and turns that a pose can have behind it."""
 
+
 class World(Protocol):
     """What a program can read of the robot and its cell."""
 
@@ -323,12 +324,25 @@ def _round(x: float, digits: float = 0.0) -> float:
 
 
 _COMPARISONS: Mapping[str, Callable[[float | str, float | str], bool]] = {
-    "=": lambda a, b: a == b, "<>": lambda a, b: a != b, "<": lambda a, b: a < b,  # type: ignore[operator]
-    ">": lambda a, b: a > b, "<=": lambda a, b: a <= b, ">=": lambda a, b: a >= b,  # type: ignore[operator]
-}  # fmt: skip
+    "=": lambda a, b: a == b,
+    "<>": lambda a, b: a != b,
+    "<": lambda a, b: a < b,  # type: ignore[operator]
+    ">": lambda a, b: a > b,  # type: ignore[operator]
+    "<=": lambda a, b: a <= b,  # type: ignore[operator]
+    ">=": lambda a, b: a >= b,  # type: ignore[operator]
+}
 _NUMERIC: Mapping[str, Callable[..., float]] = {
-    "ABS": abs, "SGN": lambda x: float((x > 0.0) - (x < 0.0)), "INT": math.floor, "ROUND": _round, "SQR": _root,
-    "SIN": lambda x: math.sin(math.radians(x)), "COS": lambda x: math.cos(math.radians(x)),
-    "TAN": lambda x: math.tan(math.radians(x)), "ATN2": lambda y, x: math.degrees(math.atan2(y, x)),
-    "MIN": lambda *x: min(x), "MAX": lambda *x: max(x), "DEG": math.degrees, "RAD": math.radians,
-}  # fmt: skip
+    "ABS": abs,
+    "SGN": lambda x: float((x > 0.0) - (x < 0.0)),
+    "INT": math.floor,
+    "ROUND": _round,
+    "SQR": _root,
+    "SIN": lambda x: math.sin(math.radians(x)),
+    "COS": lambda x: math.cos(math.radians(x)),
+    "TAN": lambda x: math.tan(math.radians(x)),
+    "ATN2": lambda y, x: math.degrees(math.atan2(y, x)),
+    "MIN": lambda *x: min(x),
+    "MAX": lambda *x: max(x),
+    "DEG": math.degrees,
+    "RAD": math.radians,
+}

@@ -95,9 +95,12 @@ def load_expectation(path: Path) -> Expectation:
         end_deg=expect.number("end_deg", 1.0, positive=True),
         golden_deg=_most(expect, "golden_deg"),
         part_mm=parts.number("part_mm", 1.0, positive=True),
-        parts={name: parts.attempt(lambda name=name: _end_of_part(parts, name)) or ()  # type: ignore[misc]
-               for name in parts.names() if name != "part_mm"},
-    )  # fmt: skip
+        parts={
+            name: parts.attempt(lambda name=name: _end_of_part(parts, name)) or ()  # type: ignore[misc]
+            for name in parts.names()
+            if name != "part_mm"
+        },
+    )
     for each in (parts, expect):
         each.done()
     for key in ("end_mm", "end_deg"):

@@ -69,8 +69,13 @@ def explore(project: Project) -> Exploration:
     return Exploration(rehearsal=first, detours=tuple(detours), missed=missed)
 
 
-def _queue(todo: deque[dict[Span, bool]], forced: dict[Span, bool], conditions: Mapping[Span, object],
-           known: set[tuple[Span, bool]], decisions: Decisions) -> None:  # fmt: skip
+def _queue(
+    todo: deque[dict[Span, bool]],
+    forced: dict[Span, bool],
+    conditions: Mapping[Span, object],
+    known: set[tuple[Span, bool]],
+    decisions: Decisions,
+) -> None:
     """Queue the ways that conditions of a rehearsal did not go and that are not known yet, behind its own."""
     known |= {(place, way) for place, ways in decisions.taken.items() for way in ways}
     for place in decisions.taken:

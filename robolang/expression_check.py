@@ -153,8 +153,11 @@ class ExpressionCheck:
                     yield Diagnostic(code="RBL217", message=message, span=operand.span)
                 elif len(operand.items) not in wanted:
                     counts = " or ".join(map(str, wanted))
-                    yield Diagnostic(code="RBL220", message=f"{sign} takes {counts} values in parentheses, not "
-                                     f"{len(operand.items)}", span=operand.span)  # fmt: skip
+                    yield Diagnostic(
+                        code="RBL220",
+                        message=f"{sign} takes {counts} values in parentheses, not {len(operand.items)}",
+                        span=operand.span,
+                    )
                 left = "a pose"
                 continue
             right = self.kind(operand)

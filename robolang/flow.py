@@ -38,8 +38,13 @@ from robolang.tabulation import STOPS, Fact, Kind, Search, Step, Way, Ways
 
 MAX_LINES = 50_000
 
-_WORDS: dict[str, Kind] = {"END": "end", "STOP": "end", "RETURN": "return", "RESUME": "resume",
-                           "RESUME NEXT": "resume next"}  # fmt: skip
+_WORDS: dict[str, Kind] = {
+    "END": "end",
+    "STOP": "end",
+    "RETURN": "return",
+    "RESUME": "resume",
+    "RESUME NEXT": "resume next",
+}
 
 
 def ways_of(program: Program, structure: Structure) -> Ways:

@@ -75,9 +75,10 @@ def _resumed(program: Program, structure: Structure, ways: Ways) -> Ways:
     behind = {index: structure.end.get(index, index) + 1 for index, node in _parts(program) if isinstance(node, Head)}
     return [
         [*each, Way(None, "go", behind.get(index, index + 1))]
-        if index in behind or any(way.kind == "call" for way in each) else each
+        if index in behind or any(way.kind == "call" for way in each)
+        else each
         for index, each in enumerate(ways)
-    ]  # fmt: skip
+    ]
 
 
 def _warn(code: str, span: Span, message: str, related: tuple[Related, ...] = (), hint: str = "") -> Diagnostic:
@@ -193,8 +194,13 @@ def _loads(program: Program, ways: Ways) -> Iterator[Diagnostic]:
     for hand in (node for _, node in _parts(program) if isinstance(node, Hand) and node.span in found):
         does = "grasps" if hand.state is HandState.ON else "opens"
         related = (Related(span=found[hand.span].span, message="the arm moves here"),)
-        yield _warn("RBL228", hand.span, f"the hand {does} and the arm moves on without a LOAD: the controller goes on "
-                    "computing with the load before", related)  # fmt: skip
+        yield _warn(
+            "RBL228",
+            hand.span,
+            f"the hand {does} and the arm moves on without a LOAD: the controller goes on "
+            "computing with the load before",
+            related,
+        )
 
 
 # --- blends ----------------------------------------------------------------------------------------------------------
@@ -277,8 +283,9 @@ def _corners(program: Program, ways: Ways) -> Iterator[Diagnostic]:
     for span, stop in corners.lost.items():
         if span not in corners.used:
             related = () if stop is None else (Related(span=stop.span, message="the arm comes to rest for this"),)
-            yield _warn("RBL413", corners.zones[span].span, "no move follows that this one could blend into: it stops",
-                        related)  # fmt: skip
+            yield _warn(
+                "RBL413", corners.zones[span].span, "no move follows that this one could blend into: it stops", related
+            )
     for setting, move in corners.waiting.items():
         if setting not in corners.used:
             related = (Related(span=move.span, message="this move reads where the arm is"),)
@@ -286,5 +293,6 @@ def _corners(program: Program, ways: Ways) -> Iterator[Diagnostic]:
             yield _warn("RBL413", setting, "no move blends by this ZONE: the arm stops before each", related, hint)
     for load, span in corners.loads.items():
         related = (Related(span=span, message="the move that would blend"),)
-        yield _warn("RBL229", load, "the arm stops for this LOAD, where the move before it would blend into the next",
-                    related)  # fmt: skip
+        yield _warn(
+            "RBL229", load, "the arm stops for this LOAD, where the move before it would blend into the next", related
+        )

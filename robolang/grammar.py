@@ -36,8 +36,9 @@ def line_parser() -> Lark:
 
 def made() -> Lark:
     """Return the parser made from the grammar."""
-    return Lark(_GRAMMAR.read_text(encoding="utf-8"), parser="lalr", lexer="basic", start=["start", "refused"],
-                **_callbacks())  # fmt: skip
+    return Lark(
+        _GRAMMAR.read_text(encoding="utf-8"), parser="lalr", lexer="basic", start=["start", "refused"], **_callbacks()
+    )
 
 
 def _shipped() -> Lark | None:
@@ -73,8 +74,9 @@ def _ordered(table: dict[str, Any]) -> dict[str, Any]:
     (1, rule to reduce by).
     """
     tokens = sorted(table["tokens"].values())
-    rows = {state: {table["tokens"][token]: step for token, step in row.items()}
-            for state, row in table["states"].items()}  # fmt: skip
+    rows = {
+        state: {table["tokens"][token]: step for token, step in row.items()} for state, row in table["states"].items()
+    }
     order = [table["start_states"][name] for name in sorted(table["start_states"])]
     for state in order:  # grows while it is gone through
         for _, (kind, to) in sorted(rows[state].items()):
@@ -84,13 +86,14 @@ def _ordered(table: dict[str, Any]) -> dict[str, Any]:
     return {
         "tokens": dict(enumerate(tokens)),
         "states": {
-            number[state]: {tokens.index(token): (kind, number[to] if kind == 0 else to)
-                            for token, (kind, to) in row.items()}
+            number[state]: {
+                tokens.index(token): (kind, number[to] if kind == 0 else to) for token, (kind, to) in row.items()
+            }
             for state, row in rows.items()
         },
         "start_states": {name: number[state] for name, state in table["start_states"].items()},
         "end_states": {name: number[state] for name, state in table["end_states"].items()},
-    }  # fmt: skip
+    }
 
 
 def _by_number(table: dict[str, Any]) -> dict[int, Any]:

@@ -194,15 +194,23 @@ def compensation_of(request: Request, results: list[AxisResult], date: str = "")
     weight = weight_of(request, results)
     for found in results:
         axes[found.axis] = AxisCompensation(
-            compensation=found.compensation, spread=found.spread, model=found.means[1], identified=found.means[0],
+            compensation=found.compensation,
+            spread=found.spread,
+            model=found.means[1],
+            identified=found.means[0],
             table=None if found.table is None else found.table.compensation,
-        )  # fmt: skip
+        )
     if weight is not None:
         moments = weight.first_moments.tolist()
         axes = [replace(axis, first_moment=tuple(moment)) for axis, moment in zip(axes, moments, strict=True)]
     carried = _carried(request)
-    return Compensation(robot=request.robot.name, date=date, positions=request.positions, axes=tuple(axes),
-                        payload=replace(carried, inertia=np.zeros((3, 3))))  # fmt: skip
+    return Compensation(
+        robot=request.robot.name,
+        date=date,
+        positions=request.positions,
+        axes=tuple(axes),
+        payload=replace(carried, inertia=np.zeros((3, 3))),
+    )
 
 
 # --- the experiment --------------------------------------------------------------------------------------------------

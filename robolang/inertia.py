@@ -50,8 +50,9 @@ class InertiaMap:
     motor: Array
 
 
-def at_posture(spec: RobotSpec, q: Array, payload: Payload,
-               compensation: Compensation | None = None) -> list[AxisInertia]:  # fmt: skip
+def at_posture(
+    spec: RobotSpec, q: Array, payload: Payload, compensation: Compensation | None = None
+) -> list[AxisInertia]:
     """Return the inertia of every axis at q (n,) rad with ``payload`` at the flange, added to the last link.
 
     With a compensation the total at the motor is D / N^2 + Jc, without one D / N^2 + J; its first
@@ -101,5 +102,6 @@ def extremes(found: InertiaMap) -> dict[str, dict[str, Any]]:
 
 def plain(rows: list[AxisInertia]) -> list[dict[str, Any]]:
     """Return plain types without negative zeros, SI."""
-    return [{key: value + 0.0 if isinstance(value, float) else value for key, value in asdict(row).items()}
-            for row in rows]  # fmt: skip
+    return [
+        {key: value + 0.0 if isinstance(value, float) else value for key, value in asdict(row).items()} for row in rows
+    ]

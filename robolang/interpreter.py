@@ -102,9 +102,12 @@ def _calling(line: Line) -> Node:
     return node or line
 
 
-def execute(program: Program, world: World | None = None,
-            points: Collection[str] = (), decisions: Decisions | None = None,
-            ) -> Generator[Effect, None, None]:  # fmt: skip
+def execute(
+    program: Program,
+    world: World | None = None,
+    points: Collection[str] = (),
+    decisions: Decisions | None = None,
+) -> Generator[Effect, None, None]:
     """Yield the effects of a checked program in order; ``points`` are the names of the taught ones.
 
     ``decisions`` is told which way each condition takes, and may change it.
@@ -120,8 +123,9 @@ def execute(program: Program, world: World | None = None,
 class Machine:
     """A program that runs; see ``execute``."""
 
-    def __init__(self, program: Program, world: World, points: Collection[str],
-                 decisions: Decisions | None = None) -> None:  # fmt: skip
+    def __init__(
+        self, program: Program, world: World, points: Collection[str], decisions: Decisions | None = None
+    ) -> None:
         self._decisions = decisions or Decisions()
         self._lines = program.lines
         self._structure: Structure = structure_of(program)
@@ -213,8 +217,10 @@ class Machine:
         if self._rounds.idle(to) > MAX_IDLE:
             self._loop = to
             where = named(self._lines[to].source_line, self._lines[to].number)
-            raise Fault("RBL508", f"the loop that begins at {where} has gone round {MAX_IDLE} times without a "
-                        "statement that takes time")  # fmt: skip
+            raise Fault(
+                "RBL508",
+                f"the loop that begins at {where} has gone round {MAX_IDLE} times without a statement that takes time",
+            )
         return to
 
     def _statement(self, line: Line, node: Statement, at: int) -> Run:
@@ -475,8 +481,21 @@ class Machine:
 
 _DO: dict[type, Callable[..., Run | int | None]] = {
     **dict.fromkeys(ACTIONS, Machine._act),
-    Assign: Machine._assign, Dim: Machine._dim, Const: Machine._const, Delay: Machine._delay,
-    Wait: Machine._wait, Print: Machine._print, If: Machine._if, Head: Machine._head, Block: Machine._block,
-    Case: Machine._block, For: Machine._for, Next: Machine._next, Jump: Machine._jump, Sub: Machine._sub,
-    CallSub: Machine._call_sub, Word: Machine._word, OnError: Machine._on_error,
-}  # fmt: skip
+    Assign: Machine._assign,
+    Dim: Machine._dim,
+    Const: Machine._const,
+    Delay: Machine._delay,
+    Wait: Machine._wait,
+    Print: Machine._print,
+    If: Machine._if,
+    Head: Machine._head,
+    Block: Machine._block,
+    Case: Machine._block,
+    For: Machine._for,
+    Next: Machine._next,
+    Jump: Machine._jump,
+    Sub: Machine._sub,
+    CallSub: Machine._call_sub,
+    Word: Machine._word,
+    OnError: Machine._on_error,
+}

@@ -32,11 +32,15 @@ class Limit:
         shown, least, most = beside(value, self.low, top, form=".10g")
         of = f"{self.name} is {shown}{self._unit}"
         if self.above:
-            return Fault(self.code, f"{of} and must be above {least} and at most {most}{self._unit}",
-                         f"give {self.name} in {self.unit}, above {least} to {most}")  # fmt: skip
+            return Fault(
+                self.code,
+                f"{of} and must be above {least} and at most {most}{self._unit}",
+                f"give {self.name} in {self.unit}, above {least} to {most}",
+            )
         kind = "a whole number from" if self.whole else "from"
-        return Fault(self.code, f"{of} and must be {kind} {least} to {most}{self._unit}",
-                     f"give {least} to {most}{self._unit}")  # fmt: skip
+        return Fault(
+            self.code, f"{of} and must be {kind} {least} to {most}{self._unit}", f"give {least} to {most}{self._unit}"
+        )
 
     def checked(self, value: float) -> float:
         """Return a value; ``Fault`` when it is out of range."""

@@ -49,12 +49,20 @@ def line_times(project: Project, rehearsal: Rehearsal) -> list[LineTime]:
             margin = float(np.min([range_margin(move, spec.lower, spec.upper)[0] for move in moves])) / DEG
             lengths = [move.plan.path.length for move in moves if move.plan.path is not None]
             length = sum(lengths) / MM if lengths else None
-        rows.append(LineTime(
-            line=line.source_line, number=line.number, text=describe(line.statement),
-            count=max(1, rehearsal.runs.get(line.source_line, 0)),
-            seconds=rehearsal.times_us[line.source_line] / 1e6, length_mm=length, joint=joint, speed_pct=share,
-            margin_deg=margin, wrist_deg=_wrist_deg(opw, moves),
-        ))  # fmt: skip
+        rows.append(
+            LineTime(
+                line=line.source_line,
+                number=line.number,
+                text=describe(line.statement),
+                count=max(1, rehearsal.runs.get(line.source_line, 0)),
+                seconds=rehearsal.times_us[line.source_line] / 1e6,
+                length_mm=length,
+                joint=joint,
+                speed_pct=share,
+                margin_deg=margin,
+                wrist_deg=_wrist_deg(opw, moves),
+            )
+        )
     return rows
 
 

@@ -84,22 +84,46 @@ def move(effect: MoveTo, around: Surroundings) -> Command:
     if effect.way == "joint":
         share = (100.0 if effect.speed_pct is None else effect.speed_pct) * PERCENT
         return MoveJoint(
-            q_end=goal.q_end, X_world_tool=goal.X, configuration=goal.configuration, turns=goal.turns,
-            speed=share, acceleration=acceleration, duration=duration, zone=zone, override=override,
-        )  # fmt: skip
+            q_end=goal.q_end,
+            X_world_tool=goal.X,
+            configuration=goal.configuration,
+            turns=goal.turns,
+            speed=share,
+            acceleration=acceleration,
+            duration=duration,
+            zone=zone,
+            override=override,
+        )
     speed = None if effect.speed_mm_s is None else effect.speed_mm_s * MM
     wrist, held = cast("Wrist | None", effect.wrist), cast("tuple[Component, ...]", effect.held)
     if effect.way == "arc":
         assert effect.via is not None
         return MoveArc(
-            X_via=_goal(effect.via, around).X, X_world_tool=goal.X, q_end=goal.q_end,
-            configuration=goal.configuration, turns=goal.turns, wrist=wrist, speed=speed,
-            acceleration=acceleration, duration=duration, zone=zone, override=override,
-        )  # fmt: skip
+            X_via=_goal(effect.via, around).X,
+            X_world_tool=goal.X,
+            q_end=goal.q_end,
+            configuration=goal.configuration,
+            turns=goal.turns,
+            wrist=wrist,
+            speed=speed,
+            acceleration=acceleration,
+            duration=duration,
+            zone=zone,
+            override=override,
+        )
     return MoveLinear(
-        X_world_tool=goal.X, q_end=goal.q_end, configuration=goal.configuration, turns=goal.turns, wrist=wrist,
-        held=held, speed=speed, acceleration=acceleration, duration=duration, zone=zone, override=override,
-    )  # fmt: skip
+        X_world_tool=goal.X,
+        q_end=goal.q_end,
+        configuration=goal.configuration,
+        turns=goal.turns,
+        wrist=wrist,
+        held=held,
+        speed=speed,
+        acceleration=acceleration,
+        duration=duration,
+        zone=zone,
+        override=override,
+    )
 
 
 def components(place: Place, frame: Frame, around: Surroundings) -> Six:
@@ -114,8 +138,16 @@ def tool(choice: Frame, cell: CellSpec) -> Array:
 
 def target(point: Point, cell: CellSpec, kinematics: Kinematics) -> Array:
     """Return X_world_tool (4, 4) of a taught point with the hand's tool; ``Fault`` RBL305, RBL307."""
-    return _taught(point, Surroundings(points=PointStore(path=""), cell=cell, kinematics=kinematics,
-                                       X_flange_tool=cell.hand.X_flange_tool, q_last=cell.home))  # fmt: skip
+    return _taught(
+        point,
+        Surroundings(
+            points=PointStore(path=""),
+            cell=cell,
+            kinematics=kinematics,
+            X_flange_tool=cell.hand.X_flange_tool,
+            q_last=cell.home,
+        ),
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

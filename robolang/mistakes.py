@@ -40,20 +40,24 @@ _LAST_WORD = re.compile(r"(?:[\w.$]+|[^\s\w])[ \t]*\Z")
 _ASSIGNS = re.compile(r":[ \t]*(?:\Z|'|=)|([-+*/])(?:=|\1[ \t]*\Z)")
 """What follows the name in an assignment or a label of another language: ``:=``, ``+=``, ``++``, ``:`` at the end."""
 _ASSIGNMENT = re.compile(r"\w+\$?[ \t]*(?:\([^=]*\)[ \t]*)?=")
-_SETTINGS = frozenset({"SPEED", "SPEEDJ", "ACCEL", "OVERRIDE", "ZONE", "TOOL", "FRAME", "DELAY", "LOAD", "TIME",
-                       "TIMEOUT"})  # fmt: skip
+_SETTINGS = frozenset(
+    {"SPEED", "SPEEDJ", "ACCEL", "OVERRIDE", "ZONE", "TOOL", "FRAME", "DELAY", "LOAD", "TIME", "TIMEOUT"}
+)
 _UNIT_OF = {
     **dict.fromkeys(("DELAY", "TIME", "TIMEOUT", "PULSE", "HAND"), "s"),
     **dict.fromkeys(("SPEEDJ", "ACCEL", "OVERRIDE"), "%"),
     **dict.fromkeys(("ZONE", "APPROACH", "DEPART"), "mm"),
-    "SPEED": "mm/s", "LOAD": "kg",
-}  # fmt: skip
+    "SPEED": "mm/s",
+    "LOAD": "kg",
+}
 """Units of the numbers that follow a word."""
 _SCALES = {
-    "s": {"s": 1.0, "sec": 1.0, "ms": 1e-3, "msec": 1e-3, "min": 60.0}, "%": {"%": 1.0},
-    "mm": {"mm": 1.0, "cm": 10.0, "m": 1000.0}, "kg": {"kg": 1.0, "g": 1e-3},
+    "s": {"s": 1.0, "sec": 1.0, "ms": 1e-3, "msec": 1e-3, "min": 60.0},
+    "%": {"%": 1.0},
+    "mm": {"mm": 1.0, "cm": 10.0, "m": 1000.0},
+    "kg": {"kg": 1.0, "g": 1e-3},
     "mm/s": {"mm": 1.0, "mm/s": 1.0, "mm/sec": 1.0, "m/s": 1000.0, "cm/s": 10.0},
-}  # fmt: skip
+}
 """How many of a unit of the language a unit of the user is."""
 _UNIT = re.compile(r"(%|(?:mm|cm|m)(?:/s(?:ec)?)?|s|sec|ms|msec|min|kg|g|deg|rad)[ \t]*(?=[,)']|\Z)", re.IGNORECASE)
 _NUMBER = re.compile(r"(?<![\w.])(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)[ \t]*\Z")
@@ -66,9 +70,13 @@ _QUOTED = re.compile(r"'([^'\"]*)'")
 _WAIT_TIME = re.compile(r"(?i)WAIT[ \t]+(?:SEC|TIME|[\d.]+)")
 _QUOTE = 30
 _JOINED = {
-    ("END", "IF"): "ENDIF", ("END", "SELECT"): "ENDSELECT", ("END", "SUB"): "ENDSUB", ("ELSE", "IF"): "ELSEIF",
-    ("END", "FOR"): "NEXT", ("END", "WHILE"): "WEND",
-}  # fmt: skip
+    ("END", "IF"): "ENDIF",
+    ("END", "SELECT"): "ENDSELECT",
+    ("END", "SUB"): "ENDSUB",
+    ("ELSE", "IF"): "ELSEIF",
+    ("END", "FOR"): "NEXT",
+    ("END", "WHILE"): "WEND",
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -137,8 +145,11 @@ def _malformed(found: Unexpected) -> Diagnostic:
 
 def _is_after_first_name(found: Unexpected) -> bool:
     """Return whether a statement begins with a name and the token is what follows it."""
-    return ({"EQ", "LPAR"} <= found.accepts and "LESS" not in found.accepts
-            and re.fullmatch(r"[^\W\d]\w*\$?", _last_word(found.before)) is not None)  # fmt: skip
+    return (
+        {"EQ", "LPAR"} <= found.accepts
+        and "LESS" not in found.accepts
+        and re.fullmatch(r"[^\W\d]\w*\$?", _last_word(found.before)) is not None
+    )
 
 
 def _component(found: Unexpected) -> Diagnostic | None:
@@ -148,8 +159,12 @@ def _component(found: Unexpected) -> Diagnostic | None:
         return None
     pose, end = _last_word(found.before), found.span.end + len(part[1])
     values = ", ".join("value" if each == part[1].upper() else f"{pose}.{each}" for each in COMPONENTS6)
-    return Diagnostic(code="RBL111", message=f"a component of a pose cannot be assigned: {pose}.{part[1].upper()}",
-                      span=Span(found.span.start, end), hint=f"write {pose} = POSE({values})")  # fmt: skip
+    return Diagnostic(
+        code="RBL111",
+        message=f"a component of a pose cannot be assigned: {pose}.{part[1].upper()}",
+        span=Span(found.span.start, end),
+        hint=f"write {pose} = POSE({values})",
+    )
 
 
 def _unknown(found: Unexpected) -> Diagnostic | None:
@@ -258,7 +273,7 @@ def _slip(found: Unexpected, word: str) -> str:
     if number is not None and (hint := _unit(before[: number.start()], number[0], found.text + found.after)):
         return hint
     if found.kind == "COMMENT" and found.accepts >= _VALUE and (quoted := _QUOTED.match(found.text)):
-        return f"' begins a comment; a text stands in double quotes: \"{quote(quoted[1])}\""
+        return f'\' begins a comment; a text stands in double quotes: "{quote(quoted[1])}"'
     if found.text == ":" and re.fullmatch(r"\*[ \t]*\w+", before):
         return f"a label has no colon: {quote(before)}"
     return _decimal(found) or _parenthesis(found, word) or _bracket(found, before)

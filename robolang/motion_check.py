@@ -121,8 +121,9 @@ def motion_check(project: Project) -> tuple[Diagnostic, ...]:
     return tuple(item for item in rehearse(project).refused if item.code.startswith(_NOT_STARTED))
 
 
-def rehearse(project: Project, *, decisions: Decisions | None = None, planner: Planner | None = None,
-             most_us: int | None = None) -> Rehearsal:  # fmt: skip
+def rehearse(
+    project: Project, *, decisions: Decisions | None = None, planner: Planner | None = None, most_us: int | None = None
+) -> Rehearsal:
     """Plan a checked program from its first statement to its last, or to what cannot be carried out.
 
     ``decisions`` may send conditions another way, ``planner`` may know plans already, ``most_us`` ends it earlier than
@@ -130,15 +131,21 @@ def rehearse(project: Project, *, decisions: Decisions | None = None, planner: P
     """
     cell = project.cell
     kinematics = Kinematics(cell.robot)
-    return _Rehearsal(project, kinematics, planner or PlanMemory(project),
-                      decisions or Decisions(), MAX_RUN_US if most_us is None else most_us).run()  # fmt: skip
+    return _Rehearsal(
+        project,
+        kinematics,
+        planner or PlanMemory(project),
+        decisions or Decisions(),
+        MAX_RUN_US if most_us is None else most_us,
+    ).run()
 
 
 class _Rehearsal:
     """A rehearsal under way."""
 
-    def __init__(self, project: Project, kinematics: Kinematics, planner: Planner, decisions: Decisions,
-                 most_us: int) -> None:  # fmt: skip
+    def __init__(
+        self, project: Project, kinematics: Kinematics, planner: Planner, decisions: Decisions, most_us: int
+    ) -> None:
         cell = project.cell
         self._project, self._period_us, self._planner = project, project.profile.period_us, planner
         self._most_us = most_us
@@ -166,8 +173,15 @@ class _Rehearsal:
             except StopIteration:
                 break
             except ProgramFault as uncaught:
-                refused = (Diagnostic(code=uncaught.code, message=uncaught.message, span=uncaught.origin.span,
-                                      hint=uncaught.hint, related=calls(uncaught.calls)),)  # fmt: skip
+                refused = (
+                    Diagnostic(
+                        code=uncaught.code,
+                        message=uncaught.message,
+                        span=uncaught.origin.span,
+                        hint=uncaught.hint,
+                        related=calls(uncaught.calls),
+                    ),
+                )
                 break
             fault = None
             try:
@@ -176,14 +190,22 @@ class _Rehearsal:
             except Fault as found:
                 fault = found
         self._finish_motion()
-        return Rehearsal(moves=tuple(self._moves), hands=tuple(self._hands), times_us=self._times,
-                         total_us=self._now_us, refused=refused, tried=frozenset(self._tried),
-                         runs=dict(self._runs))  # fmt: skip
+        return Rehearsal(
+            moves=tuple(self._moves),
+            hands=tuple(self._hands),
+            times_us=self._times,
+            total_us=self._now_us,
+            refused=refused,
+            tried=frozenset(self._tried),
+            runs=dict(self._runs),
+        )
 
     def _take(self, effect: Effect) -> bool:
         # a WAIT passes time cycle by cycle, but lets motion end once
-        if isinstance(effect, MoveTo | SetHand) or isinstance(effect.node, Delay) or (
-            isinstance(effect, Drain) and isinstance(effect.node, Wait)
+        if (
+            isinstance(effect, MoveTo | SetHand)
+            or isinstance(effect.node, Delay)
+            or (isinstance(effect, Drain) and isinstance(effect.node, Wait))
         ):
             self._runs[effect.line] += 1
         if isinstance(effect, MoveTo):
@@ -232,22 +254,31 @@ class _Rehearsal:
         if not self._chain:
             return
         chain, self._chain = self._chain, []
-        joined = self._planner.join([plan for *_, plan in chain], [command.zone for _, command, _ in chain],
-                                    self._world.X_flange_tool)  # fmt: skip
+        joined = self._planner.join(
+            [plan for *_, plan in chain], [command.zone for _, command, _ in chain], self._world.X_flange_tool
+        )
         begins = self._now_us
         cycles = np.bincount(joined.command, minlength=len(chain))  # one for each row that is sent, the first as well
         cycles[-1] += REST_CYCLES - 1 if len(joined.q) > 1 else 0
         each = zip(chain, joined.parts, [*joined.corners, None], cycles.tolist(), strict=True)
         for (effect, command, plan), part, corner, spent in each:
             self._spend(effect, spent)
-            self._moves.append(RehearsedMove(
-                effect=effect, plan=plan, command=command, begins_us=begins, ends_us=self._now_us, corner=corner,
-                q=joined.q[part.first : part.last + 1], first=part.first - part.offset, payload=self._payload,
-            ))  # fmt: skip
+            self._moves.append(
+                RehearsedMove(
+                    effect=effect,
+                    plan=plan,
+                    command=command,
+                    begins_us=begins,
+                    ends_us=self._now_us,
+                    corner=corner,
+                    q=joined.q[part.first : part.last + 1],
+                    first=part.first - part.offset,
+                    payload=self._payload,
+                )
+            )
             begins = self._now_us
         self._world.q_last = self._q_next
 
 
 REST_CYCLES = 4
 """Cycles from the last set-point of a move to where the fine interpolator stands still, and the program goes on."""
-

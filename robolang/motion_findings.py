@@ -44,8 +44,9 @@ OVERLOAD, NOTHING = 1e-3, 1e-6
 Found = Iterator[Diagnostic]
 
 
-def findings(project: Project, rehearsal: Rehearsal, max_cycle_s: float | None = None,
-             detours: Sequence[Detour] = ()) -> tuple[Diagnostic, ...]:  # fmt: skip
+def findings(
+    project: Project, rehearsal: Rehearsal, max_cycle_s: float | None = None, detours: Sequence[Detour] = ()
+) -> tuple[Diagnostic, ...]:
     """Return what is wrong with the motion of a program, one finding of a code for a statement.
 
     Of ``detours`` it is what the rehearsal has not shown: errors of planning and what the moves show, with the way to
@@ -68,8 +69,10 @@ def findings(project: Project, rehearsal: Rehearsal, max_cycle_s: float | None =
 def _way(project: Project, detour: Detour) -> str:
     """Return the way of a detour in words."""
     source = project.source
-    said = (f"if '{source.slice(place)}' in line {source.place(place.start).line} is {'true' if way else 'not true'}"
-            for place, way in detour.forced.items())  # fmt: skip
+    said = (
+        f"if '{source.slice(place)}' in line {source.place(place.start).line} is {'true' if way else 'not true'}"
+        for place, way in detour.forced.items()
+    )
     return " and ".join(said)
 
 
@@ -129,8 +132,13 @@ class _Moves:
 
     def otherwise(self, move: RehearsedMove, after: RehearsedMove | None) -> Found:
         """Report where the motion is not the one that the program states."""
-        planned = PlannedMove(effect=move.effect, command=move.command, plan=move.plan, corner=move.corner,
-                              after=None if move.corner is None or after is None else after.plan)  # fmt: skip
+        planned = PlannedMove(
+            effect=move.effect,
+            command=move.command,
+            plan=move.plan,
+            corner=move.corner,
+            after=None if move.corner is None or after is None else after.plan,
+        )
         for found in self._plans.of(planned):
             yield replace(_at(found.code, move, found.message), hint=found.hint)
 
@@ -141,8 +149,12 @@ class _Moves:
         if not margin >= NEAR:
             ends = f"{spec.lower[axis] / DEG:g} to {spec.upper[axis] / DEG:g} deg"
             at = float(move.q[row, axis]) / DEG
-            yield _at("RBL422", move, f"at {move.share(row):.1f} % of the way J{axis + 1} is at {at:.2f} deg, "
-                      f"{margin / DEG:.2f} deg from an end of its range {ends}")  # fmt: skip
+            yield _at(
+                "RBL422",
+                move,
+                f"at {move.share(row):.1f} % of the way J{axis + 1} is at {at:.2f} deg, "
+                f"{margin / DEG:.2f} deg from an end of its range {ends}",
+            )
 
     def near_singular(self, move: RehearsedMove) -> Found:
         """Report a path that comes near a singular posture, where the wrist is not on a way of its own."""
@@ -158,8 +170,12 @@ class _Moves:
             row = int(np.argmin(np.where(follows, values, np.inf)))
             if not values[row] >= least:
                 away, keep = beside(float(values[row]) / size, least / size, form=".2f")
-                yield _at("RBL427", move, f"at {100.0 * float(move.plan.s[row]):.1f} % of the way the arm is {away} "
-                          f"{unit} from where its {name}, which is singular; keep {keep} {unit} away")  # fmt: skip
+                yield _at(
+                    "RBL427",
+                    move,
+                    f"at {100.0 * float(move.plan.s[row]):.1f} % of the way the arm is {away} "
+                    f"{unit} from where its {name}, which is singular; keep {keep} {unit} away",
+                )
                 return
 
 
@@ -196,8 +212,9 @@ def worst_loads(project: Project, moves: Sequence[RehearsedMove]) -> list[LoadSh
                 value, axis = float(values[row, k]), load.first + k
                 if not value <= 0.0 and ((what, k) not in worst or not value <= worst[what, k].value):
                     given = getattr(spec.axes[axis].limits, f"rated_{what}") is not None
-                    worst[what, k] = LoadShare(axis=axis, what=what, value=value, limit=float(limits[what][k]),
-                                               given=given, move=move, row=row)  # fmt: skip
+                    worst[what, k] = LoadShare(
+                        axis=axis, what=what, value=value, limit=float(limits[what][k]), given=given, move=move, row=row
+                    )
     return sorted(worst.values(), key=lambda share: (share.what != "moment", share.axis))
 
 
@@ -208,8 +225,13 @@ def _loads(project: Project, moves: Sequence[RehearsedMove]) -> Found:
         if not share.value <= share.limit * (1.0 + OVERLOAD) + NOTHING:
             value, limit = beside(share.value, share.limit, form=".3g")
             code = "RBL425" if share.what == "moment" else "RBL426"
-            yield _at(code, share.move, f"at {share.move.share(share.row):.1f} % of the way the {share.what} of the "
-                      f"payload of {share.move.payload.mass:g} kg about J{share.axis + 1} is {value} "
-                      f"{share.unit}, {share.value - share.limit:.3g} more than "
-                      f"{'it is rated for' if share.given else 'its drive allows by estimate'}, {limit} "
-                      f"{share.unit}", Severity.ERROR if share.given else Severity.WARNING)  # fmt: skip
+            yield _at(
+                code,
+                share.move,
+                f"at {share.move.share(share.row):.1f} % of the way the {share.what} of the "
+                f"payload of {share.move.payload.mass:g} kg about J{share.axis + 1} is {value} "
+                f"{share.unit}, {share.value - share.limit:.3g} more than "
+                f"{'it is rated for' if share.given else 'its drive allows by estimate'}, {limit} "
+                f"{share.unit}",
+                Severity.ERROR if share.given else Severity.WARNING,
+            )

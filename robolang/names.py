@@ -179,8 +179,9 @@ def seems_to_define(text: str) -> frozenset[str]:
     return frozenset(found[1].upper() for found in _ASSIGNED.finditer(plain)) - RESERVED
 
 
-def of_cell(name: Name, known: Collection[str] | None, kind: str, symbols: CellSymbols,
-            code: str = "RBL305") -> Iterator[Diagnostic]:  # fmt: skip
+def of_cell(
+    name: Name, known: Collection[str] | None, kind: str, symbols: CellSymbols, code: str = "RBL305"
+) -> Iterator[Diagnostic]:
     """Report a name of something that the cell does not have; ``known`` None: not known."""
     if known is not None and name.key not in known:
         hint = hint_for(name, frozenset(known)) or symbols.where_to_add(kind, name.text)

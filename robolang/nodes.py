@@ -442,9 +442,34 @@ class Unparsed(Node):
 
 Moving: TypeAlias = Move | MoveJ | MoveC | Approach | Depart
 Statement: TypeAlias = (
-    Moving | Load | LoadNamed | Hand | Wrist | Seam | Setting | Assign | Dim | Const | Out | Pulse | Delay | Wait
-    | Print | If | Block | Head | Case | For | Next | Jump | Sub | CallSub | Word | OnError | Unparsed
-)  # fmt: skip
+    Moving
+    | Load
+    | LoadNamed
+    | Hand
+    | Wrist
+    | Seam
+    | Setting
+    | Assign
+    | Dim
+    | Const
+    | Out
+    | Pulse
+    | Delay
+    | Wait
+    | Print
+    | If
+    | Block
+    | Head
+    | Case
+    | For
+    | Next
+    | Jump
+    | Sub
+    | CallSub
+    | Word
+    | OnError
+    | Unparsed
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -21,7 +21,7 @@ _ACCEL = "ACCEL % sets the acceleration"
 _ZONE = "ZONE mm blends a move into the next one"
 _TOOL = "TOOL name takes a tool of the cell"
 _FRAME = "FRAME name takes a frame of the cell, FRAME WORLD goes back"
-_PRINT = "PRINT shows values: PRINT \"count \"; n"
+_PRINT = 'PRINT shows values: PRINT "count "; n'
 _SUB = "SUB name begins a subroutine, ENDSUB ends it, CALL name runs it"
 _STOP = "STOP ends the program where it is, PAUSE notes a halt and goes on"
 _VALUE = "a name needs no declaration: name = value gives it one; DIM a(n) makes an array"
@@ -80,8 +80,13 @@ _NAMES = frozenset({"UFRAME", "UFRAME_NUM", "UTOOL", "UTOOL_NUM"})
 _ELEMENTS = _NAMES | {word for word, hint in WORDS.items() if hint in (_IN, _OUT) or word in ("R", "PR", "SR")}
 """What other languages assign to, by its name alone or with a number; all other words are ordinary names there too."""
 
-ENDS = {"ENDWHILE": "WEND", "ENDFOR": "NEXT", "ENDSWITCH": "ENDSELECT", "ENDCASE": "ENDSELECT",
-        **dict.fromkeys(("ENDPROC", "ENDFUNC", "ENDFUNCTION", "ENDFCT", "ENDROUTINE"), "ENDSUB")}  # fmt: skip
+ENDS = {
+    "ENDWHILE": "WEND",
+    "ENDFOR": "NEXT",
+    "ENDSWITCH": "ENDSELECT",
+    "ENDCASE": "ENDSELECT",
+    **dict.fromkeys(("ENDPROC", "ENDFUNC", "ENDFUNCTION", "ENDFCT", "ENDROUTINE"), "ENDSUB"),
+}
 """Words of other languages that end a block, and the one that does here."""
 
 VALUES = {
@@ -92,9 +97,24 @@ VALUES = {
 }
 """What stands for a value of another language, by its word in capitals."""
 
-_FUNCTIONS = {"SQRT": "SQR", "ATAN2": "ATN2", "ATN": "ATN2", "ATAN": "ATN2", "FLOOR": "INT", "TRUNC": "INT",
-              "SIGN": "SGN", "STR": "STR$", "CHR": "STR$", "STRLEN": "LEN", "DISTANCE": "DIST", "DIN": "IN", "DI": "IN",
-              "TRANS": "POSE", "P_CURR": "HERE", "CROBT": "HERE"}  # fmt: skip
+_FUNCTIONS = {
+    "SQRT": "SQR",
+    "ATAN2": "ATN2",
+    "ATN": "ATN2",
+    "ATAN": "ATN2",
+    "FLOOR": "INT",
+    "TRUNC": "INT",
+    "SIGN": "SGN",
+    "STR": "STR$",
+    "CHR": "STR$",
+    "STRLEN": "LEN",
+    "DISTANCE": "DIST",
+    "DIN": "IN",
+    "DI": "IN",
+    "TRANS": "POSE",
+    "P_CURR": "HERE",
+    "CROBT": "HERE",
+}
 
 _SIGNS = (
     ("==", "one = compares: IF x = 1 THEN"),
@@ -117,9 +137,18 @@ _SIGNS = (
     (":", "write one statement on each line"),
 )
 """Signs of other languages by how they begin, the longer ones first."""
-_FOLLOWING = {"IN": _IN, "OUT": _OUT, "VEL": _SPEED, "ACC": _ACCEL, "OV_PRO": "OVERRIDE % scales every speed",
-              "TOOL": _TOOL, "BASE": _FRAME, "LOAD": _LOAD, "APO": _ZONE,
-              "POS_ACT": "HERE is where the tool is"}  # fmt: skip
+_FOLLOWING = {
+    "IN": _IN,
+    "OUT": _OUT,
+    "VEL": _SPEED,
+    "ACC": _ACCEL,
+    "OV_PRO": "OVERRIDE % scales every speed",
+    "TOOL": _TOOL,
+    "BASE": _FRAME,
+    "LOAD": _LOAD,
+    "APO": _ZONE,
+    "POS_ACT": "HERE is where the tool is",
+}
 
 
 def instruction(word: str) -> str:

@@ -96,8 +96,15 @@ def _parse_line(text: str, span: Span, row: int) -> tuple[nodes.Line, Diagnostic
     problem = parsed if isinstance(parsed, Diagnostic) else None
     if isinstance(parsed, Diagnostic):
         parsed = None, nodes.Unparsed(text=code, span=_part(span, base, span.end)), None
-    line = nodes.Line(number=number, label=parsed[0], statement=parsed[1], comment=parsed[2], source_line=row,
-                      span=span, number_span=number_span)  # fmt: skip
+    line = nodes.Line(
+        number=number,
+        label=parsed[0],
+        statement=parsed[1],
+        comment=parsed[2],
+        source_line=row,
+        span=span,
+        number_span=number_span,
+    )
     return line, problem
 
 

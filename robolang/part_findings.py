@@ -88,10 +88,15 @@ class CellTouches:
         self._swept: dict[tuple[object, ...], tuple[Meeting | None, Meeting | None]] = {}
         self._sizes = {part.name: part.size for part in cell.parts}
         self._limits: dict[tuple[object, ...], Array | None] = {}
-        self._start = self._resting(Scene(
-            lying={part.name: np.array(part.X_world_part) for part in cell.parts}, held={}, opening=cell.hand.stroke,
-            closed=False,
-        ), {part.name for part in cell.parts})  # fmt: skip
+        self._start = self._resting(
+            Scene(
+                lying={part.name: np.array(part.X_world_part) for part in cell.parts},
+                held={},
+                opening=cell.hand.stroke,
+                closed=False,
+            ),
+            {part.name for part in cell.parts},
+        )
 
     def follow(self, rehearsal: Rehearsal) -> Found:
         """Yield what the moves and HANDs of a rehearsal touch, in order."""
@@ -175,8 +180,10 @@ class CellTouches:
 
     def _ordered(self, pairs: bytes, k: int, scene: Scene) -> tuple[str, str]:
         """Return pair k with what moves first: a carried part, then a shape of the arm, then the others."""
-        first, second = sorted(self.shapes.pairs_of(pairs)[k], key=lambda name: (
-            name.removeprefix(_PART) not in scene.held, name.startswith(_PART), not _moves(name)))  # fmt: skip
+        first, second = sorted(
+            self.shapes.pairs_of(pairs)[k],
+            key=lambda name: (name.removeprefix(_PART) not in scene.held, name.startswith(_PART), not _moves(name)),
+        )
         return first, second
 
     # the hand -------------------------------------------------------------------------------------------------------
@@ -204,8 +211,9 @@ class CellTouches:
         widest = max((high - low for low, high in faces.values()), default=0.0)
         held = {
             name: pose([0.0, -(low + high) / 2.0, 0.0]) @ X_tool_world @ scene.lying[name]
-            for name, (low, high) in faces.items() if high - low >= widest - ALIKE
-        }  # fmt: skip
+            for name, (low, high) in faces.items()
+            if high - low >= widest - ALIKE
+        }
         lying = {name: X for name, X in scene.lying.items() if name not in held}
         return replace(scene, lying=lying, held=held, opening=widest, closed=True)
 

@@ -84,9 +84,12 @@ class PlanFindings:
         words = changed(self._kinematics, q[0], q[-1], command) if isinstance(command, MoveJoint) else ()
         if words:
             change = " and ".join(f"{before} to {after}" for before, after in words)
-            yield PlanFinding(code="RBL434", message=f"changes the arm configuration from {change}: "
-                              f"{_largest_turn(q[0], q[-1])}; the configuration of the start does not reach the target "
-                              "within the ranges of the joints")  # fmt: skip
+            yield PlanFinding(
+                code="RBL434",
+                message=f"changes the arm configuration from {change}: "
+                f"{_largest_turn(q[0], q[-1])}; the configuration of the start does not reach the target "
+                "within the ranges of the joints",
+            )
 
     def long_turn(self, move: PlannedMove) -> Found:
         """Find a joint move to a pose that turns a joint the long way round."""
@@ -97,18 +100,24 @@ class PlanFindings:
         axis = int(np.argmax(np.abs(end - start) - np.abs(nearer - start)))
         if not np.abs(end - start)[axis] <= np.abs(nearer - start)[axis] + NOTICED:
             limits = self._spec.axes[axis].limits
-            yield PlanFinding(code="RBL435", message=f"{_turn(start, end, axis)}: the nearer angle of "
-                              f"{nearer[axis] / DEG:.1f} deg is beyond the range {limits.lower / DEG:g} to "
-                              f"{limits.upper / DEG:g} deg")  # fmt: skip
+            yield PlanFinding(
+                code="RBL435",
+                message=f"{_turn(start, end, axis)}: the nearer angle of "
+                f"{nearer[axis] / DEG:.1f} deg is beyond the range {limits.lower / DEG:g} to "
+                f"{limits.upper / DEG:g} deg",
+            )
 
     def wrist_change(self, move: PlannedMove) -> Found:
         """Find that the tool leaves its posture, where neither the move nor a setting says WRIST."""
         change = move.plan.wrist
         if change is not None and move.effect.wrist is None and not change.deviation < NOTICED:
             begins, ends = 100.0 * change.share, 100.0 * change.share_end
-            yield PlanFinding(code="RBL428", message=f"from {begins:.1f} % to {ends:.1f} % of the path the tool leaves "
-                              f"its posture by up to {change.deviation / DEG:.1f} deg, for the wrist to change "
-                              f"(condition {change.condition})")  # fmt: skip
+            yield PlanFinding(
+                code="RBL428",
+                message=f"from {begins:.1f} % to {ends:.1f} % of the path the tool leaves "
+                f"its posture by up to {change.deviation / DEG:.1f} deg, for the wrist to change "
+                f"(condition {change.condition})",
+            )
 
     def end(self, move: PlannedMove) -> Found:
         """Find a move that keeps the wrist and does not end as its point is taught."""
@@ -116,13 +125,19 @@ class PlanFindings:
         if command.q_end is not None:
             if not np.abs(end - command.q_end).max() <= NOTICED:
                 axis = int(np.argmax(np.abs(end - command.q_end)))
-                yield PlanFinding(code="RBL419", message=f"ends with J{axis + 1} at {end[axis] / DEG:.1f} deg, not at "
-                                  f"the taught {command.q_end[axis] / DEG:.1f} deg: WRIST KEEP keeps the sign of J5")
+                yield PlanFinding(
+                    code="RBL419",
+                    message=f"ends with J{axis + 1} at {end[axis] / DEG:.1f} deg, not at "
+                    f"the taught {command.q_end[axis] / DEG:.1f} deg: WRIST KEEP keeps the sign of J5",
+                )
         elif (command.configuration or command.turns) and not as_taught(self._kinematics, end, command):
             turns = np.round(end / (2.0 * np.pi)).astype(int).tolist()
             taught = " ".join([*command.configuration, *([f"turns {list(command.turns)}"] if command.turns else [])])
-            yield PlanFinding(code="RBL419", message=f"ends {self._kinematics.branch_of(end)} with turns {turns}, not "
-                              f"{taught} as taught: WRIST KEEP keeps the sign of J5")  # fmt: skip
+            yield PlanFinding(
+                code="RBL419",
+                message=f"ends {self._kinematics.branch_of(end)} with turns {turns}, not "
+                f"{taught} as taught: WRIST KEEP keeps the sign of J5",
+            )
 
     def slowed(self, move: PlannedMove) -> Found:
         """Find a TIME that is not kept, and a SPEED that is not reached for another reason than a short path."""
@@ -134,18 +149,23 @@ class PlanFindings:
             if not takes_s <= asked_s + period_s:
                 ruled = self._ruling(move)
                 takes, asked = beside(takes_s, asked_s)
-                yield PlanFinding(code="RBL429", message=f"takes {takes} s, not the {asked} s of TIME "
-                                  f"{effect.time_s:g}{under}: {ruled.why}",
-                                  hint=f"Give TIME {up(takes_s * override):g} or more; or "
-                                  f"{ruled.remedy}.")  # fmt: skip
+                yield PlanFinding(
+                    code="RBL429",
+                    message=f"takes {takes} s, not the {asked} s of TIME {effect.time_s:g}{under}: {ruled.why}",
+                    hint=f"Give TIME {up(takes_s * override):g} or more; or {ruled.remedy}.",
+                )
         elif effect.speed_mm_s is not None and move.plan.path is not None:
             ruled = self._ruling(move)
             if ruled.asked_s > 0.0 and not takes_s <= max(ruled.asked_s, period_s) * SLOWED:
-                yield PlanFinding(code="RBL429", message=f"reaches {ruled.peak / MM:.1f} mm/s at most, not SPEED "
-                                  f"{effect.speed_mm_s:g}{under}, and takes {takes_s:.3f} s instead of "
-                                  f"{ruled.asked_s:.3f} s: {ruled.why}",
-                                  hint=f"Give SPEED {down(ruled.keeps / MM):g}, which takes as long; or {ruled.remedy}."
-                                  if ruled.keeps > 0.0 else f"Lower SPEED, or {ruled.remedy}.")  # fmt: skip
+                yield PlanFinding(
+                    code="RBL429",
+                    message=f"reaches {ruled.peak / MM:.1f} mm/s at most, not SPEED "
+                    f"{effect.speed_mm_s:g}{under}, and takes {takes_s:.3f} s instead of "
+                    f"{ruled.asked_s:.3f} s: {ruled.why}",
+                    hint=f"Give SPEED {down(ruled.keeps / MM):g}, which takes as long; or {ruled.remedy}."
+                    if ruled.keeps > 0.0
+                    else f"Lower SPEED, or {ruled.remedy}.",
+                )
 
     def _ruling(self, move: PlannedMove) -> Ruling:
         return ruling(move.plan, move.command, self._spec, self._profile)
@@ -155,20 +175,32 @@ class PlanFindings:
         corner, effect = move.corner, move.effect
         if move.after is None or corner is None or not corner.radius > 0.0:
             if effect.zone_mm > 0.0 and not move.command.zone > 0.0:
-                yield PlanFinding(code="RBL414", message="the arm stops at the end of this move: moves under a seam "
-                                  "sensor do not blend", hint="Write FINE, or SEAM OFF before the move.")  # fmt: skip
+                yield PlanFinding(
+                    code="RBL414",
+                    message="the arm stops at the end of this move: moves under a seam sensor do not blend",
+                    hint="Write FINE, or SEAM OFF before the move.",
+                )
             return
-        paths = [(plan.path.length, which) for plan, which in ((move.plan, "to"), (move.after, "from"))
-                 if plan.path is not None and not plan.path.length <= 0.0]  # fmt: skip
+        paths = [
+            (plan.path.length, which)
+            for plan, which in ((move.plan, "to"), (move.after, "from"))
+            if plan.path is not None and not plan.path.length <= 0.0
+        ]
         zone = f"a zone of {corner.radius / MM:g} mm"
         if corner.cycles == 0:
-            yield PlanFinding(code="RBL414", message=f"{zone} leaves no room for a blend: the arm stops at the corner",
-                              hint="Make the moves at the corner longer, or write FINE where the stop is meant.")
+            yield PlanFinding(
+                code="RBL414",
+                message=f"{zone} leaves no room for a blend: the arm stops at the corner",
+                hint="Make the moves at the corner longer, or write FINE where the stop is meant.",
+            )
         elif len(paths) == 2 and not corner.radius <= 0.5 * min(paths)[0] + 1e-9:
             short, which = min(paths)
-            yield PlanFinding(code="RBL414", message=f"{zone} is more than half of the path {which} this corner, "
-                              f"{short / MM:.1f} mm: the blend begins and ends within "
-                              f"{corner.reach / MM:.1f} mm")  # fmt: skip
+            yield PlanFinding(
+                code="RBL414",
+                message=f"{zone} is more than half of the path {which} this corner, "
+                f"{short / MM:.1f} mm: the blend begins and ends within "
+                f"{corner.reach / MM:.1f} mm",
+            )
 
 
 def _largest_turn(start: Array, end: Array) -> str:

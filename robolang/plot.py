@@ -55,9 +55,16 @@ class Dots:
     y: Array
 
 
-def as_svg(title: str, x_label: str, y_label: str, curves: Sequence[Curve], level: float | None = None,
-           corner: Literal["top", "bottom", "above"] = "bottom", marks: Sequence[Mark] = (),
-           dots: Dots | None = None) -> str:  # fmt: skip
+def as_svg(
+    title: str,
+    x_label: str,
+    y_label: str,
+    curves: Sequence[Curve],
+    level: float | None = None,
+    corner: Literal["top", "bottom", "above"] = "bottom",
+    marks: Sequence[Mark] = (),
+    dots: Dots | None = None,
+) -> str:
     """Return an SVG of the curves; ``level`` draws a thin horizontal line, the value that is wanted.
 
     The names of the curves stand in the right-hand ``corner``, or ``above`` the plot, where no curve runs through them.
@@ -103,13 +110,23 @@ def as_svg(title: str, x_label: str, y_label: str, curves: Sequence[Curve], leve
             row = HEIGHT - BOTTOM - 14 - 17 * (len(curves) - 1 - index) if corner == "bottom" else TOP + 14 + 17 * index
             parts += _key(WIDTH - RIGHT - 270, row, curve, index)
     if dots is not None:
-        parts += [_dot(view.x(x), view.y(y), _stroke(curves[k], k)[0])
-                  for k, (x, y) in enumerate(zip(dots.x, dots.y, strict=True))]  # fmt: skip
+        parts += [
+            _dot(view.x(x), view.y(y), _stroke(curves[k], k)[0])
+            for k, (x, y) in enumerate(zip(dots.x, dots.y, strict=True))
+        ]
     return "\n".join([*parts, *(["</g>"] if down else []), "</svg>", ""])
 
 
-def as_map_svg(title: str, x_label: str, y_label: str, scale_label: str, x: Array, y: Array, values: Array,
-               every: float | None = None) -> str:  # fmt: skip
+def as_map_svg(
+    title: str,
+    x_label: str,
+    y_label: str,
+    scale_label: str,
+    x: Array,
+    y: Array,
+    values: Array,
+    every: float | None = None,
+) -> str:
     """Return an SVG of values (len(y), len(x)) over a plane, as bands of colour beside their scale.
 
     ``x`` and ``y`` rise, at least two points each; between the points of a row values are taken as linear. The
@@ -208,12 +225,16 @@ def _mark(view: _View, mark: Mark) -> list[str]:
     if mark.x is not None:
         x = view.x(mark.x)
         left = mark.side == "left"
-        return [f'<line x1="{x:.1f}" y1="{TOP - 12}" x2="{x:.1f}" y2="{HEIGHT - BOTTOM}"{dash}',
-                _text(x - 4 if left else x + 4, TOP - 4, mark.name, "end" if left else "start")]  # fmt: skip
+        return [
+            f'<line x1="{x:.1f}" y1="{TOP - 12}" x2="{x:.1f}" y2="{HEIGHT - BOTTOM}"{dash}',
+            _text(x - 4 if left else x + 4, TOP - 4, mark.name, "end" if left else "start"),
+        ]
     y = view.y(mark.y or 0.0)
     towards_zero = 13 if (mark.y or 0.0) > 0.0 else -4
-    return [f'<line x1="{LEFT}" y1="{y:.1f}" x2="{WIDTH - RIGHT}" y2="{y:.1f}"{dash}',
-            _text(LEFT + 6, y + towards_zero, mark.name, "start")]  # fmt: skip
+    return [
+        f'<line x1="{LEFT}" y1="{y:.1f}" x2="{WIDTH - RIGHT}" y2="{y:.1f}"{dash}',
+        _text(LEFT + 6, y + towards_zero, mark.name, "start"),
+    ]
 
 
 class _MapView:
@@ -278,11 +299,15 @@ def _map_axes(view: _MapView, x_label: str, y_label: str, every: float | None) -
     bottom, middle = _MAP_HEIGHT - BOTTOM, (_MAP_TOP + _MAP_HEIGHT - BOTTOM) / 2
     parts = []
     for tick in _inner_ticks(view.x_bounds, every):
-        parts += [_line(view.x(tick), bottom, view.x(tick), bottom + 5, "#666"),
-                  _text(view.x(tick), bottom + 18, f"{tick:g}", "middle")]  # fmt: skip
+        parts += [
+            _line(view.x(tick), bottom, view.x(tick), bottom + 5, "#666"),
+            _text(view.x(tick), bottom + 18, f"{tick:g}", "middle"),
+        ]
     for tick in _inner_ticks(view.y_bounds, every):
-        parts += [_line(LEFT - 5, view.y(tick), LEFT, view.y(tick), "#666"),
-                  _text(LEFT - 8, view.y(tick) + 4, f"{tick:g}", "end")]  # fmt: skip
+        parts += [
+            _line(LEFT - 5, view.y(tick), LEFT, view.y(tick), "#666"),
+            _text(LEFT - 8, view.y(tick) + 4, f"{tick:g}", "end"),
+        ]
     return [
         *parts,
         _text((LEFT + WIDTH - _MAP_RIGHT) / 2, _MAP_HEIGHT - 8, x_label, "middle"),
@@ -307,8 +332,10 @@ def _scale(edges: Sequence[float], label: str) -> list[str]:
     bottom = _MAP_HEIGHT - BOTTOM
     parts = [_text(x, _MAP_TOP - 10, label, "start")]
     for k, shade in enumerate(_shades(len(edges) - 1)):
-        parts.append(f'<rect x="{x}" y="{bottom - (k + 1) * step:.1f}" width="{_BAR}" height="{step:.1f}" '
-                     f'fill="{shade}" shape-rendering="crispEdges"/>')  # fmt: skip
+        parts.append(
+            f'<rect x="{x}" y="{bottom - (k + 1) * step:.1f}" width="{_BAR}" height="{step:.1f}" '
+            f'fill="{shade}" shape-rendering="crispEdges"/>'
+        )
     if len(edges) == 2 and edges[0] == edges[1]:
         return [*parts, _text(x + _BAR + 6, bottom - height / 2 + 4, f"{edges[0]:.4g}", "start")]
     return [*parts, *(_text(x + _BAR + 6, bottom - k * step + 4, f"{edge:g}", "start") for k, edge in enumerate(edges))]
@@ -317,13 +344,17 @@ def _scale(edges: Sequence[float], label: str) -> list[str]:
 def _extremes(view: _MapView, x: Array, y: Array, values: Array) -> list[str]:
     """Return a white dot at the smallest value and a black one at the largest, and their names above the map."""
     parts = []
-    for at, name, fill, edge, index in ((LEFT + 5, "smallest", "#fff", "#222", np.nanargmin(values)),
-                                        (LEFT + 165, "largest", "#222", "#fff", np.nanargmax(values))):  # fmt: skip
+    for at, name, fill, edge, index in (
+        (LEFT + 5, "smallest", "#fff", "#222", np.nanargmin(values)),
+        (LEFT + 165, "largest", "#222", "#fff", np.nanargmax(values)),
+    ):
         row, column = divmod(int(index), len(x))
         look = f'r="5" fill="{fill}" stroke="{edge}" stroke-width="1.5"/>'
-        parts += [f'<circle cx="{view.x(float(x[column])):.1f}" cy="{view.y(float(y[row])):.1f}" {look}',
-                  f'<circle cx="{at}" cy="{_MAP_TOP - 14}" {look}',
-                  _text(at + 12, _MAP_TOP - 10, f"{name} {values[row, column]:.4g}", "start")]  # fmt: skip
+        parts += [
+            f'<circle cx="{view.x(float(x[column])):.1f}" cy="{view.y(float(y[row])):.1f}" {look}',
+            f'<circle cx="{at}" cy="{_MAP_TOP - 14}" {look}',
+            _text(at + 12, _MAP_TOP - 10, f"{name} {values[row, column]:.4g}", "start"),
+        ]
     return parts
 
 

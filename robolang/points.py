@@ -134,8 +134,9 @@ def _as_point_fault(fault: FileFault, path: Path) -> FileFault:
     if code == fault.code and not hint:
         return fault
     kept = "" if fault.hint == lookup(fault.code).remedy else fault.hint  # the remedy of the new code is better
-    return FileFault(code, fault.message, hint or kept, path=fault.path, line=fault.line, column=fault.column,
-                     excerpt=fault.excerpt)  # fmt: skip
+    return FileFault(
+        code, fault.message, hint or kept, path=fault.path, line=fault.line, column=fault.column, excerpt=fault.excerpt
+    )
 
 
 def _schema(table: Table) -> None:
@@ -183,8 +184,11 @@ def _without_place(name: str, entry: Table) -> NoReturn:
     """Refuse a point that lies nowhere: at a key that may be a misspelt 'pose' or 'joints', else at its header."""
     entry.ask("frame", "tool", "configuration", "turns", "comment")
     entry.done()
-    entry.fail("RBL303", f"point '{name}' has neither 'pose' nor 'joints'",
-               "write pose = [x, y, z, rx, ry, rz] in mm and deg, or joints = [...] in deg")  # fmt: skip
+    entry.fail(
+        "RBL303",
+        f"point '{name}' has neither 'pose' nor 'joints'",
+        "write pose = [x, y, z, rx, ry, rz] in mm and deg, or joints = [...] in deg",
+    )
 
 
 def _named(entry: Table, key: str, known: frozenset[str] | None, symbols: CellSymbols) -> str:

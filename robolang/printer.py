@@ -18,9 +18,17 @@ from robolang.words import FUNCTIONS, VALUES
 
 _OR, _AND, _NOT, _COMPARE, _SUM, _PRODUCT, _SIGNED, _POWER, _EXPONENT, _OPERAND = range(10)
 _SIGNS = {
-    "OR": _OR, "XOR": _OR, "AND": _AND, **dict.fromkeys(("=", "<>", "<", ">", "<=", ">="), _COMPARE),
-    "+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT, "MOD": _PRODUCT, "^": _POWER,
-}  # fmt: skip
+    "OR": _OR,
+    "XOR": _OR,
+    "AND": _AND,
+    **dict.fromkeys(("=", "<>", "<", ">", "<=", ">="), _COMPARE),
+    "+": _SUM,
+    "-": _SUM,
+    "*": _PRODUCT,
+    "/": _PRODUCT,
+    "MOD": _PRODUCT,
+    "^": _POWER,
+}
 _OPERAND_OF = {_OR: _AND, _AND: _NOT, _COMPARE: _SUM, _SUM: _PRODUCT, _PRODUCT: _SIGNED, _POWER: _OPERAND}
 """The lowest level of an operand of a chain, by the level of the chain."""
 _WORDS = FUNCTIONS | VALUES
@@ -34,9 +42,18 @@ _Data: TypeAlias = (
     nodes.Assign | nodes.Dim | nodes.Const | nodes.Out | nodes.Pulse | nodes.Delay | nodes.Wait | nodes.Print
 )
 _Control: TypeAlias = (
-    nodes.If | nodes.Block | nodes.Head | nodes.Case | nodes.For | nodes.Next | nodes.Jump | nodes.Sub | nodes.CallSub
-    | nodes.Word | nodes.OnError
-)  # fmt: skip
+    nodes.If
+    | nodes.Block
+    | nodes.Head
+    | nodes.Case
+    | nodes.For
+    | nodes.Next
+    | nodes.Jump
+    | nodes.Sub
+    | nodes.CallSub
+    | nodes.Word
+    | nodes.OnError
+)
 
 
 def print_program(program: nodes.Program) -> str:
@@ -68,9 +85,15 @@ def describe(statement: Statement) -> str:
         case nodes.Unparsed():
             return statement.text
         case (
-            nodes.Assign() | nodes.Dim() | nodes.Const() | nodes.Out() | nodes.Pulse() | nodes.Delay() | nodes.Wait()
+            nodes.Assign()
+            | nodes.Dim()
+            | nodes.Const()
+            | nodes.Out()
+            | nodes.Pulse()
+            | nodes.Delay()
+            | nodes.Wait()
             | nodes.Print()
-        ):  # fmt: skip
+        ):
             return _data(statement)
         case _:
             return _control(statement)

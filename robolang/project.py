@@ -64,9 +64,14 @@ class Project:
         return not has_errors(self.diagnostics)
 
 
-def load_project(path: Path | str, cell: Path | str | None = None, robot: str | None = None,
-                 servo: ServoMode | None = None, profile: Path | str | None = None,
-                 options: Mapping[str, tuple[str, Any]] | None = None) -> Project:  # fmt: skip
+def load_project(
+    path: Path | str,
+    cell: Path | str | None = None,
+    robot: str | None = None,
+    servo: ServoMode | None = None,
+    profile: Path | str | None = None,
+    options: Mapping[str, tuple[str, Any]] | None = None,
+) -> Project:
     """Read a program and the files beside it.
 
     ``cell`` names a cell file, ``robot`` a built-in robot or a robot file that replaces the cell's, ``servo`` the
@@ -110,9 +115,13 @@ def builtin_cell() -> CellSpec:
     return cells.build(beside.builtin_cell_file())
 
 
-def load_cell_and_settings(program: Path | None, cell: Path | str | None, robot: str | None,
-                           profile: Path | str | None, options: Mapping[str, tuple[str, Any]],
-                           ) -> tuple[CellSpec, Settings]:  # fmt: skip
+def load_cell_and_settings(
+    program: Path | None,
+    cell: Path | str | None,
+    robot: str | None,
+    profile: Path | str | None,
+    options: Mapping[str, tuple[str, Any]],
+) -> tuple[CellSpec, Settings]:
     """Return the cell of a program (None: the built-in cell) and the settings in force; see ``load_project``."""
     where = Path(cell) if cell is not None else None if program is None else beside.cell_beside(program)
     file = CellFiles().cell(where)
@@ -123,8 +132,9 @@ def load_cell_and_settings(program: Path | None, cell: Path | str | None, robot:
     return spec, judged(spec.robot, spec.hand.X_flange_tool, settings)
 
 
-def load_settings(robot: RobotSpec, X_flange_tool: Array, profile: Path | str | None,
-                  options: Mapping[str, tuple[str, Any]]) -> Settings:  # fmt: skip
+def load_settings(
+    robot: RobotSpec, X_flange_tool: Array, profile: Path | str | None, options: Mapping[str, tuple[str, Any]]
+) -> Settings:
     """Return the settings of a controller without a cell: profile file, then options; ``Fault`` RBL6xx."""
     settings = settle(*_layers(profile, options))
     check_axes(settings, robot.n, robot.name)
@@ -148,8 +158,12 @@ def _compensated(robot: RobotSpec, settings: Settings) -> Settings:
     if path is None:
         return settings
     found = load_compensation(path, robot)
-    servo = replace(settings.profile.servo, rotors=tuple(found.rotors(robot).tolist()),
-                    rotor_tables=found.rotor_tables(robot), first_moments=found.first_moments)  # fmt: skip
+    servo = replace(
+        settings.profile.servo,
+        rotors=tuple(found.rotors(robot).tolist()),
+        rotor_tables=found.rotor_tables(robot),
+        first_moments=found.first_moments,
+    )
     return replace(settings, profile=replace(settings.profile, servo=servo))
 
 

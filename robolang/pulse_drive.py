@@ -96,15 +96,20 @@ def start_angles(export: Export, cell: CellSpec) -> Array:
         raise Fault("RBL634", f"the tables are for a {mechanism.kind} mechanism; the cell has the arm {robot.name}")
     if len(mechanism.placements) != robot.n:
         raise Fault("RBL634", f"the tables are for {len(mechanism.placements)} axes; {robot.name} has {robot.n}")
-    pairs = [(f"the frame of J{k}", ours, axis.placement)
-             for k, (ours, axis) in enumerate(zip(mechanism.placements, robot.axes, strict=True), start=1)]  # fmt: skip
-    pairs += [("the flange", mechanism.X_last_flange, robot.X_last_flange),
-              ("the tool", mechanism.X_flange_tool, cell.hand.X_flange_tool)]  # fmt: skip
+    pairs = [
+        (f"the frame of J{k}", ours, axis.placement)
+        for k, (ours, axis) in enumerate(zip(mechanism.placements, robot.axes, strict=True), start=1)
+    ]
+    pairs += [
+        ("the flange", mechanism.X_last_flange, robot.X_last_flange),
+        ("the tool", mechanism.X_flange_tool, cell.hand.X_flange_tool),
+    ]
     for what, ours, theirs in pairs:
         off = float(np.abs(ours - theirs).max())
         if not off <= SAME:
-            raise Fault("RBL634", f"{what} differs from that of {robot.name} in this cell by {off:.3g} (m, or of a "
-                        "rotation)")  # fmt: skip
+            raise Fault(
+                "RBL634", f"{what} differs from that of {robot.name} in this cell by {off:.3g} (m, or of a rotation)"
+            )
     start = joint_values(export, np.array([channel.start_pulses for channel in export.channels]))
     for axis, (q, low, high) in enumerate(zip(start, robot.lower, robot.upper, strict=True), start=1):
         if not low <= q <= high:
@@ -215,10 +220,13 @@ def set_points(export: Export, move: Move, period_s: float) -> Array:
 def _driven(run: _Run, tool: Array, tick_s: float) -> DrivenMove:
     move = run.move
     return DrivenMove(
-        line=move.line, number=move.number, text=move.text, seconds=len(tool) * tick_s,
+        line=move.line,
+        number=move.number,
+        text=move.text,
+        seconds=len(tool) * tick_s,
         error_mm=float(distances(tool, move.start, move.end).max(initial=0.0)) / MM,
         end_mm=norm(tool[-1] - move.end) / MM if len(tool) else 0.0,
-    )  # fmt: skip
+    )
 
 
 def _plant(cell: CellSpec, profile: Profile, physics: bool) -> Plant:

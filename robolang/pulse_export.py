@@ -143,8 +143,12 @@ def equipment(project: Project, request: ExportRequest) -> tuple[Machine, tuple[
         cell = project.cell
         if machine_name not in ("", cell.robot.name) and file is not None:
             known = ", ".join(mechanism.library())
-            file.table.fail("RBL610", f"'{machine_name}' is no built-in mechanism ({known}), no .toml file and not "
-                            f"the robot of the cell, {cell.robot.name}", key="mechanism")  # fmt: skip
+            file.table.fail(
+                "RBL610",
+                f"'{machine_name}' is no built-in mechanism ({known}), no .toml file and not "
+                f"the robot of the cell, {cell.robot.name}",
+                key="mechanism",
+            )
         machine = RobotArm(cell.robot, project.profile, cell.hand.X_flange_tool, cell.home)
         pulse = tuple(motor_pulse(axis.motor.gear_ratio) for axis in cell.robot.axes)
     if file is None:
@@ -178,8 +182,9 @@ def _effects(project: Project) -> Iterator[Effect]:
     except ProgramFault as fault:
         code = "RBL431" if fault.code == "RBL532" else fault.code
         hint = fault.hint if code == fault.code else ""
-        found = Diagnostic(code=code, message=fault.message, span=fault.origin.span, hint=hint,
-                           related=calls(fault.calls))  # fmt: skip
+        found = Diagnostic(
+            code=code, message=fault.message, span=fault.origin.span, hint=hint, related=calls(fault.calls)
+        )
         raise NotExportableError(found) from None
 
 
@@ -189,15 +194,26 @@ def _command(effect: MoveTo, project: Project, machine: Machine, q: Array) -> Mo
         what = "does not stop at its end (ZONE)" if effect.way == "line" else "is not straight"
         raise Fault("RBL431", f"the move {what}; tables hold straight moves from rest to rest", "write MOVE and FINE")
     if not isinstance(machine, RobotArm) and point is not None and point.joints is not None:
-        raise Fault("RBL431", f"{point.name} is taught as joint angles of {project.cell.robot.name}, which the "
-                    f"{machine.name} has not: teach its pose")  # fmt: skip
+        raise Fault(
+            "RBL431",
+            f"{point.name} is taught as joint angles of {project.cell.robot.name}, which the "
+            f"{machine.name} has not: teach its pose",
+        )
     kinematics = machine.kinematics if isinstance(machine, RobotArm) else _kinematics(project)
     if not isinstance(machine, RobotArm):
         if effect.target.last:
             raise Fault("RBL431", "DEPART goes by the tool's axis, which this machine does not tell: teach a point")
         q = project.cell.home
-    command = lowering.move(effect, Surroundings(points=project.points, cell=project.cell, kinematics=kinematics,
-                                                 X_flange_tool=project.cell.hand.X_flange_tool, q_last=q))  # fmt: skip
+    command = lowering.move(
+        effect,
+        Surroundings(
+            points=project.points,
+            cell=project.cell,
+            kinematics=kinematics,
+            X_flange_tool=project.cell.hand.X_flange_tool,
+            q_last=q,
+        ),
+    )
     assert isinstance(command, MoveLinear)
     return command
 
@@ -211,8 +227,11 @@ def _kinematics(project: Project) -> Any:
 def _marked(effect: Effect, project: Project) -> bool:
     """Return whether a statement becomes a marker; ``Fault`` where it can be none."""
     if isinstance(effect, SetSeam) and effect.sensor is not None:
-        raise Fault("RBL431", "a seam sensor shifts the path as it goes, and a table is fixed before the move",
-                    "take the SEAM statements out, or let the controller run this program")  # fmt: skip
+        raise Fault(
+            "RBL431",
+            "a seam sensor shifts the path as it goes, and a table is fixed before the move",
+            "take the SEAM statements out, or let the controller run this program",
+        )
     if isinstance(effect, SetPayload):
         lowering.payload(effect, project.cell)
     elif isinstance(effect, SetHand):
@@ -225,8 +244,14 @@ def _marked(effect: Effect, project: Project) -> bool:
 Named = tuple[str, str]
 
 
-def _tables(effect: MoveTo, move: MovePulses, number: int, machine: Machine, channels: tuple[Channel, ...],
-            request: ExportRequest) -> list[list[Named]]:  # fmt: skip
+def _tables(
+    effect: MoveTo,
+    move: MovePulses,
+    number: int,
+    machine: Machine,
+    channels: tuple[Channel, ...],
+    request: ExportRequest,
+) -> list[list[Named]]:
     """Return the files of each channel: the neutral table, then the PLC's; [] for a channel that stands."""
     found: list[list[Named]] = []
     for k, (channel, emission) in enumerate(zip(channels, move.emitted, strict=True)):
@@ -241,7 +266,7 @@ def _tables(effect: MoveTo, move: MovePulses, number: int, machine: Machine, cha
             f"{machine.name}, move {number}, {named(effect.line, effect.number)}: {describe(effect.node)}",
             f"channel {channel.joint.name} from {start} pulses; one pulse is {channel.pulse / scale:.9g} {unit}; one "
             f"step is {request.step_s * 1e3:g} ms",
-        ]  # fmt: skip
+        ]
         texts = [(f"{stem}.csv", as_csv(rows, [*comments, "frequency in Hz, target in pulses from zero"]))]
         if request.f174:
             plc = f174.as_csv(list(data_tables(rows, start)), channel.output, [*comments, *F174_COMMENTS])
@@ -260,12 +285,19 @@ def _manifest(found: Export, project: Project, start: Pulses) -> dict[str, Any]:
         "mechanism": found.machine.described(),
         "step_s": found.request.step_s,
         "channels": [
-            {"name": channel.joint.name, "unit": channel.unit[0], "per_pulse": channel.pulse / channel.unit[1],
-             "min_hz": channel.min_hz, "max_hz": channel.max_hz, "output": channel.output, "start_pulses": int(at)}
+            {
+                "name": channel.joint.name,
+                "unit": channel.unit[0],
+                "per_pulse": channel.pulse / channel.unit[1],
+                "min_hz": channel.min_hz,
+                "max_hz": channel.max_hz,
+                "output": channel.output,
+                "start_pulses": int(at),
+            }
             for channel, at in zip(found.channels, start, strict=True)
         ],
         "sequence": [_entry(item, found, project) for item in found.sequence],
-    }  # fmt: skip
+    }
 
 
 def _entry(item: ExportedMove | Effect, found: Export, project: Project) -> dict[str, Any]:
@@ -274,18 +306,32 @@ def _entry(item: ExportedMove | Effect, found: Export, project: Project) -> dict
     if isinstance(item, ExportedMove):
         start, end = ((point / MM).tolist() for point in item.pulses.way.ends)
         names = [channel.joint.name for channel in found.channels]
-        plc = {name: file.replace(".csv", ".f174.csv") for name, file in zip(names, item.files, strict=True)
-               if file is not None and found.request.f174}  # fmt: skip
-        return {"kind": "move", **head, "steps": item.pulses.count, "start_mm": start, "end_mm": end,
-                "tables": dict(zip(names, item.files, strict=True)), "f174": plc,
-                "summary": summary(item, found)}  # fmt: skip
+        plc = {
+            name: file.replace(".csv", ".f174.csv")
+            for name, file in zip(names, item.files, strict=True)
+            if file is not None and found.request.f174
+        }
+        return {
+            "kind": "move",
+            **head,
+            "steps": item.pulses.count,
+            "start_mm": start,
+            "end_mm": end,
+            "tables": dict(zip(names, item.files, strict=True)),
+            "f174": plc,
+            "summary": summary(item, found),
+        }
     if isinstance(item, SetPayload):
         payload = lowering.payload(item, project.cell)
         cog = [float(x) for x in np.round(payload.cog / MM, 9)]
         return {"kind": "marker", **head, "load": {"mass_kg": payload.mass, "cog_mm": cog}}
     if isinstance(item, SetHand):
-        return {"kind": "marker", **head, "hand": "on" if item.closed else "off",
-                "dwell_s": lowering.dwell_s(item, project.cell)}  # fmt: skip
+        return {
+            "kind": "marker",
+            **head,
+            "hand": "on" if item.closed else "off",
+            "dwell_s": lowering.dwell_s(item, project.cell),
+        }
     return {"kind": "marker", **head, "other": type(item.node).__name__.lower()}
 
 
@@ -321,5 +367,3 @@ def summary(move: ExportedMove, found: Export) -> dict[str, Any]:
 
 def _count(steps: Pulses, start: int, count: int, step_hz: int) -> int:
     return sum(1 for _ in data_tables(rows_of(steps, start, count, step_hz), start))
-
-

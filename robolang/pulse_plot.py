@@ -52,18 +52,33 @@ def _svgs(program: str, export: Export, replays: list[MoveReplay]) -> list[str]:
     x, y = _thinned(*_errors(export, starts, replays))
     error = Curve(name="tool point", x=x, y=y * per_mm)
     return [
-        as_svg(f"{program}: frequency of each channel, below 0 when counting down", "time, s", f"frequency, {hz}",
-               curves, level=0.0, corner="above", marks=marks),
-        as_svg(f"{program}: distance of the tool point from its straight lines", "time, s", f"path error, {mm}",
-               [error], corner="above", marks=marks),
-    ]  # fmt: skip
+        as_svg(
+            f"{program}: frequency of each channel, below 0 when counting down",
+            "time, s",
+            f"frequency, {hz}",
+            curves,
+            level=0.0,
+            corner="above",
+            marks=marks,
+        ),
+        as_svg(
+            f"{program}: distance of the tool point from its straight lines",
+            "time, s",
+            f"path error, {mm}",
+            [error],
+            corner="above",
+            marks=marks,
+        ),
+    ]
 
 
 def _errors(export: Export, starts: list[float], replays: list[MoveReplay]) -> tuple[Array, Array]:
     """Return times and path errors of all moves, mm; the tool point stays where it is between the moves."""
     parts = [(start + item.times, item.error_mm) for start, item in zip(starts, replays, strict=True)]
-    held = [(np.array([until]), errors[-1:]) for until, (_, errors) in zip([*starts[1:], export.seconds], parts,
-                                                                           strict=False)]  # fmt: skip
+    held = [
+        (np.array([until]), errors[-1:])
+        for until, (_, errors) in zip([*starts[1:], export.seconds], parts, strict=False)
+    ]
     first = [(np.zeros(1), errors[:1]) for _, errors in parts[:1]]
     return _joined([*first, *chain.from_iterable(zip(parts, held, strict=True))])
 

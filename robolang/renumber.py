@@ -110,11 +110,13 @@ def _unnumbered(line: Line, text: str) -> _Edit:
     return Span(line.number_span.start, end + (text[end : end + 1] in (" ", "\t"))), ""
 
 
-def _edited(source: Source, notes: tuple[Diagnostic, ...], of_lines: list[_Edit],
-            of_targets: list[_Edit]) -> RenumberResult:  # fmt: skip
+def _edited(
+    source: Source, notes: tuple[Diagnostic, ...], of_lines: list[_Edit], of_targets: list[_Edit]
+) -> RenumberResult:
     """Return the text with the edits made, unless the language would not read it any more."""
-    of_lines, of_targets = ([(span, new) for span, new in edits if source.slice(span) != new]
-                            for edits in (of_lines, of_targets))  # fmt: skip
+    of_lines, of_targets = (
+        [(span, new) for span, new in edits if source.slice(span) != new] for edits in (of_lines, of_targets)
+    )
     parts, at = [], 0
     for span, new in sorted([*of_lines, *of_targets]):
         parts += [source.text[at : span.start], new]
@@ -122,8 +124,9 @@ def _edited(source: Source, notes: tuple[Diagnostic, ...], of_lines: list[_Edit]
     text = "".join([*parts, source.text[at:]])
     if (problem := outgrown(text) or _too_long(source, text)) is not None:
         return RenumberResult(text=source.text, changed=False, diagnostics=(problem, *notes))
-    return RenumberResult(text=text, changed=text != source.text, diagnostics=notes, lines=len(of_lines),
-                          targets=len(of_targets))  # fmt: skip
+    return RenumberResult(
+        text=text, changed=text != source.text, diagnostics=notes, lines=len(of_lines), targets=len(of_targets)
+    )
 
 
 def _too_long(source: Source, text: str) -> Diagnostic | None:

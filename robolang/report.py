@@ -44,9 +44,7 @@ def build_report(record: RunRecord, log: dict[str, Array], wall_s: float) -> dic
         "dynamics": _dynamics(record),
         "payload_history": record.payloads,
         "printed": [{"time_s": time_s, "text": text} for time_s, text in record.shown],
-        "objects": {
-            name: {"pose_mm_deg": pose_mm_deg(X)} for name, X in sorted(controller.plant.parts().items())
-        },
+        "objects": {name: {"pose_mm_deg": pose_mm_deg(X)} for name, X in sorted(controller.plant.parts().items())},
         "alarms": _events(record, controller.alarms, Severity.ERROR),
         "warnings": _events(record, controller.warnings, Severity.WARNING),
     }
@@ -63,8 +61,17 @@ def pose_mm_deg(X: Array) -> list[float]:
     return [float(value) + 0.0 for value in values]
 
 
-_MEASURED = ("start_s", "duration_s", "planned_s", "joint_error_deg", "tool_error_mm", "path_deviation_mm",
-             "peak_torque_pct", "wrist", "seam")  # fmt: skip
+_MEASURED = (
+    "start_s",
+    "duration_s",
+    "planned_s",
+    "joint_error_deg",
+    "tool_error_mm",
+    "path_deviation_mm",
+    "peak_torque_pct",
+    "wrist",
+    "seam",
+)
 """What a statement that has not begun has none of."""
 
 

@@ -150,8 +150,13 @@ def _divided(left: Kind, first: Expression, right: Kind, operand: Expression) ->
 
 
 _COMPUTES: dict[str, Callable[[Kind, Expression, Kind, Expression], Kind]] = {
-    "+": _joined, "-": _joined, "MOD": _joined, "^": _joined, "*": _multiplied, "/": _divided,
-}  # fmt: skip
+    "+": _joined,
+    "-": _joined,
+    "MOD": _joined,
+    "^": _joined,
+    "*": _multiplied,
+    "/": _divided,
+}
 
 
 def _is_power_of_two(node: Expression) -> bool:
@@ -195,8 +200,9 @@ def _compared(statements: list[Statement]) -> Iterator[_Compared]:
             yield from ((value, (value,), "CASE") for value in node.values)
 
 
-def _finding(place: Expression, sides: tuple[Expression, ...], sign: str, rounded: Expression,
-             kinds: _Kinds) -> Diagnostic:  # fmt: skip
+def _finding(
+    place: Expression, sides: tuple[Expression, ...], sign: str, rounded: Expression, kinds: _Kinds
+) -> Diagnostic:
     cause = kinds.causes.get(_key(rounded))
     shown = print_expression(rounded)
     related = () if cause is None else (Related(span=cause.span, message=f"{shown} is computed here"),)
@@ -208,8 +214,9 @@ def _finding(place: Expression, sides: tuple[Expression, ...], sign: str, rounde
         difference = print_expression(left if zero else Chain(first=left, rest=(("-", right),)))
         hint = f"write ABS({difference}) {'<' if sign == '=' else '>='} {SMALL}"
     message = f"{sign} compares {shown}, which may be rounded: equal values may differ in the last digit"
-    return Diagnostic(code="RBL232", severity=Severity.WARNING, span=place.span, message=message, hint=hint,
-                      related=related)  # fmt: skip
+    return Diagnostic(
+        code="RBL232", severity=Severity.WARNING, span=place.span, message=message, hint=hint, related=related
+    )
 
 
 # --- names -----------------------------------------------------------------------------------------------------------

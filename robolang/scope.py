@@ -205,8 +205,10 @@ class Scopes:
         if cells > 0 and sum(each.cells for each in self.stack) + cells > MAX_CELLS:
             raise Fault("RBL507", f"all arrays and names together would have more than {MAX_CELLS} elements")
         if texts > 0 and sum(each.texts for each in self.stack) + texts > MAX_TEXTS:
-            raise Fault("RBL506", f"all texts together would have more than {MAX_TEXTS} characters; a way behind a pose"
-                        f" counts as {WAY}")  # fmt: skip
+            raise Fault(
+                "RBL506",
+                f"all texts together would have more than {MAX_TEXTS} characters; a way behind a pose counts as {WAY}",
+            )
         scope.cells += cells
         scope.texts += texts
 
@@ -219,5 +221,6 @@ def characters(value: Value | None) -> int:
 def check_kind(key: str, value: Value) -> None:
     """Raise ``Fault`` RBL531 unless a name that ends in $ gets a text, and any other name none."""
     if key.endswith("$") is not isinstance(value, str):
-        raise Fault("RBL531", f"{kind_of(value)} is assigned to {key}; names that end in $ hold texts, and only they "
-                    "do")  # fmt: skip
+        raise Fault(
+            "RBL531", f"{kind_of(value)} is assigned to {key}; names that end in $ hold texts, and only they do"
+        )

@@ -78,9 +78,16 @@ _PROGRESS_CYCLES = 25
 class Session:
     """One run of one project."""
 
-    def __init__(self, project: Project, *, physics: bool = True, realtime: bool = False,
-                 progress: Progress | None = None, alter: Alter | None = None,
-                 show: Callable[[str], None] | None = None) -> None:  # fmt: skip
+    def __init__(
+        self,
+        project: Project,
+        *,
+        physics: bool = True,
+        realtime: bool = False,
+        progress: Progress | None = None,
+        alter: Alter | None = None,
+        show: Callable[[str], None] | None = None,
+    ) -> None:
         if not project.ok:
             raise ProgramError(project, project.diagnostics)
         self.project = project
@@ -129,9 +136,11 @@ class Session:
         report = build_report(self.record, log, wall_s() - started)
         alarms, warnings = (
             tuple(as_diagnostic(alarm, severity) for alarm in found)
-            for found, severity in ((self.controller.alarms, Severity.ERROR),
-                                    (self.controller.warnings, Severity.WARNING))
-        )  # fmt: skip
+            for found, severity in (
+                (self.controller.alarms, Severity.ERROR),
+                (self.controller.warnings, Severity.WARNING),
+            )
+        )
         return RunResult(ok=not alarms, alarms=alarms, warnings=warnings, report=report, log=log)
 
     def _run_program(self) -> None:
@@ -385,9 +394,16 @@ def make_plant(project: Project, physics: bool) -> Plant:
     return RigidPlant(cell.robot, cell, tick_s)
 
 
-def run(program: Path | str, *, cell: Path | str | None = None, robot: str | None = None,
-        servo: ServoMode | None = None, physics: bool = True, realtime: bool = False,
-        progress: Progress | None = None) -> RunResult:  # fmt: skip
+def run(
+    program: Path | str,
+    *,
+    cell: Path | str | None = None,
+    robot: str | None = None,
+    servo: ServoMode | None = None,
+    physics: bool = True,
+    realtime: bool = False,
+    progress: Progress | None = None,
+) -> RunResult:
     """Run a program file and return its result.
 
     ``cell``, ``robot`` and ``servo`` replace what the files beside the program say (see ``project``); ``physics``

@@ -285,17 +285,25 @@ class StatementCheck:
         if step == 0.0:
             yield Diagnostic(code="RBL205", message="STEP is 0: the loop would never end", span=node.step.span)
         elif step is not None and step != math.floor(step):
-            yield Diagnostic(code="RBL206", severity=Severity.WARNING, span=node.step.span,
-                             message=f"the rounds of STEP {step:g} are counted at the start, and "
-                             f"{node.variable.text} gathers rounding errors")  # fmt: skip
+            yield Diagnostic(
+                code="RBL206",
+                severity=Severity.WARNING,
+                span=node.step.span,
+                message=f"the rounds of STEP {step:g} are counted at the start, and "
+                f"{node.variable.text} gathers rounding errors",
+            )
 
     def _call_sub(self, node: CallSub) -> Iterator[Diagnostic]:
         sub = self._defined.subs.get(node.name.key)
         if sub is None:
             if not self._defined.is_missing(node.name):
                 return
-            hint = names_hint(node.name, frozenset(self._defined.subs), known="subroutines",
-                              none=f"write SUB {node.name.text} and ENDSUB, or correct the name")
+            hint = names_hint(
+                node.name,
+                frozenset(self._defined.subs),
+                known="subroutines",
+                none=f"write SUB {node.name.text} and ENDSUB, or correct the name",
+            )
             yield Diagnostic(code="RBL213", message=f"there is no SUB {node.name.text}", span=node.name.span, hint=hint)
         elif len(sub.parameters) != len(node.arguments):
             related = (Related(span=sub.span, message="defined here"),)
@@ -305,13 +313,30 @@ class StatementCheck:
 
 _Check = StatementCheck
 _RULES: dict[type, Callable[..., Iterator[Diagnostic]]] = {
-    Move: _Check._moving, MoveJ: _Check._moving, MoveC: _Check._moving, Approach: _Check._moving,
-    Depart: _Check._moving, Load: _Check._load, LoadNamed: _Check._load_named, Hand: _Check._hand,
-    Wrist: _Check._wrist, Seam: _Check._seam, Setting: _Check._setting, Assign: _Check._assign,
-    Out: _Check._out, Pulse: _Check._out, Delay: _Check._delay, Wait: _Check._wait,
-    For: _Check._for, CallSub: _Check._call_sub, Const: _Check._const, Dim: _Check._dim,
-    Head: _Check._head, Case: _Check._case, Block: _Check._block,
-}  # fmt: skip
+    Move: _Check._moving,
+    MoveJ: _Check._moving,
+    MoveC: _Check._moving,
+    Approach: _Check._moving,
+    Depart: _Check._moving,
+    Load: _Check._load,
+    LoadNamed: _Check._load_named,
+    Hand: _Check._hand,
+    Wrist: _Check._wrist,
+    Seam: _Check._seam,
+    Setting: _Check._setting,
+    Assign: _Check._assign,
+    Out: _Check._out,
+    Pulse: _Check._out,
+    Delay: _Check._delay,
+    Wait: _Check._wait,
+    For: _Check._for,
+    CallSub: _Check._call_sub,
+    Const: _Check._const,
+    Dim: _Check._dim,
+    Head: _Check._head,
+    Case: _Check._case,
+    Block: _Check._block,
+}
 _NAMED_FIELDS = {"name", "variable", "sensor", "parameters", "label", "then", "otherwise"}
 
 
@@ -323,8 +348,11 @@ def _expressions(node: Statement) -> Iterator[Expression]:
     if isinstance(node, MoveC) and not isinstance(node.via, Name):
         yield node.via
     if isinstance(node, Moving):
-        yield from (option.value for option in node.options
-                    if isinstance(option, Speed | Accel | Time | Zone) and option.value is not None)  # fmt: skip
+        yield from (
+            option.value
+            for option in node.options
+            if isinstance(option, Speed | Accel | Time | Zone) and option.value is not None
+        )
     for name in type(node).__dataclass_fields__:
         if name in _NAMED_FIELDS or (isinstance(node, Moving) and name in ("target", "via", "options")):
             continue

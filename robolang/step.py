@@ -197,8 +197,11 @@ def _run(controller: Controller, seconds: float, lost: float = np.inf) -> None:
 
 def _refuse_touch(request: StepRequest, controller: Controller) -> None:
     for touch in [] if controller.touches is None else controller.touches.records:
-        raise Fault("RBL516", f"in the step of J{request.axis + 1}, {touch.message}",
-                    "choose a smaller step, or a posture with more space around it")  # fmt: skip
+        raise Fault(
+            "RBL516",
+            f"in the step of J{request.axis + 1}, {touch.message}",
+            "choose a smaller step, or a posture with more space around it",
+        )
 
 
 def _measure(request: StepRequest, controller: Controller, first: int) -> StepResult:

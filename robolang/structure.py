@@ -142,13 +142,13 @@ def _names(program: Program, found: Structure) -> None:
             found.labels.setdefault(label[1].upper(), index)
 
 
-def _define(found: Structure, table: dict[str, int], key: str, index: int, span: Span, what: str,
-            program: Program) -> None:  # fmt: skip
+def _define(
+    found: Structure, table: dict[str, int], key: str, index: int, span: Span, what: str, program: Program
+) -> None:
     if key in table:
         first = _span_of(program.lines[table[key]], is_label=table is found.labels)
         related = (Related(span=first, message="first defined here"),)
-        found.report(Diagnostic(code="RBL203", message=f"{what} is defined twice", span=span,
-                                            related=related))  # fmt: skip
+        found.report(Diagnostic(code="RBL203", message=f"{what} is defined twice", span=span, related=related))
     table.setdefault(key, index)
 
 
@@ -247,8 +247,15 @@ def _too_deep(found: Structure, program: Program, index: int, word: str) -> None
     found.inside.extend(() for _ in range(len(program.lines) - len(found.inside)))
 
 
-def _continue(program: Program, found: Structure, stack: list[_Open], outside: _Open, index: int, word: str,
-              doubtful: Counter[str]) -> None:  # fmt: skip
+def _continue(
+    program: Program,
+    found: Structure,
+    stack: list[_Open],
+    outside: _Open,
+    index: int,
+    word: str,
+    doubtful: Counter[str],
+) -> None:
     """Take a line that divides or closes a block; ``doubtful`` are the words whose block a guess has closed."""
     line = program.lines[index]
     guessed = isinstance(line.statement, Unparsed)

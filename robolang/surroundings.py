@@ -31,8 +31,13 @@ class RobotWorld:
     @property
     def around(self) -> Surroundings:
         """What a place depends on, as it is now."""
-        return Surroundings(points=self._points, cell=self._cell, kinematics=self._kinematics, q_last=self.q_last,
-                            X_flange_tool=self.X_flange_tool)  # fmt: skip
+        return Surroundings(
+            points=self._points,
+            cell=self._cell,
+            kinematics=self._kinematics,
+            q_last=self.q_last,
+            X_flange_tool=self.X_flange_tool,
+        )
 
     def input(self, number: int) -> float:
         """Return the state of an input; ``Fault`` RBL534."""

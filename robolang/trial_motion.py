@@ -177,8 +177,11 @@ def plan_table(request: Request, payload: Payload, test: Test) -> Grid | None:
     while True:
         if not all(high - low >= LEAST_STROKE for low, high in ends):
             over = " and ".join(f"J{joint + 1}" for joint in joints)
-            raise Fault("RBL420", f"J{axis + 1} has no room for a table over {over}: too few postures have all of the "
-                        "arm over the ground and out of itself")  # fmt: skip
+            raise Fault(
+                "RBL420",
+                f"J{axis + 1} has no room for a table over {over}: too few postures have all of the "
+                "arm over the ground and out of itself",
+            )
         grid = tuple(np.round(np.linspace(low, high, request.table) / DEG, 2) * DEG for low, high in ends)
         if all(safe(angles) for angles in product(*grid)):
             break
@@ -233,18 +236,23 @@ def _planned(request: Request, model: ArmModel, axis: int, q: Array, room: tuple
     stroke = min(STROKE, (high - low) / 2.0)
     if not stroke >= LEAST_STROKE:
         there, least = beside(max(0.0, high - low) / DEG, round(2.0 * LEAST_STROKE / DEG, 1), form=".1f")
-        raise Fault("RBL420", f"J{axis + 1} has {there} deg over the ground, free of the arm itself and "
-                    f"{MARGIN / DEG:g} deg off the ends of its range, {limits.lower / DEG:.1f} to "
-                    f"{limits.upper / DEG:.1f} deg; the test motions need {least}")  # fmt: skip
+        raise Fault(
+            "RBL420",
+            f"J{axis + 1} has {there} deg over the ground, free of the arm itself and "
+            f"{MARGIN / DEG:g} deg off the ends of its range, {limits.lower / DEG:.1f} to "
+            f"{limits.upper / DEG:.1f} deg; the test motions need {least}",
+        )
     reach = stroke * (1.0 - before)
-    positions = np.linspace(low + reach, high - reach, places) if places > 1 else np.array(
-        [0.5 * (low + high)])  # fmt: skip
-    shortest = np.maximum(np.sqrt(_PEAK_ACCELERATION * stroke / (SHARE * limits.acceleration)),
-                   _PEAK_SPEED * stroke / (SHARE * limits.speed))  # fmt: skip
+    positions = np.linspace(low + reach, high - reach, places) if places > 1 else np.array([0.5 * (low + high)])
+    shortest = np.maximum(
+        np.sqrt(_PEAK_ACCELERATION * stroke / (SHARE * limits.acceleration)),
+        _PEAK_SPEED * stroke / (SHARE * limits.speed),
+    )
     for slower in np.geomspace(1.0, LONGEST, 8):
         cycles = int(np.ceil(slower * shortest / profile.period_s))
-        test = Test(axis=axis, q=q, positions=positions, stroke=stroke,
-                    rows=stroke * quintic(np.arange(cycles + 1) / cycles))  # fmt: skip
+        test = Test(
+            axis=axis, q=q, positions=positions, stroke=stroke, rows=stroke * quintic(np.arange(cycles + 1) / cycles)
+        )
         refusal = _refusal(spec, profile, model, test)
         if not refusal:
             return test
@@ -274,9 +282,11 @@ def _refusal(spec: RobotSpec, profile: Profile, model: ArmModel, test: Test) -> 
                 if not beyond[axis] <= 1e-9:
                     worst = values[np.argmax(np.abs(values[:, axis])), axis]
                     scale = 1.0 if unit == "N m" else DEG
-                    return (f"J{test.axis + 1} at {position / DEG:.1f} deg: the test motion takes the {what} of "
-                            f"J{axis + 1} to {worst / scale:.1f} {unit}, beyond {least[axis] / scale:.1f} to "
-                            f"{most[axis] / scale:.1f}")  # fmt: skip
+                    return (
+                        f"J{test.axis + 1} at {position / DEG:.1f} deg: the test motion takes the {what} of "
+                        f"J{axis + 1} to {worst / scale:.1f} {unit}, beyond {least[axis] / scale:.1f} to "
+                        f"{most[axis] / scale:.1f}"
+                    )
     return ""
 
 

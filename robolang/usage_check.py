@@ -18,6 +18,7 @@ MAX_SHOWN = 60
 """Longest text that a remedy repeats, in characters."""
 _QUOTED = re.compile(r"'([^'\"]+)'[ \t]*")
 
+
 def wait_check(program: Program) -> Iterator[Diagnostic]:
     """Report WAITs without a TIMEOUT (RBL223) and WAITs for a number (RBL233), as warnings."""
     for line in program.statements:
@@ -27,9 +28,12 @@ def wait_check(program: Program) -> Iterator[Diagnostic]:
                 message = f"WAIT {value:g} waits for nothing: its condition is a number that is not 0"
                 yield Diagnostic(code="RBL233", severity=Severity.WARNING, span=node.span, message=message, hint=delay)
             elif isinstance(node, Wait) and node.timeout is None:
-                yield Diagnostic(code="RBL223", severity=Severity.WARNING, span=node.span,
-                                 message="this WAIT has no TIMEOUT: where its signal never comes, the program stands "
-                                 "here for ever")  # fmt: skip
+                yield Diagnostic(
+                    code="RBL223",
+                    severity=Severity.WARNING,
+                    span=node.span,
+                    message="this WAIT has no TIMEOUT: where its signal never comes, the program stands here for ever",
+                )
 
 
 def quote_check(program: Program) -> Iterator[Diagnostic]:
@@ -41,9 +45,13 @@ def quote_check(program: Program) -> Iterator[Diagnostic]:
             continue
         *_, last = _statements(line.statement)
         if isinstance(last, Print) and not last.items:
-            yield Diagnostic(code="RBL234", severity=Severity.WARNING, span=comment.span,
-                             message="this is a comment, not a text: PRINT shows an empty line",
-                             hint=f'write PRINT "{quoted[1]}"' if len(quoted[1]) <= MAX_SHOWN else "")  # fmt: skip
+            yield Diagnostic(
+                code="RBL234",
+                severity=Severity.WARNING,
+                span=comment.span,
+                message="this is a comment, not a text: PRINT shows an empty line",
+                hint=f'write PRINT "{quoted[1]}"' if len(quoted[1]) <= MAX_SHOWN else "",
+            )
 
 
 def loop_check(program: Program, structure: Structure) -> Iterator[Diagnostic]:
@@ -61,8 +69,9 @@ def loop_check(program: Program, structure: Structure) -> Iterator[Diagnostic]:
         if outer is not None:
             message = f"{node.variable.text} counts a FOR around this one: its value there is lost"
             related = (Related(span=outer.variable.span, message=f"{outer.variable.text} counts here"),)
-            yield Diagnostic(code="RBL235", severity=Severity.WARNING, span=node.variable.span, message=message,
-                             related=related)  # fmt: skip
+            yield Diagnostic(
+                code="RBL235", severity=Severity.WARNING, span=node.variable.span, message=message, related=related
+            )
 
 
 def usage_check(program: Program) -> Iterator[Diagnostic]:
@@ -78,9 +87,13 @@ def usage_check(program: Program) -> Iterator[Diagnostic]:
     for key, name in given.items():
         if key not in read:
             guess, elsewhere = near(key, read), other_languages.assigned(key)
-            yield Diagnostic(code="RBL225", severity=Severity.WARNING, span=name.span,
-                             message=f"nothing reads {name.text}",
-                             hint=f"did you mean {guess}?" if guess else elsewhere)  # fmt: skip
+            yield Diagnostic(
+                code="RBL225",
+                severity=Severity.WARNING,
+                span=name.span,
+                message=f"nothing reads {name.text}",
+                hint=f"did you mean {guess}?" if guess else elsewhere,
+            )
 
 
 def named(program: Program) -> frozenset[str]:

@@ -132,8 +132,11 @@ def plan_exercise(request: WeighRequest) -> Exercise:
         fitting = np.minimum(wanted, np.minimum(SHARE * most, room))
         wanted = np.where(fitting >= np.minimum(LEAST, wanted), fitting, 0.0)
         if not wanted.any():
-            raise Fault("RBL411", f"home leaves no axis of {robot.name} {LEAST / DEG:g} deg to either side to swing",
-                        "choose a home further inside the joint ranges")  # fmt: skip
+            raise Fault(
+                "RBL411",
+                f"home leaves no axis of {robot.name} {LEAST / DEG:g} deg to either side to swing",
+                "choose a home further inside the joint ranges",
+            )
     else:
         _refuse(robot, home, wanted, room, most, request.amplitude)
     return Exercise(offsets=frozen(unit * wanted), amplitudes=frozen(wanted))
@@ -150,11 +153,19 @@ def _refuse(robot: RobotSpec, home: Array, wanted: Array, room: Array, most: Arr
         low, high, by = robot.lower[axis], robot.upper[axis], float(wanted[axis])
         if not by <= room[axis]:
             end = home[axis] + by if high - home[axis] < home[axis] - low else home[axis] - by
-            raise Fault("RBL411", f"J{axis + 1} would swing to {end / DEG:.1f} deg; its range is {low / DEG:g} to "
-                        f"{high / DEG:g} deg, with {MARGIN / DEG:g} deg kept free at its ends", hint)  # fmt: skip
+            raise Fault(
+                "RBL411",
+                f"J{axis + 1} would swing to {end / DEG:.1f} deg; its range is {low / DEG:g} to "
+                f"{high / DEG:g} deg, with {MARGIN / DEG:g} deg kept free at its ends",
+                hint,
+            )
         if not by <= most[axis]:
-            raise Fault("RBL404", f"J{axis + 1} would swing by {by / DEG:.1f} deg and can by {most[axis] / DEG:.1f} "
-                        "deg in this time without passing its speed or acceleration", hint)  # fmt: skip
+            raise Fault(
+                "RBL404",
+                f"J{axis + 1} would swing by {by / DEG:.1f} deg and can by {most[axis] / DEG:.1f} "
+                "deg in this time without passing its speed or acceleration",
+                hint,
+            )
 
 
 def _share(robot: RobotSpec) -> Array:
@@ -196,12 +207,20 @@ def weigh(request: WeighRequest) -> WeighResult:
     log = controller.recorder.signals(controller.tool_poses)
     watched = profile.supervision
     known = Knowledge(
-        torque=torque_limit(robot), friction=0.0 if rigid else 1.0 if watched.friction is None else watched.friction,
-        springs=not rigid, friction_uncertainty=watched.friction_uncertainty,
+        torque=torque_limit(robot),
+        friction=0.0 if rigid else 1.0 if watched.friction is None else watched.friction,
+        springs=not rigid,
+        friction_uncertainty=watched.friction_uncertainty,
         torque_uncertainty=watched.torque_uncertainty,
-    )  # fmt: skip
-    found = identify_payload(robot, log["tau_sat"][first:], log["q_fb"][first:], ticks=profile.ticks_per_cycle,
-                             tick_s=profile.tick_s, known=known)  # fmt: skip
+    )
+    found = identify_payload(
+        robot,
+        log["tau_sat"][first:],
+        log["q_fb"][first:],
+        ticks=profile.ticks_per_cycle,
+        tick_s=profile.tick_s,
+        known=known,
+    )
     _explained(found, known.torque)
     return WeighResult(found=found, true=true, exercise=exercise, seconds=controller.time_us / 1e6)
 
@@ -242,8 +261,11 @@ def _explained(found: WeighedPayload, torque: Array) -> None:
     share = found.peak / torque
     axis = int(np.argmax(share))
     if not share[axis] <= UNEXPLAINED:
-        raise Fault("RBL516", f"up to {found.peak[axis]:.1f} N m of J{axis + 1} in the exercise belong to no payload",
-                    "clear the space about home; then look at the drive, brake and friction of the axis")  # fmt: skip
+        raise Fault(
+            "RBL516",
+            f"up to {found.peak[axis]:.1f} N m of J{axis + 1} in the exercise belong to no payload",
+            "clear the space about home; then look at the drive, brake and friction of the axis",
+        )
 
 
 # --- what is shown ---------------------------------------------------------------------------------------------------
@@ -278,8 +300,10 @@ def load_statement(found: WeighedPayload, rated: float) -> Declaration:
     distance = float(np.linalg.norm(found.cog))
     cog = found.cog
     if not distance <= MAX_COG_DISTANCE:
-        notes.append(f"the centre of gravity is {distance / MM:.0f} mm from the flange and may be declared within "
-                     f"{MAX_COG_DISTANCE / MM:g} mm")  # fmt: skip
+        notes.append(
+            f"the centre of gravity is {distance / MM:.0f} mm from the flange and may be declared within "
+            f"{MAX_COG_DISTANCE / MM:g} mm"
+        )
         cog = cog * (INSIDE * MAX_COG_DISTANCE / distance)
     values = ", ".join(_rounded(c / MM, sd / MM, 1) for c, sd in zip(cog, found.cog_sd, strict=True))
     return Declaration(text=f"LOAD ({values}), {mass_text}", note="; ".join(notes))

@@ -31,9 +31,15 @@ VALUES = frozenset({"HERE", "TIMER", "ERR"})
 """Words that are a value by themselves."""
 _OF_ONE = "ABS SGN INT SQR SIN COS TAN DEG RAD STR$ VAL LEN IN"
 ARGUMENTS = {
-    **dict.fromkeys(_OF_ONE.split(), (1, 1)), "ATN2": (2, 2), "DIST": (2, 2), "MIN": (1, 100), "MAX": (1, 100),
-    "ROUND": (1, 2), "POSE": (6, 6), "JOINT": (2, 7),
-}  # fmt: skip
+    **dict.fromkeys(_OF_ONE.split(), (1, 1)),
+    "ATN2": (2, 2),
+    "DIST": (2, 2),
+    "MIN": (1, 100),
+    "MAX": (1, 100),
+    "ROUND": (1, 2),
+    "POSE": (6, 6),
+    "JOINT": (2, 7),
+}
 """Functions of the language, with how many arguments each takes: the fewest and the most."""
 FUNCTIONS = frozenset(ARGUMENTS)
 _FORMS = {
@@ -80,9 +86,18 @@ that older points, cells and programs keep their names (docs/decisions/0029)."""
 RESERVED = (KEYWORDS - NEW) | FUNCTIONS | VALUES | {"REM", "NAN", "INF"}
 
 _PHRASES = {
-    "ON ERROR GOTO", "ON ERROR STOP", "RESUME NEXT", "CASE ELSE", "HAND ON", "HAND OFF", "WRIST KEEP", "WRIST AUTO",
-    "WRIST HOLD", "SEAM ON", "SEAM OFF",
-}  # fmt: skip
+    "ON ERROR GOTO",
+    "ON ERROR STOP",
+    "RESUME NEXT",
+    "CASE ELSE",
+    "HAND ON",
+    "HAND OFF",
+    "WRIST KEEP",
+    "WRIST AUTO",
+    "WRIST HOLD",
+    "SEAM ON",
+    "SEAM OFF",
+}
 MAX_CHOICES = 300
 """Among more names than this nothing is suggested."""
 

@@ -133,8 +133,17 @@ class Run:
 def _suppression(move: str, switch_s: float) -> tuple[Trial, ...]:
     """Return the five trials of suppression: nothing held, each component, tilt and advance together."""
     sets: tuple[tuple[Component, ...], ...] = ((), *((each,) for each in COMPONENTS), ("TILT", "ADVANCE"))
-    return tuple(Trial(move=move, condition=" + ".join(held) or "nothing", options=_SPEEDS, period_s=0.02,
-                       switch_s=switch_s, held=held) for held in sets)  # fmt: skip
+    return tuple(
+        Trial(
+            move=move,
+            condition=" + ".join(held) or "nothing",
+            options=_SPEEDS,
+            period_s=0.02,
+            switch_s=switch_s,
+            held=held,
+        )
+        for held in sets
+    )
 
 
 _E1, _E2 = (Trial(move=move, condition="J5 kept") for move in ("E1", "E2"))
@@ -147,29 +156,72 @@ _E2_HELD, _E3_HELD = _suppression("E2", 2.2), _suppression("E3", 1.8)
 _WORDS = ("nothing", "tilt", "advance", "rotation", "tilt and advance")
 
 FIGURES = (
-    Figure(number=4, title="conventional", trials=(_E1,),
-           sentence="J5 keeps its sign over the whole move; the dots are the angles taught for the end."),
-    Figure(number=5, title="C1 at 120 deg/s", switch="L1", trials=(_E1_C1,),
-           sentence="From L1 on, just before one of J4 to J6 would need more than 120 deg/s to get to its taught angle "
-           "in time, all three go straight there."),
-    Figure(number=6, title="conventional", trials=(_E2,),
-           sentence="J5 keeps its sign over the whole move; +-180 deg is what J4 to J6 are to stay within."),
-    Figure(number=7, title="C3 at +-180 deg", switch="L2", variant="Hermite", trials=(_E2_C3, _E2_HERMITE),
-           sentence="The wrist leaves the path before an axis leaves +-180 deg. Solid: straight to the end angles. "
-           "Dashed: from the speed it has to rest, with the range looked at 10 cycles ahead."),
-    Figure(number=10, title="C4 at 90, 180, 90 deg", switch="L3", trials=(_E3_C4,),
-           sentence="With the posture turning about one axis, the wrist leaves the path where J4, J5 or J6 is too far "
-           "from the straight line between its taught angles. Nothing bounds its speed before."),
-    Figure(number=11, title="on a seam, C3 at +-180 deg", switch="L2", variant="seam",
-           trials=(_E2_C3, _E2_SEAM),
-           sentence="The seam drifts to (0, 5, -3) mm and 2 deg about the upright. Dashed: the end point follows it, "
-           "and so do the angles at which the wrist ends."),
-    *(Figure(number=17 + k, title=f"{held} held", switch="switch", trials=(_E2_HELD[k],), drawn=0,
-             sentence=f"By how much the tool leaves its posture with {held} held. Reconstruction.")
-      for k, held in enumerate(_WORDS)),
-    Figure(number=22, title="tilt and advance held", switch="switch", trials=_E3_HELD, drawn=4,
-           sentence="As figure 21, for E3; of the other four only the numbers are given. Reconstruction."),
-)  # fmt: skip
+    Figure(
+        number=4,
+        title="conventional",
+        trials=(_E1,),
+        sentence="J5 keeps its sign over the whole move; the dots are the angles taught for the end.",
+    ),
+    Figure(
+        number=5,
+        title="C1 at 120 deg/s",
+        switch="L1",
+        trials=(_E1_C1,),
+        sentence="From L1 on, just before one of J4 to J6 would need more than 120 deg/s to get to its taught angle "
+        "in time, all three go straight there.",
+    ),
+    Figure(
+        number=6,
+        title="conventional",
+        trials=(_E2,),
+        sentence="J5 keeps its sign over the whole move; +-180 deg is what J4 to J6 are to stay within.",
+    ),
+    Figure(
+        number=7,
+        title="C3 at +-180 deg",
+        switch="L2",
+        variant="Hermite",
+        trials=(_E2_C3, _E2_HERMITE),
+        sentence="The wrist leaves the path before an axis leaves +-180 deg. Solid: straight to the end angles. "
+        "Dashed: from the speed it has to rest, with the range looked at 10 cycles ahead.",
+    ),
+    Figure(
+        number=10,
+        title="C4 at 90, 180, 90 deg",
+        switch="L3",
+        trials=(_E3_C4,),
+        sentence="With the posture turning about one axis, the wrist leaves the path where J4, J5 or J6 is too far "
+        "from the straight line between its taught angles. Nothing bounds its speed before.",
+    ),
+    Figure(
+        number=11,
+        title="on a seam, C3 at +-180 deg",
+        switch="L2",
+        variant="seam",
+        trials=(_E2_C3, _E2_SEAM),
+        sentence="The seam drifts to (0, 5, -3) mm and 2 deg about the upright. Dashed: the end point follows it, "
+        "and so do the angles at which the wrist ends.",
+    ),
+    *(
+        Figure(
+            number=17 + k,
+            title=f"{held} held",
+            switch="switch",
+            trials=(_E2_HELD[k],),
+            drawn=0,
+            sentence=f"By how much the tool leaves its posture with {held} held. Reconstruction.",
+        )
+        for k, held in enumerate(_WORDS)
+    ),
+    Figure(
+        number=22,
+        title="tilt and advance held",
+        switch="switch",
+        trials=_E3_HELD,
+        drawn=4,
+        sentence="As figure 21, for E3; of the other four only the numbers are given. Reconstruction.",
+    ),
+)
 
 
 def unusable(robot: RobotSpec) -> str:
@@ -204,18 +256,27 @@ def run(robot: RobotSpec, trial: Trial) -> Run:
     taken, path = matmul(line.arm.kinematics.forward(q), X_FLANGE_TOOL), line.path
     assert isinstance(path, LinePath)
     return Run(
-        trial=trial, t=frozen(s * DURATION_S), q=frozen(q), q_end=frozen(q_end), switch=switch, axis=axis,
+        trial=trial,
+        t=frozen(s * DURATION_S),
+        q=frozen(q),
+        q_end=frozen(q_end),
+        switch=switch,
+        axis=axis,
         posture=frozen(rotation_angles(planned[:, :3, :3], taken[:, :3, :3])),
         components=frozen(_components(path, planned, taken)),
         off_path=frozen(np.linalg.norm(taken[:, :3, 3] - planned[:, :3, 3], axis=1)),
-    )  # fmt: skip
+    )
 
 
 def _line(robot: RobotSpec, trial: Trial) -> tuple[LineSolver, Array]:
     """Return the path of a move with the sign of J5 kept, and its taught end (n,)."""
     start, end = np.array(MOVES[trial.move]) * DEG
-    arm = Arm(spec=_ranged(robot), kinematics=Kinematics(robot), X_flange_tool=X_FLANGE_TOOL,
-              fine=FineInterpolator(1, trial.period_s, start))  # fmt: skip
+    arm = Arm(
+        spec=_ranged(robot),
+        kinematics=Kinematics(robot),
+        X_flange_tool=X_FLANGE_TOOL,
+        fine=FineInterpolator(1, trial.period_s, start),
+    )
     X_start, X_end = (matmul(arm.kinematics.forward(q), X_FLANGE_TOOL) for q in (start, end))
     return LineSolver(arm, LinePath.between(X_start, X_end, trial.options.posture), start), end
 
@@ -253,8 +314,13 @@ def _processed(line: LineSolver, q_end: Array, s: Array, trial: Trial) -> tuple[
 def _held(line: LineSolver, q_switch: Array, q_end: Array, s: Array, trial: Trial) -> WristTable:
     """Return what suppression chooses at the samples s from the switch on, as it chose it: steps and all."""
     arm, path, end = line.arm, line.path, q_end[-WRIST_AXES:]
-    suppression = Suppression(arm.kinematics, arm.X_flange_tool, path.X_end[:3, 3] - path.X_start[:3, 3], trial.held,
-                              wrist_limits(arm.spec, trial.options).speed)  # fmt: skip
+    suppression = Suppression(
+        arm.kinematics,
+        arm.X_flange_tool,
+        path.X_end[:3, 3] - path.X_start[:3, 3],
+        trial.held,
+        wrist_limits(arm.spec, trial.options).speed,
+    )
     X = path.poses(s[1:])
     chosen = suppression.way(q_switch, end, s, X[:, :3, 3], X[:, :3, :3], trial.period_s)
     return WristTable(s_switch=float(s[0]), values=frozen([q_switch[-WRIST_AXES:], *chosen]))

@@ -74,8 +74,11 @@ class Areas:
     @property
     def mean_refresh_us(self) -> float:
         """Mean time between two refreshes of one axis, us; 0 when no axis was refreshed twice."""
-        spans = [(last - first, count - 1) for first, last, count in
-                 zip(self._first_us, self._last_us, self.refreshes, strict=True) if count > 1]  # fmt: skip
+        spans = [
+            (last - first, count - 1)
+            for first, last, count in zip(self._first_us, self._last_us, self.refreshes, strict=True)
+            if count > 1
+        ]
         return sum(span for span, _ in spans) / sum(count for _, count in spans) if spans else 0.0
 
     def declare(self, payload: Payload) -> None:

@@ -120,11 +120,16 @@ class Controller:
         servo = self.servo
         self._recorded = (servo.tau_cmd, servo.tau, servo.alpha, servo.beta, plant.q_link)
         self._supervisor = Supervisor(
-            spec, profile.supervision, torque=torque_limit(spec), resolution=encoder_resolution(spec),
+            spec,
+            profile.supervision,
+            torque=torque_limit(spec),
+            resolution=encoder_resolution(spec),
             lag=(1.0 - profile.servo.velocity_feedforward) / spec.per_axis("bandwidths", "position"),
-            ticks=profile.ticks_per_cycle, tick_s=profile.tick_s, friction=profile.servo.friction_compensation,
+            ticks=profile.ticks_per_cycle,
+            tick_s=profile.tick_s,
+            friction=profile.servo.friction_compensation,
             model=LoadModel(spec, rotors(spec, profile.servo), moments),
-        )  # fmt: skip
+        )
         self._overruns = 0
         self._no_deviation = np.zeros(6)
         self.touches = None if plant.bodies is None else Touches(plant.bodies, plant.gripped)
@@ -135,8 +140,9 @@ class Controller:
         for axis in range(self.spec.n):
             row = axis_row(self._model, q, axis) if self._rows is None else self._rows.row(q, axis)
             T = axis_gravity(self._model, q, axis)
-            self.areas.ita[axis] = AxisLoad(D=float(row[axis]), T=T, row=row, read_us=now_us, version=0,
-                                            payload_version=self.areas.sda_version)  # fmt: skip
+            self.areas.ita[axis] = AxisLoad(
+                D=float(row[axis]), T=T, row=row, read_us=now_us, version=0, payload_version=self.areas.sda_version
+            )
 
     def _hold(self, q: Array) -> None:
         """Let the servos hold motors that stand at q (n,) rad: currents against the weight, command and reference."""
@@ -182,8 +188,7 @@ class Controller:
         """Plan a move from the commanded position and start it; ``Fault`` RBL4xx before anything moves."""
         return self.move_chain([command]).parts[0].plan
 
-    def move_chain(self, commands: Sequence[Command],
-                   statements: Sequence[ProgramLine] = ()) -> ChainPlan:  # fmt: skip
+    def move_chain(self, commands: Sequence[Command], statements: Sequence[ProgramLine] = ()) -> ChainPlan:
         """Plan moves in a row, blended where they have zones, and start them; ``ChainFault`` RBL4xx before any moves.
 
         ``statements``, one for each: ``statement`` becomes that of a move with the cycle that sends its first row, in
@@ -363,8 +368,11 @@ class Controller:
         motion = self._fine.push(self.areas.ina)
         rows = np.array([cell.row for cell in cells]) if self.servo.coupled else None
         self.servo.take(D, T, motion, rows)
-        self.recorder.begin_cycle((self.areas.ina, D, T, read_us, self.seam_deviation), motion,
-                                  (self.areas.sda.mass, *logged(self.statement), self.wrist_mode))  # fmt: skip
+        self.recorder.begin_cycle(
+            (self.areas.ina, D, T, read_us, self.seam_deviation),
+            motion,
+            (self.areas.sda.mass, *logged(self.statement), self.wrist_mode),
+        )
         return motion
 
     def _run_ticks(self, start_us: int, motion: Array) -> bool:
@@ -384,11 +392,15 @@ class Controller:
     def _raise_non_finite(self, q_cmd: Array) -> None:
         """Latch RBL510 and name the first hand-over that was not finite, from the command to the plant."""
         servo, cells = self.servo, self.areas.ita
-        for name, values in (("inertia D in ITA", np.array([cell.D for cell in cells])),
-                             ("gravity torque T in ITA", np.array([cell.T for cell in cells])),
-                             ("set-point in INA", self.areas.ina), ("command q_cmd", q_cmd),
-                             ("detected angle q_fb", servo.alpha),
-                             ("torque tau_cmd", servo.tau_cmd), ("torque tau_sat", servo.tau)):  # fmt: skip
+        for name, values in (
+            ("inertia D in ITA", np.array([cell.D for cell in cells])),
+            ("gravity torque T in ITA", np.array([cell.T for cell in cells])),
+            ("set-point in INA", self.areas.ina),
+            ("command q_cmd", q_cmd),
+            ("detected angle q_fb", servo.alpha),
+            ("torque tau_cmd", servo.tau_cmd),
+            ("torque tau_sat", servo.tau),
+        ):
             bad = ~np.isfinite(values)
             if bad.any():
                 axis = int(np.argmax(bad))
@@ -455,8 +467,16 @@ class Controller:
         else:
             self._stop_by(self._alarm_of(found))
 
-    def alarm(self, code: str, message: str, axis: int | None = None, *, hint: str = "",
-              statement: ProgramLine | None = None, calls: tuple[ProgramLine, ...] = ()) -> None:  # fmt: skip
+    def alarm(
+        self,
+        code: str,
+        message: str,
+        axis: int | None = None,
+        *,
+        hint: str = "",
+        statement: ProgramLine | None = None,
+        calls: tuple[ProgramLine, ...] = (),
+    ) -> None:
         """Latch an alarm at a statement, by default the one that runs, and stop the arm by its category."""
         found = Finding(code=code, message=message, axis=axis, tick=self.recorder.tick)
         self._stop_by(self._alarm_of(found, statement, hint, calls))
@@ -475,12 +495,21 @@ class Controller:
                 self.warnings.append(self._alarm_of(found, touch.place))
         self.warnings.sort(key=lambda alarm: alarm.tick)
 
-    def _alarm_of(self, found: Finding, statement: ProgramLine | None = None, hint: str = "",
-                  calls: tuple[ProgramLine, ...] = ()) -> Alarm:  # fmt: skip
+    def _alarm_of(
+        self, found: Finding, statement: ProgramLine | None = None, hint: str = "", calls: tuple[ProgramLine, ...] = ()
+    ) -> Alarm:
         """Return the alarm of a finding at a statement; None: at the one that runs."""
         entry = lookup(found.code)
-        return Alarm(code=found.code, message=found.message, tick=found.tick, axis=found.axis, category=entry.category,
-                     statement=statement or self.statement, calls=calls, hint=hint or entry.remedy)  # fmt: skip
+        return Alarm(
+            code=found.code,
+            message=found.message,
+            tick=found.tick,
+            axis=found.axis,
+            category=entry.category,
+            statement=statement or self.statement,
+            calls=calls,
+            hint=hint or entry.remedy,
+        )
 
     def _stop_by(self, alarm: Alarm) -> None:
         if self.touches is not None and alarm.code in _BLOCKED:

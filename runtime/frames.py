@@ -120,9 +120,7 @@ def rpy_from_rotation(R: Array) -> Array:
     regular = cy > 1e-9
     rx = np.where(regular, np.arctan2(R[..., 2, 1], R[..., 2, 2]), 0.0)
     ry = np.arctan2(-R[..., 2, 0], cy)
-    rz = np.where(
-        regular, np.arctan2(R[..., 1, 0], R[..., 0, 0]), np.arctan2(-R[..., 0, 1], R[..., 1, 1])
-    )
+    rz = np.where(regular, np.arctan2(R[..., 1, 0], R[..., 0, 0]), np.arctan2(-R[..., 0, 1], R[..., 1, 1]))
     angles = np.stack([rx, ry, rz], axis=-1)
     return np.asarray(angles + np.where(is_half_turn(angles) & (angles < 0.0), 2.0 * np.pi, 0.0))
 

@@ -100,8 +100,15 @@ class WristOptions:
 
     def only(self, *, range_condition: bool = False, guard: bool = False) -> "WristOptions":
         """Return the options with no condition but these."""
-        return replace(self, speed_condition="off", remaining_time=0.0, remaining_distance=0.0,
-                       range_condition=range_condition, deviation_condition="off", guard=guard)  # fmt: skip
+        return replace(
+            self,
+            speed_condition="off",
+            remaining_time=0.0,
+            remaining_distance=0.0,
+            range_condition=range_condition,
+            deviation_condition="off",
+            guard=guard,
+        )
 
     @property
     def peak(self) -> float:
@@ -174,8 +181,9 @@ def _flag(key: str, default: bool) -> Setting:
 
 def _three(key: str, unit: str, default: tuple[float, ...]) -> Setting:
     """Return a setting of three positive numbers, for J4, J5 and J6 or whatever the wrist axes are."""
-    return Setting(key=key, unit=unit, default=default,
-                   read=lambda table, name: table.numbers(name, 3, positive=True, high=1e5))  # fmt: skip
+    return Setting(
+        key=key, unit=unit, default=default, read=lambda table, name: table.numbers(name, 3, positive=True, high=1e5)
+    )
 
 
 def _one_or_each(table: Table, name: str) -> tuple[float, ...]:
@@ -203,8 +211,9 @@ CONTROLLER = (
 )
 SERVO = (
     _text("mode", "scheduled", "fixed"),
-    Setting(key="fixed_at", unit="", default="mid",
-            read=lambda table, name: table.text(name, choices=("min", "mid", "max"))),
+    Setting(
+        key="fixed_at", unit="", default="mid", read=lambda table, name: table.text(name, choices=("min", "mid", "max"))
+    ),
     _text("coupling", "full", "diagonal"),
     _text("feedforward", "command", "measured"),
     _number("velocity_feedforward", "", 1.0, low=0.0, high=1.0),
@@ -216,15 +225,19 @@ SERVO = (
     _numbers("position_bandwidth_rad_s", "1/s"),
     _numbers("velocity_bandwidth_rad_s", "1/s"),
     Setting(key="compensation", unit="", default="", read=lambda table, name: table.text(name)),
-)  # fmt: skip
+)
 WRIST = (
     _text("mode", "auto", "keep"),
     _text("speed_condition", "any", "all", "off"),
     _number("remaining_time_s", "s", 0.0, low=0.0, high=600.0),
     _number("remaining_distance_mm", "mm", 0.0, low=0.0, high=20_000.0),
     _flag("range_condition", True),
-    Setting(key="look_ahead_cycles", unit="cycles", default=10,
-            read=lambda table, name: table.integer(name, low=0, high=1000)),
+    Setting(
+        key="look_ahead_cycles",
+        unit="cycles",
+        default=10,
+        read=lambda table, name: table.integer(name, low=0, high=1000),
+    ),
     _text("deviation_condition", "moving", "start", "end", "off"),
     _three("deviation_deg", "deg", (90.0, 180.0, 90.0)),
     _flag("guard", True),
@@ -236,7 +249,7 @@ WRIST = (
     _number("most_deviation_deg", "deg", 180.0, low=0.0, high=180.0),
     _number("untaught_deviation_deg", "deg", 45.0, low=0.0, high=180.0),
     _flag("remedies", True),
-)  # fmt: skip
+)
 _LIMITS = SupervisionLimits()
 SUPERVISION = (
     _flag("enabled", True),
@@ -247,14 +260,18 @@ SUPERVISION = (
     _number("position_margin_deg", "deg", _LIMITS.position_margin / DEG, low=0.0, high=90.0),
     _number("collision", "", _LIMITS.collision, low=0.0, high=10.0),
     _number("stale_dynamics_ms", "ms", _LIMITS.stale_s * 1e3, positive=True, high=60_000.0),
-    Setting(key="overruns", unit="", default=_LIMITS.overruns,
-            read=lambda table, name: table.integer(name, low=1, high=1_000_000)),
+    Setting(
+        key="overruns",
+        unit="",
+        default=_LIMITS.overruns,
+        read=lambda table, name: table.integer(name, low=1, high=1_000_000),
+    ),
     _text("payload_mismatch", "stop", "warn", "off"),
     _number("payload_tolerance", "", _LIMITS.payload_tolerance, low=0.01, high=10.0),
     Setting(key="friction", unit="", default=None, read=lambda table, name: table.number(name, low=0.0, high=2.0)),
     _number("friction_uncertainty", "", _LIMITS.friction_uncertainty, low=0.0, high=1.0),
     _number("torque_uncertainty", "", _LIMITS.torque_uncertainty, low=1e-4, high=1.0),
-)  # fmt: skip
+)
 _BY_KEY = {
     **{item.key: item for item in CONTROLLER},
     **{f"servo.{item.key}": item for item in SERVO},
@@ -324,11 +341,10 @@ def read_layer(table: Table | None) -> Layer:
 
 def _read(table: Table, settings: Sequence[Setting], prefix: str) -> dict[str, Given]:
     return {
-        prefix + item.key: Given(value=_value(table, item), origin=table.place(item.key), table=table,
-                                 name=item.key)
+        prefix + item.key: Given(value=_value(table, item), origin=table.place(item.key), table=table, name=item.key)
         for item in settings
         if item.key in table
-    }  # fmt: skip
+    }
 
 
 def _value(table: Table, item: Setting) -> Any:
@@ -350,8 +366,9 @@ def read_options(values: Mapping[str, tuple[str, Any]]) -> Layer:
     layer = {}
     for key, (option, value) in values.items():
         if key not in _BY_KEY:
-            raise Fault("RBL609", f"{option}: '{key}' is not a key of the controller profile",
-                        f"known: {', '.join(KEYS)}")  # fmt: skip
+            raise Fault(
+                "RBL609", f"{option}: '{key}' is not a key of the controller profile", f"known: {', '.join(KEYS)}"
+            )
         try:
             taken = _BY_KEY[key].read(Table(Source(option, ""), {key: value}, ()), key)
         except FileFault as fault:
@@ -371,16 +388,24 @@ def settle(*layers: Layer) -> Settings:
             if key not in asked:
                 given[key] = Given(value=0.0, origin="default")
             elif key in _IDEAL_WHEN_MEASURED and not given[key].value < 1.0:
-                faults.append(given[key].fault(
-                    "RBL616", f"'controller.{key}' must be below 1 when the feed-forward is measured",
-                    'give a value such as 0.9, or write feedforward = "command"'))  # fmt: skip
+                faults.append(
+                    given[key].fault(
+                        "RBL616",
+                        f"'controller.{key}' must be below 1 when the feed-forward is measured",
+                        'give a value such as 0.9, or write feedforward = "command"',
+                    )
+                )
     if given["servo.mode"].value == "fixed":
         if "servo.coupling" not in asked:
             given["servo.coupling"] = Given(value="diagonal", origin="default")
         elif given["servo.coupling"].value == "full":
-            faults.append(given["servo.coupling"].fault(
-                "RBL605", "'controller.servo.coupling' must be \"diagonal\" when the gains are fixed",
-                "fixed gains hold the inertia of each axis alone"))  # fmt: skip
+            faults.append(
+                given["servo.coupling"].fault(
+                    "RBL605",
+                    "'controller.servo.coupling' must be \"diagonal\" when the gains are fixed",
+                    "fixed gains hold the inertia of each axis alone",
+                )
+            )
     raise_all(faults)
     return Settings(given=given, profile=_profile({key: item.value for key, item in given.items()}))
 

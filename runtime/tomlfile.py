@@ -34,8 +34,7 @@ _CLASHES = ("Cannot overwrite a value", "Cannot declare", "Cannot mutate immutab
 class FileFault(Fault):
     """A fault at a place in a file. ``line`` and ``column`` are 1-based; ``excerpt`` is the line's text."""
 
-    def __init__(self, code: str, message: str, hint: str, *, path: str, line: int, column: int,
-                 excerpt: str) -> None:  # fmt: skip
+    def __init__(self, code: str, message: str, hint: str, *, path: str, line: int, column: int, excerpt: str) -> None:
         super().__init__(code, message, hint)
         self.path = path
         self.line = line
@@ -146,8 +145,15 @@ class Table:
     it may follow from that.
     """
 
-    def __init__(self, source: Source, data: dict[str, Any], keys: tuple[str | int, ...],
-                 gathered: "list[FileFault | _Missing] | None" = None, *, absent: bool = False) -> None:  # fmt: skip
+    def __init__(
+        self,
+        source: Source,
+        data: dict[str, Any],
+        keys: tuple[str | int, ...],
+        gathered: "list[FileFault | _Missing] | None" = None,
+        *,
+        absent: bool = False,
+    ) -> None:
         self.source = source
         self.keys = keys
         self._data = data
@@ -256,8 +262,15 @@ class Table:
             raise _NotedError
         return self._data[key]
 
-    def number(self, key: str, default: float | None = None, *, low: float = -MAX_ABS, high: float = MAX_ABS,
-               positive: bool = False) -> float:  # fmt: skip
+    def number(
+        self,
+        key: str,
+        default: float | None = None,
+        *,
+        low: float = -MAX_ABS,
+        high: float = MAX_ABS,
+        positive: bool = False,
+    ) -> float:
         """Return a finite float in ``[low, high]`` (``positive``: above zero)."""
         if key not in self._data and default is not None:
             self._asked.add(key)
@@ -276,8 +289,16 @@ class Table:
             self.fail("RBL605", f"'{self.name(key)}' is {shown} and must be {wanted}", mm, key=key)
         return number
 
-    def numbers(self, key: str, count: int | None, default: Sequence[float] | None = None, *,
-                low: float = -MAX_ABS, high: float = MAX_ABS, positive: bool = False) -> tuple[float, ...]:  # fmt: skip
+    def numbers(
+        self,
+        key: str,
+        count: int | None,
+        default: Sequence[float] | None = None,
+        *,
+        low: float = -MAX_ABS,
+        high: float = MAX_ABS,
+        positive: bool = False,
+    ) -> tuple[float, ...]:
         """Return a list of ``count`` finite floats (None: any number)."""
         if key not in self._data and default is not None:
             self._asked.add(key)

@@ -131,8 +131,9 @@ def _examined(name: str, job: Job, settings: Settings, files: CellFiles) -> _Out
         loaded = load(name, shown)
     except Fault as fault:
         nothing = Source(shown, "")
-        return _Outcome(checked=Checked(source=nothing, faults=(fault,)),
-                        before=Loaded(name=name, mark=b"", source=nothing))  # fmt: skip
+        return _Outcome(
+            checked=Checked(source=nothing, faults=(fault,)), before=Loaded(name=name, mark=b"", source=nothing)
+        )
     selection = _selection(shown, job, settings)
     checked = check_source(loaded.source, selection, files)
     if not (job.fix or job.diff) or not any(item.fix is not None and item.fix.safe for item in checked.diagnostics):
@@ -182,8 +183,13 @@ def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
     diagnostics = in_order(filter(selection.keeps, add_later(checked.source, checked.diagnostics, later)))
     if plan.times is None and not has_errors(diagnostics):
         diagnostics = in_order((*diagnostics, *(item for item in later if item.severity is Severity.ERROR)))
-    return replace(outcome, checked=replace(checked, diagnostics=diagnostics), table=plan.table, times=plan.times,
-                   warnings=plan.warnings)  # fmt: skip
+    return replace(
+        outcome,
+        checked=replace(checked, diagnostics=diagnostics),
+        table=plan.table,
+        times=plan.times,
+        warnings=plan.warnings,
+    )
 
 
 def _write_times(path: Path, outcomes: Sequence[_Outcome]) -> None:
@@ -261,6 +267,8 @@ def _judged(job: Job, outcomes: Sequence[_Outcome]) -> int:
     if job.diff:
         return DIAGNOSTICS if any(outcome.fixed for outcome in outcomes) else 0
     found = [item for result in _results(outcomes) for item in result.diagnostics]
-    warned = job.strict and (any(item.severity is Severity.WARNING for item in found)
-                             or any(outcome.checked.warnings or outcome.warnings for outcome in outcomes))  # fmt: skip
+    warned = job.strict and (
+        any(item.severity is Severity.WARNING for item in found)
+        or any(outcome.checked.warnings or outcome.warnings for outcome in outcomes)
+    )
     return DIAGNOSTICS if warned or has_errors(found) else 0

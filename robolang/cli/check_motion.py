@@ -73,12 +73,20 @@ def _times(project: Project, explored: Exploration, rows: Sequence[LineTime]) ->
         "total_s": explored.rehearsal.total_us / 1e6,
         "complete": not explored.rehearsal.refused,
         "lines": [asdict(row) for row in rows],
-        "payload": [{"joint": f"J{share.axis + 1}", share.what: share.value, "limit": share.limit, "unit": share.unit,
-                     "estimated": not share.given} for share in shares],
+        "payload": [
+            {
+                "joint": f"J{share.axis + 1}",
+                share.what: share.value,
+                "limit": share.limit,
+                "unit": share.unit,
+                "estimated": not share.given,
+            }
+            for share in shares
+        ],
         "other_ways": len(explored.detours),
         "not_planned": _missed(project, explored),
         "self_collision_checked": bool(project.cell.robot.link_radii),
-    }  # fmt: skip
+    }
 
 
 def _missed(project: Project, explored: Exploration) -> list[int]:
@@ -120,8 +128,10 @@ def _shapes(project: Project) -> str:
     robot = project.cell.robot
     if robot.link_radii:
         return ""
-    return (f"not checked: the arm against itself, since {safe(robot.name)} has no shapes (link_radius_mm); against "
-            "obstacles its links are taken as thin capsules\n")  # fmt: skip
+    return (
+        f"not checked: the arm against itself, since {safe(robot.name)} has no shapes (link_radius_mm); against "
+        "obstacles its links are taken as thin capsules\n"
+    )
 
 
 def _wrist(project: Project, rehearsal: Rehearsal) -> list[str]:
@@ -132,8 +142,9 @@ def _wrist(project: Project, rehearsal: Rehearsal) -> list[str]:
         said = [
             f"J{share.axis + 1} {share.value if share.value >= _NOTHING else 0:.3g} of "
             f"{'' if share.given else '~'}{share.limit:.3g}"
-            for share in shares if share.what == what
-        ]  # fmt: skip
+            for share in shares
+            if share.what == what
+        ]
         if said:
             unit = next(share.unit for share in shares if share.what == what)
             said_of.append(f"{what} of the payload at the wrist, worst posture: {', '.join(said)} {unit}")
@@ -148,5 +159,4 @@ def _row(row: LineTime, where: tuple[str, ...]) -> str:
     margin = "" if row.margin_deg is None else f"{row.margin_deg:.1f} deg"
     wrist = "" if row.wrist_deg is None else f"{row.wrist_deg:.1f} deg"
     at = _where(lines.cells(asdict(row), where))
-    return (f"{at}  {text:<{_STATEMENT}} {row.count:>5} {row.seconds:8.3f} {way:>8} {fastest:>11} "
-            f"{margin:>9} {wrist:>9}")  # fmt: skip
+    return f"{at}  {text:<{_STATEMENT}} {row.count:>5} {row.seconds:8.3f} {way:>8} {fastest:>11} {margin:>9} {wrist:>9}"

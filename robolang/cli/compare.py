@@ -28,8 +28,9 @@ def compare(
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
     """Compare scheduled gains with fixed ones, right LOADs with wrong ones."""
-    options = o.controller_options(feedforward=feedforward, load_mode=load_mode, servo_period=servo_period,
-                                   settings=settings)  # fmt: skip
+    options = o.controller_options(
+        feedforward=feedforward, load_mode=load_mode, servo_period=servo_period, settings=settings
+    )
     with reported():
         from robolang.compare import VARIANTS, Request
         from robolang.compare import compare as run_all
@@ -40,8 +41,9 @@ def compare(
             known = ", ".join(item.name for item in VARIANTS)
             raise OptionValueError("--only", f"'{unknown[0]}' is not a variant; known: {known}")
         variants = tuple(item for item in VARIANTS if item.name in names)
-        request = Request(program=program, cell=cell, robot=robot, profile=profile, options=options,
-                          physics=not no_physics)  # fmt: skip
+        request = Request(
+            program=program, cell=cell, robot=robot, profile=profile, options=options, physics=not no_physics
+        )
         refuse(request.project(variants[0]))
         for variant in variants[1:]:
             request.project(variant)  # a bound of stability that only this variant breaks is found before the first run

@@ -38,8 +38,15 @@ def show(
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
     """Show every controller setting in force and where it came from."""
-    options = o.controller_options(servo=servo, fixed_at=fixed_at, coupling=coupling, feedforward=feedforward,
-                                   load_mode=load_mode, servo_period=servo_period, settings=settings)  # fmt: skip
+    options = o.controller_options(
+        servo=servo,
+        fixed_at=fixed_at,
+        coupling=coupling,
+        feedforward=feedforward,
+        load_mode=load_mode,
+        servo_period=servo_period,
+        settings=settings,
+    )
     if program is not None and not Path(program).exists():
         raise OptionValueError("PROG", f"there is no file '{program}'")
     with reported():

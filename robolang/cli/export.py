@@ -108,8 +108,9 @@ def _step_hz(text: str) -> int:
     whole = round(1000.0 / ms)
     if not abs(1000.0 / ms - whole) <= 1e-9 * whole:
         near = ", ".join(f"{1000.0 / each:g}ms" for each in (whole + 1, max(whole, 1)))
-        raise OptionValueError("--step", f"{ms:g} ms does not divide a second, so frequencies would be no whole "
-                               f"numbers; near it: {near}")  # fmt: skip
+        raise OptionValueError(
+            "--step", f"{ms:g} ms does not divide a second, so frequencies would be no whole numbers; near it: {near}"
+        )
     return whole
 
 
@@ -131,11 +132,16 @@ def _plain(found: "Export", out: Path) -> dict[str, Any]:
     head = ("line", "number", "text")
     moves = [{key: entry[key] for key in head} for entry in sequence if entry["kind"] == "move"]
     return {
-        "machine": found.machine.name, "step_s": found.request.step_s, "folder": str(out),
+        "machine": found.machine.name,
+        "step_s": found.request.step_s,
+        "folder": str(out),
         "moves": [{**entry, **summary(move, found)} for entry, move in zip(moves, found.moves, strict=True)],
-        "markers": [{key: value for key, value in entry.items() if key != "kind"}
-                    for entry in sequence if entry["kind"] == "marker"],
-    }  # fmt: skip
+        "markers": [
+            {key: value for key, value in entry.items() if key != "kind"}
+            for entry in sequence
+            if entry["kind"] == "marker"
+        ],
+    }
 
 
 def _print(found: "Export", out: Path) -> None:
@@ -155,8 +161,13 @@ def _print(found: "Export", out: Path) -> None:
         made = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
         for heading in headings:
             text = heading in ("statement", "channel")
-            made.add_column(heading, justify="left" if text else "right", no_wrap=True, overflow="ellipsis",
-                            max_width=width if heading == "statement" else None)  # fmt: skip
+            made.add_column(
+                heading,
+                justify="left" if text else "right",
+                no_wrap=True,
+                overflow="ellipsis",
+                max_width=width if heading == "statement" else None,
+            )
         return made
 
     title = f"{found.machine.name}: pulse tables in steps of {found.request.step_s * 1e3:g} ms"
@@ -175,8 +186,13 @@ def _print(found: "Export", out: Path) -> None:
         console.print(safe(note), soft_wrap=True)
     seconds = sum(entry["seconds"] for entry in moves)
     worst = max((entry["error_mm"] for entry in moves), key=badness, default=0.0)
-    console.print(safe(f"{len(found.files)} files in {out}: {len(moves)} moves of {seconds:.2f} s, {len(markers)} "
-                       f"markers between them; largest path error {worst:.4f} mm"), soft_wrap=True)  # fmt: skip
+    console.print(
+        safe(
+            f"{len(found.files)} files in {out}: {len(moves)} moves of {seconds:.2f} s, {len(markers)} "
+            f"markers between them; largest path error {worst:.4f} mm"
+        ),
+        soft_wrap=True,
+    )
 
 
 def _move_row(entry: dict[str, Any]) -> tuple[str, ...]:
@@ -184,19 +200,27 @@ def _move_row(entry: dict[str, Any]) -> tuple[str, ...]:
 
     channels = entry["channels"]
     return (
-        safe(entry["text"]), str(entry["steps"]), f"{entry['seconds']:.2f}",
-        f"{entry['speed_mm_s']:.1f}", str(sum(channel["raised"] for channel in channels)),
-        str(sum(channel["tables"] for channel in channels)), f"{entry['error_mm']:.4f}",
-    )  # fmt: skip
+        safe(entry["text"]),
+        str(entry["steps"]),
+        f"{entry['seconds']:.2f}",
+        f"{entry['speed_mm_s']:.1f}",
+        str(sum(channel["raised"] for channel in channels)),
+        str(sum(channel["tables"] for channel in channels)),
+        f"{entry['error_mm']:.4f}",
+    )
 
 
 def _channel_row(channel: "Channel", moves: list[dict[str, Any]]) -> tuple[str, ...]:
     unit, scale = channel.unit
     return (
-        channel.joint.name, f"{channel.pulse / scale:.6g} {unit}", f"{channel.min_hz:g}",
-        str(max((move["highest_hz"] for move in moves), default=0)), str(sum(move["raised"] for move in moves)),
-        str(sum(move["tables"] for move in moves)), str(max((move["debt_pulses"] for move in moves), default=0)),
-    )  # fmt: skip
+        channel.joint.name,
+        f"{channel.pulse / scale:.6g} {unit}",
+        f"{channel.min_hz:g}",
+        str(max((move["highest_hz"] for move in moves), default=0)),
+        str(sum(move["raised"] for move in moves)),
+        str(sum(move["tables"] for move in moves)),
+        str(max((move["debt_pulses"] for move in moves), default=0)),
+    )
 
 
 def _notes(moves: list[dict[str, Any]]) -> list[str]:

@@ -102,7 +102,10 @@ class _Run:
         """Return what became of the files, in a sentence."""
         if not (self.changed or self.same or self.left):
             return "no program (*.rbl) found"
-        would, same = ("would be reformatted", "already formatted") if self.check or self.diff else (
-            "reformatted", "left unchanged")  # fmt: skip
+        would, same = (
+            ("would be reformatted", "already formatted")
+            if self.check or self.diff
+            else ("reformatted", "left unchanged")
+        )
         parts = ((self.changed, would), (self.same, same), (self.left, "left alone for errors"))
         return ", ".join(f"{count} file{'s' * (count != 1)} {what}" for count, what in parts if count)

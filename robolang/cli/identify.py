@@ -59,9 +59,15 @@ def identify(
 ) -> None:
     """Identify inertia at the motor and weight of each axis, and what the model lacks of them."""
     if payload:
-        given = {"--axis": axis != "all", "--positions": positions != POSITIONS, "--error": error is not None,
-                 "--carrying": carrying is not None, "--table": table is not None, "--out": out is not None,
-                 "--date": date != ""}  # fmt: skip
+        given = {
+            "--axis": axis != "all",
+            "--positions": positions != POSITIONS,
+            "--error": error is not None,
+            "--carrying": carrying is not None,
+            "--table": table is not None,
+            "--out": out is not None,
+            "--date": date != "",
+        }
         for option in (name for name, there in given.items() if there):
             raise OptionValueError(option, "it has no place beside --payload")
         program = _is_program(subject)
@@ -83,11 +89,15 @@ def identify(
         spec, profile, hand = _subject(subject)
         say_warnings(spec.warnings)
         request = Request(
-            robot=spec, axes=_axes(axis, spec.n), positions=positions, plant=cast("PlantName", plant),
-            real=None if error is None else with_errors(spec, error), profile=profile,
+            robot=spec,
+            axes=_axes(axis, spec.n),
+            positions=positions,
+            plant=cast("PlantName", plant),
+            real=None if error is None else with_errors(spec, error),
+            profile=profile,
             payload=hand if carrying is None else values.payload(carrying, "--carrying", spec, heavier=False),
             table=table or 0,
-        )  # fmt: skip
+        )
         if out is not None:
             check_writable(out)
         with _progress(request) as progress:

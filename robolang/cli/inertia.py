@@ -58,8 +58,11 @@ def inertia(
         say_warnings(spec.warnings)
         q, carried = values.posture(joints, spec), values.payload(payload, "--payload", spec)
         values.note_overload(carried, "--payload", spec)
-        head = {"robot": spec.name, "joints_deg": [float(f"{angle:.12g}") + 0.0 for angle in np.rad2deg(q)],
-                "payload_kg": carried.mass}  # fmt: skip
+        head = {
+            "robot": spec.name,
+            "joints_deg": [float(f"{angle:.12g}") + 0.0 for angle in np.rad2deg(q)],
+            "payload_kg": carried.mass,
+        }
         if over is None:
             from runtime.dynamics.compensation import load_compensation
 
@@ -76,8 +79,13 @@ def inertia(
 
             check_writable(out)
         drawn = over_plane(spec, mapped, plane, q, carried)
-        found = {**head, "axis": mapped + 1, "map": [joint + 1 for joint in plane], **extremes(drawn),
-                 "file": None if out is None else str(out)}  # fmt: skip
+        found = {
+            **head,
+            "axis": mapped + 1,
+            "map": [joint + 1 for joint in plane],
+            **extremes(drawn),
+            "file": None if out is None else str(out),
+        }
         if out is not None:
             _draw(out, spec, drawn, carried.mass)
         if as_json:
@@ -134,15 +142,30 @@ def _print(found: dict[str, Any]) -> None:
     from robolang.diagnostics import safe
 
     angles = ", ".join(f"{angle:g}" for angle in found["joints_deg"])
-    table = Table(title=safe(f"{found['robot']} at ({angles}) deg{_with(found['payload_kg'])}"), box=box.SIMPLE_HEAD,
-                  padding=(0, 1, 0, 0), pad_edge=False)  # fmt: skip
-    for heading in ("axis", "link D\nkg m2", "rotor N^2 J\nkg m2", "at the motor\nkg cm2", "compensation\nkg cm2",
-                    "gravity\nN m"):  # fmt: skip
+    table = Table(
+        title=safe(f"{found['robot']} at ({angles}) deg{_with(found['payload_kg'])}"),
+        box=box.SIMPLE_HEAD,
+        padding=(0, 1, 0, 0),
+        pad_edge=False,
+    )
+    for heading in (
+        "axis",
+        "link D\nkg m2",
+        "rotor N^2 J\nkg m2",
+        "at the motor\nkg cm2",
+        "compensation\nkg cm2",
+        "gravity\nN m",
+    ):
         table.add_column(heading, justify="left" if heading == "axis" else "right", no_wrap=True)
     for row in found["axes"]:
-        table.add_row(f"J{row['axis']}", f"{row['link_inertia']:.4g}", f"{row['rotor_inertia']:.4g}",
-                      f"{row['motor_inertia'] / KG_CM2:.4g}", f"{row['compensation'] / KG_CM2:.4g}",
-                      f"{round(row['gravity'], 3) + 0.0:.3f}")  # fmt: skip
+        table.add_row(
+            f"J{row['axis']}",
+            f"{row['link_inertia']:.4g}",
+            f"{row['rotor_inertia']:.4g}",
+            f"{row['motor_inertia'] / KG_CM2:.4g}",
+            f"{row['compensation'] / KG_CM2:.4g}",
+            f"{round(row['gravity'], 3) + 0.0:.3f}",
+        )
     console = Console()
     console.print(table)
     beyond = "compensation" if any(row["compensation"] for row in found["axes"]) else "J"
@@ -161,8 +184,10 @@ def _print_extremes(found: dict[str, Any]) -> None:
     for name in ("smallest", "largest") if high - low > 1e-9 * high else ():
         at = found[name]
         x, y = at["joints_deg"]
-        typer.echo(f"  {name:<9} {at['motor_inertia'] / KG_CM2:.4g} kg cm2 (link D {at['link_inertia']:.4g} kg m2) "
-                   f"at J{first} {x:.1f}, J{second} {y:.1f} deg")  # fmt: skip
+        typer.echo(
+            f"  {name:<9} {at['motor_inertia'] / KG_CM2:.4g} kg cm2 (link D {at['link_inertia']:.4g} kg m2) "
+            f"at J{first} {x:.1f}, J{second} {y:.1f} deg"
+        )
     if found["file"] is not None:
         typer.echo(safe(f"  drawn in {found['file']}"))
 
@@ -180,6 +205,14 @@ def _draw(path: Path, spec: "RobotSpec", found: "InertiaMap", mass: float) -> No
     title = f"{spec.name}{_with(mass)}: inertia of J{found.axis + 1} at its motor, D / N^2 + J"
     others = [joint for joint in range(found.axis + 1, spec.n) if joint not in found.joints]  # it depends on these
     held = ", ".join(f"J{joint + 1} {round(found.q[joint] / DEG, 3) + 0.0:g}" for joint in others)
-    svg = as_map_svg(title, f"{first}, deg{f' (at {held} deg)' if held else ''}", f"{second}, deg", "kg cm2",
-                     found.x / DEG, found.y / DEG, found.motor / KG_CM2, every=TICKS_DEG)  # fmt: skip
+    svg = as_map_svg(
+        title,
+        f"{first}, deg{f' (at {held} deg)' if held else ''}",
+        f"{second}, deg",
+        "kg cm2",
+        found.x / DEG,
+        found.y / DEG,
+        found.motor / KG_CM2,
+        every=TICKS_DEG,
+    )
     write_atomic(path, lambda stream: stream.write(svg.encode("utf-8")))

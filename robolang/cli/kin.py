@@ -173,12 +173,14 @@ def _solutions_deg(kinematics: "Kinematics", X_base_flange: "Array") -> tuple[li
     for found in sorted(kinematics.solutions(X_base_flange), key=lambda s: -s.limit_margin):
         turns = list(islice(kinematics.other_turns(found), room))
         room, left = room - len(turns), left + kinematics.turn_count(found) - len(turns)
-        rows.append({
-            "joints_deg": _plain(np.rad2deg(found.q)),
-            "branch": str(found.branch),
-            "limit_margin_deg": float(np.rad2deg(found.limit_margin)),
-            "turns_deg": [_plain(np.rad2deg(each.q)) for each in (found, *turns)],
-        })  # fmt: skip
+        rows.append(
+            {
+                "joints_deg": _plain(np.rad2deg(found.q)),
+                "branch": str(found.branch),
+                "limit_margin_deg": float(np.rad2deg(found.limit_margin)),
+                "turns_deg": [_plain(np.rad2deg(each.q)) for each in (found, *turns)],
+            }
+        )
     return rows, left
 
 

@@ -18,7 +18,6 @@ def refuse(project: "Project", *, warnings: bool = True) -> bool:
     """
     from robolang.diagnostics import Severity, render
 
-
     if warnings:
         say_warnings(project.cell.warnings)
     for item in project.diagnostics:

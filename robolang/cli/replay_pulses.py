@@ -133,38 +133,59 @@ def _figures(folder: Path, export: "Export", replays: "list[MoveReplay]", drive:
         "path_error_mm": max((item.worst_mm for item in replays), key=badness, default=0.0),
         "channels": _channels(export, replays),
         "sequence": sequence,
-        "physics": None if drive is None else {
+        "physics": None
+        if drive is None
+        else {
             "seconds": drive.seconds,
             "alarms": [_alarm(alarm, drive.tick_s) for alarm in drive.alarms],
             "warnings": [_alarm(alarm, drive.tick_s) for alarm in drive.warnings],
         },
-    }  # fmt: skip
+    }
 
 
 def _marker(marker: "Marker") -> dict[str, Any]:
-    return {"kind": "marker", "line": marker.line, "number": marker.number, "text": marker.text,
-            "dwell_s": marker.dwell_s}  # fmt: skip
+    return {
+        "kind": "marker",
+        "line": marker.line,
+        "number": marker.number,
+        "text": marker.text,
+        "dwell_s": marker.dwell_s,
+    }
 
 
 def _move(export: "Export", found: "MoveReplay", driven: "DrivenMove | None") -> dict[str, Any]:
     move, (hz, channel) = found.move, found.fastest
     names = [item.name for item in export.channels]
     return {
-        "kind": "move", "line": move.line, "number": move.number, "text": move.text, "steps": move.steps,
-        "seconds": found.duration_s, "pulses": dict(zip(names, found.counts, strict=True)), "highest_hz": hz,
-        "highest_channel": names[channel] if hz else None, "rows_mm": found.rows_mm, "between_mm": found.between_mm,
-        "end_mm": found.end_mm, "real": None if driven is None else _driven(driven),
-    }  # fmt: skip
+        "kind": "move",
+        "line": move.line,
+        "number": move.number,
+        "text": move.text,
+        "steps": move.steps,
+        "seconds": found.duration_s,
+        "pulses": dict(zip(names, found.counts, strict=True)),
+        "highest_hz": hz,
+        "highest_channel": names[channel] if hz else None,
+        "rows_mm": found.rows_mm,
+        "between_mm": found.between_mm,
+        "end_mm": found.end_mm,
+        "real": None if driven is None else _driven(driven),
+    }
 
 
 def _channels(export: "Export", replays: "list[MoveReplay]") -> list[dict[str, Any]]:
     return [
-        {"name": channel.name, "unit": channel.unit, "per_pulse": channel.per_pulse,
-         "pulses": sum(item.counts[k] for item in replays),
-         "highest_hz": max((float(abs(item.frequency[:, k]).max(initial=0.0)) for item in replays),
-                           key=badness, default=0.0)}
+        {
+            "name": channel.name,
+            "unit": channel.unit,
+            "per_pulse": channel.per_pulse,
+            "pulses": sum(item.counts[k] for item in replays),
+            "highest_hz": max(
+                (float(abs(item.frequency[:, k]).max(initial=0.0)) for item in replays), key=badness, default=0.0
+            ),
+        }
         for k, channel in enumerate(export.channels)
-    ]  # fmt: skip
+    ]
 
 
 def _driven(move: "DrivenMove") -> dict[str, Any]:
@@ -173,9 +194,14 @@ def _driven(move: "DrivenMove") -> dict[str, Any]:
 
 def _alarm(alarm: "Alarm", tick_s: float) -> dict[str, Any]:
     axis, at = None if alarm.axis is None else alarm.axis + 1, alarm.statement
-    return {"code": alarm.code, "message": alarm.message, "line": None if at is None else at.line,
-            "number": None if at is None else at.number, "axis": axis,
-            "time_s": round(alarm.tick * tick_s, 9)}  # fmt: skip
+    return {
+        "code": alarm.code,
+        "message": alarm.message,
+        "line": None if at is None else at.line,
+        "number": None if at is None else at.number,
+        "axis": axis,
+        "time_s": round(alarm.tick * tick_s, 9),
+    }
 
 
 # --- the table -------------------------------------------------------------------------------------------------------
@@ -191,8 +217,11 @@ def _print(found: dict[str, Any]) -> None:
 
     console = Console()
     mechanism, physics = found["mechanism"], found["physics"]
-    console.print(safe(f"{found['program']} on {mechanism['name']}, steps of {found['step_s'] * 1e3:g} ms"),
-                  style="italic", soft_wrap=True)  # fmt: skip
+    console.print(
+        safe(f"{found['program']} on {mechanism['name']}, steps of {found['step_s'] * 1e3:g} ms"),
+        style="italic",
+        soft_wrap=True,
+    )
     console.print(_table(found, console.width))
     for kind, alarms in () if physics is None else (("warning", physics["warnings"]), ("stopped", physics["alarms"])):
         for alarm in alarms:
@@ -232,8 +261,12 @@ def _cells(row: dict[str, Any], *, real: bool) -> list[str]:
         waits = f"{row['dwell_s']:.3f}" if row["dwell_s"] else ""
         return [*head, "", waits, *([""] * (len(_COLUMNS) - 2 + real))]
     fastest = "-" if row["highest_channel"] is None else f"{row['highest_hz']:.0f} {row['highest_channel']}"
-    cells = [str(row["steps"]), f"{row['seconds']:.3f}", fastest,
-             *(f"{row[key]:.4f}" for key in ("rows_mm", "between_mm", "end_mm"))]  # fmt: skip
+    cells = [
+        str(row["steps"]),
+        f"{row['seconds']:.3f}",
+        fastest,
+        *(f"{row[key]:.4f}" for key in ("rows_mm", "between_mm", "end_mm")),
+    ]
     return [*head, *cells, *((["-"] if row["real"] is None else [f"{row['real']['error_mm']:.3f}"]) if real else [])]
 
 
@@ -257,8 +290,10 @@ def _totals(found: dict[str, Any]) -> list[str]:
     driven = [row for row in moves if row["real"] is not None]
     if driven:
         worst = max(driven, key=lambda row: badness(float(row["real"]["error_mm"])))
-        totals.append(f"real arm: {found['physics']['seconds']:.3f} s simulated; at most "
-                     f"{worst['real']['error_mm']:.3f} mm off, in {lines.name(worst)}")  # fmt: skip
+        totals.append(
+            f"real arm: {found['physics']['seconds']:.3f} s simulated; at most "
+            f"{worst['real']['error_mm']:.3f} mm off, in {lines.name(worst)}"
+        )
     return totals
 
 

@@ -129,8 +129,9 @@ def _model_limits(arm: "ImportedArm") -> "Table":
 
 
 def _model_bodies(arm: "ImportedArm") -> "Table":
-    table = _table("Bodies in their axis frames (inertia xx yy zz about the centre)", "mass\nkg", "cog\nmm",
-                   "inertia\nkg m2")  # fmt: skip
+    table = _table(
+        "Bodies in their axis frames (inertia xx yy zz about the centre)", "mass\nkg", "cog\nmm", "inertia\nkg m2"
+    )
     for index, axis in enumerate(arm.axes, start=1):
         cog = " ".join(f"{round(1000 * x, 3) + 0.0:g}" for x in axis.body.cog)
         table.add_row(f"J{index}", f"{axis.body.mass:g}", cog, _moments(axis.body))
@@ -189,9 +190,15 @@ def _wrist(spec: "RobotSpec") -> "Table":
 
 def _drives(spec: "RobotSpec") -> "Table":
     table = _table(
-        "Drives (motor side; N^2 J at the joint)", "gear\nN", "rotor J\nkg m2", "N^2 J\nkg m2", "Kt\nN m/A", "limit\nA",
-        "Coulomb +/-\nN m", "viscous\nN m s",
-    )  # fmt: skip
+        "Drives (motor side; N^2 J at the joint)",
+        "gear\nN",
+        "rotor J\nkg m2",
+        "N^2 J\nkg m2",
+        "Kt\nN m/A",
+        "limit\nA",
+        "Coulomb +/-\nN m",
+        "viscous\nN m s",
+    )
     for index, axis in enumerate(spec.axes, start=1):
         motor = axis.motor
         table.add_row(
@@ -236,8 +243,13 @@ def _loops(spec: "RobotSpec") -> "Table":
 
 
 def _bodies(spec: "RobotSpec") -> "Table":
-    table = _table("Bodies in their axis frames (inertia xx yy zz about the centre)", "mass\nkg",
-                   "cog\nmm", "inertia published\nkg m2", "inertia used\nkg m2")  # fmt: skip
+    table = _table(
+        "Bodies in their axis frames (inertia xx yy zz about the centre)",
+        "mass\nkg",
+        "cog\nmm",
+        "inertia published\nkg m2",
+        "inertia used\nkg m2",
+    )
     for index, (axis, published) in enumerate(zip(spec.axes, spec.published, strict=True), start=1):
         used, printed = _moments(axis.body), _moments(published)
         cog = " ".join(f"{round(1000 * x, 3) + 0.0:g}" for x in axis.body.cog)

@@ -56,9 +56,16 @@ def run(
     ] = False,
 ) -> None:
     """Run a program on the controller and the physics."""
-    options = o.controller_options(servo=servo, fixed_at=fixed_at, coupling=coupling, feedforward=feedforward,
-                                   load_mode=load_mode, servo_period=servo_period, settings=settings,
-                                   compensation=compensation)  # fmt: skip
+    options = o.controller_options(
+        servo=servo,
+        fixed_at=fixed_at,
+        coupling=coupling,
+        feedforward=feedforward,
+        load_mode=load_mode,
+        servo_period=servo_period,
+        settings=settings,
+        compensation=compensation,
+    )
     with reported():
         _check_outputs(program, report, log)
         from robolang.project import load_project

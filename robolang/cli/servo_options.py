@@ -32,9 +32,11 @@ Compensation = Annotated[
     str | None, typer.Option("--compensation", help="Compensation file of 'robolang identify', in place of the rotors.")
 ]
 Set = Annotated[
-    list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Any key of the controller profile, e.g. "
-                                   "servo.gravity_compensation=0.")
-]  # fmt: skip
+    list[str] | None,
+    typer.Option(
+        "--set", metavar="KEY=VALUE", help="Any key of the controller profile, e.g. servo.gravity_compensation=0."
+    ),
+]
 
 CHOICES = {
     "--servo": ("servo.mode", ("scheduled", "fixed")),
@@ -49,17 +51,31 @@ Options = dict[str, tuple[str, Any]]
 """Dotted key to (name of the option, value), as ``robolang.project.load_project`` takes it."""
 
 
-def controller_options(*, servo: str | None = None, fixed_at: str | None = None, coupling: str | None = None,
-                       feedforward: str | None = None, load_mode: str | None = None, servo_period: str | None = None,
-                       settings: list[str] | None = None, compensation: str | None = None) -> Options:  # fmt: skip
+def controller_options(
+    *,
+    servo: str | None = None,
+    fixed_at: str | None = None,
+    coupling: str | None = None,
+    feedforward: str | None = None,
+    load_mode: str | None = None,
+    servo_period: str | None = None,
+    settings: list[str] | None = None,
+    compensation: str | None = None,
+) -> Options:
     """Return the options that were given; ``OptionValueError`` for a value that is none of the choices.
 
     ``--fixed-at`` alone means fixed gains; beside ``--servo scheduled`` it would mean nothing and is refused.
     """
     if fixed_at is not None and servo == "scheduled":
         raise OptionValueError("--fixed-at", "scheduled gains are not fixed; leave out --servo scheduled")
-    given = {"--servo": servo, "--fixed-at": fixed_at, "--coupling": coupling, "--feedforward": feedforward,
-             "--load-mode": load_mode, "--servo-period": servo_period}  # fmt: skip
+    given = {
+        "--servo": servo,
+        "--fixed-at": fixed_at,
+        "--coupling": coupling,
+        "--feedforward": feedforward,
+        "--load-mode": load_mode,
+        "--servo-period": servo_period,
+    }
     options: Options = {}
     for text in settings or []:
         key, value = _setting(text)

@@ -47,8 +47,15 @@ def step(
     plot: Annotated[Path | None, typer.Option("--plot", help="Write the response as .svg or .html.")] = None,
 ) -> None:
     """Measure the step response of one axis: overshoot, settling, rise, droop."""
-    options = o.controller_options(servo=servo, fixed_at=fixed_at, coupling=coupling, feedforward=feedforward,
-                                   load_mode=load_mode, servo_period=servo_period, settings=settings)  # fmt: skip
+    options = o.controller_options(
+        servo=servo,
+        fixed_at=fixed_at,
+        coupling=coupling,
+        feedforward=feedforward,
+        load_mode=load_mode,
+        servo_period=servo_period,
+        settings=settings,
+    )
     for option, value, choices in (("--plant", plant, ("rigid", "mujoco")), ("--drives", drives, ("real", "ideal"))):
         if value not in choices:
             raise OptionValueError(option, f"'{value}' is not one of {', '.join(choices)}")
@@ -58,7 +65,7 @@ def step(
         import numpy as np
 
         from robolang.project import load_any_robot, load_settings
-        from robolang.step import StepRequest  # fmt: skip
+        from robolang.step import StepRequest
         from robolang.step import as_json as figures
         from robolang.step import step as run_step
         from runtime.frames import pose
@@ -79,12 +86,19 @@ def step(
             declared = values.payload(load, "--load", spec)
             values.note_overload(declared, "--load", spec)
         request = StepRequest(
-            robot=spec, axis=axis - 1, q=values.posture(joints, spec), size=size * DEG, carried=carried,
+            robot=spec,
+            axis=axis - 1,
+            q=values.posture(joints, spec),
+            size=size * DEG,
+            carried=carried,
             declared=declared,
-            profile=in_force.profile, plant=cast("PlantName", plant), ideal=drives == "ideal", locked=lock,
+            profile=in_force.profile,
+            plant=cast("PlantName", plant),
+            ideal=drives == "ideal",
+            locked=lock,
             seconds=seconds,
             tool=tool_point,
-        )  # fmt: skip
+        )
         if plot is not None:
             from robolang.storage import check_writable
 
@@ -119,8 +133,12 @@ def _print(found: dict[str, Any]) -> None:
     from robolang.diagnostics import safe
 
     drives = "ideal drives" if found["ideal_drives"] else "real drives"
-    typer.echo(safe(f"{found['robot']}: step of {found['size_deg']:g} deg on J{found['axis']}, {found['servo']} gains, "
-                    f"{found['plant']} arm, {drives}"))  # fmt: skip
+    typer.echo(
+        safe(
+            f"{found['robot']}: step of {found['size_deg']:g} deg on J{found['axis']}, {found['servo']} gains, "
+            f"{found['plant']} arm, {drives}"
+        )
+    )
     for label, key, form in _LINES:
         if found[key] is not None:
             # adding zero turns a rounded -0.0 into 0.0

@@ -65,8 +65,9 @@ def weigh(
             cell=found_cell,
             added=None if payload is None else values.payload(payload, "--payload", found_cell.robot),
             profile=in_force.profile,
-            plant=cast("PlantName", plant), amplitude=None if amplitude is None else amplitude * DEG,
-        )  # fmt: skip
+            plant=cast("PlantName", plant),
+            amplitude=None if amplitude is None else amplitude * DEG,
+        )
         _note(carried(request).mass, found_cell)
         _say_what_comes(request, plan_exercise(request).amplitudes)
         found = figures(request, run_weigh(request))
@@ -80,8 +81,11 @@ def _note(mass: float, cell: "CellSpec") -> None:
     rated = cell.robot.rated_payload
     if not mass <= rated:
         shown, most = beside(mass, rated)
-        typer.echo(f"note: hand and --payload weigh {shown} kg, over the rated {most} kg of {cell.robot.name}; no "
-                   "program can declare that", err=True)  # fmt: skip
+        typer.echo(
+            f"note: hand and --payload weigh {shown} kg, over the rated {most} kg of {cell.robot.name}; no "
+            "program can declare that",
+            err=True,
+        )
 
 
 def _say_what_comes(request: "WeighRequest", amplitudes: Any) -> None:
@@ -112,5 +116,7 @@ def _print(found: dict[str, Any]) -> None:
 def _row(label: str, value: float, sd: float, true: float, digits: int) -> None:
     # adding zero turns a rounded -0.0 into 0.0; an uncertainty is never shown as none
     least = math.pow(10.0, -digits)
-    typer.echo(f"  {label:<20} {round(value, digits) + 0.0:9.{digits}f}    {max(sd, least):6.{digits}f} "
-               f"{round(true, digits) + 0.0:10.{digits}f}")  # fmt: skip
+    typer.echo(
+        f"  {label:<20} {round(value, digits) + 0.0:9.{digits}f}    {max(sd, least):6.{digits}f} "
+        f"{round(true, digits) + 0.0:10.{digits}f}"
+    )

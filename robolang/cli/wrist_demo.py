@@ -62,9 +62,16 @@ def wrist_demo(
         if out is not None:
             _write(out, spec.name, shown)
         if as_json:
-            found = [{"figure": figure.number, "title": figure.title, "sentence": figure.sentence,
-                      "file": None if out is None else str(out / _file(figure)),
-                      "runs": [_plain(each) for each in runs]} for figure, runs in shown]  # fmt: skip
+            found = [
+                {
+                    "figure": figure.number,
+                    "title": figure.title,
+                    "sentence": figure.sentence,
+                    "file": None if out is None else str(out / _file(figure)),
+                    "runs": [_plain(each) for each in runs],
+                }
+                for figure, runs in shown
+            ]
             typer.echo(json.dumps({"robot": spec.name, "figures": found}, indent=2))
         else:
             _print(spec.name, shown, out)
@@ -118,18 +125,32 @@ def _print(robot: str, shown: list["Shown"], out: Path | None) -> None:
     from robolang.diagnostics import safe
 
     console = Console()
-    headings = ["fig", "of", "condition,\nor what is\nheld", "switch\ns, by", "J4, J5, J6\nfastest*\ndeg/s",
-                "tool\nturn\ndeg", "end\nerror\ndeg"]  # fmt: skip
-    table = Table(title=safe(f"Figures of CN103429397A on {robot}"), box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0),
-                  pad_edge=False)  # fmt: skip
+    headings = [
+        "fig",
+        "of",
+        "condition,\nor what is\nheld",
+        "switch\ns, by",
+        "J4, J5, J6\nfastest*\ndeg/s",
+        "tool\nturn\ndeg",
+        "end\nerror\ndeg",
+    ]
+    table = Table(
+        title=safe(f"Figures of CN103429397A on {robot}"), box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False
+    )
     for k, heading in enumerate([*headings, *(["file"] if out else [])]):
         table.add_column(heading, justify="right" if k in (4, 5, 6) else "left", no_wrap=k != 2)
     for figure, runs in shown:
         for k, row in enumerate(map(_plain, runs)):
             speeds = " ".join(f"{speed:5.1f}" for speed in row["speed_deg_s"][-3:])
-            cells = [str(figure.number) if k == 0 else "", row["move"], row["condition"],
-                     "-" if row["switch_s"] is None else f"{row['switch_s']:.2f} {_axis(row)}", speeds,
-                     f"{row['posture_deviation_deg']:.1f}", _small(row["end_error_deg"])]  # fmt: skip
+            cells = [
+                str(figure.number) if k == 0 else "",
+                row["move"],
+                row["condition"],
+                "-" if row["switch_s"] is None else f"{row['switch_s']:.2f} {_axis(row)}",
+                speeds,
+                f"{row['posture_deviation_deg']:.1f}",
+                _small(row["end_error_deg"]),
+            ]
             table.add_row(*cells, *([_file(figure) if k == 0 else ""] if out else []))
     console.print(table)
     console.print("* from the switch on; of the whole move where there is none", style="italic")
@@ -147,8 +168,9 @@ def _print_components(console: Any, shown: list["Shown"]) -> None:
     rows = [(figure, row) for figure, runs in shown if figure.drawn is not None for row in map(_plain, runs)]
     if not rows:
         return
-    table = Table(title="Largest change of the posture components, deg", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0),
-                  pad_edge=False)  # fmt: skip
+    table = Table(
+        title="Largest change of the posture components, deg", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False
+    )
     for heading in ("fig", "of", "held", "tilt", "advance", "rotation"):
         table.add_column(heading, justify="right" if heading in ("tilt", "advance", "rotation") else "left")
     for figure, row in rows:
@@ -218,8 +240,17 @@ def _joints_svg(title: str, figure: "Figure", runs: list["Run"]) -> str:
     from robolang.plot import Curve, Dots, as_svg
     from runtime.units import DEG
 
-    curves = [Curve(name=f"J{axis + 1} {figure.variant}" if k else f"J{axis + 1}", x=run.t, y=run.q[:, axis] / DEG,
-                    dashed=k > 0, colour=axis - 3) for k, run in enumerate(runs) for axis in (3, 4, 5)]  # fmt: skip
+    curves = [
+        Curve(
+            name=f"J{axis + 1} {figure.variant}" if k else f"J{axis + 1}",
+            x=run.t,
+            y=run.q[:, axis] / DEG,
+            dashed=k > 0,
+            colour=axis - 3,
+        )
+        for k, run in enumerate(runs)
+        for axis in (3, 4, 5)
+    ]
     moved = any(run.trial.seam for run in runs)
     ends = np.concatenate([run.q_end[3:] for run in (runs if moved else runs[:1])]) / DEG
     dots = Dots(name="taught and moved end" if moved else "taught end", x=np.full(len(ends), runs[0].t[-1]), y=ends)
@@ -251,8 +282,10 @@ def _components_svg(title: str, figure: "Figure", run: "Run") -> str:
 
     switch = run.switch_s or 0.0
     shown = run.t >= switch - _LEAD_S - 1e-9
-    curves = [Curve(name=name, x=run.t[shown], y=run.components[shown, k] / DEG)
-              for k, name in enumerate(("tilt", "advance", "rotation"))]  # fmt: skip
+    curves = [
+        Curve(name=name, x=run.t[shown], y=run.components[shown, k] / DEG)
+        for k, name in enumerate(("tilt", "advance", "rotation"))
+    ]
     mark = Mark(name=f"{figure.switch} {switch:.2f} s", x=switch)
     return as_svg(title, "time, s", "change of the posture, deg", curves, level=0.0, corner="above", marks=[mark])
 
@@ -260,13 +293,17 @@ def _components_svg(title: str, figure: "Figure", run: "Run") -> str:
 def _index(robot: str, shown: list["Shown"]) -> str:
     """Return a page that shows all plots, each with its sentence and what came of its runs."""
     title = f"Figures of CN103429397A on {robot}"
-    parts = [f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>',
-             f"<style>{_STYLE}</style></head><body><h1>{escape(title)}</h1>"]  # fmt: skip
+    parts = [
+        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>',
+        f"<style>{_STYLE}</style></head><body><h1>{escape(title)}</h1>",
+    ]
     for figure, runs in shown:
         facts = "<br>".join(escape(_facts(_plain(run), components=figure.drawn is not None)) for run in runs)
-        parts.append(f'<figure id="fig{figure.number}"><img src="{_file(figure)}" alt="{escape(_title(figure))}">'
-                     f'<figcaption><p>{escape(figure.sentence)}</p><p>{facts}</p>'
-                     "</figcaption></figure>")  # fmt: skip
+        parts.append(
+            f'<figure id="fig{figure.number}"><img src="{_file(figure)}" alt="{escape(_title(figure))}">'
+            f"<figcaption><p>{escape(figure.sentence)}</p><p>{facts}</p>"
+            "</figcaption></figure>"
+        )
     return "\n".join([*parts, "</body></html>", ""])
 
 
@@ -280,5 +317,7 @@ def _facts(row: dict[str, Any], *, components: bool) -> str:
     if components:
         values = row["component_deviation_deg"].values()
         turned += f" (tilt, advance, rotation {', '.join(f'{value:.2f}' for value in values)})"
-    return (f"{row['move']}, {row['condition']}: {switch} J4, J5, J6 at most {speeds} deg/s; {turned}; end error "
-            f"{_small(row['end_error_deg'])} deg.")  # fmt: skip
+    return (
+        f"{row['move']}, {row['condition']}: {switch} J4, J5, J6 at most {speeds} deg/s; {turned}; end error "
+        f"{_small(row['end_error_deg'])} deg."
+    )

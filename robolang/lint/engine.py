@@ -37,8 +37,9 @@ class Checked:
     warnings: tuple[FileFault, ...] = ()
 
 
-def lint(source: Source, symbols: CellSymbols = NOTHING_KNOWN, *, selection: Selection | None = None,
-         complete: bool = True) -> tuple[Diagnostic, ...]:  # fmt: skip
+def lint(
+    source: Source, symbols: CellSymbols = NOTHING_KNOWN, *, selection: Selection | None = None, complete: bool = True
+) -> tuple[Diagnostic, ...]:
     """Return the findings of a text by place, with their fixes.
 
     Args:
@@ -87,5 +88,9 @@ def check_points(checked: Checked, selection: Selection | None = None) -> Checke
 def _unused(name: str, source: Source) -> Diagnostic:
     line, column = locate(source.text, ("points", name))
     whole = source.line_spans[line - 1]
-    return Diagnostic(code="RBL224", severity=Severity.WARNING, span=Span(whole.start + column - 1, whole.end),
-                      message=f"point {name} is taught and the program does not name it")  # fmt: skip
+    return Diagnostic(
+        code="RBL224",
+        severity=Severity.WARNING,
+        span=Span(whole.start + column - 1, whole.end),
+        message=f"point {name} is taught and the program does not name it",
+    )

@@ -90,7 +90,7 @@ RULES = (
         "They are refused before they are read, so that a check neither waits for a pipe nor reads what is not its.",
         bad='schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\ncomment = "turned by 90\udcb0"\n',
         good='schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\ncomment = "turned by 90 deg"\n',
-        shown='schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\n'
+        shown="schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\n"
         'comment = "turned by 90\N{DEGREE SIGN}"      (the degree sign saved as Latin-1)\n',
         line=4,
         points=True,

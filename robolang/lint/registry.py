@@ -21,13 +21,34 @@ CHECKED = ("RBL1", "RBL2", "RBL3", "RBL40", "RBL413", "RBL415", "RBL507", "RBL53
 """Beginnings of the codes that reading and checking a program can find."""
 
 
-OF_THE_MOTION = frozenset({"RBL410", "RBL411", "RBL412", "RBL414", "RBL416", "RBL419", "RBL421", "RBL422", "RBL423",
-                           "RBL424", "RBL425", "RBL426", "RBL427", "RBL428", "RBL429", "RBL434", "RBL435", "RBL440",
-                           "RBL441"})  # fmt: skip
+OF_THE_MOTION = frozenset(
+    {
+        "RBL410",
+        "RBL411",
+        "RBL412",
+        "RBL414",
+        "RBL416",
+        "RBL419",
+        "RBL421",
+        "RBL422",
+        "RBL423",
+        "RBL424",
+        "RBL425",
+        "RBL426",
+        "RBL427",
+        "RBL428",
+        "RBL429",
+        "RBL434",
+        "RBL435",
+        "RBL440",
+        "RBL441",
+    }
+)
 """Codes that only planning the motion finds: ``robolang check --motion``, and of refusals ``robolang run``."""
 
-OF_THE_RUN = frozenset({"RBL307", "RBL309", "RBL401", "RBL402", "RBL403", "RBL404", "RBL405", "RBL415", "RBL507",
-                        "RBL534"})  # fmt: skip
+OF_THE_RUN = frozenset(
+    {"RBL307", "RBL309", "RBL401", "RBL402", "RBL403", "RBL404", "RBL405", "RBL415", "RBL507", "RBL534"}
+)
 """Codes of values, which a run may work out: checking finds those of numbers alone."""
 
 

@@ -101,8 +101,9 @@ def add_later(source: Source, before: Iterable[Diagnostic], later: Iterable[Diag
     return tuple(kept)
 
 
-def _split(source: Source, findings: Iterable[Diagnostic],
-           directives: Mapping[int, _Directive]) -> tuple[list[Diagnostic], dict[int, set[str]]]:  # fmt: skip
+def _split(
+    source: Source, findings: Iterable[Diagnostic], directives: Mapping[int, _Directive]
+) -> tuple[list[Diagnostic], dict[int, set[str]]]:
     """Return the findings that no directive covers, and the codes of the others by line."""
     kept: list[Diagnostic] = []
     used: dict[int, set[str]] = {}

@@ -17,8 +17,13 @@ PERIOD_S = 0.2
 Stamp = tuple[int, int, int] | None
 
 
-def watch(paths: Iterable[str], check: Callable[[], int], *, rounds: int | None = None,
-          sleep: Callable[[float], object] = time.sleep) -> int:  # fmt: skip
+def watch(
+    paths: Iterable[str],
+    check: Callable[[], int],
+    *,
+    rounds: int | None = None,
+    sleep: Callable[[float], object] = time.sleep,
+) -> int:
     """Call ``check`` now and after every change, until Ctrl-C or after ``rounds`` looks; return its last answer."""
     named = list(paths)
     seen, code, looks = stamps(named), 0, 0

@@ -122,8 +122,14 @@ def _of_fault(fault: Fault, path: str) -> Finding:
     if isinstance(fault, FileFault):
         path = fault.path
         region = Region(line=fault.line, column=fault.column, end_line=fault.line, end_column=fault.column)
-    return Finding(path=path, code=fault.code, severity=Severity.ERROR, message=safe(fault.message),
-                   hint=safe(fault.hint), region=region)  # fmt: skip
+    return Finding(
+        path=path,
+        code=fault.code,
+        severity=Severity.ERROR,
+        message=safe(fault.message),
+        hint=safe(fault.hint),
+        region=region,
+    )
 
 
 def _region(span: Span, source: Source) -> Region:

@@ -30,11 +30,17 @@ def render(results: Sequence[Checked], root: Path) -> str:
     marked = zip(found, fingerprints(found, root), strict=True)
     version = import_module("robolang").__version__  # by name: the package itself leads to the numerics (a lazy import)
     run = {
-        "tool": {"driver": {"name": "robolang", "version": version, "semanticVersion": version,
-                            "rules": [_rule(code, levels[code]) for code in codes]}},
+        "tool": {
+            "driver": {
+                "name": "robolang",
+                "version": version,
+                "semanticVersion": version,
+                "rules": [_rule(code, levels[code]) for code in codes],
+            }
+        },
         "columnKind": "unicodeCodePoints",
         "results": [_result(item, codes.index(item.code), mark, root) for item, mark in marked],
-    }  # fmt: skip
+    }
     return json.dumps({"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}, indent=2) + "\n"
 
 

@@ -16,8 +16,9 @@ def render(results: Sequence[Checked], *, as_json: bool) -> str:
     fixable = Counter(item.code for item in found if item.fix is not None and item.fix.safe)
     order = sorted(counts, key=lambda code: (-counts[code], code))
     if as_json:
-        rows = [{"code": code, "name": lookup(code).name, "count": counts[code], "fixable": fixable[code]}
-                for code in order]  # fmt: skip
+        rows = [
+            {"code": code, "name": lookup(code).name, "count": counts[code], "fixable": fixable[code]} for code in order
+        ]
         return json.dumps(rows, indent=2) + "\n"
     width = len(str(max(counts.values(), default=0)))
     return "".join(

@@ -167,8 +167,13 @@ def _table_lines(table: JointTable) -> list[str]:
     angles = ", ".join(f"[{', '.join(repr(round(angle / DEG, 9)) for angle in grid)}]" for grid in table.grid)
     size = len(table.values) // len(table.grid[0])
     rows = [table.values[k : k + size] for k in range(0, len(table.values), size)]
-    return [f"table_joints = [{', '.join(str(joint + 1) for joint in table.joints)}]", f"table_deg = [{angles}]",
-            "table_kg_m2 = [", *(f"  {', '.join(repr(float(Jc)) for Jc in row)}," for row in rows), "]"]  # fmt: skip
+    return [
+        f"table_joints = [{', '.join(str(joint + 1) for joint in table.joints)}]",
+        f"table_deg = [{angles}]",
+        "table_kg_m2 = [",
+        *(f"  {', '.join(repr(float(Jc)) for Jc in row)}," for row in rows),
+        "]",
+    ]
 
 
 def _schema(table: Table) -> None:
@@ -220,8 +225,11 @@ def _joint_table(table: Table, axis: int, n: int) -> JointTable | None:
         table.fail("RBL605", f"'{table.name('table_joints')}' must name {beyond}", key="table_joints")
     grid = tuple(_angles(table, angles) for angles in table.raw_list("table_deg"))
     if len(grid) != len(joints):
-        table.fail("RBL613", f"'{table.name('table_deg')}' must have {len(joints)} lists of angles, one for each "
-                   f"joint, not {len(grid)}", key="table_deg")  # fmt: skip
+        table.fail(
+            "RBL613",
+            f"'{table.name('table_deg')}' must have {len(joints)} lists of angles, one for each joint, not {len(grid)}",
+            key="table_deg",
+        )
     values = table.numbers("table_kg_m2", prod(len(angles) for angles in grid))
     return JointTable(joints=tuple(int(joint) - 1 for joint in joints), grid=grid, values=values)
 
@@ -231,8 +239,9 @@ def _angles(table: Table, angles: Any) -> tuple[float, ...]:
     key = "table_deg"
     found = Table(table.source, {key: angles}, table.keys).numbers(key, None, low=-FURTHEST, high=FURTHEST)
     if not 2 <= len(found) <= MOST_ANGLES:
-        table.fail("RBL613", f"a list of '{table.name(key)}' must have 2 to {MOST_ANGLES} angles, not {len(found)}",
-                   key=key)  # fmt: skip
+        table.fail(
+            "RBL613", f"a list of '{table.name(key)}' must have 2 to {MOST_ANGLES} angles, not {len(found)}", key=key
+        )
     found = tuple(angle * DEG for angle in found)
     if not _rising(found):
         table.fail("RBL605", f"the angles of a list of '{table.name(key)}' must rise", key=key)
@@ -269,8 +278,11 @@ def _believe_moments(found: Compensation, spec: RobotSpec, axes: list[Table]) ->
         size = norm(np.asarray(moment))
         if not size <= most[axis]:
             long, bound = beside(size, float(most[axis]), form=".4g")
-            table.fail("RBL605", f"'first_moment_kg_m' of J{axis + 1} is {long} long; more than {bound} is not "
-                       "believed of that link", key="first_moment_kg_m")  # fmt: skip
+            table.fail(
+                "RBL605",
+                f"'first_moment_kg_m' of J{axis + 1} is {long} long; more than {bound} is not believed of that link",
+                key="first_moment_kg_m",
+            )
 
 
 def _smallest_over(table: JointTable, spec: RobotSpec, axis: int) -> list[float]:

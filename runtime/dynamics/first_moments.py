@@ -77,8 +77,7 @@ def scale(spec: RobotSpec) -> Array:
     return found
 
 
-def weigh_links(spec: RobotSpec, payload: Payload, axes: Array, postures: Array, torques: Array,
-                most: Array) -> Weight:  # fmt: skip
+def weigh_links(spec: RobotSpec, payload: Payload, axes: Array, postures: Array, torques: Array, most: Array) -> Weight:
     """Fit the torques (K,) N m of ``axes`` (K,), 0-based, that turn evenly in ``postures`` (K, n) rad.
 
     ``payload`` is what the arm carries and the model knows, ``most`` (n,) N m the torque limits. Joint side, SI. An

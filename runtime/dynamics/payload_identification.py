@@ -127,8 +127,9 @@ class _Rows:
     step_s: float
 
 
-def identify_payload(spec: RobotSpec, tau: Array, q: Array, *, ticks: int, tick_s: float,
-                     known: Knowledge) -> WeighedPayload:  # fmt: skip
+def identify_payload(
+    spec: RobotSpec, tau: Array, q: Array, *, ticks: int, tick_s: float, known: Knowledge
+) -> WeighedPayload:
     """Return the payload that explains torques tau (N, n) N m and readings q (N, n) rad, one row per servo tick.
 
     Row k of ``tau`` acts in the tick that begins with row k of ``q``. Half the window over which is averaged has
@@ -156,10 +157,13 @@ def _averages(tau: Array, q: Array, ticks: int, tick_s: float) -> _Rows:
     first, second = (now - before) / h, (after - now) / h
     slowest = np.where(first * second > 0.0, np.minimum(np.abs(first), np.abs(second)), 0.0)
     return _Rows(
-        q=now, dq=(after - before) / (2.0 * h), ddq=(after - 2.0 * now + before) / h**2,
-        tau=np.array([matmul(triangle, tau[k - m : k + m]) for k in at]).reshape(now.shape), turning=slowest > TURNING,
+        q=now,
+        dq=(after - before) / (2.0 * h),
+        ddq=(after - 2.0 * now + before) / h**2,
+        tau=np.array([matmul(triangle, tau[k - m : k + m]) for k in at]).reshape(now.shape),
+        turning=slowest > TURNING,
         step_s=h,
-    )  # fmt: skip
+    )
 
 
 def _nuisances(spec: RobotSpec, rows: _Rows, share: float) -> tuple[Array, Array]:
@@ -168,12 +172,14 @@ def _nuisances(spec: RobotSpec, rows: _Rows, share: float) -> tuple[Array, Array
     dry = np.where(rows.dq > 0.0, coulomb[:, 0], -coulomb[:, 1])
     viscous = share * spec.per_axis("motor", "joint_viscous_friction") * rows.dq
     E = np.eye(spec.n)
-    return dry + viscous, np.concatenate([dry[..., None] * E, viscous[..., None] * E,
-                                          np.broadcast_to(E, (*dry.shape, spec.n))], axis=2)  # fmt: skip
+    return dry + viscous, np.concatenate(
+        [dry[..., None] * E, viscous[..., None] * E, np.broadcast_to(E, (*dry.shape, spec.n))], axis=2
+    )
 
 
-def _beyond_the_bare_arm(spec: RobotSpec, model: BodyModel, rows: _Rows, friction: Array,
-                         springs: bool) -> tuple[Array, Array]:  # fmt: skip
+def _beyond_the_bare_arm(
+    spec: RobotSpec, model: BodyModel, rows: _Rows, friction: Array, springs: bool
+) -> tuple[Array, Array]:
     """Return r (N, n) and Y (N, n, 10)."""
     rotors = spec_rotors(spec)
     through_gear = rows.tau - np.where(rows.turning, friction, 0.0) - rotors * rows.ddq
@@ -214,8 +220,9 @@ def _blocks(A: Array, r: Array, turning: NDArray[np.bool_]) -> tuple[Array, Arra
     return blocks(A).mean(axis=1), blocks(r).mean(axis=1), np.asarray(blocks(turning).all(axis=1))
 
 
-def _weighted(A: Array, r: Array, axis: NDArray[np.intp], spec: RobotSpec,
-              known: Knowledge) -> tuple[Array, Array, Array]:  # fmt: skip
+def _weighted(
+    A: Array, r: Array, axis: NDArray[np.intp], spec: RobotSpec, known: Knowledge
+) -> tuple[Array, Array, Array]:
     """Return parameters (10 + 3 n,), their covariance and what is left (rows,), after reweighting the axes."""
     prior = np.diag(1.0 / _before(spec, known) ** 2)
     quietest = QUIETEST * known.torque
@@ -262,6 +269,12 @@ def _in_flange(spec: RobotSpec, found: Array, covariance: Array, left: tuple[Arr
         cog, cog_sd = frozen(cog), frozen(np.sqrt(np.diag(matmul(slope, spread, slope.T))))
     rms, peak, rows = left
     return WeighedPayload(
-        mass=float(mass), mass_sd=mass_sd, cog=cog, cog_sd=cog_sd,
-        friction=frozen(found[BODY : BODY + spec.n].copy()), left=frozen(rms), peak=frozen(peak), rows=frozen(rows),
-    )  # fmt: skip
+        mass=float(mass),
+        mass_sd=mass_sd,
+        cog=cog,
+        cog_sd=cog_sd,
+        friction=frozen(found[BODY : BODY + spec.n].copy()),
+        left=frozen(rms),
+        peak=frozen(peak),
+        rows=frozen(rows),
+    )

@@ -33,8 +33,9 @@ class InertiaRows:
     ``tables``, one for each axis or None, or none at all: kg m2 that D has beyond the model, by posture.
     """
 
-    def __init__(self, spec: RobotSpec, model: ArmModel, source: InertiaSource,
-                 tables: Sequence[JointTable | None] = ()) -> None:  # fmt: skip
+    def __init__(
+        self, spec: RobotSpec, model: ArmModel, source: InertiaSource, tables: Sequence[JointTable | None] = ()
+    ) -> None:
         self._spec, self._model, self._source = spec, model, source
         self._chain = link_chain(spec)
         self._tables = tables

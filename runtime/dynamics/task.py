@@ -69,6 +69,7 @@ def dynamics_task(
             yield costs.gravity
             T = axis_gravity(model, areas.ang, axis)
             yield costs.store
-            load = AxisLoad(D=float(row[axis]), T=T, row=row, read_us=read_us, version=version,
-                            payload_version=payload_version)  # fmt: skip
+            load = AxisLoad(
+                D=float(row[axis]), T=T, row=row, read_us=read_us, version=version, payload_version=payload_version
+            )
             areas.publish(axis, load, now_us())

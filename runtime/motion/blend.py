@@ -63,8 +63,11 @@ class _Tool:
     def of(cls, X: Array) -> "_Tool":
         """Return what poses (N, 4, 4) of one cycle after the other, N at least 3, show."""
         steps = np.diff(X[:, :3, 3], axis=0)
-        return cls(speed=_longest(steps), acceleration=_longest(np.diff(steps, axis=0)),
-                   turning=float(rotation_angles(X[:-1, :3, :3], X[1:, :3, :3]).max()))  # fmt: skip
+        return cls(
+            speed=_longest(steps),
+            acceleration=_longest(np.diff(steps, axis=0)),
+            turning=float(rotation_angles(X[:-1, :3, :3], X[1:, :3, :3]).max()),
+        )
 
     def within(self, most: "_Tool") -> bool:
         """Return whether nothing is larger than in another."""
@@ -85,8 +88,9 @@ def overlapped(a: Array, b: Array, m: int) -> Array:
     return np.concatenate([a[: end - m + 1], a[end - m + 1 : end] + (b[1:m] - b[0]), b[max(m, 1) :]])
 
 
-def blend(a: Array, b: Array, halves: tuple[int, int], zone: float, arm: Arm, pace: Pace,
-          acceleration: float, turning: float) -> tuple[Array, Corner]:  # fmt: skip
+def blend(
+    a: Array, b: Array, halves: tuple[int, int], zone: float, arm: Arm, pace: Pace, acceleration: float, turning: float
+) -> tuple[Array, Corner]:
     """Return rows a (N_A + 1, n) of a motion joined with b (N_B + 1, n), which begin where a ends, and the corner.
 
     ``halves``: cycles of the second half of a's last move and of the first half of b; ``zone`` m; rad. Limits of the
@@ -102,9 +106,10 @@ def blend(a: Array, b: Array, halves: tuple[int, int], zone: float, arm: Arm, pa
         return overlapped(a, b, 0), Corner(radius=zone)
     # one row more to either side: what is accelerated from rest, and to it
     allowed = _Tool.most(
-        _Tool.of(np.concatenate([before, before[-1:]])), _Tool.of(np.concatenate([after[:1], after])),
+        _Tool.of(np.concatenate([before, before[-1:]])),
+        _Tool.of(np.concatenate([after[:1], after])),
         _Tool(speed=0.0, turning=turning * pace.period_s, acceleration=acceleration * pace.period_s**2),
-    )  # fmt: skip
+    )
 
     def holds(m: int) -> bool:
         rows = _around(a, b, m)
@@ -118,8 +123,12 @@ def blend(a: Array, b: Array, halves: tuple[int, int], zone: float, arm: Arm, pa
     if m == 0:
         return joined, Corner(radius=zone)
     points = _poses(arm, joined[len(a) - 1 - m : len(a)])[:, :3, 3]
-    return joined, Corner(radius=zone, cycles=m, reach=float(np.linalg.norm(points - corner, axis=1).max()),
-                          deviation=_passed(points, corner))  # fmt: skip
+    return joined, Corner(
+        radius=zone,
+        cycles=m,
+        reach=float(np.linalg.norm(points - corner, axis=1).max()),
+        deviation=_passed(points, corner),
+    )
 
 
 def _largest(most: int, holds: Callable[[int], bool]) -> int:

@@ -133,8 +133,9 @@ class MotionPlanner:
             return self.joints.plan(q_start, command, X_flange_tool, override)
         return self.lines.plan(q_start, command, X_flange_tool, override)
 
-    def chain(self, q_start: Array, commands: Sequence[Command], X_flange_tool: Array,
-              override: float = 1.0) -> ChainPlan:  # fmt: skip
+    def chain(
+        self, q_start: Array, commands: Sequence[Command], X_flange_tool: Array, override: float = 1.0
+    ) -> ChainPlan:
         """Return the plan of moves in a row from q_start (n,) rad; ``ChainFault`` names the first that is refused."""
         plans: list[LinePlan] = []
         for index, command in enumerate(commands):
@@ -174,5 +175,6 @@ class MotionPlanner:
         command = np.repeat(np.arange(len(parts), dtype=np.int32), [part.last - part.first for part in parts])
         command = np.concatenate([command[:1], command]) if len(command) else np.zeros(1, dtype=np.int32)
         command[-1] = len(parts) - 1  # also where the last moves have nothing to do
-        return ChainPlan(q=q if len(plans) == 1 else frozen(q), modes=modes, command=command, parts=parts,
-                         corners=tuple(corners))  # fmt: skip
+        return ChainPlan(
+            q=q if len(plans) == 1 else frozen(q), modes=modes, command=command, parts=parts, corners=tuple(corners)
+        )

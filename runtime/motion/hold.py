@@ -66,14 +66,18 @@ def frames_along(path: Path, s: Array) -> Array:
 def posture_components(R_base_line: Array, R_base_tool: Array) -> Array:
     """Return (tilt, advance, rotation) (..., 3) rad of postures (..., 3, 3), eqs (104) to (107)."""
     B = matmul(np.swapaxes(R_base_line, -1, -2), R_base_tool)
-    return np.stack([np.arctan2(B[..., 2, 1], B[..., 2, 2]),
-                     np.arctan2(-B[..., 2, 0], np.hypot(B[..., 0, 0], B[..., 1, 0])),
-                     np.arctan2(B[..., 1, 0], B[..., 0, 0])], axis=-1)  # fmt: skip
+    return np.stack(
+        [
+            np.arctan2(B[..., 2, 1], B[..., 2, 2]),
+            np.arctan2(-B[..., 2, 0], np.hypot(B[..., 0, 0], B[..., 1, 0])),
+            np.arctan2(B[..., 1, 0], B[..., 0, 0]),
+        ],
+        axis=-1,
+    )
 
 
 def component_deviation(path: Path, s: Array, R_planned: Array, R_base_tool: Array) -> Array:
-    """Return by how much tilt, advance and rotation (N, 3) of a path's postures at s (N,) and those taken differ, rad.
-    """
+    """Return posture taken minus posture of the path at s (N,) as tilt, advance and rotation (N, 3), rad."""
     frames = frames_along(path, s)
     off = posture_components(frames, R_base_tool) - posture_components(frames, R_planned)
     return np.abs(off - 2.0 * np.pi * np.round(off / (2.0 * np.pi)))
@@ -85,8 +89,9 @@ class Suppression:
     ``way`` may be given other weld-line frames than that of the one direction.
     """
 
-    def __init__(self, kinematics: Kinematics, X_flange_tool: Array, travel: Array, held: tuple[Component, ...],
-                 speed: Array) -> None:  # fmt: skip
+    def __init__(
+        self, kinematics: Kinematics, X_flange_tool: Array, travel: Array, held: tuple[Component, ...], speed: Array
+    ) -> None:
         self._kinematics, self._X_flange_tool = kinematics, X_flange_tool
         self._frozen = FrozenWrist(kinematics, X_flange_tool)
         self._R_base_line = weld_line_frame(travel)
@@ -94,8 +99,16 @@ class Suppression:
         self._speed = speed
         self._shares = np.array(list(itertools.product(np.linspace(0.0, 1.0, CANDIDATES), repeat=WRIST_AXES)))
 
-    def way(self, q_switch: Array, end: Array, s: Array, p_base_tool: Array, R_path: Array, period_s: float,
-            R_base_line: Array | None = None) -> Array:  # fmt: skip
+    def way(
+        self,
+        q_switch: Array,
+        end: Array,
+        s: Array,
+        p_base_tool: Array,
+        R_path: Array,
+        period_s: float,
+        R_base_line: Array | None = None,
+    ) -> Array:
         """Return the wrist angles (N, 3) at the samples after a switch at joint angles q_switch (n,), rad.
 
         ``end`` (3,): taught wrist angles; s (N + 1,): path parameter at the switch and at the samples, ``period_s``
@@ -153,8 +166,16 @@ class WristTable:
         return np.asarray(np.where(at[:, None] >= last, self.values[-1], inside))
 
 
-def held_ways(suppression: Suppression, path: Path, q_switch: Array, slope: Array, end: Array, s_switch: float,
-              rate: float, windows: Sequence[float]) -> Iterator[WristTable]:  # fmt: skip
+def held_ways(
+    suppression: Suppression,
+    path: Path,
+    q_switch: Array,
+    slope: Array,
+    end: Array,
+    s_switch: float,
+    rate: float,
+    windows: Sequence[float],
+) -> Iterator[WristTable]:
     """Yield ways from joint angles q_switch (n,) to ``end`` (3,) that hold components and can be executed.
 
     ``suppress`` is run at the constant rate ds/dt = ``rate``, 1/s, over the rest of the path, once for all ways, and
@@ -167,8 +188,10 @@ def held_ways(suppression: Suppression, path: Path, q_switch: Array, slope: Arra
     frames = frames_along(path, s[1:]) if isinstance(path, ArcPath) else None
     chosen = suppression.way(q_switch, end, s, X[:, :3, 3], X[:, :3, :3], period_s, frames)
     for window in windows:
-        yield WristTable(s_switch=s_switch, values=_smoothed(chosen, q_switch[-WRIST_AXES:], end, window,
-                                                             slope * (1.0 - s_switch) / STEPS))  # fmt: skip
+        yield WristTable(
+            s_switch=s_switch,
+            values=_smoothed(chosen, q_switch[-WRIST_AXES:], end, window, slope * (1.0 - s_switch) / STEPS),
+        )
 
 
 def _smoothed(chosen: Array, start: Array, end: Array, window: float, step: Array) -> Array:

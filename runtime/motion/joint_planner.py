@@ -90,8 +90,15 @@ class JointPlanner:
         limits = self._eased(curve, limits.overridden(override), duration)
         s, q, slowdown = pace.within_limits(curve, limits, duration)
         notes = pace.time_note(duration, len(s) - 1)
-        return LinePlan(path=None, s=frozen(s), q=frozen(q), slowdown=slowdown, notes=notes,
-                        acceleration=command.acceleration, override=override)  # fmt: skip
+        return LinePlan(
+            path=None,
+            s=frozen(s),
+            q=frozen(q),
+            slowdown=slowdown,
+            notes=notes,
+            acceleration=command.acceleration,
+            override=override,
+        )
 
     def end(self, q_start: Array, command: MoveJoint, X_flange_tool: Array) -> Array:
         """Return the joint angles (n,) at which a move from q_start (n,) ends; ``Fault`` RBL410, 411 or 412."""
@@ -118,8 +125,11 @@ class JointPlanner:
         if not fitting:
             words = " ".join(command.configuration)
             there = ", ".join(str(each.branch) for each in solutions)
-            raise Fault("RBL412", f"{point} cannot be reached {words}, only {there}",
-                        "Teach the point in a configuration that it can be reached in.")  # fmt: skip
+            raise Fault(
+                "RBL412",
+                f"{point} cannot be reached {words}, only {there}",
+                "Teach the point in a configuration that it can be reached in.",
+            )
         inside = [q for q in fitting if kinematics.limit_margin(q) >= -LIMIT_ROUNDING]
         if not inside:
             self._check_end(max(fitting, key=lambda q: float(kinematics.limit_margin(q))))
@@ -132,8 +142,10 @@ class JointPlanner:
         if not excess[axis] <= RANGE_TOLERANCE:
             limits, beyond = self._spec.axes[axis].limits, excess[axis] / DEG
             limit = limits.lower if q_end[axis] < limits.lower else limits.upper
-            raise Fault("RBL411", f"J{axis + 1} would pass its limit of {limit / DEG:g} deg by {beyond:.4g} deg, at "
-                        "the end of the move")  # fmt: skip
+            raise Fault(
+                "RBL411",
+                f"J{axis + 1} would pass its limit of {limit / DEG:g} deg by {beyond:.4g} deg, at the end of the move",
+            )
 
     def _limits(self, way: Array, speed: float, acceleration: float) -> SpeedLimits:
         most = self._pace.acceleration * acceleration

@@ -63,14 +63,16 @@ class Pace:
         """Return the pace of a robot under a controller profile."""
         return cls(
             fine=FineInterpolator(profile.ticks_per_cycle, profile.period_s, np.zeros(spec.n)),
-            speed=spec.per_axis("limits", "speed"), acceleration=spec.per_axis("limits", "acceleration"),
+            speed=spec.per_axis("limits", "speed"),
+            acceleration=spec.per_axis("limits", "acceleration"),
             period_s=profile.period_s,
-        )  # fmt: skip
+        )
 
     def overridden(self, override: float) -> "Pace":
         """Return the pace at a share ``override`` of all speeds."""
-        return self if override == 1.0 else replace(
-            self, speed=self.speed * override, override=self.override * override)  # fmt: skip
+        return (
+            self if override == 1.0 else replace(self, speed=self.speed * override, override=self.override * override)
+        )
 
     def excess(self, q: Array) -> tuple[float, int, str]:
         """Return (time factor needed, axis, quantity) of the worst violation at the servo ticks; <= 1 is none."""
@@ -122,8 +124,10 @@ class Pace:
         limit = (self.speed if slowdown.quantity == "speed" else self.acceleration)[slowdown.axis] / DEG
         unit = "deg/s" if slowdown.quantity == "speed" else "deg/s2"
         under = f" under OVERRIDE {100.0 * self.override:g}" if self.override < 1.0 and unit == "deg/s" else ""
-        return (f"slowed {slowdown.factor:.2f} times to {cycles * self.period_s:.3f} s: J{slowdown.axis + 1} "
-                f"{slowdown.quantity} is limited to {limit:g} {unit}{under}",)  # fmt: skip
+        return (
+            f"slowed {slowdown.factor:.2f} times to {cycles * self.period_s:.3f} s: J{slowdown.axis + 1} "
+            f"{slowdown.quantity} is limited to {limit:g} {unit}{under}",
+        )
 
     def time_note(self, duration: float | None, cycles: int) -> tuple[str, ...]:
         """Return what to say of a move that takes longer than the time asked for."""

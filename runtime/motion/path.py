@@ -82,14 +82,25 @@ class LinePath:
         length = norm(X_end[:3, 3] - X_start[:3, 3])
         ends = frozen(X_start), frozen(X_end)
         if posture == "axis":
-            return tuple(cls(X_start=ends[0], X_end=ends[1], axis=frozen(axis), angle=angle, length=length)
-                         for axis, angle in rotations)  # fmt: skip
+            return tuple(
+                cls(X_start=ends[0], X_end=ends[1], axis=frozen(axis), angle=angle, length=length)
+                for axis, angle in rotations
+            )
         axis, angle = rotations[0]
         start, end = rpy_from_rotation(X_start[:3, :3]), rpy_from_rotation(X_end[:3, :3])
         turns = [np.array(turn) for turn in itertools.product(*map(_shortest_turns, (end - start).tolist()))]
         # no turning rate is above the sum of the three over the path
-        return tuple(cls(X_start=ends[0], X_end=ends[1], axis=frozen(axis), length=length, rpy=frozen([start, turn]),
-                         angle=float(np.maximum(angle, np.abs(turn).sum()))) for turn in turns)  # fmt: skip
+        return tuple(
+            cls(
+                X_start=ends[0],
+                X_end=ends[1],
+                axis=frozen(axis),
+                length=length,
+                rpy=frozen([start, turn]),
+                angle=float(np.maximum(angle, np.abs(turn).sum())),
+            )
+            for turn in turns
+        )
 
     @property
     def name(self) -> str:
@@ -166,11 +177,20 @@ class ArcPath:
         # tangent and chord are half the arc apart
         sweep = 2.0 * math.atan2(-dot(last, outward), dot(last, along))
         return tuple(
-            cls(X_start=frozen(X_start), X_end=frozen(X_end), axis=frozen(axis), angle=angle, length=radius * sweep,
-                centre=frozen(start + to_centre), outward=frozen(outward), along=frozen(along), sweep=sweep,
-                radius=radius)
+            cls(
+                X_start=frozen(X_start),
+                X_end=frozen(X_end),
+                axis=frozen(axis),
+                angle=angle,
+                length=radius * sweep,
+                centre=frozen(start + to_centre),
+                outward=frozen(outward),
+                along=frozen(along),
+                sweep=sweep,
+                radius=radius,
+            )
             for axis, angle in principal_axes(X_start[:3, :3], X_end[:3, :3])
-        )  # fmt: skip
+        )
 
     @property
     def name(self) -> str:
@@ -226,10 +246,16 @@ def _check_points(start: Array, via: Array, end: Array) -> None:
     for name, length in lengths.items():
         if not length >= FLATTEST:
             apart, least = beside(length / MM, FLATTEST / MM, form=".4f")
-            raise Fault("RBL416", f"{name} of the arc are {apart} mm apart: a circle takes at least {least} mm",
-                        FULL_CIRCLE if name == "start and end" else "")  # fmt: skip
+            raise Fault(
+                "RBL416",
+                f"{name} of the arc are {apart} mm apart: a circle takes at least {least} mm",
+                FULL_CIRCLE if name == "start and end" else "",
+            )
     height = norm(np.cross(via - start, end - start)) / max(lengths.values())
     if not height >= FLATTEST:
         off, least = beside(height / MM, FLATTEST / MM, form=".4f")
-        raise Fault("RBL416", f"start, via point and end of the arc are within {off} mm of one straight line: a circle "
-                    f"takes at least {least} mm")  # fmt: skip
+        raise Fault(
+            "RBL416",
+            f"start, via point and end of the arc are within {off} mm of one straight line: a circle "
+            f"takes at least {least} mm",
+        )

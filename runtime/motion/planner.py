@@ -160,8 +160,16 @@ class LinePlanner:
         wrist = _wrist_change(way.choice, way.line, s, q, command.held)
         notes = pace.slow_note(slowdown, len(s) - 1) + pace.time_note(duration, len(s) - 1)
         notes += _wrist_notes(wrist) + _kept_notes(command, q)
-        return LinePlan(path=way.path, s=frozen(s), q=frozen(q), slowdown=slowdown, wrist=wrist, notes=notes,
-                        acceleration=command.acceleration, override=override)  # fmt: skip
+        return LinePlan(
+            path=way.path,
+            s=frozen(s),
+            q=frozen(q),
+            slowdown=slowdown,
+            wrist=wrist,
+            notes=notes,
+            acceleration=command.acceleration,
+            override=override,
+        )
 
     def way(self, q_start: Array, command: PathMove, X_flange_tool: Array) -> LineWay:
         """Return the curve of a move, at any path parameter, and its limits; arguments and faults of ``plan``."""
@@ -191,8 +199,15 @@ class LinePlanner:
             return ArcPath.candidates(X_start, command.X_via, command.X_world_tool)
         return LinePath.candidates(X_start, command.X_world_tool, self._profile.wrist.posture)
 
-    def tracked(self, plan: LinePlan, command: MoveLinear, q_from: Array, q_here: Array, tracker: SeamTracker,
-                X_flange_tool: Array) -> SeamMove:  # fmt: skip
+    def tracked(
+        self,
+        plan: LinePlan,
+        command: MoveLinear,
+        q_from: Array,
+        q_here: Array,
+        tracker: SeamTracker,
+        X_flange_tool: Array,
+    ) -> SeamMove:
         """Return a planned move (``command.tracked``) as one that follows a seam, point by point.
 
         q_from (n,) is where its calculated path begins, q_here (n,) where the arm really is, rad.
@@ -204,12 +219,19 @@ class LinePlanner:
             options = options.only()
         elif wrist is None or wrist.remedy:  # the plan knows better than C1, C2 and C4 when the wrist has to go
             options = options.only(range_condition=options.range_condition, guard=options.guard)
-        return SeamMove(LineSolver(arm, plan.path, q_from), plan.s, q_here, plan.q[-1],
-                        None if wrist is None else wrist.row, tracker, options, self._profile.period_s)  # fmt: skip
+        return SeamMove(
+            LineSolver(arm, plan.path, q_from),
+            plan.s,
+            q_here,
+            plan.q[-1],
+            None if wrist is None else wrist.row,
+            tracker,
+            options,
+            self._profile.period_s,
+        )
 
     def _choose(self, line: LineSolver, limits: SpeedLimits, command: PathMove) -> Choice:
-        """Return how the move goes through the wrist: to the taught end angles, or to any that its point leaves open.
-        """
+        """Return how the move crosses the wrist: to the taught end angles, or to any that its point leaves open."""
         options = self._profile.wrist
         mode = command.wrist or options.mode
         if mode == "keep" or self._spec.n != MAIN_AXES + WRIST_AXES:
@@ -231,8 +253,7 @@ class LinePlanner:
         first: Fault | None = None
         for q_end in ends(line, q, command):
             try:
-                choice = choose(line, s, q, q_end, period_s, options, excess, most,
-                                None if tracked else command.held)  # fmt: skip
+                choice = choose(line, s, q, q_end, period_s, options, excess, most, None if tracked else command.held)
             except Fault as fault:
                 first = first or fault
                 continue
@@ -245,8 +266,9 @@ class LinePlanner:
         return best or Choice(solver=line)  # no end to go to: the path itself says where it is lost
 
 
-def _wrist_change(choice: Choice, line: LineSolver, s: Array, q: Array,
-                  held: tuple[Component, ...]) -> WristChange | None:  # fmt: skip
+def _wrist_change(
+    choice: Choice, line: LineSolver, s: Array, q: Array, held: tuple[Component, ...]
+) -> WristChange | None:
     """Return what the plan does with the wrist, measured on its samples; None where it follows the path."""
     if choice.switch is None:
         return None
@@ -256,10 +278,15 @@ def _wrist_change(choice: Choice, line: LineSolver, s: Array, q: Array,
     return WristChange(
         condition="end" if trigger is None else trigger.condition,
         axis=None if trigger is None else trigger.axis,
-        row=row, row_end=min(int(np.searchsorted(s, solver.law.s_return)), len(s) - 1), share=choice.switch,
-        share_end=solver.law.s_return, remedy=choice.remedy, held=choice.held, deviation=posture_deviation(line, s, q),
+        row=row,
+        row_end=min(int(np.searchsorted(s, solver.law.s_return)), len(s) - 1),
+        share=choice.switch,
+        share_end=solver.law.s_return,
+        remedy=choice.remedy,
+        held=choice.held,
+        deviation=posture_deviation(line, s, q),
         components=tuple((each, posture_deviation(line, s, q, (each,))) for each in held),
-    )  # fmt: skip
+    )
 
 
 def _wrist_notes(wrist: WristChange | None) -> tuple[str, ...]:
@@ -283,8 +310,10 @@ def _kept_notes(command: PathMove, q: Array) -> tuple[str, ...]:
     axis = int(np.argmax(np.abs(q[-1] - command.q_end)))
     if abs(q[-1, axis] - command.q_end[axis]) <= SAME_ANGLES:
         return ()
-    return (f"keeps the wrist and ends with J{axis + 1} at {q[-1, axis] / DEG:.1f} deg, not at the taught "
-            f"{command.q_end[axis] / DEG:.1f} deg",)  # fmt: skip
+    return (
+        f"keeps the wrist and ends with J{axis + 1} at {q[-1, axis] / DEG:.1f} deg, not at the taught "
+        f"{command.q_end[axis] / DEG:.1f} deg",
+    )
 
 
 def arc_limits(speed: float, acceleration: float, jerk: float, radius: float) -> tuple[float, float]:
@@ -293,8 +322,9 @@ def arc_limits(speed: float, acceleration: float, jerk: float, radius: float) ->
     return speed, math.sqrt(acceleration**2 - (speed**2 / radius) ** 2)
 
 
-def speed_limits(path: Path, command: PathMove, robot: PathLimits, profile: Profile,
-                 wrist_way: float = 0.0) -> SpeedLimits:  # fmt: skip
+def speed_limits(
+    path: Path, command: PathMove, robot: PathLimits, profile: Profile, wrist_way: float = 0.0
+) -> SpeedLimits:
     """Return the bounds of the path parameter for a command; ``Fault`` RBL404 when it asks for the impossible.
 
     ``wrist_way`` rad is how far the wrist has to turn, for a move whose tool stays where it is.

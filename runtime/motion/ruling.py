@@ -66,12 +66,23 @@ def ruling(plan: LinePlan, command: Command, spec: RobotSpec, profile: Profile) 
     turn = path.angle if path.angle >= LEAST_TURN else float(np.abs(plan.q[-1] - plan.q[0]).max())
     if turn >= LEAST_TURN:
         turns_s = takes(turn, limits.rotation_speed, limits.rotation_acceleration, limits.rotation_jerk)
-        rows.append((turns_s, f"the tool turns by {turn / DEG:.1f} deg{there}, at {limits.rotation_speed / DEG:g} "
-                     "deg/s at most", f"turn the tool {'on a longer path or in its own move' if moves else 'less'}"))
+        rows.append(
+            (
+                turns_s,
+                f"the tool turns by {turn / DEG:.1f} deg{there}, at {limits.rotation_speed / DEG:g} deg/s at most",
+                f"turn the tool {'on a longer path or in its own move' if moves else 'less'}",
+            )
+        )
     if isinstance(path, ArcPath) and moves:
         on_arc, _ = arc_limits(speed, limits.acceleration * share, limits.jerk * share, path.radius)
-        rows.append((along(on_arc), f"on a radius of {path.radius / MM:.1f} mm, {on_arc / MM:.1f} mm/s take all the "
-                     "acceleration of the path", "make the radius larger"))  # fmt: skip
+        rows.append(
+            (
+                along(on_arc),
+                f"on a radius of {path.radius / MM:.1f} mm, {on_arc / MM:.1f} mm/s take all the "
+                "acceleration of the path",
+                "make the radius larger",
+            )
+        )
     longest_s, why, remedy = max(rows)
     slowdown = plan.slowdown
     of_joint = slowdown is not None and slowdown.factor * asked_s >= longest_s
@@ -90,8 +101,11 @@ def _of_joints(plan: LinePlan, spec: RobotSpec) -> Ruling:
     turns = np.abs(plan.q[-1] - plan.q[0])
     axis = int(np.argmax(turns / spec.per_axis("limits", "speed")))
     limits = spec.axes[axis].limits
-    return Ruling(why=f"J{axis + 1} turns by {turns[axis] / DEG:.1f} deg, at most at {limits.speed / DEG:g} deg/s and "
-                  f"{limits.acceleration / DEG:g} deg/s2", remedy=f"turn J{axis + 1} less")  # fmt: skip
+    return Ruling(
+        why=f"J{axis + 1} turns by {turns[axis] / DEG:.1f} deg, at most at {limits.speed / DEG:g} deg/s and "
+        f"{limits.acceleration / DEG:g} deg/s2",
+        remedy=f"turn J{axis + 1} less",
+    )
 
 
 def _joint_limit(slowdown: Slowdown, spec: RobotSpec, override: float) -> str:

@@ -90,16 +90,22 @@ class SeamTracker:
             self.lost += 1
             self._lost_in_a_row += 1
             if not self._lost_in_a_row * self._period_s <= limits.lost_s:
-                raise Fault("RBL525", f"seam sensor {self.name} has given nothing for "
-                            f"{self._lost_in_a_row * self._period_s * 1e3:.0f} ms")  # fmt: skip
+                raise Fault(
+                    "RBL525",
+                    f"seam sensor {self.name} has given nothing for "
+                    f"{self._lost_in_a_row * self._period_s * 1e3:.0f} ms",
+                )
             return
         self._lost_in_a_row = 0
         far, turned = norm(reading[:3]), float(np.abs(reading[3:]).max())
         if not (far <= limits.most and turned <= limits.most_turn):
             away, most = beside(far / MM, limits.most / MM, form=".2f")
             turn, most_turn = beside(turned / DEG, limits.most_turn / DEG, form=".2f")
-            raise Fault("RBL524", f"seam sensor {self.name} sees the seam {away} mm and {turn} deg away, more than "
-                        f"{most} mm or {most_turn} deg")  # fmt: skip
+            raise Fault(
+                "RBL524",
+                f"seam sensor {self.name} sees the seam {away} mm and {turn} deg away, more than "
+                f"{most} mm or {most_turn} deg",
+            )
         self._target = np.array(reading, dtype=np.float64)
 
     def settle(self) -> None:
@@ -136,8 +142,17 @@ class SeamMove:
     (n,): the end without deviation; ``switch``: sample at which the plan lets the wrist go, None where it never does.
     """
 
-    def __init__(self, line: LineSolver, s: Array, q_start: Array, q_end: Array, switch: int | None,
-                 tracker: SeamTracker, options: WristOptions, period_s: float) -> None:  # fmt: skip
+    def __init__(
+        self,
+        line: LineSolver,
+        s: Array,
+        q_start: Array,
+        q_end: Array,
+        switch: int | None,
+        tracker: SeamTracker,
+        options: WristOptions,
+        period_s: float,
+    ) -> None:
         arm = line.arm
         self._line, self._s, self._switch, self._tracker = line, s, switch, tracker
         self._kinematics, self._X_tool_flange = arm.kinematics, inverse(arm.X_flange_tool)
@@ -220,8 +235,9 @@ class SeamMove:
         """Let the wrist go to its end angles from the sample before n, S63."""
         rows, s = np.stack([self.before, self.here]), self._s[[max(n - 2, 0), n - 1]]
         shape = self._options.shape
-        self.law = law_from(rows[1:] if n == 1 else rows, s[1:] if n == 1 else s, 0 if n == 1 else 1, end, shape,
-                            self._options.width)  # fmt: skip
+        self.law = law_from(
+            rows[1:] if n == 1 else rows, s[1:] if n == 1 else s, 0 if n == 1 else 1, end, shape, self._options.width
+        )
         self._side = frozen.side_of(self.here)
 
     def _check(self, n: int, q: Array) -> None:
@@ -231,9 +247,12 @@ class SeamMove:
         step = np.abs(q - self.here)
         if not (step <= self._most_step).all():
             axis = int(np.argmax(step / self._most_step))
-            raise Fault("RBL526", f"{where} J{axis + 1} would have to turn at "
-                        f"{step[axis] / self._most_step[axis] * SPEED_SLACK:.2f} times its limit to follow the "
-                        "seam")  # fmt: skip
+            raise Fault(
+                "RBL526",
+                f"{where} J{axis + 1} would have to turn at "
+                f"{step[axis] / self._most_step[axis] * SPEED_SLACK:.2f} times its limit to follow the "
+                "seam",
+            )
         if not ((q >= self._lower - 1e-9) & (q <= self._upper + 1e-9)).all():
             axis = int(np.argmax(np.maximum(self._lower - q, q - self._upper)))
             raise Fault("RBL526", f"{where} J{axis + 1} would leave its range to follow the seam")

@@ -47,8 +47,7 @@ class Arm:
 
 
 class LineSolver:
-    """Joint angles along one path in one arm configuration: that of q_start (n,), or with ``to_end`` that of its end.
-    """
+    """Joint angles along one path in one configuration: that of q_start (n,), or with ``to_end`` that of its end."""
 
     def __init__(self, arm: Arm, path: Path, q_start: Array, *, to_end: bool = False) -> None:
         self.arm, self.path, self.q_start = arm, path, q_start
@@ -127,8 +126,14 @@ class WristSolver:
     (n,).
     """
 
-    def __init__(self, line: LineSolver, law: WristLaw | WristTable, q_switch: Array, q_end: Array,
-                 back: LineSolver | None = None) -> None:  # fmt: skip
+    def __init__(
+        self,
+        line: LineSolver,
+        law: WristLaw | WristTable,
+        q_switch: Array,
+        q_end: Array,
+        back: LineSolver | None = None,
+    ) -> None:
         self._line, self.law, self._q_end, self._back = line, law, q_end, back
         self._frozen = FrozenWrist(line.arm.kinematics, line.arm.X_flange_tool)
         self._q_switch = q_switch
@@ -159,13 +164,19 @@ class WristSolver:
         jumps = np.abs(np.diff(q, axis=0))
         step, axis = np.unravel_index(int(np.argmax(jumps)), jumps.shape)
         if len(jumps) > 4 and not jumps[step, axis] <= JUMP:
-            raise Fault("RBL412", f"at {100 * s[step]:.1f} % of the {self._line.path.name} J{axis + 1} would have to "
-                        "change the arm configuration")  # fmt: skip
+            raise Fault(
+                "RBL412",
+                f"at {100 * s[step]:.1f} % of the {self._line.path.name} J{axis + 1} would have to "
+                "change the arm configuration",
+            )
         off = np.abs(q[-1] - self._q_end)
         if not off.max() <= SAME_ANGLES:
             worst = int(np.argmax(off))
-            raise Fault("RBL412", f"the move would end with J{worst + 1} at {q[-1, worst] / DEG:.1f} deg in another "
-                        f"arm configuration, not at the taught {self._q_end[worst] / DEG:.1f} deg")  # fmt: skip
+            raise Fault(
+                "RBL412",
+                f"the move would end with J{worst + 1} at {q[-1, worst] / DEG:.1f} deg in another "
+                f"arm configuration, not at the taught {self._q_end[worst] / DEG:.1f} deg",
+            )
         q[-1] = self._q_end
         check_range(self._line.arm, s, q)
         return q

@@ -59,9 +59,7 @@ def bound(extents: list[tuple[float, float, float, float]], shape: SpeedShape) -
         raise ValueError("a path without extent has no speed")
     shares = [[value / extent for value in most] for extent, *most in moving]
     speed, acceleration, jerk = np.min(shares, axis=0).tolist()
-    return SpeedLimits(
-        speed=speed, acceleration=acceleration, jerk=math.inf if shape == "trapezoid" else jerk
-    )
+    return SpeedLimits(speed=speed, acceleration=acceleration, jerk=math.inf if shape == "trapezoid" else jerk)
 
 
 def profile(limits: SpeedLimits, period_s: float, duration: float | None = None) -> Array:

@@ -23,8 +23,9 @@ _LONGEST = 250
 _SLACK = 1.0 + 1e-9
 
 
-def stopping_rows(rows: Array, at: int, fine: FineInterpolator, speed: Array, acceleration: Array,
-                  ends_at_rest: bool = True) -> Array:  # fmt: skip
+def stopping_rows(
+    rows: Array, at: int, fine: FineInterpolator, speed: Array, acceleration: Array, ends_at_rest: bool = True
+) -> Array:
     """Return the set-points (K, n) that follow row ``at`` of ``rows`` (N + 1, n) and end at rest on their curve.
 
     ``speed`` rad/s and ``acceleration`` rad/s2 (n,) are the joints' limits. No row left gives no set-point.

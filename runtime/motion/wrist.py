@@ -70,8 +70,7 @@ class Trigger:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WristLimits:
-    """What the wrist axes may do, each (3,): ``speed`` theta_kd rad/s, ``lower`` and ``upper`` end of the range, rad.
-    """
+    """What the wrist axes may do, each (3,): ``speed`` theta_kd rad/s, ``lower`` and ``upper`` end of range, rad."""
 
     speed: Array
     lower: Array
@@ -85,8 +84,9 @@ class Conditions:
     ``length`` m of the path, for the distance of C2.
     """
 
-    def __init__(self, s: Array, start: Array, period_s: float, limits: WristLimits, options: WristOptions,
-                 length: float = 0.0) -> None:  # fmt: skip
+    def __init__(
+        self, s: Array, start: Array, period_s: float, limits: WristLimits, options: WristOptions, length: float = 0.0
+    ) -> None:
         self._s, self._start, self._period_s, self._limits, self._options = s, start, period_s, limits, options
         rate = np.diff(s) / period_s
         self._fastest = np.append(np.maximum.accumulate(rate[::-1])[::-1], 0.0)
@@ -124,8 +124,9 @@ class Conditions:
         return np.where(left > 1e-12, speed, over)
 
 
-def first_trigger(q: Array, q_end: Array, s: Array, period_s: float, limits: WristLimits, options: WristOptions,
-                  length: float = 0.0) -> Trigger | None:  # fmt: skip
+def first_trigger(
+    q: Array, q_end: Array, s: Array, period_s: float, limits: WristLimits, options: WristOptions, length: float = 0.0
+) -> Trigger | None:
     """Return the first exception condition of a move, S61 of Fig 3; None when there is none.
 
     q (N + 1, n) rad: the path with the sign of J5 kept, NaN where it has no solution; q_end (n,): the taught end; the
@@ -197,8 +198,9 @@ class WristLaw:
         return np.asarray(np.where(x >= 1.0, self.end, angles))
 
 
-def law_from(q: Array, s: Array, index: int, end: Array, shape: Literal["linear", "hermite", "smooth"],
-             width: float = 0.5) -> WristLaw:  # fmt: skip
+def law_from(
+    q: Array, s: Array, index: int, end: Array, shape: Literal["linear", "hermite", "smooth"], width: float = 0.5
+) -> WristLaw:
     """Return the law that takes over from the path q (N + 1, n) at sample ``index``, S63; s (N + 1,).
 
     The slope is the path's over the cycle before the switch. A move that switches where it starts has none: it begins
@@ -209,8 +211,9 @@ def law_from(q: Array, s: Array, index: int, end: Array, shape: Literal["linear"
     slope = way / (1.0 - s[index])
     if index > 0:
         slope = (wrist[index] - wrist[index - 1]) / (s[index] - s[index - 1])
-    return WristLaw(s_switch=float(s[index]), start=frozen(start), end=frozen(end), slope=frozen(slope), shape=shape,
-                    width=width)  # fmt: skip
+    return WristLaw(
+        s_switch=float(s[index]), start=frozen(start), end=frozen(end), slope=frozen(slope), shape=shape, width=width
+    )
 
 
 def law_between(q: Array, q_back: Array, s: Array, first: int, last: int) -> WristLaw:
@@ -221,7 +224,11 @@ def law_between(q: Array, q_back: Array, s: Array, first: int, last: int) -> Wri
     before, after = q[:, -WRIST_AXES:], q_back[:, -WRIST_AXES:]
     a, b = max(first, 1), min(last, len(s) - 2)
     return WristLaw(
-        s_switch=float(s[first]), start=frozen(before[first]), s_return=float(s[last]), end=frozen(after[last]),
+        s_switch=float(s[first]),
+        start=frozen(before[first]),
+        s_return=float(s[last]),
+        end=frozen(after[last]),
         slope=frozen((before[a] - before[a - 1]) / (s[a] - s[a - 1])),
-        slope_return=frozen((after[b + 1] - after[b]) / (s[b + 1] - s[b])), shape="hermite",
-    )  # fmt: skip
+        slope_return=frozen((after[b + 1] - after[b]) / (s[b + 1] - s[b])),
+        shape="hermite",
+    )

@@ -108,10 +108,14 @@ def ends(line: LineSolver, q: Array, command: PathMove) -> Iterator[Array]:
     if command.q_end is not None:
         there = arm.kinematics.branch_of(command.q_end)
         if (there.arm, there.elbow) != (line.branch.arm, line.branch.elbow):
-            raise Fault("RBL412", f"the end is taught {there}, the move starts {line.branch}: a {line.path.move} "
-                        "cannot change the configuration of the arm", "Teach the end in the arm configuration of the "
-                        "start, or go there over a via point; WRIST KEEP ends in the configuration of the "
-                        "start.")  # fmt: skip
+            raise Fault(
+                "RBL412",
+                f"the end is taught {there}, the move starts {line.branch}: a {line.path.move} "
+                "cannot change the configuration of the arm",
+                "Teach the end in the arm configuration of the "
+                "start, or go there over a via point; WRIST KEEP ends in the configuration of the "
+                "start.",
+            )
         yield np.array(command.q_end)
         return
     kept = bool(np.isfinite(q[-1]).all())
@@ -121,16 +125,20 @@ def ends(line: LineSolver, q: Array, command: PathMove) -> Iterator[Array]:
     X_end = matmul(line.path.X_end, inverse(arm.X_flange_tool))
     turns = command.turns[: arm.kinematics.n]
     solutions = arm.kinematics.solutions(X_end, line.q_start)
-    others = [turned(arm.kinematics, each.q, turns, line.q_start) for each in solutions
-              if (each.branch.arm, each.branch.elbow) == (line.branch.arm, line.branch.elbow)]  # fmt: skip
+    others = [
+        turned(arm.kinematics, each.q, turns, line.q_start)
+        for each in solutions
+        if (each.branch.arm, each.branch.elbow) == (line.branch.arm, line.branch.elbow)
+    ]
     others = [end for end in others if arm.kinematics.limit_margin(end) >= -LIMIT_ROUNDING]
     others.sort(key=lambda end: float(np.abs(end - line.q_start)[-WRIST_AXES:].max()))
     fitting = [end for end in others if as_taught(arm.kinematics, end, command)]
     yield from fitting
     if (kept or others) and not wanted and not fitting:
         words = " ".join(command.configuration) or f"with turns {list(command.turns)}"
-        raise Fault("RBL412", f"the end is taught {words}, the move starts {line.branch}: no {line.path.move} reaches "
-                    "it")  # fmt: skip
+        raise Fault(
+            "RBL412", f"the end is taught {words}, the move starts {line.branch}: no {line.path.move} reaches it"
+        )
 
 
 def turned(kinematics: Kinematics, q: Array, turns: tuple[int, ...], near: Array) -> Array:
@@ -154,8 +162,17 @@ def as_taught(kinematics: Kinematics, q: Array, command: PathMove | MoveJoint) -
     return fits and bool((np.abs(q[: len(turns)] - 2.0 * np.pi * turns) <= np.pi + HALF_TURN).all())
 
 
-def choose(line: LineSolver, s: Array, q: Array, q_end: Array, period_s: float, options: WristOptions, excess: Excess,
-           most_deviation: float = math.pi, held: tuple[Component, ...] | None = ()) -> Choice:  # fmt: skip
+def choose(
+    line: LineSolver,
+    s: Array,
+    q: Array,
+    q_end: Array,
+    period_s: float,
+    options: WristOptions,
+    excess: Excess,
+    most_deviation: float = math.pi,
+    held: tuple[Component, ...] | None = (),
+) -> Choice:
     """Return how a move to the taught joint angles q_end (n,) goes; ``Fault`` RBL412 (or 410, 411) where it cannot.
 
     s (N + 1,): its path parameter at the programmed speed, ``period_s`` apart; q (N + 1, n): the path in the
@@ -179,8 +196,13 @@ def choose(line: LineSolver, s: Array, q: Array, q_end: Array, period_s: float, 
             continue
         ratio, axis, quantity = excess(rows)
         if not ratio <= MOST_SLOWDOWN:
-            failures.append(Fault("RBL412", f"J{axis + 1} would pass its limit of {quantity} so far that the move "
-                                  f"would have to be slowed {ratio:.0f} times"))  # fmt: skip
+            failures.append(
+                Fault(
+                    "RBL412",
+                    f"J{axis + 1} would pass its limit of {quantity} so far that the move "
+                    f"would have to be slowed {ratio:.0f} times",
+                )
+            )
             continue
         choice = replace(choice, ratio=ratio)
         if choice.switch is None:
@@ -190,8 +212,12 @@ def choose(line: LineSolver, s: Array, q: Array, q_end: Array, period_s: float, 
             deviation = posture_deviation(line, s, rows)
             if not deviation <= most_deviation:
                 turn, most = beside(deviation / DEG, most_deviation / DEG, form=".0f")
-                failures.append(Fault("RBL412", f"the tool would turn up to {turn} deg from its posture on the path, "
-                                      f"more than {most} deg"))  # fmt: skip
+                failures.append(
+                    Fault(
+                        "RBL412",
+                        f"the tool would turn up to {turn} deg from its posture on the path, more than {most} deg",
+                    )
+                )
                 continue
             if ratio <= 1.0 and not choice.remedy and not held:
                 return choice  # as the document has it
@@ -222,9 +248,17 @@ def wrist_limits(spec: RobotSpec, options: WristOptions) -> WristLimits:
     return WristLimits(speed=speed, lower=spec.lower[-WRIST_AXES:], upper=spec.upper[-WRIST_AXES:])
 
 
-def _candidates(line: LineSolver, q: Array, s: Array, q_end: Array, trigger: Trigger | None, arrives: bool,
-                period_s: float, options: WristOptions,
-                held: tuple[Component, ...] | None) -> Iterator[Choice]:  # fmt: skip
+def _candidates(
+    line: LineSolver,
+    q: Array,
+    s: Array,
+    q_end: Array,
+    trigger: Trigger | None,
+    arrives: bool,
+    period_s: float,
+    options: WristOptions,
+    held: tuple[Component, ...] | None,
+) -> Iterator[Choice]:
     """Yield what to try: the path itself where it arrives, the document's switch, other switches."""
     if arrives and (trigger is None or options.remedies):
         yield Choice(solver=line)
@@ -249,8 +283,13 @@ def _candidates(line: LineSolver, q: Array, s: Array, q_end: Array, trigger: Tri
                 slope = law_from(q, s, k, end, "linear").slope
                 ways[k] = held_ways(suppression, line.path, q[k], slope, end, float(s[k]), rate, HELD_WINDOWS)
             way = next(ways[k])
-            yield Choice(solver=WristSolver(line, way, q[k], q_end), trigger=trigger, switch=float(s[k]), remedy=remedy,
-                         held=held or ())  # fmt: skip
+            yield Choice(
+                solver=WristSolver(line, way, q[k], q_end),
+                trigger=trigger,
+                switch=float(s[k]),
+                remedy=remedy,
+                held=held or (),
+            )
 
     if trigger is not None:
         yield at(index, options.width)
@@ -279,8 +318,7 @@ def _candidates(line: LineSolver, q: Array, s: Array, q_end: Array, trigger: Tri
     if held is not None:
         yield from _windows(line, q, s, q_end, trigger)
     for j4, j5 in DETOURS:
-        law = replace(law_from(q, s, 0, end, "hermite"), slope=np.zeros(WRIST_AXES),
-                      detour=np.radians([j4, j5, 0.0]))  # fmt: skip
+        law = replace(law_from(q, s, 0, end, "hermite"), slope=np.zeros(WRIST_AXES), detour=np.radians([j4, j5, 0.0]))
         yield Choice(solver=WristSolver(line, law, q[0], q_end), trigger=trigger, switch=0.0, remedy=DETOUR)
 
 
@@ -329,8 +367,10 @@ def _windows(line: LineSolver, q: Array, s: Array, q_end: Array, trigger: Trigge
 
 def _what_would_do(line: LineSolver, s: Array, excess: Excess) -> str:
     """Return what makes a refused move possible: the wrist of its start, where that does, or another line."""
-    via = ("A via point beside the line, or another place of the work piece, gives the main axes room; a slower SPEED "
-           "does not.")  # fmt: skip
+    via = (
+        "A via point beside the line, or another place of the work piece, gives the main axes room; a slower SPEED "
+        "does not."
+    )
     try:
         q = line.joints(s)
         ratio, _, _ = excess(q)
@@ -340,8 +380,10 @@ def _what_would_do(line: LineSolver, s: Array, excess: Excess) -> str:
         return via
     angles = ", ".join(f"{angle / DEG:.1f}" for angle in q[-1, -WRIST_AXES:])
     slowed = f", slowed {ratio:.1f} times," if ratio > 1.0 else ""
-    return (f"With WRIST KEEP it runs{slowed} and ends with J4 to J6 at {angles} deg: teach that end, or go over a via "
-            "point.")  # fmt: skip
+    return (
+        f"With WRIST KEEP it runs{slowed} and ends with J4 to J6 at {angles} deg: teach that end, or go over a via "
+        "point."
+    )
 
 
 def _refusal(line: LineSolver, trigger: Trigger | None, arrives: bool, failures: list[Fault], hint: str) -> Fault:
@@ -349,8 +391,11 @@ def _refusal(line: LineSolver, trigger: Trigger | None, arrives: bool, failures:
     if arrives or trigger is None:
         if failures:
             return failures[0]
-        return Fault("RBL412", f"the end needs another wrist configuration than {line.branch}, and no condition of the "
-                     "profile lets the wrist change")  # fmt: skip
+        return Fault(
+            "RBL412",
+            f"the end needs another wrist configuration than {line.branch}, and no condition of the "
+            "profile lets the wrist change",
+        )
     return explained(failures[0], line.path, trigger, len(failures) - 1, hint)
 
 

@@ -122,14 +122,29 @@ def build(file: CellFile) -> CellSpec:
         robot=_robot(file),
         home=frozen(np.array(file.home_deg) * DEG),
         hand=HandSpec(
-            mass=hand.mass_kg, cog=_lengths(hand.cog_mm), X_flange_tool=_pose(hand.tcp_mm_deg),
-            stroke=hand.stroke_mm * MM, grip_force=hand.grip_force_n, dwell=hand.dwell_s, pad=_lengths(hand.pad_mm),
+            mass=hand.mass_kg,
+            cog=_lengths(hand.cog_mm),
+            X_flange_tool=_pose(hand.tcp_mm_deg),
+            stroke=hand.stroke_mm * MM,
+            grip_force=hand.grip_force_n,
+            dwell=hand.dwell_s,
+            pad=_lengths(hand.pad_mm),
             finger_length=hand.finger_length_mm * MM,
         ),
-        parts=tuple(PartSpec(name=part.name, size=_lengths(part.size_mm), mass=part.mass_kg, friction=part.friction,
-                             X_world_part=_pose(part.pose_mm_deg)) for part in file.parts),
-        obstacles=tuple(ObstacleSpec(name=box.name, size=_lengths(box.size_mm), X_world_obstacle=_pose(box.pose_mm_deg))
-                        for box in file.obstacles),
+        parts=tuple(
+            PartSpec(
+                name=part.name,
+                size=_lengths(part.size_mm),
+                mass=part.mass_kg,
+                friction=part.friction,
+                X_world_part=_pose(part.pose_mm_deg),
+            )
+            for part in file.parts
+        ),
+        obstacles=tuple(
+            ObstacleSpec(name=box.name, size=_lengths(box.size_mm), X_world_obstacle=_pose(box.pose_mm_deg))
+            for box in file.obstacles
+        ),
         loads=_each(file.loads, lambda load: LoadSpec(mass=load.mass_kg, cog=_lengths(load.cog_mm))),
         tools=_each(file.tools, _pose),
         frames=_each(file.frames, _pose),
@@ -137,7 +152,7 @@ def build(file: CellFile) -> CellSpec:
         inputs=file.inputs,
         controller=file.controller,
         doubts=file.doubts,
-    )  # fmt: skip
+    )
 
 
 def _robot(file: CellFile) -> RobotSpec:

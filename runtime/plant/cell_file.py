@@ -155,8 +155,11 @@ def parse_cell_file(source: Source, folder: Path | None = None) -> CellFile:
     )
 
 
-def _doubts(parts: tuple[PartFile, ...], obstacles: tuple[ObstacleFile, ...], items: list[Table],
-            ) -> Iterator[FileFault]:  # fmt: skip
+def _doubts(
+    parts: tuple[PartFile, ...],
+    obstacles: tuple[ObstacleFile, ...],
+    items: list[Table],
+) -> Iterator[FileFault]:
     """Yield RBL640 for every part that cannot lie where it is; of two that overlap, at the later one."""
     fixed = [Box.of(f"obstacle '{each.name}'", each.size_mm, each.pose_mm_deg) for each in obstacles]
     loose = [Box.of(f"part '{each.name}'", each.size_mm, each.pose_mm_deg) for each in parts]
@@ -178,8 +181,12 @@ def _home(table: Table, arm: ArmFile | None) -> Numbers:
     table.done()
     for index, (angle, limits) in enumerate(zip(q_deg, arm.limits if arm else (), strict=False)):
         if not limits.lower <= angle * DEG <= limits.upper:
-            table.fail("RBL605", f"J{index + 1} at home is {angle:g} deg and must be between {limits.lower / DEG:g} "
-                       f"and {limits.upper / DEG:g}", key="joints_deg")  # fmt: skip
+            table.fail(
+                "RBL605",
+                f"J{index + 1} at home is {angle:g} deg and must be between {limits.lower / DEG:g} "
+                f"and {limits.upper / DEG:g}",
+                key="joints_deg",
+            )
     return q_deg
 
 
@@ -255,8 +262,11 @@ def _poses(table: Table, key: str, origin: str) -> Mapping[str, Numbers]:
 
     def read(item: Table) -> Numbers:
         if (name := str(item.keys[-1])).upper() == origin:
-            item.fail("RBL610", f"the name '{name}' of [{key}] is that of the {origin.lower()} itself",
-                      f"give it another name; every cell has {origin} without a table")  # fmt: skip
+            item.fail(
+                "RBL610",
+                f"the name '{name}' of [{key}] is that of the {origin.lower()} itself",
+                f"give it another name; every cell has {origin} without a table",
+            )
         return _only_pose(item)
 
     return MappingProxyType({origin: (0.0,) * 6, **_named(table, key, read)})
@@ -274,6 +284,10 @@ def _word(name: str, item: Table, where: str, seen: set[str]) -> None:
     if not _NAME.fullmatch(name):
         item.fail("RBL613", f"the name '{name}' {where} must be letters, digits and '_'", key=key)
     if name.upper() in seen:
-        item.fail("RBL610", f"the name '{name}' {where} is used twice",
-                  "give each a name of its own; names ignore case", key=key)  # fmt: skip
+        item.fail(
+            "RBL610",
+            f"the name '{name}' {where} is used twice",
+            "give each a name of its own; names ignore case",
+            key=key,
+        )
     seen.add(name.upper())

@@ -303,8 +303,16 @@ def own_pair_name(first: str, second: str) -> str:
 def _contacts(root: ET.Element, spec: RobotSpec, cell: CellSpec, timestep: float) -> None:
     contact = ET.SubElement(root, "contact")
     for first, second in own_pairs(spec):
-        ET.SubElement(contact, "pair", name=own_pair_name(first, second), geom1=first, geom2=second, condim="1",
-                      solimp=_CONTACT, solref=f"{CONTACT_TIME * timestep!r} 1")  # fmt: skip
+        ET.SubElement(
+            contact,
+            "pair",
+            name=own_pair_name(first, second),
+            geom1=first,
+            geom2=second,
+            condim="1",
+            solimp=_CONTACT,
+            solref=f"{CONTACT_TIME * timestep!r} 1",
+        )
     _grip(contact, cell, timestep)
 
 

@@ -94,10 +94,12 @@ class MujocoPlant:
         self.bodies = Bodies(
             names=tuple(part.name for part in cell.parts),
             size=np.array([part.size for part in cell.parts]).reshape(m, 3),
-            p=data.xpos[first:], R=data.xmat[first:].reshape(m, 3, 3),
-            p_tool=data.site_xpos[site], R_tool=data.site_xmat[site].reshape(3, 3),
+            p=data.xpos[first:],
+            R=data.xmat[first:].reshape(m, 3, 3),
+            p_tool=data.site_xpos[site],
+            R_tool=data.site_xmat[site].reshape(3, 3),
             pad_length=float(cell.hand.pad[2]),
-        )  # fmt: skip
+        )
         self._geom_names = [str(self._model.geom(index).name) for index in range(self._model.ngeom)]
         self._known_contacts: dict[bytes, frozenset[Pair]] = {}
         self._touched: frozenset[Pair] = frozenset()
@@ -218,7 +220,7 @@ class MujocoPlant:
     def contacts(self) -> list[Touch]:
         """Return every contact that carries a force, in MuJoCo's order: names such as ``link4``, ``pad_left``,
         ``palm``, ``floor``, ``obstacle:table``, ``part:part``. For reports and collision supervision.
-        """  # fmt: skip
+        """
         touches: list[Touch] = []
         wrench = np.zeros(6)
         for index in range(self._data.ncon):
@@ -249,8 +251,9 @@ class MujocoPlant:
             if len(self._known_contacts) >= MOST_KNOWN:
                 self._known_contacts.clear()
             names = self._geom_names
-            pairs = frozenset((names[a], names[b]) if names[a] < names[b] else (names[b], names[a])
-                              for a, b in geoms.tolist())  # fmt: skip
+            pairs = frozenset(
+                (names[a], names[b]) if names[a] < names[b] else (names[b], names[a]) for a, b in geoms.tolist()
+            )
             self._known_contacts[key] = pairs
         if not pairs <= self._touched:
             self._touched |= pairs
@@ -323,8 +326,10 @@ class MujocoPlant:
         for _ in range(ADVANCES):
             self._qpos[at + 2] = z - fallen
             mujoco.mj_kinematics(self._model, self._data)
-            distance = min(mujoco.mj_geomDistance(self._model, self._data, own, other, 2.0 * most + MARGIN, None)
-                           for other in others)  # fmt: skip
+            distance = min(
+                mujoco.mj_geomDistance(self._model, self._data, own, other, 2.0 * most + MARGIN, None)
+                for other in others
+            )
             if distance <= MET:
                 return fallen if distance >= -inside else None
             fallen += distance

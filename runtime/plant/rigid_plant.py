@@ -67,8 +67,9 @@ class RigidPlant:
 
     def hand(self) -> HandState:
         """Return the state of the hand."""
-        return HandState(closed=self._closed, opening=0.0 if self._closed else self._cell.hand.stroke,
-                         holding=self._holding)  # fmt: skip
+        return HandState(
+            closed=self._closed, opening=0.0 if self._closed else self._cell.hand.stroke, holding=self._holding
+        )
 
     def parts(self) -> dict[str, Array]:
         """Return the pose X_world_part (4, 4) of every part."""

@@ -60,9 +60,13 @@ class SensorSpec:
             lost=file.lost,
             seed=file.seed,
             in_line_frame=file.in_line_frame,
-            limits=SeamLimits(filter_s=file.filter_ms * 1e-3, most=file.most_mm * MM, most_turn=file.most_deg * DEG,
-                              lost_s=file.lost_ms * 1e-3),
-        )  # fmt: skip
+            limits=SeamLimits(
+                filter_s=file.filter_ms * 1e-3,
+                most=file.most_mm * MM,
+                most_turn=file.most_deg * DEG,
+                lost_s=file.lost_ms * 1e-3,
+            ),
+        )
 
     def at(self, way: float) -> Array:
         """Return the true deviation (6,) at a way along the path, m."""

@@ -34,8 +34,10 @@ class InputSpec:
 def read_input(table: Table) -> InputSpec:
     """Read one ``[inputs.N]``; ``FileFault`` at what is wrong."""
     if "follows" in table:
-        found = InputSpec(follows=table.integer("follows", low=1, high=MOST),
-                          delay_us=round(table.number("delay_s", 0.0, low=0.0, high=LONGEST_S) * 1e6))  # fmt: skip
+        found = InputSpec(
+            follows=table.integer("follows", low=1, high=MOST),
+            delay_us=round(table.number("delay_s", 0.0, low=0.0, high=LONGEST_S) * 1e6),
+        )
         table.done()
         return found
     changes: list[tuple[int, float]] = []
@@ -47,8 +49,11 @@ def read_input(table: Table) -> InputSpec:
         changes.append((round(seconds * 1e6), state))
     table.done()
     if not changes:
-        table.fail("RBL608", f"'{table.name()}' needs 'changes' or 'follows'",
-                   "write changes = [[seconds, state], ...] or follows = N, the number of an output")  # fmt: skip
+        table.fail(
+            "RBL608",
+            f"'{table.name()}' needs 'changes' or 'follows'",
+            "write changes = [[seconds, state], ...] or follows = N, the number of an output",
+        )
     return InputSpec(changes=tuple(changes))
 
 
@@ -93,8 +98,11 @@ class Signals:
         spec = self._inputs.get(number)
         if spec is None:
             known = ", ".join(map(str, sorted(self._inputs))) or "none"
-            raise Fault("RBL534", f"the cell has no input {number} (known: {known})",
-                        f"write [inputs.{number}] into the cell file")  # fmt: skip
+            raise Fault(
+                "RBL534",
+                f"the cell has no input {number} (known: {known})",
+                f"write [inputs.{number}] into the cell file",
+            )
         if spec.follows is not None:
             return _at(self._history.get(spec.follows, ()), now_us - spec.delay_us)
         return _at(spec.changes, now_us)

@@ -125,8 +125,10 @@ class Loss:
     def message(self) -> str:
         """What is said of it."""
         gripped = "" if self.gripped is None else f", gripped in {named(self.gripped.line, self.gripped.number)},"
-        return (f"{self.part}{gripped} has slipped out of the hand: it is "
-                f"{self.distance / MM:.1f} mm from where it was gripped")  # fmt: skip
+        return (
+            f"{self.part}{gripped} has slipped out of the hand: it is "
+            f"{self.distance / MM:.1f} mm from where it was gripped"
+        )
 
 
 @dataclass(slots=True, kw_only=True)
@@ -177,8 +179,9 @@ class Touches:
         self._index = {_PART + name: k for k, name in enumerate(bodies.names)}
         signs = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
         self._corners = signs * bodies.size[:, None, :]
-        self._before = replace(bodies, p=bodies.p.copy(), R=bodies.R.copy(), p_tool=bodies.p_tool.copy(),
-                               R_tool=bodies.R_tool.copy())  # fmt: skip
+        self._before = replace(
+            bodies, p=bodies.p.copy(), R=bodies.R.copy(), p_tool=bodies.p_tool.copy(), R_tool=bodies.R_tool.copy()
+        )
         self._pairs: frozenset[Pair] | None = None
         self._seen = _Seen()
         self._closed = False
@@ -284,8 +287,9 @@ class Touches:
                 since, place = grip.since if grip.bare else (tick, self._place)
                 del self._held[part]
                 self._lost.add(part)
-                return Loss(part=part.removeprefix(_PART), tick=since, place=place, gripped=grip.gripped,
-                            distance=distance)  # fmt: skip
+                return Loss(
+                    part=part.removeprefix(_PART), tick=since, place=place, gripped=grip.gripped, distance=distance
+                )
         return None
 
     @property

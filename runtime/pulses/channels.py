@@ -79,8 +79,9 @@ def default_channels(joints: tuple[Joint, ...], pulses: tuple[float, ...], min_h
     return tuple(Channel(joint=joint, pulse=pulse, min_hz=low) for joint, pulse in zip(joints, pulses, strict=True))
 
 
-def channels_of(file: ChannelFile, joints: tuple[Joint, ...], pulses: tuple[float, ...], name: str,
-                min_hz: float | None) -> tuple[Channel, ...]:  # fmt: skip
+def channels_of(
+    file: ChannelFile, joints: tuple[Joint, ...], pulses: tuple[float, ...], name: str, min_hz: float | None
+) -> tuple[Channel, ...]:
     """Return the channels of machine ``name`` in the order of its ``joints``; ``FileFault`` at what does not fit.
 
     ``min_hz`` given on the command line goes over those of the file.
@@ -116,8 +117,11 @@ def _channel(row: Table, joint: Joint, pulse: float, min_hz: float | None) -> Ch
     row.done()
     if not channel.max_hz >= 2.0 * channel.min_hz:
         most, least = beside(channel.max_hz, 2.0 * channel.min_hz)
-        row.fail("RBL605", f"'max_hz' of '{joint.name}' is {most} and must be at least {least}, twice min_hz",
-                 key="max_hz" if "max_hz" in row else "joint")  # fmt: skip
+        row.fail(
+            "RBL605",
+            f"'max_hz' of '{joint.name}' is {most} and must be at least {least}, twice min_hz",
+            key="max_hz" if "max_hz" in row else "joint",
+        )
     return channel
 
 

@@ -35,8 +35,9 @@ def control_code(table: DataTable, output: Output) -> str:
         if low <= lowest and highest <= high:
             duty = 1 if highest >= QUARTER_DUTY_HZ else 0
             return f"16#{duty}{code}1{_UP[output] + (0 if table.up else 1)}"
-    raise Fault("RBL433", f"no frequency range of F174 holds {lowest} to {highest} Hz: 2 Hz to 9.8 kHz, 48 or 191 Hz "
-                "to 100 kHz")  # fmt: skip
+    raise Fault(
+        "RBL433", f"no frequency range of F174 holds {lowest} to {highest} Hz: 2 Hz to 9.8 kHz, 48 or 191 Hz to 100 kHz"
+    )
 
 
 def as_csv(tables: Sequence[DataTable], output: Output, comments: Sequence[str]) -> str:

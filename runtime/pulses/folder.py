@@ -87,9 +87,14 @@ def _mechanism(table: Object) -> Mechanism:
         placements = table.poses("placements")
         if not placements:
             table.fail("placements", "has no axis")
-        return Mechanism(kind=kind, name=name, axes=tuple(f"J{k}" for k in range(1, len(placements) + 1)),
-                         placements=placements, X_last_flange=table.pose("X_last_flange"),
-                         X_flange_tool=table.pose("X_flange_tool"))  # fmt: skip
+        return Mechanism(
+            kind=kind,
+            name=name,
+            axes=tuple(f"J{k}" for k in range(1, len(placements) + 1)),
+            placements=placements,
+            X_last_flange=table.pose("X_last_flange"),
+            X_flange_tool=table.pose("X_flange_tool"),
+        )
     axes = _axes(table, kind)
     moved = set(axes) if kind == "cartesian" else {"x", "y", *axes}
     constant = [0.0 if axis in moved else table.number(f"{axis}_mm") * MM for axis in "xyz"]
@@ -132,13 +137,18 @@ def _channel(table: Object, unit: Unit) -> Channel:
         table.fail("per_pulse", "must not be 0")
     min_hz = table.number("min_hz", 0.0)
     return Channel(
-        name=name, unit=unit, per_pulse=per_pulse, min_hz=min_hz, max_hz=table.number("max_hz", min_hz),
+        name=name,
+        unit=unit,
+        per_pulse=per_pulse,
+        min_hz=min_hz,
+        max_hz=table.number("max_hz", min_hz),
         start_pulses=table.whole("start_pulses", -MAX_PULSES, MAX_PULSES),
-    )  # fmt: skip
+    )
 
 
-def _sequence(manifest: Object, folder: Path, channels: tuple[Channel, ...],
-              step_s: float) -> tuple[Marker | Move, ...]:  # fmt: skip
+def _sequence(
+    manifest: Object, folder: Path, channels: tuple[Channel, ...], step_s: float
+) -> tuple[Marker | Move, ...]:
     tables = manifest.children("sequence")
     left = MAX_STEPS
     files: set[str] = set()
@@ -175,8 +185,15 @@ def _marker(table: Object) -> Marker:
     return Marker(line=line, number=number, text=text, hand=hand, dwell_s=table.number("dwell_s", 0.0, LONGEST_DWELL_S))
 
 
-def _move(entry: Object, folder: Path, channels: tuple[Channel, ...], step_s: float, stands: tuple[int, ...],
-          files: set[str], most: int) -> tuple[Move, tuple[int, ...]]:  # fmt: skip
+def _move(
+    entry: Object,
+    folder: Path,
+    channels: tuple[Channel, ...],
+    step_s: float,
+    stands: tuple[int, ...],
+    files: set[str],
+    most: int,
+) -> tuple[Move, tuple[int, ...]]:
     """Return a move and where its channels stand after it; ``files`` have been read, ``most`` steps are left."""
     line, number, text = _place(entry)
     steps = entry.whole("steps", 0, MAX_STEPS)
@@ -195,8 +212,17 @@ def _move(entry: Object, folder: Path, channels: tuple[Channel, ...], step_s: fl
         table, ends_at = (None, at) if file is None else Rows(folder / file, channel, step_s).read(at, steps)
         found.append(table)
         last.append(ends_at)
-    move = Move(line=line, number=number, text=text, steps=steps, start=start, end=end, tables=tuple(found),
-                first=frozen(stands), last=frozen(last))  # fmt: skip
+    move = Move(
+        line=line,
+        number=number,
+        text=text,
+        steps=steps,
+        start=start,
+        end=end,
+        tables=tuple(found),
+        first=frozen(stands),
+        last=frozen(last),
+    )
     return move, tuple(last)
 
 

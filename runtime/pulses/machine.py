@@ -123,10 +123,16 @@ class RobotArm:
         self.name = spec.name
         self.home = Stand(q=frozen(home))
         self.joints = tuple(
-            Joint(name=f"J{number}", rotary=True, lower=axis.limits.lower, upper=axis.limits.upper,
-                  speed=axis.limits.speed, acceleration=axis.limits.acceleration)
+            Joint(
+                name=f"J{number}",
+                rotary=True,
+                lower=axis.limits.lower,
+                upper=axis.limits.upper,
+                speed=axis.limits.speed,
+                acceleration=axis.limits.acceleration,
+            )
             for number, axis in enumerate(spec.axes, start=1)
-        )  # fmt: skip
+        )
 
     @property
     def kinematics(self) -> Kinematics:

@@ -31,8 +31,9 @@ POSE_TOLERANCE = 1e-6
 # --- a file ----------------------------------------------------------------------------------------------------------
 
 
-def fail(path: Path, code: str, message: str, hint: str = "", line: int = 1, column: int = 1,
-         excerpt: str = "") -> NoReturn:  # fmt: skip
+def fail(
+    path: Path, code: str, message: str, hint: str = "", line: int = 1, column: int = 1, excerpt: str = ""
+) -> NoReturn:
     """Raise ``FileFault`` at a place of a file."""
     raise FileFault(code, message, hint, path=str(path), line=line, column=column, excerpt=excerpt) from None
 
@@ -49,8 +50,12 @@ def read_text(path: Path, most: int) -> str:
         handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC | os.O_NOFOLLOW)
     except (OSError, ValueError) as error:
         link = isinstance(error, OSError) and error.errno in (errno.ELOOP, errno.EMLINK)
-        fail(path, "RBL630", f"{path} is a link" if link else f"cannot open {path}: {reason(error)}",
-             "put the file itself into the folder" if link else "")  # fmt: skip
+        fail(
+            path,
+            "RBL630",
+            f"{path} is a link" if link else f"cannot open {path}: {reason(error)}",
+            "put the file itself into the folder" if link else "",
+        )
     try:
         info = os.fstat(handle)
         if not stat.S_ISREG(info.st_mode):
@@ -140,8 +145,14 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 def _fail_in(path: Path, text: str, at: int, message: str) -> NoReturn:
     start = text.rfind("\n", 0, at) + 1
-    fail(path, "RBL630", message, line=text.count("\n", 0, at) + 1, column=at - start + 1,
-         excerpt=text[start:].partition("\n")[0].removesuffix("\r"))  # fmt: skip
+    fail(
+        path,
+        "RBL630",
+        message,
+        line=text.count("\n", 0, at) + 1,
+        column=at - start + 1,
+        excerpt=text[start:].partition("\n")[0].removesuffix("\r"),
+    )
 
 
 # --- typed getters ---------------------------------------------------------------------------------------------------

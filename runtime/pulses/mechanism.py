@@ -53,8 +53,10 @@ ORDER: dict[str, tuple[str, ...]] = {
     "scara": ("theta1", "theta2", "z", "theta4"),
 }
 NEEDED: dict[str, tuple[str, ...]] = {
-    "cartesian": ("x",), "cylindrical": ("theta", "r"), "scara": ("theta1", "theta2"),
-}  # fmt: skip
+    "cartesian": ("x",),
+    "cylindrical": ("theta", "r"),
+    "scara": ("theta1", "theta2"),
+}
 SCHEMA = 1
 SAME = 1e-6
 """A difference that is none, m and rad: taught values have fewer digits."""
@@ -115,14 +117,18 @@ class Mechanism:
         for axis, at in self.fixed:
             k = "xyz".index(axis)
             if not abs(end[k] - at) <= SAME:
-                raise Fault("RBL431", f"the {self.name} has no joint for {axis} and stands at {at / MM:g} mm; the "
-                            f"point is at {end[k] / MM:g} mm")  # fmt: skip
+                raise Fault(
+                    "RBL431",
+                    f"the {self.name} has no joint for {axis} and stands at {at / MM:g} mm; the "
+                    f"point is at {end[k] / MM:g} mm",
+                )
         turns = self._turns(stand, command)
         turn = turns[0]
         speed = self.speed if command.speed is None else command.speed
         speed = self.max_speed if command.duration is not None else speed
-        check_requests(("SPEED in mm/s", speed / MM, self.max_speed / MM),
-                       ("ACCEL in %", command.acceleration * 100.0, 100.0))  # fmt: skip
+        check_requests(
+            ("SPEED in mm/s", speed / MM, self.max_speed / MM), ("ACCEL in %", command.acceleration * 100.0, 100.0)
+        )
         length = norm(end - start)
         extents = [(length, speed, self.acceleration * command.acceleration, np.inf)]
         if turn:  # as fast as the joint that turns it; what its limits leave of that is found on the steps
@@ -130,8 +136,9 @@ class Mechanism:
             extents.append((abs(turn), min(joint.speed, _FAST), min(joint.acceleration, _FAST), np.inf))
         moves = not (length <= SAME * MM and abs(turn) <= SAME * MM)
         limits = bound(extents, "trapezoid") if moves else None
-        ways = [MechanismWay(mechanism=self, q_start=stand.q, ends=(start, end), turn=each, limits=limits)
-                for each in turns]  # fmt: skip
+        ways = [
+            MechanismWay(mechanism=self, q_start=stand.q, ends=(start, end), turn=each, limits=limits) for each in turns
+        ]
         return ways[0] if len(ways) == 1 else _freer(ways[0], ways[1])
 
     def _turns(self, stand: Stand, command: MoveLinear) -> tuple[float, ...]:
@@ -146,11 +153,15 @@ class Mechanism:
         if angle <= SAME:
             return (0.0,)
         if "theta4" not in self.has:
-            raise Fault("RBL431", f"the tool would have to turn by {angle / DEG:.2f} deg, and the {self.name} has no "
-                        "joint that turns it")  # fmt: skip
+            raise Fault(
+                "RBL431",
+                f"the tool would have to turn by {angle / DEG:.2f} deg, and the {self.name} has no joint that turns it",
+            )
         if not 1.0 - abs(axis[2]) <= SAME:
-            raise Fault("RBL431", f"the tool would have to turn about another axis than z, and the {self.name} has no "
-                        "joint for that")  # fmt: skip
+            raise Fault(
+                "RBL431",
+                f"the tool would have to turn about another axis than z, and the {self.name} has no joint for that",
+            )
         return tuple(math.copysign(angle, axis[2]) for axis, angle in rotations)
 
     def arrived(self, stand: Stand, command: MoveLinear, q: Array) -> Stand:
@@ -184,9 +195,12 @@ class Mechanism:
         """Return the mechanism as the tables' manifest has it."""
         lengths = dict(zip(("l1_mm", "l2_mm"), (at / MM for at in self.lengths), strict=True))
         return {
-            "kind": self.kind, "name": self.name, "axes": [joint.name for joint in self.joints],
-            **(lengths if self.kind == "scara" else {}), **{f"{axis}_mm": at / MM for axis, at in self.fixed},
-        }  # fmt: skip
+            "kind": self.kind,
+            "name": self.name,
+            "axes": [joint.name for joint in self.joints],
+            **(lengths if self.kind == "scara" else {}),
+            **{f"{axis}_mm": at / MM for axis, at in self.fixed},
+        }
 
 
 _FAST = 1e3
@@ -217,8 +231,10 @@ class MechanismWay:
             first = int(np.argmax(lost))
             at = (start + s[first] * (end - start)) / MM
             place = f"({at[0]:.1f}, {at[1]:.1f}, {at[2]:.1f}) mm"
-            raise Fault("RBL410", f"the point {place} at {100 * s[first]:.1f} % of the path is out of reach of the "
-                        f"{self.mechanism.name}")  # fmt: skip
+            raise Fault(
+                "RBL410",
+                f"the point {place} at {100 * s[first]:.1f} % of the path is out of reach of the {self.mechanism.name}",
+            )
         self._check_jumps(s, q)
         q[0] = self.q_start
         for k, joint in enumerate(self.mechanism.joints):
@@ -227,8 +243,11 @@ class MechanismWay:
             if not beyond[worst] <= RANGE_TOLERANCE:
                 unit, name = (DEG, "deg") if joint.rotary else (MM, "mm")
                 at, low, high = beside(q[worst, k] / unit, joint.lower / unit, joint.upper / unit, form=".2f")
-                raise Fault("RBL411", f"{joint.name} is at {at} {name} at {100 * s[worst]:.1f} % of the path, beyond "
-                            f"{low} to {high} {name}")  # fmt: skip
+                raise Fault(
+                    "RBL411",
+                    f"{joint.name} is at {at} {name} at {100 * s[worst]:.1f} % of the path, beyond "
+                    f"{low} to {high} {name}",
+                )
         return q
 
     def _check_jumps(self, s: Array, q: Array) -> None:
@@ -239,8 +258,11 @@ class MechanismWay:
         step, k = np.unravel_index(int(np.argmax(jumps)), jumps.shape)
         if not jumps[step, k] <= JUMP:
             name = self.mechanism.joints[turning[int(k)]].name
-            raise Fault("RBL412", f"at {100 * s[step]:.1f} % of the straight path {name} would have to turn by "
-                        f"{jumps[step, k] / DEG:.0f} deg in one step: the line passes a singularity")  # fmt: skip
+            raise Fault(
+                "RBL412",
+                f"at {100 * s[step]:.1f} % of the straight path {name} would have to turn by "
+                f"{jumps[step, k] / DEG:.0f} deg in one step: the line passes a singularity",
+            )
 
 
 def _freer(first: MechanismWay, second: MechanismWay) -> MechanismWay:
@@ -307,21 +329,30 @@ def parse(source: Source) -> Mechanism:
         if joint.name not in order:
             row.fail("RBL610", f"'{joint.name}' is not a joint of a {kind} mechanism: {', '.join(order)}", key="name")
         if joint.rotary != joint.name.startswith("theta"):
-            row.fail("RBL613", f"'{joint.name}' {'slides' if joint.rotary else 'turns'}: give its values in "
-                     f"{'mm' if joint.rotary else 'deg'}", key="name")  # fmt: skip
+            row.fail(
+                "RBL613",
+                f"'{joint.name}' {'slides' if joint.rotary else 'turns'}: give its values in "
+                f"{'mm' if joint.rotary else 'deg'}",
+                key="name",
+            )
     places = [order.index(each) for each in names]
     if places != sorted(set(places)):
-        table.fail("RBL610", f"joints of a {kind} mechanism stand in this order, each once: {', '.join(order)}",
-                   key="joints")  # fmt: skip
+        table.fail(
+            "RBL610", f"joints of a {kind} mechanism stand in this order, each once: {', '.join(order)}", key="joints"
+        )
     lengths = [table.number(f"{key}_mm", positive=True) * MM if kind == "scara" else 0.0 for key in ("l1", "l2")]
     max_speed = path.number("max_speed_mm_s", positive=True) * MM
     found = Mechanism(
-        name=name, kind=kind, joints=joints,  # type: ignore[arg-type]
+        name=name,
+        kind=kind,  # type: ignore[arg-type]
+        joints=joints,
         home=Stand(q=frozen([_home(row, joint) for row, joint in zip(rows, joints, strict=True)])),
         pulse=tuple(_pulse(row, joint) for row, joint in zip(rows, joints, strict=True)),
-        speed=path.number("speed_mm_s", positive=True, high=max_speed / MM) * MM, max_speed=max_speed,
-        acceleration=path.number("acceleration_mm_s2", positive=True) * MM, lengths=(lengths[0], lengths[1]),
-    )  # fmt: skip
+        speed=path.number("speed_mm_s", positive=True, high=max_speed / MM) * MM,
+        max_speed=max_speed,
+        acceleration=path.number("acceleration_mm_s2", positive=True) * MM,
+        lengths=(lengths[0], lengths[1]),
+    )
     for each in (path, *rows, table):
         each.done()
     return found
@@ -337,8 +368,14 @@ def _joint(row: Table) -> Joint:
         row.number(key, positive=True) * scale if key in row else np.inf
         for key in (f"speed_{unit}_s", f"acceleration_{unit}_s2")
     )
-    return Joint(name=row.text("name"), rotary=rotary, lower=lower * scale, upper=upper * scale, speed=float(speed),
-                 acceleration=float(acceleration))  # fmt: skip
+    return Joint(
+        name=row.text("name"),
+        rotary=rotary,
+        lower=lower * scale,
+        upper=upper * scale,
+        speed=float(speed),
+        acceleration=float(acceleration),
+    )
 
 
 def _home(row: Table, joint: Joint) -> float:

@@ -65,15 +65,26 @@ class MovePulses:
         return [round(int(np.abs(each.steps).max(initial=0)) / step_s) for each in self.emitted]
 
 
-def plan_move(machine: Machine, stand: Stand, command: MoveLinear, channels: tuple[Channel, ...], start: Pulses,
-              step_s: float) -> MovePulses:  # fmt: skip
+def plan_move(
+    machine: Machine, stand: Stand, command: MoveLinear, channels: tuple[Channel, ...], start: Pulses, step_s: float
+) -> MovePulses:
     """Return a move of ``machine`` from ``stand``, whose channels are at ``start`` (M,) pulses; ``Fault`` RBL4xx."""
     way = machine.way(stand, command)
     if way.limits is None:
         nothing = np.zeros((0, len(channels)), dtype=np.int64)
         none = Emission(steps=nothing[:, 0], raised=0, debt=0, settled=0, rule="none")
-        return _measured(machine, way, None, stand.q[None], start, nothing, (none,) * len(channels), 1.0,
-                         ("already there",), channels)  # fmt: skip
+        return _measured(
+            machine,
+            way,
+            None,
+            stand.q[None],
+            start,
+            nothing,
+            (none,) * len(channels),
+            1.0,
+            ("already there",),
+            channels,
+        )
     override = command.override
     limits, notes = _timed(way.limits.overridden(override), command.duration and command.duration / override)
     steps, q, slowed, ruling = _within_limits(machine, way, limits, step_s, override)
@@ -128,8 +139,9 @@ def _steps(limits: SpeedLimits, step_s: float) -> EqualTimeSteps:
     return EqualTimeSteps.of(1.0, speed, speed / limits.acceleration, step_s)
 
 
-def _within_limits(machine: Machine, way: Way, limits: SpeedLimits, step_s: float,
-                   override: float) -> tuple[EqualTimeSteps, Array, float, str]:  # fmt: skip
+def _within_limits(
+    machine: Machine, way: Way, limits: SpeedLimits, step_s: float, override: float
+) -> tuple[EqualTimeSteps, Array, float, str]:
     """Return the steps, their joint values, the factor of time that the joints needed, and which of them ruled."""
     slowed, ruling = 1.0, ""
     for _ in range(_ROUNDS):
@@ -155,8 +167,15 @@ def _excess(machine: Machine, q: Array, step_s: float, override: float) -> tuple
     return float(ratios[kind, k]), f"{machine.joints[int(k)].name} {('speed', 'acceleration')[kind]}"
 
 
-def _check_frequency(machine: Machine, way: Way, limits: SpeedLimits, channels: tuple[Channel, ...], wanted: Pulses,
-                     steps: EqualTimeSteps, override: float) -> None:  # fmt: skip
+def _check_frequency(
+    machine: Machine,
+    way: Way,
+    limits: SpeedLimits,
+    channels: tuple[Channel, ...],
+    wanted: Pulses,
+    steps: EqualTimeSteps,
+    override: float,
+) -> None:
     """Refuse a step that wants more pulses than its channel can give, with a SPEED or TIME at which none does."""
     most = np.array([most_pulses(channel, steps.step_s) for channel in channels])
     ratios = np.abs(wanted) / most
@@ -169,12 +188,17 @@ def _check_frequency(machine: Machine, way: Way, limits: SpeedLimits, channels: 
     speed = fits.speed * way.length / MM
     what = f"SPEED {down(speed / override):g}" if speed > 0.0 else f"TIME {fits.seconds * override:.3f}"
     needs, gives = beside(needed, channel.max_hz, form=".0f")
-    raise Fault("RBL430", f"{channel.joint.name} of the {machine.name} needs {needs} Hz at {share:.1f} % of the path, "
-                f"its channel gives {gives} Hz at most", f"{what} would fit")  # fmt: skip
+    raise Fault(
+        "RBL430",
+        f"{channel.joint.name} of the {machine.name} needs {needs} Hz at {share:.1f} % of the path, "
+        f"its channel gives {gives} Hz at most",
+        f"{what} would fit",
+    )
 
 
-def _fitting(way: Way, limits: SpeedLimits, channels: tuple[Channel, ...], most: Pulses, step_s: float,
-             ratio: float) -> EqualTimeSteps:  # fmt: skip
+def _fitting(
+    way: Way, limits: SpeedLimits, channels: tuple[Channel, ...], most: Pulses, step_s: float, ratio: float
+) -> EqualTimeSteps:
     """Return the steps of the move at a speed whose frequencies fit."""
     speed = min(limits.speed, math.sqrt(limits.acceleration))
     while True:
@@ -186,9 +210,18 @@ def _fitting(way: Way, limits: SpeedLimits, channels: tuple[Channel, ...], most:
             return steps
 
 
-def _measured(machine: Machine, way: Way, steps: EqualTimeSteps | None, q: Array, start: Pulses, wanted: Pulses,
-              emitted: tuple[Emission, ...], slowed: float, notes: tuple[str, ...],
-              channels: tuple[Channel, ...]) -> MovePulses:  # fmt: skip
+def _measured(
+    machine: Machine,
+    way: Way,
+    steps: EqualTimeSteps | None,
+    q: Array,
+    start: Pulses,
+    wanted: Pulses,
+    emitted: tuple[Emission, ...],
+    slowed: float,
+    notes: tuple[str, ...],
+    channels: tuple[Channel, ...],
+) -> MovePulses:
     """Put together a move and where its pulses take the tool."""
     count = max((len(each.steps) for each in emitted), default=0)
     positions = np.zeros((count + 1, len(channels)), dtype=np.int64)
@@ -199,9 +232,18 @@ def _measured(machine: Machine, way: Way, steps: EqualTimeSteps | None, q: Array
         positions[len(each.steps) :, k] = positions[len(each.steps), k]
     points = machine.points(positions * [channel.pulse for channel in channels])
     return MovePulses(
-        way=way, steps=steps, q=q, start=start, wanted=wanted, emitted=emitted, count=count, points=points,
-        error=off_line(points, *way.ends), slowed=slowed, notes=notes,
-    )  # fmt: skip
+        way=way,
+        steps=steps,
+        q=q,
+        start=start,
+        wanted=wanted,
+        emitted=emitted,
+        count=count,
+        points=points,
+        error=off_line(points, *way.ends),
+        slowed=slowed,
+        notes=notes,
+    )
 
 
 def off_line(points: Array, start: Array, end: Array) -> Array:
@@ -210,5 +252,3 @@ def off_line(points: Array, start: Array, end: Array) -> Array:
     length2 = dot(way, way)
     along = np.clip(matmul(points - start, way) / length2, 0.0, 1.0) if length2 > 0.0 else np.zeros(len(points))
     return np.asarray(np.linalg.norm(points - (start + along[:, None] * way), axis=1))
-
-

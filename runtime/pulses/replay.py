@@ -62,15 +62,19 @@ def positions(move: Move, t: Array) -> Array:
 
     Before the start and beyond the end they stand.
     """
-    columns = [np.full(np.shape(t), at) if table is None else np.interp(t, table.ends, table.pulses)
-               for at, table in zip(move.first, move.tables, strict=True)]  # fmt: skip
+    columns = [
+        np.full(np.shape(t), at) if table is None else np.interp(t, table.ends, table.pulses)
+        for at, table in zip(move.first, move.tables, strict=True)
+    ]
     return np.stack(columns, axis=-1)
 
 
 def frequencies(move: Move) -> Array:
     """Return the frequency (steps, M) Hz of every channel in each time step, negative when counting down."""
-    columns = [np.zeros(move.steps) if table is None else np.repeat(table.frequency, table.steps.astype(np.int64))
-               for table in move.tables]  # fmt: skip
+    columns = [
+        np.zeros(move.steps) if table is None else np.repeat(table.frequency, table.steps.astype(np.int64))
+        for table in move.tables
+    ]
     return np.stack(columns, axis=-1)
 
 

@@ -73,8 +73,13 @@ class Rows:
         hz, steps = np.array(frequency, dtype=np.float64), np.array(counts, dtype=np.float64)
         change = np.abs(np.diff(np.array(pulses, dtype=np.float64)))
         lasts = np.where(hz == 0.0, steps * self._step_s, change / np.where(hz == 0.0, 1.0, np.abs(hz)))
-        return Table(file=self._path.name, frequency=frozen(hz), steps=frozen(steps),
-                     ends=frozen(np.concatenate([[0.0], np.cumsum(lasts)])), pulses=frozen(pulses))  # fmt: skip
+        return Table(
+            file=self._path.name,
+            frequency=frozen(hz),
+            steps=frozen(steps),
+            ends=frozen(np.concatenate([[0.0], np.cumsum(lasts)])),
+            pulses=frozen(pulses),
+        )
 
     def _fields(self, line: str) -> tuple[str, int, int, int]:
         found = _ROW.fullmatch(line)
@@ -104,8 +109,9 @@ class Rows:
         if hz:
             self._fail("RBL631", f"'{control}' has no pulses, and frequency {hz} Hz", _FREQUENCY)
         if target != at and first:
-            self._fail("RBL632", f"{self._channel.name} stands at {at} pulses, and the table begins at {target}",
-                       _TARGET)  # fmt: skip
+            self._fail(
+                "RBL632", f"{self._channel.name} stands at {at} pulses, and the table begins at {target}", _TARGET
+            )
         if target != at:
             self._fail("RBL631", f"'{control}' stands still at {at} pulses and cannot reach {target}", _TARGET)
         if (count < 1) == (control == "wait"):
@@ -119,13 +125,15 @@ class Rows:
         if (change <= 0) if control == "up" else (change >= 0):
             self._fail("RBL631", f"'{control}' cannot lead from {where} to {target}", _TARGET)
         if not channel.min_hz <= hz <= channel.max_hz:
-            self._fail("RBL631", f"{hz} Hz is not between {channel.min_hz:g} and {channel.max_hz:g} Hz, the range of "
-                       f"{channel.name}", _FREQUENCY)  # fmt: skip
+            self._fail(
+                "RBL631",
+                f"{hz} Hz is not between {channel.min_hz:g} and {channel.max_hz:g} Hz, the range of {channel.name}",
+                _FREQUENCY,
+            )
         if not hz or not abs(abs(change) / hz - self._step_s) <= ROW_TOLERANCE_S:
             takes, step = beside(abs(change) / hz * 1e3 if hz else math.inf, self._step_s * 1e3)
             lasts = f"lasts {takes} ms" if hz else "never ends"
-            self._fail("RBL632", f"from {where} to {target} at {hz} Hz {lasts}; a step has {step} ms",
-                       _FREQUENCY)  # fmt: skip
+            self._fail("RBL632", f"from {where} to {target} at {hz} Hz {lasts}; a step has {step} ms", _FREQUENCY)
 
     def _fail(self, code: str, message: str, place: int = 0, column: int | None = None) -> NoReturn:
         """Raise ``FileFault`` at the ``place``-th value of the current line, or at ``column``."""

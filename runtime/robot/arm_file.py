@@ -67,8 +67,11 @@ def read_arm_file(path: Path) -> ArmFile:
     sidecar = sidecar_source(path)
     if sidecar is None:
         beside = sidecar_path(path).name
-        first_joint(root).fail("RBL608", f"no drives, path limits and rated payload: there is no {beside}",
-                               f"'robolang robot import {path.name}' writes {beside}; fill in what it marks MISSING")
+        first_joint(root).fail(
+            "RBL608",
+            f"no drives, path limits and rated payload: there is no {beside}",
+            f"'robolang robot import {path.name}' writes {beside}; fill in what it marks MISSING",
+        )
     key = "name" if root.tag == "robot" else "model"
     return ModelFile(source=source, name=root.text(key, "robot"), sidecar=read_sidecar(sidecar, path.name))
 

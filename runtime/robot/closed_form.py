@@ -95,12 +95,19 @@ def _parameters(frames: Array, X_base_flange: Array) -> OpwParameters | None:
     t5 = math.atan2(dot(e6, x4_turned), dot(e6, e4))
     return _with_ends(
         OpwParameters(
-            a1=a1, a2=dot(fore, x4), b=float(p_wrist[1]), c1=c1, c2=c2, c3=dot(fore, e4), c4=reach,
-            offsets=frozen([0.0, t2, t23 - t2, t4, t5, 0.0]), signs=frozen(signs),
+            a1=a1,
+            a2=dot(fore, x4),
+            b=float(p_wrist[1]),
+            c1=c1,
+            c2=c2,
+            c3=dot(fore, e4),
+            c4=reach,
+            offsets=frozen([0.0, t2, t23 - t2, t4, t5, 0.0]),
+            signs=frozen(signs),
         ),
         X_base_opw,
         X_base_flange,
-    )  # fmt: skip
+    )
 
 
 def _model_frame(p: Array, z: Array) -> tuple[Array, Array]:
@@ -149,16 +156,23 @@ def _with_ends(params: OpwParameters, X_base_opw: Array, X_base_flange: Array) -
         round(length, 13) + 0.0
         for length in (params.a1, params.a2, params.b, params.c1, params.c2, params.c3, params.c4)
     )
-    plain = OpwParameters(
-        a1=a1, a2=a2, b=b, c1=c1, c2=c2, c3=c3, c4=c4, offsets=frozen(offsets), signs=params.signs
-    )  # fmt: skip
+    plain = OpwParameters(a1=a1, a2=a2, b=b, c1=c1, c2=c2, c3=c3, c4=c4, offsets=frozen(offsets), signs=params.signs)
     if before is None and behind is None:
         return plain
     unmoved = frozen(np.eye(4))
     return PlacedOpw(
-        a1=a1, a2=a2, b=b, c1=c1, c2=c2, c3=c3, c4=c4, offsets=plain.offsets, signs=plain.signs,
-        X_base_opw=unmoved if before is None else before, X_opw_flange=unmoved if behind is None else behind,
-    )  # fmt: skip
+        a1=a1,
+        a2=a2,
+        b=b,
+        c1=c1,
+        c2=c2,
+        c3=c3,
+        c4=c4,
+        offsets=plain.offsets,
+        signs=plain.signs,
+        X_base_opw=unmoved if before is None else before,
+        X_opw_flange=unmoved if behind is None else behind,
+    )
 
 
 def _split(X: Array) -> tuple[float, Array | None]:

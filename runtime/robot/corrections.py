@@ -28,6 +28,7 @@ TOKEN_MASS = 1e-6
 TOKEN_INERTIA = 1e-12
 """The moments that a correction may give to a body published as a point, kg m2."""
 
+
 def correct(row: CorrectionRow, axes: list[AxisSpec], index: int) -> Correction:
     """Apply the correction of the last axis in ``axes``; ``FileFault`` RBL606 for one needless or too large."""
     shift, mass, moments = row.inertia_shift, row.added_mass, row.added_inertia
@@ -48,22 +49,37 @@ def _check_need(table: Table, published: Body, correction: Correction) -> None:
     name = f"J{correction.axis + 1}"
     needed = smallest_shift(published.inertia) or 0.0
     if not shift <= needed + SLACK:
-        table.fail("RBL606", f"the shift of {shift:g} kg m2 is larger than the {needed:.12g} that {name} needs",
-                   f"write inertia_shift_kg_m2 = {needed:.12g}", key="inertia_shift_kg_m2")  # fmt: skip
+        table.fail(
+            "RBL606",
+            f"the shift of {shift:g} kg m2 is larger than the {needed:.12g} that {name} needs",
+            f"write inertia_shift_kg_m2 = {needed:.12g}",
+            key="inertia_shift_kg_m2",
+        )
     if mass > 0.0 and published.mass > 0.0:
         table.fail("RBL606", f"{name} has a mass already", "write added_mass_kg = 0", key="added_mass_kg")
     if mass > TOKEN_MASS:
         added, token = beside(mass, TOKEN_MASS)
-        table.fail("RBL606", f"an added mass of {added} kg is more than the {token} that a body needs",
-                   "if the mass is known, write it as mass_kg with its source", key="added_mass_kg")  # fmt: skip
+        table.fail(
+            "RBL606",
+            f"an added mass of {added} kg is more than the {token} that a body needs",
+            "if the mass is known, write it as mass_kg with its source",
+            key="added_mass_kg",
+        )
     if moments > 0.0 and not flat(shifted(published.inertia, shift)):
-        table.fail("RBL606", f"{name} has moments about every axis already", "remove added_inertia_kg_m2",
-                   key="added_inertia_kg_m2")  # fmt: skip
+        table.fail(
+            "RBL606",
+            f"{name} has moments about every axis already",
+            "remove added_inertia_kg_m2",
+            key="added_inertia_kg_m2",
+        )
     if moments > TOKEN_INERTIA:
         added, token = beside(moments, TOKEN_INERTIA)
-        table.fail("RBL606", f"{added} kg m2 are more than the {token} that a body needs",
-                   "if the inertia is known, write it as inertia_kg_m2 with its source",
-                   key="added_inertia_kg_m2")  # fmt: skip
+        table.fail(
+            "RBL606",
+            f"{added} kg m2 are more than the {token} that a body needs",
+            "if the inertia is known, write it as inertia_kg_m2 with its source",
+            key="added_inertia_kg_m2",
+        )
     if shift == 0.0 and mass == 0.0 and moments == 0.0:
         table.fail("RBL606", f"{name} needs no correction, or not this one", "remove [axes.correction]")
 

@@ -164,12 +164,18 @@ def _check_spring(table: Table, motor: Motor) -> None:
     if not motor.elastic:
         return
     if not motor.rotor_inertia > 0.0:
-        table.fail("RBL605", f"'{table.name('rotor_inertia_kg_m2')}' is 0, and the spring of the gear needs a rotor",
-                   key="rotor_inertia_kg_m2")  # fmt: skip
+        table.fail(
+            "RBL605",
+            f"'{table.name('rotor_inertia_kg_m2')}' is 0, and the spring of the gear needs a rotor",
+            key="rotor_inertia_kg_m2",
+        )
     if not motor.stiffness <= motor.reflected_inertia * FASTEST_SPRING**2:
-        table.fail("RBL605", f"the spring of {motor.stiffness:g} N m/rad swings the rotor too fast to be simulated",
-                   "a gear as stiff as that is rigid: leave out joint_stiffness_nm_rad and joint_damping_nm_s_rad",
-                   key="joint_stiffness_nm_rad")  # fmt: skip
+        table.fail(
+            "RBL605",
+            f"the spring of {motor.stiffness:g} N m/rad swings the rotor too fast to be simulated",
+            "a gear as stiff as that is rigid: leave out joint_stiffness_nm_rad and joint_damping_nm_s_rad",
+            key="joint_stiffness_nm_rad",
+        )
 
 
 def limits(table: Table) -> Limits:
@@ -203,8 +209,11 @@ def link_radii(tables: Sequence[Table]) -> tuple[float, ...]:
     given = [radius * MM for radius in radii if radius is not None]
     if given and len(given) < len(radii):
         table = tables[radii.index(None)]
-        table.fail("RBL608", f"'{table.name('link_radius_mm')}' is missing",
-                   "other axes have it: give it for all of them or for none")  # fmt: skip
+        table.fail(
+            "RBL608",
+            f"'{table.name('link_radius_mm')}' is missing",
+            "other axes have it: give it for all of them or for none",
+        )
     return tuple(given)
 
 
@@ -244,8 +253,10 @@ def beyond_range(q_deg: Sequence[float | None], limits: Sequence[Limits]) -> str
         excess = max(axis.lower - angle * DEG, angle * DEG - axis.upper)
         if not excess <= worst:
             worst = excess
-            found = (f"J{index + 1} is at {angle:g} deg, {excess / DEG:.4g} deg outside of its range of "
-                     f"{axis.lower / DEG:g} to {axis.upper / DEG:g} deg")  # fmt: skip
+            found = (
+                f"J{index + 1} is at {angle:g} deg, {excess / DEG:.4g} deg outside of its range of "
+                f"{axis.lower / DEG:g} to {axis.upper / DEG:g} deg"
+            )
     return found
 
 

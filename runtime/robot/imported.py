@@ -207,8 +207,9 @@ def _limits(axes: list[ImportedAxis], side: str) -> Array:
 
 
 def _axis(node: Node, hinge: Hinge, placement: Array) -> ImportedAxis:
-    return ImportedAxis(name=hinge.name, link=node.element, placement=frozen(placement), body=combined([]),
-                        hinge=hinge, impossible=None)  # fmt: skip
+    return ImportedAxis(
+        name=hinge.name, link=node.element, placement=frozen(placement), body=combined([]), hinge=hinge, impossible=None
+    )
 
 
 def _with_body(axis: ImportedAxis, cluster: list[tuple[Array, Node]], index: int) -> ImportedAxis:
@@ -250,5 +251,8 @@ def _flange(cluster: list[tuple[Array, Node]], wanted: str | None, root: Node) -
     for name in FLANGE_NAMES:
         if name in named:
             return name, named[name]
-    root.element.fail("RBL621", f"the last link ends in several frames: {', '.join(name for name, _ in ends)}",
-                      "name it: flange = '...' in the sidecar, or 'robolang robot import --flange'")  # fmt: skip
+    root.element.fail(
+        "RBL621",
+        f"the last link ends in several frames: {', '.join(name for name, _ in ends)}",
+        "name it: flange = '...' in the sidecar, or 'robolang robot import --flange'",
+    )

@@ -75,11 +75,18 @@ def parse_model(source: Source, overlay: Overlay = NO_OVERLAY) -> ImportedArm:
     root = model_root(source)
     name, tree = read_urdf(root) if root.tag == "robot" else read_mjcf(root, Path(source.path).name)
     arm = serial_chain(tree, source.path, name, overlay.flange)
-    ranges = [overlay.ranges.get(axis.name, (low, high)) for axis, low, high in
-              zip(arm.axes, arm.lower, arm.upper, strict=True)]  # fmt: skip
+    ranges = [
+        overlay.ranges.get(axis.name, (low, high))
+        for axis, low, high in zip(arm.axes, arm.lower, arm.upper, strict=True)
+    ]
     lower, upper = np.array(ranges).T
-    return replace(arm, lower=frozen(lower), upper=frozen(upper), opw=find_opw(arm.axes, arm.X_last_flange),
-                   warnings=(*_doubted_axes(arm), *_doubted_bodies(arm)))  # fmt: skip
+    return replace(
+        arm,
+        lower=frozen(lower),
+        upper=frozen(upper),
+        opw=find_opw(arm.axes, arm.X_last_flange),
+        warnings=(*_doubted_axes(arm), *_doubted_bodies(arm)),
+    )
 
 
 def _doubted_axes(arm: ImportedArm) -> Iterator[FileFault]:
@@ -97,8 +104,12 @@ def _doubted_axes(arm: ImportedArm) -> Iterator[FileFault]:
 def _doubted_bodies(arm: ImportedArm) -> list[FileFault]:
     labels = [joint_label(index, axis.name) for index, axis in enumerate(arm.axes)]
     bodies = [axis.body if axis.impossible is None else None for axis in arm.axes]
-    return doubt_bodies(labels, bodies, _offsets(arm), lambda what, axis: (
-        arm.axes[axis].hinge.element if what == "length" else arm.axes[axis].link).fault)  # fmt: skip
+    return doubt_bodies(
+        labels,
+        bodies,
+        _offsets(arm),
+        lambda what, axis: (arm.axes[axis].hinge.element if what == "length" else arm.axes[axis].link).fault,
+    )
 
 
 def _offsets(arm: ImportedArm) -> Array:
@@ -117,12 +128,14 @@ def _with_limits_doubted(arm: ImportedArm, overlay: Overlay) -> ImportedArm:
 
     joints = [
         Turning(
-            label=joint_label(index, axis.name), lower=lower, upper=upper,
+            label=joint_label(index, axis.name),
+            lower=lower,
+            upper=upper,
             speed=math.nan if axis.hinge.speed is None else axis.hinge.speed,
             in_degrees=axis.hinge.in_degrees or axis.name in overlay.tables,
         )
         for index, (axis, lower, upper) in enumerate(zip(arm.axes, arm.lower.tolist(), arm.upper.tolist(), strict=True))
-    ]  # fmt: skip
+    ]
     weight = weight_moment([axis.body for axis in arm.axes], _offsets(arm))
     torques = [math.nan if axis.hinge.effort is None else axis.hinge.effort for axis in arm.axes]
     labels = [joint.label for joint in joints]
@@ -144,17 +157,20 @@ def _check(arm: ImportedArm, overlay: Overlay) -> None:
     if open_ended:
         names = ", ".join(joint_label(i, arm.axes[i].name) for i in open_ended)
         arm.axes[open_ended[0]].hinge.element.fail(
-            "RBL608", f"no position limits for {names}",
+            "RBL608",
+            f"no position limits for {names}",
             f"write them there, or range_deg in {sidecar_path(Path(arm.path)).name} ('robolang robot import')",
-        )  # fmt: skip
+        )
 
 
 def _refuse_without_sidecar(arm: ImportedArm, path: Path) -> NoReturn:
     beside = sidecar_path(path).name
     place = arm.axes[0].hinge.element
     raise fault_at(
-        place.source, place.line, place.column, "RBL608",
-        f"no drives, path limits and rated payload: there is no {beside}; missing for "
-        f"{missing_in_template(arm)}",
+        place.source,
+        place.line,
+        place.column,
+        "RBL608",
+        f"no drives, path limits and rated payload: there is no {beside}; missing for {missing_in_template(arm)}",
         f"'robolang robot import {path.name}' writes {beside}; fill in what it marks MISSING",
-    )  # fmt: skip
+    )

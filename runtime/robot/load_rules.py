@@ -46,8 +46,11 @@ def mass_fault(mass: float, rated: float | None) -> Fault | None:
         return None
     grams = mass / 1000.0 <= rated and mass >= _GRAMS
     shown, most = beside(mass, rated)
-    return Fault("RBL402", f"a payload of {shown} kg is more than the {most} kg the robot is rated for",
-                 f"LOAD takes kg: {mass:g} g is {mass / 1000.0:g} kg" if grams else "")  # fmt: skip
+    return Fault(
+        "RBL402",
+        f"a payload of {shown} kg is more than the {most} kg the robot is rated for",
+        f"LOAD takes kg: {mass:g} g is {mass / 1000.0:g} kg" if grams else "",
+    )
 
 
 def centre_fault(cog: Sequence[float]) -> Fault | None:
@@ -71,8 +74,10 @@ def inertia_fault(inertia: Sequence[float]) -> Fault | None:
         return Fault("RBL403", "the payload inertia is not finite")
     if moments[0] < 0.0:
         return Fault("RBL403", "the payload inertia is not physically possible: a principal moment is negative")
-    return Fault("RBL403", "the payload inertia is not physically possible: the largest principal moment exceeds the "
-                 "sum of the other two")  # fmt: skip
+    return Fault(
+        "RBL403",
+        "the payload inertia is not physically possible: the largest principal moment exceeds the sum of the other two",
+    )
 
 
 def moments_defect(moments: Sequence[float]) -> float:

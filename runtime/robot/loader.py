@@ -64,8 +64,13 @@ def build(file: RobotFile) -> RobotSpec:
     return spec
 
 
-def _doubts(file: RobotFile, axes: Sequence[AxisSpec], published: Sequence[Body], corrections: Sequence[Correction],
-            geometry: Geometry) -> tuple[FileFault, ...]:  # fmt: skip
+def _doubts(
+    file: RobotFile,
+    axes: Sequence[AxisSpec],
+    published: Sequence[Body],
+    corrections: Sequence[Correction],
+    geometry: Geometry,
+) -> tuple[FileFault, ...]:
     """Return what is unlikely about a robot file; a corrected body is not judged."""
     corrected = {item.axis for item in corrections}
     labels = [joint_label(k, axis.name) for k, axis in enumerate(axes)]
@@ -81,8 +86,17 @@ def _doubts(file: RobotFile, axes: Sequence[AxisSpec], published: Sequence[Body]
 
 def _opw(row: OpwRow) -> OpwParameters:
     a1, a2, b, c1, c2, c3, c4 = row.lengths_m
-    return OpwParameters(a1=a1, a2=a2, b=b, c1=c1, c2=c2, c3=c3, c4=c4, signs=frozen(row.signs),
-                         offsets=frozen(np.array(row.offsets_deg) * DEG))  # fmt: skip
+    return OpwParameters(
+        a1=a1,
+        a2=a2,
+        b=b,
+        c1=c1,
+        c2=c2,
+        c3=c3,
+        c4=c4,
+        signs=frozen(row.signs),
+        offsets=frozen(np.array(row.offsets_deg) * DEG),
+    )
 
 
 def _chain(

@@ -44,9 +44,13 @@ _TOP = frozenset(
 _IN_BODY = frozenset(["body", "joint", "freejoint", "inertial", "geom", "site", "camera", "light", "include"])
 _ORIENTATIONS = ("quat", "euler", "axisangle", "xyaxes", "zaxis")
 _UNREAD_COMPILER = {
-    "coordinate": "local", "inertiafromgeom": "auto", "balanceinertia": "false", "boundmass": "0",
-    "boundinertia": "0", "settotalmass": "-1",
-}  # fmt: skip
+    "coordinate": "local",
+    "inertiafromgeom": "auto",
+    "balanceinertia": "false",
+    "boundmass": "0",
+    "boundinertia": "0",
+    "settotalmass": "-1",
+}
 _UNREAD_JOINT = {"ref": 0.0, "springref": 0.0, "stiffness": 0.0}
 _GRAVITY_SLACK = 0.05
 
@@ -102,8 +106,7 @@ def _check_options(model: Element) -> None:
     for option in model.all("option"):
         gravity = np.array(option.numbers("gravity", 3, (0.0, 0.0, -GRAVITY)))
         if not np.abs(gravity - [0.0, 0.0, -GRAVITY]).max() <= _GRAVITY_SLACK:
-            option.fail("RBL621", "gravity is not that of an arm standing on the ground",
-                        "turn the first body instead")  # fmt: skip
+            option.fail("RBL621", "gravity is not that of an arm standing on the ground", "turn the first body instead")
 
 
 def _context(model: Element) -> _Context:
@@ -230,8 +233,11 @@ def _body(body: Element, context: _Context, childclass: str, name: str) -> Body 
     if inertial is None:
         for geom in (_with_defaults(g, context, childclass) for g in body.all("geom")):
             if geom.number("mass", 1.0, low=0.0) > 0.0:
-                geom.fail("RBL621", f"the mass of body {name!r} would have to be inferred from its shapes",
-                          "write an <inertial> with mass, pos and diaginertia or fullinertia")  # fmt: skip
+                geom.fail(
+                    "RBL621",
+                    f"the mass of body {name!r} would have to be inferred from its shapes",
+                    "write an <inertial> with mass, pos and diaginertia or fullinertia",
+                )
         return None
     X = _pose(inertial, context)
     R = X[:3, :3]

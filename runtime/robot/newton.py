@@ -122,8 +122,7 @@ class NewtonSolver:
         return self.n > _DETERMINED or (1 not in met and not (self.n == _DETERMINED and len(met) % 2))
 
     def point(self, q: Array, offset: Array) -> tuple[Array, Array]:
-        """Return where a point ``offset`` (3,) m of the flange frame is, (3,) m, and its Jacobian (3, n), base frame.
-        """
+        """Return position (3,) m and Jacobian (3, n), base frame, of a point ``offset`` (3,) m of the flange frame."""
         J = pin.computeJointJacobians(self._model, self._data, q)  # of the point at the base origin, base frame
         p = (self._data.oMi[self.n] * self._flange).act(offset)
         return p, J[:3] + np.cross(J[3:], p, axis=0)

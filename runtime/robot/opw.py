@@ -134,7 +134,6 @@ BRANCHES = tuple(Branch(arm=arm, elbow=elbow, wrist=wrist) for arm in Arm for el
 """The eight branches, in the order in which ``inverse`` returns them."""
 
 
-
 class _Unbranched(Branch):
     """The branch of an arm without a closed form: it has no name, and its three choices mean nothing."""
 
@@ -291,9 +290,17 @@ def _solve(params: OpwParameters, X: Array, signs: Array, near: Array | None) ->
         return wrapped(params.signs * (theta - params.offsets))
 
 
-def arm_angles(params: OpwParameters, p_end: Array, arm: Array | int, elbow: Array | int, *,
-               t1_free: Array | float = 0.0, a2: Array | None = None, b: Array | None = None, c3: Array | None = None,
-               ) -> tuple[Array, Array, Array]:  # fmt: skip
+def arm_angles(
+    params: OpwParameters,
+    p_end: Array,
+    arm: Array | int,
+    elbow: Array | int,
+    *,
+    t1_free: Array | float = 0.0,
+    a2: Array | None = None,
+    b: Array | None = None,
+    c3: Array | None = None,
+) -> tuple[Array, Array, Array]:
     """Return t1, t2, t3 (...,) that put the end of the forearm at p_end (..., 3); NaN out of reach.
 
     The end is the wrist centre, or another point of a forearm of lengths ``a2``, ``b`` and ``c3`` (...,), m: the tool

@@ -151,9 +151,13 @@ def doubt_axes(axes: Sequence[Driven]) -> tuple[FileFault, ...]:
 
 
 _KEYS: dict[What, tuple[str, ...]] = {
-    "range": ("range_deg",), "speed": ("max_speed_deg_s",), "torque": ("max_torque_nm",), "body": ("mass_kg",),
-    "length": (), "gear": ("motor", "gear_ratio"),
-}  # fmt: skip
+    "range": ("range_deg",),
+    "speed": ("max_speed_deg_s",),
+    "torque": ("max_torque_nm",),
+    "body": ("mass_kg",),
+    "length": (),
+    "gear": ("motor", "gear_ratio"),
+}
 
 
 def in_tables(tables: Sequence[Table]) -> Place:

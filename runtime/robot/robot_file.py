@@ -197,8 +197,9 @@ def _axis(table: Table, form: Literal["dh", "lines"], names: set[str]) -> AxisFi
     cog = table.numbers("cog_m", 3, low=-10.0, high=10.0)
     inertia = table.numbers("inertia_kg_m2", None, low=-1e5, high=1e5)
     if len(inertia) not in (3, 6):
-        table.fail("RBL613", f"'{table.name('inertia_kg_m2')}' needs xx, yy, zz or xx, yy, zz, xy, xz, yz",
-                   key="inertia_kg_m2")  # fmt: skip
+        table.fail(
+            "RBL613", f"'{table.name('inertia_kg_m2')}' needs xx, yy, zz or xx, yy, zz, xy, xz, yz", key="inertia_kg_m2"
+        )
     found = AxisFile(
         name=name,
         row=row,
@@ -225,17 +226,25 @@ def _dh(table: Table) -> DhRow:
 
 
 def _line(table: Table) -> LineRow:
-    row = LineRow(origin_m=table.numbers("origin_m", 3, low=-10.0, high=10.0),
-                  direction=table.numbers("direction", 3, low=-10.0, high=10.0))  # fmt: skip
+    row = LineRow(
+        origin_m=table.numbers("origin_m", 3, low=-10.0, high=10.0),
+        direction=table.numbers("direction", 3, low=-10.0, high=10.0),
+    )
     if not math.hypot(*row.direction) >= SHORTEST_DIRECTION:
-        table.fail("RBL605", f"'{table.name('direction')}' has no direction", "write a vector such as [0, 1, 0]",
-                   key="direction")  # fmt: skip
+        table.fail(
+            "RBL605",
+            f"'{table.name('direction')}' has no direction",
+            "write a vector such as [0, 1, 0]",
+            key="direction",
+        )
     return row
 
 
 def _flange(table: Table) -> FlangeRow:
-    found = FlangeRow(position_m=table.numbers("position_m", 3, low=-10.0, high=10.0),
-                      rotation_deg=table.numbers("rotation_deg", 3, low=-360.0, high=360.0))  # fmt: skip
+    found = FlangeRow(
+        position_m=table.numbers("position_m", 3, low=-10.0, high=10.0),
+        rotation_deg=table.numbers("rotation_deg", 3, low=-360.0, high=360.0),
+    )
     table.done()
     return found
 

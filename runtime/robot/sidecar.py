@@ -164,8 +164,11 @@ def _motor_notes(axis: ImportedAxis) -> list[str]:
         "damping (N^2 times the viscous friction)": (hinge.damping, "N m s/rad"),
         "friction (N times the Coulomb friction)": (hinge.friction, "N m"),
     }
-    return [f"# The model file gives, at the joint: {what} {value!r} {unit}." for what, (value, unit) in said.items()
-            if value]  # fmt: skip
+    return [
+        f"# The model file gives, at the joint: {what} {value!r} {unit}."
+        for what, (value, unit) in said.items()
+        if value
+    ]
 
 
 def _correction_lines(axis: ImportedAxis) -> list[str]:

@@ -165,8 +165,11 @@ def _check_complete(table: Table, axes: list[Table]) -> None:
     if own or any(missing):
         where = table if own else next(axis for axis, here in zip(axes, missing, strict=True) if here)
         gaps = [*whole(own, {"path": [f"path.{key}" for key in PATH_KEYS]}), lacking(missing)]
-        where.fail("RBL608", f"missing in this file: {'; '.join(gap for gap in gaps if gap)}",
-                   "fill in the lines marked MISSING")  # fmt: skip
+        where.fail(
+            "RBL608",
+            f"missing in this file: {'; '.join(gap for gap in gaps if gap)}",
+            "fill in the lines marked MISSING",
+        )
 
 
 def lacking(missing: Sequence[Collection[str]]) -> str:

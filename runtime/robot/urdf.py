@@ -31,8 +31,9 @@ def read_urdf(robot: Element) -> tuple[str, Node]:
     joints = _by_name(robot.all("joint"))
     if not links:
         robot.fail("RBL608", "the robot has no link")
-    nodes = {name: Node(name=name, element=link, X_parent_node=np.eye(4), body=_body(link))
-             for name, link in links.items()}  # fmt: skip
+    nodes = {
+        name: Node(name=name, element=link, X_parent_node=np.eye(4), body=_body(link)) for name, link in links.items()
+    }
     placed: dict[str, str] = {}
     for name, joint in joints.items():
         start, hung = (_end(joint, end, nodes) for end in ("parent", "child"))

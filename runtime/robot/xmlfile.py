@@ -122,12 +122,14 @@ class Element:
         values = self.numbers(key, 3, (0.0,) * 3)
         for value in values:
             if not abs(value) <= FARTHEST:
-                self.fail("RBL605", f"'{key}' of <{self.tag}> has {value:g} m and must be within {FARTHEST:g} m: it "
-                          "looks like mm", f"lengths are in m; write {value / 1e3:g} for {value:g} mm")  # fmt: skip
+                self.fail(
+                    "RBL605",
+                    f"'{key}' of <{self.tag}> has {value:g} m and must be within {FARTHEST:g} m: it looks like mm",
+                    f"lengths are in m; write {value / 1e3:g} for {value:g} mm",
+                )
         return values
 
-    def number(self, key: str, default: float | None = None, *, low: float = -MAX_ABS,
-               high: float = MAX_ABS) -> float:  # fmt: skip
+    def number(self, key: str, default: float | None = None, *, low: float = -MAX_ABS, high: float = MAX_ABS) -> float:
         """Return one finite number in ``[low, high]``; RBL608, RBL613, RBL604 or RBL605."""
         value = self.numbers(key, 1, None if default is None else (default,))[0]
         if not value >= low:
@@ -194,8 +196,11 @@ def _parse(source: Source) -> Element:
         stack.append(element)
 
     def doctype(*_: object) -> None:
-        refuse("RBL601", "a document type (<!DOCTYPE) is not read: it can name other files and grow without bound",
-               "remove the <!DOCTYPE ...> declaration and write its entities out")  # fmt: skip
+        refuse(
+            "RBL601",
+            "a document type (<!DOCTYPE) is not read: it can name other files and grow without bound",
+            "remove the <!DOCTYPE ...> declaration and write its entities out",
+        )
 
     parser.StartElementHandler = start
     parser.EndElementHandler = lambda _: stack.pop()
@@ -212,8 +217,9 @@ def _check(element: Element) -> None:
     if element.tag in ("plugin", "extension"):
         element.fail("RBL614", f"<{element.tag}> asks for code to be loaded")
     if ":" in element.tag:
-        element.fail("RBL621", f"<{element.tag}> is of another language than URDF or MJCF",
-                     "expand macros first, as with xacro")  # fmt: skip
+        element.fail(
+            "RBL621", f"<{element.tag}> is of another language than URDF or MJCF", "expand macros first, as with xacro"
+        )
     for key, value in element.attributes.items():
         if key in _FILES:
             check_path(element, key, value)

@@ -65,8 +65,13 @@ def excesses(spec: RobotSpec, profile: Profile, X_flange_tool: Array) -> Iterato
             key = "acceleration_feedforward" if options.spring_compensation == 0.0 else "spring_compensation"
             share = (options.acceleration_feedforward + spring) * ratio
             for axis in np.flatnonzero(~(share < 1.0)):
-                yield Excess(key=key, axis=int(axis), value=float(share[axis]), bound=1.0,
-                             what=f"(Ka + Kv Kp K2 D/Kc) Dm'/D' at D = {D[axis]:.4g} kg m2")  # fmt: skip
+                yield Excess(
+                    key=key,
+                    axis=int(axis),
+                    value=float(share[axis]),
+                    bound=1.0,
+                    what=f"(Ka + Kv Kp K2 D/Kc) Dm'/D' at D = {D[axis]:.4g} kg m2",
+                )
 
 
 def _sampled(key: str, bandwidth: Array, ratio: Array, tick_s: float) -> Iterator[Excess]:

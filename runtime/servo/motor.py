@@ -55,18 +55,13 @@ class Motors:
 
 def encoder_resolution(spec: RobotSpec) -> Array:
     """Return the encoder step of every axis at the joint (n,), rad."""
-    return np.array(
-        [2.0 * math.pi / (axis.motor.encoder_counts * abs(axis.motor.gear_ratio)) for axis in spec.axes]
-    )
+    return np.array([2.0 * math.pi / (axis.motor.encoder_counts * abs(axis.motor.gear_ratio)) for axis in spec.axes])
 
 
 def current_limit(spec: RobotSpec) -> Array:
     """Return the current limit of every axis (n,), A: the drive's, or the one that gives the joint torque limit."""
     return np.array(
-        [
-            min(axis.motor.max_current, axis.limits.torque / axis.motor.joint_torque_constant)
-            for axis in spec.axes
-        ]
+        [min(axis.motor.max_current, axis.limits.torque / axis.motor.joint_torque_constant) for axis in spec.axes]
     )
 
 

@@ -74,8 +74,16 @@ class LoadModel(ArmModel):
 class Observer:
     """Residual of each cycle and the running estimate of the payload; ``model``: by default that of the robot file."""
 
-    def __init__(self, spec: RobotSpec, limits: SupervisionLimits, torque: Array, ticks: int, tick_s: float,
-                 friction: float, model: LoadModel | None = None) -> None:  # fmt: skip
+    def __init__(
+        self,
+        spec: RobotSpec,
+        limits: SupervisionLimits,
+        torque: Array,
+        ticks: int,
+        tick_s: float,
+        friction: float,
+        model: LoadModel | None = None,
+    ) -> None:
         self._model = model or LoadModel(spec)
         self._ticks, self._period_s = ticks, ticks * tick_s
         ramp = (np.arange(ticks) + 0.5) / ticks**2

@@ -40,8 +40,19 @@ class Supervisor:
     what torques are judged by: that of the robot file by default.
     """
 
-    def __init__(self, spec: RobotSpec, limits: SupervisionLimits, *, torque: Array, resolution: Array, lag: Array,
-                 ticks: int, tick_s: float, friction: float, model: LoadModel | None = None) -> None:  # fmt: skip
+    def __init__(
+        self,
+        spec: RobotSpec,
+        limits: SupervisionLimits,
+        *,
+        torque: Array,
+        resolution: Array,
+        lag: Array,
+        ticks: int,
+        tick_s: float,
+        friction: float,
+        model: LoadModel | None = None,
+    ) -> None:
         self._limits, self._ticks, self._rated = limits, ticks, spec.rated_payload
         share = limits.friction if limits.friction is not None else friction
         self.watch = Watch(spec, limits, torque, resolution, lag, ticks, tick_s)
@@ -104,9 +115,11 @@ class Supervisor:
         most = float(self._collision[axis] + 2.0 * self.observer.sigma[axis])
         torque, bound = beside(float(self.observer.residual[axis]), most, form="+.1f")
         return Finding(
-            code="RBL516", tick=tick, axis=axis,
+            code="RBL516",
+            tick=tick,
+            axis=axis,
             message=f"J{axis + 1} needs {torque} N m that neither motion nor payload explains, more than {bound} N m",
-        )  # fmt: skip
+        )
 
     def _weigh(self, tick: int) -> Finding | None:
         observer, limits = self.observer, self._limits
@@ -122,18 +135,22 @@ class Supervisor:
         if self._suspect >= CONFIRMED:
             self._warned = True
             return Finding(
-                code="RBL517", tick=tick, warning=limits.payload_mismatch == "warn" or self._payload is None,
+                code="RBL517",
+                tick=tick,
+                warning=limits.payload_mismatch == "warn" or self._payload is None,
                 message=f"{f'declared {declared:.2f} kg' if self._payload else 'no LOAD yet'}, "
                 f"estimated {mass:.2f} +- {sigma:.2f} kg",
-            )  # fmt: skip
+            )
         return None
 
     def _unexplained(self, axis: int, tick: int) -> Finding:
         return Finding(
-            code="RBL516", tick=tick, axis=axis,
+            code="RBL516",
+            tick=tick,
+            axis=axis,
             message=f"J{axis + 1} needs {self.observer.unexplained[axis]:+.1f} N m that neither motion nor any payload "
             f"explains, {abs(self.observer.leftover[axis]):.1f} standard deviations in the mean",
-        )  # fmt: skip
+        )
 
     def stale(self, oldest_us: float, payload_us: float, tick: int) -> Finding | None:
         """Judge the age of the oldest cell of ITA in use, and how long ago the LOAD was that has not reached it."""

@@ -38,8 +38,16 @@ _HOLD_S = 0.1
 class Watch:
     """Judges the ticks of one cycle. Rows are those of the recorder: (tau_cmd, tau_sat, q_fb, dq_fb), each (n,)."""
 
-    def __init__(self, spec: RobotSpec, limits: SupervisionLimits, torque: Array, resolution: Array, lag: Array,
-                 ticks: int, tick_s: float) -> None:  # fmt: skip
+    def __init__(
+        self,
+        spec: RobotSpec,
+        limits: SupervisionLimits,
+        torque: Array,
+        resolution: Array,
+        lag: Array,
+        ticks: int,
+        tick_s: float,
+    ) -> None:
         self._n, self._limits, self._ticks, self._tick_s = spec.n, limits, ticks, tick_s
         n = spec.n
         self._centre = np.concatenate([np.zeros(2 * n), (spec.lower + spec.upper) / 2.0, np.zeros(n)])
@@ -121,10 +129,13 @@ class Watch:
     def _encoder(self, speed: Array) -> tuple[str, int, str] | None:
         for bad, what in (
             (~(speed <= JUMP * self._speed), "jumped"),
-            (self._standing >= self._longest_stand,
-             f"has not changed for {self._longest_stand} ticks of motion: encoder or brake stuck, or the axis blocked"),
+            (
+                self._standing >= self._longest_stand,
+                f"has not changed for {self._longest_stand} ticks of motion: "
+                "encoder or brake stuck, or the axis blocked",
+            ),
             (self._lost >= 2.0, "repeats readings while the axis moves: samples are lost"),
-        ):  # fmt: skip
+        ):
             if bad.any():
                 axis = int(np.argmax(bad))
                 extra = f" by {speed[axis] * self._tick_s / DEG:.3f} deg in one tick" if what == "jumped" else ""
@@ -135,8 +146,9 @@ class Watch:
         for row, code, what, unit in ((3, "RBL513", "turns at", "deg/s"), (2, "RBL514", "is", "deg from mid-range")):
             if not inside[row].all():
                 axis = int(np.argmin(inside[row]))
-                at, most = beside(self._away[k, row * self._n + axis] / DEG, self._bound[row * self._n + axis] / DEG,
-                                  form=".2f")  # fmt: skip
+                at, most = beside(
+                    self._away[k, row * self._n + axis] / DEG, self._bound[row * self._n + axis] / DEG, form=".2f"
+                )
                 return code, axis, f"J{axis + 1} {what} {at} {unit}, more than {most} {unit}"
         return None
 
@@ -145,8 +157,13 @@ class Watch:
             return None
         axis = int(np.argmax(self._error[k] / self.limit))
         error, most = beside(self._error[k, axis] / DEG, self.limit[axis] / DEG, form=".3f")
-        return "RBL511", axis, (
-            f"J{axis + 1} is {error} deg from its command, more than {most} deg at {self.speed[axis] / DEG:.1f} deg/s"
+        return (
+            "RBL511",
+            axis,
+            (
+                f"J{axis + 1} is {error} deg from its command, "
+                f"more than {most} deg at {self.speed[axis] / DEG:.1f} deg/s"
+            ),
         )
 
     def _saturation(self, asked: Array) -> tuple[str, int, str] | None:
@@ -154,9 +171,13 @@ class Watch:
             return None
         axis = int(np.argmax(self._saturated))
         last, most = beside(asked[axis], self._bound[axis], form=".1f")
-        return "RBL512", axis, (
-            f"J{axis + 1} was asked for more than its {most} N m, last for {last} N m, for "
-            f"{1e3 * self._limits.saturation_s:g} ms"
+        return (
+            "RBL512",
+            axis,
+            (
+                f"J{axis + 1} was asked for more than its {most} N m, last for {last} N m, for "
+                f"{1e3 * self._limits.saturation_s:g} ms"
+            ),
         )
 
     def lost_track(self, factor: float) -> int | None:

@@ -22,8 +22,14 @@ CLOCKS = {
     "threading": {"Timer"},
 }
 """Functions that read a clock or wait for one, by module; those that end in ``_ns`` too."""
-MEASURING = {"bench/check.py", "bench/inertia.py", "bench/pulse_campaign.py", "bench/run.py", "bench/wrist_campaign.py",
-             "processor_time.py"}  # fmt: skip
+MEASURING = {
+    "bench/check.py",
+    "bench/inertia.py",
+    "bench/pulse_campaign.py",
+    "bench/run.py",
+    "bench/wrist_campaign.py",
+    "processor_time.py",
+}
 WAITS = {"timeout", "deadline", "timeout_seconds"}
 LEAST_S = 60
 """The shortest time that may end a hang."""
@@ -53,8 +59,11 @@ def faults(tree: ast.AST) -> list[str]:
         elif isinstance(node, ast.FunctionDef):
             at_the_end = zip(reversed(node.args.args), reversed(node.args.defaults), strict=False)
             by_name = zip(node.args.kwonlyargs, node.args.kw_defaults, strict=True)
-            found += [f"{node.lineno}: {name.arg}" for name, value in (*at_the_end, *by_name)
-                      if name.arg in WAITS and too_short(value)]  # fmt: skip
+            found += [
+                f"{node.lineno}: {name.arg}"
+                for name, value in (*at_the_end, *by_name)
+                if name.arg in WAITS and too_short(value)
+            ]
     return found
 
 
@@ -89,21 +98,35 @@ def test_a_hang_is_a_failed_test(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     "text",
     [
-        "import time\nbegan = time.process_time()", "import time as t\nt.sleep(1)", "from time import perf_counter_ns",
-        "from datetime import datetime", "import os\nos.times()", "import resource\nresource.getrusage(0)",
-        "import subprocess\nsubprocess.run([], timeout=30)", "process.communicate(timeout=59.9)",
-        "def shell(*words, cwd=None, timeout=30): pass", "@settings(deadline=200)\ndef f(): pass",
-        "from signal import *\nsignal.alarm(5)", "event.wait(timeout=0.5)",
+        "import time\nbegan = time.process_time()",
+        "import time as t\nt.sleep(1)",
+        "from time import perf_counter_ns",
+        "from datetime import datetime",
+        "import os\nos.times()",
+        "import resource\nresource.getrusage(0)",
+        "import subprocess\nsubprocess.run([], timeout=30)",
+        "process.communicate(timeout=59.9)",
+        "def shell(*words, cwd=None, timeout=30): pass",
+        "@settings(deadline=200)\ndef f(): pass",
+        "from signal import *\nsignal.alarm(5)",
+        "event.wait(timeout=0.5)",
     ],
-)  # fmt: skip
+)
 def test_a_clock_is_found(text):
     assert len(faults(ast.parse(text))) == 1
 
 
 @pytest.mark.parametrize(
     "text",
-    ["import time\ntime.strftime('%Y')", "run(timeout=60)", "run(timeout=HANG_S)", "signal.alarm(0)",
-     "@settings(deadline=None)\ndef f(): pass", "Wait(condition=x, timeout=None)", "spec.per_axis('limits', 'speed')"],
-)  # fmt: skip
+    [
+        "import time\ntime.strftime('%Y')",
+        "run(timeout=60)",
+        "run(timeout=HANG_S)",
+        "signal.alarm(0)",
+        "@settings(deadline=None)\ndef f(): pass",
+        "Wait(condition=x, timeout=None)",
+        "spec.per_axis('limits', 'speed')",
+    ],
+)
 def test_no_clock_is_no_fault(text):
     assert faults(ast.parse(text)) == []

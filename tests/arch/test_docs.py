@@ -217,8 +217,10 @@ def test_every_signal_is_in_the_table_with_its_shape():
     recorder.begin_cycle((zeros, zeros, zeros, zeros, np.zeros(6)), np.zeros((3, 8, 7)), (0.0, 0, 0, 0))
     recorder.record((zeros, zeros, zeros, zeros, zeros))
     signals = recorder.signals(lambda q: np.zeros((len(q), 4, 4)))
-    shapes = {key: "(N, " + ", ".join("n" if k == 7 else str(k) for k in values.shape[1:]) + ")"
-              for key, values in signals.items()}  # fmt: skip
+    shapes = {
+        key: "(N, " + ", ".join("n" if k == 7 else str(k) for k in values.shape[1:]) + ")"
+        for key, values in signals.items()
+    }
     rows = re.findall(r"^\| `(\w+)` \| (\(N[^|]*\)) \|", (ROOT / "docs/signals.md").read_text("utf-8"), re.MULTILINE)
     assert dict(rows) == {key: shape.replace("(N, )", "(N,)") for key, shape in shapes.items()}
 
@@ -301,8 +303,10 @@ def test_the_transcript_has_the_headings_and_notes_of_a_run(run_result):
     with redirect_stdout(shown):
         print_result({**run_result.report, "program": "programs/pick_and_place.rbl"})
     printed = [line.rstrip() for line in shown.getvalue().splitlines() if line.strip()]
-    words = [[re.sub(r"\d+(\.\d+)?", "0", line).split() for line in lines if line.strip()]
-             for lines in (transcript.splitlines(), printed)]  # fmt: skip
+    words = [
+        [re.sub(r"\d+(\.\d+)?", "0", line).split() for line in lines if line.strip()]
+        for lines in (transcript.splitlines(), printed)
+    ]
     assert words[0] == words[1]
 
 

@@ -63,7 +63,7 @@ EXTREMES = {
     "runtime/pulses/mechanism.py: min(joint.speed, _FAST)": FILE,
     "runtime/pulses/move.py: min(limits.speed, math.sqrt(limits.acceleration))": PLANNED,
     "runtime/motion/joint_planner.py: max(fitting, key=lambda q: float(kinematics.limit_margin(q)))": SOLVED,
-}  # fmt: skip
+}
 """``max`` and ``min`` of measures, with the reason."""
 
 
@@ -154,8 +154,11 @@ def blind_extremes(path, tree):
                 yield key(path, node)
 
 
-RULES = {"open_refusals": (open_refusals, OPEN), "open_masks": (open_masks, MASKED),
-         "blind_extremes": (blind_extremes, EXTREMES)}  # fmt: skip
+RULES = {
+    "open_refusals": (open_refusals, OPEN),
+    "open_masks": (open_masks, MASKED),
+    "blind_extremes": (blind_extremes, EXTREMES),
+}
 
 
 @pytest.mark.parametrize("rule", RULES)

@@ -7,8 +7,20 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 FILES = [path for folder in ("robolang", "runtime") for path in sorted((ROOT / folder).rglob("*.py"))]
-WRITING = {"write_text", "write_bytes", "chmod", "fchmod", "mkstemp", "NamedTemporaryFile", "savez",
-           "savez_compressed", "savetxt", "tofile", "copyfile", "copytree"}  # fmt: skip
+WRITING = {
+    "write_text",
+    "write_bytes",
+    "chmod",
+    "fchmod",
+    "mkstemp",
+    "NamedTemporaryFile",
+    "savez",
+    "savez_compressed",
+    "savetxt",
+    "tofile",
+    "copyfile",
+    "copytree",
+}
 OF_MODULES = {"save", "copy", "move", "rename", "replace"}
 """Names that write where they are of one of these modules; of others, they may be of a text or a list."""
 MODULES = {"os", "shutil", "np", "Path"}
@@ -27,8 +39,11 @@ def writers(path, tree):
             continue
         name = node.func.id if isinstance(node.func, ast.Name) else getattr(node.func, "attr", "")
         owner = ast.unparse(node.func.value) if isinstance(node.func, ast.Attribute) else ""
-        modes = [each.value for each in [*node.args, *(item.value for item in node.keywords)]
-                 if isinstance(each, ast.Constant) and isinstance(each.value, str)]  # fmt: skip
+        modes = [
+            each.value
+            for each in [*node.args, *(item.value for item in node.keywords)]
+            if isinstance(each, ast.Constant) and isinstance(each.value, str)
+        ]
         opens = name in ("open", "fdopen") and any(set(mode) & set("wxa+") and len(mode) <= 3 for mode in modes)
         if opens or name in WRITING or (name in OF_MODULES and owner in MODULES):
             yield f"{path.relative_to(ROOT)}: {owner}{'.' if owner else ''}{name}"

@@ -43,8 +43,9 @@ def _ends(path: Path) -> list[int | None]:
 
 def _row(figure: str, found: int, mutants: int, promised: float) -> Row:
     share = found / mutants if mutants else float("nan")
-    return Row(figure=figure, form="{:.0f} of {:.0f}: {:.1f} %", values=(found, mutants, 100.0 * share),
-               good=share >= promised)  # fmt: skip
+    return Row(
+        figure=figure, form="{:.0f} of {:.0f}: {:.1f} %", values=(found, mutants, 100.0 * share), good=share >= promised
+    )
 
 
 if __name__ == "__main__":

@@ -57,8 +57,17 @@ gravity_compensation = nan
 [controller.supervision]
 enabled = "false"
 """
-FOUND = [("RBL608", 1), ("RBL609", 3), ("RBL609", 4), ("RBL610", 5), ("RBL605", 7), ("RBL609", 8), ("RBL610", 10),
-         ("RBL604", 11), ("RBL613", 13)]  # fmt: skip
+FOUND = [
+    ("RBL608", 1),
+    ("RBL609", 3),
+    ("RBL609", 4),
+    ("RBL610", 5),
+    ("RBL605", 7),
+    ("RBL609", 8),
+    ("RBL610", 10),
+    ("RBL604", 11),
+    ("RBL613", 13),
+]
 
 
 def test_settings_names_and_inputs_that_are_wrong_are_found_at_once(case):
@@ -74,11 +83,14 @@ def test_settings_names_and_inputs_that_are_wrong_are_found_at_once(case):
 @pytest.mark.parametrize(
     ("servo", "found"),
     [
-        ('feedforward = "measured"\nvelocity_feedforward = 1\nacceleration_feedforward = 1\nmode = "fixed"\n'
-         'coupling = "full"', [("RBL616", 3), ("RBL616", 4), ("RBL605", 6)]),
+        (
+            'feedforward = "measured"\nvelocity_feedforward = 1\nacceleration_feedforward = 1\nmode = "fixed"\n'
+            'coupling = "full"',
+            [("RBL616", 3), ("RBL616", 4), ("RBL605", 6)],
+        ),
         ("position_bandwidth_rad_s = [1, 2]\nvelocity_bandwidth_rad_s = [1, 2, 3]", [("RBL613", 2), ("RBL613", 3)]),
     ],
-)  # fmt: skip
+)
 def test_settings_that_do_not_go_together_are_found_at_once(case, servo, found):
     program = case(CELL)
     program.with_name("p.points.toml").unlink(missing_ok=True)
@@ -144,9 +156,14 @@ def test_all_that_is_wrong_with_a_cell_and_its_points_is_said_at_once(case):
     found = places(read_beside(program).faults)
     assert found == of_run(program)
     assert [(one[0], one[2]) for one in found] == [
-        ("RBL608", 11), ("RBL613", 22), ("RBL604", 29),  # one fault for both keys that [hand] lacks
-        ("RBL307", 3), ("RBL307", 5), ("RBL308", 6), ("RBL308", 8),
-    ]  # fmt: skip
+        ("RBL608", 11),
+        ("RBL613", 22),
+        ("RBL604", 29),  # one fault for both keys that [hand] lacks
+        ("RBL307", 3),
+        ("RBL307", 5),
+        ("RBL308", 6),
+        ("RBL308", 8),
+    ]
 
 
 def test_a_damaged_cell_does_not_hide_what_its_arm_shows_of_points_and_program(case):
@@ -179,16 +196,24 @@ def test_names_of_the_cell_are_checked(case):
     program = case(CELL)
     cell = program.with_name("cell.toml")
     cell.write_text(cell.read_text().replace("nan", "1.5"))
-    program.write_text("LOAD none\nTOOL none\nFRAME none\nSEAM ON, none\nx = IN(7)\nLOAD heavy\nMOVEJ JOINT(0, 500)\n"
-                       "MOVEJ JOINT(0, 500, 0, 0, 0, 0)\n")
+    program.write_text(
+        "LOAD none\nTOOL none\nFRAME none\nSEAM ON, none\nx = IN(7)\nLOAD heavy\nMOVEJ JOINT(0, 500)\n"
+        "MOVEJ JOINT(0, 500, 0, 0, 0, 0)\n"
+    )
     cell.write_text(cell.read_text() + "\n[loads.heavy]\nmass_kg = 900\ncog_mm = [0, 0, 0]\n")
     output = robolang("check", "--output-format", "concise", program, code=1).stdout
     found = [line.split(":", 2)[1:] for line in output.splitlines()]
     lines = [(int(line), rest.split()[2]) for line, rest in found]
     assert [one for one in lines if not one[1].startswith("RBL22")] == [
-        (1, "RBL305"), (2, "RBL305"), (3, "RBL305"), (4, "RBL306"), (5, "RBL534"), (6, "RBL402"), (7, "RBL307"),
+        (1, "RBL305"),
+        (2, "RBL305"),
+        (3, "RBL305"),
+        (4, "RBL306"),
+        (5, "RBL534"),
+        (6, "RBL402"),
+        (7, "RBL307"),
         (8, "RBL309"),
-    ]  # fmt: skip
+    ]
 
 
 def test_a_file_fault_is_a_fault_with_a_place(case):

@@ -11,9 +11,13 @@ from tests.lang.cli.commands import dry, places, robolang
 HERE = Path(__file__).parent
 
 
-@pytest.mark.parametrize(("case", "two_movecs"), [
-    ("reports_19_full_circle_help", True), ("reports_32_arc_collinear", False),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("case", "two_movecs"),
+    [
+        ("reports_19_full_circle_help", True),
+        ("reports_32_arc_collinear", False),
+    ],
+)
 def test_an_arc_that_is_none_says_what_would_be_one(case, two_movecs):
     program = HERE / case / "p.rbl"
     (found,) = motion_check(load_project(program))
@@ -25,7 +29,10 @@ def test_an_arc_that_is_none_says_what_would_be_one(case, two_movecs):
 def test_a_full_circle_takes_two_movecs(tmp_path):
     case = HERE / "reports_19_full_circle_help"
     (tmp_path / "p.cell.toml").write_text((case / "p.cell.toml").read_text())
-    text = (case / "p.rbl").read_text().replace(
-        "MOVEC A + (100,0,0), A", "MOVEC A + (50,50,0), A + (100,0,0)\nMOVEC A + (50,-50,0), A")  # fmt: skip
+    text = (
+        (case / "p.rbl")
+        .read_text()
+        .replace("MOVEC A + (100,0,0), A", "MOVEC A + (50,50,0), A + (100,0,0)\nMOVEC A + (50,-50,0), A")
+    )
     (tmp_path / "p.rbl").write_text(text)
     assert motion_check(load_project(tmp_path / "p.rbl")) == ()

@@ -17,10 +17,13 @@ def codes_at(program: Path) -> list[tuple[int, str]]:
     return [(line, code) for line, _, code in places(robolang("check", "--motion", program).stdout)]
 
 
-@pytest.mark.parametrize(("case", "found"), [
-    ("reports_09_speed_lost_to_rotation", [(4, "RBL429"), (5, "RBL429"), (6, "RBL429")]),
-    ("reports_10_movej_changes_configuration", [(5, "RBL435")]),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("case", "found"),
+    [
+        ("reports_09_speed_lost_to_rotation", [(4, "RBL429"), (5, "RBL429"), (6, "RBL429")]),
+        ("reports_10_movej_changes_configuration", [(5, "RBL435")]),
+    ],
+)
 def test_a_run_and_a_check_say_the_same(case, found, tmp_path):
     program, report = HERE / case / "p.rbl", tmp_path / "r.json"
     assert codes_at(program) == found

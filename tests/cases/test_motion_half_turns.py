@@ -14,16 +14,22 @@ def j6_after_each_move(program: Path) -> list[float]:
     """Run a program and return J6 in deg at the end of each of its moves."""
     result = run(program, physics=False)
     assert result.ok
-    ends = [round(row["start_s"] * 1000.0) + round(row["duration_s"] * 1000.0) for row in result.report["statements"]
-            if row["planned_s"] is not None]  # fmt: skip
+    ends = [
+        round(row["start_s"] * 1000.0) + round(row["duration_s"] * 1000.0)
+        for row in result.report["statements"]
+        if row["planned_s"] is not None
+    ]
     return np.degrees(result.log["q_cmd"][np.array(ends) - 1, 5]).tolist()
 
 
-@pytest.mark.parametrize(("case", "j6"), [
-    ("reports_05_turn180_pose", [108.2, -71.8]),
-    ("reports_07_turn180_sign_of_zero", [150.0, -30.0]),
-    ("reports_55_joint_end_half_a_turn_away", [150.0, -30.0, 150.0]),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("case", "j6"),
+    [
+        ("reports_05_turn180_pose", [108.2, -71.8]),
+        ("reports_07_turn180_sign_of_zero", [150.0, -30.0]),
+        ("reports_55_joint_end_half_a_turn_away", [150.0, -30.0, 150.0]),
+    ],
+)
 def test_a_half_turn_stays_in_the_range(case, j6):
     assert j6_after_each_move(HERE / case / "p.rbl") == pytest.approx(j6, abs=0.1)
 

@@ -23,11 +23,20 @@ ACCELERATIONS = np.array([600.0, 400.0, 900.0, 1800.0, 1800.0, 1800.0])
         ("reports_51_bom_crlf_program", ["bom", "crlf"]),
         (
             "reports_53_wait_timeouts",
-            ["t 0.504", "err 503 0.504", "resumed 0.504", "err 503 0.512", "res2 0.512", "err 503 0.616", "res3 0.616",
-             "got2 1", "already 1"],
+            [
+                "t 0.504",
+                "err 503 0.504",
+                "resumed 0.504",
+                "err 503 0.512",
+                "res2 0.512",
+                "err 503 0.616",
+                "res3 0.616",
+                "got2 1",
+                "already 1",
+            ],
         ),
     ],
-)  # fmt: skip
+)
 def test_what_a_program_prints(case, lines, tmp_path):
     report = tmp_path / "r.json"
     dry(HERE / case / "p.rbl", "--quiet", "--report", report)

@@ -184,5 +184,10 @@ def test_a_run_that_ends_with_an_alarm_is_placed_in_the_program(tmp_path):
     (row,) = json.loads(robolang(*words, "--json", code=3).stdout)["variants"]
     (alarm,) = row["alarms"]
     assert (alarm["code"], alarm["file"], alarm["line"], alarm["column"], alarm["number"]) == (
-        "RBL501", str(program), 4, 17, 5)  # fmt: skip
+        "RBL501",
+        str(program),
+        4,
+        17,
+        5,
+    )
     assert [(move["line"], move["number"]) for move in row["moves"]] == [(3, 4)]

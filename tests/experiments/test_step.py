@@ -24,21 +24,34 @@ FIVE = Payload(mass=5.0, cog=np.array([0.0, 0.0, 0.1]))
 HALF = Payload(mass=0.5, cog=np.array([0.0, 0.0, 0.05]))
 STRONG = replace(PUMA, rated_payload=5.0)
 """The experiments carry 5 kg, twice what the arm is rated for."""
-REPLACED = replace(STRONG, axes=(*STRONG.axes[:5], replace(
-    STRONG.axes[5], body=Body(mass=1e-9, cog=np.zeros(3), inertia=1e-12 * np.eye(3)))))  # fmt: skip
+REPLACED = replace(
+    STRONG,
+    axes=(*STRONG.axes[:5], replace(STRONG.axes[5], body=Body(mass=1e-9, cog=np.zeros(3), inertia=1e-12 * np.eye(3)))),
+)
 """A payload that takes the place of link 6, as the document has it, is one added to a link 6 without mass."""
 SMALLEST, LARGEST = 2.341, 9.680
 STRETCHED = np.radians([0.0, 0.0, -90.0, 0.0, 0.0, 0.0])
 
 
 def experiment(axis, q, size, carried=NO_PAYLOAD, declared=None, robot=STRONG, profile=None, **servo):
-    servo = {"velocity_feedforward": 0.0, "acceleration_feedforward": 0.0, "position_bandwidth": (20.0,),
-             "velocity_bandwidth": (80.0,), "coupling": "diagonal", **servo}  # fmt: skip
+    servo = {
+        "velocity_feedforward": 0.0,
+        "acceleration_feedforward": 0.0,
+        "position_bandwidth": (20.0,),
+        "velocity_bandwidth": (80.0,),
+        "coupling": "diagonal",
+        **servo,
+    }
     return StepRequest(
-        robot=robot, axis=axis, q=np.asarray(q), size=size, carried=carried,
+        robot=robot,
+        axis=axis,
+        q=np.asarray(q),
+        size=size,
+        carried=carried,
         declared=carried if declared is None else declared,
-        profile=replace(profile or Profile(tick_us=500), servo=ServoOptions(**servo)), tool=FIVE.cog,
-    )  # fmt: skip
+        profile=replace(profile or Profile(tick_us=500), servo=ServoOptions(**servo)),
+        tool=FIVE.cog,
+    )
 
 
 def posture_with(wanted, payload, robot=REPLACED):
@@ -115,8 +128,11 @@ DROOPS = [
 ]
 
 
-@pytest.mark.parametrize(("robot", "carried", "said", "gravity", "droop_deg"), [row[1:] for row in some(DROOPS, 2, 3)],
-                         ids=[row[0] for row in some(DROOPS, 2, 3)])  # fmt: skip
+@pytest.mark.parametrize(
+    ("robot", "carried", "said", "gravity", "droop_deg"),
+    [row[1:] for row in some(DROOPS, 2, 3)],
+    ids=[row[0] for row in some(DROOPS, 2, 3)],
+)
 def test_gravity_droop_of_the_shoulder(robot, carried, said, gravity, droop_deg):
     result = step(experiment(1, STRETCHED, 0.0, carried, said, robot, gravity_compensation=gravity))
     assert result.droop / DEG == pytest.approx(droop_deg, rel=0.01, abs=5e-5)
@@ -147,8 +163,16 @@ def over_the_range(axis, locked, coupling, whole=WHOLE):
     loads = [(q, carried) for q in POSTURES for carried in (NO_PAYLOAD, RATED)]
     if not whole:
         loads = [pick(loads, key=lambda load: inertia(axis, *load)) for pick in (min, max)]
-    results = [step(replace(experiment(axis, q, 0.5 * DEG, carried, robot=PUMA, coupling=coupling),
-                            locked=locked, seconds=0.6 if whole else 0.3)) for q, carried in loads]  # fmt: skip
+    results = [
+        step(
+            replace(
+                experiment(axis, q, 0.5 * DEG, carried, robot=PUMA, coupling=coupling),
+                locked=locked,
+                seconds=0.6 if whole else 0.3,
+            )
+        )
+        for q, carried in loads
+    ]
     assert all(result.stable for result in results)
     return [result.settling for result in results], [result.overshoot for result in results]
 
@@ -183,8 +207,15 @@ def test_an_axis_or_a_posture_that_the_robot_has_not_is_refused():
 def test_a_step_in_which_the_arm_touches_itself_is_no_response_of_the_servo():
     """The hand is stopped by link 1, 11 deg short of where the step ends."""
     robot = load_builtin("manutec_r3")
-    request = StepRequest(robot=robot, axis=2, q=np.radians([0, 0, -130, 0, 0, 0]), size=-33 * DEG, plant="mujoco",
-                          ideal=False, seconds=0.6)  # fmt: skip
+    request = StepRequest(
+        robot=robot,
+        axis=2,
+        q=np.radians([0, 0, -130, 0, 0, 0]),
+        size=-33 * DEG,
+        plant="mujoco",
+        ideal=False,
+        seconds=0.6,
+    )
     with pytest.raises(Fault, match=r"in the step of J3, .* touched link 1") as caught:
         step(request)
     assert caught.value.code == "RBL516"

@@ -37,8 +37,12 @@ class BadEncoder(Clocked):
             out[self.axis] = self.kept
             return
         true = out[self.axis]
-        out[self.axis] = {"stuck": self.kept, "jump": true + np.radians(2.0), "sign": 2.0 * self.kept - true,
-                          "nan": np.nan}[self.kind]  # fmt: skip
+        out[self.axis] = {
+            "stuck": self.kept,
+            "jump": true + np.radians(2.0),
+            "sign": 2.0 * self.kept - true,
+            "nan": np.nan,
+        }[self.kind]
 
 
 class BadPlant(Clocked):

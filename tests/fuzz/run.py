@@ -19,15 +19,94 @@ with atheris.instrument_imports(include=["robolang", "runtime"]):
     from robolang.words import ARGUMENTS, KEYWORDS, VALUES
     from tests.fuzz import targets
 
-_TOML = ("schema = 1", "[points.P1]", "pose = [", "joints = [", "]", "robot = ", "[[parts]]", "[home]", "[hand]", "= ",
-         "nan", "inf", "1e308", "\\\"\\\"\\\"", "''", "{", "}", "1979-05-27", "0x1F", "true")  # fmt: skip
-_XML = ("<robot name=", "<mujoco>", "<link name=", "<joint name=", " type=", "<origin xyz=", " rpy=", "<axis xyz=",
-        "<limit lower=", " upper=", "<inertial>", "<mass value=", "<inertia ixx=", "<body pos=", " quat=", "<compiler ",
-        "<default>", "</", "/>", "<!--", "-->", "<![CDATA[", "<!DOCTYPE", "&lt;", "&#0;", "nan", "inf", "1e308")
-_ZIP = ("PK\\x03\\x04", "PK\\x01\\x02", "PK\\x05\\x06", "PK\\x06\\x07", "\\x93NUMPY\\x01\\x00", "q.npy", "line.npy",
-        "'descr': ", "'<f4'", "'<i4'", "'|O'", "'shape': (20, 6), ", "'fortran_order': False, ")
-_SIGNS = ("\\x22", "'", "REM ", "noqa: RBL301", "fmt: off", "fmt: on", "\\x0d\\x0a", "\\x0d", "\\xef\\xbb\\xbf",
-          "\\xe2\\x80\\xae", "\\xff", "1E999", "<>", "<=", "P1", "P2", "*L", "GOTO *L", ".X")  # fmt: skip
+_TOML = (
+    "schema = 1",
+    "[points.P1]",
+    "pose = [",
+    "joints = [",
+    "]",
+    "robot = ",
+    "[[parts]]",
+    "[home]",
+    "[hand]",
+    "= ",
+    "nan",
+    "inf",
+    "1e308",
+    '\\"\\"\\"',
+    "''",
+    "{",
+    "}",
+    "1979-05-27",
+    "0x1F",
+    "true",
+)
+_XML = (
+    "<robot name=",
+    "<mujoco>",
+    "<link name=",
+    "<joint name=",
+    " type=",
+    "<origin xyz=",
+    " rpy=",
+    "<axis xyz=",
+    "<limit lower=",
+    " upper=",
+    "<inertial>",
+    "<mass value=",
+    "<inertia ixx=",
+    "<body pos=",
+    " quat=",
+    "<compiler ",
+    "<default>",
+    "</",
+    "/>",
+    "<!--",
+    "-->",
+    "<![CDATA[",
+    "<!DOCTYPE",
+    "&lt;",
+    "&#0;",
+    "nan",
+    "inf",
+    "1e308",
+)
+_ZIP = (
+    "PK\\x03\\x04",
+    "PK\\x01\\x02",
+    "PK\\x05\\x06",
+    "PK\\x06\\x07",
+    "\\x93NUMPY\\x01\\x00",
+    "q.npy",
+    "line.npy",
+    "'descr': ",
+    "'<f4'",
+    "'<i4'",
+    "'|O'",
+    "'shape': (20, 6), ",
+    "'fortran_order': False, ",
+)
+_SIGNS = (
+    "\\x22",
+    "'",
+    "REM ",
+    "noqa: RBL301",
+    "fmt: off",
+    "fmt: on",
+    "\\x0d\\x0a",
+    "\\x0d",
+    "\\xef\\xbb\\xbf",
+    "\\xe2\\x80\\xae",
+    "\\xff",
+    "1E999",
+    "<>",
+    "<=",
+    "P1",
+    "P2",
+    "*L",
+    "GOTO *L",
+    ".X",
+)
 
 _WORDS = {"points": _TOML, "cell": _TOML, "model": _XML, "golden": _ZIP}
 
@@ -40,8 +119,16 @@ def main():
     words = _WORDS.get(target, (*KEYWORDS, *ARGUMENTS, *VALUES, *_SIGNS))
     dictionary = OUT / f"{target}.dict"
     dictionary.write_text("".join(f'"{word}"\n' for word in words), encoding="utf-8")
-    options = [f"-max_total_time={seconds}", "-max_len=4096", "-timeout=10", f"-dict={dictionary}",
-               f"-artifact_prefix={OUT}/{target}-", "-print_final_stats=1", "-verbosity=0", *sys.argv[3:]]  # fmt: skip
+    options = [
+        f"-max_total_time={seconds}",
+        "-max_len=4096",
+        "-timeout=10",
+        f"-dict={dictionary}",
+        f"-artifact_prefix={OUT}/{target}-",
+        "-print_final_stats=1",
+        "-verbosity=0",
+        *sys.argv[3:],
+    ]
     seeds = CORPUS / targets.SEEDS.get(target, "program")
     atheris.Setup([sys.argv[0], *options, str(kept), str(seeds), str(PROGRAMS)], lambda data: targets.run(target, data))
     atheris.Fuzz()

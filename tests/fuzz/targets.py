@@ -79,9 +79,21 @@ def check(data):
     _assert_located(source, engine.lint(source, CellSymbols.named(points=_POINTS)))
     program = parse(source).program
     _assert_located(source, checker.check(program))
-    _assert_located(source, checker.check(program, CellSymbols.named(
-        points=_POINTS, rated_payload_kg=2.5, sensors=["TORCH"], tools=["T1"], frames=["F1"], loads=["L1"],
-        inputs=[1, 2])))  # fmt: skip
+    _assert_located(
+        source,
+        checker.check(
+            program,
+            CellSymbols.named(
+                points=_POINTS,
+                rated_payload_kg=2.5,
+                sensors=["TORCH"],
+                tools=["T1"],
+                frames=["F1"],
+                loads=["L1"],
+                inputs=[1, 2],
+            ),
+        ),
+    )
 
 
 def format(data):
@@ -142,8 +154,16 @@ def golden(data):
     assert said
 
 
-TARGETS = {"lex": lex, "parse": read, "check": check, "format": format, "points": points, "cell": cell,
-           "model": model, "golden": golden}  # fmt: skip
+TARGETS = {
+    "lex": lex,
+    "parse": read,
+    "check": check,
+    "format": format,
+    "points": points,
+    "cell": cell,
+    "model": model,
+    "golden": golden,
+}
 SEEDS = {each: each for each in ("points", "cell", "model", "golden")}
 """The folder of the corpus for each target; ``program`` for the others."""
 
@@ -189,8 +209,10 @@ def _assert_located(source, diagnostics):
 
 def _canonical(program):
     """The tree with REM in capitals, which is all of it that the formatter changes."""
-    return [replace(line, comment=None if line.comment is None else nodes.Comment(text=_spelt(line.comment.text)))
-            for line in program.lines]  # fmt: skip
+    return [
+        replace(line, comment=None if line.comment is None else nodes.Comment(text=_spelt(line.comment.text)))
+        for line in program.lines
+    ]
 
 
 def _spelt(comment):

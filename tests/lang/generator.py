@@ -46,9 +46,7 @@ names = (
     .map(lambda text: nodes.Name(text=text))
 )
 parts = st.sampled_from(["X", "y", "Z", "rx", "RY", "RZ", "Q"]).map(lambda text: nodes.Name(text=text))
-strings = st.text(
-    st.characters(categories=["L", "N", "P", "S"], include_characters=' "') | st.just('"'), max_size=8
-)
+strings = st.text(st.characters(categories=["L", "N", "P", "S"], include_characters=' "') | st.just('"'), max_size=8)
 words = st.sampled_from(sorted(VALUES)).map(lambda word: nodes.Call(name=nodes.Name(text=word)))
 functions = st.sampled_from(sorted(ARGUMENTS)).map(lambda word: nodes.Name(text=word))
 
@@ -190,8 +188,9 @@ comments = st.one_of(
 
 
 def lines(found, numbered):
-    made = make(nodes.Line, number=numbered, label=st.none() | names, statement=st.none() | found,
-                comment=st.none() | comments)  # fmt: skip
+    made = make(
+        nodes.Line, number=numbered, label=st.none() | names, statement=st.none() | found, comment=st.none() | comments
+    )
     return made.filter(lambda line: (line.number, line.label, line.statement, line.comment) != (None,) * 4)
 
 
@@ -243,12 +242,97 @@ def written_badly(draw, text):
 
 
 FRAGMENTS = (
-    "MOVE", "move ", "LOAD", "HAND ", "ON", "OFF", "P1", "P2 ", "SPEED", "TIME", ",", "(", ")", "-", "+", "1", ".5",
-    "1E999", "1_0", "'", "REM ", "\n", "\r\n", "\r", "\t", " ", "10 ", "МOVE", "\u202e", "\x00", "=", "*", "MOVEJ",
-    "WRIST ", "KEEP", "HOLD ", "TILT", "ADVANCE", "SEAM ", "IF ", " THEN ", "ELSE", "ENDIF", "FOR I=1 TO 2", "NEXT",
-    "WHILE ", "WEND", "SELECT ", "CASE ", "ENDSELECT", "SUB F", "ENDSUB", "CALL F", "GOTO ", "GOTO 1.5", "*L", "^",
-    " MOD ", "NOT ", " AND ", " OR ", "<>", "<=", '"', '"a\'"', "x", "x=1", ".X", "HERE", "PRINT ", ";", "' fmt: off",
-    "' fmt: on", "OUT(1)=", "IN(", "STR$(", "END", "RESUME NEXT", "ON ERROR GOTO *L", "WAIT ", "TIMEOUT ", "DIM A(2)",
-    " XOR ", "XOR", '"a""b"', "((x))", "FRAME WORLD", "TOOL FLANGE", ":=", "EXIT FOR", "P1.Z=1", "WAIT 2",
-)  # fmt: skip
+    "MOVE",
+    "move ",
+    "LOAD",
+    "HAND ",
+    "ON",
+    "OFF",
+    "P1",
+    "P2 ",
+    "SPEED",
+    "TIME",
+    ",",
+    "(",
+    ")",
+    "-",
+    "+",
+    "1",
+    ".5",
+    "1E999",
+    "1_0",
+    "'",
+    "REM ",
+    "\n",
+    "\r\n",
+    "\r",
+    "\t",
+    " ",
+    "10 ",
+    "МOVE",
+    "\u202e",
+    "\x00",
+    "=",
+    "*",
+    "MOVEJ",
+    "WRIST ",
+    "KEEP",
+    "HOLD ",
+    "TILT",
+    "ADVANCE",
+    "SEAM ",
+    "IF ",
+    " THEN ",
+    "ELSE",
+    "ENDIF",
+    "FOR I=1 TO 2",
+    "NEXT",
+    "WHILE ",
+    "WEND",
+    "SELECT ",
+    "CASE ",
+    "ENDSELECT",
+    "SUB F",
+    "ENDSUB",
+    "CALL F",
+    "GOTO ",
+    "GOTO 1.5",
+    "*L",
+    "^",
+    " MOD ",
+    "NOT ",
+    " AND ",
+    " OR ",
+    "<>",
+    "<=",
+    '"',
+    '"a\'"',
+    "x",
+    "x=1",
+    ".X",
+    "HERE",
+    "PRINT ",
+    ";",
+    "' fmt: off",
+    "' fmt: on",
+    "OUT(1)=",
+    "IN(",
+    "STR$(",
+    "END",
+    "RESUME NEXT",
+    "ON ERROR GOTO *L",
+    "WAIT ",
+    "TIMEOUT ",
+    "DIM A(2)",
+    " XOR ",
+    "XOR",
+    '"a""b"',
+    "((x))",
+    "FRAME WORLD",
+    "TOOL FLANGE",
+    ":=",
+    "EXIT FOR",
+    "P1.Z=1",
+    "WAIT 2",
+)
 texts = st.text(max_size=200) | st.lists(st.sampled_from(FRAGMENTS), max_size=60).map("".join)

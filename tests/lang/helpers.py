@@ -41,6 +41,7 @@ def only(text: str) -> Diagnostic:
     return diagnostic
 
 
-def checked(text: str, points: tuple[str, ...] | None = None, rated: float | None = None,
-            sensors: tuple[str, ...] | None = None) -> Found:  # fmt: skip
+def checked(
+    text: str, points: tuple[str, ...] | None = None, rated: float | None = None, sensors: tuple[str, ...] | None = None
+) -> Found:
     return places(text, check(parsed(text), CellSymbols.named(points=points, rated_payload_kg=rated, sensors=sensors)))

@@ -69,8 +69,11 @@ def test_points_that_are_no_file(tmp_path):
     """B1, B14, B15 and B16: missing, a link out of the project, a pipe, a device; none of them is waited for."""
     path = tmp_path / "pick.points.toml"
     assert place(load_points, path) == ("RBL302", 1, 1)
-    for make in (lambda: path.symlink_to("/etc/hostname"), lambda: os.mkfifo(path),
-                 lambda: path.symlink_to("/dev/zero")):  # fmt: skip
+    for make in (
+        lambda: path.symlink_to("/etc/hostname"),
+        lambda: os.mkfifo(path),
+        lambda: path.symlink_to("/dev/zero"),
+    ):
         make()
         with guarded():
             assert place(load_points, path) == ("RBL311", 1, 1)
@@ -93,8 +96,12 @@ def nested(depth):
 
 ROBOTS = [
     ("C1", "a.urdf", '<!DOCTYPE robot SYSTEM "/etc/passwd">\n' + TWO, ("RBL601", 1, 37)),
-    ("C1 entity", "a.urdf", '<!DOCTYPE r [<!ENTITY x SYSTEM "file:///etc/passwd">]>\n<robot>&x;</robot>',
-     ("RBL601", 1, 13)),
+    (
+        "C1 entity",
+        "a.urdf",
+        '<!DOCTYPE r [<!ENTITY x SYSTEM "file:///etc/passwd">]>\n<robot>&x;</robot>',
+        ("RBL601", 1, 13),
+    ),
     ("C2", "a.urdf", laughs(8), ("RBL601", 2, 13)),
     ("C7", "a.xml", MJCF.replace("<actuator>", '<include file="/etc/x.xml"/>\n<actuator>'), ("RBL602", 47, 3)),
     ("C8", "a.xml", MJCF.replace("<actuator>", '<include file="a.xml"/>\n<actuator>'), ("RBL603", 47, 3)),
@@ -109,12 +116,20 @@ ROBOTS = [
     ("C19 body", "a.xml", MJCF.replace('name="roll"', 'name="bend"'), ("RBL610", 38, 17)),
     ("C20", "a.xml", MJCF.replace('joint="waist"', 'joint="west"'), ("RBL610", 48, 5)),
     ("C21", "a.urdf", TWO.replace('<parent link="l0"/>', '<parent link="l2"/>'), ("RBL611", 4, 1)),
-    ("C21 weld", "a.xml", MJCF.replace("<actuator>", '<equality><connect body1="hand"/></equality><actuator>'),
-     ("RBL611", 47, 13)),
+    (
+        "C21 weld",
+        "a.xml",
+        MJCF.replace("<actuator>", '<equality><connect body1="hand"/></equality><actuator>'),
+        ("RBL611", 47, 13),
+    ),
     ("C22", "a.xml", nested(5000), ("RBL612", 100, 1)),
-    ("C25", "a.xml", MJCF.replace("<actuator>", '<extension><plugin plugin="x"/></extension><actuator>'),
-     ("RBL614", 47, 3)),
-]  # fmt: skip
+    (
+        "C25",
+        "a.xml",
+        MJCF.replace("<actuator>", '<extension><plugin plugin="x"/></extension><actuator>'),
+        ("RBL614", 47, 3),
+    ),
+]
 
 
 @pytest.mark.parametrize(("name", "text", "expected"), [row[1:] for row in ROBOTS], ids=[row[0] for row in ROBOTS])
@@ -173,7 +188,7 @@ OPTIONS = [
     ("D9 x", ("compare", "--jobs", "x"), "RBL703 --jobs: 'x' is not a valid int range"),
     ("D9 axis", ("step", "--robot", "puma560", "--axis", "0"), "RBL703 --axis: 0 is not in the range 1<=x<=7"),
     ("D9 time", ("step", "--robot", "puma560", "--axis", "1", "--seconds", "nan"), "RBL703 --seconds: nan is not"),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("words", "said"), [row[1:] for row in OPTIONS], ids=[row[0] for row in OPTIONS])

@@ -72,11 +72,11 @@ GOLDEN = [
     ("A46 no body", "LOAD (0, 0, 10), 1, (0.1, 0.1, 0.3, 0, 0, 0)", [("RBL403", 1, 21, 24)]),
     ("A54", "MOVE P1, ZONE 5", [("RBL413", 1, 10, 6)]),
     ("A56", "MOVE P1, ZONE -5", [("RBL415", 1, 15, 2)]),
-    ("A61", "PRINT \"{0.__class__}\"", []),
+    ("A61", 'PRINT "{0.__class__}"', []),
     ("A62", "__import__ = 5\nPRINT __import__", []),
     ("A62 alone", "__import__", [("RBL112", 1, 1, 10)]),
-    ("A62 called", "x = __import__(\"os\")", [("RBL215", 1, 5, 10)]),
-]  # fmt: skip
+    ("A62 called", 'x = __import__("os")', [("RBL215", 1, 5, 10)]),
+]
 
 
 @pytest.mark.parametrize(("text", "expected"), [row[1:] for row in GOLDEN], ids=[row[0] for row in GOLDEN])
@@ -122,16 +122,26 @@ def test_the_rounds_of_a_loop_are_counted_when_it_begins():
 
 def test_what_is_printed_is_no_template():
     """A61."""
-    assert printed("PRINT \"{0.__class__}%s$(id)\"") == ["{0.__class__}%s$(id)"]
+    assert printed('PRINT "{0.__class__}%s$(id)"') == ["{0.__class__}%s$(id)"]
 
 
 # --- R11: nesting ----------------------------------------------------------------------------------------------------
 
 
-LINES = ["IF 1 THEN\n", "WHILE 1\n", "SUB a\n", "SELECT 1\nCASE 1\n", "ELSE\n", "*L\n", "GOTO {n}\n",
-         "x{n} = y{n}\n"]  # fmt: skip
-IN_A_LINE = [("", "("), ("x = ", "("), ("", "-"), ("x = ", "NOT "), ("", "IF 1 THEN "), ("x = ", "ABS("),
-             ("x = ", "a("), ("MOVE P1", " * (0, 0, 1"), ("x = ", "2 ^ "), ("x = 1", " = 1"), ("", "x")]  # fmt: skip
+LINES = ["IF 1 THEN\n", "WHILE 1\n", "SUB a\n", "SELECT 1\nCASE 1\n", "ELSE\n", "*L\n", "GOTO {n}\n", "x{n} = y{n}\n"]
+IN_A_LINE = [
+    ("", "("),
+    ("x = ", "("),
+    ("", "-"),
+    ("x = ", "NOT "),
+    ("", "IF 1 THEN "),
+    ("x = ", "ABS("),
+    ("x = ", "a("),
+    ("MOVE P1", " * (0, 0, 1"),
+    ("x = ", "2 ^ "),
+    ("x = 1", " = 1"),
+    ("", "x"),
+]
 
 
 def repeated(line, count):
@@ -259,8 +269,11 @@ def test_one_typo_costs_few_diagnostics_and_hides_nothing_behind_it():
     assert sum(count > 0 for count in extra) > len(extra) / 2  # the typos are real ones
 
 
-BLOCK_LINES = [index for index, line in enumerate(GOOD.splitlines())
-               if re.match(r"\d+ (SUB|ENDSUB|NEXT|WHILE|WEND|ENDSELECT)", line)]  # fmt: skip
+BLOCK_LINES = [
+    index
+    for index, line in enumerate(GOOD.splitlines())
+    if re.match(r"\d+ (SUB|ENDSUB|NEXT|WHILE|WEND|ENDSELECT)", line)
+]
 
 
 def word_typos(line):
@@ -301,9 +314,16 @@ def test_what_lacks_a_head_or_an_end_is_found_beside_errors_of_other_kinds():
 def test_a_line_that_does_not_parse_hides_nothing_of_the_others():
     text = "MOV P1\nMOVE P77\nx = y + 1\nGOTO 50\nDELAY -1\nWAIT IN(1) = 1\nIF 0.1 * 3 = 0.3 THEN END\nNEXT\nCALL f"
     assert [item[:3] for item in problems(text)] == [
-        ("RBL112", 1, 1), ("RBL301", 2, 6), ("RBL215", 3, 5), ("RBL202", 4, 6), ("RBL405", 5, 7), ("RBL223", 6, 1),
-        ("RBL232", 7, 4), ("RBL212", 8, 1), ("RBL213", 9, 6),
-    ]  # fmt: skip
+        ("RBL112", 1, 1),
+        ("RBL301", 2, 6),
+        ("RBL215", 3, 5),
+        ("RBL202", 4, 6),
+        ("RBL405", 5, 7),
+        ("RBL223", 6, 1),
+        ("RBL232", 7, 4),
+        ("RBL212", 8, 1),
+        ("RBL213", 9, 6),
+    ]
 
 
 # --- R20: what a program can do --------------------------------------------------------------------------------------
@@ -312,25 +332,56 @@ def test_a_line_that_does_not_parse_hides_nothing_of_the_others():
 def test_the_effects_and_functions_of_a_program_are_these():
     kinds = {kind.__name__ for kind in effects.OfStatement.__subclasses__()}
     assert kinds == {
-        "SetPayload", "MoveTo", "SetHand", "SetWrist", "SetSeam", "SetTool", "SetOutput", "Pass", "Show",
-        "Drain", "Halt",
-    }  # fmt: skip
+        "SetPayload",
+        "MoveTo",
+        "SetHand",
+        "SetWrist",
+        "SetSeam",
+        "SetTool",
+        "SetOutput",
+        "Pass",
+        "Show",
+        "Drain",
+        "Halt",
+    }
     numbers, others = "ABS SGN INT ROUND SQR SIN COS TAN ATN2 MIN MAX DEG RAD", "STR$ VAL LEN IN DIST POSE JOINT"
     assert set(f"{numbers} {others}".split()) == FUNCTIONS
     assert set(VALUES) == {"HERE", "TIMER", "ERR"}
 
 
-FORBIDDEN = {"open", "eval", "exec", "compile", "__import__", "os", "io", "sys", "subprocess", "socket", "pathlib",
-             "importlib", "shutil", "pickle", "ctypes", "input", "breakpoint", "globals",
-             "Path"}  # fmt: skip
+FORBIDDEN = {
+    "open",
+    "eval",
+    "exec",
+    "compile",
+    "__import__",
+    "os",
+    "io",
+    "sys",
+    "subprocess",
+    "socket",
+    "pathlib",
+    "importlib",
+    "shutil",
+    "pickle",
+    "ctypes",
+    "input",
+    "breakpoint",
+    "globals",
+    "Path",
+}
 
 
 @pytest.mark.parametrize("module", [actions, evaluator, interpreter, scope], ids=lambda module: module.__name__)
 def test_what_runs_a_program_cannot_reach_files_processes_or_python(module):
     tree = ast.parse(Path(module.__file__).read_text(encoding="utf-8"))
     called = {node.func.id for node in ast.walk(tree) if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
-    imported = {alias.name.partition(".")[0] for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)
-                for alias in node.names}  # fmt: skip
+    imported = {
+        alias.name.partition(".")[0]
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Import | ast.ImportFrom)
+        for alias in node.names
+    }
     imported |= {(node.module or "").partition(".")[0] for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
     assert not (called | imported) & FORBIDDEN
 

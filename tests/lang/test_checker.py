@@ -73,9 +73,21 @@ def test_centre_of_gravity_at_the_limit():
 
 @pytest.mark.parametrize(
     "option",
-    ["SPEED 0", "SPEED -5", "SPEED NAN", "SPEED INF", "SPEED 10000.1", "ACCEL 0", "ACCEL 100.1", "ACCEL NAN",
-     "TIME 0", "TIME -1", "TIME 600.1", "TIME NAN"],
-)  # fmt: skip
+    [
+        "SPEED 0",
+        "SPEED -5",
+        "SPEED NAN",
+        "SPEED INF",
+        "SPEED 10000.1",
+        "ACCEL 0",
+        "ACCEL 100.1",
+        "ACCEL NAN",
+        "TIME 0",
+        "TIME -1",
+        "TIME 600.1",
+        "TIME NAN",
+    ],
+)
 def test_option_out_of_range(option):
     value = option.split()[1]
     assert checked(f"MOVE P1, {option}") == [("RBL404", 1, 16 - (option[0] == "T"), len(value))]
@@ -119,8 +131,9 @@ def test_components_twice_and_too_many(lead):
     assert checked(f"{lead}WRIST HOLD TILT, TILT, ADVANCE") == [("RBL118", 1, at + 6, 4)]
     assert checked(f"{lead}WRIST HOLD TILT, ADVANCE, ROTATION") == [("RBL120", 1, at + 15, 8)]
     assert checked(f"{lead}WRIST HOLD TILT, ADVANCE, ROTATION, ROTATION") == [
-        ("RBL120", 1, at + 15, 8), ("RBL118", 1, at + 25, 8),
-    ]  # fmt: skip
+        ("RBL120", 1, at + 15, 8),
+        ("RBL118", 1, at + 25, 8),
+    ]
 
 
 def test_messages_about_components():
@@ -193,8 +206,12 @@ def test_the_number_of_a_bad_line_counts():
 def test_everything_is_found_at_once_and_in_order():
     text = "MOVE X, SPEED 0\nLOAD (0, 0, 9999), -1\nHAND ON, -1"
     assert [item[:2] for item in checked(text, points=())] == [
-        ("RBL301", 1), ("RBL404", 1), ("RBL403", 2), ("RBL401", 2), ("RBL405", 3),
-    ]  # fmt: skip
+        ("RBL301", 1),
+        ("RBL404", 1),
+        ("RBL403", 2),
+        ("RBL401", 2),
+        ("RBL405", 3),
+    ]
 
 
 def test_the_list_is_bounded():
@@ -252,34 +269,34 @@ def found(text):
         ("CONST k = 1\nFOR k = 1 TO 2\nNEXT", [("RBL216", 2, 5, 1)]),
         ("MOVE 5", [("RBL217", 1, 6, 1)]),
         ("MOVE (1, 2, 3)", [("RBL217", 1, 6, 9)]),
-        ("MOVE \"P1\"", [("RBL217", 1, 6, 4)]),
+        ('MOVE "P1"', [("RBL217", 1, 6, 4)]),
         ("MOVEC 1, P1", [("RBL217", 1, 7, 1)]),
         ("APPROACH P1, P2", [("RBL217", 1, 14, 2)]),
-        ("MOVE P1, SPEED \"a\"", [("RBL217", 1, 16, 3)]),
+        ('MOVE P1, SPEED "a"', [("RBL217", 1, 16, 3)]),
         ("SPEED P1", [("RBL217", 1, 7, 2)]),
-        ("x = \"a\"", [("RBL217", 1, 5, 3)]),
+        ('x = "a"', [("RBL217", 1, 5, 3)]),
         ("s$ = 5", [("RBL217", 1, 6, 1)]),
         ("s$ = P1", [("RBL217", 1, 6, 2)]),
         ("CONST k$ = 5", [("RBL217", 1, 12, 1)]),
         ("FOR s$ = 1 TO 2\nNEXT", [("RBL217", 1, 10, 1)]),
-        ("FOR i = 1 TO \"a\"\nNEXT", [("RBL217", 1, 14, 3)]),
-        ("x = 1 + \"a\"", [("RBL217", 1, 9, 3)]),
+        ('FOR i = 1 TO "a"\nNEXT', [("RBL217", 1, 14, 3)]),
+        ('x = 1 + "a"', [("RBL217", 1, 9, 3)]),
         ("x = P1 + P2", [("RBL217", 1, 5, 2)]),
         ("x = -P1", [("RBL217", 1, 6, 2)]),
-        ("x = NOT \"a\"", [("RBL217", 1, 9, 3)]),
+        ('x = NOT "a"', [("RBL217", 1, 9, 3)]),
         ("x = 5 + (1, 2, 3)", [("RBL217", 1, 9, 9)]),
         ("P9 = P1 - (1, 2, 3)", [("RBL217", 1, 11, 9)]),
         ("x = (1, 2, 3)", [("RBL217", 1, 5, 9)]),
         ("PRINT (1, 2); ABS((1, 2))", [("RBL217", 1, 7, 6), ("RBL217", 1, 19, 6)]),
         ("x = LEN(5) + VAL(5)", [("RBL217", 1, 9, 1), ("RBL217", 1, 18, 1)]),
-        ("x = DIST(P1, 2) + ABS(\"a\")", [("RBL217", 1, 14, 1), ("RBL217", 1, 23, 3)]),
+        ('x = DIST(P1, 2) + ABS("a")', [("RBL217", 1, 14, 1), ("RBL217", 1, 23, 3)]),
         ("IF P1 THEN END", [("RBL217", 1, 4, 2)]),
-        ("IF \"a\" THEN\nENDIF", [("RBL217", 1, 4, 3)]),
+        ('IF "a" THEN\nENDIF', [("RBL217", 1, 4, 3)]),
         ("WHILE P1\nWEND", [("RBL217", 1, 7, 2)]),
-        ("WAIT \"a\"", [("RBL217", 1, 6, 3)]),
-        ("OUT(P1) = \"a\"", [("RBL217", 1, 5, 2), ("RBL217", 1, 11, 3)]),
+        ('WAIT "a"', [("RBL217", 1, 6, 3)]),
+        ('OUT(P1) = "a"', [("RBL217", 1, 5, 2), ("RBL217", 1, 11, 3)]),
         ("DIM a(P1)", [("RBL217", 1, 7, 2)]),
-        ("TOOL 5\nFRAME \"a\"", [("RBL217", 1, 6, 1), ("RBL217", 2, 7, 3)]),
+        ('TOOL 5\nFRAME "a"', [("RBL217", 1, 6, 1), ("RBL217", 2, 7, 3)]),
         ("x = P1.Q + HERE.RW", [("RBL218", 1, 8, 1), ("RBL218", 1, 17, 2)]),
         ("MOVE P1 + (1, 2)", [("RBL220", 1, 11, 6)]),
         ("MOVE P1 + (1, 2, 3, 4, 5, 6)", [("RBL220", 1, 11, 18)]),
@@ -310,7 +327,7 @@ def found(text):
         ("OUT(1025) = 1", [("RBL534", 1, 5, 4)]),
         ("PULSE 1.5, 1", [("RBL534", 1, 7, 3)]),
     ],
-)  # fmt: skip
+)
 def test_what_is_wrong_with_what_it_means(text, expected):
     assert found(text) == expected
 
@@ -374,10 +391,12 @@ def test_a_value_that_only_goes_into_itself_has_no_first_one(text, expected):
         ("ON ERROR GOTO *H\nMOVE P1\nEND\n*H PRINT 1 / ERR; 7 MOD ERR; SQR(ERR - 100)\nRESUME NEXT", []),
         ("CONST k = 3\nPRINT k\nCONST k = 5", [("RBL216", 3, 7, 1)]),
         ('SELECT ERR\nCASE "410"\nENDSELECT', [("RBL217", 2, 6, 5)]),
-        ('SELECT "a"\nCASE "b", 3\nSELECT 1\nCASE 2\nENDSELECT\nCASE 4\nENDSELECT',
-         [("RBL217", 2, 11, 1), ("RBL217", 6, 6, 1)]),
+        (
+            'SELECT "a"\nCASE "b", 3\nSELECT 1\nCASE 2\nENDSELECT\nCASE 4\nENDSELECT',
+            [("RBL217", 2, 11, 1), ("RBL217", 6, 6, 1)],
+        ),
     ],
-)  # fmt: skip
+)
 def test_values_that_only_a_run_has_and_values_that_never_fit(text, expected):
     assert checked(text) == expected
 

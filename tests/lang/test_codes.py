@@ -83,8 +83,12 @@ def test_one_import_knows_as_many_codes_as_all_modules_together():
 
 def test_a_code_that_nothing_raises_is_not_registered():
     known = {entry.code for entry in all_codes()}
-    places = [path.read_text("utf-8") for folder in ("robolang", "runtime") for path in (ROOT / folder).rglob("*.py")
-              if path.name not in ("codes.py", "run_codes.py")]  # fmt: skip
+    places = [
+        path.read_text("utf-8")
+        for folder in ("robolang", "runtime")
+        for path in (ROOT / folder).rglob("*.py")
+        if path.name not in ("codes.py", "run_codes.py")
+    ]
     used = (re.sub(r"\b(?:Code|Rule)\(\s*code=\"RBL\d{3}\"", "", text) for text in places)
     raised = {code for text in used for code in re.findall(r"\"(RBL\d{3})\b", text)}
     assert known - raised == set()

@@ -68,8 +68,10 @@ def test_a_long_line_is_cut_around_the_place():
 def screen(text):
     """Columns that a text takes on a screen."""
     wide = [2 if unicodedata.east_asian_width(letter) in "WF" else 1 for letter in text]
-    return sum(0 if unicodedata.category(letter) in ("Mn", "Me", "Cf") else width
-               for letter, width in zip(text, wide, strict=True))  # fmt: skip
+    return sum(
+        0 if unicodedata.category(letter) in ("Mn", "Me", "Cf") else width
+        for letter, width in zip(text, wide, strict=True)
+    )
 
 
 PIECES = ("\t", "点", "e\u0301", "\u200b", "\u202e", "\x1b", " ", "MOVE P1 ", "x" * 50)

@@ -162,8 +162,8 @@ def test_how_signs_bind(text, expected):
         ("RAD(180)", math.pi),
         ("MIN(3, 1, 2)", 1.0),
         ("MAX(3, 1, 2)", 3.0),
-        ("VAL(\" 1.5e2 \")", 150.0),
-        ("LEN(\"abc\")", 3.0),
+        ('VAL(" 1.5e2 ")', 150.0),
+        ('LEN("abc")', 3.0),
         ("IN(1) + 2 * IN(2)", 1.0),
         ("TIMER", 12.5),
         ("ERR", 0.0),
@@ -173,7 +173,7 @@ def test_how_signs_bind(text, expected):
         ("HERE.Y", 2.0),
         ("POSE(1, 2, 3, 4, 5, 6).RX", 4.0),
     ],
-)  # fmt: skip
+)
 def test_values(text, expected):
     assert value(text) == pytest.approx(expected, rel=1e-12)
 
@@ -181,17 +181,17 @@ def test_values(text, expected):
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("\"a\" + \"b\" + STR$(1.50)", "ab1.5"),
+        ('"a" + "b" + STR$(1.50)', "ab1.5"),
         ("STR$(-0.0)", "0"),
         ("STR$(1 / 3)", "0.3333333333"),
         ("STR$(1E300)", "1e+300"),
-        ("\"a\" < \"b\"", 1.0),
-        ("\"a\" = \"A\"", 0.0),
-        ("\"{0.__class__}\"", "{0.__class__}"),
-        ("\"%s ' REM\"", "%s ' REM"),
-        ("\"\"", ""),
+        ('"a" < "b"', 1.0),
+        ('"a" = "A"', 0.0),
+        ('"{0.__class__}"', "{0.__class__}"),
+        ('"%s \' REM"', "%s ' REM"),
+        ('""', ""),
     ],
-)  # fmt: skip
+)
 def test_texts(text, expected):
     assert value(text) == expected
 
@@ -249,14 +249,14 @@ def test_the_number_of_turns_behind_a_pose_is_bounded():
         ("SIN(INF)", "RBL502"),
         ("NAN + 1", "RBL502"),
         ("INF - INF", "RBL502"),
-        ("VAL(\"1_000\")", "RBL502"),
-        ("VAL(\"inf\")", "RBL502"),
-        ("VAL(\"\")", "RBL502"),
+        ('VAL("1_000")', "RBL502"),
+        ('VAL("inf")', "RBL502"),
+        ('VAL("")', "RBL502"),
         ("P1 + (INF, 0, 0)", "RBL502"),
         ("POSE(NAN, 0, 0, 0, 0, 0)", "RBL502"),
-        ("1 + \"a\"", "RBL531"),
-        ("\"a\" - \"b\"", "RBL531"),
-        ("\"a\" AND 1", "RBL531"),
+        ('1 + "a"', "RBL531"),
+        ('"a" - "b"', "RBL531"),
+        ('"a" AND 1', "RBL531"),
         ("-P1", "RBL531"),
         ("NOT P1", "RBL531"),
         ("P1 + P2", "RBL531"),
@@ -269,7 +269,7 @@ def test_the_number_of_turns_behind_a_pose_is_bounded():
         ("1 + P1", "RBL531"),
         ("X + (0, 0, 1)", "RBL531"),
         ("(1, 2, 3)", "RBL531"),
-        ("ABS(\"a\")", "RBL531"),
+        ('ABS("a")', "RBL531"),
         ("ABS(1, 2)", "RBL531"),
         ("ATN2(1)", "RBL531"),
         ("POSE(1, 2)", "RBL531"),
@@ -284,7 +284,7 @@ def test_the_number_of_turns_behind_a_pose_is_bounded():
         ("z", "RBL532"),
         ("z(1)", "RBL532"),
     ],
-)  # fmt: skip
+)
 def test_what_has_no_value_is_a_fault(text, code):
     assert fault(text) == code
 

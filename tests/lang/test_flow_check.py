@@ -69,8 +69,11 @@ def test_every_one_of_many_grasps_is_found():
 
 
 def test_a_short_program_that_calls_itself_in_many_ways_is_looked_at():
-    subs = "".join(f"SUB s{k}\nIF x THEN HAND ON ELSE HAND OFF\nIF x THEN CALL s{(k + 1) % 20}\n"
-                   f"IF x THEN CALL s{(k + 3) % 20}\nMOVE P1\nENDSUB\n" for k in range(20))  # fmt: skip
+    subs = "".join(
+        f"SUB s{k}\nIF x THEN HAND ON ELSE HAND OFF\nIF x THEN CALL s{(k + 1) % 20}\n"
+        f"IF x THEN CALL s{(k + 3) % 20}\nMOVE P1\nENDSUB\n"
+        for k in range(20)
+    )
     assert found(f"CALL s0\nIF x THEN CALL s0\nEND\n{subs}", "RBL228")
 
 
@@ -156,8 +159,7 @@ def test_load_in_blend(text, lines):
         ("CALL s\nEND\nSUB s\nEND\nMOVE P1\nENDSUB", [("RBL221", 5)]),
         ("ON ERROR GOTO *H\nCALL s\nMOVE P1\nEND\n*H RESUME NEXT\nSUB s\nWHILE 1\nDELAY 1\nWEND\nENDSUB", []),
         ("ON ERROR GOTO *H\nWHILE 1 / x\nDELAY 1\nGOTO *E\nWEND\nMOVE P1\nEND\n*H RESUME NEXT\n*E STOP", []),
-        ("ON ERROR GOTO *H\nCALL s\nMOVE P1\nEND\n*H RESUME\nSUB s\nWHILE 1\nDELAY 1\nWEND\nENDSUB",
-         [("RBL221", 3)]),
+        ("ON ERROR GOTO *H\nCALL s\nMOVE P1\nEND\n*H RESUME\nSUB s\nWHILE 1\nDELAY 1\nWEND\nENDSUB", [("RBL221", 3)]),
         ("GOTO *B\n*A MOVE P1\nGOTO *A\n*B END", [("RBL221", 2)]),  # they lead to one another, nothing to them
     ],
 )

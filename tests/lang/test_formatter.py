@@ -249,8 +249,9 @@ def test_a_comment_that_would_be_pushed_too_far_begins_a_column_of_its_own():
 
 def test_a_line_that_is_too_wide_by_itself_has_its_comment_behind_two_spaces():
     assert formatted("HAND ON'" + "y" * 200 + "\nMOVE P1'z\nHAND ON'w\n").splitlines()[1:] == [
-        "MOVE P1  'z", "HAND ON  'w"
-    ]  # fmt: skip
+        "MOVE P1  'z",
+        "HAND ON  'w",
+    ]
 
 
 def test_rem_is_capitalised_and_stays():

@@ -37,10 +37,16 @@ def test_it_is_the_same_in_every_process():
     script = "from robolang.grammar import serialized; print(hash_of(serialized()))"
     script = f"import hashlib\nhash_of = lambda text: hashlib.sha256(text.encode()).hexdigest()\n{script}"
     said = {
-        subprocess.run([sys.executable, "-c", script], env={**os.environ, "PYTHONHASHSEED": seed}, cwd=ROOT,
-                       capture_output=True, text=True, check=True).stdout
+        subprocess.run(
+            [sys.executable, "-c", script],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
         for seed in ("1", "2")
-    }  # fmt: skip
+    }
     assert len(said) == 1
 
 

@@ -15,6 +15,7 @@ from tests.lang.running import POINTS, World, fault, ran, shows
 
 LISTING = Path(__file__).parents[2] / "programs" / "pick_and_place.rbl"
 
+
 def test_the_listing_in_order():
     program = parsed(LISTING.read_text(encoding="utf-8"))
     effects = list(execute(program, points=POINTS))
@@ -129,8 +130,10 @@ def to(way="line", **values):
         ("APPROACH P1, 50", to(target=P1.shifted(BACK))),
         ("DEPART 25 * 2, SPEED 5", to(target=Place(last=True, shifts=(BACK,)), speed_mm_s=5.0)),
         ("LOAD (1, 2, 3), 4", ("SetPayload", {"cog_mm": (1.0, 2.0, 3.0), "mass_kg": 4.0})),
-        ("LOAD (0, 0, 0), 1, (1, 2, 3, 4, 5, 6)",
-         ("SetPayload", {"cog_mm": (0.0,) * 3, "mass_kg": 1.0, "inertia_kg_m2": (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)})),
+        (
+            "LOAD (0, 0, 0), 1, (1, 2, 3, 4, 5, 6)",
+            ("SetPayload", {"cog_mm": (0.0,) * 3, "mass_kg": 1.0, "inertia_kg_m2": (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)}),
+        ),
         ("LOAD Part", ("SetPayload", {"cog_mm": (0.0,) * 3, "name": "PART"})),
         ("HAND ON, 1 / 2", ("SetHand", {"closed": True, "dwell_s": 0.5})),
         ("TOOL gun", ("SetTool", {"tool": "GUN"})),
@@ -139,13 +142,13 @@ def to(way="line", **values):
         ("PULSE 1024, 0.5", ("SetOutput", {"output": 1024, "value": 1.0, "seconds": 0.5})),
         ("DELAY 1", ("Pass", {"seconds": 1.0})),
         ("PRINT", ("Show", {})),
-        ("PRINT 1.50; \" \"; STR$(2);", ("Show", {"text": "1.5 2"})),
-        ("PRINT \"{0.__class__}\"", ("Show", {"text": "{0.__class__}"})),
+        ('PRINT 1.50; " "; STR$(2);', ("Show", {"text": "1.5 2"})),
+        ('PRINT "{0.__class__}"', ("Show", {"text": "{0.__class__}"})),
         ("PRINT P1", ("Show", {"text": "(10.000, 20.000, 30.000, 0.000, 0.000, 0.000)"})),
         ("STOP", ("Halt", {"word": "STOP"})),
         ("PAUSE", ("Halt", {"word": "PAUSE"})),
     ],
-)  # fmt: skip
+)
 def test_each_statement_is_one_effect(text, effect):
     assert [without_origin(each) for each in ran(text)] == [effect]
 
@@ -230,12 +233,12 @@ def test_a_tool_is_given_in_the_flange_whatever_is_active(text, tool):
         ("PRINT IN(7)", "RBL534"),
         ("v = 0\nFOR i = 1 TO 2 STEP v\nNEXT", "RBL205"),
         ("FOR i = 1 TO 1E300\nNEXT", "RBL502"),
-        ("x = \"a\"", "RBL531"),
+        ('x = "a"', "RBL531"),
         ("s$ = 1", "RBL531"),
         ("CONST k = 1\nk = 2", "RBL531"),
         ("CALL s(1)\nSUB s(a$)\nENDSUB", "RBL531"),
         ("MOVE 5", "RBL531"),
-        ("IF \"a\" THEN END", "RBL531"),
+        ('IF "a" THEN END', "RBL531"),
         ("RETURN", "RBL533"),
         ("RESUME", "RBL533"),
         ("RESUME NEXT", "RBL533"),
@@ -243,7 +246,7 @@ def test_a_tool_is_given_in_the_flange_whatever_is_active(text, tool):
         ("DIM a(2)\na(3) = 1", "RBL507"),
         ("DIM a(100000)", "RBL507"),
     ],
-)  # fmt: skip
+)
 def test_what_only_a_run_can_find(text, code):
     assert fault(text).code == code
 
@@ -255,37 +258,43 @@ def test_what_only_a_run_can_find(text, code):
     ("text", "printed"),
     [
         ("IF 1 THEN PRINT 1 ELSE PRINT 2\nIF 0 THEN PRINT 3 ELSE PRINT 4\nIF 0 THEN PRINT 5", "14"),
-        ("FOR i = 1 TO 4\nIF i = 1 THEN\nPRINT \"a\"\nELSEIF i = 2 THEN\nPRINT \"b\"\nELSEIF i < 4\nPRINT \"c\"\nELSE\n"
-         "PRINT \"d\"\nENDIF\nNEXT", "abcd"),
+        (
+            'FOR i = 1 TO 4\nIF i = 1 THEN\nPRINT "a"\nELSEIF i = 2 THEN\nPRINT "b"\nELSEIF i < 4\nPRINT "c"\nELSE\n'
+            'PRINT "d"\nENDIF\nNEXT',
+            "abcd",
+        ),
         ("IF 0 THEN\nPRINT 1\nENDIF\nPRINT 2", "2"),
         ("IF 0\nELSE\nIF 1\nPRINT 1\nELSE\nPRINT 2\nENDIF\nENDIF", "1"),
-        ("FOR i = 1 TO 5\nSELECT i\nCASE 1\nPRINT \"a\"\nCASE 2, 1 + 2\nPRINT \"b\"\nCASE 4\nCASE ELSE\nPRINT \"e\"\n"
-         "ENDSELECT\nNEXT", "abbe"),
-        ("s$ = \"x\"\nSELECT CASE s$\nCASE \"y\"\nPRINT 1\nCASE \"x\"\nPRINT 2\nENDSELECT", "2"),
+        (
+            'FOR i = 1 TO 5\nSELECT i\nCASE 1\nPRINT "a"\nCASE 2, 1 + 2\nPRINT "b"\nCASE 4\nCASE ELSE\nPRINT "e"\n'
+            "ENDSELECT\nNEXT",
+            "abbe",
+        ),
+        ('s$ = "x"\nSELECT CASE s$\nCASE "y"\nPRINT 1\nCASE "x"\nPRINT 2\nENDSELECT', "2"),
         ("SELECT 1\nENDSELECT\nPRINT 1", "1"),
         ("FOR i = 1 TO 3\nPRINT i\nNEXT", "123"),
         ("FOR i = 3 TO 1 STEP -1\nPRINT i\nNEXT i", "321"),
-        ("FOR i = 1 TO 0\nPRINT i\nNEXT\nPRINT \"n\"; i", "n1"),
+        ('FOR i = 1 TO 0\nPRINT i\nNEXT\nPRINT "n"; i', "n1"),
         ("FOR i = 1 TO 1 STEP -5\nPRINT i\nNEXT", "1"),
-        ("FOR i = 0 TO 1 STEP 0.25\nPRINT i; \" \"\nNEXT", "0 0.25 0.5 0.75 1 "),
+        ('FOR i = 0 TO 1 STEP 0.25\nPRINT i; " "\nNEXT', "0 0.25 0.5 0.75 1 "),
         ("n = 3\nFOR i = 1 TO n STEP n - 2\nn = 9\nPRINT i\nNEXT", "123"),
         ("FOR i = 1 TO 3\nPRINT i\ni = i + 1\nNEXT", "135"),
         ("FOR i = 1 TO 2\nFOR j = 1 TO 2\nPRINT i * 10 + j\nNEXT\nNEXT", "11122122"),
         ("10 FOR i = 1 TO 3\nPRINT i\nIF i = 2 THEN GOTO 40\nNEXT\n40 IF x = 1 THEN END\nx = 1\nGOTO 10", "1212"),
         ("FOR i = 1 TO 2\nFOR j = 1 TO 9\nIF j = 2 THEN GOTO 50\nPRINT i * 10 + j\nNEXT\n50 NEXT", "1121"),
-        ("WHILE n < 3\nPRINT n\nn = n + 1\nWEND\nPRINT \"e\"", "012e"),
+        ('WHILE n < 3\nPRINT n\nn = n + 1\nWEND\nPRINT "e"', "012e"),
         ("WHILE 0\nPRINT 1\nWEND", ""),
         ("GOTO *A\nPRINT 1\n*A PRINT 2\nEND\nPRINT 3", "2"),
         ("GOSUB 10\nPRINT 2\nEND\n10 GOSUB 20\nPRINT 1\nRETURN\n20 PRINT 0\nRETURN", "012"),
-        ("CALL a(1, 2)\nPRINT x\nSUB a(x, y)\nx = x + y\nPRINT x\nENDSUB\nPRINT \"e\"", "30e"),
+        ('CALL a(1, 2)\nPRINT x\nSUB a(x, y)\nx = x + y\nPRINT x\nENDSUB\nPRINT "e"', "30e"),
         ("x = 5\nCALL a\nPRINT x\nSUB a()\nPRINT x\nx = 6\nPRINT x\nRETURN\nPRINT 9\nENDSUB", "565"),
         ("CALL f(4)\nSUB f(n)\nPRINT n\nIF n > 1 THEN CALL f(n - 1)\nPRINT n\nENDSUB", "43211234"),
         ("DIM a(3)\nFOR i = 0 TO 3\na(i) = i * i\nNEXT\nPRINT a(0) + a(1) + a(2) + a(3)", "14"),
-        ("DIM n$(1)\nn$(1) = \"b\"\nPRINT n$(0) + n$(1)", "b"),
+        ('DIM n$(1)\nn$(1) = "b"\nPRINT n$(0) + n$(1)', "b"),
         ("CONST k = 2 * 3\nPRINT k", "6"),
         ("P9 = P1 + (1, 2, 3)\nPRINT P9.X", "10"),
     ],
-)  # fmt: skip
+)
 def test_control(text, printed):
     text = "n = 0\nx = 0\n" + text if "WHILE n" in text or "x = 1 THEN" in text or "PRINT x\nSUB a(" in text else text
     assert "".join(shows(text)) == printed
@@ -297,8 +306,13 @@ def test_a_loop_of_a_million_fractions_is_counted_exactly(monkeypatch):
     assert last == "999999"
 
 
-@pytest.mark.parametrize("call", ["10 CALL f(n)\nSUB f(n)\nIF n > 1 THEN CALL f(n - 1)\nENDSUB",
-                                  "*S n = n - 1\nIF n > 0 THEN GOSUB *S\nIF n = -9 THEN GOTO *S\nEND"])  # fmt: skip
+@pytest.mark.parametrize(
+    "call",
+    [
+        "10 CALL f(n)\nSUB f(n)\nIF n > 1 THEN CALL f(n - 1)\nENDSUB",
+        "*S n = n - 1\nIF n > 0 THEN GOSUB *S\nIF n = -9 THEN GOTO *S\nEND",
+    ],
+)
 def test_calls_within_one_another_are_bounded(call):
     more = "*S" in call  # the main program is there already
     ran(f"n = {MAX_CALLS + more}\n{call}")
@@ -404,18 +418,46 @@ def test_wait_with_a_timeout():
 
 @pytest.mark.parametrize(
     "text",
-    ["x = IN(1)", "x = TIMER", "P9 = HERE", "MOVE HERE", "PRINT P1.X", "IF IN(1) THEN END", "OUT(1) = IN(1)",
-     "x = DIST(P1, P1)", "IF 1 THEN PRINT TIMER", "WAIT 1", "WHILE IN(1)\nWEND", "SELECT IN(1)\nENDSELECT",
-     "SELECT 0\nCASE IN(1)\nENDSELECT", "IF 0\nELSEIF IN(1)\nENDIF", "FOR i = 0 TO IN(1)\nNEXT", "HAND ON, TIMER",
-     "CALL s(IN(1))\nSUB s(a)\nENDSUB", "DIM a(1)\na(IN(1)) = 1"],
-)  # fmt: skip
+    [
+        "x = IN(1)",
+        "x = TIMER",
+        "P9 = HERE",
+        "MOVE HERE",
+        "PRINT P1.X",
+        "IF IN(1) THEN END",
+        "OUT(1) = IN(1)",
+        "x = DIST(P1, P1)",
+        "IF 1 THEN PRINT TIMER",
+        "WAIT 1",
+        "WHILE IN(1)\nWEND",
+        "SELECT IN(1)\nENDSELECT",
+        "SELECT 0\nCASE IN(1)\nENDSELECT",
+        "IF 0\nELSEIF IN(1)\nENDIF",
+        "FOR i = 0 TO IN(1)\nNEXT",
+        "HAND ON, TIMER",
+        "CALL s(IN(1))\nSUB s(a)\nENDSUB",
+        "DIM a(1)\na(IN(1)) = 1",
+    ],
+)
 def test_motion_ends_before_what_changes_is_read(text):
     assert isinstance(ran(text)[0], Drain)
 
 
 @pytest.mark.parametrize(
-    "text", ["MOVE P1 + (0, 0, 5)", "OUT(1) = 1", "DELAY 1", "PRINT 1", "IF 0 THEN PRINT TIMER", "HAND ON", "SPEED 5",
-             "SELECT 0\nCASE 0\nCASE IN(1)\nENDSELECT", "x = ERR", "LOAD (0, 0, 0), 1", "IF 1\nELSEIF IN(1)\nENDIF"],
-)  # fmt: skip
+    "text",
+    [
+        "MOVE P1 + (0, 0, 5)",
+        "OUT(1) = 1",
+        "DELAY 1",
+        "PRINT 1",
+        "IF 0 THEN PRINT TIMER",
+        "HAND ON",
+        "SPEED 5",
+        "SELECT 0\nCASE 0\nCASE IN(1)\nENDSELECT",
+        "x = ERR",
+        "LOAD (0, 0, 0), 1",
+        "IF 1\nELSEIF IN(1)\nENDIF",
+    ],
+)
 def test_motion_goes_on_where_nothing_is_read(text):
     assert not any(isinstance(effect, Drain) for effect in ran(text))

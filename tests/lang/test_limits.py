@@ -40,7 +40,7 @@ ARRAYS = "".join(f"DIM a{k}({MAX_ELEMENTS - 1})\n" for k in range(MAX_CELLS // M
         ("RBL405", "WAIT 1, TIMEOUT 86400", "n = 86401\nWAIT 1, TIMEOUT n"),
         ("RBL534", "n = 1024\nOUT(n) = 1", "n = 1025\nOUT(n) = 1"),
     ],
-)  # fmt: skip
+)
 def test_a_limit_of_values(code, inside, beyond):
     ran(inside)
     assert fault(beyond).code == code
@@ -96,13 +96,21 @@ def test_no_handler_outlives_the_simulated_time(tmp_path, monkeypatch):
     assert found.total_us == 400_000
 
 
-@pytest.mark.parametrize("limit", [each for each in vars(limits).values() if isinstance(each, limits.Limit)],
-                         ids=lambda limit: limit.name)  # fmt: skip
+@pytest.mark.parametrize(
+    "limit", [each for each in vars(limits).values() if isinstance(each, limits.Limit)], ids=lambda limit: limit.name
+)
 def test_every_range_holds_its_ends_and_nothing_beyond(limit):
     least = 0.5 if limit.above else limit.low
     assert limit.fault(least) is limit.fault(limit.high) is None
-    beyond = (limit.low - 1.0, limit.low if limit.above else limit.low - 1e-9, limit.high * (1 + 1e-9), math.nan,
-              math.inf, -math.inf, *([1.5] if limit.whole else []))  # fmt: skip
+    beyond = (
+        limit.low - 1.0,
+        limit.low if limit.above else limit.low - 1e-9,
+        limit.high * (1 + 1e-9),
+        math.nan,
+        math.inf,
+        -math.inf,
+        *([1.5] if limit.whole else []),
+    )
     assert {limit.fault(value).code for value in beyond} == {limit.code}
     assert limit.fault(limit.high, limit.high / 2).code == limit.code
     assert limit.fault(limit.high / 4, math.nan if limit.whole else limit.high / 2) is None or limit.whole
@@ -111,13 +119,24 @@ def test_every_range_holds_its_ends_and_nothing_beyond(limit):
 @pytest.mark.parametrize(
     ("text", "code"),
     [
-        ("MOVE P1, SPEED {}", "RBL404"), ("MOVEJ P1, SPEED {}", "RBL404"), ("MOVE P1, ACCEL {}", "RBL404"),
-        ("MOVE P1, TIME {}", "RBL404"), ("MOVE P1, ZONE {}", "RBL415"), ("ZONE {}", "RBL415"), ("SPEED {}", "RBL404"),
-        ("OVERRIDE {}", "RBL404"), ("APPROACH P1, {}", "RBL404"), ("DEPART {}", "RBL404"), ("HAND ON, {}", "RBL405"),
-        ("DELAY {}", "RBL405"), ("PULSE 1, {}", "RBL405"), ("OUT({}) = 1", "RBL534"), ("DIM a({})", "RBL507"),
+        ("MOVE P1, SPEED {}", "RBL404"),
+        ("MOVEJ P1, SPEED {}", "RBL404"),
+        ("MOVE P1, ACCEL {}", "RBL404"),
+        ("MOVE P1, TIME {}", "RBL404"),
+        ("MOVE P1, ZONE {}", "RBL415"),
+        ("ZONE {}", "RBL415"),
+        ("SPEED {}", "RBL404"),
+        ("OVERRIDE {}", "RBL404"),
+        ("APPROACH P1, {}", "RBL404"),
+        ("DEPART {}", "RBL404"),
+        ("HAND ON, {}", "RBL405"),
+        ("DELAY {}", "RBL405"),
+        ("PULSE 1, {}", "RBL405"),
+        ("OUT({}) = 1", "RBL534"),
+        ("DIM a({})", "RBL507"),
         ("WAIT 1, TIMEOUT {}", "RBL405"),
     ],
-)  # fmt: skip
+)
 @pytest.mark.parametrize("value", ["0 - 1", "1E8", "NAN", "INF"])
 def test_check_and_a_run_judge_a_value_alike(text, code, value):
     """As a constant it is refused by check, out of a variable by the run, with one code."""

@@ -35,8 +35,22 @@ CATALOGUE += [row[1] for row in GOLDEN if len(row[1]) < 100_000]
 PROGRAMS = [GOOD, *(path.read_text("utf-8") for path in sorted((ROOT / "programs").rglob("*.rbl")))]
 POINTS_FILES = sorted((ROOT / "programs").rglob("*.points.toml"))
 CELLS = sorted((ROOT / "programs").rglob("*cell.toml"))
-INSERTED = [*"0123456789 .,;:()*+-/^=<>\"'_$#abcXYZ\t\r\n\0\u202e\u200bМé\ufeff", "MOVE", "IF", "THEN", "ENDIF", "FOR",
-            "NEXT", "GOTO", "noqa", "1e999", "SUB", "\r\n", "((", "' noqa: RBL301"]  # fmt: skip
+INSERTED = [
+    *"0123456789 .,;:()*+-/^=<>\"'_$#abcXYZ\t\r\n\0\u202e\u200bМé\ufeff",
+    "MOVE",
+    "IF",
+    "THEN",
+    "ENDIF",
+    "FOR",
+    "NEXT",
+    "GOTO",
+    "noqa",
+    "1e999",
+    "SUB",
+    "\r\n",
+    "((",
+    "' noqa: RBL301",
+]
 
 
 # --- what is judged --------------------------------------------------------------------------------------------------
@@ -58,8 +72,12 @@ def assert_located(text: str, found: tuple[Diagnostic, ...]) -> None:
         assert 1 <= place.line <= len(lines)
         assert 1 <= place.column <= lines[place.line - 1].end - lines[place.line - 1].start + 1, (item, text)
         said = to_json(item, source)
-        region = {"line": shown.region.line, "column": shown.region.column, "end_line": shown.region.end_line,
-                  "end_column": shown.region.end_column}  # fmt: skip
+        region = {
+            "line": shown.region.line,
+            "column": shown.region.column,
+            "end_line": shown.region.end_line,
+            "end_column": shown.region.end_column,
+        }
         assert {key: said[key] for key in region} == region
         assert (region["line"], region["column"]) == (place.line, place.column)
         assert render(item, source).startswith(f"p.rbl:{place.line}:{place.column}: {item.severity.value} {item.code} ")

@@ -22,8 +22,13 @@ def around(tmp_path_factory):
     path.write_text("MOVE P1\n")
     project = load_project(path)
     cell = project.cell
-    return Surroundings(points=project.points, cell=cell, kinematics=Kinematics(cell.robot),
-                        X_flange_tool=cell.hand.X_flange_tool, q_last=np.array(cell.home))  # fmt: skip
+    return Surroundings(
+        points=project.points,
+        cell=cell,
+        kinematics=Kinematics(cell.robot),
+        X_flange_tool=cell.hand.X_flange_tool,
+        q_last=np.array(cell.home),
+    )
 
 
 def command(text, around):
@@ -53,8 +58,19 @@ def test_units(around):
     assert isinstance(command("MOVEC P1, P2", around), MoveArc)
 
 
-@pytest.mark.parametrize("move", ["MOVE P1, SPEED 200", "MOVE P1, TIME 3", "MOVE P1", "MOVEJ P1, SPEED 20", "MOVEJ P1",
-                                  "MOVEC P1, P2", "APPROACH P1, 50", "DEPART 50, TIME 2"])  # fmt: skip
+@pytest.mark.parametrize(
+    "move",
+    [
+        "MOVE P1, SPEED 200",
+        "MOVE P1, TIME 3",
+        "MOVE P1",
+        "MOVEJ P1, SPEED 20",
+        "MOVEJ P1",
+        "MOVEC P1, P2",
+        "APPROACH P1, 50",
+        "DEPART 50, TIME 2",
+    ],
+)
 def test_an_override_is_left_to_the_planner(around, move):
     whole, half = (command(f"{lead}{move}", around) for lead in ("", "OVERRIDE 50\n"))
     assert (whole.override, half.override) == (1.0, 0.5)
@@ -127,8 +143,11 @@ def test_payloads():
         return lowering.payload(effect, cell)
 
     assert payload("LOAD (0, 10, 60), 0.8").cog == pytest.approx((0, 0.01, 0.06))
-    for text, code in (("LOAD nothing", "RBL305"), ("LOAD (0, 0, 0), 9999", "RBL402"),
-                       ("LOAD (0, 0, 0), NAN", "RBL401"),
-                       ("LOAD (0, 0, 0), 1, (1, 1, 9, 0, 0, 0)", "RBL403")):  # fmt: skip
+    for text, code in (
+        ("LOAD nothing", "RBL305"),
+        ("LOAD (0, 0, 0), 9999", "RBL402"),
+        ("LOAD (0, 0, 0), NAN", "RBL401"),
+        ("LOAD (0, 0, 0), 1, (1, 1, 9, 0, 0, 0)", "RBL403"),
+    ):
         with pytest.raises(Fault, match=code):
             payload(text)

@@ -19,17 +19,33 @@ def found(text, points=("P1",)):
 @pytest.mark.parametrize(
     ("text", "names"),
     [
-        ("CONST height =(50", {"HEIGHT"}), ("CO(ST height = 50", {"HEIGHT"}), ("CONS height = 50", {"CONS", "HEIGHT"}),
-        ("OR i = 1 TO 4", {"I"}), ("FRO i = 1 TO 4", {"FRO", "I"}), ("FOR i + 1 TO n", {"I", "N"}), ("x == 5", {"X"}),
-        ("SUB blink(n, )", {"BLINK", "N"}), ("*L SUBB blink(n)", {"SUBB", "B", "BLINK", "N"}),
+        ("CONST height =(50", {"HEIGHT"}),
+        ("CO(ST height = 50", {"HEIGHT"}),
+        ("CONS height = 50", {"CONS", "HEIGHT"}),
+        ("OR i = 1 TO 4", {"I"}),
+        ("FRO i = 1 TO 4", {"FRO", "I"}),
+        ("FOR i + 1 TO n", {"I", "N"}),
+        ("x == 5", {"X"}),
+        ("SUB blink(n, )", {"BLINK", "N"}),
+        ("*L SUBB blink(n)", {"SUBB", "B", "BLINK", "N"}),
         ("part(i) = =", {"PART"}),
-        ("SUBblink(n)", {"SUBBLINK", "BLINK", "N"}), ("1UB f(n)", {"F", "N"}),
-        ("DIN a(3)", {"DIN", "A"}), ("part(a(i)) = = 2", set()),
-        ("name$ = 'x = 1", {"NAME$"}), ('PRINT "x = 1" y', set()), ("IF x = 1 THN y = 2", {"X", "Y"}),
-        ("MOV P77", set()), ("MOVE P77 P2", set()), ("TIMER = 5", set()), ("", set()), ("x = 1 REM y = 2", {"X"}),
-        ("(" * 500, set()), ("a" * 9000, set()), ("a " * 4000, set()),
+        ("SUBblink(n)", {"SUBBLINK", "BLINK", "N"}),
+        ("1UB f(n)", {"F", "N"}),
+        ("DIN a(3)", {"DIN", "A"}),
+        ("part(a(i)) = = 2", set()),
+        ("name$ = 'x = 1", {"NAME$"}),
+        ('PRINT "x = 1" y', set()),
+        ("IF x = 1 THN y = 2", {"X", "Y"}),
+        ("MOV P77", set()),
+        ("MOVE P77 P2", set()),
+        ("TIMER = 5", set()),
+        ("", set()),
+        ("x = 1 REM y = 2", {"X"}),
+        ("(" * 500, set()),
+        ("a" * 9000, set()),
+        ("a " * 4000, set()),
     ],
-)  # fmt: skip
+)
 def test_what_a_line_with_an_error_seems_to_define(text, names):
     assert seems_to_define(text) == names
 
@@ -44,8 +60,15 @@ def test_an_undefined_name_is_said_at_its_first_use():
 
 def test_an_undefined_array_subroutine_and_target_are_said_once():
     text = "a(1) = 2\nPRINT a(1)\nCALL f\nCALL F\nGOTO *L\nGOSUB *l\nGOTO 1.5\nGOTO 1.5\nGOTO 7\nGOTO 8"
-    assert found(text) == [("RBL215", 1, 1, 1), ("RBL213", 3, 6, 1), ("RBL202", 5, 6, 2), ("RBL202", 7, 6, 3),
-                           ("RBL202", 8, 6, 3), ("RBL202", 9, 6, 1), ("RBL202", 10, 6, 1)]  # fmt: skip
+    assert found(text) == [
+        ("RBL215", 1, 1, 1),
+        ("RBL213", 3, 6, 1),
+        ("RBL202", 5, 6, 2),
+        ("RBL202", 7, 6, 3),
+        ("RBL202", 8, 6, 3),
+        ("RBL202", 9, 6, 1),
+        ("RBL202", 10, 6, 1),
+    ]
 
 
 def test_every_move_to_a_point_that_is_not_taught_is_said():
@@ -54,9 +77,16 @@ def test_every_move_to_a_point_that_is_not_taught_is_said():
 
 @pytest.mark.parametrize(
     "text",
-    ["CONS k = 5\nPRINT k\nDELAY k", "FRO i = 1 TO 2\nPRINT i\nNEXT i", "SBU f(x)\nPRINT x\nENDSUB\nCALL f(1)",
-     "DMI a(3)\na(1) = 2\nPRINT a(1)", "P5 = P1 + * (0, 0, 5)\nMOVE P5", "*L PRIN 1\nGOTO *L", "*M DELAY\nGOSUB *M"],
-)  # fmt: skip
+    [
+        "CONS k = 5\nPRINT k\nDELAY k",
+        "FRO i = 1 TO 2\nPRINT i\nNEXT i",
+        "SBU f(x)\nPRINT x\nENDSUB\nCALL f(1)",
+        "DMI a(3)\na(1) = 2\nPRINT a(1)",
+        "P5 = P1 + * (0, 0, 5)\nMOVE P5",
+        "*L PRIN 1\nGOTO *L",
+        "*M DELAY\nGOSUB *M",
+    ],
+)
 def test_a_mistyped_definition_is_one_mistake(text):
     assert len(parse(source(text)).diagnostics) == 1
     assert [item for item in found(text) if item[0] != "RBL212"] == []
@@ -78,11 +108,14 @@ def test_a_use_in_a_line_with_an_error_defines_nothing():
         ("CONST k = 1\nPRINT k\nCALL s\nSUB s\nk = 2\nENDSUB", [("RBL216", 5, 1, 1)]),
         ("CALL s\nCALL t\nSUB s\nCONST k = 2\nPRINT k\nENDSUB\nSUB t\nCONST k = 3\nPRINT k\nENDSUB", []),
     ],
-)  # fmt: skip
+)
 def test_a_name_is_seen_where_a_run_sees_it(text, expected):
     """What a SUB gives a value ends with the SUB; a run of the accepted ones has no fault (RBL532)."""
-    errors = [item for item in check(parse(source(text)).program, CellSymbols.named(points=()))
-              if item.severity is Severity.ERROR]  # fmt: skip
+    errors = [
+        item
+        for item in check(parse(source(text)).program, CellSymbols.named(points=()))
+        if item.severity is Severity.ERROR
+    ]
     assert places(text, errors) == expected
     if not expected:
         list(execute(parse(source(text)).program))

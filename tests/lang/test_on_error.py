@@ -14,16 +14,18 @@ from tests.lang.running import POINTS, World, fault, shows
 @pytest.mark.parametrize(
     ("text", "printed"),
     [
-        ("ON ERROR GOTO *H\nx = 1 / n\nPRINT \"after\"; x\nEND\n*H PRINT ERR\nn = 2\nRESUME", "501 after0.5"),
-        ("ON ERROR GOTO *H\nx = SQR(n - 1)\nPRINT \"after\"\nEND\n*H PRINT ERR\nRESUME NEXT", "502 after"),
-        ("ON ERROR GOTO *H\nIF 1 / n THEN PRINT 1\nPRINT \"after\"\nEND\n*H RESUME NEXT", "after"),
-        ("y = 3\nON ERROR GOTO *H\nCALL f\nPRINT \"after\"\nEND\n*H PRINT y\nRESUME NEXT\n"
-         "SUB f\ny = 7\nx = 1 / n\nPRINT y\nENDSUB",
-         "3 after"),
+        ('ON ERROR GOTO *H\nx = 1 / n\nPRINT "after"; x\nEND\n*H PRINT ERR\nn = 2\nRESUME', "501 after0.5"),
+        ('ON ERROR GOTO *H\nx = SQR(n - 1)\nPRINT "after"\nEND\n*H PRINT ERR\nRESUME NEXT', "502 after"),
+        ('ON ERROR GOTO *H\nIF 1 / n THEN PRINT 1\nPRINT "after"\nEND\n*H RESUME NEXT', "after"),
+        (
+            'y = 3\nON ERROR GOTO *H\nCALL f\nPRINT "after"\nEND\n*H PRINT y\nRESUME NEXT\n'
+            "SUB f\ny = 7\nx = 1 / n\nPRINT y\nENDSUB",
+            "3 after",
+        ),
         ("ON ERROR GOTO *H\nFOR i = 1 TO 2\nx = 1 / n\nNEXT\nEND\n*H PRINT i\nRESUME NEXT", "1 2"),
         ("PRINT ERR", "0"),
     ],
-)  # fmt: skip
+)
 def test_errors_are_caught(text, printed):
     assert " ".join(shows("n = 0\n" + text)) == printed
 
@@ -83,20 +85,30 @@ FAIL = 'SUB fail\nwhere$ = "fail"\nx = 1 / n\nPRINT "in " + where$\nENDSUB\n'
         ("CALL outer\nEND\n*H PRINT where$\nRESUME NEXT\nSUB outer\nCALL fail\nPRINT 1\nENDSUB\n" + FAIL, "main"),
         ("IF 1 THEN CALL fail\nPRINT 1\nEND\n*H RESUME NEXT\n" + FAIL, "1"),
         # a SUB has its own, and the caller's is in force again behind it
-        ("CALL own\nx = 1 / n\nEND\n*H PRINT where$\nRESUME NEXT\n"
-         'SUB own\nwhere$ = "own"\nON ERROR GOTO *K\nCALL fail\nPRINT "on"\nRETURN\n*K PRINT where$; ERR\nRESUME NEXT\n'
-         "ENDSUB\n" + FAIL, "own501 on main"),
-        ("CALL own\nCALL fail\nEND\n*H PRINT where$\nRESUME NEXT\n"
-         "SUB own\nON ERROR GOTO *K\nx = 1 / n\nRETURN\n*K ENDSUB\n" + FAIL, "main"),  # left without a RESUME
+        (
+            "CALL own\nx = 1 / n\nEND\n*H PRINT where$\nRESUME NEXT\n"
+            'SUB own\nwhere$ = "own"\nON ERROR GOTO *K\nCALL fail\nPRINT "on"\nRETURN\n'
+            "*K PRINT where$; ERR\nRESUME NEXT\n"
+            "ENDSUB\n" + FAIL,
+            "own501 on main",
+        ),
+        (
+            "CALL own\nCALL fail\nEND\n*H PRINT where$\nRESUME NEXT\n"
+            "SUB own\nON ERROR GOTO *K\nx = 1 / n\nRETURN\n*K ENDSUB\n" + FAIL,
+            "main",
+        ),  # left without a RESUME
         # a handler may call what has one of its own
-        ("x = 1 / n\nPRINT 2\nEND\n*H CALL own\nRESUME NEXT\n"
-         'SUB own\nON ERROR GOTO *K\nx = 1 / n\nRETURN\n*K PRINT "own"\nRESUME NEXT\nENDSUB', "own 2"),
+        (
+            "x = 1 / n\nPRINT 2\nEND\n*H CALL own\nRESUME NEXT\n"
+            'SUB own\nON ERROR GOTO *K\nx = 1 / n\nRETURN\n*K PRINT "own"\nRESUME NEXT\nENDSUB',
+            "own 2",
+        ),
         # GOSUB: RESUME goes back into it
         ("GOSUB *G\nPRINT 9\nEND\n*G PRINT 1\nx = 1 / n\nPRINT 2\nRETURN\n*H PRINT ERR\nRESUME NEXT", "1 501 2 9"),
         ("GOSUB *G\nPRINT 9\nEND\n*G CALL fail\nPRINT 2\nRETURN\n*H n = 1\nRESUME\n" + FAIL, "in fail 2 9"),
         ("GOSUB *G\nPRINT 9\nEND\n*G ON ERROR GOTO *K\nx = 1 / n\n*H END\n*K PRINT 3\nRETURN", "3 9"),
     ],
-)  # fmt: skip
+)
 def test_the_handler_belongs_to_the_scope_that_said_so(text, printed):
     assert " ".join(shows(MAIN + text)) == printed
 
@@ -109,7 +121,7 @@ def test_the_handler_belongs_to_the_scope_that_said_so(text, printed):
         ("x = 1 / n\nEND\n*H CALL fail\nRESUME\n" + FAIL, 10),  # in a handler, and what it calls has none
         ("CALL fail\nEND\n*H CALL back\nSUB back\nRESUME\nENDSUB\n" + FAIL, 8),  # RESUME belongs to the handler
     ],
-)  # fmt: skip
+)
 def test_what_is_not_caught_is_named_where_it_happened(text, line):
     assert fault(MAIN + text).origin.line == line
 

@@ -1,6 +1,5 @@
 """What the parser says of lines that are none, and the bounds of a text."""
 
-
 import pytest
 
 from robolang.diagnostics import MAX_DIAGNOSTICS, Severity
@@ -273,14 +272,65 @@ def test_the_list_of_problems_is_bounded():
 
 @pytest.mark.parametrize(
     "text",
-    ["*", "*5", "*MOVE", "*A *B", "IF x THEN IF y THEN END", "IF x THEN FOR i = 1 TO 2", "IF x THEN END ELSE",
-     "x = 1 = 2 = 3", "x == 1", "x = 1 +", "x = (1", "x = ()", "x = ABS", "x = ABS()", "x = P1.", "x = P1.5", "x =",
-     'x = "a', "1 = x", "HERE = 5", "FOR abs = 1 TO 2", "GOTO x", "GOTO", "CALL s(", "CALL s(1,)", "SUB s(1)",
-     "SUB s(a,)", "WAIT x, GOTO 5", "WAIT x, TIMEOUT", "CASE", "CASE 1,", "PRINT 1, 2", "PRINT ;", "PRINT 1 2",
-     "OUT 1 = 2", "OUT(1)", "DIM a", "DIM a(1, 2)", "CONST k", "RESUME 5", "ON ERROR", "ON x GOTO 5", "FINE",
-     "END IF", "MOVE P1, ZONE", "MOVEC P1", "APPROACH P1", "DEPART", "TIME 5", "HOLD TILT", "NEXT 5", "x = NOT",
-     "x = 1 MOD", "x = 2 ^", "x = (1, )", "x = a.b.c"],
-)  # fmt: skip
+    [
+        "*",
+        "*5",
+        "*MOVE",
+        "*A *B",
+        "IF x THEN IF y THEN END",
+        "IF x THEN FOR i = 1 TO 2",
+        "IF x THEN END ELSE",
+        "x = 1 = 2 = 3",
+        "x == 1",
+        "x = 1 +",
+        "x = (1",
+        "x = ()",
+        "x = ABS",
+        "x = ABS()",
+        "x = P1.",
+        "x = P1.5",
+        "x =",
+        'x = "a',
+        "1 = x",
+        "HERE = 5",
+        "FOR abs = 1 TO 2",
+        "GOTO x",
+        "GOTO",
+        "CALL s(",
+        "CALL s(1,)",
+        "SUB s(1)",
+        "SUB s(a,)",
+        "WAIT x, GOTO 5",
+        "WAIT x, TIMEOUT",
+        "CASE",
+        "CASE 1,",
+        "PRINT 1, 2",
+        "PRINT ;",
+        "PRINT 1 2",
+        "OUT 1 = 2",
+        "OUT(1)",
+        "DIM a",
+        "DIM a(1, 2)",
+        "CONST k",
+        "RESUME 5",
+        "ON ERROR",
+        "ON x GOTO 5",
+        "FINE",
+        "END IF",
+        "MOVE P1, ZONE",
+        "MOVEC P1",
+        "APPROACH P1",
+        "DEPART",
+        "TIME 5",
+        "HOLD TILT",
+        "NEXT 5",
+        "x = NOT",
+        "x = 1 MOD",
+        "x = 2 ^",
+        "x = (1, )",
+        "x = a.b.c",
+    ],
+)
 def test_what_is_no_statement(text):
     ((code, line, column, length),) = parse_found(text)
     assert (code, line) == ("RBL111", 1)

@@ -101,9 +101,16 @@ def test_seam():
 
 @pytest.mark.parametrize(
     "text",
-    ["WRIST KEEP", "WRIST AUTO", "WRIST HOLD TILT, ADVANCE", "SEAM ON, torch", "SEAM OFF", "MOVE P1, WRIST KEEP",
-     "MOVE P1, SPEED 100, WRIST HOLD TILT, ADVANCE, TIME 3"],
-)  # fmt: skip
+    [
+        "WRIST KEEP",
+        "WRIST AUTO",
+        "WRIST HOLD TILT, ADVANCE",
+        "SEAM ON, torch",
+        "SEAM OFF",
+        "MOVE P1, WRIST KEEP",
+        "MOVE P1, SPEED 100, WRIST HOLD TILT, ADVANCE, TIME 3",
+    ],
+)
 def test_wrist_and_seam_have_one_canonical_text(text):
     assert describe(statement(text)) == text
     assert describe(statement(text.replace("torch", "TORCH").lower())).upper() == text.upper()
@@ -323,10 +330,25 @@ def test_labels(text, label, kind):
 
 @pytest.mark.parametrize(
     "text",
-    ["MOVE XOR", "MOVEC XOR, xor + (0, 0, 1)", "FRAME XOR", "TOOL XOR", "LOAD XOR", "SEAM ON, XOR", "x = XOR XOR XOR",
-     "XOR = 1", "*XOR XOR = 1", "*XOR XOR(1) = XOR(2)", "GOTO *XOR", "CALL XOR(XOR)", "FOR XOR = 1 TO XOR",
-     "PRINT XOR.X", "IF XOR THEN XOR = 2 ELSE MOVE XOR, SPEED XOR", "IF 1 THEN *XOR"],
-)  # fmt: skip
+    [
+        "MOVE XOR",
+        "MOVEC XOR, xor + (0, 0, 1)",
+        "FRAME XOR",
+        "TOOL XOR",
+        "LOAD XOR",
+        "SEAM ON, XOR",
+        "x = XOR XOR XOR",
+        "XOR = 1",
+        "*XOR XOR = 1",
+        "*XOR XOR(1) = XOR(2)",
+        "GOTO *XOR",
+        "CALL XOR(XOR)",
+        "FOR XOR = 1 TO XOR",
+        "PRINT XOR.X",
+        "IF XOR THEN XOR = 2 ELSE MOVE XOR, SPEED XOR",
+        "IF 1 THEN *XOR",
+    ],
+)
 def test_a_new_word_is_a_name_where_no_sign_can_stand(text):
     plain = text.replace("XOR XOR XOR", "a + b").replace("XOR", "a")
     codes = [[item[0] for item in parse_found(each)] for each in (text, plain)]

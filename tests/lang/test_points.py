@@ -44,9 +44,14 @@ def test_a_good_file(write):
     assert store.robot == "puma560"
     assert store.names == {"P1", "HOME"}
     assert store.get("p1") == Point(
-        name="P1", pose=(450, -150, 200, 180, 0, 90), configuration=("LEFTY", "ABOVE", "NOFLIP"),
-        turns=(0, -1, 0), frame="TABLE", tool="GRIP", comment="over the tray",
-    )  # fmt: skip
+        name="P1",
+        pose=(450, -150, 200, 180, 0, 90),
+        configuration=("LEFTY", "ABOVE", "NOFLIP"),
+        turns=(0, -1, 0),
+        frame="TABLE",
+        tool="GRIP",
+        comment="over the tray",
+    )
     assert store.get("HOME").joints == (0, 90, -90, 0, 0, 0)
     assert store.get("nowhere") is None
 

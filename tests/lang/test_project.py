@@ -105,9 +105,15 @@ def test_a_robot_that_cannot_stand_at_home_does_not_fit_the_cell(program):
     assert "has 5 axes" in refused("RBL709", program, robot=str(robot)).message
 
 
-@pytest.mark.parametrize(("loop", "value", "ok"), [
-    ("velocity", 1999.9, True), ("velocity", 2000, False), ("position", 1999.9, True), ("position", 2000, False),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("loop", "value", "ok"),
+    [
+        ("velocity", 1999.9, True),
+        ("velocity", 2000, False),
+        ("position", 1999.9, True),
+        ("position", 2000, False),
+    ],
+)
 def test_gains_that_no_sampled_loop_can_have(program, loop, value, ok):
     robot = program.parent / "mine.toml"
     old = {"velocity": "velocity_bandwidth_rad_s = 120", "position": "position_bandwidth_rad_s = 30"}[loop]

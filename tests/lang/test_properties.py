@@ -51,10 +51,11 @@ def test_what_is_printed_parses_back_to_the_same_tree(program):
 def canonical(program):
     """The tree with REM in capitals, the only thing in it that the formatter changes."""
     lines = [
-        line if line.comment is None or line.comment.text.startswith("'")
+        line
+        if line.comment is None or line.comment.text.startswith("'")
         else replace(line, comment=nodes.Comment(text=f"REM{line.comment.text[3:]}"))
         for line in program.lines
-    ]  # fmt: skip
+    ]
     return replace(program, lines=tuple(lines))
 
 
@@ -130,8 +131,11 @@ def without_numbers(program):
     return [replace(line, number=None, statement=led(line.statement)) for line in program.lines]
 
 
-@given(jumping_programs().flatmap(lambda program: written_badly(print_program(program))), st.integers(0, 500),
-       st.integers(1, 70))  # fmt: skip
+@given(
+    jumping_programs().flatmap(lambda program: written_badly(print_program(program))),
+    st.integers(0, 500),
+    st.integers(1, 70),
+)
 @examples(200)
 def test_new_line_numbers_change_nothing_else(text, start, step):
     before = parse(source(text)).program
@@ -141,8 +145,10 @@ def test_new_line_numbers_change_nothing_else(text, start, step):
     assert without_numbers(after) == without_numbers(before)
     counted = [line.number for line in after.lines if line.number is not None]
     assert counted == list(range(start, start + step * len(counted), step))
-    assert all((line.number is None) == (line.label is line.statement is None and was.number is None)
-               for line, was in zip(after.lines, before.lines, strict=True))  # fmt: skip
+    assert all(
+        (line.number is None) == (line.label is line.statement is None and was.number is None)
+        for line, was in zip(after.lines, before.lines, strict=True)
+    )
     again = renumber(source(found.text), start=start, step=step)
     assert (again.text, again.changed, again.lines, again.targets) == (found.text, False, 0, 0)
 
@@ -261,8 +267,10 @@ def test_any_text_gives_a_tree_and_located_diagnostics(text):
     unparsed = [line for line in result.program.lines if isinstance(line.statement, Unparsed)]
     assert {line.source_line for line in unparsed} == bad
     assert len(unparsed) == sum(item.code != "RBL110" for item in result.diagnostics)
-    for item in (*result.diagnostics, *check(
-            result.program, CellSymbols.named(points=["P1"], rated_payload_kg=2.5, sensors=["P2"]))):
+    for item in (
+        *result.diagnostics,
+        *check(result.program, CellSymbols.named(points=["P1"], rated_payload_kg=2.5, sensors=["P2"])),
+    ):
         assert 0 <= item.span.start <= item.span.end <= len(text)
         assert render(item, where).isprintable() or "\n" in render(item, where)
         assert "\x1b" not in render(item, where)
@@ -346,14 +354,42 @@ def test_a_printer_without_these_parentheses_is_caught(defect, monkeypatch):
 # --- time ------------------------------------------------------------------------------------------------------------
 
 
-SHAPES = ("10 MOVE P1, SPEED 200 ' x\n", "LOAD (1, -2, 3), 4\n", "'\n", "\n", "MOVE " + "-" * 90 + "\n", "1_0 \n",
-          "MOVE P1, WRIST HOLD TILT, ADVANCE, TIME 2\n", "WRIST HOLD TILT\n", "SEAM ON, s\n", "IF x\n", "NEXT\n",
-          "IF x\nFOR i = 1 TO 2\n", "WHILE 1\nENDIF\n", "CASE 1\n", "x = (((1 + 2) * 3)^4 MOD 5)\n", "PRINT x; y ' z\n",
-          "IF x THEN GOSUB *L ELSE MOVE P1 + (1, 2, 3)\n", "' fmt: off\n", "x = 1 '" + "long " * 20 + "\n")  # fmt: skip
-REPEATED = (("MOVE P1", ", SPEED 1"), ("MOVE P1", ", WRIST HOLD TILT"), ("MOVE P1, WRIST HOLD TILT", ", TILT"),
-            ("WRIST HOLD TILT", ", TILT"), ("x = 1", " + 1"), ("x = 2", "^2"), ("x = 1", " XOR 1"), ("x = 1", " MOD 1"),
-            ('x$ = "a"', ' + "b""c"'), ("x = 1", " + (1)"), ("CASE 1", ", 1"), ("PRINT 1", "; 1"),
-            ("x = MAX(1", ", 1"))  # fmt: skip
+SHAPES = (
+    "10 MOVE P1, SPEED 200 ' x\n",
+    "LOAD (1, -2, 3), 4\n",
+    "'\n",
+    "\n",
+    "MOVE " + "-" * 90 + "\n",
+    "1_0 \n",
+    "MOVE P1, WRIST HOLD TILT, ADVANCE, TIME 2\n",
+    "WRIST HOLD TILT\n",
+    "SEAM ON, s\n",
+    "IF x\n",
+    "NEXT\n",
+    "IF x\nFOR i = 1 TO 2\n",
+    "WHILE 1\nENDIF\n",
+    "CASE 1\n",
+    "x = (((1 + 2) * 3)^4 MOD 5)\n",
+    "PRINT x; y ' z\n",
+    "IF x THEN GOSUB *L ELSE MOVE P1 + (1, 2, 3)\n",
+    "' fmt: off\n",
+    "x = 1 '" + "long " * 20 + "\n",
+)
+REPEATED = (
+    ("MOVE P1", ", SPEED 1"),
+    ("MOVE P1", ", WRIST HOLD TILT"),
+    ("MOVE P1, WRIST HOLD TILT", ", TILT"),
+    ("WRIST HOLD TILT", ", TILT"),
+    ("x = 1", " + 1"),
+    ("x = 2", "^2"),
+    ("x = 1", " XOR 1"),
+    ("x = 1", " MOD 1"),
+    ('x$ = "a"', ' + "b""c"'),
+    ("x = 1", " + (1)"),
+    ("CASE 1", ", 1"),
+    ("PRINT 1", "; 1"),
+    ("x = MAX(1", ", 1"),
+)
 
 
 @pytest.mark.parametrize("work", [parse, format_source, renumber])

@@ -43,8 +43,8 @@ def test_what_rounding_may_part(text, places):
         "FOR i = 0 TO 2 STEP 0.5\nIF i = 1.5 OR i / 4 = 0.125 THEN END\nNEXT",
         "n = 0\nWHILE n <> 10\nn = n + IN(1)\nWEND",
         "IF INT(0.1 * 3) = 0 OR ROUND(0.1 * 3) = 0 OR ROUND(0.1 * 3, 2) = 0.3 OR SGN(0.1 * 3) = 1 THEN END",
-        "IF IN(1) = 1 OR ERR = 503 OR LEN(\"a\" + STR$(0.1 * 3)) = 3 THEN END",
-        "s$ = STR$(0.1 * 3)\nIF s$ = \"0.3\" OR s$ + \"a\" = \"b\" THEN END",
+        'IF IN(1) = 1 OR ERR = 503 OR LEN("a" + STR$(0.1 * 3)) = 3 THEN END',
+        's$ = STR$(0.1 * 3)\nIF s$ = "0.3" OR s$ + "a" = "b" THEN END',
         "x = 0.1 + 0.2\nIF x < 0.3 OR ABS(x - 0.3) < 1E-6 THEN END",
         "IF (0.1 + 0.2 < 1) = (2 > 1) THEN END",
         "y = 0.1\nIF y * 2 = 0.2 OR 4 * y = 0.4 OR y / 2 = 0.05 THEN END",
@@ -73,8 +73,10 @@ def test_the_remedy_is_written_out(text, remedy):
 
 def test_it_is_found_beside_an_error_of_another_line():
     assert [item[0] for item in checked("MOVE P9\nIF 0.1 * 3 = 0.3 THEN END\nWAIT IN(1) = 1", points=("P1",))] == [
-        "RBL301", "RBL232", "RBL223",
-    ]  # fmt: skip
+        "RBL301",
+        "RBL232",
+        "RBL223",
+    ]
 
 
 def test_long_and_deep_programs_are_followed():

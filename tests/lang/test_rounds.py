@@ -64,5 +64,3 @@ def test_idle_rounds_are_those_since_something_took_time_or_the_loop_ended():
     assert (rounds.idle(4), rounds.idle(2)) == (1, 2)
     rounds.take_time()
     assert (rounds.idle(4), rounds.idle(2)) == (1, 1)
-
-

@@ -196,7 +196,10 @@ def test_a_temporary_file_that_another_process_writes_is_left_alone(program):
     os.utime(name)  # it is still there: nobody renamed it
     write_atomic(program, lambda stream: stream.write(b"new"))
     assert sorted(path.name for path in program.parent.iterdir()) == [
-        ".robolang-config.tmp", ".robolang-notes", "P.rbl"]  # fmt: skip
+        ".robolang-config.tmp",
+        ".robolang-notes",
+        "P.rbl",
+    ]
 
 
 def test_a_new_temporary_file_that_was_taken_for_a_rest_is_made_anew(program, monkeypatch):

@@ -119,8 +119,14 @@ def test_all_texts_together_are_bounded(names, monkeypatch):
     names.make("A$", 1)
     names.put("A$", 0, "1234")
     names.assign("S$", "123456")
-    for call in ((names.assign, "T$", "1"), (names.put, "A$", 1, "1"), (names.put, "A$", 0, "12345"),
-                 (names.fix, "K$", "1"), (names.enter, 1, {"P$": "1"}), (names.assign, "S$", "1234567")):  # fmt: skip
+    for call in (
+        (names.assign, "T$", "1"),
+        (names.put, "A$", 1, "1"),
+        (names.put, "A$", 0, "12345"),
+        (names.fix, "K$", "1"),
+        (names.enter, 1, {"P$": "1"}),
+        (names.assign, "S$", "1234567"),
+    ):
         assert code(*call) == "RBL506"
     assert (names.value("T$"), names.element("A$", 0), names.value("S$")) == (None, "1234", "123456")
     names.assign("S$", "12345")

@@ -39,8 +39,21 @@ def test_the_tables_of_a_program_with_every_block():
     structure = structure_of(parsed(GOOD))
     assert structure.diagnostics == []
     assert structure.after == {
-        0: 3, 3: 4, 4: 5, 5: 0, 1: 2, 2: 1, 6: 7, 7: 8, 8: 9, 9: 6, 10: 13, 13: 10, 16: 18, 18: 16,
-    }  # fmt: skip
+        0: 3,
+        3: 4,
+        4: 5,
+        5: 0,
+        1: 2,
+        2: 1,
+        6: 7,
+        7: 8,
+        8: 9,
+        9: 6,
+        10: 13,
+        13: 10,
+        16: 18,
+        18: 16,
+    }
     assert {structure.end[line] for line in (0, 3, 4, 5)} == {5}
     assert structure.numbers[150] == 14
     assert structure.labels == {"TOP": 10}
@@ -114,10 +127,21 @@ def test_what_is_allowed(text):
 
 @pytest.mark.parametrize(
     "text",
-    ["FOR i = 1 TO\nNEXT", "FORR i = 1 TO 2\nNEXT", "IF 1 THEN\nEND IF", "SELECT 1\nEND SELECT", "END 5",
-     "WHILE\nWEND", "IF x >\nELSEIF\nELSE x\nENDFI", "IF 1 THN\nENDIF", "SELECT\nCASE\nCASE ELSE 5\nENDSLECT",
-     "*L SUB a(\nENDSUB", "IF 1 THEN MOV P1", "FOR i = 1 TO 2\nNETX"],
-)  # fmt: skip
+    [
+        "FOR i = 1 TO\nNEXT",
+        "FORR i = 1 TO 2\nNEXT",
+        "IF 1 THEN\nEND IF",
+        "SELECT 1\nEND SELECT",
+        "END 5",
+        "WHILE\nWEND",
+        "IF x >\nELSEIF\nELSE x\nENDFI",
+        "IF 1 THN\nENDIF",
+        "SELECT\nCASE\nCASE ELSE 5\nENDSLECT",
+        "*L SUB a(\nENDSUB",
+        "IF 1 THEN MOV P1",
+        "FOR i = 1 TO 2\nNETX",
+    ],
+)
 def test_a_line_with_an_error_still_takes_part_in_its_block(text):
     program = parse(source(text)).program
     assert any(isinstance(line.statement, Unparsed) for line in program.lines)
@@ -125,9 +149,12 @@ def test_a_line_with_an_error_still_takes_part_in_its_block(text):
 
 
 def test_both_places_are_named():
-    for text, span in (("*L\n*L", (0, 2)), ("SUB a\nENDSUB\nSUB a\nENDSUB", (4, 5)),
-                       ("FOR i = 1 TO 2\nNEXT j", (0, 14)),
-                       ("GOTO 20\nWHILE 1\n20 DELAY 1\nWEND", (8, 15))):  # fmt: skip
+    for text, span in (
+        ("*L\n*L", (0, 2)),
+        ("SUB a\nENDSUB\nSUB a\nENDSUB", (4, 5)),
+        ("FOR i = 1 TO 2\nNEXT j", (0, 14)),
+        ("GOTO 20\nWHILE 1\n20 DELAY 1\nWEND", (8, 15)),
+    ):
         (item,) = structure_of(parsed(text)).diagnostics
         assert (item.related[0].span.start, item.related[0].span.end) == span
         assert item.severity is Severity.ERROR

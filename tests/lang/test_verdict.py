@@ -16,21 +16,48 @@ NAN = math.nan
 MEASURES = ("path_deviation_mm", "tool_error_mm", "peak_torque_pct")
 SESSION = SimpleNamespace(project=SimpleNamespace(profile=SimpleNamespace(ticks_per_cycle=2, tick_s=1e-3)))
 EXPECTED = {
-    "warnings": (), "cycle_s": (0.0, 9.0), "printed": (),
-    "path_error_mm": 9.0, "tool_error_mm": 9.0, "torque_pct": 99.0,
-    "end_pose": (0.0,) * 6, "golden_deg": 1.0, "parts": {"box": (0.0, 0.0, 0.0)},
-}  # fmt: skip
-ALL = {"alarms", "warnings", "cycle", "printed", "path deviation", "tool error", "peak torque", "end", "end turn",
-       "part box", "golden"}  # fmt: skip
+    "warnings": (),
+    "cycle_s": (0.0, 9.0),
+    "printed": (),
+    "path_error_mm": 9.0,
+    "tool_error_mm": 9.0,
+    "torque_pct": 99.0,
+    "end_pose": (0.0,) * 6,
+    "golden_deg": 1.0,
+    "parts": {"box": (0.0, 0.0, 0.0)},
+}
+ALL = {
+    "alarms",
+    "warnings",
+    "cycle",
+    "printed",
+    "path deviation",
+    "tool error",
+    "peak torque",
+    "end",
+    "end turn",
+    "part box",
+    "golden",
+}
 
 
 def judged(tmp_path, values=(1.0, 2.0, 3.0), seconds=1.0, box=0.0, q=0.0, X=()):
     """Return the names of the verdicts that are not met, of a run with these numbers."""
     rows = [dict.fromkeys(MEASURES, value) | {"line": k, "number": None} for k, value in enumerate(values, 1)]
-    report = {"alarms": [], "warnings": [], "printed": [], "sim_time_s": seconds, "statements": rows,
-              "objects": {"box": {"pose_mm_deg": [box] * 6}}}  # fmt: skip
-    log = {"q_fb": np.zeros((8, 6)), "X_world_tool": np.tile(np.eye(4), (8, 1, 1)),
-           "line": np.ones(8, dtype=int), "number": np.zeros(8, dtype=int)}  # fmt: skip
+    report = {
+        "alarms": [],
+        "warnings": [],
+        "printed": [],
+        "sim_time_s": seconds,
+        "statements": rows,
+        "objects": {"box": {"pose_mm_deg": [box] * 6}},
+    }
+    log = {
+        "q_fb": np.zeros((8, 6)),
+        "X_world_tool": np.tile(np.eye(4), (8, 1, 1)),
+        "line": np.ones(8, dtype=int),
+        "number": np.zeros(8, dtype=int),
+    }
     log["q_fb"][5:, 2] = q
     for place in X:
         log["X_world_tool"][-1][place] = NAN

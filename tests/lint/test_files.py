@@ -10,8 +10,19 @@ from robolang.lint.files import programs
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    for name in ("b.rbl", "a.rbl", "OLD.RBL", "a.txt", "a.rbl.bak", ".hidden.rbl", "z/deep/c.rbl", "y/d.rbl",
-                 ".git/e.rbl", "z/.venv/f.rbl", "folder.rbl/g.rbl"):  # fmt: skip
+    for name in (
+        "b.rbl",
+        "a.rbl",
+        "OLD.RBL",
+        "a.txt",
+        "a.rbl.bak",
+        ".hidden.rbl",
+        "z/deep/c.rbl",
+        "y/d.rbl",
+        ".git/e.rbl",
+        "z/.venv/f.rbl",
+        "folder.rbl/g.rbl",
+    ):
         path = tmp_path / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text("MOVE P1\n")

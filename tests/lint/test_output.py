@@ -23,14 +23,18 @@ ROOT = Path("/srv/repo")
 BAD = "10 MOVE P1\r\n10 MOVE P9\n30 LOAD (0, 0, 60), -1\n"
 """RBL110 info with a fix, RBL113 with a note, RBL301 and RBL401 errors."""
 CODES = ["RBL110", "RBL113", "RBL301", "RBL401"]
-LOST = FileFault("RBL307", "one, two", "write six", path="/srv/repo/cell/pick.points.toml", line=3, column=2,
-                 excerpt="pose = [1]")  # fmt: skip
+LOST = FileFault(
+    "RBL307", "one, two", "write six", path="/srv/repo/cell/pick.points.toml", line=3, column=2, excerpt="pose = [1]"
+)
 
 
 @pytest.fixture
 def results():
-    return [checked(BAD, "/srv/repo/cell/pick.rbl"), checked("MOVE P1\n", "/srv/repo/good.rbl"),
-            checked("", "/srv/repo/cell/empty.rbl", faults=[LOST])]  # fmt: skip
+    return [
+        checked(BAD, "/srv/repo/cell/pick.rbl"),
+        checked("MOVE P1\n", "/srv/repo/good.rbl"),
+        checked("", "/srv/repo/cell/empty.rbl", faults=[LOST]),
+    ]
 
 
 def read(form, results, root=ROOT):
@@ -334,7 +338,10 @@ def test_statistics_count_each_code():
         "3  RBL301  point-undefined\n1  RBL112  unknown-instruction\n1  RBL115  number-malformed  [*]\n"
     )
     assert json.loads(statistics.render(results, as_json=True))[2] == {
-        "code": "RBL115", "name": "number-malformed", "count": 1, "fixable": 1,
-    }  # fmt: skip
+        "code": "RBL115",
+        "name": "number-malformed",
+        "count": 1,
+        "fixable": 1,
+    }
     assert statistics.render([], as_json=False) == ""
     assert statistics.render([], as_json=True) == "[]\n"

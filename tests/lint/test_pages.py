@@ -28,8 +28,14 @@ def test_a_page_has_every_part(code):
     text, known = page(code), rules()[code]
     headings = [line for line in text.splitlines() if line.startswith("#")]
     fix = ["## Fix"] if known.fix else []
-    assert headings == [f"# {code} {lookup(code).name}", "## What it finds", "## Why it matters", "## Example",
-                        "## What to do", *fix]  # fmt: skip
+    assert headings == [
+        f"# {code} {lookup(code).name}",
+        "## What it finds",
+        "## Why it matters",
+        "## Example",
+        "## What to do",
+        *fix,
+    ]
     assert text.endswith("\n")
     assert known.why in text
     assert lookup(code).meaning in text
@@ -61,8 +67,11 @@ def test_writing_removes_the_pages_of_rules_that_are_gone(tmp_path):
 
 def test_the_command_writes_the_folder_that_is_named(tmp_path):
     done = subprocess.run(
-        [sys.executable, "-m", "robolang.lint.pages", str(tmp_path / "made")], check=True, cwd=ROOT, timeout=HANG_S,
+        [sys.executable, "-m", "robolang.lint.pages", str(tmp_path / "made")],
+        check=True,
+        cwd=ROOT,
+        timeout=HANG_S,
         capture_output=True,
-    )  # fmt: skip
+    )
     assert done.stdout == b""
     assert (tmp_path / "made" / "README.md").read_text("utf-8") == index()

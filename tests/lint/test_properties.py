@@ -18,12 +18,31 @@ from tests.lint.helpers import POINTS
 
 ROOT = Path("/work/repo")
 LINES = [
-    "10 MOVE P1", "20 MOVE P9 ' noqa", "10 MOVE P2, SPEED 1_000", "30MOVE P1", "MOVE P1 SPEED 20", "MOVE Р1 ‘ go",
-    "WRIST HOLD TILT, TILT", "LOAD (0, 0, 60), -1", "HAND ON ' noqa: RBL301, RBL30", "REM noqa: unused-suppression", "",
-    "' noqa: RBL111, RBL111", "MOV P1", "SEAM OFF", "MOVE P1, SPEED 5, speed  5 ' go ' noqa", "\u202eMOVE P1",
-    "\x1b[2J", "MOVE \u200bP1 REM Р", "(" * 200, 'PRINT "Р ‘ 1_0"; P1', "FOR I = 1 TO 3", "NEXT", "GOTO *X",
+    "10 MOVE P1",
+    "20 MOVE P9 ' noqa",
+    "10 MOVE P2, SPEED 1_000",
+    "30MOVE P1",
+    "MOVE P1 SPEED 20",
+    "MOVE Р1 ‘ go",
+    "WRIST HOLD TILT, TILT",
+    "LOAD (0, 0, 60), -1",
+    "HAND ON ' noqa: RBL301, RBL30",
+    "REM noqa: unused-suppression",
+    "",
+    "' noqa: RBL111, RBL111",
+    "MOV P1",
+    "SEAM OFF",
+    "MOVE P1, SPEED 5, speed  5 ' go ' noqa",
+    "\u202eMOVE P1",
+    "\x1b[2J",
+    "MOVE \u200bP1 REM Р",
+    "(" * 200,
+    'PRINT "Р ‘ 1_0"; P1',
+    "FOR I = 1 TO 3",
+    "NEXT",
+    "GOTO *X",
     "*X MOVE P1",
-]  # fmt: skip
+]
 characters = st.sampled_from([*"MOVEP12 ,'()_-:noqa\"", "\u00a0", "é", "Р", "‘", "\ufeff", "\x0b", "\u2028"])
 mutated = st.tuples(st.sampled_from(LINES), st.integers(0, 60), st.text(characters, max_size=3)).map(
     lambda parts: parts[0][: parts[1]] + parts[2] + parts[0][parts[1] + 1 :]

@@ -47,8 +47,9 @@ def examine(text, item, folder):
         assert not has_errors(project.diagnostics)
         found = (*project.diagnostics, *findings(project, rehearse(project), 3.0 if item.code == "RBL423" else None))
     else:
-        found = lint(source, CellSymbols.named(points=POINTS, rated_payload_kg=2.5, sensors=["LASER"],
-                                               tools=["GRIPPER"]))  # fmt: skip
+        found = lint(
+            source, CellSymbols.named(points=POINTS, rated_payload_kg=2.5, sensors=["LASER"], tools=["GRIPPER"])
+        )
     return [(one.code, source.place(one.span.start).line, one.severity) for one in found]
 
 
@@ -119,8 +120,14 @@ def test_the_texts_are_sentences(item):
 
 
 def test_rules_stand_in_the_module_of_their_group():
-    for module, first in ((text_rules, "1"), (meaning_rules, "2"), (point_rules, "3"), (motion_rules, "4"),
-                          (planning_rules, "4"), (run_rules, "5")):  # fmt: skip
+    for module, first in (
+        (text_rules, "1"),
+        (meaning_rules, "2"),
+        (point_rules, "3"),
+        (motion_rules, "4"),
+        (planning_rules, "4"),
+        (run_rules, "5"),
+    ):
         assert [item.code for item in module.RULES] == sorted(item.code for item in module.RULES)
         assert {item.code[3] for item in module.RULES} == {first}
     assert list(rules()) == sorted(rules())

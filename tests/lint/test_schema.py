@@ -46,10 +46,14 @@ RESULTS = {
     "names": [checked("MOVE P9\n", name) for name in ("/srv/repo/ä b,%:#?.rbl", "/else/\udcff.rbl", "-", "&<.rbl")],
     "characters": [checked("MOVE \x0b\x1b P1 ' \ufffe\u202e\nMOVE <&\"'>\x85\n")],
     "missing": [unreadable("none.rbl", Fault("RBL701", "there is no file none.rbl"))],
-    "damaged": [unreadable("/srv/repo/c.rbl", FileFault("RBL303", "no value", "", path="/srv/repo/c.points.toml",
-                                                        line=3, column=2, excerpt="P1 ="))],
+    "damaged": [
+        unreadable(
+            "/srv/repo/c.rbl",
+            FileFault("RBL303", "no value", "", path="/srv/repo/c.points.toml", line=3, column=2, excerpt="P1 ="),
+        )
+    ],
     "rules": [checked(rule.bad, f"/srv/repo/{rule.code}.rbl") for rule in rules().values() if not rule.points],
-}  # fmt: skip
+}
 
 
 @pytest.fixture(params=RESULTS)

@@ -17,12 +17,25 @@ def keeps(code, *layers, severity=ERROR):
 @pytest.mark.parametrize(
     ("text", "meant"),
     [
-        ("RBL301", "RBL301"), ("rbl301", "RBL301"), (" RBL301 ", "RBL301"), ("RBL3", "RBL3"), ("RBL30", "RBL30"),
-        ("RBL", "RBL"), ("ALL", "RBL"), ("all", "RBL"), ("point-undefined", "RBL301"), ("Point-Undefined", "RBL301"),
-        ("RBL399", None), ("RBL8", None), ("301", None), ("", None), ("point", None), ("RBL3011", None),
+        ("RBL301", "RBL301"),
+        ("rbl301", "RBL301"),
+        (" RBL301 ", "RBL301"),
+        ("RBL3", "RBL3"),
+        ("RBL30", "RBL30"),
+        ("RBL", "RBL"),
+        ("ALL", "RBL"),
+        ("all", "RBL"),
+        ("point-undefined", "RBL301"),
+        ("Point-Undefined", "RBL301"),
+        ("RBL399", None),
+        ("RBL8", None),
+        ("301", None),
+        ("", None),
+        ("point", None),
+        ("RBL3011", None),
         ("RBL3*", None),
     ],
-)  # fmt: skip
+)
 def test_a_selector_is_a_beginning_a_code_or_a_name(text, meant):
     assert selector(text) == meant
 

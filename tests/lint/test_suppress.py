@@ -18,20 +18,43 @@ def fixed(text):
 @pytest.mark.parametrize(
     "comment",
     [
-        "' noqa", "'noqa", "' NOQA", "'   noqa  ", "' not taught yet ' noqa", "REM noqa", "rem NoQA", "' see REM noqa",
-        "' noqa: RBL301", "' noqa:RBL301", "' noqa : rbl301", "' noqa: point-undefined", "'' noqa: RBL301",
-        "' to do ' noqa: RBL301", "REM noqa: RBL301", "' noqa noqa ' noqa: RBL301",
+        "' noqa",
+        "'noqa",
+        "' NOQA",
+        "'   noqa  ",
+        "' not taught yet ' noqa",
+        "REM noqa",
+        "rem NoQA",
+        "' see REM noqa",
+        "' noqa: RBL301",
+        "' noqa:RBL301",
+        "' noqa : rbl301",
+        "' noqa: point-undefined",
+        "'' noqa: RBL301",
+        "' to do ' noqa: RBL301",
+        "REM noqa: RBL301",
+        "' noqa noqa ' noqa: RBL301",
     ],
-)  # fmt: skip
+)
 def test_a_finding_is_suppressed(comment):
     assert places(f"10 MOVE P9 {comment}\n") == []
 
 
 @pytest.mark.parametrize(
     "comment",
-    ["", "' no qa", "' noqa please", "' noqas", "' the noqa", "' noqa'", "REM noqas", "' noqaRBL301", "' noqa;",
-     "' XREM noqa"],
-)  # fmt: skip
+    [
+        "",
+        "' no qa",
+        "' noqa please",
+        "' noqas",
+        "' the noqa",
+        "' noqa'",
+        "REM noqas",
+        "' noqaRBL301",
+        "' noqa;",
+        "' XREM noqa",
+    ],
+)
 def test_other_comments_suppress_nothing(comment):
     assert [code for code, *_ in places(f"10 MOVE P9 {comment}\n")] == ["RBL301"]
 
@@ -149,8 +172,10 @@ def test_what_is_found_later_is_suppressed_as_well():
     later = [Diagnostic(code="RBL412", message="", span=Span(at, at + 1)) for at in (0, 15, 45)]
     found = sorted(add_later(source, before, later), key=lambda item: item.span)
     assert [(item.code, source.place(item.span.start).line) for item in found] == [
-        ("RBL191", 2), ("RBL412", 3), ("RBL190", 4),
-    ]  # fmt: skip
+        ("RBL191", 2),
+        ("RBL412", 3),
+        ("RBL190", 4),
+    ]
 
 
 def test_the_findings_about_suppressions_are_bounded():

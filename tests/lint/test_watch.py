@@ -35,9 +35,17 @@ def test_without_a_change_it_is_checked_once():
 
 @pytest.mark.parametrize(
     "name",
-    ["pick.rbl", "new.rbl", "deep/new.rbl", "pick.points.toml", "pick.cell.toml", "cell.toml", "robolang.toml",
-     "pyproject.toml"],
-)  # fmt: skip
+    [
+        "pick.rbl",
+        "new.rbl",
+        "deep/new.rbl",
+        "pick.points.toml",
+        "pick.cell.toml",
+        "cell.toml",
+        "robolang.toml",
+        "pyproject.toml",
+    ],
+)
 def test_a_change_of_what_a_check_reads_is_noticed(name, folder):
     def change():
         (folder / name).parent.mkdir(exist_ok=True)

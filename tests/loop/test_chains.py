@@ -23,8 +23,11 @@ def corner(robot: Controller, zone: float = 0.05) -> list[Command]:
     X = robot.tool_poses(np.array(robot.areas.ina))
     low, aside = (pose(X[:3, 3] + np.array(step), X[:3, :3]) for step in ((0, 0, -0.15), (0, 0.15, -0.15)))
     via = pose(X[:3, 3] + np.array([0.0, 0.1, 0.0]))
-    return [MoveLinear(X_world_tool=low, zone=zone, speed=0.4), MoveLinear(X_world_tool=aside, zone=zone, speed=0.4),
-            MoveArc(X_via=via, X_world_tool=X, speed=0.4)]  # fmt: skip
+    return [
+        MoveLinear(X_world_tool=low, zone=zone, speed=0.4),
+        MoveLinear(X_world_tool=aside, zone=zone, speed=0.4),
+        MoveArc(X_via=via, X_world_tool=X, speed=0.4),
+    ]
 
 
 def started(cycles: int = 0, lines: tuple[ProgramLine, ...] = LINES) -> tuple[Controller, ChainPlan]:
@@ -261,9 +264,13 @@ def test_the_wrist_lamp_follows_the_rows_of_a_chain():
     start, end = np.radians([-20, 10, 30, 10, 65, -15]), np.radians([0, -10, 45, -55, -65, 85])
     robot = test_seam_stops.controller(home=start)
     X = robot.tool_poses(end)
-    chain = robot.move_chain([MoveLinear(X_world_tool=X, q_end=end, speed=0.3, zone=0.05),
-                              MoveLinear(X_world_tool=pose(X[:3, 3] + [0.0, 0.0, 0.1], X[:3, :3]), speed=0.3)],
-                             LINES[:2])  # fmt: skip
+    chain = robot.move_chain(
+        [
+            MoveLinear(X_world_tool=X, q_end=end, speed=0.3, zone=0.05),
+            MoveLinear(X_world_tool=pose(X[:3, 3] + [0.0, 0.0, 0.1], X[:3, :3]), speed=0.3),
+        ],
+        LINES[:2],
+    )
     assert chain.parts[0].wrist is not None
     assert chain.corners[0].cycles > 0
     modes = []

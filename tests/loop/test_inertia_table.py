@@ -11,8 +11,9 @@ from runtime.robot.joint_table import JointTable
 from runtime.robot.model import ArmModel, spec_rotors
 from tests.loop.test_controller import CELL, IDEAL, carried_payload, controller, down, signals
 
-TABLE = JointTable(joints=(1, 2), grid=((-2.0, 0.0, 3.0), (-4.0, 0.0, 2.0)),
-                   values=(0.1, 0.5, -0.2, -0.3, 0.4, 0.2, 0.0, -0.1, 0.3))  # fmt: skip
+TABLE = JointTable(
+    joints=(1, 2), grid=((-2.0, 0.0, 3.0), (-4.0, 0.0, 2.0)), values=(0.1, 0.5, -0.2, -0.3, 0.4, 0.2, 0.0, -0.1, 0.3)
+)
 WITH_TABLE = replace(IDEAL, rotors=tuple(spec_rotors(CELL.robot)), rotor_tables=(TABLE, *(None,) * 5))
 
 

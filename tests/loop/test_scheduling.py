@@ -28,9 +28,7 @@ class Bench:
         self.readings: list[float] = []
         self.interrupts: list[int] = []
         self.cpu = IdleProcessor(
-            lambda cpu: dynamics_task(
-                self.areas, self.model, StepCosts.of_axis(Cd_us), self.read, lambda: cpu.now_us
-            )
+            lambda cpu: dynamics_task(self.areas, self.model, StepCosts.of_axis(Cd_us), self.read, lambda: cpu.now_us)
         )
 
     def read(self) -> np.ndarray:

@@ -29,7 +29,6 @@ def result(program) -> RunResult:
     return run(program.name)[1]
 
 
-
 def test_there_are_programs_for_the_small_and_the_large_arm():
     assert {load_project(path).cell.robot.name for path in PROGRAMS} == {"puma560", "manutec_r3"}
 

@@ -20,8 +20,9 @@ FAR = "MOVE P1 + (900, 0, 0)"
 
 @pytest.fixture
 def found(tmp_path):
-    (tmp_path / "cell.toml").write_text(builtin("cell.toml") + "\n[inputs.1]\nchanges = [[0, 0]]\n"
-                                        "[inputs.2]\nchanges = [[0, 0], [0.5, 1]]\n")  # fmt: skip
+    (tmp_path / "cell.toml").write_text(
+        builtin("cell.toml") + "\n[inputs.1]\nchanges = [[0, 0]]\n[inputs.2]\nchanges = [[0, 0], [0.5, 1]]\n"
+    )
     (tmp_path / "p.points.toml").write_text(builtin("points.toml"))
 
     def look(text):
@@ -164,7 +165,6 @@ def test_moves_with_the_same_load_are_not_looked_at_again(found, monkeypatch):
 
 
 def test_the_first_finding_of_a_statement_is_said(found):
-    said, _ = found("MOVE P2\nFOR i = 1 TO 2\nMOVE P2 + (0, 10 * i, 0), ZONE 50\n"
-                    "MOVE P2 + (0, 10 * i, 60)\nNEXT")
+    said, _ = found("MOVE P2\nFOR i = 1 TO 2\nMOVE P2 + (0, 10 * i, 0), ZONE 50\nMOVE P2 + (0, 10 * i, 60)\nNEXT")
     zones = {line: message for code, line, message in said if code == "RBL414"}
     assert "10.0 mm" in zones[3]

@@ -12,8 +12,11 @@ from tests.campaign import some
 HAND = "LOAD (0, 0, 60), 0.8"
 MOVES: dict[str, tuple[str, str, float]] = {
     "joints": ("JOINT(-100, 80, -180, 0, -70, 0)", "MOVEJ JOINT(100, 60, -160, 20, -60, 40)", np.inf),
-    "joints in a time": ("JOINT(-100, 80, -180, 0, -70, 0)", "MOVEJ JOINT(100, 60, -160, 20, -60, 40), TIME 0.1",
-                         np.inf),
+    "joints in a time": (
+        "JOINT(-100, 80, -180, 0, -70, 0)",
+        "MOVEJ JOINT(100, 60, -160, 20, -60, 40), TIME 0.1",
+        np.inf,
+    ),
     "line": ("P1", "MOVE P1 + (0, 300, 100), SPEED 150", 0.15),
     "line that joints slow": ("P1", "MOVE P1 * (0, 200, 0, 0, -60, 90), SPEED 1000, WRIST KEEP", 1.0),
     "line in too short a time": ("P1", "MOVE P1 + (0, 300, 100), TIME 0.1", 1.0),
@@ -57,8 +60,9 @@ def test_every_speed_keeps_its_share_and_one_uses_it(tmp_path, kind, share):
     start, move, asked = MOVES[kind]
     session, result = ran(tmp_path, f"5 {HAND}\n10 MOVEJ {start}\n20 OVERRIDE {100 * share}\n30 {move}\n")
     robot = session.project.cell.robot
-    most = share * np.array([*robot.per_axis("limits", "speed"), asked, robot.path.rotation_speed if asked < np.inf
-                             else np.inf])  # fmt: skip
+    most = share * np.array(
+        [*robot.per_axis("limits", "speed"), asked, robot.path.rotation_speed if asked < np.inf else np.inf]
+    )
     used = speeds(session, result, 30) / most
     assert 0.97 < used.max() <= 1.001
     dq = np.abs(result.log["dq_cmd"][result.log["number"] == 30]).max(axis=0)
@@ -98,8 +102,10 @@ def test_a_time_becomes_longer(tmp_path):
 
 def test_an_override_that_changes_within_a_chain(tmp_path):
     """Each move has its own; where two blend the smaller one holds. The arm does not stop for it."""
-    text = (f"5 {HAND}\n10 MOVEJ P1\n20 MOVEJ P1 + (0, 200, 0), ZONE 50\n30 OVERRIDE 20\n"
-            "40 MOVEJ P1 + (0, 200, 150), ZONE 50\n50 OVERRIDE 100\n60 MOVEJ P1 + (0, 0, 150)\n")  # fmt: skip
+    text = (
+        f"5 {HAND}\n10 MOVEJ P1\n20 MOVEJ P1 + (0, 200, 0), ZONE 50\n30 OVERRIDE 20\n"
+        "40 MOVEJ P1 + (0, 200, 150), ZONE 50\n50 OVERRIDE 100\n60 MOVEJ P1 + (0, 0, 150)\n"
+    )
     session, result = ran(tmp_path, text)
     log, limits = result.log, session.project.cell.robot.per_axis("limits", "speed")
     share = {line: (np.abs(log["dq_cmd"][log["number"] == line]) / limits).max() for line in (20, 40, 60)}
@@ -111,8 +117,14 @@ def test_an_override_that_changes_within_a_chain(tmp_path):
     assert rehearse(session.project).total_us == pytest.approx(result.report["sim_time_s"] * 1e6, abs=8000.0)
 
 
-@pytest.mark.parametrize("move", ["MOVE P1 + (0, 300, 0), SPEED 150", "MOVE P1 + (0, 300, 0), TIME 3",
-                                  "MOVE P1 + (-100, 500, 0), SPEED 1000, WRIST KEEP"])  # fmt: skip
+@pytest.mark.parametrize(
+    "move",
+    [
+        "MOVE P1 + (0, 300, 0), SPEED 150",
+        "MOVE P1 + (0, 300, 0), TIME 3",
+        "MOVE P1 + (-100, 500, 0), SPEED 1000, WRIST KEEP",
+    ],
+)
 def test_pulses_are_slower_as_the_run_is(tmp_path, move):
     whole, half = (
         export(loaded(tmp_path, f"MOVE P1\nOVERRIDE {share}\n{move}\n"), ExportRequest()).moves[-1].pulses

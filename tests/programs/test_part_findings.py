@@ -31,30 +31,45 @@ OTHER = ("other", 60, 40, 40, 0.5, 480, -150, 620)
 PUSHED = {
     "open fingers push a neighbour": (BESIDE + "MOVE P1 + (0, 55, 0)\n", [OWN], 4, "the right finger would touch part"),
     "the palm stands on a part": (
-        "MOVE P1 + (0, 0, 30)\nMOVE P1 + (0, 0, 10)\n", [("part", 60, 40, 160, 1.5, 480, -220, 680)], 2,
+        "MOVE P1 + (0, 0, 30)\nMOVE P1 + (0, 0, 10)\n",
+        [("part", 60, 40, 160, 1.5, 480, -220, 680)],
+        2,
         "the palm would touch part",
     ),
     "a carried part pushes another": (
-        GRIP + "MOVE P1 + (0, 0, 30)\nMOVE P1 + (0, 50, 30)\n", [OWN, OTHER], 6, "the carried part would touch other",
+        GRIP + "MOVE P1 + (0, 0, 30)\nMOVE P1 + (0, 50, 30)\n",
+        [OWN, OTHER],
+        6,
+        "the carried part would touch other",
     ),
     "a carried part is pulled over the table": (
-        GRIP + "MOVE P1 + (0, 20, 0)\n", [OWN], 5, "the carried part would touch table",
+        GRIP + "MOVE P1 + (0, 20, 0)\n",
+        [OWN],
+        5,
+        "the carried part would touch table",
     ),
     "a carried part is put too deep": (
-        GRIP + "MOVE P1 + (0, 0, 50)\nMOVE P1 + (0, 100, -2)\n" + LET_GO, [OWN], 6,
+        GRIP + "MOVE P1 + (0, 0, 50)\nMOVE P1 + (0, 100, -2)\n" + LET_GO,
+        [OWN],
+        6,
         "the carried part would touch table",
     ),
     "what was put down is in the way": (
-        GRIP + "MOVE P1 + (0, 0, 50)\nMOVE P1 + (0, 100, 50)\nMOVE P1 + (0, 100, 0)\n" + LET_GO
-        + "MOVE P5 + (0, 100, 0)\nMOVE P5\nMOVE P1\nMOVE P1 + (0, 65, 0)\n", [OWN], 13,
+        GRIP
+        + "MOVE P1 + (0, 0, 50)\nMOVE P1 + (0, 100, 50)\nMOVE P1 + (0, 100, 0)\n"
+        + LET_GO
+        + "MOVE P5 + (0, 100, 0)\nMOVE P5\nMOVE P1\nMOVE P1 + (0, 65, 0)\n",
+        [OWN],
+        13,
         "the left finger would touch part",
     ),
     "an arm from the other side": (
         "MOVE P5 + (0, 120, 0)\nMOVE P5 + (0, 120, -100)\nMOVE P5 + (0, 55, -100)\n",
-        [("part", 60, 40, 190, 1.5, 480, -220, 695)], 4,
+        [("part", 60, 40, 190, 1.5, 480, -220, 695)],
+        4,
         "the right finger would touch part",
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("case", PUSHED)

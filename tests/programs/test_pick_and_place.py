@@ -58,8 +58,16 @@ def test_the_statements_run_in_the_order_of_the_listing(result):
 def test_the_payload_area_holds_what_load_declared_line_by_line(result):
     """SDA: the hand from line 10, hand and part from line 50, after the grasp and before the next move."""
     log = result.log
-    for number, mass in {20: HAND, 30: HAND, 40: HAND, 60: HAND_AND_PART, 70: HAND_AND_PART, 80: HAND_AND_PART,
-                         100: HAND, 110: HAND}.items():  # fmt: skip
+    for number, mass in {
+        20: HAND,
+        30: HAND,
+        40: HAND,
+        60: HAND_AND_PART,
+        70: HAND_AND_PART,
+        80: HAND_AND_PART,
+        100: HAND,
+        110: HAND,
+    }.items():
         assert set(log["payload_mass"][ticks(result, number)]) == {mass}, number
     history = [(entry["number"], entry["mass_kg"], entry["cog_mm"]) for entry in result.report["payload_history"]]
     assert history == [(10, 0.8, [0, 0, 60]), (50, 2.3, [0, 0, 95]), (90, 0.8, [0, 0, 60])]
@@ -150,8 +158,10 @@ def run_in(folder: Path, name: str, **environment: str) -> tuple[bytes, bytes, d
     npz, report = folder / f"{name}.npz", folder / f"{name}.json"
     subprocess.run(
         [sys.executable, "-m", "robolang", "run", "pick.rbl", "--quiet", "--log", str(npz), "--report", str(report)],
-        cwd=folder, check=True, env={**os.environ, **environment},
-    )  # fmt: skip
+        cwd=folder,
+        check=True,
+        env={**os.environ, **environment},
+    )
     values = json.loads(report.read_text())
     for wall in ("wall_time_s", "realtime_factor"):
         assert values.pop(wall) > 0.0
@@ -223,8 +233,9 @@ def test_peak_torque_is_what_the_motors_gave(session, result):
 
 def test_a_move_waits_until_the_arm_is_in_position_and_says_when_it_never_is():
     """Without gravity compensation the arm hangs 0.1 deg low: every MOVE waits its time-out out and warns RBL523."""
-    project = load_project(PROGRAM, options={"servo.gravity_compensation": ("test", 0.0),
-                                             "supervision.enabled": ("test", False)})  # fmt: skip
+    project = load_project(
+        PROGRAM, options={"servo.gravity_compensation": ("test", 0.0), "supervision.enabled": ("test", False)}
+    )
     found = Session(project).run()
     entry = statement(found, 30)
     waited = entry["duration_s"] - entry["planned_s"]

@@ -40,13 +40,19 @@ def only(tmp_path, text, points=""):
     return code, line, message, hint
 
 
-@pytest.mark.parametrize(("text", "rule"), [
-    ("SPEED 250\nMOVE (HERE + (0, 60, 0)) * (0, 0, 0, 0, 0, 170)\n", r"the tool turns by 170.0 deg on 60.0 mm"),
-    ("OVERRIDE 50\nMOVE (HERE + (0, 60, 0)) * (0, 0, 0, 0, 0, 170), SPEED 250\n", r"the tool turns by 170.0 deg"),
-    ("SPEED 400\nA = HERE\nMOVEC A + (-8, 0, 0), A + (-1.17, -2.83, 0)\n", r"on a radius of 4.0 mm"),
-    ("MOVEJ JOINT(0, 60, -190, 0, -3, 0)\nMOVE HERE + (0, 100, 0), SPEED 900, WRIST KEEP\n", r"J\d is at its sp"),
-    ("MOVEJ JOINT(0, 60, -190, 0, -3, 0)\nOVERRIDE 50\nMOVE HERE + (0, 100, 0), SPEED 900, WRIST KEEP\n", r"J\d is at"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("text", "rule"),
+    [
+        ("SPEED 250\nMOVE (HERE + (0, 60, 0)) * (0, 0, 0, 0, 0, 170)\n", r"the tool turns by 170.0 deg on 60.0 mm"),
+        ("OVERRIDE 50\nMOVE (HERE + (0, 60, 0)) * (0, 0, 0, 0, 0, 170), SPEED 250\n", r"the tool turns by 170.0 deg"),
+        ("SPEED 400\nA = HERE\nMOVEC A + (-8, 0, 0), A + (-1.17, -2.83, 0)\n", r"on a radius of 4.0 mm"),
+        ("MOVEJ JOINT(0, 60, -190, 0, -3, 0)\nMOVE HERE + (0, 100, 0), SPEED 900, WRIST KEEP\n", r"J\d is at its sp"),
+        (
+            "MOVEJ JOINT(0, 60, -190, 0, -3, 0)\nOVERRIDE 50\nMOVE HERE + (0, 100, 0), SPEED 900, WRIST KEEP\n",
+            r"J\d is at",
+        ),
+    ],
+)
 def test_a_speed_that_is_not_reached_names_what_rules_and_a_speed_that_is(tmp_path, text, rule):
     code, line, message, hint = only(tmp_path, START.format(0) + text)
     assert (code, line) == ("RBL429", 2 + text.count("\n"))
@@ -56,22 +62,30 @@ def test_a_speed_that_is_not_reached_names_what_rules_and_a_speed_that_is(tmp_pa
         assert both(tmp_path, START.format(0) + re.sub(r"SPEED \d+", f"SPEED {speed}", text)) == []
 
 
-@pytest.mark.parametrize("text", [
-    "SPEED 500\nMOVE HERE + (20, 0, 0)\nMOVE HERE + (0.5, 0, 0)\n",  # too short to reach it
-    "MOVE (HERE + (0, 60, 0)) * (0, 0, 0, 0, 0, 170)\n",  # no SPEED is asked for
-    "SPEED 250\nMOVE HERE * (0.5, 0, 0, 0, 0, 170)\n",  # turns in place
-    "SPEED 250\nMOVE (HERE + (0, 60, 0)) * (0, 0, 0, 0, 0, 10)\n",
-    "SPEED 100\nOVERRIDE 20\nMOVE HERE + (0, 60, 0)\n",
-    "SPEED 100\nMOVEC HERE + (20, 20, 0), HERE + (40, 0, 0)\n",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "text",
+    [
+        "SPEED 500\nMOVE HERE + (20, 0, 0)\nMOVE HERE + (0.5, 0, 0)\n",  # too short to reach it
+        "MOVE (HERE + (0, 60, 0)) * (0, 0, 0, 0, 0, 170)\n",  # no SPEED is asked for
+        "SPEED 250\nMOVE HERE * (0.5, 0, 0, 0, 0, 170)\n",  # turns in place
+        "SPEED 250\nMOVE (HERE + (0, 60, 0)) * (0, 0, 0, 0, 0, 10)\n",
+        "SPEED 100\nOVERRIDE 20\nMOVE HERE + (0, 60, 0)\n",
+        "SPEED 100\nMOVEC HERE + (20, 20, 0), HERE + (40, 0, 0)\n",
+    ],
+)
 def test_what_is_short_or_turns_in_place_is_no_finding(tmp_path, text):
     assert both(tmp_path, START.format(0) + text) == []
 
 
-@pytest.mark.parametrize("text", [
-    "MOVE HERE + (0, 100, 0), TIME 0.3\n", "MOVE HERE * (0, 0, 0, 0, 0, 150), TIME 0.3\n",
-    "OVERRIDE 50\nMOVE HERE + (0, 100, 0), TIME 0.1\n", "MOVEJ BY_J6, TIME 0.1\n",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "text",
+    [
+        "MOVE HERE + (0, 100, 0), TIME 0.3\n",
+        "MOVE HERE * (0, 0, 0, 0, 0, 150), TIME 0.3\n",
+        "OVERRIDE 50\nMOVE HERE + (0, 100, 0), TIME 0.1\n",
+        "MOVEJ BY_J6, TIME 0.1\n",
+    ],
+)
 def test_a_time_that_is_not_kept_is_named_with_one_that_is(tmp_path, text):
     text = START.format(0) + text.replace("BY_J6", "JOINT(0, 60, -190, 0, -60, 90)")
     code, line, message, hint = only(tmp_path, text)
@@ -104,8 +118,10 @@ def test_a_joint_that_turns_the_long_way_is_named(tmp_path):
     text = START.format(250) + "MOVEJ HERE * (0, 0, 0, 0, 0, {})\n"
     code, line, message, _ = only(tmp_path, text.format(40))
     assert (code, line) == ("RBL435", 3)
-    assert message == ("J6 turns by 320.0 deg, from 250.0 to -70.0 deg: the nearer angle of 290.0 deg is beyond the "
-                       "range -266 to 266 deg")  # fmt: skip
+    assert message == (
+        "J6 turns by 320.0 deg, from 250.0 to -70.0 deg: the nearer angle of 290.0 deg is beyond the "
+        "range -266 to 266 deg"
+    )
     assert both(tmp_path, text.format(10)) == []
     assert both(tmp_path, START.format(250) + "MOVEJ JOINT(0, 60, -190, 0, -60, -70)\n") == []  # the text says so
 
@@ -149,8 +165,10 @@ def test_a_zone_of_a_move_under_a_seam_sensor_is_named(tmp_path):
 
 
 def test_a_statement_in_a_loop_is_named_once(tmp_path):
-    text = "SPEED 250\nFOR n = 1 TO 3\nMOVE (HERE + (0, 40, 0)) * (0, 0, 0, 0, 0, 100)\n" \
-           "MOVE (HERE + (0, -40, 0)) * (0, 0, 0, 0, 0, -100)\nNEXT n\n"  # fmt: skip
+    text = (
+        "SPEED 250\nFOR n = 1 TO 3\nMOVE (HERE + (0, 40, 0)) * (0, 0, 0, 0, 0, 100)\n"
+        "MOVE (HERE + (0, -40, 0)) * (0, 0, 0, 0, 0, -100)\nNEXT n\n"
+    )
     assert [(row[0], row[1]) for row in both(tmp_path, START.format(0) + text)] == [("RBL429", 5), ("RBL429", 6)]
 
 

@@ -13,8 +13,14 @@ from robolang.project import load_project
 
 ROOT = Path(__file__).parents[2] / "programs"
 PALLET, TEND, DISPENSE, RECOVER, INSPECT, SORT, PICK = (
-    "shop/palletise", "shop/tend", "shop/dispense", "shop/recover", "shop/inspect", "shop/sort", "pick_and_place",
-)  # fmt: skip
+    "shop/palletise",
+    "shop/tend",
+    "shop/dispense",
+    "shop/recover",
+    "shop/inspect",
+    "shop/sort",
+    "pick_and_place",
+)
 
 DEFECTS = [
     # text
@@ -46,7 +52,7 @@ DEFECTS = [
     (SORT, "190   HAND ON", "190   LOAD part\n195   LOAD prat", "RBL305"),
     (PICK, "60  MOVE P2", "60  MOVE P22", "RBL301"),
     # kinds and values
-    (PALLET, "CONST PITCH = 100", 'CONST PITCH = 100\nPITCH = 90', "RBL216"),
+    (PALLET, "CONST PITCH = 100", "CONST PITCH = 100\nPITCH = 90", "RBL216"),
     (PALLET, "PARTS = 2\n", 'PARTS = "2"\n', "RBL217"),
     (PALLET, "MOVE PICK, SPEED 100", "MOVE PICK, SPEED 0", "RBL404"),
     (PALLET, "APPROACH PICK, ABOVE, ZONE 30", "APPROACH PICK, ABOVE, ZONE -30", "RBL415"),
@@ -89,8 +95,12 @@ DEFECTS = [
     (INSPECT, "TOTAL = TOTAL + DONE(i)", "TOTL = TOTAL + DONE(i)", "RBL225"),
     (PALLET, "HAND OFF\nSPEED 250\n", "HAND OFF\n", "RBL226"),
     (INSPECT, "SPEEDJ 80\nVIEWS = 0\n\nMOVEJ A", "VIEWS = 0\nMOVEJ A, SPEED 80", "RBL226"),
-    (DISPENSE, "TOOL nozzle\nSPEED BEAD\nZONE 2\n\nAPPROACH START + (R, 0, 0), 60, SPEED 250, FINE\n",
-     "SPEED BEAD\nZONE 2\nAPPROACH START + (R, 0, 0), 60, SPEED 250, FINE\nTOOL nozzle\n", "RBL227"),
+    (
+        DISPENSE,
+        "TOOL nozzle\nSPEED BEAD\nZONE 2\n\nAPPROACH START + (R, 0, 0), 60, SPEED 250, FINE\n",
+        "SPEED BEAD\nZONE 2\nAPPROACH START + (R, 0, 0), 60, SPEED 250, FINE\nTOOL nozzle\n",
+        "RBL227",
+    ),
     (PALLET, "  CALL PUT(INT(n / ROWS), n MOD ROWS)", "  REM", "RBL222"),
     (TEND, "10  LOAD empty", "10  REM", "RBL228"),
     (INSPECT, "MOVEJ A\n", "MOVEJ A, ZONE 60\n", "RBL413"),
@@ -107,7 +117,7 @@ DEFECTS = [
     (DISPENSE, "START + (WIDE - R + R * SIN(45), R - R * COS(45), 0)", "START + (WIDE - R, 0, 0)", "RBL416"),
     (TEND, "WAIT IN(1) = 1, TIMEOUT 5, GOTO *NOT_READY", "WAIT IN(4) = 1", "RBL509"),
     (INSPECT, "  ANGLE = ANGLE + 90\n", "", "RBL509"),
-]  # fmt: skip
+]
 ELSEWHERE = {"RBL202", "RBL211", "RBL222", "RBL226", "RBL228", "RBL410", "RBL413", "RBL421", "RBL509"}
 """Named where it shows, not where it was written."""
 DEFECTS = [row for row in DEFECTS if row[3] is not None]

@@ -18,8 +18,9 @@ BARE = re.sub("^link_radius_mm.*\n", "", SHAPED, flags=re.M)
 
 def program(folder, robot):
     (folder / "arm.toml").write_text(robot)
-    (folder / "p.cell.toml").write_text(re.sub('^robot = .*', 'robot = "arm.toml"', (BUILTIN / "cell.toml").read_text(),
-                                               flags=re.M))  # fmt: skip
+    (folder / "p.cell.toml").write_text(
+        re.sub("^robot = .*", 'robot = "arm.toml"', (BUILTIN / "cell.toml").read_text(), flags=re.M)
+    )
     (folder / "p.rbl").write_text(FOLDED)
     return folder / "p.rbl"
 

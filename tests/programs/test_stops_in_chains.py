@@ -18,9 +18,16 @@ TEXT = """\
 FIRST = 3
 """Line of the first MOVE; numbers are those of the next lines."""
 MEASURED = {
-    "start_s", "duration_s", "planned_s", "joint_error_deg", "tool_error_mm", "path_deviation_mm", "peak_torque_pct",
-    "wrist", "seam",
-}  # fmt: skip
+    "start_s",
+    "duration_s",
+    "planned_s",
+    "joint_error_deg",
+    "tool_error_mm",
+    "path_deviation_mm",
+    "peak_torque_pct",
+    "wrist",
+    "seam",
+}
 
 
 @pytest.fixture(scope="module")

@@ -105,11 +105,14 @@ def test_the_seam_is_followed_and_the_end_is_where_the_sensor_saw_it():
     assert not result.log["seam_deviation"][result.log["number"] == 50].any()
 
 
-@pytest.mark.parametrize(("edit", "code", "said"), [
-    ((".cell.toml", "lost = 0.05", "lost = 0.05\nmost_mm = 3"), "RBL524", "more than 3 mm"),
-    ((".cell.toml", "lost = 0.05", "lost = 1.0"), "RBL525", "has given nothing for 104 ms"),
-    ((".cell.toml", "[0, 5, -3, 0, 0, 2]", "[0, 0, 900, 0, 0, 0]\nmost_mm = 1000"), "RBL526", "% of the path"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("edit", "code", "said"),
+    [
+        ((".cell.toml", "lost = 0.05", "lost = 0.05\nmost_mm = 3"), "RBL524", "more than 3 mm"),
+        ((".cell.toml", "lost = 0.05", "lost = 1.0"), "RBL525", "has given nothing for 104 ms"),
+        ((".cell.toml", "[0, 5, -3, 0, 0, 2]", "[0, 0, 900, 0, 0, 0]\nmost_mm = 1000"), "RBL526", "% of the path"),
+    ],
+)
 def test_a_seam_that_cannot_be_followed_stops_the_arm_on_its_path_at_the_line(tmp_path, edit, code, said):
     copy(tmp_path, "seam", edit)
     session, result = run("seam", folder=tmp_path, physics=False)

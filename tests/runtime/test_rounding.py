@@ -30,15 +30,18 @@ def test_neighbours_compare_as_well(limit, steps):
     assert (order(text, low), order(text, high)) == (order(value, limit), -1)
 
 
-@pytest.mark.parametrize(("value", "limits", "form", "texts"), [
-    (0.00099999, (0.001,), ".4f", ("0.00099999", "0.001")),
-    (100.0000001, (100.0,), "g", ("100.0000001", "100")),
-    (0.51234, (0.5,), ".3f", ("0.512", "0.5")),
-    (5.0, (1.0, 4.0), "g", ("5", "1", "4")),
-    (math.nan, (1.0,), "g", ("nan", "1")),
-    (math.inf, (1.0,), ".3f", ("inf", "1")),
-    (3.0, (3.0,), ".3f", ("3.000", "3")),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("value", "limits", "form", "texts"),
+    [
+        (0.00099999, (0.001,), ".4f", ("0.00099999", "0.001")),
+        (100.0000001, (100.0,), "g", ("100.0000001", "100")),
+        (0.51234, (0.5,), ".3f", ("0.512", "0.5")),
+        (5.0, (1.0, 4.0), "g", ("5", "1", "4")),
+        (math.nan, (1.0,), "g", ("nan", "1")),
+        (math.inf, (1.0,), ".3f", ("inf", "1")),
+        (3.0, (3.0,), ".3f", ("3.000", "3")),
+    ],
+)
 def test_examples(value, limits, form, texts):
     assert beside(value, *limits, form=form) == texts
 

@@ -299,19 +299,43 @@ def gathered(text, read):
 
 def test_every_value_that_is_wrong_is_found_and_every_key():
     text = "a = nan\nb = 'x'\nc = [1, inf]\nd = true\n[e]\nf = 11\n[[g]]\nzzz = 1\n"
-    found, value = gathered(text, lambda table: (
-        table.number("a"), table.number("b"), table.numbers("c", 2), table.text("d"),
-        table.table("e").number("f", high=10.0), [each.done() for each in table.tables("g")],
-    ))  # fmt: skip
-    assert [each[:2] for each in found] == [("RBL604", 1), ("RBL613", 2), ("RBL604", 3), ("RBL613", 4), ("RBL605", 6),
-                                            ("RBL609", 8)]  # fmt: skip
+    found, value = gathered(
+        text,
+        lambda table: (
+            table.number("a"),
+            table.number("b"),
+            table.numbers("c", 2),
+            table.text("d"),
+            table.table("e").number("f", high=10.0),
+            [each.done() for each in table.tables("g")],
+        ),
+    )
+    assert [each[:2] for each in found] == [
+        ("RBL604", 1),
+        ("RBL613", 2),
+        ("RBL604", 3),
+        ("RBL613", 4),
+        ("RBL605", 6),
+        ("RBL609", 8),
+    ]
     assert value is None
 
 
 def test_the_keys_that_a_table_lacks_are_one_fault():
     text = "[hand]\nmas = 1\n"
-    found, _ = gathered(text, lambda table: [table.table("hand").gather(lambda hand: (
-        hand.number("mass"), hand.number("stroke"), hand.table("inner").number("deep"), hand.done()))])  # fmt: skip
+    found, _ = gathered(
+        text,
+        lambda table: [
+            table.table("hand").gather(
+                lambda hand: (
+                    hand.number("mass"),
+                    hand.number("stroke"),
+                    hand.table("inner").number("deep"),
+                    hand.done(),
+                )
+            )
+        ],
+    )
     assert found == [("RBL608", 1, "'hand.mass', 'hand.stroke' and 'hand.inner' are missing")]
 
 

@@ -72,9 +72,7 @@ def test_inertia_of_reducers_is_found_and_taken_off_the_tracking_error():
     found = compensation_of(request, identify(request))
     Jc = np.array([axis.compensation for axis in found.axes])
     np.testing.assert_allclose(Jc, 1.6 * SPEC.per_axis("motor", "rotor_inertia"), rtol=4e-3)
-    exact, without, with_it = (
-        log_of("nominal"), log_of("reducers"), log_of("reducers", tuple(found.rotors(SPEC)))
-    )  # fmt: skip
+    exact, without, with_it = (log_of("nominal"), log_of("reducers"), log_of("reducers", tuple(found.rotors(SPEC))))
     rms = [np.sqrt((error(log) ** 2).mean(axis=0)) for log in (exact, without, with_it)]
     assert (rms[2][1:] < 0.7 * rms[1][1:]).all()
     assert (rms[2] < 1.02 * rms[0]).all()
@@ -98,9 +96,10 @@ def test_inertia_and_weight_make_heavier_bodies_run_as_the_model_would():
     """The tool is no farther off its way than with the exact model, and supervision believes the payload again."""
     found = found_in_heavier()
     exact, without, with_it = (
-        log_of("nominal"), log_of("heavier"),
+        log_of("nominal"),
+        log_of("heavier"),
         log_of("heavier", tuple(found.rotors(SPEC)), found.first_moments, supervised=True),
-    )  # fmt: skip
+    )
     assert tool_error(without) > 1.6 * tool_error(exact)
     assert tool_error(with_it) < 1.02 * tool_error(exact)
     stopped = pick_and_place("heavier", supervised=True)

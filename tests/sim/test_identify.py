@@ -158,8 +158,12 @@ def table_errors(request, results, scalars):
         )
         true = real + spec.axes[axis].motor.rotor_inertia
         by_posture = np.array([table.at(q) for q in postures])
-        errors.append([np.sqrt((((model + Jc) / true - 1.0) ** 2).mean())
-                       for Jc in (scalar.compensation, found.compensation, by_posture)])  # fmt: skip
+        errors.append(
+            [
+                np.sqrt((((model + Jc) / true - 1.0) ** 2).mean())
+                for Jc in (scalar.compensation, found.compensation, by_posture)
+            ]
+        )
     return np.array(errors)
 
 

@@ -104,8 +104,9 @@ def test_the_arm_starts_at_rest_in_its_springs():
 def test_the_tool_hangs_on_the_links_not_on_the_motors():
     plant = held()
     kinematics = Kinematics(SPEC)
-    np.testing.assert_allclose(plant.X_world_tool(), kinematics.forward(plant.q_link) @ CELL.hand.X_flange_tool,
-                               atol=1e-12)  # fmt: skip
+    np.testing.assert_allclose(
+        plant.X_world_tool(), kinematics.forward(plant.q_link) @ CELL.hand.X_flange_tool, atol=1e-12
+    )
     at_the_motors = kinematics.forward(plant.q) @ CELL.hand.X_flange_tool
     assert np.linalg.norm((plant.X_world_tool() - at_the_motors)[:3, 3]) > 5e-4
 

@@ -47,10 +47,19 @@ def test_a_bad_torque(bad: float, axis: int) -> None:
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
-@pytest.mark.parametrize(("field", "index", "word"), [
-    ("qpos", 2, "QPOS"), ("qpos", 7, "QPOS"), ("qpos", 9, "QPOS"), ("qpos", 12, "QPOS"),
-    ("qvel", 0, "QVEL"), ("qvel", 13, "QVEL"), ("qfrc_applied", 3, "QACC"), ("qfrc_applied", 9, "QACC"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("field", "index", "word"),
+    [
+        ("qpos", 2, "QPOS"),
+        ("qpos", 7, "QPOS"),
+        ("qpos", 9, "QPOS"),
+        ("qpos", 12, "QPOS"),
+        ("qvel", 0, "QVEL"),
+        ("qvel", 13, "QVEL"),
+        ("qfrc_applied", 3, "QACC"),
+        ("qfrc_applied", 9, "QACC"),
+    ],
+)
 def test_a_bad_number_anywhere_in_the_state(field: str, index: int, word: str, bad: float) -> None:
     """Arm, finger and part: MuJoCo's own copy is spoilt between two ticks."""
     plant = moving_plant()

@@ -19,8 +19,11 @@ from runtime.tomlfile import Source
 
 CELL = parse_cell(Source("cell.toml", cell_text()))
 SPEC = CELL.robot
-LOAD = Body(mass=2.3, cog=frozen([0.01, -0.02, 0.095]),
-            inertia=frozen([[4e-3, 2e-4, -1e-4], [2e-4, 5e-3, 3e-4], [-1e-4, 3e-4, 3e-3]]))  # fmt: skip
+LOAD = Body(
+    mass=2.3,
+    cog=frozen([0.01, -0.02, 0.095]),
+    inertia=frozen([[4e-3, 2e-4, -1e-4], [2e-4, 5e-3, 3e-4], [-1e-4, 3e-4, 3e-3]]),
+)
 POSES = np.random.default_rng(560).uniform(SPEC.lower, SPEC.upper, size=(200, SPEC.n))
 
 
@@ -31,8 +34,9 @@ def arm_model(load: Body | None) -> ArmModel:
     return model
 
 
-def worst(text: str, load: Body | None, compare: Callable[..., float], fingers: float | None = None,
-          poses: Array = POSES) -> float:  # fmt: skip
+def worst(
+    text: str, load: Body | None, compare: Callable[..., float], fingers: float | None = None, poses: Array = POSES
+) -> float:
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
     ours = arm_model(load)
@@ -84,8 +88,11 @@ def test_the_hand_in_the_cell_weighs_what_the_cell_says(opening: float) -> None:
 
 
 def test_a_turned_flange_and_an_odd_hand_agree_too() -> None:
-    hand = replace(CELL.hand, cog=frozen([0.01, -0.02, 0.07]),
-                   X_flange_tool=frozen(pose_from_xyzrpy([0.01, 0.02, 0.12, 0.3, -0.2, 0.9])))  # fmt: skip
+    hand = replace(
+        CELL.hand,
+        cog=frozen([0.01, -0.02, 0.07]),
+        X_flange_tool=frozen(pose_from_xyzrpy([0.01, 0.02, 0.12, 0.3, -0.2, 0.9])),
+    )
     text = build_mjcf(SPEC, replace(CELL, hand=hand))
     assert worst(text, hand_body(hand, 0.06), gravity_error, 0.03) < 1e-9
     assert worst(text, hand_body(hand, 0.06), mass_matrix_error, 0.03) < 1e-9

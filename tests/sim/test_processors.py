@@ -32,11 +32,13 @@ def hashes():
     """By kernel: the hash of a plain scalar product of numpy, and of the log of every program."""
     started = {
         kernel: subprocess.Popen(
-            [sys.executable, "-c", SCRIPT, *PROGRAMS], stdout=subprocess.PIPE, text=True,
+            [sys.executable, "-c", SCRIPT, *PROGRAMS],
+            stdout=subprocess.PIPE,
+            text=True,
             env=os.environ | {"OPENBLAS_CORETYPE": kernel},
         )
         for kernel in KERNELS
-    }  # fmt: skip
+    }
     return {kernel: process.communicate()[0].split() for kernel, process in started.items()}
 
 

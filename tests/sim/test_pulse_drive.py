@@ -28,9 +28,13 @@ HOME = [round(float(angle) / DEG / PER_PULSE) for angle in CELL.home]
 
 def puma():
     """An export that stands at the home of the cell, with the geometry of its robot and hand."""
-    arm = {"kind": "arm", "name": "puma560", "placements": [axis.placement.tolist() for axis in CELL.robot.axes],
-           "X_last_flange": CELL.robot.X_last_flange.tolist(),
-           "X_flange_tool": CELL.hand.X_flange_tool.tolist()}  # fmt: skip
+    arm = {
+        "kind": "arm",
+        "name": "puma560",
+        "placements": [axis.placement.tolist() for axis in CELL.robot.axes],
+        "X_last_flange": CELL.robot.X_last_flange.tolist(),
+        "X_flange_tool": CELL.hand.X_flange_tool.tolist(),
+    }
     return Handmade(arm, [(f"J{k}", "deg", PER_PULSE, at) for k, at in enumerate(HOME, start=1)])
 
 
@@ -49,9 +53,12 @@ def tool_mm(*turned_deg):
 def swing(line, export, by_deg):
     """J1 turns by so many degrees in a second: an arc over the straight line that the move claims to be."""
     turned = (export.at["J1"] - HOME[0]) * PER_PULSE
-    export.move(line, tool_mm(turned), tool_mm(turned + by_deg), J1=[
-        export.at["J1"] + round(by_deg / PER_PULSE * way(k)) for k in range(1, STEPS + 1)
-    ])  # fmt: skip
+    export.move(
+        line,
+        tool_mm(turned),
+        tool_mm(turned + by_deg),
+        J1=[export.at["J1"] + round(by_deg / PER_PULSE * way(k)) for k in range(1, STEPS + 1)],
+    )
 
 
 def read(tmp_path, export):
@@ -74,8 +81,7 @@ def test_the_arm_follows_the_tables(tmp_path, physics):
     found = read(tmp_path, export)
     result = drive(found, CELL, PROFILE, physics)
     assert (result.alarms, result.warnings) == ((), ())
-    assert [(move.line, move.number, move.text) for move in result.moves] == [
-        (3, 30, "MOVE P1"), (4, 40, "MOVE P1")]  # fmt: skip
+    assert [(move.line, move.number, move.text) for move in result.moves] == [(3, 30, "MOVE P1"), (4, 40, "MOVE P1")]
     for driven, played in zip(result.moves, replay(found), strict=True):
         assert played.rows_mm == pytest.approx(sagitta_mm(10.0), abs=0.02)
         assert driven.error_mm == pytest.approx(sagitta_mm(10.0), abs=0.2)
@@ -93,8 +99,12 @@ def test_a_straight_line_is_driven_straight(tmp_path):
     X[:, 1, 3] += [0.08 * way(k) for k in range(1, STEPS + 1)]
     targets = np.rint(kinematics.newton.follow(X, q) / DEG / PER_PULSE).astype(int)
     begin = tool_mm()
-    export.move(2, begin, [begin[0], begin[1] + 80.0, begin[2]],
-                **{f"J{axis}": column for axis, column in enumerate(targets.T.tolist(), start=1)})  # fmt: skip
+    export.move(
+        2,
+        begin,
+        [begin[0], begin[1] + 80.0, begin[2]],
+        **{f"J{axis}": column for axis, column in enumerate(targets.T.tolist(), start=1)},
+    )
     found = read(tmp_path, export)
     (played,) = replay(found)
     assert played.worst_mm < 0.05  # pulses of 0.001 deg, and arcs between the rows
@@ -134,8 +144,12 @@ def test_load_and_hand_are_carried_out_in_their_places(tmp_path, monkeypatch):
     export.load(5, mass=1.0, cog=(0, 0, 70))
     result = drive(read(tmp_path, export), CELL, PROFILE)
     closed_at = done[2][0]
-    assert done == [(0, 10, 0.8, [0, 0, 0.06]), (0, 20, False), (closed_at, 40, True),
-                    (closed_at + 200_000, 50, 1.0, [0, 0, 0.07])]  # fmt: skip
+    assert done == [
+        (0, 10, 0.8, [0, 0, 0.06]),
+        (0, 20, False),
+        (closed_at, 40, True),
+        (closed_at + 200_000, 50, 1.0, [0, 0, 0.07]),
+    ]
     assert result.seconds == pytest.approx((closed_at + 200_000) / 1e6)
     # 0.1 s in whole cycles, the way to the first set-point, the move until it is in position
     assert closed_at / 1e6 == pytest.approx(0.104 + RAMP_S + result.moves[0].seconds, abs=0.1)

@@ -106,8 +106,9 @@ def test_full_inverse_dynamics_agree(models):
 
 def test_the_velocity_terms_are_a_real_part_of_it(models):
     """What the three agree on is not nothing: at full speed tens of N m on the Manutec."""
-    torques = [lagrangian.velocity_torque(models.rows, q, dq, models.load)
-               for q, dq in zip(models.q, models.dq, strict=True)]  # fmt: skip
+    torques = [
+        lagrangian.velocity_torque(models.rows, q, dq, models.load) for q, dq in zip(models.q, models.dq, strict=True)
+    ]
     assert np.abs(torques).max() > (50.0 if models.spec.name == "manutec_r3" else 2.0)
 
 

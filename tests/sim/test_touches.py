@@ -42,10 +42,11 @@ ALLOWED = {
     ),
     "the fingers centre the part": ("MOVE P1 + (0, 10, 0)\nHAND ON\nLOAD (0, 0, 95), 2.3\nMOVE P5\n", [OWN]),
     "a hand closed on nothing presses on a part": (
-        "MOVE P1 + (0, 0, 150)\nHAND ON\nMOVE P1 + (0, 0, 59.9), SPEED 50\nMOVE P5\n", [OWN],
+        "MOVE P1 + (0, 0, 150)\nHAND ON\nMOVE P1 + (0, 0, 59.9), SPEED 50\nMOVE P5\n",
+        [OWN],
     ),
     "a part dropped on the table": (GRIP + "MOVE P1 + (0, 0, 30)\n" + LET_GO + "MOVE P5\nDELAY 0.3\n", [OWN]),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("case", ALLOWED)
@@ -162,4 +163,3 @@ def test_a_part_is_lost_whatever_its_mass(tmp_path, mass, force):
     assert report["alarms"][0]["category"] == 1
     assert "gripped in line 3" in report["alarms"][0]["message"]
     assert not report["ok"]
-

@@ -22,8 +22,10 @@ from tests.campaign import some
 from tests.lang.helpers import checked
 
 PROGRAMS = Path(__file__).parents[2] / "programs"
-PUMA, MANUTEC = (load_cell_and_settings(PROGRAMS / f"{name}.rbl", None, None, None, {})[0]
-                 for name in ("pick_and_place", "manutec_pick_and_place"))  # fmt: skip
+PUMA, MANUTEC = (
+    load_cell_and_settings(PROGRAMS / f"{name}.rbl", None, None, None, {})[0]
+    for name in ("pick_and_place", "manutec_pick_and_place")
+)
 
 
 def body(mass, *cog_mm):
@@ -165,9 +167,16 @@ def test_an_arm_that_strikes_something_is_not_weighed():
 
 
 NONE = np.zeros(6)
-WEIGHED = WeighedPayload(mass=2.30412, mass_sd=0.004, cog=np.array([-0.00002, 0.0123, 0.09504]),
-                         cog_sd=np.array([3e-5, 3e-4, 2e-3]), friction=NONE, left=NONE, peak=NONE,
-                         rows=NONE)  # fmt: skip
+WEIGHED = WeighedPayload(
+    mass=2.30412,
+    mass_sd=0.004,
+    cog=np.array([-0.00002, 0.0123, 0.09504]),
+    cog_sd=np.array([3e-5, 3e-4, 2e-3]),
+    friction=NONE,
+    left=NONE,
+    peak=NONE,
+    rows=NONE,
+)
 
 
 def test_the_load_is_rounded_to_what_is_known():

@@ -121,9 +121,12 @@ def modules_after(*words):
         f"print('loaded', [name for name in {HEAVY} if name in sys.modules])"
     )
     result = subprocess.run(
-        [sys.executable, "-c", code, *words], capture_output=True, text=True, timeout=HANG_S,
+        [sys.executable, "-c", code, *words],
+        capture_output=True,
+        text=True,
+        timeout=HANG_S,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
-    )  # fmt: skip
+    )
     return result.stdout.splitlines()[-1]
 
 
@@ -140,8 +143,11 @@ def test_nothing_of_the_working_folder_is_imported(folder):
     for name in ("lark", "numpy", "typer", "robolang_plugin"):
         (folder / f"{name}.py").write_text("raise SystemExit('planted code ran')\n")
     result = subprocess.run(
-        [sys.executable, "-P", "-m", "robolang", "check", "bad.rbl"], capture_output=True, text=True, timeout=HANG_S,
+        [sys.executable, "-P", "-m", "robolang", "check", "bad.rbl"],
+        capture_output=True,
+        text=True,
+        timeout=HANG_S,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
-    )  # fmt: skip
+    )
     assert result.returncode == 1
     assert "RBL112" in result.stdout

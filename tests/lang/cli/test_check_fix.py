@@ -70,8 +70,11 @@ def test_a_diff_changes_nothing(words, folder):
     assert (folder / "bad.rbl").read_text() == BAD
     assert result.stdout.splitlines()[:2] == ["--- bad.rbl", "+++ bad.rbl"]
     assert [line for line in result.stdout.splitlines() if line[0] in "+-"][2:] == [
-        "-10MOVE P1, SPEED 1_000 ' noqa", "-20 MOVE P2 SPEED 20", "+10 MOVE P1, SPEED 1000", "+20 MOVE P2, SPEED 20",
-    ]  # fmt: skip
+        "-10MOVE P1, SPEED 1_000 ' noqa",
+        "-20 MOVE P2 SPEED 20",
+        "+10 MOVE P1, SPEED 1000",
+        "+20 MOVE P2, SPEED 20",
+    ]
     assert result.stderr == ""
 
 

@@ -232,9 +232,13 @@ def test_a_reader_that_leaves_changes_no_exit_code(folder):
 def python(code, *words, cwd):
     """Run a line of Python as a process."""
     return subprocess.run(
-        [sys.executable, "-c", f"import sys; {code}", *words], cwd=cwd, capture_output=True, text=True, timeout=HANG_S,
+        [sys.executable, "-c", f"import sys; {code}", *words],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        timeout=HANG_S,
         env={**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "80"},
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.parametrize(

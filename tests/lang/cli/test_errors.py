@@ -28,9 +28,23 @@ def test_every_registered_code_has_the_exit_code_of_its_group(code):
 
 @pytest.mark.parametrize(
     ("code", "expected"),
-    [("RBL112", 1), ("RBL201", 1), ("RBL301", 1), ("RBL303", 2), ("RBL401", 1), ("RBL404", 1), ("RBL410", 3),
-     ("RBL412", 3), ("RBL510", 3), ("RBL606", 2), ("RBL701", 2), ("RBL706", 4), ("RBL708", 2), ("RBL900", 70)],
-)  # fmt: skip
+    [
+        ("RBL112", 1),
+        ("RBL201", 1),
+        ("RBL301", 1),
+        ("RBL303", 2),
+        ("RBL401", 1),
+        ("RBL404", 1),
+        ("RBL410", 3),
+        ("RBL412", 3),
+        ("RBL510", 3),
+        ("RBL606", 2),
+        ("RBL701", 2),
+        ("RBL706", 4),
+        ("RBL708", 2),
+        ("RBL900", 70),
+    ],
+)
 def test_exit_codes_by_name(code, expected, capsys):
     assert exit_code(code) == expected
     assert left_with(Fault(code, "what is wrong")) == expected

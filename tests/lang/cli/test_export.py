@@ -40,8 +40,19 @@ def test_the_folder_has_what_the_manifest_names(made):
     assert named == {item.name for item in folder.iterdir()}
     assert all(written_here(name) for name in named)
     kinds = [(entry["kind"], entry["number"]) for entry in manifest["sequence"]]
-    assert kinds == [("marker", 10), ("marker", 20), ("move", 30), ("marker", 40), ("marker", 50), ("move", 60),
-                     ("move", 70), ("marker", 80), ("marker", 90), ("move", 100), ("move", 110)]  # fmt: skip
+    assert kinds == [
+        ("marker", 10),
+        ("marker", 20),
+        ("move", 30),
+        ("marker", 40),
+        ("marker", 50),
+        ("move", 60),
+        ("move", 70),
+        ("marker", 80),
+        ("marker", 90),
+        ("move", 100),
+        ("move", 110),
+    ]
     load, hand = manifest["sequence"][4]["load"], manifest["sequence"][3]
     assert load == {"mass_kg": 2.3, "cog_mm": [0.0, 0.0, 95.0]}
     assert (hand["hand"], hand["dwell_s"]) == ("on", 0.3)

@@ -212,8 +212,14 @@ def test_nothing_heavy_is_imported(folder):
         "import sys; from robolang.cli.main import app\ntry: app(['fmt'])\nexcept SystemExit: pass\n"
         "print(sorted({'numpy', 'pinocchio', 'mujoco', 'ruckig', 'mcap', 'rich.table'} & set(sys.modules)))"
     )
-    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True,
-                            env={**os.environ, "PYTHONPATH": str(ROOT)}, cwd=folder)  # fmt: skip
+    result = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        cwd=folder,
+    )
     assert result.stdout.splitlines()[-1] == "[]"
 
 
@@ -230,13 +236,22 @@ def test_nothing_heavy_is_imported(folder):
         ("a", "a\n", "@@ -1 +1 @@\n-a\n\\ No newline at end of file\n+a\n"),
         ("a\n\n", "b\n", "@@ -1,2 +1 @@\n-a\n-\n+b\n"),
         ("a\n10\nb\n", "a\n\nb\n", "@@ -1,3 +1,3 @@\n a\n-10\n+\n b\n"),
-        ("a\n" + "x\n" * 7 + "b\n", "A\n" + "x\n" * 7 + "B\n",
-         "@@ -1,4 +1,4 @@\n-a\n+A\n x\n x\n x\n@@ -6,4 +6,4 @@\n x\n x\n x\n-b\n+B\n"),
-        ("a\n\n\n\nb\n" + "x\n" * 9 + "c\n", "a\n\n\nb\n" + "x\n" * 9 + "C\n",
-         "@@ -1,7 +1,6 @@\n a\n \n \n-\n b\n x\n x\n@@ -12,4 +11,4 @@\n x\n x\n x\n-c\n+C\n"),
-        ("a\n" + "x\n" * 6 + "b\n", "A\n" + "x\n" * 6 + "B\n",
-         "@@ -1,8 +1,8 @@\n-a\n+A\n x\n x\n x\n x\n x\n x\n-b\n+B\n"),
+        (
+            "a\n" + "x\n" * 7 + "b\n",
+            "A\n" + "x\n" * 7 + "B\n",
+            "@@ -1,4 +1,4 @@\n-a\n+A\n x\n x\n x\n@@ -6,4 +6,4 @@\n x\n x\n x\n-b\n+B\n",
+        ),
+        (
+            "a\n\n\n\nb\n" + "x\n" * 9 + "c\n",
+            "a\n\n\nb\n" + "x\n" * 9 + "C\n",
+            "@@ -1,7 +1,6 @@\n a\n \n \n-\n b\n x\n x\n@@ -12,4 +11,4 @@\n x\n x\n x\n-c\n+C\n",
+        ),
+        (
+            "a\n" + "x\n" * 6 + "b\n",
+            "A\n" + "x\n" * 6 + "B\n",
+            "@@ -1,8 +1,8 @@\n-a\n+A\n x\n x\n x\n x\n x\n x\n-b\n+B\n",
+        ),
     ],
-)  # fmt: skip
+)
 def test_unified_diff(old, new, expected):
     assert "".join(unified("p", old, new)) == (f"--- p\n+++ p\n{expected}" if expected else "")

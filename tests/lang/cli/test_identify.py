@@ -19,8 +19,18 @@ SPEC = load_builtin("puma560")
 QUICK = ("--plant", "rigid", "--positions", "2")
 TABLE_JOINTS = dict(some(((1, (1, 2)), (2, (2,))), 1))
 """By the number of an axis, the joints (0-based) of its table."""
-TABLE = ("--axis", ",".join(map(str, (*TABLE_JOINTS, 6))), "--plant", "rigid", "--positions", "1", "--table", "2",
-         "--error", "4")  # fmt: skip
+TABLE = (
+    "--axis",
+    ",".join(map(str, (*TABLE_JOINTS, 6))),
+    "--plant",
+    "rigid",
+    "--positions",
+    "1",
+    "--table",
+    "2",
+    "--error",
+    "4",
+)
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -54,8 +64,21 @@ def identified_once():
 def made(tmp_path_factory):
     """A file of axes 3 and 6, and what the command printed."""
     path = tmp_path_factory.mktemp("identify") / "arm.compensation.toml"
-    result = robolang("identify", "puma560", "--axis", "3,6", *QUICK, "--error", "4", "--out", path,
-                      "--date", "2026-11-24", "--carrying", "0.8,0,0,60")  # fmt: skip
+    result = robolang(
+        "identify",
+        "puma560",
+        "--axis",
+        "3,6",
+        *QUICK,
+        "--error",
+        "4",
+        "--out",
+        path,
+        "--date",
+        "2026-11-24",
+        "--carrying",
+        "0.8,0,0,60",
+    )
     return path, result
 
 

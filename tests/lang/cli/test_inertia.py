@@ -160,8 +160,10 @@ def test_the_picture_of_the_page_is_the_one_that_its_command_draws(tmp_path):
     page = (ROOT / "docs" / "motor-inertia.md").read_text("utf-8")
     (words,) = re.findall(r"^\.venv/bin/robolang (inertia .*--map.*) --out docs/plots/inertia-map\.svg$", page, re.M)
     robolang(*words.split(), "--out", tmp_path / "map.svg")
-    drawn, kept = ((folder / name).read_text("utf-8") for folder, name in
-                   ((tmp_path, "map.svg"), (ROOT / "docs" / "plots", "inertia-map.svg")))  # fmt: skip
+    drawn, kept = (
+        (folder / name).read_text("utf-8")
+        for folder, name in ((tmp_path, "map.svg"), (ROOT / "docs" / "plots", "inertia-map.svg"))
+    )
     numbers = [[float(word) for word in re.findall(r"\d+\.?\d*", text)] for text in (drawn, kept)]
     assert len(numbers[0]) == len(numbers[1])
     assert numbers[0] == pytest.approx(numbers[1], abs=0.11)  # another processor may round a tenth the other way
@@ -172,9 +174,12 @@ def test_the_table_of_the_page_is_what_the_command_prints():
     words = re.search(r"^\.venv/bin/robolang (inertia --robot puma560 --joints .*)$", page, re.M)[1]
     printed = robolang(*words.split()).stdout
     assert [line.rstrip() for line in printed.splitlines() if line.strip()] == [
-        line for text in re.findall(r"^```text\n(.*?)^```$", page, re.M | re.S) if "link D" in text
-        for line in text.splitlines() if line.strip()
-    ]  # fmt: skip
+        line
+        for text in re.findall(r"^```text\n(.*?)^```$", page, re.M | re.S)
+        if "link D" in text
+        for line in text.splitlines()
+        if line.strip()
+    ]
 
 
 # --- the heat map ----------------------------------------------------------------------------------------------------

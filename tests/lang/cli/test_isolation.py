@@ -13,10 +13,35 @@ from tests.lang.cli.commands import ROOT
 from tests.steps import HANG_S
 
 SCRIPT = Path(sys.executable).with_name("robolang")
-NAMES = ("lark", "typer", "click", "rich", "numpy", "pinocchio", "mujoco", "ruckig", "tomllib", "tomlkit", "runtime",
-         "json", "ctypes", "struct", "multiprocessing", "encodings", "difflib", "pathlib", "dataclasses", "typing",
-         "tempfile", "unicodedata", "runpy", "sitecustomize", "usercustomize", "glfw")  # fmt: skip
-PROGRAM = "10 PRINT \"it ran\"\n20 MOVE P1\n30 WHILE 1\n40 WEND\n"
+NAMES = (
+    "lark",
+    "typer",
+    "click",
+    "rich",
+    "numpy",
+    "pinocchio",
+    "mujoco",
+    "ruckig",
+    "tomllib",
+    "tomlkit",
+    "runtime",
+    "json",
+    "ctypes",
+    "struct",
+    "multiprocessing",
+    "encodings",
+    "difflib",
+    "pathlib",
+    "dataclasses",
+    "typing",
+    "tempfile",
+    "unicodedata",
+    "runpy",
+    "sitecustomize",
+    "usercustomize",
+    "glfw",
+)
+PROGRAM = '10 PRINT "it ran"\n20 MOVE P1\n30 WHILE 1\n40 WEND\n'
 
 
 @pytest.fixture
@@ -51,11 +76,16 @@ def test_a_planted_module_is_noticed_when_it_is_imported(folder, name):
 @pytest.mark.parametrize(
     "words",
     [
-        ("check", "job.rbl"), ("check", "--motion", "job.rbl"), ("check", "--output-format", "sarif"),
-        ("fmt", "--check", "job.rbl"), ("rules",), ("explain", "RBL412"), ("--version",),
+        ("check", "job.rbl"),
+        ("check", "--motion", "job.rbl"),
+        ("check", "--output-format", "sarif"),
+        ("fmt", "--check", "job.rbl"),
+        ("rules",),
+        ("explain", "RBL412"),
+        ("--version",),
     ],
     ids=" ".join,
-)  # fmt: skip
+)
 @pytest.mark.parametrize("form", some(["script", "module"], 0))
 def test_nothing_is_imported_from_the_working_folder(folder, form, words):
     if form == "script":

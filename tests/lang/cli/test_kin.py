@@ -156,7 +156,6 @@ def test_a_model_file_needs_no_drives():
     assert "RBL600" in run("fk", "--robot", "none.urdf", "--joints", "0", exit_code=2).stderr
 
 
-
 def test_an_unknown_robot_is_answered_with_the_known_ones():
     message = run("fk", "--robot", "puma", "--joints", JOINTS, exit_code=2).stderr
     assert "'puma' is not a robot" in message

@@ -30,8 +30,10 @@ def table(text):
 
 def rows(text):
     """The rows of the table by their line number: statement and figures."""
-    return {int(number): [cell for cell in re.split(r"  +", rest.strip()) if cell]
-            for number, rest in re.findall(r"^ *\d+ +(\d+)  (\S.*)$", text, re.M)}  # fmt: skip
+    return {
+        int(number): [cell for cell in re.split(r"  +", rest.strip()) if cell]
+        for number, rest in re.findall(r"^ *\d+ +(\d+)  (\S.*)$", text, re.M)
+    }
 
 
 # --- the table -------------------------------------------------------------------------------------------------------
@@ -94,18 +96,33 @@ def test_json_holds_the_figures_in_full_and_repeats(tmp_path):
     move = found["sequence"][0]
     assert move.pop("end_mm") == pytest.approx(0.0, abs=1e-9)
     assert move == {
-        "kind": "move", "line": 1, "number": 10, "text": "MOVE P1", "steps": 2, "seconds": 0.02,
-        "pulses": {"T": 400, "R": 0}, "highest_hz": 20000.0, "highest_channel": "T",
-        "rows_mm": pytest.approx(sagitta), "real": None,
+        "kind": "move",
+        "line": 1,
+        "number": 10,
+        "text": "MOVE P1",
+        "steps": 2,
+        "seconds": 0.02,
+        "pulses": {"T": 400, "R": 0},
+        "highest_hz": 20000.0,
+        "highest_channel": "T",
+        "rows_mm": pytest.approx(sagitta),
+        "real": None,
         "between_mm": pytest.approx(300.0 * (math.cos(math.radians(2.5)) - math.cos(math.radians(10.0)))),
-    }  # fmt: skip
+    }
     assert found == {
-        "folder": str(folder), "program": "by_hand.rbl",
-        "mechanism": {"kind": "cylindrical", "name": "cylindrical"}, "step_s": 0.01, "seconds": 0.02,
-        "path_error_mm": pytest.approx(sagitta), "sequence": [move], "physics": None,
-        "channels": [{"name": "T", "unit": "deg", "per_pulse": 0.05, "pulses": 400, "highest_hz": 20000.0},
-                     {"name": "R", "unit": "mm", "per_pulse": 0.01, "pulses": 0, "highest_hz": 0.0}],
-    }  # fmt: skip
+        "folder": str(folder),
+        "program": "by_hand.rbl",
+        "mechanism": {"kind": "cylindrical", "name": "cylindrical"},
+        "step_s": 0.01,
+        "seconds": 0.02,
+        "path_error_mm": pytest.approx(sagitta),
+        "sequence": [move],
+        "physics": None,
+        "channels": [
+            {"name": "T", "unit": "deg", "per_pulse": 0.05, "pulses": 400, "highest_hz": 20000.0},
+            {"name": "R", "unit": "mm", "per_pulse": 0.01, "pulses": 0, "highest_hz": 0.0},
+        ],
+    }
 
 
 def test_markers_are_in_the_object_too(stairs):
@@ -150,8 +167,10 @@ def test_the_real_arm_is_driven_and_stands_in_the_table(tmp_path):
     *_, at_rows, _, _, real = map(float, rows(result.stdout)[20][-4:])
     assert at_rows == pytest.approx(0.502, abs=0.01)  # 528 mm (1 - cos 2.5 deg)
     assert real == pytest.approx(0.502, abs=0.1)
-    assert re.fullmatch(rf"real arm: 1\.\d\d\d s simulated; at most {real:.3f} mm off, in line 2 \(number 20\)",
-                        result.stdout.splitlines()[-1])  # fmt: skip
+    assert re.fullmatch(
+        rf"real arm: 1\.\d\d\d s simulated; at most {real:.3f} mm off, in line 2 \(number 20\)",
+        result.stdout.splitlines()[-1],
+    )
     found = json.loads(robolang("replay-pulses", folder, "--physics", "--cell", CELL, "--json").stdout)
     assert round(found["sequence"][1]["real"]["error_mm"], 3) == real
     assert (found["physics"]["alarms"], found["physics"]["warnings"]) == ([], [])
@@ -198,7 +217,9 @@ def test_an_svg_holds_frequencies_above_path_error(stairs, tmp_path):
     height = HEIGHT + 18 + 14  # a row of names, the names of the marks
     assert root.get("viewBox") == f"0 0 {WIDTH} {2 * height}"
     assert [(plot.get("y"), plot.get("width"), plot.get("height")) for plot in plots] == [
-        ("0", str(WIDTH), str(height)), (str(height), str(WIDTH), str(height))]  # fmt: skip
+        ("0", str(WIDTH), str(height)),
+        (str(height), str(WIDTH), str(height)),
+    ]
     texts = [[text.text for text in plot.iter(f"{SVG}text")] for plot in plots]
     assert {"frequency, kHz", "X", "Y", "3", "4", "time, s"} <= set(texts[0])
     assert {"path error, mm", "3", "4", "tool point"} <= set(texts[1])
@@ -207,9 +228,13 @@ def test_an_svg_holds_frequencies_above_path_error(stairs, tmp_path):
     x, y = frequencies
     top, bottom = min(x[:, 1]), max(y[:, 1])
     assert [point.tolist() for point in x if point[1] == top][:2] == [
-        [pytest.approx(x_of[0], abs=0.06), top], [pytest.approx(x_of[1], abs=0.06), top]]  # fmt: skip
+        [pytest.approx(x_of[0], abs=0.06), top],
+        [pytest.approx(x_of[1], abs=0.06), top],
+    ]
     assert [point.tolist() for point in y if point[1] == bottom][:2] == [
-        [pytest.approx(x_of[1], abs=0.06), bottom], [pytest.approx(x_of[2], abs=0.06), bottom]]  # fmt: skip
+        [pytest.approx(x_of[1], abs=0.06), bottom],
+        [pytest.approx(x_of[2], abs=0.06), bottom],
+    ]
     (error,) = errors
     assert error[np.argmin(error[:, 1]), 0] == pytest.approx(x_of[1], abs=0.06)
     assert error[0, 0] == pytest.approx(LEFT, abs=0.06)
@@ -226,8 +251,10 @@ def test_a_page_holds_both(stairs, tmp_path):
 
 
 def test_small_errors_and_low_frequencies_have_small_units(tmp_path):
-    export = Handmade({"kind": "cartesian", "name": "xy", "axes": ["x", "y"], "z_mm": 0},
-                      [("<X>", "mm", 0.001, 0), ("Y", "mm", 0.001, 0)])  # fmt: skip
+    export = Handmade(
+        {"kind": "cartesian", "name": "xy", "axes": ["x", "y"], "z_mm": 0},
+        [("<X>", "mm", 0.001, 0), ("Y", "mm", 0.001, 0)],
+    )
     export.move(1, (0, 0, 0), (0.06, 0.08, 0), **{"<X>": [60, 60], "Y": [0, 80]})
     robolang("replay-pulses", export.write(tmp_path / "out"), "--plot", tmp_path / "p.svg")
     _, plots, _ = drawn(tmp_path / "p.svg")

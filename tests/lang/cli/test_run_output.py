@@ -50,14 +50,30 @@ def test_quiet_still_prints_errors(program):
 
 def report(**changes):
     statement = {
-        "line": 99_999, "number": None, "text": LONG[4:], "begun": True, "start_s": 3599.123, "duration_s": 3600.123,
-        "joint_error_deg": 123.4567, "tool_error_mm": 12.3456, "path_deviation_mm": 12.3456, "peak_torque_pct": 100.0,
+        "line": 99_999,
+        "number": None,
+        "text": LONG[4:],
+        "begun": True,
+        "start_s": 3599.123,
+        "duration_s": 3600.123,
+        "joint_error_deg": 123.4567,
+        "tool_error_mm": 12.3456,
+        "path_deviation_mm": 12.3456,
+        "peak_torque_pct": 100.0,
         "notes": [],
-    }  # fmt: skip
+    }
     return {
-        "program": "p.rbl", "robot": "puma560", "sim_time_s": 0.0, "wall_time_s": 0.0, "realtime_factor": 0.0,
-        "cycles": 0, "overruns": 0, "dynamics": {}, "objects": {}, "statements": [statement | changes] * 2,
-    }  # fmt: skip
+        "program": "p.rbl",
+        "robot": "puma560",
+        "sim_time_s": 0.0,
+        "wall_time_s": 0.0,
+        "realtime_factor": 0.0,
+        "cycles": 0,
+        "overruns": 0,
+        "dynamics": {},
+        "objects": {},
+        "statements": [statement | changes] * 2,
+    }
 
 
 @pytest.mark.parametrize("width", [60, 80, 100, 200])
@@ -127,9 +143,12 @@ def test_on_a_terminal_progress_is_one_live_line(program):
     master, slave = pty.openpty()
     process = subprocess.Popen(
         [sys.executable, "-m", "robolang", "run", "--no-physics", "--realtime", "p.rbl"],
-        stdout=subprocess.PIPE, stderr=slave, text=True, cwd=program.parent,
+        stdout=subprocess.PIPE,
+        stderr=slave,
+        text=True,
+        cwd=program.parent,
         env={**os.environ, "PYTHONPATH": str(ROOT), "TERM": "xterm", "COLUMNS": "80"},
-    )  # fmt: skip
+    )
     os.close(slave)
     shown = read_terminal(master)
     os.close(master)
@@ -166,8 +185,15 @@ def test_a_reader_that_leaves_changes_nothing(program):
 
 def test_a_standard_output_that_is_full_is_a_storage_fault(program):
     with open("/dev/full", "w") as full:  # noqa: PTH123
-        result = shell("run", "--no-physics", "p.rbl", cwd=program.parent, capture_output=False, stdout=full,
-                       stderr=subprocess.PIPE)  # fmt: skip
+        result = shell(
+            "run",
+            "--no-physics",
+            "p.rbl",
+            cwd=program.parent,
+            capture_output=False,
+            stdout=full,
+            stderr=subprocess.PIPE,
+        )
     assert result.returncode == 4
     assert "error RBL706 cannot write the standard output" in result.stderr
     assert "Exception ignored" not in result.stderr

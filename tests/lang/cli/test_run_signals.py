@@ -23,9 +23,12 @@ def start(folder, *words):
     (folder / "p.rbl").write_text("10 DELAY 0.1\n20 MOVE P1, TIME 60\n")
     process = subprocess.Popen(
         [sys.executable, "-m", "robolang", "run", "--no-physics", "--realtime", "p.rbl", *words],
-        cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT)}, text=True,
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-    )  # fmt: skip
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
     while "MOVE P1" not in (line := process.stderr.readline()):
         assert line, "the run ended too soon"
     return process

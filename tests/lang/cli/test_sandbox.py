@@ -66,8 +66,13 @@ def events(*words):
 
 def by_seed(*words):
     """What a process of ``watched`` saw; without the byte code that Python keeps of modules it imports first."""
-    done = subprocess.run([sys.executable, "-B", "-m", "tests.lang.cli.watched", *map(str, words)], cwd=ROOT,
-                          capture_output=True, text=True, timeout=HANG_S)  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-B", "-m", "tests.lang.cli.watched", *map(str, words)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=HANG_S,
+    )
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stderr.splitlines()[-1])
     return {seed: [tuple(event) for event in seen] for seed, seen in found.items()}

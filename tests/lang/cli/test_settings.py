@@ -25,8 +25,15 @@ def settings(*words):
 
 
 def test_each_layer_lies_over_the_one_before(folder):
-    shown = settings(folder / "p.rbl", "--profile", folder / "f.toml", "--fixed-at", "max", "--set",
-                     "servo.position_bandwidth_rad_s=[1,2,3,4,5,6]")  # fmt: skip
+    shown = settings(
+        folder / "p.rbl",
+        "--profile",
+        folder / "f.toml",
+        "--fixed-at",
+        "max",
+        "--set",
+        "servo.position_bandwidth_rad_s=[1,2,3,4,5,6]",
+    )
     assert shown["settle_timeout_s"] == (0.4, "s", "default")
     cell_line = CELL.count("\n") + 4
     assert shown["in_position_deg"] == (0.1, "deg", f"{folder / 'cell.toml'}:{cell_line}")
@@ -97,10 +104,16 @@ def test_step_prints_its_figures_and_writes_a_plot(tmp_path):
     assert "over the rated 2.5 kg" in robolang(*words[:-1], "5,0,0,100").stderr
 
 
-@pytest.mark.parametrize(("words", "said"), [
-    (["--axis", "7"], "axes 1 to 6"), (["--axis", "1", "--joints", "1,2"], "6 are needed"),
-    (["--axis", "1", "--joints", "161,0,0,0,0,0"], "outside"), (["--axis", "1", "--payload", "-1,0,0,0"], "not a mass"),
-    (["--axis", "1", "--size", "nan"], "RBL703 --size"), (["--axis", "1", "--plot", "a.png"], "RBL703 --plot"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--axis", "7"], "axes 1 to 6"),
+        (["--axis", "1", "--joints", "1,2"], "6 are needed"),
+        (["--axis", "1", "--joints", "161,0,0,0,0,0"], "outside"),
+        (["--axis", "1", "--payload", "-1,0,0,0"], "not a mass"),
+        (["--axis", "1", "--size", "nan"], "RBL703 --size"),
+        (["--axis", "1", "--plot", "a.png"], "RBL703 --plot"),
+    ],
+)
 def test_step_refuses_what_it_cannot_do(words, said):
     assert said in flat(robolang("step", "--robot", "puma560", *words, code=2).stderr)

@@ -144,8 +144,13 @@ def test_what_a_program_printed_before_its_error_is_there(tmp_path):
 def test_a_program_that_does_not_start_meets_no_other_expectation(tmp_path):
     expect = 'alarms = ["RBL301"]\nwarnings = []\nprinted = []\n'
     robolang("test", copied(tmp_path, expect, "MOVE P99\n"))
-    keys = ("cycle_s = [0, 9]", "path_error_mm = 9", "end_pose = [480, -220, 840, 180, 0, 180]", "golden_deg = 9",
-            "[expect.parts]\npart = [480, 220, 640]")  # fmt: skip
+    keys = (
+        "cycle_s = [0, 9]",
+        "path_error_mm = 9",
+        "end_pose = [480, -220, 840, 180, 0, 180]",
+        "golden_deg = 9",
+        "[expect.parts]\npart = [480, 220, 640]",
+    )
     for key in keys:
         assert "does not start" in robolang("test", copied(tmp_path, expect + key, "MOVE P99\n"), code=1).stdout
 
@@ -256,8 +261,11 @@ def test_a_test_file_is_refused_at_its_line(tmp_path, text, code, line):
 
 def test_everything_that_is_wrong_with_a_test_file_is_found(tmp_path):
     path = tmp_path / "a.test.toml"
-    path.write_text("schema = 2\n[expect]\nalarm = []\nprinted = 1\ncycle_s = [2, 1]\n"
-                    "[expect.parts]\npart_ml = 3\npart = [1, nan, 2]\n", "utf-8")  # fmt: skip
+    path.write_text(
+        "schema = 2\n[expect]\nalarm = []\nprinted = 1\ncycle_s = [2, 1]\n"
+        "[expect.parts]\npart_ml = 3\npart = [1, nan, 2]\n",
+        "utf-8",
+    )
     with pytest.raises(FileFault) as caught:
         load_expectation(path)
     found = [(fault.code, fault.line) for fault in caught.value.all if isinstance(fault, FileFault)]

@@ -15,8 +15,12 @@ BODY = "1.5,30,-20,113.7"
 def test_it_prints_the_estimate_the_truth_and_a_load_that_parses():
     result = robolang("weigh", "--payload", BODY)
     rows = dict(re.findall(r"^  (mass, kg|cog [xyz], mm) +(.*)$", result.stdout, re.M))
-    for name, true, near in (("mass, kg", 2.3, 0.01), ("cog x, mm", 19.57, 0.2), ("cog y, mm", -13.04, 0.2),
-                             ("cog z, mm", 95.02, 0.5)):  # fmt: skip
+    for name, true, near in (
+        ("mass, kg", 2.3, 0.01),
+        ("cog x, mm", 19.57, 0.2),
+        ("cog y, mm", -13.04, 0.2),
+        ("cog z, mm", 95.02, 0.5),
+    ):
         value, sd, shown = map(float, rows[name].split())
         assert (value, shown) == (pytest.approx(true, abs=near), pytest.approx(true, abs=0.005))
         assert 0.0 < sd <= near
@@ -41,8 +45,11 @@ def test_json_holds_the_same_and_repeats():
 
 
 def test_the_cell_beside_the_program_counts():
-    found = json.loads(robolang("weigh", ROOT / "programs" / "manutec_pick_and_place.rbl", "--plant", "rigid", "--json",
-                                "--amplitude", "15").stdout)  # fmt: skip
+    found = json.loads(
+        robolang(
+            "weigh", ROOT / "programs" / "manutec_pick_and_place.rbl", "--plant", "rigid", "--json", "--amplitude", "15"
+        ).stdout
+    )
     assert (found["robot"], found["true"]["mass_kg"]) == ("manutec_r3", 2.5)
     assert found["amplitudes_deg"] == pytest.approx([0, 3, 3, 15, 15, 30])
 

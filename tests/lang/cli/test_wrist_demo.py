@@ -122,10 +122,17 @@ def test_the_wrist_follows_the_end_of_the_seam(figures):
 
 
 SUPPRESSED = [
-    (17, 0, (3.0, 0.8, 7.7)), (18, 0, (0.45, 27.8, 6.6)), (19, 0, (10.6, 0.14, 8.4)), (20, 0, (6.2, 36.7, 0.15)),
-    (21, 0, (2.3, 0.39, 7.8)), (22, 0, (4.4, 2.2, 2.2)), (22, 1, (0.14, 19.7, 9.4)), (22, 2, (5.6, 0.32, 14.3)),
-    (22, 3, (2.5, 20.7, 0.13)), (22, 4, (0.73, 0.61, 10.5)),
-]  # fmt: skip
+    (17, 0, (3.0, 0.8, 7.7)),
+    (18, 0, (0.45, 27.8, 6.6)),
+    (19, 0, (10.6, 0.14, 8.4)),
+    (20, 0, (6.2, 36.7, 0.15)),
+    (21, 0, (2.3, 0.39, 7.8)),
+    (22, 0, (4.4, 2.2, 2.2)),
+    (22, 1, (0.14, 19.7, 9.4)),
+    (22, 2, (5.6, 0.32, 14.3)),
+    (22, 3, (2.5, 20.7, 0.13)),
+    (22, 4, (0.73, 0.61, 10.5)),
+]
 
 
 @pytest.mark.parametrize(("number", "index", "components"), SUPPRESSED)
@@ -169,8 +176,11 @@ def test_plots_and_page_are_written(tmp_path):
     folder = tmp_path / "made"
     robolang("wrist-demo", "5", "7", "18", "--out", folder)
     assert sorted(path.name for path in folder.iterdir()) == [
-        "index.html", "wrist-fig05.svg", "wrist-fig07.svg", "wrist-fig18.svg",
-    ]  # fmt: skip
+        "index.html",
+        "wrist-fig05.svg",
+        "wrist-fig07.svg",
+        "wrist-fig18.svg",
+    ]
     for number, curves, said in ((5, 3, "L1 2.71 s"), (7, 6, "L2 2.23 s"), (18, 3, "switch 2.20 s")):
         root = ElementTree.fromstring((folder / f"wrist-fig{number:02}.svg").read_text("utf-8"))
         assert root.tag == f"{SVG}svg"
@@ -229,11 +239,14 @@ def test_figures_that_take_long_are_named_on_stderr(monkeypatch):
 # --- what it refuses -------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("words", "said"), [
-    (["9"], "RBL703 FIGURE: '9' is not a figure of the demo; known: 4, 5, 6, 7, 10, 11, 17, 18"),
-    (["4", "x"], "RBL703 FIGURE, number 2: 'x' is not"),
-    (["--robot", "puma"], "RBL708 there is no robot 'puma'"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["9"], "RBL703 FIGURE: '9' is not a figure of the demo; known: 4, 5, 6, 7, 10, 11, 17, 18"),
+        (["4", "x"], "RBL703 FIGURE, number 2: 'x' is not"),
+        (["--robot", "puma"], "RBL708 there is no robot 'puma'"),
+    ],
+)
 def test_what_is_not_known_is_refused(words, said):
     assert said in flat(robolang("wrist-demo", *words, code=2).stderr)
 
@@ -293,6 +306,9 @@ def test_marks_dots_and_names_above_stand_where_no_curve_is():
     (group,) = root.findall(f"{SVG}g")
     circle = group.find(f"{SVG}circle")
     assert float(circle.get("cx")) == WIDTH - RIGHT
-    level = [line for line in group.iter(f"{SVG}line") if line.get("stroke-dasharray") == "3 3" and
-             line.get("x1") == str(LEFT)]  # fmt: skip
+    level = [
+        line
+        for line in group.iter(f"{SVG}line")
+        if line.get("stroke-dasharray") == "3 3" and line.get("x1") == str(LEFT)
+    ]
     assert len(level) == 1

@@ -14,11 +14,45 @@ import sys
 from collections.abc import Callable
 from contextlib import suppress
 
-FORBIDDEN = ("open", "exec", "compile", "import", "ctypes.", "fcntl.", "ftplib.", "http.", "marshal.", "mmap.", "os.",
-             "pickle.", "pty.", "shutil.", "smtplib.", "socket.", "subprocess.", "tempfile.", "urllib.", "code.__new__",
-             "cpython.run", "glob.", "sqlite3.", "webbrowser.")  # fmt: skip
-LEAVING = ("socket.", "subprocess.", "os.system", "os.exec", "os.posix_spawn", "os.fork", "os.remove", "os.rename",
-           "os.mkdir", "os.rmdir", "shutil.")  # fmt: skip
+FORBIDDEN = (
+    "open",
+    "exec",
+    "compile",
+    "import",
+    "ctypes.",
+    "fcntl.",
+    "ftplib.",
+    "http.",
+    "marshal.",
+    "mmap.",
+    "os.",
+    "pickle.",
+    "pty.",
+    "shutil.",
+    "smtplib.",
+    "socket.",
+    "subprocess.",
+    "tempfile.",
+    "urllib.",
+    "code.__new__",
+    "cpython.run",
+    "glob.",
+    "sqlite3.",
+    "webbrowser.",
+)
+LEAVING = (
+    "socket.",
+    "subprocess.",
+    "os.system",
+    "os.exec",
+    "os.posix_spawn",
+    "os.fork",
+    "os.remove",
+    "os.rename",
+    "os.mkdir",
+    "os.rmdir",
+    "shutil.",
+)
 SEEDS: dict[str, Callable[[], object]] = {
     "open": lambda: open("/dev/null").close(),  # noqa: PTH123
     "os.open": lambda: os.close(os.open("/dev/null", os.O_WRONLY)),

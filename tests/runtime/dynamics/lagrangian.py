@@ -81,9 +81,7 @@ def pseudo_inertia(mass: float, cog: np.ndarray, inertia_cog: np.ndarray) -> np.
 
 def bodies(rows: list[dict], payload=None, mode: str = "add") -> list[np.ndarray]:
     """Return J_1..J_n; ``payload`` is (mass, cog) of a point mass in the frame of the last link."""
-    out = [
-        pseudo_inertia(row["mass_kg"], np.array(row["cog_m"]), full_inertia(row["inertia_kg_m2"])) for row in rows
-    ]
+    out = [pseudo_inertia(row["mass_kg"], np.array(row["cog_m"]), full_inertia(row["inertia_kg_m2"])) for row in rows]
     if payload is not None:
         load = pseudo_inertia(payload[0], np.array(payload[1]), np.zeros((3, 3)))
         out[-1] = load if mode == "replace" else out[-1] + load
@@ -139,9 +137,7 @@ def inverse_dynamics(rows, q, dq, ddq, payload=None, mode: str = "add") -> np.nd
 def mass_matrix(rows: list[dict], q: np.ndarray, payload=None, mode: str = "add") -> np.ndarray:
     """Return M with M_ik = SUM_j Tr(U_jk J_j U_ji')."""
     n, U, J = len(rows), derivatives(rows, q), bodies(rows, payload, mode)
-    return np.array(
-        [[sum(np.trace(U[j][k] @ J[j] @ U[j][i].T) for j in range(n)) for k in range(n)] for i in range(n)]
-    )
+    return np.array([[sum(np.trace(U[j][k] @ J[j] @ U[j][i].T) for j in range(n)) for k in range(n)] for i in range(n)])
 
 
 def gravity(rows: list[dict], q: np.ndarray, payload=None, mode: str = "add") -> np.ndarray:

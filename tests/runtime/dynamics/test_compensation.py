@@ -34,10 +34,13 @@ FOUND = Compensation(
 
 
 TABLES = (
-    JointTable(joints=(1, 2), grid=tuple(tuple(deg * DEG for deg in grid) for grid in ((1.33, 90.0), (-223, 0.1, 43))),
-               values=tuple((3.1e-4 + np.arange(6) / 7e5).tolist())),
+    JointTable(
+        joints=(1, 2),
+        grid=tuple(tuple(deg * DEG for deg in grid) for grid in ((1.33, 90.0), (-223, 0.1, 43))),
+        values=tuple((3.1e-4 + np.arange(6) / 7e5).tolist()),
+    ),
     JointTable(joints=(2,), grid=((-100.07 * DEG, 20.0 * DEG),), values=(2.1e-4, 2.3e-4)),
-)  # fmt: skip
+)
 WITH_TABLES = replace(
     FOUND, axes=(*(replace(axis, table=t) for axis, t in zip(FOUND.axes, TABLES, strict=False)), *FOUND.axes[2:])
 )

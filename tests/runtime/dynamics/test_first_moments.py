@@ -43,8 +43,9 @@ def test_first_moments_weigh_what_moved_centres_of_gravity_weigh(robot):
     for q in postures(spec):
         T = real.gravity(q)
         np.testing.assert_allclose(model.gravity(q), T, atol=1e-6)
-        np.testing.assert_allclose(bare.gravity(q) + np.einsum("ijx,jx->i", gravity_columns(spec, q), moments), T,
-                                   atol=1e-9)  # fmt: skip
+        np.testing.assert_allclose(
+            bare.gravity(q) + np.einsum("ijx,jx->i", gravity_columns(spec, q), moments), T, atol=1e-9
+        )
         np.testing.assert_array_equal(model.mass_matrix(q), bare.mass_matrix(q))
         np.testing.assert_array_equal(model.inertia_column(q, 1), bare.inertia_column(q, 1))
         dq = np.ones(spec.n)

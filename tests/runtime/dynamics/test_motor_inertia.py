@@ -24,8 +24,11 @@ from tests.runtime.dynamics import lagrangian
 ROBOTS = ["puma560", "manutec_r3", "irb2400"]
 PUMA = load_builtin("puma560")
 Q_PUBLISHED = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
-LOAD = Payload(mass=2.3, cog=np.array([0.03, -0.02, 0.095]), inertia=np.array(
-    [[0.004, 0.0003, -0.0002], [0.0003, 0.005, 0.0001], [-0.0002, 0.0001, 0.003]]))  # fmt: skip
+LOAD = Payload(
+    mass=2.3,
+    cog=np.array([0.03, -0.02, 0.095]),
+    inertia=np.array([[0.004, 0.0003, -0.0002], [0.0003, 0.005, 0.0001], [-0.0002, 0.0001, 0.003]]),
+)
 
 
 def postures(name: str, count: int = 200) -> np.ndarray:

@@ -12,8 +12,10 @@ from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import NO_PAYLOAD, Payload
 
 PUMA, MANUTEC = load_builtin("puma560"), load_builtin("manutec_r3")
-HOME = {"puma560": np.radians([-8.0, 77.0, -183.0, 0.0, -74.0, -8.0]),
-        "manutec_r3": np.radians([-22.8, 12.2, 109.0, 0.0, 58.8, -22.8])}  # fmt: skip
+HOME = {
+    "puma560": np.radians([-8.0, 77.0, -183.0, 0.0, -74.0, -8.0]),
+    "manutec_r3": np.radians([-22.8, 12.2, 109.0, 0.0, 58.8, -22.8]),
+}
 BODY = Payload(mass=2.3, cog=np.array([0.02, -0.013, 0.095]), inertia=np.diag([4e-3, 6e-3, 3e-3]))
 TICK_S, TICKS = 1e-3, 8
 
@@ -47,9 +49,11 @@ def readings(spec, body, friction=0.0, springs=False, moving=None):
 
 def weigh(spec, body, known_friction=None, friction=0.0, springs=False, assume_springs=None, moving=None):
     tau, q = readings(spec, body, friction, springs, moving)
-    known = Knowledge(torque=spec.per_axis("limits", "torque"),
-                      friction=friction if known_friction is None else known_friction,
-                      springs=springs if assume_springs is None else assume_springs)  # fmt: skip
+    known = Knowledge(
+        torque=spec.per_axis("limits", "torque"),
+        friction=friction if known_friction is None else known_friction,
+        springs=springs if assume_springs is None else assume_springs,
+    )
     return identify_payload(spec, tau, q, ticks=TICKS, tick_s=TICK_S, known=known)
 
 

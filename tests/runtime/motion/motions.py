@@ -42,11 +42,15 @@ class Bench:
         return self.kinematics.forward(q) @ TOOL
 
     def home(self) -> Array:
-        """A posture from which lines of some 200 mm lead anywhere, the tool well in front of the arm, the wrist bent.
-        """
+        """A posture from which lines of some 200 mm lead anywhere, the tool in front of the arm, the wrist bent."""
         q = 0.5 * (self.spec.lower + self.spec.upper)
-        q[1:] = np.radians({"puma560": [70.0, -180.0, 20.0, 60.0, 10.0], "irb2400": [10.0, 20.0, 20.0, 60.0, 10.0],
-                            "manutec_r3": [50.0, -80.0, 20.0, 60.0, 10.0]}[self.spec.name])  # fmt: skip
+        q[1:] = np.radians(
+            {
+                "puma560": [70.0, -180.0, 20.0, 60.0, 10.0],
+                "irb2400": [10.0, 20.0, 20.0, 60.0, 10.0],
+                "manutec_r3": [50.0, -80.0, 20.0, 60.0, 10.0],
+            }[self.spec.name]
+        )
         return q
 
     def at_the_servo(self, q: Array) -> Array:

@@ -43,8 +43,10 @@ def test_an_arc_is_on_its_circle_passes_its_via_point_and_ends_where_it_should(r
 def test_the_orientation_turns_about_one_axis_in_proportion_and_the_via_point_has_no_say(sweep):
     R_start, R_end = rotation_from_rpy([0.1, 0.2, 0.3]), rotation_from_rpy([1.0, -0.5, 2.0])
     places = [on_circle((0.0, 0.0, 0.0), np.eye(3), 0.3, a) for a in (0.0, 0.4 * sweep, sweep)]
-    path, other = (ArcPath.through(pose(places[0], R_start), pose(places[1], R), pose(places[2], R_end))
-                   for R in (np.eye(3), rotation_from_rpy([2.0, 1.0, -1.0])))  # fmt: skip
+    path, other = (
+        ArcPath.through(pose(places[0], R_start), pose(places[1], R), pose(places[2], R_end))
+        for R in (np.eye(3), rotation_from_rpy([2.0, 1.0, -1.0]))
+    )
     X = path.poses(S)
     np.testing.assert_array_equal(X, other.poses(S))
     turned = [rotation_angle(R_start, R) for R in X[:, :3, :3]]
@@ -54,8 +56,9 @@ def test_the_orientation_turns_about_one_axis_in_proportion_and_the_via_point_ha
 
 def test_the_distance_from_an_arc_is_that_of_its_points_and_not_of_the_whole_circle():
     path = ArcPath.through(*(pose((math.cos(a), math.sin(a), 0.0)) for a in (0.0, 0.5, 1.0)))
-    points = np.array([[1.3, 0.0, 0.0], [0.5, 0.3, 0.0], [math.cos(0.4), math.sin(0.4), 0.2], [0.0, 0.0, 0.0],
-                       [-1.0, 0.0, 0.0]])  # fmt: skip
+    points = np.array(
+        [[1.3, 0.0, 0.0], [0.5, 0.3, 0.0], [math.cos(0.4), math.sin(0.4), 0.2], [0.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]
+    )
     nearest = [np.linalg.norm(path.points(np.linspace(0, 1, 200_001)) - p, axis=1).min() for p in points]
     np.testing.assert_allclose(path.deviation(points), nearest, atol=1e-8)
 
@@ -86,8 +89,15 @@ def test_a_very_flat_arc_still_keeps_its_digits():
     np.testing.assert_allclose(path.points(np.array([1.0]))[0], [0.8, 0.0, 0.5], atol=1e-12)
 
 
-def planned(name: str, shape: str = "jerk", radius: float = 0.12, sweep: float = 4.0, turn: float = 0.5,
-            override: float = 1.0, **options) -> LinePlan:  # fmt: skip
+def planned(
+    name: str,
+    shape: str = "jerk",
+    radius: float = 0.12,
+    sweep: float = 4.0,
+    turn: float = 0.5,
+    override: float = 1.0,
+    **options,
+) -> LinePlan:
     robot = bench(name, shape)
     q = robot.home()
     X = robot.tool(q)
@@ -178,12 +188,13 @@ def test_the_wrist_may_change_on_an_arc_and_refusals_speak_of_an_arc():
     np.testing.assert_allclose(left.q[-1], target, atol=1e-12)
     assert left.path.deviation(robot.tool(left.q)[:, :3, 3]).max() < 1e-9
     assert limits_broken(robot, left.q) == []
-    held = robot.planner.plan(
-        q, MoveArc(X_via=via, X_world_tool=end, q_end=target, speed=0.1, held=("TILT",)), TOOL
-    )
+    held = robot.planner.plan(q, MoveArc(X_via=via, X_world_tool=end, q_end=target, speed=0.1, held=("TILT",)), TOOL)
     assert limits_broken(robot, held.q) == []
-    lefty = next(each.q for each in robot.kinematics.solutions(robot.tool(q) @ np.linalg.inv(TOOL))
-                 if each.branch.arm != robot.kinematics.branch_of(q).arm)  # fmt: skip
+    lefty = next(
+        each.q
+        for each in robot.kinematics.solutions(robot.tool(q) @ np.linalg.inv(TOOL))
+        if each.branch.arm != robot.kinematics.branch_of(q).arm
+    )
     with pytest.raises(Fault, match="a move on an arc cannot change the configuration"):
         robot.planner.plan(q, MoveArc(X_via=via, X_world_tool=end, q_end=lefty), TOOL)
 

@@ -71,8 +71,10 @@ def test_a_blend_that_leaves_its_zone_or_a_limit_would_be_noticed():
     found = chain(robot, commands)
     assert found.corners[0].cycles > 5
     tight = [MoveLinear(X_world_tool=each.X_world_tool, zone=0.5 * found.corners[0].reach) for each in commands]
-    assert blends_broken(robot, found, tight) == ["path of move 0 left outside the zone",
-                                                  "path of move 1 left outside the zone"]  # fmt: skip
+    assert blends_broken(robot, found, tight) == [
+        "path of move 0 left outside the zone",
+        "path of move 1 left outside the zone",
+    ]
     a, b = (part.plan.q for part in found.parts)
     fast = robot.planner.chain(robot.home(), [MoveJoint(q_end=robot.home() + 0.4), MoveJoint(q_end=robot.home())], TOOL)
     a, b = (part.plan.q for part in fast.parts)
@@ -87,8 +89,10 @@ def test_without_zones_the_rows_are_those_of_the_plans_to_the_last_bit(name):
     lines = LinePlanner(robot.spec, robot.kinematics, robot.profile)
     for _ in range(5):
         start, commands = random_chain(robot, random, 3)
-        stops = [type(command)(**{**{f: getattr(command, f) for f in command.__slots__}, "zone": 0.0})
-                 for command in commands]  # fmt: skip
+        stops = [
+            type(command)(**{**{f: getattr(command, f) for f in command.__slots__}, "zone": 0.0})
+            for command in commands
+        ]
         found = robot.planner.chain(start, stops, TOOL)
         q, rows = start, [start[None]]
         for command in stops:
@@ -160,8 +164,14 @@ def test_rows_commands_and_modes_belong_together():
         assert after.first - after.offset in (overlap // 2, overlap - overlap // 2)  # the middle of the blend
         rows = np.flatnonzero(found.command == index)
         assert (rows[0] == 0 or rows[0] == part.first + 1, rows[-1]) == (True, part.last)
-        plain = slice(after.offset + overlap, found.parts[index + 1].offset + len(after.plan.q) - 1 - (
-            found.corners[index + 1].cycles if index + 1 < len(found.corners) else 0) + 1)  # fmt: skip
+        plain = slice(
+            after.offset + overlap,
+            found.parts[index + 1].offset
+            + len(after.plan.q)
+            - 1
+            - (found.corners[index + 1].cycles if index + 1 < len(found.corners) else 0)
+            + 1,
+        )
         own = found.q[plain]
         np.testing.assert_array_equal(own, after.plan.q[overlap : overlap + len(own)])
         assert len(off_path(robot, found, part, index)[0]) > 0
@@ -219,18 +229,26 @@ def test_an_override_scales_every_speed_and_takes_the_same_way(override):
     X = robot.tool(q)
     turned = pose(X[:3, 3], rotation_about([0.0, 0.0, 1.0], 1.0) @ X[:3, :3])
     aside = pose(X[:3, 3] + [0.0, 0.3, 0.0], X[:3, :3])
-    for command in (MoveLinear(X_world_tool=aside), MoveLinear(X_world_tool=turned), MoveJoint(q_end=q + J1),
-                    MoveArc(X_via=pose(X[:3, 3] + [0.0, 0.1, 0.1]), X_world_tool=aside)):  # fmt: skip
+    for command in (
+        MoveLinear(X_world_tool=aside),
+        MoveLinear(X_world_tool=turned),
+        MoveJoint(q_end=q + J1),
+        MoveArc(X_via=pose(X[:3, 3] + [0.0, 0.1, 0.1]), X_world_tool=aside),
+    ):
         whole, part = (robot.planner.plan(q, command, TOOL, each) for each in (1.0, override))
         assert limits_broken(robot, part.q, override) == []
-        asked = robot.speed[0] / 1.5 if isinstance(command, MoveJoint) else robot.planner.lines.way(
-            q, command, TOOL).limits.speed  # fmt: skip
+        asked = (
+            robot.speed[0] / 1.5
+            if isinstance(command, MoveJoint)
+            else robot.planner.lines.way(q, command, TOOL).limits.speed
+        )
         assert 0.95 < np.diff(part.s).max() / robot.profile.period_s / (override * asked) <= 1.0 + 1e-6
         assert len(part.q) > len(whole.q)
     change = np.radians([0, -10, 45, -55, -65, 85])
     command = MoveLinear(X_world_tool=robot.tool(change), q_end=change, speed=0.3)
-    whole, part = (robot.planner.plan(np.radians([-20, 10, 30, 10, 65, -15]), command, TOOL, each)
-                   for each in (1.0, override))  # fmt: skip
+    whole, part = (
+        robot.planner.plan(np.radians([-20, 10, 30, 10, 65, -15]), command, TOOL, each) for each in (1.0, override)
+    )
     assert part.wrist is not None
     assert part.wrist.condition == whole.wrist.condition
     assert part.wrist.share == pytest.approx(whole.wrist.share, abs=0.02)
@@ -257,8 +275,11 @@ def test_all_kinds_blend_with_each_other(kinds):
         if kind == "arc":
             via = pose(0.5 * (X_here + X_end)[:3, 3] + [0.03, 0.0, 0.0])
             return MoveArc(X_via=via, X_world_tool=X_end, zone=0.04, speed=0.3)
-        return MoveJoint(X_world_tool=X_end, zone=0.04, speed=0.5) if kind == "joint" else MoveLinear(
-            X_world_tool=X_end, zone=0.04, speed=0.3)  # fmt: skip
+        return (
+            MoveJoint(X_world_tool=X_end, zone=0.04, speed=0.5)
+            if kind == "joint"
+            else MoveLinear(X_world_tool=X_end, zone=0.04, speed=0.3)
+        )
 
     first, second = kinds.split()
     commands = [move(first, X, middle), move(second, middle, end)]
@@ -275,10 +296,11 @@ def test_where_overrides_differ_the_smaller_one_holds_in_the_blend(kind, overrid
     q = robot.home()
     ends = (q + 0.6 * np.eye(6)[0], q + 0.6 * np.eye(6)[0] + 0.5 * np.eye(6)[1])
     commands: list[Command] = [
-        MoveJoint(q_end=end, zone=0.1, override=share) if kind == "joint"
+        MoveJoint(q_end=end, zone=0.1, override=share)
+        if kind == "joint"
         else MoveLinear(X_world_tool=robot.tool(end), zone=0.1, speed=1.0, override=share)
         for end, share in zip(ends, overrides, strict=True)
-    ]  # fmt: skip
+    ]
     found = robot.planner.chain(q, commands, TOOL)
     assert found.corners[0].cycles > 0
     assert limits_broken(robot, found.q) == []

@@ -63,8 +63,9 @@ def test_speed_acceleration_and_override_are_shares_of_the_limits(share):
         assert (dq / robot.speed).max() == pytest.approx(share, rel=0.01)
     _, _, ddq = np.abs(robot.at_the_servo(plan("puma560", start, q_end=end, acceleration=share).q)).max(axis=1)
     assert (ddq / robot.acceleration).max() == pytest.approx(share, rel=0.06)
-    fast, slow = (np.abs(robot.at_the_servo(plan("puma560", start, q_end=end, override=o).q)[2]).max(axis=0)
-                  for o in (1.0, share))  # fmt: skip
+    fast, slow = (
+        np.abs(robot.at_the_servo(plan("puma560", start, q_end=end, override=o).q)[2]).max(axis=0) for o in (1.0, share)
+    )
     assert (slow / fast).min() > 1.4 * share  # an override leaves the acceleration as it is, but for its time to rise
 
 
@@ -147,8 +148,9 @@ def test_configuration_and_turns_of_a_taught_point_are_kept():
     other = robot.planner.joints.end(q, MoveJoint(X_world_tool=X, configuration=(flipped,)), TOOL)
     assert str(robot.kinematics.branch_of(other)).split()[2] == flipped
     np.testing.assert_allclose(robot.tool(other), X, atol=1e-9)
-    turned = robot.planner.joints.end(q, MoveJoint(X_world_tool=X, configuration=tuple(str(here).split()),
-                                                             turns=(0, 0, 0, 0, 0, 1)), TOOL)  # fmt: skip
+    turned = robot.planner.joints.end(
+        q, MoveJoint(X_world_tool=X, configuration=tuple(str(here).split()), turns=(0, 0, 0, 0, 0, 1)), TOOL
+    )
     np.testing.assert_allclose(turned - q, [0.0, 0.0, 0.0, 0.0, 0.0, 2.0 * np.pi], atol=1e-9)
     joints = robot.planner.joints.end(q, MoveJoint(X_world_tool=X, q_end=q + 0.1), TOOL)
     np.testing.assert_array_equal(joints, q + 0.1)  # joint angles say more than a pose
@@ -182,9 +184,17 @@ def test_refusals_name_what_is_wrong():
 
 @pytest.mark.parametrize(
     "options",
-    [{"speed": 0.0}, {"speed": 1.01}, {"speed": math.nan}, {"acceleration": 0.0}, {"acceleration": 2.0},
-     {"duration": 0.0}, {"duration": math.inf}, {"duration": 601.0}],
-)  # fmt: skip
+    [
+        {"speed": 0.0},
+        {"speed": 1.01},
+        {"speed": math.nan},
+        {"acceleration": 0.0},
+        {"acceleration": 2.0},
+        {"duration": 0.0},
+        {"duration": math.inf},
+        {"duration": 601.0},
+    ],
+)
 def test_impossible_options_are_refused(options):
     q = bench("puma560").home()
     assert refusal("puma560", q, q_end=q + 0.1, **options).code == "RBL404"

@@ -192,9 +192,18 @@ def test_a_line_past_the_wrist_singularity_is_slowed_far_from_it_and_refused_clo
 
 @pytest.mark.parametrize(
     "options",
-    [{"speed": 0.0}, {"speed": -1.0}, {"speed": math.nan}, {"speed": 5.0}, {"acceleration": 0.0},
-     {"acceleration": 1.5}, {"duration": 0.0}, {"duration": math.inf}, {"duration": math.nan}],
-)  # fmt: skip
+    [
+        {"speed": 0.0},
+        {"speed": -1.0},
+        {"speed": math.nan},
+        {"speed": 5.0},
+        {"acceleration": 0.0},
+        {"acceleration": 1.5},
+        {"duration": 0.0},
+        {"duration": math.inf},
+        {"duration": math.nan},
+    ],
+)
 def test_impossible_options_are_refused(options):
     assert refusal(0.48, -0.22, 0.64, **options).code == "RBL404"
 

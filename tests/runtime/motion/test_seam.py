@@ -145,10 +145,15 @@ def test_a_lost_sample_holds_the_last_and_too_many_are_a_fault():
     assert tracker.deviation[0] == pytest.approx(2 * MM)
 
 
-@pytest.mark.parametrize("reading", [
-    [0.0, 16 * MM, 15 * MM, 0, 0, 0], [0, 0, 0, 0, 0, -10.5 * DEG],
-    [math.nan, 0, 0, 0, 0, 0], [0, 0, 0, math.inf, 0, 0],
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "reading",
+    [
+        [0.0, 16 * MM, 15 * MM, 0, 0, 0],
+        [0, 0, 0, 0, 0, -10.5 * DEG],
+        [math.nan, 0, 0, 0, 0, 0],
+        [0, 0, 0, math.inf, 0, 0],
+    ],
+)
 def test_a_reading_beyond_its_bound_is_a_fault_and_is_not_followed(reading):
     tracker = SeamTracker("torch", UNFILTERED, DT, lambda way, travel: np.array(reading, dtype=float))
     with pytest.raises(Fault, match="RBL524: seam sensor torch sees the seam"):

@@ -7,8 +7,33 @@ from runtime.motion.fine import FineInterpolator
 from runtime.motion.stop import stopping_rows
 
 TICKS, PERIOD = 8, 8e-3
-CYCLES = (*range(3, 17), 18, 20, 22, 24, 27, 30, 33, 37, 41, 46, 51, 57, 64, 72, 81, 91, 102, 114, 128, 144, 162, 182,
-          204, 229)  # fmt: skip
+CYCLES = (
+    *range(3, 17),
+    18,
+    20,
+    22,
+    24,
+    27,
+    30,
+    33,
+    37,
+    41,
+    46,
+    51,
+    57,
+    64,
+    72,
+    81,
+    91,
+    102,
+    114,
+    128,
+    144,
+    162,
+    182,
+    204,
+    229,
+)
 """How long a stop may last, in cycles: each an eighth more than the one before."""
 
 

@@ -51,9 +51,13 @@ def test_the_moves_are_those_of_the_specification():
 
 @pytest.mark.parametrize(
     ("move", "posture", "end", "least_j5", "fastest"),
-    [(E1, "rpy", (125, 65, -95), "54.3", "34.6"), (E2, "rpy", (-225, -10, 215), "5.95", "102"),
-     (E3, "rpy", (210, 10, -130), "7.4", "66"), (E3, "axis", (210, 10, -130), "0.40", "1008")],
-)  # fmt: skip
+    [
+        (E1, "rpy", (125, 65, -95), "54.3", "34.6"),
+        (E2, "rpy", (-225, -10, 215), "5.95", "102"),
+        (E3, "rpy", (210, 10, -130), "7.4", "66"),
+        (E3, "axis", (210, 10, -130), "0.40", "1008"),
+    ],
+)
 def test_the_conventional_move_ends_at_the_flipped_solution(move, posture, end, least_j5, fastest):
     done = carry_out(move, NOTHING, ROBOT, posture=posture)
     assert done.q_deg[-1, 3:] == pytest.approx(end, abs=1e-9)
@@ -198,8 +202,9 @@ def test_a_path_that_is_lost_is_a_condition_of_its_own():
     q = np.zeros((11, 6))
     q[6:] = np.nan
     reach = np.ones(3)
-    found = first_trigger(q, np.zeros(6), np.linspace(0.0, 1.0, 11), 0.008,
-                          WristLimits(speed=reach, lower=-reach, upper=reach), NOTHING)  # fmt: skip
+    found = first_trigger(
+        q, np.zeros(6), np.linspace(0.0, 1.0, 11), 0.008, WristLimits(speed=reach, lower=-reach, upper=reach), NOTHING
+    )
     assert (found.index, found.condition, found.axis) == (6, "reach", None)
 
 

@@ -47,10 +47,17 @@ def must_hold(found: LinePlan, end_deg) -> None:
 
 
 @pytest.mark.parametrize("move", [E1, E2, E3], ids=["E1", "E2", "E3"])
-@pytest.mark.parametrize("options", [
-    WristOptions(), WristOptions(posture="rpy"), WristOptions(shape="hermite"), WristOptions(shape="linear"),
-    WristOptions(width=1.0),
-], ids=["default", "rpy", "hermite", "linear", "soft"])  # fmt: skip
+@pytest.mark.parametrize(
+    "options",
+    [
+        WristOptions(),
+        WristOptions(posture="rpy"),
+        WristOptions(shape="hermite"),
+        WristOptions(shape="linear"),
+        WristOptions(width=1.0),
+    ],
+    ids=["default", "rpy", "hermite", "linear", "soft"],
+)
 def test_the_moves_of_the_document_end_as_taught_within_every_limit(move, options):
     must_hold(plan(move, options), move[1])
 
@@ -133,8 +140,11 @@ def test_a_move_of_the_wrist_alone_keeps_the_tool_point_where_it_is():
     move = (10, 20, 10, 30, 40, -50), None
     end = np.radians(move[0])
     X = KINEMATICS.forward(end) @ TOOL
-    other = next(each.q for each in KINEMATICS.solutions(X @ inverse(TOOL))
-                 if str(each.branch) == str(KINEMATICS.branch_of(end)).replace("NOFLIP", "FLIP"))  # fmt: skip
+    other = next(
+        each.q
+        for each in KINEMATICS.solutions(X @ inverse(TOOL))
+        if str(each.branch) == str(KINEMATICS.branch_of(end)).replace("NOFLIP", "FLIP")
+    )
     found = plan((move[0], np.degrees(other)), speed=0.1)
     must_hold(found, np.degrees(other))
     assert found.path.length < 1e-12
@@ -153,16 +163,23 @@ def test_configuration_and_turns_choose_the_end_of_a_taught_pose():
     assert np.degrees(flip.q[-1, 3:]) == pytest.approx((-55, -65, 85))
     noflip = plan(E1, q_end=None, configuration=("NOFLIP",))
     assert np.degrees(noflip.q[-1, 3:]) == pytest.approx((125, 65, -95))
-    turned = plan(E1, WristOptions(untaught_deviation=math.pi), q_end=None, configuration=("NOFLIP",),
-                  turns=(0, 0, 0, 0, 0, 1), speed=0.1)  # fmt: skip
+    turned = plan(
+        E1,
+        WristOptions(untaught_deviation=math.pi),
+        q_end=None,
+        configuration=("NOFLIP",),
+        turns=(0, 0, 0, 0, 0, 1),
+        speed=0.1,
+    )
     assert np.degrees(turned.q[-1, 5]) == pytest.approx(-95 + 360)
     with pytest.raises(Fault, match="RBL412: the end is taught FLIP"):
         plan(E1, q_end=None, configuration=("FLIP",), turns=(0, 0, 0, 5))
 
 
 def test_another_arm_configuration_is_no_straight_move():
-    elbow_down = next(each.q for each in KINEMATICS.solutions(KINEMATICS.forward(np.radians(E1[1])))
-                      if "BELOW" in str(each.branch))  # fmt: skip
+    elbow_down = next(
+        each.q for each in KINEMATICS.solutions(KINEMATICS.forward(np.radians(E1[1]))) if "BELOW" in str(each.branch)
+    )
     with pytest.raises(Fault, match=r"RBL412: the end is taught .* BELOW .*cannot change the configuration of the arm"):
         plan((E1[0], np.degrees(elbow_down)))
 
@@ -238,8 +255,10 @@ def test_an_arm_without_a_closed_form_goes_through_its_wrist_by_newton():
 
 
 def test_a_move_whose_slower_profiles_round_to_the_same_cycles_is_slowed_all_the_same():
-    move = ((-90.6966, -21.1265, 20.5946, 94.6183, 0.9047, -24.6039),
-            (-78.7505, -17.611, 4.8456, -79.761, 0.4655, 149.7754))  # fmt: skip
+    move = (
+        (-90.6966, -21.1265, 20.5946, 94.6183, 0.9047, -24.6039),
+        (-78.7505, -17.611, 4.8456, -79.761, 0.4655, 149.7754),
+    )
     for options in ({"wrist": "keep"}, {}):
         found = plan(move, WristOptions(posture_first=20.0), speed=0.3, **options)
         assert found.slowdown.factor < 3.0
@@ -251,8 +270,10 @@ def test_a_taught_pose_is_not_flipped_to_it_to_save_a_little_time():
     """The path itself needs 1.4 times; another end would be a few rows faster with the tool 40 deg off."""
     spec = load_builtin("manutec_r3")
     kinematics = Kinematics(spec)
-    start, end = (np.radians(q) for q in ((-23.33, 39.95, -8.25, -11.66, -66.85, 137.2),
-                                          (-45.03, 60.33, 12.57, -10.49, -83.68, 123.09)))  # fmt: skip
+    start, end = (
+        np.radians(q)
+        for q in ((-23.33, 39.95, -8.25, -11.66, -66.85, 137.2), (-45.03, 60.33, 12.57, -10.49, -83.68, 123.09))
+    )
     X = kinematics.forward(end) @ TOOL
     found = LinePlanner(spec, kinematics, Profile()).plan(start, MoveLinear(X_world_tool=X), TOOL)
     assert found.wrist is None
@@ -261,8 +282,11 @@ def test_a_taught_pose_is_not_flipped_to_it_to_save_a_little_time():
 def test_c2_by_time_is_that_of_the_time_on_a_move_that_only_turns():
     start = np.radians((10, 20, 10, 30, 40, -50))
     X = KINEMATICS.forward(start) @ TOOL
-    other = next(each.q for each in KINEMATICS.solutions(X @ inverse(TOOL), start)
-                 if str(each.branch) == str(KINEMATICS.branch_of(start)).replace("NOFLIP", "FLIP"))  # fmt: skip
+    other = next(
+        each.q
+        for each in KINEMATICS.solutions(X @ inverse(TOOL), start)
+        if str(each.branch) == str(KINEMATICS.branch_of(start)).replace("NOFLIP", "FLIP")
+    )
     end = np.degrees(other) + (0, 0, 0, 0, 0, 30)
     options = replace(WristOptions(remedies=False).only(), remaining_time=0.2)
     found = plan((np.degrees(start), end), options, speed=0.1)

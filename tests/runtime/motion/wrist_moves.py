@@ -74,8 +74,9 @@ def conventional(move, s: Array, path: LinePath) -> Array:
     return q
 
 
-def carry_out(move, options: WristOptions, speed_deg_s, *, dt: float = 0.01, posture: PostureLaw = "rpy",
-              range_deg: float = 180.0) -> Done:  # fmt: skip
+def carry_out(
+    move, options: WristOptions, speed_deg_s, *, dt: float = 0.01, posture: PostureLaw = "rpy", range_deg: float = 180.0
+) -> Done:
     """Carry a move out by the flow chart S1 to S12."""
     path, s = path_of(move, posture), np.linspace(0.0, 1.0, round(SECONDS / dt) + 1)
     q, q_end = conventional(move, s, path), np.radians(move[1])

@@ -56,29 +56,36 @@ def test_noise_and_loss_have_their_size_and_repeat():
     assert not kept[:, 1:].any()
 
 
-@pytest.mark.parametrize(("text", "code"), [
-    ('kind = "wave"\n', "RBL610"),
-    (RAMP.replace("over_mm = 100", "over_mm = 0"), "RBL605"),
-    (RAMP.replace("-3", "nan"), "RBL604"),
-    (RAMP.replace("over_mm = 100\n", ""), "RBL608"),
-    (RAMP + "lost = 1.5\n", "RBL605"),
-    (RAMP + "lots = 0.5\n", "RBL609"),
-    (RAMP + 'frame = "tool"\n', "RBL610"),
-    ('kind = "table"\n', "RBL608"),
-    ('kind = "table"\nfile = "../seam.csv"\n', "RBL602"),
-    ('kind = "table"\nfile = "/etc/passwd"\n', "RBL602"),
-    ('kind = "table"\nfile = "none.csv"\n', "RBL600"),
-    ('kind = "table"\nfile = "bad.csv"\n', "RBL604"),
-    ('kind = "table"\nfile = "nan.csv"\n', "RBL604"),
-    ('kind = "table"\nfile = "back.csv"\n', "RBL605"),
-    ('kind = "table"\nfile = "empty.csv"\n', "RBL605"),
-    ('kind = "table"\nfile = "link.csv"\n', "RBL602"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ('kind = "wave"\n', "RBL610"),
+        (RAMP.replace("over_mm = 100", "over_mm = 0"), "RBL605"),
+        (RAMP.replace("-3", "nan"), "RBL604"),
+        (RAMP.replace("over_mm = 100\n", ""), "RBL608"),
+        (RAMP + "lost = 1.5\n", "RBL605"),
+        (RAMP + "lots = 0.5\n", "RBL609"),
+        (RAMP + 'frame = "tool"\n', "RBL610"),
+        ('kind = "table"\n', "RBL608"),
+        ('kind = "table"\nfile = "../seam.csv"\n', "RBL602"),
+        ('kind = "table"\nfile = "/etc/passwd"\n', "RBL602"),
+        ('kind = "table"\nfile = "none.csv"\n', "RBL600"),
+        ('kind = "table"\nfile = "bad.csv"\n', "RBL604"),
+        ('kind = "table"\nfile = "nan.csv"\n', "RBL604"),
+        ('kind = "table"\nfile = "back.csv"\n', "RBL605"),
+        ('kind = "table"\nfile = "empty.csv"\n', "RBL605"),
+        ('kind = "table"\nfile = "link.csv"\n', "RBL602"),
+    ],
+)
 def test_what_a_cell_may_not_say(tmp_path, text, code):
     folder = tmp_path / "cell"
     folder.mkdir()
-    for name, content in (("bad", "0,0,0,0\n1,2,3\n"), ("nan", "0,0,0,0\n1,nan,0,0\n"), ("back", "5,0,0,0\n1,0,0,0\n"),
-                          ("empty", "")):  # fmt: skip
+    for name, content in (
+        ("bad", "0,0,0,0\n1,2,3\n"),
+        ("nan", "0,0,0,0\n1,nan,0,0\n"),
+        ("back", "5,0,0,0\n1,0,0,0\n"),
+        ("empty", ""),
+    ):
         (folder / f"{name}.csv").write_text(content)
     (tmp_path / "seam.csv").write_text("0,0,0,0\n")
     (folder / "link.csv").symlink_to(tmp_path / "seam.csv")
@@ -88,10 +95,15 @@ def test_what_a_cell_may_not_say(tmp_path, text, code):
     assert caught.value.line >= 1
 
 
-@pytest.mark.parametrize(("content", "code"), [
-    ("0,0,0,0\n" + "1" * 140_000 + ",0,0,0\n", "RBL604"), ('0,0,0,0\n"1,0,0,0\n', "RBL604"),
-    ("0,nan,0,0\n1,0,0,0\n", "RBL604"), ("0,0,0\n1,0,0,0\n", "RBL604"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("content", "code"),
+    [
+        ("0,0,0,0\n" + "1" * 140_000 + ",0,0,0\n", "RBL604"),
+        ('0,0,0,0\n"1,0,0,0\n', "RBL604"),
+        ("0,nan,0,0\n1,0,0,0\n", "RBL604"),
+        ("0,0,0\n1,0,0,0\n", "RBL604"),
+    ],
+)
 def test_a_damaged_table_is_located_and_no_first_line_is_dropped_unseen(tmp_path, content, code):
     (tmp_path / "seam.csv").write_text(content)
     with pytest.raises(FileFault) as caught:

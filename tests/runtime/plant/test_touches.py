@@ -15,9 +15,14 @@ class Cell:
 
     def __init__(self):
         self.bodies = Bodies(
-            names=("a", "b"), size=np.full((2, 3), 0.04), p=np.zeros((2, 3)), R=np.tile(np.eye(3), (2, 1, 1)),
-            p_tool=np.zeros(3), R_tool=np.eye(3), pad_length=0.04,
-        )  # fmt: skip
+            names=("a", "b"),
+            size=np.full((2, 3), 0.04),
+            p=np.zeros((2, 3)),
+            R=np.tile(np.eye(3), (2, 1, 1)),
+            p_tool=np.zeros(3),
+            R_tool=np.eye(3),
+            pad_length=0.04,
+        )
         self.tick, self.line, self.pressed = 0, 10, ("a",)
         self.touches = Touches(self.bodies, lambda: self.pressed)
         self.run(())

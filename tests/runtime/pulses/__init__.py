@@ -34,8 +34,13 @@ def pose(x=0.0, y=0.0, z=0.0, turn=((1, 0, 0), (0, 1, 0), (0, 0, 1))):
 
 
 TURN_X = ((1, 0, 0), (0, 0, -1), (0, 1, 0))
-ARM = {"kind": "arm", "name": "two", "placements": [pose(), pose(0.4, turn=TURN_X)],
-       "X_last_flange": pose(0.3, turn=TURN_X), "X_flange_tool": pose(0.0, 0.1, 0.0)}  # fmt: skip
+ARM = {
+    "kind": "arm",
+    "name": "two",
+    "placements": [pose(), pose(0.4, turn=TURN_X)],
+    "X_last_flange": pose(0.3, turn=TURN_X),
+    "X_flange_tool": pose(0.0, 0.1, 0.0),
+}
 """A mechanism of two axes in the plane, the second one lying down."""
 
 
@@ -55,12 +60,27 @@ class Handmade:
         self.at = {name: start for name, _, _, start in self.channels}
 
     def load(self, line, mass=0.8, cog=(0, 0, 60)):
-        self.sequence.append({"kind": "marker", "line": line, "number": 10 * line, "text": f"LOAD {cog}, {mass}",
-                              "load": {"mass_kg": mass, "cog_mm": list(cog)}})  # fmt: skip
+        self.sequence.append(
+            {
+                "kind": "marker",
+                "line": line,
+                "number": 10 * line,
+                "text": f"LOAD {cog}, {mass}",
+                "load": {"mass_kg": mass, "cog_mm": list(cog)},
+            }
+        )
 
     def hand(self, line, state, dwell=0.3):
-        self.sequence.append({"kind": "marker", "line": line, "number": 10 * line, "text": f"HAND {state.upper()}",
-                              "hand": state, "dwell_s": dwell})  # fmt: skip
+        self.sequence.append(
+            {
+                "kind": "marker",
+                "line": line,
+                "number": 10 * line,
+                "text": f"HAND {state.upper()}",
+                "hand": state,
+                "dwell_s": dwell,
+            }
+        )
 
     def move(self, line, start, end, text="MOVE P1", **targets):
         """A move; ``targets`` of the channels that do not stand still, one a step; ``start`` and ``end`` mm."""
@@ -69,16 +89,42 @@ class Handmade:
             tables[name] = f"{len(self.files):02}_line{10 * line}_{name}.csv"
             self.files[tables[name]] = csv(rows(self.at[name], positions, self.rate))
             self.at[name] = positions[-1]
-        self.sequence.append({"kind": "move", "line": line, "number": 10 * line, "text": text,
-                              "steps": max(map(len, targets.values()), default=0), "start_mm": list(start),
-                              "end_mm": list(end), "tables": tables, "f174": {}, "summary": {}})  # fmt: skip
+        self.sequence.append(
+            {
+                "kind": "move",
+                "line": line,
+                "number": 10 * line,
+                "text": text,
+                "steps": max(map(len, targets.values()), default=0),
+                "start_mm": list(start),
+                "end_mm": list(end),
+                "tables": tables,
+                "f174": {},
+                "summary": {},
+            }
+        )
 
     @property
     def manifest(self):
-        channels = [{"name": name, "unit": unit, "per_pulse": per_pulse, "min_hz": self.min_hz, "max_hz": self.max_hz,
-                     "start_pulses": start} for name, unit, per_pulse, start in self.channels]  # fmt: skip
-        return {"schema": 1, "program": "by_hand.rbl", "mechanism": self.mechanism, "step_s": 1 / self.rate,
-                "channels": channels, "sequence": self.sequence}  # fmt: skip
+        channels = [
+            {
+                "name": name,
+                "unit": unit,
+                "per_pulse": per_pulse,
+                "min_hz": self.min_hz,
+                "max_hz": self.max_hz,
+                "start_pulses": start,
+            }
+            for name, unit, per_pulse, start in self.channels
+        ]
+        return {
+            "schema": 1,
+            "program": "by_hand.rbl",
+            "mechanism": self.mechanism,
+            "step_s": 1 / self.rate,
+            "channels": channels,
+            "sequence": self.sequence,
+        }
 
     def write(self, folder: Path) -> Path:
         folder.mkdir(exist_ok=True)
@@ -90,12 +136,13 @@ class Handmade:
 
 def staircase():
     """An xy table that goes 3 mm along x, then 4 mm along y, three times: 2.4 mm beside the line in each corner."""
-    found = Handmade({"kind": "cartesian", "name": "xy", "axes": ["x", "y"], "z_mm": 120.0},
-                     [("X", "mm", 0.01, 100), ("Y", "mm", -0.02, 50)])  # fmt: skip
+    found = Handmade(
+        {"kind": "cartesian", "name": "xy", "axes": ["x", "y"], "z_mm": 120.0},
+        [("X", "mm", 0.01, 100), ("Y", "mm", -0.02, 50)],
+    )
     found.load(1)
     found.hand(2, "off")
-    found.move(3, (1, -1, 120), (10, 11, 120), X=[400, 400, 700, 700, 1000, 1000],
-               Y=[50, -150, -150, -350, -350, -550])  # fmt: skip
+    found.move(3, (1, -1, 120), (10, 11, 120), X=[400, 400, 700, 700, 1000, 1000], Y=[50, -150, -150, -350, -350, -550])
     found.move(4, (10, 11, 120), (9, 11, 120), "MOVE P2", X=[960, 940, 920, 900])
     return found
 
@@ -103,7 +150,9 @@ def staircase():
 def turntable():
     """A cylindrical arm that turns from -10 to 10 deg at 300 mm in two steps: an arc over the chord of its line."""
     x, y = 300.0 * 0.984807753012208, 300.0 * 0.17364817766693033
-    found = Handmade({"kind": "cylindrical", "name": "cylindrical", "axes": ["theta", "r"], "z_mm": 50.0},
-                     [("T", "deg", 0.05, -200), ("R", "mm", 0.01, 30000)])  # fmt: skip
+    found = Handmade(
+        {"kind": "cylindrical", "name": "cylindrical", "axes": ["theta", "r"], "z_mm": 50.0},
+        [("T", "deg", 0.05, -200), ("R", "mm", 0.01, 30000)],
+    )
     found.move(1, (x, -y, 50), (x, y, 50), T=[0, 200])
     return found

@@ -38,8 +38,11 @@ def test_a_file_gives_channels_in_the_order_of_the_joints(tmp_path):
     theta, r, z = read(tmp_path)
     assert [each.joint.name for each in (theta, r, z)] == ["theta", "r", "z"]
     assert (theta.pulse, theta.min_hz, theta.max_hz, theta.output) == (
-        pytest.approx(0.0036 * DEG), MIN_HZ, MAX_HZ, "pulse-direction",
-    )  # fmt: skip
+        pytest.approx(0.0036 * DEG),
+        MIN_HZ,
+        MAX_HZ,
+        "pulse-direction",
+    )
     assert (r.pulse, r.min_hz, r.max_hz, r.output) == (pytest.approx(0.01 * MM), 48.0, 20000.0, "cw-ccw")
     assert (r.unit, theta.unit) == (("mm", MM), ("deg", DEG))
 

@@ -75,18 +75,33 @@ BAD_MANIFESTS = [
     (put("mechanism", "axes", ["x"]), "'mechanism.y_mm' is missing", "RBL630"),
     (without("mechanism", "z_mm"), "'mechanism.z_mm' is missing", "RBL630"),
     (put("mechanism", {"kind": "cylindrical", "name": "", "axes": ["r", "theta"]}), "begin with theta, r", "RBL630"),
-    (put("mechanism", {"kind": "scara", "name": "", "axes": ["theta1", "theta2"], "l1_mm": 1, "z_mm": 1}),
-     "'mechanism.l2_mm' is missing", "RBL630"),
+    (
+        put("mechanism", {"kind": "scara", "name": "", "axes": ["theta1", "theta2"], "l1_mm": 1, "z_mm": 1}),
+        "'mechanism.l2_mm' is missing",
+        "RBL630",
+    ),
     (put("mechanism", {**ARM, "placements": []}), "'mechanism.placements' has no axis", "RBL630"),
     (put("mechanism", {**ARM, "placements": [pose(), 3]}), "'mechanism.placements.2' must be a pose of 4", "RBL630"),
-    (put("mechanism", {**ARM, "placements": [pose(), [[1, 0, 0]] * 4]}), "'mechanism.placements.2.1' must be a list",
-     "RBL630"),
-    (put("mechanism", {**ARM, "X_last_flange": pose(turn=((2, 0, 0), (0, 1, 0), (0, 0, 1)))}), "is not a pose",
-     "RBL630"),
-    (put("mechanism", {**ARM, "X_last_flange": pose(turn=((-1, 0, 0), (0, 1, 0), (0, 0, 1)))}), "is not a pose",
-     "RBL630"),
-    (put("mechanism", {**ARM, "X_flange_tool": [*pose()[:3], [0, 0, 1, 1]]}), "'mechanism.X_flange_tool' is not a",
-     "RBL630"),
+    (
+        put("mechanism", {**ARM, "placements": [pose(), [[1, 0, 0]] * 4]}),
+        "'mechanism.placements.2.1' must be a list",
+        "RBL630",
+    ),
+    (
+        put("mechanism", {**ARM, "X_last_flange": pose(turn=((2, 0, 0), (0, 1, 0), (0, 0, 1)))}),
+        "is not a pose",
+        "RBL630",
+    ),
+    (
+        put("mechanism", {**ARM, "X_last_flange": pose(turn=((-1, 0, 0), (0, 1, 0), (0, 0, 1)))}),
+        "is not a pose",
+        "RBL630",
+    ),
+    (
+        put("mechanism", {**ARM, "X_flange_tool": [*pose()[:3], [0, 0, 1, 1]]}),
+        "'mechanism.X_flange_tool' is not a",
+        "RBL630",
+    ),
     (put("mechanism", ARM), "'channels.1.unit' must be deg, the unit of this joint", "RBL630"),
     (put("mechanism", {**ARM, "placements": [pose()]}), "'channels' has 2 entries; the arm has 1 joints", "RBL630"),
     (put("step_s", 0.03), "'step_s' is 0.03 s and must be a whole part of a second", "RBL630"),
@@ -128,11 +143,13 @@ BAD_MANIFESTS = [
     (put(*MOVE, "tables", "Z", None), "'sequence.3.tables.Z' is not a channel; known: X, Y", "RBL630"),
     (put(*MOVE, "tables", "X", 3), "'sequence.3.tables.X' must be a text", "RBL630"),
     (put(*MOVE, "tables", "X", Y_TABLE), "tables.Y' is '01_line30_Y.csv', which another table is too", "RBL630"),
-    *((put(*MOVE, "tables", "X", name), "not the plain name of a file in the folder", "RBL630")
-      for name in ("", ".", "..", "../x.csv", "/etc/passwd", "a/b.csv", "a\\b.csv", "C:x.csv", "\\\\host\\x", "a\0b")),
+    *(
+        (put(*MOVE, "tables", "X", name), "not the plain name of a file in the folder", "RBL630")
+        for name in ("", ".", "..", "../x.csv", "/etc/passwd", "a/b.csv", "a\\b.csv", "C:x.csv", "\\\\host\\x", "a\0b")
+    ),
     (put(*MOVE, "tables", "X", "\ud800.csv"), "cannot open", "RBL630"),
     (put(*MOVE, "tables", "X", "x" * 300), "cannot open", "RBL630"),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("change", "said", "code"), BAD_MANIFESTS, ids=[said for _, said, _ in BAD_MANIFESTS])
@@ -215,8 +232,11 @@ def test_the_manifest_is_smaller_than_a_table(tmp_path):
 
 def test_a_folder_is_needed(tmp_path):
     (tmp_path / "file").write_text("{}")
-    for path, said in ((tmp_path / "none", "No such file"), (tmp_path / "file", "is not a folder"),
-                       (tmp_path / "a\0b", "null")):  # fmt: skip
+    for path, said in (
+        (tmp_path / "none", "No such file"),
+        (tmp_path / "file", "is not a folder"),
+        (tmp_path / "a\0b", "null"),
+    ):
         found = fault(path)
         assert (found.code, found.path) == ("RBL630", str(path))
         assert said in found.message
@@ -326,8 +346,9 @@ def test_the_next_move_continues_where_the_last_one_ended(tmp_path):
 @pytest.mark.parametrize(("hz", "good"), [(1_000_000_000, True), (999_999_950, True), (999_999_850, False)])
 def test_a_row_may_be_off_by_a_billionth_of_a_second(tmp_path, hz, good):
     """Ten million pulses in 10 ms, in half a nanosecond more, and in one and a half."""
-    export = Handmade({"kind": "cartesian", "name": "x", "axes": ["x"], "y_mm": 0, "z_mm": 0}, [("X", "mm", 1e-9, 0)],
-                      max_hz=1e9)  # fmt: skip
+    export = Handmade(
+        {"kind": "cartesian", "name": "x", "axes": ["x"], "y_mm": 0, "z_mm": 0}, [("X", "mm", 1e-9, 0)], max_hz=1e9
+    )
     export.move(1, (0, 0, 0), (1, 0, 0), X=[10_000_000])
     export.files = dict.fromkeys(export.files, csv([["up", hz, 10_000_000, 1], ["end", 0, 10_000_000, 0]]))
     folder = export.write(tmp_path / "out")

@@ -48,8 +48,10 @@ def test_a_scara_keeps_its_elbow_and_turns_its_tool_by_the_rest():
         np.testing.assert_allclose(turned - turned[0], np.linspace(0.0, 0.5, 50), atol=1e-9)
 
 
-@pytest.mark.parametrize(("theta4", "end"), [(300.0, 120.0), (-300.0, -120.0), (20.0, -160.0), (-20.0, 160.0),
-                                             (0.0, 180.0), (0.004, 180.004)])  # fmt: skip
+@pytest.mark.parametrize(
+    ("theta4", "end"),
+    [(300.0, 120.0), (-300.0, -120.0), (20.0, -160.0), (-20.0, 160.0), (0.0, 180.0), (0.004, 180.004)],
+)
 @pytest.mark.parametrize("rounding", [0.0, 1e-12, -1e-12])
 def test_a_half_turn_keeps_the_range_of_theta4_and_its_sign_is_not_that_of_rounding(theta4, end, rounding):
     q = np.array([-60.0 * DEG, 80.0 * DEG, 0.7, theta4 * DEG])

@@ -111,8 +111,14 @@ def test_a_joint_that_would_be_too_fast_slows_the_move():
     slow = tuple(replace(joint, speed=0.1) if joint.name == "theta" else joint for joint in machine.joints)
     machine = replace(machine, joints=slow)
     channels = default_channels(slow, pulses, 1.0)
-    found = plan_move(machine, Stand(q=machine.home.q), MoveLinear(X_world_tool=pose(B)), channels,
-                      counted(machine.home.q, channels), 0.01)  # fmt: skip
+    found = plan_move(
+        machine,
+        Stand(q=machine.home.q),
+        MoveLinear(X_world_tool=pose(B)),
+        channels,
+        counted(machine.home.q, channels),
+        0.01,
+    )
     assert found.slowed > 2.0
     assert "limits of theta speed" in found.notes[0]
     fastest = np.abs(np.diff(found.q[:, 0])).max() / 0.01

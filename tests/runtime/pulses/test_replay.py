@@ -136,13 +136,19 @@ MECHANISMS = [
     ({"kind": "cartesian", "axes": ["y"], "x_mm": 7.0, "z_mm": 120.0}, {"y": 20.0}, (0.007, 0.02, 0.12)),
     ({"kind": "cartesian", "axes": ["z", "x", "y"]}, {"z": 1.0, "x": 2.0, "y": 3.0}, (0.002, 0.003, 0.001)),
     ({"kind": "cylindrical", "axes": ["theta", "r", "z"]}, {"theta": 90.0, "r": 250.0, "z": -5.0}, (0, 0.25, -0.005)),
-    ({"kind": "scara", "axes": ["theta1", "theta2"], "l1_mm": 400.0, "l2_mm": 300.0, "z_mm": 10.0},
-     {"theta1": 0.5 / DEGREE, "theta2": -0.8 / DEGREE}, (0.4 * C + 0.3 * C12, 0.4 * S + 0.3 * S12, 0.01)),
-    ({"kind": "scara", "axes": ["theta1", "theta2", "z", "theta4"], "l1_mm": 400.0, "l2_mm": 300.0},
-     {"theta1": 0.0, "theta2": 90.0, "z": 33.0, "theta4": 77.0}, (0.4, 0.3, 0.033)),
+    (
+        {"kind": "scara", "axes": ["theta1", "theta2"], "l1_mm": 400.0, "l2_mm": 300.0, "z_mm": 10.0},
+        {"theta1": 0.5 / DEGREE, "theta2": -0.8 / DEGREE},
+        (0.4 * C + 0.3 * C12, 0.4 * S + 0.3 * S12, 0.01),
+    ),
+    (
+        {"kind": "scara", "axes": ["theta1", "theta2", "z", "theta4"], "l1_mm": 400.0, "l2_mm": 300.0},
+        {"theta1": 0.0, "theta2": 90.0, "z": 33.0, "theta4": 77.0},
+        (0.4, 0.3, 0.033),
+    ),
     # the second axis turns about -y of the first: in its plane 0.3 m out, the tool 0.1 m along the axis
     (ARM, ANGLES, (C * REACH + S * 0.1, S * REACH - C * 0.1, 0.3 * S2)),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("mechanism", "joints", "tool"), MECHANISMS)
@@ -178,8 +184,9 @@ def test_any_walk_is_played_through_its_targets(tmp_path_factory, walks):
     """Positions at the row ends are the targets, pulses sent are the sum of all changes, whatever the walk."""
     steps = min(map(len, walks))
     targets = [np.cumsum(walk[:steps]).tolist() for walk in walks]
-    export = Handmade({"kind": "cartesian", "name": "xy", "axes": ["x", "y"], "z_mm": 0}, [("X", "mm", 0.01, 0),
-                      ("Y", "mm", 0.01, 0)])  # fmt: skip
+    export = Handmade(
+        {"kind": "cartesian", "name": "xy", "axes": ["x", "y"], "z_mm": 0}, [("X", "mm", 0.01, 0), ("Y", "mm", 0.01, 0)]
+    )
     export.move(1, (0, 0, 0), (1, 0, 0), X=targets[0], Y=targets[1])
     (found,) = replay(read_export(export.write(tmp_path_factory.mktemp("walk") / "out")), samples_per_step=2)
     for k, walk in enumerate(targets):

@@ -41,8 +41,16 @@ def test_a_short_move_is_a_triangle():
     np.testing.assert_allclose(S + S[::-1], 2.0)
 
 
-@pytest.mark.parametrize("values", [(0.0, 1.0, 0.1, 0.01), (1.0, 0.0, 0.1, 0.01), (1.0, 1.0, -0.1, 0.01),
-                                    (1.0, np.nan, 0.1, 0.01), (1e9, 1.0, 0.1, 0.01)])  # fmt: skip
+@pytest.mark.parametrize(
+    "values",
+    [
+        (0.0, 1.0, 0.1, 0.01),
+        (1.0, 0.0, 0.1, 0.01),
+        (1.0, 1.0, -0.1, 0.01),
+        (1.0, np.nan, 0.1, 0.01),
+        (1e9, 1.0, 0.1, 0.01),
+    ],
+)
 def test_what_is_no_move_is_an_error(values):
     with pytest.raises(ValueError, match=r"above 0|more than"):
         EqualTimeSteps.of(*values)

@@ -13,10 +13,16 @@ STEPS = np.array([0, 0, 4, 5, 0, -6, -7, 8], dtype=np.int64)
 def test_rows_wait_turn_round_and_end_together():
     rows = rows_of(STEPS, 100, 10, 50)
     assert rows == (
-        Row("wait", 0, 100, 2), Row("up", 200, 104, 1), Row("up", 250, 109, 1), Row("wait", 0, 109, 1),
-        Row("down", 300, 103, 1), Row("down", 350, 96, 1), Row("up", 400, 104, 1), Row("wait", 0, 104, 2),
+        Row("wait", 0, 100, 2),
+        Row("up", 200, 104, 1),
+        Row("up", 250, 109, 1),
+        Row("wait", 0, 109, 1),
+        Row("down", 300, 103, 1),
+        Row("down", 350, 96, 1),
+        Row("up", 400, 104, 1),
+        Row("wait", 0, 104, 2),
         Row("end", 0, 104, 0),
-    )  # fmt: skip
+    )
     assert sum(row.steps for row in rows) == 10
 
 
@@ -32,8 +38,10 @@ def test_c5_rows_last_one_step_each():
 def test_a_data_table_has_one_direction_and_no_wait():
     tables = list(data_tables(rows_of(STEPS, 100, 8, 50), 100))
     assert [(table.first, table.start, table.up, len(table.rows)) for table in tables] == [
-        (2, 100, True, 2), (5, 109, False, 2), (7, 96, True, 1),
-    ]  # fmt: skip
+        (2, 100, True, 2),
+        (5, 109, False, 2),
+        (7, 96, True, 1),
+    ]
 
 
 def test_csv_says_what_the_columns_are():
@@ -46,9 +54,13 @@ def test_f174_words_stand_in_their_order():
     lines = f174.as_csv(tables, "pulse-direction", ["x"]).splitlines()
     assert lines[:2] == ["# x", "table,start_step,word,value,meaning"]
     assert lines[2:8] == [
-        "1,2,0,16#0212,control code", "1,2,2,400,frequency 1 Hz", "1,2,4,104,target 1 pulses",
-        "1,2,6,500,frequency 2 Hz", "1,2,8,109,target 2 pulses", "1,2,10,0,end",
-    ]  # fmt: skip
+        "1,2,0,16#0212,control code",
+        "1,2,2,400,frequency 1 Hz",
+        "1,2,4,104,target 1 pulses",
+        "1,2,6,500,frequency 2 Hz",
+        "1,2,8,109,target 2 pulses",
+        "1,2,10,0,end",
+    ]
     assert lines[8].startswith("2,5,0,16#0213,")
 
 

@@ -9,13 +9,28 @@ ANGLES = DATA / "angles.xml"
 
 FILLED = {
     "rated_payload_kg": "3",
-    "default_speed_mm_s": "300", "max_speed_mm_s": "1000", "acceleration_mm_s2": "2000", "jerk_mm_s3": "20000",
-    "rotation_speed_deg_s": "120", "rotation_acceleration_deg_s2": "600", "rotation_jerk_deg_s3": "6000",
-    "range_deg": "[-90, 90]", "max_speed_deg_s": "180", "max_acceleration_deg_s2": "900", "max_torque_nm": "200",
-    "gear_ratio": "100", "rotor_inertia_kg_m2": "5e-5", "torque_constant_nm_a": "0.2", "max_current_a": "12",
-    "viscous_friction_nm_s": "1e-4", "coulomb_friction_nm": "[0.02, 0.02]", "encoder_counts": "131072",
-    "current_bandwidth_hz": "300", "position_bandwidth_rad_s": "30", "velocity_bandwidth_rad_s": "120",
-}  # fmt: skip
+    "default_speed_mm_s": "300",
+    "max_speed_mm_s": "1000",
+    "acceleration_mm_s2": "2000",
+    "jerk_mm_s3": "20000",
+    "rotation_speed_deg_s": "120",
+    "rotation_acceleration_deg_s2": "600",
+    "rotation_jerk_deg_s3": "6000",
+    "range_deg": "[-90, 90]",
+    "max_speed_deg_s": "180",
+    "max_acceleration_deg_s2": "900",
+    "max_torque_nm": "200",
+    "gear_ratio": "100",
+    "rotor_inertia_kg_m2": "5e-5",
+    "torque_constant_nm_a": "0.2",
+    "max_current_a": "12",
+    "viscous_friction_nm_s": "1e-4",
+    "coulomb_friction_nm": "[0.02, 0.02]",
+    "encoder_counts": "131072",
+    "current_bandwidth_hz": "300",
+    "position_bandwidth_rad_s": "30",
+    "velocity_bandwidth_rad_s": "120",
+}
 
 
 def fill(template: str, **other: str) -> str:
@@ -35,8 +50,17 @@ def words(values) -> str:
     return " ".join(repr(float(value)) for value in values)
 
 
-def joint(name, parent, child, xyz=(0, 0, 0.3), rpy=(0, 0, 0), axis=(0, 0, 1), kind="revolute",
-          limit='lower="-2" upper="2" velocity="3" effort="50"', more="") -> str:  # fmt: skip
+def joint(
+    name,
+    parent,
+    child,
+    xyz=(0, 0, 0.3),
+    rpy=(0, 0, 0),
+    axis=(0, 0, 1),
+    kind="revolute",
+    limit='lower="-2" upper="2" velocity="3" effort="50"',
+    more="",
+) -> str:
     limit = f"<limit {limit}/>" if limit else ""
     return (
         f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'

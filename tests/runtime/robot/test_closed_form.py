@@ -27,8 +27,13 @@ def axes_of(params, X_before, X_behind, slides, rolls):
     """The chain of an arm with these parameters, drawn line by line: frames slid and rolled about each joint."""
     a, signs = params, params.signs
     inner = [
-        pose([0, 0, a.c1]), pose([a.a1, a.b, 0]), pose([0, 0, a.c2]), pose([a.a2, 0, a.c3]), np.eye(4), np.eye(4),
-    ]  # fmt: skip
+        pose([0, 0, a.c1]),
+        pose([a.a1, a.b, 0]),
+        pose([0, 0, a.c2]),
+        pose([a.a2, 0, a.c3]),
+        np.eye(4),
+        np.eye(4),
+    ]
     directions = [Z, Y, Y, Z, Y, Z]
     axes, carried = [], X_before
     for X, direction, sign, offset, slide, roll in zip(
@@ -106,8 +111,14 @@ def test_an_offset_wrist_has_none(irb2400):
 def test_an_urdf_of_an_industrial_arm_is_solved_branch_by_branch():
     y, x, z = (0, 1, 0), (1, 0, 0), (0, 0, 1)
     none = (0, 0, 0)
-    frames = [(none, none, z), ((0.1, 0, 0.615), none, y), ((0, 0, 0.705), none, y), ((0.258, 0, 0.135), none, x),
-              ((0.497, 0, 0), none, y), (none, none, x)]  # fmt: skip
+    frames = [
+        (none, none, z),
+        ((0.1, 0, 0.615), none, y),
+        ((0, 0, 0.705), none, y),
+        ((0.258, 0, 0.135), none, x),
+        ((0.497, 0, 0), none, y),
+        (none, none, x),
+    ]
     arm = parse_model(Source("irb.urdf", chain(frames, ((0.085, 0, 0), (0, np.pi / 2, 0)))))
     kinematics = Kinematics(arm)
     assert kinematics.closed_form

@@ -181,7 +181,7 @@ POINT = "added_inertia_kg_m2 = 1e-12"
         (POINT, "added_inertia_kg_m2 = 2e-12", "RBL606", "more than the 1e-12 that a body needs"),
         ("inertia_kg_m2 = [0.0, 0.0, 0.0]", "inertia_kg_m2 = [1e-4, 1e-4, 1e-4]", "RBL606", "has moments about every"),
     ],
-)  # fmt: skip
+)
 def test_a_file_of_lines_is_refused_where_it_is_wrong(old, new, code, said):
     assert old in TEXT
     found = refused(TEXT.replace(old, new, 1))

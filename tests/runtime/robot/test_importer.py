@@ -175,7 +175,7 @@ MJCF = ANGLES.read_text()
         ("RBL621", '<axis xyz="0.0 1.0 0.0"/>', '<axis xyz="0 1 0"/><mimic joint="j1"/>'),
         ("RBL621", "</robot>", "<surprise/></robot>"),
     ],
-)  # fmt: skip
+)
 def test_an_urdf_that_cannot_be_used_is_refused_at_its_place(code, old, new):
     assert old in TWO
     fault = refused(code, TWO.replace(old, new))
@@ -233,9 +233,11 @@ def test_a_fault_stands_at_its_element():
 
 
 def test_billion_laughs_and_deep_nesting_are_not_read():
-    laughs = '<?xml version="1.0"?><!DOCTYPE r [<!ENTITY a "ha">' + "".join(
-        f'<!ENTITY {b} "{f"&{a};" * 10}">' for a, b in zip("abcdefgh", "bcdefghi", strict=True)
-    ) + "]><robot>&i;</robot>"  # fmt: skip
+    laughs = (
+        '<?xml version="1.0"?><!DOCTYPE r [<!ENTITY a "ha">'
+        + "".join(f'<!ENTITY {b} "{f"&{a};" * 10}">' for a, b in zip("abcdefgh", "bcdefghi", strict=True))
+        + "]><robot>&i;</robot>"
+    )
     refused("RBL601", laughs)
     deep = "<mujoco><worldbody>" + "<body>" * 5000 + "</body>" * 5000 + "</worldbody></mujoco>"
     refused("RBL612", deep, "a.xml")

@@ -13,9 +13,10 @@ from runtime.robot.model import ArmModel
 from runtime.robot.payload import NO_PAYLOAD, Payload
 
 PAYLOAD = Payload(
-    mass=1.7, cog=frozen(np.array([0.05, -0.08, 0.12])),
+    mass=1.7,
+    cog=frozen(np.array([0.05, -0.08, 0.12])),
     inertia=frozen(np.array([[0.02, 0.001, -0.002], [0.001, 0.03, 0.003], [-0.002, 0.003, 0.025]])),
-)  # fmt: skip
+)
 
 
 @pytest.mark.parametrize("name", ["puma560", "irb2400", "manutec_r3"])

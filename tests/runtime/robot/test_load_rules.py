@@ -24,18 +24,31 @@ def code(fault):
 
 @pytest.mark.parametrize(
     ("mass", "rated", "expected"),
-    [(0.0, 2.5, None), (2.5, 2.5, None), (math.nextafter(2.5, 3), 2.5, "RBL402"), (-1e-9, 2.5, "RBL401"),
-     (math.nan, 2.5, "RBL401"), (math.inf, 2.5, "RBL401"), (1.0, math.nan, "RBL402"), (1e6, None, None)],
-)  # fmt: skip
+    [
+        (0.0, 2.5, None),
+        (2.5, 2.5, None),
+        (math.nextafter(2.5, 3), 2.5, "RBL402"),
+        (-1e-9, 2.5, "RBL401"),
+        (math.nan, 2.5, "RBL401"),
+        (math.inf, 2.5, "RBL401"),
+        (1.0, math.nan, "RBL402"),
+        (1e6, None, None),
+    ],
+)
 def test_a_mass(mass, rated, expected):
     assert code(mass_fault(mass, rated)) == expected
 
 
 @pytest.mark.parametrize(
     ("cog", "expected"),
-    [((0, 0, 2.0), None), ((1.2, 1.6, 0), None), ((0, 0, math.nextafter(2.0, 3)), "RBL403"),
-     ((0, math.nan, 0), "RBL403"), ((math.inf, 0, 0), "RBL403")],
-)  # fmt: skip
+    [
+        ((0, 0, 2.0), None),
+        ((1.2, 1.6, 0), None),
+        ((0, 0, math.nextafter(2.0, 3)), "RBL403"),
+        ((0, math.nan, 0), "RBL403"),
+        ((math.inf, 0, 0), "RBL403"),
+    ],
+)
 def test_a_centre_of_gravity(cog, expected):
     assert code(centre_fault(cog)) == expected
     assert code(load_fault(0.0, cog, None, 2.5)) == expected  # whatever the mass
@@ -92,9 +105,13 @@ def test_what_cannot_be_declared_is_said_with_its_figures():
 
 @pytest.mark.parametrize(
     ("inertia", "why"),
-    [((1.0, math.inf, 1.0, 0, 0, 0), "finite"), ((-0.1, 1.0, 1.0, 0, 0, 0), "negative"),
-     ((0.0, 1.0, 1.1, 0, 0, 0), "sum"), ((0.1, 0.2, 0.4, 0, 0, 0), "sum")],
-)  # fmt: skip
+    [
+        ((1.0, math.inf, 1.0, 0, 0, 0), "finite"),
+        ((-0.1, 1.0, 1.0, 0, 0, 0), "negative"),
+        ((0.0, 1.0, 1.1, 0, 0, 0), "sum"),
+        ((0.1, 0.2, 0.4, 0, 0, 0), "sum"),
+    ],
+)
 def test_of_an_inertia_the_rule_that_it_breaks_is_named(inertia, why):
     message = inertia_fault(inertia).message
     assert [each for each in ("finite", "negative", "sum") if each in message] == [why]
@@ -102,9 +119,16 @@ def test_of_an_inertia_the_rule_that_it_breaks_is_named(inertia, why):
 
 @pytest.mark.parametrize(
     ("moments", "missing"),
-    [((1, 2, 3), 0.0), ((1, 2, 2), 0.0), ((1, 2, 3.5), 0.5), ((0, 1, 1), 0.0), ((-0.5, 1, 1), 0.5), ((-1, 0, 1), 2.0),
-     ((0, 1, math.nan), math.inf)],
-)  # fmt: skip
+    [
+        ((1, 2, 3), 0.0),
+        ((1, 2, 2), 0.0),
+        ((1, 2, 3.5), 0.5),
+        ((0, 1, 1), 0.0),
+        ((-0.5, 1, 1), 0.5),
+        ((-1, 0, 1), 2.0),
+        ((0, 1, math.nan), math.inf),
+    ],
+)
 def test_what_moments_lack_to_be_those_of_a_body(moments, missing):
     assert moments_defect(moments) == missing
 

@@ -1,6 +1,5 @@
 """Arms without a closed form: poses are met to 1e-10 or not at all."""
 
-
 import numpy as np
 import pytest
 from hypothesis import given

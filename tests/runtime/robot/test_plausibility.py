@@ -152,9 +152,15 @@ def test_a_sidecar_is_doubted_where_it_rules(tmp_path):
 
 @pytest.mark.parametrize(
     ("typed", "shown"),
-    [("3.2288591161895", "185.0"), ("-3.141592653589793", "-180.0"), ("-2.967060", "-170.000015"), ("1.2", "68.7549"),
-     ("0.0", "0.0"), ("-170", "MISSING")],
-)  # fmt: skip
+    [
+        ("3.2288591161895", "185.0"),
+        ("-3.141592653589793", "-180.0"),
+        ("-2.967060", "-170.000015"),
+        ("1.2", "68.7549"),
+        ("0.0", "0.0"),
+        ("-170", "MISSING"),
+    ],
+)
 def test_a_range_is_written_as_it_was_typed_and_read_back_the_same(tmp_path, typed, shown):
     low, high = sorted((typed, "0.5"), key=float)
     path = written(tmp_path, chain(FRAMES, TIP, limit=f'lower="{low}" upper="{high}"'))
@@ -190,9 +196,16 @@ def test_what_others_do_not_read_is_none(text):
 
 @pytest.mark.parametrize(
     ("new", "code"),
-    [('value="\u0662"', "RBL613"), ('value="2_0"', "RBL613"), ('value="2\u00a0"', "RBL613"), ('value="0x2"', "RBL613"),
-     ('value="2,0"', "RBL613"), ('value="inf"', "RBL604"), ('value=" 2.0 "', None)],
-)  # fmt: skip
+    [
+        ('value="\u0662"', "RBL613"),
+        ('value="2_0"', "RBL613"),
+        ('value="2\u00a0"', "RBL613"),
+        ('value="0x2"', "RBL613"),
+        ('value="2,0"', "RBL613"),
+        ('value="inf"', "RBL604"),
+        ('value=" 2.0 "', None),
+    ],
+)
 def test_numbers_of_a_model_file_are_read_as_others_read_them(new, code):
     text = chain(FRAMES, TIP).replace('value="2.0"', new, 1)
     if code is None:

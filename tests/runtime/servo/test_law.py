@@ -12,8 +12,9 @@ MIDDLE = 0.5 * (SMALLEST + LARGEST)
 KP, KV, KTN = 20.0, 80.0, 14.0
 
 
-def step_response(D_model, D_true, *, tick_s=5e-4, Kf=0.0, Ka=0.0, source="command", T_model=0.0, T_true=0.0,
-                  size=0.1, seconds=1.5):  # fmt: skip
+def step_response(
+    D_model, D_true, *, tick_s=5e-4, Kf=0.0, Ka=0.0, source="command", T_model=0.0, T_true=0.0, size=0.1, seconds=1.5
+):
     """Return alpha at every tick of a step; the arm between ticks is integrated exactly (constant torque)."""
     one = np.ones(1)
     gains = Gains(Kp=KP * one, Kv=KV * one, Ktn=KTN * one, rotor=0.0 * one, Kf=Kf, Ka=Ka, source=source)
@@ -114,8 +115,18 @@ def test_a_command_in_motion_is_followed_without_lag_by_commanded_feed_forward()
 def test_the_law_broadcasts_over_leading_dimensions_and_equals_the_printed_equations(source):
     n, runs, tick_s = 6, 5, 1e-3
     rng = np.random.default_rng(3)
-    g = Gains(Kp=np.full(n, KP), Kv=np.full(n, KV), Ktn=np.full(n, KTN), rotor=rng.uniform(0, 1, n), Kf=0.4, Ka=0.3,
-              K2=0.9, Kc=5000.0, KT_scale=1.1, source=source)  # fmt: skip
+    g = Gains(
+        Kp=np.full(n, KP),
+        Kv=np.full(n, KV),
+        Ktn=np.full(n, KTN),
+        rotor=rng.uniform(0, 1, n),
+        Kf=0.4,
+        Ka=0.3,
+        K2=0.9,
+        Kc=5000.0,
+        KT_scale=1.1,
+        source=source,
+    )
     alpha0, alpha1, D, T = (rng.normal(size=(runs, n)) for _ in range(4))
     theta, beta_cmd, gamma_cmd = (rng.normal(size=(runs, n)) for _ in range(3))
     law = ServoLaw(g, alpha0, tick_s)
@@ -142,8 +153,17 @@ def test_gains_held_fixed_replace_the_inertia_in_the_loop_only():
 def test_whole_rows_take_the_place_of_the_diagonal(source):
     n, runs, tick_s = 4, 3, 1e-3
     rng = np.random.default_rng(4)
-    g = Gains(Kp=np.full(n, KP), Kv=np.full(n, KV), Ktn=rng.uniform(5, 15, n), rotor=rng.uniform(0, 1, n), Kf=0.4,
-              Ka=0.3, K2=0.9, Kc=np.full(n, 5000.0), source=source)  # fmt: skip
+    g = Gains(
+        Kp=np.full(n, KP),
+        Kv=np.full(n, KV),
+        Ktn=rng.uniform(5, 15, n),
+        rotor=rng.uniform(0, 1, n),
+        Kf=0.4,
+        Ka=0.3,
+        K2=0.9,
+        Kc=np.full(n, 5000.0),
+        source=source,
+    )
     half = rng.normal(size=(runs, n, n))
     M = half @ np.swapaxes(half, -1, -2)
     alpha0, alpha1, theta, beta_cmd, gamma_cmd = (rng.normal(size=(runs, n)) for _ in range(5))
@@ -162,8 +182,11 @@ def test_the_lead_for_the_weight_is_there_at_once_and_follows_a_new_load_slowly(
     """T KG / Kc: no step when the law starts, and 1 - exp(-t / LEAD_S) of the way after a LOAD, tick by tick."""
     n, ticks, tick_s = 3, 8, 1e-3
     one, zero = np.ones(n), np.zeros((ticks, n))
-    law = ServoLaw(Gains(Kp=KP * one, Kv=KV * one, Ktn=KTN * one, rotor=0.0 * one, KG=0.5,
-                         Kc=np.array([1e4, 2e4, np.inf])), np.zeros(n), tick_s)  # fmt: skip
+    law = ServoLaw(
+        Gains(Kp=KP * one, Kv=KV * one, Ktn=KTN * one, rotor=0.0 * one, KG=0.5, Kc=np.array([1e4, 2e4, np.inf])),
+        np.zeros(n),
+        tick_s,
+    )
     T = np.array([100.0, -100.0, 100.0])
     law.update(one, T)
     law.command(zero, zero, zero)
@@ -188,6 +211,7 @@ def test_one_arm_through_rows_gives_what_many_give():
     motion, alpha = rng.normal(size=(3, ticks, n)), rng.normal(size=(ticks, n))
     found = []
     for lead in ((), (2,)):
+
         def wide(x, lead=lead):
             return np.broadcast_to(x, (*lead, *x.shape)).copy()
 

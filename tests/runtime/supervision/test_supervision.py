@@ -76,14 +76,23 @@ def test_the_following_error_may_grow_with_the_commanded_speed_and_the_limit_dec
     assert found[3].code == "RBL511"
 
 
-@pytest.mark.parametrize(("column", "value", "code"), [
-    (0, 1.01, "RBL512"), (18, 1.21, "RBL513"), (18, 3.01, "RBL515"), (12, 0.0, "RBL514"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("column", "value", "code"),
+    [
+        (0, 1.01, "RBL512"),
+        (18, 1.21, "RBL513"),
+        (18, 3.01, "RBL515"),
+        (12, 0.0, "RBL514"),
+    ],
+)
 def test_excursions_and_saturation(column, value, code):
     rows, q = still()
     axis, one = 1, watch()
-    rows[:, column + axis] = {0: value * TORQUE[axis], 18: value * SPEC.axes[axis].limits.speed,
-                              12: SPEC.upper[axis] + 1.01 * DEG}[column]  # fmt: skip
+    rows[:, column + axis] = {
+        0: value * TORQUE[axis],
+        18: value * SPEC.axes[axis].limits.speed,
+        12: SPEC.upper[axis] + 1.01 * DEG,
+    }[column]
     q = rows[:, 12:18]
     found = [one.cycle(rows, q, np.zeros((8, 6)), 8 * k) for k in range(14)]
     first = next(item for item in found if item is not None)
@@ -163,11 +172,23 @@ def test_a_reading_that_jumps_is_an_encoder_that_jumped_and_by_how_much_is_said(
     assert (found.code, found.axis, found.tick) == ("RBL513", axis, 6)
 
 
-@pytest.mark.parametrize(("column", "code", "value", "bound"), [
-    (18, "RBL513", lambda axis: 1.21 * SPEC.axes[axis].limits.speed, lambda axis: 1.2 * SPEC.axes[axis].limits.speed),
-    (12, "RBL514", lambda axis: SPEC.upper[axis] + 1.5 * DEG,
-     lambda axis: (SPEC.upper[axis] - SPEC.lower[axis]) / 2.0 + DEG),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("column", "code", "value", "bound"),
+    [
+        (
+            18,
+            "RBL513",
+            lambda axis: 1.21 * SPEC.axes[axis].limits.speed,
+            lambda axis: 1.2 * SPEC.axes[axis].limits.speed,
+        ),
+        (
+            12,
+            "RBL514",
+            lambda axis: SPEC.upper[axis] + 1.5 * DEG,
+            lambda axis: (SPEC.upper[axis] - SPEC.lower[axis]) / 2.0 + DEG,
+        ),
+    ],
+)
 @pytest.mark.parametrize("axis", [0, 1, 4])
 def test_an_excursion_is_said_with_its_axis_value_and_limit(axis, column, code, value, bound):
     rows, _ = still()
@@ -176,8 +197,10 @@ def test_an_excursion_is_said_with_its_axis_value_and_limit(axis, column, code, 
     assert (found.code, found.axis, found.tick) == (code, axis, 3)
     middle = (SPEC.upper[axis] + SPEC.lower[axis]) / 2.0 if column == 12 else 0.0
     assert numbers(found.message) == [
-        axis + 1, pytest.approx((value(axis) - middle) / DEG, abs=0.006), pytest.approx(bound(axis) / DEG, abs=0.006)
-    ]  # fmt: skip
+        axis + 1,
+        pytest.approx((value(axis) - middle) / DEG, abs=0.006),
+        pytest.approx(bound(axis) / DEG, abs=0.006),
+    ]
 
 
 def test_a_following_error_is_said_with_its_axis_its_limit_and_the_speed():
@@ -376,8 +399,10 @@ def test_friction_of_an_even_motion_leaves_no_residual_and_is_known_to_its_share
     np.testing.assert_allclose(observer.sigma, known, rtol=1e-6)
 
 
-@pytest.mark.parametrize(("speed", "rests"), [(0.0, True), (0.99 * TURNING, True), (-0.99 * TURNING, True),
-                                              (1.01 * TURNING, False), (-1.01 * TURNING, False)])  # fmt: skip
+@pytest.mark.parametrize(
+    ("speed", "rests"),
+    [(0.0, True), (0.99 * TURNING, True), (-0.99 * TURNING, True), (1.01 * TURNING, False), (-1.01 * TURNING, False)],
+)
 def test_near_rest_the_dry_friction_may_have_any_of_its_values(speed, rests):
     limits = SupervisionLimits()
     observer = Observer(SPEC, limits, TORQUE, 8, 1e-3, 0.5)

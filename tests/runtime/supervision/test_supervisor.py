@@ -21,8 +21,17 @@ HEAVIER = Payload(mass=2.0, cog=np.array([0.0, 0.0, 0.1]))
 
 
 def supervisor(model: LoadModel | None = None, **limits) -> Supervisor:
-    return Supervisor(SPEC, SupervisionLimits(**limits), torque=TORQUE, resolution=np.full(6, 1e-9), lag=np.zeros(6),
-                      ticks=TICKS, tick_s=TICK_S, friction=0.0, model=model)  # fmt: skip
+    return Supervisor(
+        SPEC,
+        SupervisionLimits(**limits),
+        torque=TORQUE,
+        resolution=np.full(6, 1e-9),
+        lag=np.zeros(6),
+        ticks=TICKS,
+        tick_s=TICK_S,
+        friction=0.0,
+        model=model,
+    )
 
 
 def friction(speed: np.ndarray) -> np.ndarray:
@@ -51,8 +60,9 @@ class Swing:
             amplitude = 0.3 * (self.tick > 0)
             q, dq = amplitude * np.sin(phase), 2.0 * amplitude * np.cos(phase)
             middle = 2.0 * (self.tick + 0.5) * TICK_S + np.arange(6)
-            tau = self._arm.torque(amplitude * np.sin(middle), 2.0 * amplitude * np.cos(middle),
-                                   -4.0 * amplitude * np.sin(middle))  # fmt: skip
+            tau = self._arm.torque(
+                amplitude * np.sin(middle), 2.0 * amplitude * np.cos(middle), -4.0 * amplitude * np.sin(middle)
+            )
             tau = tau + extra * (np.arange(6) == axis) + self._friction * friction(2.0 * amplitude * np.cos(middle))
             self._rows.append(np.concatenate([tau, tau, q, dq]))
             self.tick += 1
@@ -203,8 +213,14 @@ def test_late_cycles_warn_first_and_stop_when_they_do_not_end():
     judge = supervisor(overruns=3)
     found = [judge.late(late, k) for k, late in enumerate([True, True, False, True, True, True, True])]
     assert [item and (item.code, item.warning, item.tick) for item in found] == [
-        ("RBL520", True, 0), None, None, ("RBL520", True, 3), None, ("RBL520", False, 5), ("RBL520", False, 6),
-    ]  # fmt: skip
+        ("RBL520", True, 0),
+        None,
+        None,
+        ("RBL520", True, 3),
+        None,
+        ("RBL520", False, 5),
+        ("RBL520", False, 6),
+    ]
     assert judge.was_late
     assert [numbers(item.message) for item in found if item] == [[], [], [3.0], [4.0]]
     judge.late(False, 7)
