@@ -77,7 +77,7 @@ def posture_components(R_base_line: Array, R_base_tool: Array) -> Array:
 
 
 def component_deviation(path: Path, s: Array, R_planned: Array, R_base_tool: Array) -> Array:
-    """Return posture taken minus posture of the path at s (N,) as tilt, advance and rotation (N, 3), rad."""
+    """Return the distance, rad (N, 3), in tilt, advance and rotation between the path's postures and those taken."""
     frames = frames_along(path, s)
     off = posture_components(frames, R_base_tool) - posture_components(frames, R_planned)
     return np.abs(off - 2.0 * np.pi * np.round(off / (2.0 * np.pi)))
