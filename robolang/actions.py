@@ -41,7 +41,7 @@ from robolang.nodes import (
 )
 from robolang.places import Frame, Place, Shift, Six
 from robolang.scope import Scopes
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 
 Action: TypeAlias = Moving | Load | LoadNamed | Hand | Wrist | Seam | Setting | Out | Pulse
 

@@ -9,8 +9,8 @@ from itertools import groupby
 from robolang.diagnostics import Diagnostic, Related, Severity, to_json
 from robolang.effects import Origin
 from robolang.source import Source, Span
-from runtime.faults import Alarm
-from runtime.program_line import ProgramLine
+from runtime.core.faults import Alarm
+from runtime.core.program_line import ProgramLine
 
 SHOWN_CALLS = 3
 """Calls that are shown at each end of a long chain of them."""

@@ -15,13 +15,13 @@ from pathlib import Path
 from robolang.builtin import cell_text
 from robolang.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.points import PointStore, load_points
-from runtime.faults import Fault
+from runtime.core.faults import Fault
+from runtime.core.tomlfile import FileFault, Source, read_source
+from runtime.core.units import DEG
 from runtime.plant.cell_file import CellFile, parse_cell_file, read_arm_alone, read_cell_file
 from runtime.profile import Layer, Settings, check_axes, compensation_file, settle
 from runtime.robot import robot_file
 from runtime.robot.arm_file import ROBOT_ENDINGS, ArmFile, read_arm_file
-from runtime.tomlfile import FileFault, Source, read_source
-from runtime.units import DEG
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

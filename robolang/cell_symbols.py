@@ -7,10 +7,10 @@ cannot disagree. A fact that is None is not known and not checked. Names are in 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
+from runtime.core.units import MM
 from runtime.plant.cell_file import CellFile, LoadFile
 from runtime.robot.arm_file import ArmFile
 from runtime.robot.drives import SPEED_ROUNDING, Limits
-from runtime.units import MM
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

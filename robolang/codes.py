@@ -1,17 +1,17 @@
 """Codes of the language: text (1xx), meaning (2xx), points (3xx), command line (7xx), internal (9xx).
 
-Importing this module fills the registry of ``runtime.faults`` completely, the runtime's own codes included, and brings
+Importing this module fills the registry of ``runtime.core.faults`` completely, the runtime's own codes included, and brings
 in no numerics, so ``robolang check``, ``explain`` and the documentation generator need only this import. A code keeps
 its number and its meaning for ever; a message may be reworded. Called once, at import.
 """
 
 import robolang.run_codes  # noqa: F401 - registers 2xx, 50x and 53x
-import runtime.faults
+import runtime.core.faults
+import runtime.core.tomlfile  # registers RBL311 and RBL6xx
 import runtime.motion.codes
 import runtime.pulses.codes
 import runtime.robot.codes
-import runtime.tomlfile  # registers RBL311 and RBL6xx
-from runtime.faults import Code
+from runtime.core.faults import Code
 
 _TEXT = (
     (
@@ -256,7 +256,7 @@ _COMMAND = (
     ),
 )
 
-runtime.faults.register(
+runtime.core.faults.register(
     *(
         Code(code=code, name=name, meaning=meaning, remedy=remedy)
         for code, name, meaning, remedy in (*_TEXT, *_MEANING, *_POINTS, *_IDENTIFICATION, *_COMMAND)

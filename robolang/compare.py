@@ -26,11 +26,11 @@ from robolang.lowering import payload
 from robolang.project import Project, load_project
 from robolang.result import StatementRun
 from robolang.session import Session
-from runtime.frames import Array
-from runtime.linear import norm
+from runtime.core.frames import Array
+from runtime.core.linear import norm
+from runtime.core.units import DEG, MM, badness
 from runtime.plant.cell import CellSpec
 from runtime.robot.payload import NO_PAYLOAD, Payload
-from runtime.units import DEG, MM, badness
 
 BAND = 0.02
 LEAST = 1.0 * DEG

@@ -8,7 +8,7 @@ from robolang.diagnostics import Diagnostic
 from robolang.evaluator import Evaluator, Nowhere
 from robolang.nodes import Call, Expression, Name, Negate, Number, Text, walk
 from robolang.places import Value
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 
 
 class _NoNames:

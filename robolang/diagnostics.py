@@ -21,8 +21,8 @@ from enum import Enum
 
 import robolang.codes  # noqa: F401 - every code a diagnostic may carry
 from robolang.source import Source, Span
-from runtime.faults import lookup
-from runtime.tomlfile import FileFault
+from runtime.core.faults import lookup
+from runtime.core.tomlfile import FileFault
 
 MAX_DIAGNOSTICS = 1000
 _TAB = 4

@@ -11,7 +11,7 @@ from typing import Any, Literal, TypeAlias
 from robolang.nodes import Line, Statement
 from robolang.places import Frame, Place
 from robolang.source import Span
-from runtime.program_line import ProgramLine
+from runtime.core.program_line import ProgramLine
 
 Way = Literal["line", "joint", "arc"]
 

@@ -13,8 +13,8 @@ from typing import NoReturn, Protocol
 from robolang.nodes import Call, Chain, Component6, Expression, Name, Negate, Not, Number, Text, Vector
 from robolang.places import Frame, Place, Shift, Six, Value, kind_of
 from robolang.words import ARGUMENTS, COMPONENTS6, VALUES
-from runtime.faults import Fault
-from runtime.numerals import number_in
+from runtime.core.faults import Fault
+from runtime.core.numerals import number_in
 
 MAX_TEXT = 10_000
 """Longest text that a program may make, characters."""

@@ -28,9 +28,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import robolang.codes  # noqa: F401 - all codes must be registered
-from runtime.faults import all_codes
-from runtime.toml_places import locate
-from runtime.tomlfile import FileFault, Source, Table, load_table, read_source
+from runtime.core.faults import all_codes
+from runtime.core.toml_places import locate
+from runtime.core.tomlfile import FileFault, Source, Table, load_table, read_source
 
 SCHEMA = 1
 ENDING = ".test.toml"

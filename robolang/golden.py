@@ -22,10 +22,10 @@ import numpy as np
 
 import robolang.codes  # noqa: F401 - RBL711 must be registered
 from robolang.storage import write_atomic
-from runtime.faults import Fault
-from runtime.frames import Array
-from runtime.rounding import beside
-from runtime.units import DEG
+from runtime.core.faults import Fault
+from runtime.core.frames import Array
+from runtime.core.rounding import beside
+from runtime.core.units import DEG
 
 _REMEDY = "Write it with robolang test --update."
 _ANGLES = {"<f4": np.float32, "<f8": np.float64}

@@ -39,12 +39,13 @@ import numpy as np
 
 from robolang.trial_motion import Grid, PlantName, Request, Test, bench, plan, plan_table, quintic
 from runtime.controller import Controller
+from runtime.core.faults import Fault
+from runtime.core.frames import Array
+from runtime.core.linear import dot
+from runtime.core.units import DEG
 from runtime.dynamics.compensation import AxisCompensation, Compensation
 from runtime.dynamics.equations import axis_inertia
 from runtime.dynamics.first_moments import Weight, gravity_columns, weigh_links
-from runtime.faults import Fault
-from runtime.frames import Array
-from runtime.linear import dot
 from runtime.plant.cell import CellSpec
 from runtime.plant.hand import hand_body
 from runtime.plant.plant import Plant
@@ -54,7 +55,6 @@ from runtime.robot.model import ArmModel
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
 from runtime.servo.motor import torque_limit
-from runtime.units import DEG
 
 WINDOW = 0.15
 """Half width of the weights, as a share of the duration: the axis moves forward all through them."""

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from runtime.core.frames import Array
 from runtime.dynamics.compensation import Compensation
 from runtime.dynamics.motor_inertia import link_chain, link_inertia, motor_side
-from runtime.frames import Array
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec

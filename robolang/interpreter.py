@@ -59,8 +59,8 @@ from robolang.rounds import Rounds
 from robolang.scope import STOPS, Loop, Scopes
 from robolang.structure import Structure, structure_of
 from robolang.tree import Node
-from runtime.faults import Fault
-from runtime.program_line import named
+from runtime.core.faults import Fault
+from runtime.core.program_line import named
 
 MAX_IDLE = 100_000
 MAX_STEPS = 10_000_000

@@ -7,8 +7,8 @@ is written so that NaN fails it.
 import math
 from dataclasses import dataclass
 
-from runtime.faults import Fault
-from runtime.rounding import beside
+from runtime.core.faults import Fault
+from runtime.core.rounding import beside
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,10 +7,10 @@ import numpy as np
 from robolang.motion_check import Rehearsal, RehearsedMove
 from robolang.printer import describe
 from robolang.project import Project
+from runtime.core.units import DEG, MM
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.singularity import singularities
 from runtime.robot.spec import OpwParameters
-from runtime.units import DEG, MM
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -28,7 +28,7 @@ from robolang.words import (
     look_alike,
     near,
 )
-from runtime.faults import lookup
+from runtime.core.faults import lookup
 
 _END = frozenset({"$END", "COMMENT"})
 _OPTIONS = frozenset(OPTIONS)

@@ -38,8 +38,8 @@ from robolang.plan_memory import PlanMemory
 from robolang.project import Project
 from robolang.source import Span
 from robolang.surroundings import RobotWorld
-from runtime.faults import Fault
-from runtime.frames import Array
+from runtime.core.faults import Fault
+from runtime.core.frames import Array
 from runtime.motion.blend import Corner
 from runtime.motion.chain import ChainPlan, tracked
 from runtime.motion.planner import LinePlan

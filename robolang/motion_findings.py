@@ -25,12 +25,12 @@ from robolang.part_findings import CellTouches
 from robolang.plan_findings import PlanFindings, PlannedMove
 from robolang.project import Project
 from robolang.source import Span
+from runtime.core.rounding import beside
+from runtime.core.units import DEG, MM
 from runtime.motion.planner import FOLLOWS
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.load import ratings, wrist_load
 from runtime.robot.singularity import singularities
-from runtime.rounding import beside
-from runtime.units import DEG, MM
 
 NEAR = 0.5 * DEG
 """A joint nearer than this to the end of its range is named, rad."""

@@ -22,7 +22,7 @@ from robolang.diagnostics import Diagnostic, Severity
 from robolang.motion_check import Rehearsal, RehearsedHand, RehearsedMove
 from robolang.project import Project
 from robolang.source import Span
-from runtime.frames import Array, inverse, pose
+from runtime.core.frames import Array, inverse, pose
 from runtime.plant.mujoco_plant import CLEARANCE, MARGIN, MujocoPlant
 from runtime.plant.touches import NOTICED, shape_text
 from runtime.robot.kinematics import Kinematics

@@ -19,7 +19,9 @@ import numpy as np
 from robolang.effects import MoveTo
 from robolang.lowering import Command
 from robolang.project import Project
-from runtime.frames import Array
+from runtime.core.frames import Array
+from runtime.core.rounding import beside, down, up
+from runtime.core.units import DEG, MM
 from runtime.motion.blend import Corner
 from runtime.motion.commands import MoveJoint
 from runtime.motion.joint_planner import changed
@@ -27,8 +29,6 @@ from runtime.motion.planner import LinePlan
 from runtime.motion.ruling import Ruling, ruling
 from runtime.motion.wrist_planner import as_taught
 from runtime.robot.kinematics import Kinematics
-from runtime.rounding import beside, down, up
-from runtime.units import DEG, MM
 
 NOTICED = 0.1 * DEG
 """A tool or a joint that is turned less from where it should be keeps it, rad."""

@@ -11,8 +11,8 @@ import numpy as np
 
 from robolang.lowering import Command
 from robolang.project import Project
-from runtime.faults import Fault
-from runtime.frames import Array
+from runtime.core.faults import Fault
+from runtime.core.frames import Array
 from runtime.motion.chain import ChainPlan, MotionPlanner
 from runtime.motion.planner import LinePlan
 from runtime.robot.kinematics import Kinematics

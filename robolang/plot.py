@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from runtime.frames import Array
+from runtime.core.frames import Array
 
 WIDTH, HEIGHT = 640, 360
 LEFT, RIGHT, TOP, BOTTOM = 62, 16, 34, 46

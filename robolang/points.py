@@ -28,9 +28,9 @@ from typing import NoReturn
 import robolang.codes  # noqa: F401 - the codes raised here must be registered
 from robolang.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.words import RESERVED, near
-from runtime.faults import lookup
+from runtime.core.faults import lookup
+from runtime.core.tomlfile import FileFault, Source, Table, load_table, read_source
 from runtime.robot.drives import beyond_range
-from runtime.tomlfile import FileFault, Source, Table, load_table, read_source
 
 SCHEMA = 1
 MAX_MM = 1e5

@@ -17,9 +17,9 @@ from robolang.nodes import Program
 from robolang.parser import parse
 from robolang.points import PointStore
 from robolang.source import Source, read_program
+from runtime.core.faults import Fault, raise_all
+from runtime.core.frames import Array
 from runtime.dynamics.compensation import load_compensation
-from runtime.faults import Fault, raise_all
-from runtime.frames import Array
 from runtime.plant import cell as cells
 from runtime.plant.cell import CellSpec
 from runtime.profile import (

@@ -18,18 +18,18 @@ import numpy as np
 from robolang.motion_check import MAX_RUN_US
 from robolang.trial_motion import quintic
 from runtime.controller import Controller
-from runtime.faults import Alarm, Fault
-from runtime.frames import Array, frozen
-from runtime.linear import norm
+from runtime.core.faults import Alarm, Fault
+from runtime.core.frames import Array, frozen
+from runtime.core.linear import norm
+from runtime.core.program_line import ProgramLine
+from runtime.core.rounding import beside
+from runtime.core.units import DEG, MM
 from runtime.plant.cell import CellSpec
 from runtime.plant.plant import Plant
 from runtime.profile import Profile
-from runtime.program_line import ProgramLine
 from runtime.pulses.exported import Export, Load, Marker, Move
 from runtime.pulses.replay import distances, joint_values, positions
 from runtime.robot.payload import Payload, declared
-from runtime.rounding import beside
-from runtime.units import DEG, MM
 
 SAME = 1e-9
 """Largest difference in the poses of two arms that are the same, m and of a rotation."""

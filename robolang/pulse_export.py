@@ -23,17 +23,17 @@ from robolang.lowering import Surroundings
 from robolang.nodes import Delay, Number, Wait
 from robolang.printer import describe
 from robolang.project import Project
-from runtime.faults import Fault
-from runtime.frames import Array
+from runtime.core.faults import Fault
+from runtime.core.frames import Array
+from runtime.core.program_line import named
+from runtime.core.units import MM
 from runtime.motion.commands import MoveLinear
-from runtime.program_line import named
 from runtime.pulses import f174, mechanism
 from runtime.pulses.channels import Channel, ChannelFile, channels_of, default_channels, motor_pulse, read_channel_file
 from runtime.pulses.emission import Pulses
 from runtime.pulses.machine import Machine, RobotArm
 from runtime.pulses.move import MovePulses, counted, plan_move
 from runtime.pulses.table import as_csv, data_tables, rows_of
-from runtime.units import MM
 
 MANIFEST = "manifest.json"
 F174_COMMENTS = (

@@ -12,10 +12,10 @@ import numpy as np
 from robolang.diagnostics import safe
 from robolang.plot import COLOURS, LEFT, RIGHT, WIDTH, Curve, Mark, as_html, as_svg, stacked
 from robolang.storage import write_atomic
-from runtime.frames import Array
+from runtime.core.frames import Array
+from runtime.core.units import badness
 from runtime.pulses.exported import Export, Move
 from runtime.pulses.replay import MoveReplay
-from runtime.units import badness
 
 _BUCKETS = 195
 """Parts of the time axis of which four points are drawn; a curve keeps four times that whole."""

@@ -20,7 +20,7 @@ from robolang.nodes import Line, Program, Target
 from robolang.parser import MAX_LINE, MAX_NUMBER_DIGITS, parse
 from robolang.source import Source, Span
 from robolang.structure import targets
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 
 MAX_NUMBER = 10**MAX_NUMBER_DIGITS - 1
 

@@ -14,11 +14,11 @@ from robolang.alarms import as_json
 from robolang.diagnostics import Severity
 from robolang.result import RunRecord, StatementRun
 from runtime.controller import Controller
-from runtime.faults import Alarm
-from runtime.frames import Array, xyzrpy_from_pose
+from runtime.core.faults import Alarm
+from runtime.core.frames import Array, xyzrpy_from_pose
+from runtime.core.units import DEG, MM, PERCENT
 from runtime.plant.touches import shape_text
 from runtime.servo.motor import torque_limit
-from runtime.units import DEG, MM, PERCENT
 
 
 def build_report(record: RunRecord, log: dict[str, Array], wall_s: float) -> dict[str, object]:

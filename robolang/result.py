@@ -6,7 +6,7 @@ from robolang.diagnostics import Diagnostic
 from robolang.effects import Origin
 from robolang.project import Project
 from runtime.controller import Controller
-from runtime.frames import Array
+from runtime.core.frames import Array
 from runtime.motion.path import Path
 from runtime.motion.planner import WristChange
 from runtime.motion.seam import SeamTracker

@@ -3,7 +3,7 @@
 Registered at import, as those of ``robolang.codes``, which imports this module.
 """
 
-from runtime.faults import Code, register
+from runtime.core.faults import Code, register
 
 register(
     Code(

@@ -14,7 +14,7 @@ from typing import IO, Any
 import numpy as np
 
 from robolang.storage import write_atomic
-from runtime.frames import Array
+from runtime.core.frames import Array
 
 SUFFIXES = (".npz", ".mcap")
 CHANNEL = "/controller"

@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 
 from robolang.limits import SIZE
 from robolang.places import Place, Value, kind_of
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 
 MAX_CELLS = 1_000_000
 """Most elements of all arrays and names with a value together."""

@@ -43,14 +43,14 @@ from robolang.source import Span
 from robolang.surroundings import RobotWorld
 from runtime.clock import PacedClock, VirtualClock, wall_s
 from runtime.controller import Controller
-from runtime.faults import Fault
+from runtime.core.faults import Fault
+from runtime.core.units import MM
 from runtime.motion.chain import ChainPlan
 from runtime.motion.seam import SeamTracker
 from runtime.plant.plant import Plant
 from runtime.plant.seam_sensor import SeamSensor
 from runtime.profile import ServoMode
 from runtime.robot.kinematics import Kinematics
-from runtime.units import MM
 
 
 class ProgramError(Exception):

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import NoReturn
 
 import robolang.codes  # noqa: F401 - the codes raised here must be registered
-from runtime.tomlfile import FileFault
+from runtime.core.tomlfile import FileFault
 
 MAX_BYTES = 1_000_000
 _LINE_END = re.compile(r"\r\n?|\n")

@@ -60,9 +60,9 @@ from robolang.nodes import (
     Zone,
 )
 from robolang.source import Span
-from runtime.faults import Fault
+from runtime.core.faults import Fault
+from runtime.core.units import MM
 from runtime.robot.load_rules import centre_fault, inertia_fault, load_fault, mass_fault
-from runtime.units import MM
 
 MAX_HELD = 2
 

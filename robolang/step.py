@@ -16,9 +16,10 @@ import numpy as np
 
 from robolang.project import builtin_cell
 from runtime.controller import Controller
+from runtime.core.faults import Fault
+from runtime.core.frames import Array, pose
+from runtime.core.units import DEG
 from runtime.dynamics.equations import axis_inertia
-from runtime.faults import Fault
-from runtime.frames import Array, pose
 from runtime.motion.fine import FineInterpolator
 from runtime.plant.cell import CellSpec
 from runtime.plant.plant import Plant
@@ -29,7 +30,6 @@ from runtime.robot.payload import NO_PAYLOAD, Payload
 from runtime.robot.spec import RobotSpec
 from runtime.servo.axes import rotors
 from runtime.servo.ideal import ideal_drives
-from runtime.units import DEG
 
 HOLD_S = 0.5
 """Time under servo before the step, s."""

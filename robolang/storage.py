@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import IO, NoReturn
 
 import robolang.codes  # noqa: F401 - RBL706 must be registered
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 
 _PROBE = bytes(4096)
 _PREFIX, _SUFFIX = ".robolang-", ".tmp"  # short: with the file's own name in it, one of 255 characters was not written

@@ -12,8 +12,8 @@ from robolang import lowering
 from robolang.lowering import Surroundings
 from robolang.places import Frame, Place, Six
 from robolang.points import PointStore
-from runtime.frames import Array
-from runtime.linear import matmul
+from runtime.core.frames import Array
+from runtime.core.linear import matmul
 from runtime.plant.cell import CellSpec
 from runtime.plant.signals import Signals
 from runtime.robot.kinematics import Kinematics

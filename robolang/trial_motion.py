@@ -14,19 +14,19 @@ from typing import Literal
 import numpy as np
 
 from robolang.project import builtin_cell
+from runtime.core.faults import Fault
+from runtime.core.frames import Array
+from runtime.core.linear import matmul
+from runtime.core.rounding import beside
+from runtime.core.units import DEG
 from runtime.dynamics.equations import axis_inertia
-from runtime.faults import Fault
-from runtime.frames import Array
-from runtime.linear import matmul
 from runtime.motion.fine import FineInterpolator
 from runtime.plant.cell import CellSpec
 from runtime.profile import Profile
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import NO_PAYLOAD, Payload
 from runtime.robot.spec import RobotSpec
-from runtime.rounding import beside
 from runtime.servo.motor import torque_limit
-from runtime.units import DEG
 
 STROKE = 0.5
 """Way of a test motion, rad, where the range has room for it."""

@@ -15,12 +15,12 @@ from robolang.expectation import Expectation
 from robolang.golden import read_golden, write_golden
 from robolang.report import pose_mm_deg
 from robolang.session import Session
-from runtime.faults import Fault
-from runtime.frames import Array, pose_from_xyzrpy, rotation_angles
-from runtime.linear import norm
-from runtime.program_line import named
-from runtime.rounding import beside
-from runtime.units import DEG, MM, badness
+from runtime.core.faults import Fault
+from runtime.core.frames import Array, pose_from_xyzrpy, rotation_angles
+from runtime.core.linear import norm
+from runtime.core.program_line import named
+from runtime.core.rounding import beside
+from runtime.core.units import DEG, MM, badness
 
 _LARGEST = (
     ("path_error_mm", "path_deviation_mm", "mm"),

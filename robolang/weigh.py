@@ -22,9 +22,11 @@ from typing import Any, Literal
 import numpy as np
 
 from runtime.controller import Controller
+from runtime.core.faults import Fault
+from runtime.core.frames import Array, frozen
+from runtime.core.rounding import beside
+from runtime.core.units import DEG, MM
 from runtime.dynamics.payload_identification import BodyModel, Knowledge, WeighedPayload, identify_payload
-from runtime.faults import Fault
-from runtime.frames import Array, frozen
 from runtime.motion.fine import FineInterpolator
 from runtime.plant.cell import CellSpec
 from runtime.plant.plant import Plant
@@ -32,9 +34,7 @@ from runtime.profile import Profile
 from runtime.robot.load_rules import MAX_COG_DISTANCE
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
-from runtime.rounding import beside
 from runtime.servo.motor import torque_limit
-from runtime.units import DEG, MM
 
 PlantName = Literal["rigid", "mujoco"]
 

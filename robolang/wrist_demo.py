@@ -17,9 +17,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from runtime.faults import Fault
-from runtime.frames import Array, frozen, inverse, pose, rotation_angles
-from runtime.linear import matmul
+from runtime.core.faults import Fault
+from runtime.core.frames import Array, frozen, inverse, pose, rotation_angles
+from runtime.core.linear import matmul
+from runtime.core.units import DEG, MM
 from runtime.motion.commands import Component
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.hold import COMPONENTS, Suppression, WristTable, posture_components, weld_line_frame
@@ -32,7 +33,6 @@ from runtime.profile import WristOptions
 from runtime.robot.frozen_wrist import MAIN_AXES, WRIST_AXES
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.spec import RobotSpec
-from runtime.units import DEG, MM
 
 DURATION_S = 4.0
 X_FLANGE_TOOL = pose((0.0, 0.0, 200.0 * MM), np.eye(3))

@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from runtime.frames import Array, frozen
+from runtime.core.frames import Array, frozen
 from runtime.robot.payload import NO_PAYLOAD, Payload
 
 EMPTY_ROW = frozen(np.zeros(0))

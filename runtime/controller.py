@@ -22,12 +22,13 @@ import numpy as np
 
 from runtime.areas import Areas, AxisLoad
 from runtime.clock import Clock, VirtualClock
+from runtime.core.faults import Alarm, lookup
+from runtime.core.frames import Array
+from runtime.core.linear import matmul
+from runtime.core.program_line import ProgramLine, logged
 from runtime.dynamics.equations import axis_gravity, axis_row
 from runtime.dynamics.source import InertiaRows
 from runtime.dynamics.task import StepCosts, dynamics_task
-from runtime.faults import Alarm, lookup
-from runtime.frames import Array
-from runtime.linear import matmul
 from runtime.motion.chain import ChainPlan, MotionPlanner, tracked_row
 from runtime.motion.commands import Command, MoveLinear
 from runtime.motion.fine import FineInterpolator
@@ -39,7 +40,6 @@ from runtime.motion.stop import stopping_rows
 from runtime.plant.plant import Plant
 from runtime.plant.touches import Touches
 from runtime.profile import Profile
-from runtime.program_line import ProgramLine, logged
 from runtime.recorder import Recorder
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.model import ArmModel

@@ -13,12 +13,12 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal, NoReturn, cast
 
-from runtime.faults import Fault, raise_all
+from runtime.core.faults import Fault, raise_all
+from runtime.core.tomlfile import FileFault, Source, Table, inside, load_table, read_source
+from runtime.core.units import DEG, MM
 from runtime.robot.joint_table import JointTable
 from runtime.robot.load_rules import LoadMode
 from runtime.supervision.limits import Reaction, SupervisionLimits
-from runtime.tomlfile import FileFault, Source, Table, inside, load_table, read_source
-from runtime.units import DEG, MM
 
 ServoMode = Literal["scheduled", "fixed"]
 FixedAt = Literal["min", "mid", "max"]

@@ -28,7 +28,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from runtime.frames import Array
+from runtime.core.frames import Array
 
 _FIRST_ROWS = 8192
 

@@ -25,8 +25,8 @@ from robolang.lint.suppress import add_later
 from robolang.lint.watch import watch
 from robolang.output import render
 from robolang.source import Source
-from runtime.faults import Fault, lookup
-from runtime.tomlfile import FileFault
+from runtime.core.faults import Fault, lookup
+from runtime.core.tomlfile import FileFault
 
 _ROOTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")
 

@@ -15,7 +15,7 @@ from robolang.line_times import LineTime, line_times
 from robolang.motion_check import Rehearsal
 from robolang.motion_findings import findings, worst_loads
 from robolang.project import Project, load_project
-from runtime.tomlfile import FileFault
+from runtime.core.tomlfile import FileFault
 
 _STATEMENT = 30
 _NOTHING = 5e-4

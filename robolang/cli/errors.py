@@ -15,8 +15,8 @@ from contextlib import contextmanager, suppress
 import typer
 
 from robolang.diagnostics import Severity, render_fault, safe
-from runtime.faults import Fault
-from runtime.tomlfile import FileFault
+from runtime.core.faults import Fault
+from runtime.core.tomlfile import FileFault
 
 DIAGNOSTICS, USAGE, MOTION, STORAGE, INTERNAL = 1, 2, 3, 4, 70
 INTERRUPTED = 130

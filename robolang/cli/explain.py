@@ -10,7 +10,7 @@ from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
     from robolang.cli.console import Console
-    from runtime.faults import Code
+    from runtime.core.faults import Code
 
 
 def explain(
@@ -21,7 +21,7 @@ def explain(
 ) -> None:
     """Explain a code of a diagnostic, a fault or an alarm."""
     import robolang.codes  # noqa: F401 - every code there is
-    from runtime.faults import all_codes
+    from runtime.core.faults import all_codes
 
     with reported():
         entries = all_codes()

@@ -17,8 +17,8 @@ import typer
 from robolang.cli import lines
 from robolang.cli.errors import DIAGNOSTICS, exit_code, reported, say_warnings
 from robolang.cli.values import OptionValueError
-from runtime.rounding import beside
-from runtime.units import badness
+from runtime.core.rounding import beside
+from runtime.core.units import badness
 
 if TYPE_CHECKING:
     from robolang.project import Project

@@ -17,7 +17,7 @@ from robolang.cli.rewrite import BROKEN, CHANGES, STDIO, broken, load, show, sto
 from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
-    from runtime.faults import Fault
+    from runtime.core.faults import Fault
 
 
 def fmt(
@@ -64,7 +64,7 @@ class _Run:
 
     def one(self, name: str) -> None:
         """Format a file, or say why not."""
-        from runtime.faults import Fault
+        from runtime.core.faults import Fault
 
         try:
             self._format(name)

@@ -199,7 +199,7 @@ def _with(mass: float) -> str:
 def _draw(path: Path, spec: "RobotSpec", found: "InertiaMap", mass: float) -> None:
     from robolang.plot import as_map_svg
     from robolang.storage import write_atomic
-    from runtime.units import DEG
+    from runtime.core.units import DEG
 
     first, second = (f"J{joint + 1}" for joint in found.joints)
     title = f"{spec.name}{_with(mass)}: inertia of J{found.axis + 1} at its motor, D / N^2 + J"

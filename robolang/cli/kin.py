@@ -26,7 +26,7 @@ from robolang.cli.errors import reported, say_warnings
 from robolang.cli.values import OptionValueError, numbers
 
 if TYPE_CHECKING:
-    from runtime.frames import Array
+    from runtime.core.frames import Array
     from runtime.robot.kinematics import Kinematics
 
 app = typer.Typer(no_args_is_help=True, help="Forward and inverse kinematics of a robot (mm, deg).")
@@ -59,8 +59,8 @@ def fk(
 def _fk(robot: str, joints: str, tool: str | None, as_json: bool) -> None:
     import numpy as np
 
-    from runtime.frames import xyzrpy_from_pose
-    from runtime.linear import matmul
+    from runtime.core.frames import xyzrpy_from_pose
+    from runtime.core.linear import matmul
 
     kinematics = _kinematics(robot)
     q_deg = numbers(joints, option="--joints", names=_joint_names(kinematics.n))
@@ -88,8 +88,8 @@ def ik(
 
 
 def _ik(robot: str, pose: str, tool: str | None, as_json: bool) -> None:
-    from runtime.frames import inverse
-    from runtime.linear import matmul
+    from runtime.core.frames import inverse
+    from runtime.core.linear import matmul
 
     kinematics = _kinematics(robot)
     X_base_flange = matmul(_pose(pose, "--pose"), inverse(_pose(tool, "--tool")))
@@ -150,7 +150,7 @@ def _pose(text: str | None, option: str) -> "Array":
     """Return the pose (4, 4) in m of ``x,y,z,rx,ry,rz`` in mm and deg; the identity for None."""
     import numpy as np
 
-    from runtime.frames import pose_from_xyzrpy
+    from runtime.core.frames import pose_from_xyzrpy
 
     if text is None:
         return np.eye(4)
@@ -160,7 +160,7 @@ def _pose(text: str | None, option: str) -> "Array":
 
 def _pose_scale() -> list[float]:
     """Return metres per mm and radians per degree for the six numbers of a pose."""
-    from runtime.units import DEG, MM
+    from runtime.core.units import DEG, MM
 
     return [{"mm": MM, "deg": DEG}[unit] for unit in POSE_UNITS]
 
@@ -201,7 +201,7 @@ def _solution_rows(solution: dict[str, Any]) -> list[list[str]]:
 
 
 def _say_out_of_reach(kinematics: "Kinematics") -> None:
-    from runtime.faults import lookup
+    from runtime.core.faults import lookup
 
     code, robot = lookup("RBL410"), kinematics.spec.title
     meaning = code.meaning if kinematics.closed_form else "The numeric search met the pose from none of its starts."

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from runtime.program_line import named
+from runtime.core.program_line import named
 
 
 def headings(rows: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:

@@ -37,7 +37,7 @@ def renumber(
     if out is not None and (check or diff):
         raise OptionValueError("--out", "nothing is written with --check or --diff")
     with reported():
-        from runtime.faults import Fault
+        from runtime.core.faults import Fault
 
         try:
             loaded = load(program)

@@ -26,14 +26,14 @@ import typer
 from robolang.cli import lines
 from robolang.cli.errors import DIAGNOSTICS, MOTION, reader_may_leave, reported, say, say_warnings
 from robolang.cli.values import OptionValueError
-from runtime.program_line import named
-from runtime.units import badness
+from runtime.core.program_line import named
+from runtime.core.units import badness
 
 if TYPE_CHECKING:
     from rich.table import Table
 
     from robolang.pulse_drive import Drive, DrivenMove
-    from runtime.faults import Alarm
+    from runtime.core.faults import Alarm
     from runtime.pulses.exported import Export, Marker
     from runtime.pulses.replay import MoveReplay
 
@@ -100,7 +100,7 @@ def _drive(export: "Export", cell: str) -> "Drive":
 
 def _is_too_far(replays: "list[MoveReplay]", max_error: float) -> bool:
     """Name the worst move on stderr when it is further off its line than ``max_error``, mm."""
-    from runtime.faults import Fault
+    from runtime.core.faults import Fault
 
     worst = max(replays, key=lambda item: badness(item.worst_mm), default=None)
     if worst is None or worst.worst_mm <= max_error:

@@ -51,7 +51,7 @@ def load(name: str, shown: str = "<stdin>") -> Loaded:
 def _standard_input() -> bytes:
     """Return what a program can hold of the standard input, and one byte more."""
     from robolang.source import MAX_BYTES
-    from runtime.faults import Fault
+    from runtime.core.faults import Fault
 
     if sys.stdin is None:
         raise Fault("RBL702", "there is no standard input")
@@ -67,7 +67,7 @@ def store(loaded: Loaded, text: str, out: str | None = None) -> None:
     The program is left alone when it is not what was read any more: somebody else is writing it.
     """
     from robolang.storage import write_atomic
-    from runtime.faults import Fault
+    from runtime.core.faults import Fault
 
     raw, name = loaded.mark + text.encode("utf-8"), loaded.name if out is None else out
     if name == STDIO:
@@ -80,7 +80,7 @@ def store(loaded: Loaded, text: str, out: str | None = None) -> None:
 
 def _still(loaded: Loaded) -> bool:
     from robolang.source import read_bytes
-    from runtime.faults import Fault
+    from runtime.core.faults import Fault
 
     try:
         return read_bytes(loaded.name) == loaded.mark + loaded.source.text.encode("utf-8")

@@ -10,7 +10,7 @@ import typer
 
 from robolang.cli.errors import reported, say_warnings
 from robolang.diagnostics import safe
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -113,7 +113,7 @@ def _show_model(robot: str) -> None:
 
 
 def _model_limits(arm: "ImportedArm") -> "Table":
-    from runtime.units import DEG
+    from runtime.core.units import DEG
 
     def shown(value: float | None, unit: float = 1.0) -> str:
         return "-" if value is None else f"{value / unit:g}"
@@ -159,7 +159,7 @@ def _table(title: str, *headings: str) -> "Table":
 
 
 def _limits(spec: "RobotSpec") -> "Table":
-    from runtime.units import DEG
+    from runtime.core.units import DEG
 
     table = _table("Limits", "range\ndeg", "speed\ndeg/s", "accel\ndeg/s2", "torque\nN m")
     for index, axis in enumerate(spec.axes, start=1):

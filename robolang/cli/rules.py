@@ -8,7 +8,7 @@ import typer
 from robolang.cli.errors import reader_may_leave, reported
 
 if TYPE_CHECKING:
-    from runtime.faults import Code
+    from runtime.core.faults import Code
 
 
 def rules(

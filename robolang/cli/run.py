@@ -126,7 +126,7 @@ def _write(result: "RunResult", report: Path | None, log: Path | None) -> int:
     """Write the files that were asked for; what cannot be written is said and does not keep the other from it."""
     from robolang.runlog import write_log
     from robolang.storage import write_json
-    from runtime.faults import Fault
+    from runtime.core.faults import Fault
 
     writers: list[tuple[Path | None, Callable[[Path], None]]] = [
         (report, lambda path: write_json(path, result.report)),
@@ -238,7 +238,7 @@ def _line_printer() -> "Progress":
 
 
 def _status(statement: "StatementRun", time_us: int) -> str:
-    from runtime.program_line import named
+    from runtime.core.program_line import named
 
     where = named(statement.origin.line, statement.origin.number)
     lamp = f"[{statement.lamp}]  " if statement.lamp else ""

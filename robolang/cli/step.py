@@ -10,7 +10,7 @@ from robolang.cli import servo_options as o
 from robolang.cli import values
 from robolang.cli.errors import MOTION, reported, say_warnings
 from robolang.cli.values import OptionValueError, numbers
-from runtime.rounding import beside
+from runtime.core.rounding import beside
 
 if TYPE_CHECKING:
     from robolang.step import PlantName, StepRequest, StepResult
@@ -68,8 +68,8 @@ def step(
         from robolang.step import StepRequest
         from robolang.step import as_json as figures
         from robolang.step import step as run_step
-        from runtime.frames import pose
-        from runtime.units import DEG, MM
+        from runtime.core.frames import pose
+        from runtime.core.units import DEG, MM
 
         spec = load_any_robot(robot)
         say_warnings(spec.warnings)
@@ -150,7 +150,7 @@ def _print(found: dict[str, Any]) -> None:
 def _write_plot(path: Path, request: "StepRequest", result: "StepResult") -> None:
     from robolang.plot import Curve, as_html, as_svg
     from robolang.storage import write_atomic
-    from runtime.units import DEG
+    from runtime.core.units import DEG
 
     title = f"{request.robot.name}: step on J{request.axis + 1}, D' = {result.inertia:.3g} kg m2"
     curve = Curve(name=f"{request.profile.servo.mode} gains", x=result.t, y=result.response / DEG)

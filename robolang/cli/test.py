@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from robolang.expectation import Expectation
     from robolang.project import Project
     from robolang.verdict import Verdict
-    from runtime.faults import Fault
+    from runtime.core.faults import Fault
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,7 +77,7 @@ def _files(paths: list[str], allow_empty: bool) -> Iterator[Path | _Outcome]:
     from robolang.expectation import ENDING
     from robolang.lint.files import programs
     from robolang.lint.settings import Settings
-    from runtime.faults import Fault
+    from runtime.core.faults import Fault
 
     seen: set[Path] = set()
     excludes = Settings().excludes
@@ -108,7 +108,7 @@ def _unusable(name: str, fault: "Fault", expected: "Expectation | None" = None) 
 def _run(file: Path, update: bool) -> _Outcome:
     """Run one program; whatever goes wrong is the outcome of this test alone."""
     from robolang.expectation import ENDING, load_expectation
-    from runtime.faults import Fault
+    from runtime.core.faults import Fault
 
     program = file.with_name(file.name.removesuffix(ENDING) + ".rbl")
     expected = None

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, NoReturn
 import typer
 
 from robolang.cli.usage import OptionValueError as OptionValueError
-from runtime.numerals import number_in, why_none
-from runtime.rounding import beside
+from runtime.core.numerals import number_in, why_none
+from runtime.core.rounding import beside
 
 if TYPE_CHECKING:
-    from runtime.frames import Array
+    from runtime.core.frames import Array
     from runtime.robot.payload import Payload
     from runtime.robot.spec import RobotSpec
 
@@ -48,9 +48,9 @@ def payload(text: str, option: str, spec: "RobotSpec", *, heavier: bool = True) 
     """Return a payload of mass, kg, and centre of gravity, mm; ``heavier``: it may be over the rated one."""
     import numpy as np
 
-    from runtime.faults import Fault
+    from runtime.core.faults import Fault
+    from runtime.core.units import MM
     from runtime.robot.payload import declared
-    from runtime.units import MM
 
     mass, *cog = numbers(text, option=option, names=PAYLOAD)
     try:

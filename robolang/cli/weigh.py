@@ -21,7 +21,7 @@ import typer
 from robolang.cli import values
 from robolang.cli.errors import reported, say_warnings
 from robolang.cli.values import OptionValueError
-from runtime.rounding import beside
+from runtime.core.rounding import beside
 
 if TYPE_CHECKING:
     from robolang.weigh import PlantName, WeighRequest
@@ -56,7 +56,7 @@ def weigh(
         from robolang.weigh import WeighRequest, carried, plan_exercise
         from robolang.weigh import as_json as figures
         from robolang.weigh import weigh as run_weigh
-        from runtime.units import DEG
+        from runtime.core.units import DEG
 
         where = None if program is None else Path(program)
         found_cell, in_force = load_cell_and_settings(where, cell, robot, None, {})
@@ -90,7 +90,7 @@ def _note(mass: float, cell: "CellSpec") -> None:
 
 def _say_what_comes(request: "WeighRequest", amplitudes: Any) -> None:
     from robolang.weigh import SECONDS
-    from runtime.units import DEG
+    from runtime.core.units import DEG
 
     swings = ", ".join(f"J{axis + 1} {by / DEG:.3g}" for axis, by in enumerate(amplitudes) if by > 0.0)
     typer.echo(f"weighing: {SECONDS:g} s of motion about home, swings of {swings} deg", err=True)

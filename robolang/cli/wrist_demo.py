@@ -12,7 +12,7 @@ import typer
 
 from robolang.cli.errors import reported, say_warnings
 from robolang.cli.values import OptionValueError
-from runtime.units import badness
+from runtime.core.units import badness
 
 if TYPE_CHECKING:
     from robolang.plot import Mark
@@ -41,7 +41,7 @@ def wrist_demo(
     with reported():
         from robolang.project import load_any_robot
         from robolang.wrist_demo import FIGURES, run, unusable
-        from runtime.faults import Fault
+        from runtime.core.faults import Fault
 
         chosen = _chosen(figures or [], FIGURES)
         spec = load_any_robot(robot)
@@ -91,7 +91,7 @@ def _plain(run: "Run") -> dict[str, Any]:
     """Return the figures of a run in plain types, in deg, s and mm; axes from 1."""
     import numpy as np
 
-    from runtime.units import DEG, MM
+    from runtime.core.units import DEG, MM
 
     trial = run.trial
     components = np.abs(run.components).max(axis=0) / DEG
@@ -238,7 +238,7 @@ def _joints_svg(title: str, figure: "Figure", runs: list["Run"]) -> str:
     import numpy as np
 
     from robolang.plot import Curve, Dots, as_svg
-    from runtime.units import DEG
+    from runtime.core.units import DEG
 
     curves = [
         Curve(
@@ -261,7 +261,7 @@ def _marks(figure: "Figure", runs: list["Run"]) -> list["Mark"]:
     """Return the switches, and the ends of the range where a run has to do with them."""
     from robolang.plot import Mark
     from robolang.wrist_demo import RANGE
-    from runtime.units import DEG
+    from runtime.core.units import DEG
 
     marks: list[Mark] = []
     at = [run.switch_s for run in runs]
@@ -278,7 +278,7 @@ def _marks(figure: "Figure", runs: list["Run"]) -> list["Mark"]:
 def _components_svg(title: str, figure: "Figure", run: "Run") -> str:
     """Draw the change of tilt, advance and rotation over time."""
     from robolang.plot import Curve, Mark, as_svg
-    from runtime.units import DEG
+    from runtime.core.units import DEG
 
     switch = run.switch_s or 0.0
     shown = run.t >= switch - _LEAD_S - 1e-9

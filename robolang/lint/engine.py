@@ -19,9 +19,9 @@ from robolang.parser import parse
 from robolang.points import load_points
 from robolang.source import Source, Span
 from robolang.usage_check import named
-from runtime.faults import Fault
-from runtime.toml_places import locate
-from runtime.tomlfile import FileFault, read_source
+from runtime.core.faults import Fault
+from runtime.core.toml_places import locate
+from runtime.core.tomlfile import FileFault, read_source
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from robolang.lint.registry import Rule, rule, rules
-from runtime.faults import lookup
+from runtime.core.faults import lookup
 
 _INDEX = """\
 # Rules

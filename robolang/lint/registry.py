@@ -1,6 +1,6 @@
 """The rules of ``robolang check``: what is known of a code beyond its name, meaning and remedy.
 
-Code, name, meaning and remedy are in the registry of ``runtime.faults``; here is what a page of documentation needs
+Code, name, meaning and remedy are in the registry of ``runtime.core.faults``; here is what a page of documentation needs
 besides: why the finding matters, a program that has it, the same program without it, and what ``--fix`` does. A code
 without an entry is a rule all the same: it can be selected, ignored and suppressed, and its page is short. One module
 holds the entries of one group of a hundred codes; a new one is a ``Rule`` in its list and, after
@@ -13,7 +13,7 @@ from types import MappingProxyType
 
 import robolang.codes  # noqa: F401 - fills the registry of codes
 from robolang.diagnostics import Severity
-from runtime.faults import Code, all_codes, lookup
+from runtime.core.faults import Code, all_codes, lookup
 
 _MOST_LINES = 20
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import robolang.codes  # noqa: F401 - selectors are compared with every code there is
 from robolang.diagnostics import Diagnostic, Severity
 from robolang.words import near
-from runtime.faults import all_codes
+from runtime.core.faults import all_codes
 
 ALL = "ALL"
 _PREFIX = "RBL"

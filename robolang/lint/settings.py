@@ -19,7 +19,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from robolang.lint.selection import Layer, guess, selector
-from runtime.tomlfile import TWICE, FileFault, Source, Table, load_table, read_source
+from runtime.core.tomlfile import TWICE, FileFault, Source, Table, load_table, read_source
 
 FILE, PYPROJECT = "robolang.toml", "pyproject.toml"
 

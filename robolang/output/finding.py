@@ -17,8 +17,8 @@ from robolang.diagnostics import Diagnostic, Fix, Severity, safe
 from robolang.lint.engine import Checked
 from robolang.lint.files import STANDARD_INPUT
 from robolang.source import Source, Span
-from runtime.faults import Fault, lookup
-from runtime.tomlfile import FileFault
+from runtime.core.faults import Fault, lookup
+from runtime.core.tomlfile import FileFault
 
 _NUMBER = re.compile(r"\s*[0-9]*\s*")
 

@@ -16,7 +16,7 @@ from robolang.diagnostics import Severity
 from robolang.lint.engine import Checked
 from robolang.lint.pages import page
 from robolang.output.finding import Correction, Finding, Region, findings, fingerprints, relative
-from runtime.faults import lookup
+from runtime.core.faults import lookup
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}

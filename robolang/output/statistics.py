@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from robolang.lint.engine import Checked
 from robolang.output.finding import findings
-from runtime.faults import lookup
+from runtime.core.faults import lookup
 
 
 def render(results: Sequence[Checked], *, as_json: bool) -> str:

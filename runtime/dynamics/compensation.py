@@ -39,18 +39,18 @@ from typing import Any
 
 import numpy as np
 
+from runtime.core.faults import Fault
+from runtime.core.frames import Array
+from runtime.core.linear import norm
+from runtime.core.rounding import beside
+from runtime.core.tomlfile import Table, load_table, read_source
+from runtime.core.units import DEG, MM
 from runtime.dynamics.equations import axis_inertia, inertia_range
 from runtime.dynamics.first_moments import scale
-from runtime.faults import Fault
-from runtime.frames import Array
-from runtime.linear import norm
 from runtime.robot.joint_table import JointTable
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import NO_PAYLOAD, Payload, declared
 from runtime.robot.spec import RobotSpec
-from runtime.rounding import beside
-from runtime.tomlfile import Table, load_table, read_source
-from runtime.units import DEG, MM
 
 SCHEMA = 1
 MOST_POSITIONS = 1000

@@ -8,7 +8,7 @@ in the document. Called by the dynamics task, one axis at a time.
 
 import numpy as np
 
-from runtime.frames import Array, frozen
+from runtime.core.frames import Array, frozen
 from runtime.robot.model import ArmModel
 from runtime.robot.payload import NO_PAYLOAD, Payload
 from runtime.robot.spec import RobotSpec

@@ -19,13 +19,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runtime.decompositions import least_squares
-from runtime.frames import Array
-from runtime.linear import matmul, norm
+from runtime.core.decompositions import least_squares
+from runtime.core.frames import Array
+from runtime.core.linear import matmul, norm
+from runtime.core.units import GRAVITY
 from runtime.robot.model import ArmModel
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
-from runtime.units import GRAVITY
 
 READING = 5e-4
 """Standard deviation of a torque in the least squares, as a share of the axis' torque limit."""

@@ -38,8 +38,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from runtime.frames import Array, frozen, skew
-from runtime.linear import dot, matmul
+from runtime.core.frames import Array, frozen, skew
+from runtime.core.linear import dot, matmul
 from runtime.robot.payload import NO_PAYLOAD, Payload
 from runtime.robot.spec import Body, RobotSpec
 

@@ -34,9 +34,9 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from runtime.decompositions import inverse_of
-from runtime.frames import Array, frozen
-from runtime.linear import matmul
+from runtime.core.decompositions import inverse_of
+from runtime.core.frames import Array, frozen
+from runtime.core.linear import matmul
 from runtime.robot.model import spec_rotors
 from runtime.robot.spec import RobotSpec
 from runtime.supervision.observer import TURNING, LoadModel

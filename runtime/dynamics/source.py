@@ -13,9 +13,9 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from runtime.core.frames import Array, frozen
 from runtime.dynamics.equations import axis_row
 from runtime.dynamics.motor_inertia import inertia_row, link_chain
-from runtime.frames import Array, frozen
 from runtime.profile import InertiaSource
 from runtime.robot.joint_table import JointTable
 from runtime.robot.load_rules import LoadMode

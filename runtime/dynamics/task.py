@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from runtime.areas import Areas, AxisLoad
+from runtime.core.frames import Array
 from runtime.dynamics.equations import axis_gravity, axis_row
 from runtime.dynamics.source import InertiaRows
-from runtime.frames import Array
 from runtime.robot.load_rules import LoadMode
 from runtime.robot.model import ArmModel
 

@@ -26,8 +26,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runtime.frames import Array, rotation_angles
-from runtime.linear import matmul
+from runtime.core.frames import Array, rotation_angles
+from runtime.core.linear import matmul
 from runtime.motion.pacing import Pace
 from runtime.motion.solver import RANGE_TOLERANCE, Arm
 

@@ -17,8 +17,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from runtime.faults import Fault
-from runtime.frames import Array, frozen
+from runtime.core.faults import Fault
+from runtime.core.frames import Array, frozen
 from runtime.motion.blend import Corner, blend
 from runtime.motion.commands import Command, MoveJoint, MoveLinear
 from runtime.motion.joint_planner import JointPlanner

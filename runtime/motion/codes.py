@@ -1,6 +1,6 @@
 """Codes of motion, registered at import; the module imports nothing heavy, so that they are known without numerics."""
 
-from runtime.faults import Code, register
+from runtime.core.faults import Code, register
 
 register(
     Code(

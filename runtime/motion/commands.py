@@ -12,7 +12,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from runtime.frames import Array
+from runtime.core.frames import Array
 from runtime.robot.opw import Branch
 
 Component = Literal["TILT", "ADVANCE", "ROTATION"]

@@ -11,8 +11,8 @@ ticks.
 
 import numpy as np
 
-from runtime.frames import Array
-from runtime.linear import matmul
+from runtime.core.frames import Array
+from runtime.core.linear import matmul
 
 
 def _quintic(u: Array) -> Array:

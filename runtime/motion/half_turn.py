@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runtime.faults import Fault
-from runtime.frames import Array
+from runtime.core.faults import Fault
+from runtime.core.frames import Array
 from runtime.motion.solver import LineSolver
 from runtime.motion.wrist import SAME_ANGLES
 from runtime.robot.kinematics import SAME_ROOM

@@ -31,8 +31,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runtime.frames import Array, frozen
-from runtime.linear import matmul, norm
+from runtime.core.frames import Array, frozen
+from runtime.core.linear import matmul, norm
 from runtime.motion.commands import Component
 from runtime.motion.path import ArcPath, Path
 from runtime.robot.frozen_wrist import WRIST_AXES, FrozenWrist, Side

@@ -10,8 +10,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from runtime.faults import Fault
-from runtime.frames import Array
+from runtime.core.faults import Fault
+from runtime.core.frames import Array
 from runtime.motion.chain import ChainPlan
 from runtime.motion.planner import EXCEPTION, FOLLOWS, LinePlan
 from runtime.motion.seam import SeamMove

@@ -22,9 +22,10 @@ from typing import NoReturn
 
 import numpy as np
 
-from runtime.faults import Fault
-from runtime.frames import Array, frozen, inverse
-from runtime.linear import matmul
+from runtime.core.faults import Fault
+from runtime.core.frames import Array, frozen, inverse
+from runtime.core.linear import matmul
+from runtime.core.units import DEG, MM
 from runtime.motion.commands import MoveJoint
 from runtime.motion.pacing import Pace
 from runtime.motion.planner import NOTHING_TO_DO, LinePlan
@@ -34,7 +35,6 @@ from runtime.motion.wrist_planner import as_taught, turned
 from runtime.profile import Profile
 from runtime.robot.kinematics import LIMIT_ROUNDING, Kinematics
 from runtime.robot.spec import RobotSpec
-from runtime.units import DEG, MM
 
 RISE_S = 0.1
 """Time in which the acceleration of a joint builds up, s."""

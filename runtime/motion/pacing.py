@@ -14,13 +14,13 @@ from typing import NoReturn, Protocol
 
 import numpy as np
 
-from runtime.frames import Array
+from runtime.core.frames import Array
+from runtime.core.units import DEG
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.solver import MOST_SLOWDOWN
 from runtime.motion.speed import SpeedLimits, profile
 from runtime.profile import Profile
 from runtime.robot.spec import RobotSpec
-from runtime.units import DEG
 
 _MARGIN = 1.0 + 1e-6
 _ROUNDS = 12

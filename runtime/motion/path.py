@@ -30,8 +30,8 @@ from typing import TypeAlias
 import numpy as np
 
 import runtime.motion.codes  # noqa: F401 - registers what is raised here
-from runtime.faults import Fault
-from runtime.frames import (
+from runtime.core.faults import Fault
+from runtime.core.frames import (
     Array,
     frozen,
     is_half_turn,
@@ -41,10 +41,10 @@ from runtime.frames import (
     rotation_from_rpy,
     rpy_from_rotation,
 )
-from runtime.linear import dot, matmul, norm
+from runtime.core.linear import dot, matmul, norm
+from runtime.core.rounding import beside
+from runtime.core.units import MM
 from runtime.profile import PostureLaw
-from runtime.rounding import beside
-from runtime.units import MM
 
 FLATTEST = 1e-6
 """Least height of the triangle of start, via point and end over its longest side, m."""

@@ -26,9 +26,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from runtime.faults import Fault
-from runtime.frames import Array, frozen
-from runtime.linear import matmul
+from runtime.core.faults import Fault
+from runtime.core.frames import Array, frozen
+from runtime.core.linear import matmul
+from runtime.core.units import DEG, MM, badness
 from runtime.motion.commands import Component, MoveArc, MoveLinear, PathMove
 from runtime.motion.half_turn import in_order
 from runtime.motion.pacing import Pace, Slowdown
@@ -43,7 +44,6 @@ from runtime.robot.drives import PathLimits
 from runtime.robot.frozen_wrist import MAIN_AXES, WRIST_AXES
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.spec import RobotSpec
-from runtime.units import DEG, MM, badness
 
 FOLLOWS, EXCEPTION, HELD = 0, 1, 2
 """``wrist_mode``: the wrist follows the path, goes to its end angles, does so with posture components held."""

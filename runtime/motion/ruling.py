@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runtime.core.units import DEG, MM
 from runtime.motion.commands import Command, MoveJoint
 from runtime.motion.pacing import Slowdown
 from runtime.motion.path import ArcPath
@@ -17,7 +18,6 @@ from runtime.motion.planner import LinePlan, arc_limits
 from runtime.motion.speed import bound, shortest_s
 from runtime.profile import Profile
 from runtime.robot.spec import RobotSpec
-from runtime.units import DEG, MM
 
 IN_PLACE = 1e-3
 """A tool whose point moves less than this, m, turns in place: its speed along the path is of no interest."""

@@ -24,17 +24,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runtime.faults import Fault
-from runtime.frames import Array, inverse, pose, rotation_from_rpy
-from runtime.linear import matmul, norm
+from runtime.core.faults import Fault
+from runtime.core.frames import Array, inverse, pose, rotation_from_rpy
+from runtime.core.linear import matmul, norm
+from runtime.core.rounding import beside
+from runtime.core.units import DEG, MM
 from runtime.motion.solver import LineSolver
 from runtime.motion.wrist import Conditions, WristLaw, law_from
 from runtime.motion.wrist_planner import wrist_limits
 from runtime.profile import WristOptions
 from runtime.robot.frozen_wrist import MAIN_AXES, WRIST_AXES, FrozenWrist, Side
 from runtime.robot.opw import Branch
-from runtime.rounding import beside
-from runtime.units import DEG, MM
 
 SPEED_SLACK = 1.1
 """A tracked point may ask for this much of a joint's speed limit: the plan knew nothing of the deviation."""

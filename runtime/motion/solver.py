@@ -13,9 +13,10 @@ from typing import NoReturn
 
 import numpy as np
 
-from runtime.faults import Fault
-from runtime.frames import Array, inverse
-from runtime.linear import matmul
+from runtime.core.faults import Fault
+from runtime.core.frames import Array, inverse
+from runtime.core.linear import matmul
+from runtime.core.units import DEG, MM
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.hold import WristTable
 from runtime.motion.path import Path
@@ -24,7 +25,6 @@ from runtime.robot.frozen_wrist import FrozenWrist
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.opw import Branch
 from runtime.robot.spec import RobotSpec
-from runtime.units import DEG, MM
 
 RANGE_TOLERANCE = 1e-9
 """How far past its range a joint may be commanded, rad: rounding, nothing more."""

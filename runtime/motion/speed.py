@@ -12,11 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import ruckig
 
-from runtime.faults import Fault
-from runtime.frames import Array
+from runtime.core.faults import Fault
+from runtime.core.frames import Array
+from runtime.core.rounding import beside
+from runtime.core.units import badness
 from runtime.profile import SpeedShape
-from runtime.rounding import beside
-from runtime.units import badness
 
 MAX_DURATION = 600.0
 """Longest move that is planned, s: its set-points are held in memory as a whole."""

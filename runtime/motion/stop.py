@@ -13,9 +13,9 @@ robot's limits. A move that ends before any such stop would is left to end: it c
 
 import numpy as np
 
-from runtime.frames import Array
+from runtime.core.frames import Array
+from runtime.core.units import badness
 from runtime.motion.fine import FineInterpolator
-from runtime.units import badness
 
 _SHORTEST = 3
 _LONGEST = 250

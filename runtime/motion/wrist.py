@@ -33,7 +33,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from runtime.frames import Array, frozen
+from runtime.core.frames import Array, frozen
 from runtime.profile import WristOptions
 from runtime.robot.frozen_wrist import WRIST_AXES
 

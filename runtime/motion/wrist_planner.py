@@ -23,9 +23,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from runtime.faults import Fault
-from runtime.frames import HALF_TURN, Array, inverse, is_half_turn, rotation_angles
-from runtime.linear import matmul
+from runtime.core.faults import Fault
+from runtime.core.frames import HALF_TURN, Array, inverse, is_half_turn, rotation_angles
+from runtime.core.linear import matmul
+from runtime.core.rounding import beside
+from runtime.core.units import DEG, badness
 from runtime.motion.commands import Component, MoveJoint, PathMove, in_configuration
 from runtime.motion.hold import COMPONENTS, Suppression, WristTable, component_deviation, held_ways
 from runtime.motion.path import Path
@@ -43,8 +45,6 @@ from runtime.profile import WristOptions
 from runtime.robot.frozen_wrist import WRIST_AXES
 from runtime.robot.kinematics import LIMIT_ROUNDING, Kinematics
 from runtime.robot.spec import RobotSpec
-from runtime.rounding import beside
-from runtime.units import DEG, badness
 
 EARLIER = (0.9, 0.75, 0.6, 0.45, 0.3, 0.15, 0.0)
 """Switches tried when the document's does not do: shares of the way to it."""

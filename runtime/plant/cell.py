@@ -14,7 +14,9 @@ from typing import TypeVar
 
 import numpy as np
 
-from runtime.frames import Array, frozen, pose_from_xyzrpy
+from runtime.core.frames import Array, frozen, pose_from_xyzrpy
+from runtime.core.tomlfile import FileFault, Source
+from runtime.core.units import DEG, MM
 from runtime.plant.cell_file import CellFile, parse_cell_file, read_cell_file
 from runtime.plant.seam_sensor import SensorSpec
 from runtime.plant.signals import InputSpec
@@ -22,8 +24,6 @@ from runtime.profile import Layer
 from runtime.robot import importer, robot_file
 from runtime.robot.loader import load_builtin
 from runtime.robot.spec import RobotSpec
-from runtime.tomlfile import FileFault, Source
-from runtime.units import DEG, MM
 
 T = TypeVar("T")
 U = TypeVar("U")

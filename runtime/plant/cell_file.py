@@ -12,14 +12,14 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TypeVar
 
+from runtime.core.tomlfile import FileFault, Source, Table, inside, load_table, read_source
+from runtime.core.units import DEG
 from runtime.plant.resting import Box, unrest
 from runtime.plant.sensor_file import SensorFile, read_sensor_file
 from runtime.plant.signals import InputSpec, read_inputs
 from runtime.profile import Layer, read_layer
 from runtime.robot import robot_file
 from runtime.robot.arm_file import ROBOT_ENDINGS, ArmFile, read_arm_file
-from runtime.tomlfile import FileFault, Source, Table, inside, load_table, read_source
-from runtime.units import DEG
 
 SCHEMA = 1
 REACH_MM = 20_000.0

@@ -16,8 +16,8 @@ import math
 
 import numpy as np
 
-from runtime.decompositions import inverse_of, symmetric_eigen
-from runtime.frames import Array
+from runtime.core.decompositions import inverse_of, symmetric_eigen
+from runtime.core.frames import Array
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.spec import RobotSpec
 

@@ -8,8 +8,8 @@ estimate, since no hand of this kind is published with its inertia. Frames: flan
 
 import numpy as np
 
-from runtime.frames import Array, pose
-from runtime.linear import dot, matmul
+from runtime.core.frames import Array, pose
+from runtime.core.linear import dot, matmul
 from runtime.plant.cell import HandSpec
 from runtime.robot.spec import Body
 

@@ -39,13 +39,13 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from runtime.decompositions import symmetric_eigen
-from runtime.frames import Array, pose
-from runtime.linear import matmul, norm
+from runtime.core.decompositions import symmetric_eigen
+from runtime.core.frames import Array, pose
+from runtime.core.linear import matmul, norm
+from runtime.core.units import GRAVITY
 from runtime.plant.cell import CellSpec, HandSpec, ObstacleSpec, PartSpec
 from runtime.plant.hand import FINGERS, box_inertia, finger_body, finger_sign, palm_body, palm_box
 from runtime.robot.spec import AxisSpec, Body, RobotSpec
-from runtime.units import GRAVITY
 
 # who meets whom: a geom collides where its contype meets the other's conaffinity, either way round
 ENVIRONMENT, ARM, HAND, PART = 1, 2, 4, 8

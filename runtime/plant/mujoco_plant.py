@@ -24,8 +24,8 @@ from typing import Any, cast
 import mujoco
 import numpy as np
 
-from runtime.frames import Array, pose
-from runtime.linear import dot, norm
+from runtime.core.frames import Array, pose
+from runtime.core.linear import dot, norm
 from runtime.plant.cell import CellSpec
 from runtime.plant.gears import elastic_axes, physics_steps
 from runtime.plant.hand import FINGERS, finger_sign

@@ -8,7 +8,7 @@ hand and parts, and ``RigidPlant``, an ideal rigid arm without any of them, for 
 from dataclasses import dataclass
 from typing import Protocol
 
-from runtime.frames import Array
+from runtime.core.frames import Array
 from runtime.plant.touches import Bodies, Pair
 
 

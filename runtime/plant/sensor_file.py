@@ -13,7 +13,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Literal, cast
 
-from runtime.tomlfile import Table, inside, read_source
+from runtime.core.tomlfile import Table, inside, read_source
 
 Kind = Literal["ramp", "sine", "table"]
 KINDS: tuple[Kind, ...] = ("ramp", "sine", "table")

@@ -15,8 +15,8 @@ one that PULSE set goes back to 0 by itself. Times are integers of microseconds 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from runtime.faults import Fault
-from runtime.tomlfile import Table
+from runtime.core.faults import Fault
+from runtime.core.tomlfile import Table
 
 MOST = 1024
 LONGEST_S = 86_400.0

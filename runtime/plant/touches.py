@@ -21,11 +21,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from runtime.frames import Array, rotation_angle
-from runtime.linear import matmul, norm
+from runtime.core.frames import Array, rotation_angle
+from runtime.core.linear import matmul, norm
+from runtime.core.program_line import ProgramLine, named
+from runtime.core.units import DEG, MM
 from runtime.plant.hand import FINGERS
-from runtime.program_line import ProgramLine, named
-from runtime.units import DEG, MM
 
 Pair = tuple[str, str]
 NOTICED = 0.5e-3

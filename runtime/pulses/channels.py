@@ -19,10 +19,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, get_args
 
+from runtime.core.rounding import beside
+from runtime.core.tomlfile import Table, inside, load_table, read_source
+from runtime.core.units import DEG, MM
 from runtime.pulses.machine import Joint
-from runtime.rounding import beside
-from runtime.tomlfile import Table, inside, load_table, read_source
-from runtime.units import DEG, MM
 
 SCHEMA = 1
 MIN_HZ, MAX_HZ = 191.0, 100_000.0

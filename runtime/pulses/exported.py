@@ -18,8 +18,8 @@ from typing import Literal
 import numpy as np
 
 import runtime.pulses.codes  # noqa: F401 - registers what is raised here
-from runtime.frames import Array, frozen
-from runtime.units import DEG, MM
+from runtime.core.frames import Array, frozen
+from runtime.core.units import DEG, MM
 
 Kind = Literal["arm", "cartesian", "cylindrical", "scara"]
 Unit = Literal["deg", "mm"]

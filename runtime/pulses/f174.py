@@ -16,7 +16,7 @@ right only, and has no range to choose.
 from collections.abc import Sequence
 
 import runtime.pulses.codes  # noqa: F401 - registers what is raised here
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 from runtime.pulses.channels import Output
 from runtime.pulses.table import DataTable
 

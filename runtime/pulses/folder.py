@@ -15,11 +15,11 @@ from typing import Literal, cast
 
 import numpy as np
 
-from runtime.frames import frozen
+from runtime.core.frames import frozen
+from runtime.core.units import MM
 from runtime.pulses.exported import KINDS, Channel, Export, Kind, Load, Marker, Mechanism, Move, Table, Unit
 from runtime.pulses.manifest import Object, digits, fail, quoted, read_json, reason, type_name
 from runtime.pulses.rows import Rows
-from runtime.units import MM
 
 MANIFEST = "manifest.json"
 SCHEMA = 1

@@ -10,8 +10,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from runtime.frames import Array, frozen
-from runtime.linear import matmul
+from runtime.core.frames import Array, frozen
+from runtime.core.linear import matmul
 from runtime.motion.commands import MoveLinear
 from runtime.motion.planner import LinePlanner
 from runtime.motion.speed import SpeedLimits

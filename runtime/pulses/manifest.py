@@ -19,9 +19,9 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from runtime.frames import Array, frozen
-from runtime.linear import matmul
-from runtime.tomlfile import MAX_ABS, FileFault
+from runtime.core.frames import Array, frozen
+from runtime.core.linear import matmul
+from runtime.core.tomlfile import MAX_ABS, FileFault
 
 MAX_MANIFEST_BYTES = 16_000_000
 POSE_TOLERANCE = 1e-6

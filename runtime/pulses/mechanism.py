@@ -35,16 +35,16 @@ from typing import Any, Literal
 import numpy as np
 
 import runtime.pulses.codes  # noqa: F401 - registers what is raised here
-from runtime.faults import Fault
-from runtime.frames import Array, frozen, principal_axes
-from runtime.linear import norm
+from runtime.core.faults import Fault
+from runtime.core.frames import Array, frozen, principal_axes
+from runtime.core.linear import norm
+from runtime.core.rounding import beside
+from runtime.core.tomlfile import Source, Table, load_table, read_source
+from runtime.core.units import DEG, MM
 from runtime.motion.commands import MoveLinear
 from runtime.motion.speed import SpeedLimits, bound, check_requests
 from runtime.pulses.machine import Joint, Stand
 from runtime.robot.kinematics import SAME_ROOM
-from runtime.rounding import beside
-from runtime.tomlfile import Source, Table, load_table, read_source
-from runtime.units import DEG, MM
 
 Kind = Literal["cartesian", "cylindrical", "scara"]
 ORDER: dict[str, tuple[str, ...]] = {

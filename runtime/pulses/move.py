@@ -16,17 +16,17 @@ from dataclasses import dataclass
 import numpy as np
 
 import runtime.pulses.codes  # noqa: F401 - registers what is raised here
-from runtime.faults import Fault
-from runtime.frames import Array
-from runtime.linear import dot, matmul
+from runtime.core.faults import Fault
+from runtime.core.frames import Array
+from runtime.core.linear import dot, matmul
+from runtime.core.rounding import beside, down
+from runtime.core.units import MM
 from runtime.motion.commands import MoveLinear
 from runtime.motion.speed import MAX_DURATION, SpeedLimits, check_duration
 from runtime.pulses.channels import Channel
 from runtime.pulses.emission import Emission, Pulses, emit, least_step
 from runtime.pulses.machine import Machine, Stand, Way
 from runtime.pulses.steps import EqualTimeSteps
-from runtime.rounding import beside, down
-from runtime.units import MM
 
 MOST_PULSES = 2**53
 _ROUNDS = 12

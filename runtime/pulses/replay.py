@@ -15,10 +15,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from runtime.frames import Array, frozen
-from runtime.linear import matmul, norm
+from runtime.core.frames import Array, frozen
+from runtime.core.linear import matmul, norm
+from runtime.core.units import MM, badness
 from runtime.pulses.exported import Export, Mechanism, Move, Table
-from runtime.units import MM, badness
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -17,10 +17,10 @@ from typing import NoReturn
 
 import numpy as np
 
-from runtime.frames import frozen
+from runtime.core.frames import frozen
+from runtime.core.rounding import beside
 from runtime.pulses.exported import Channel, Table
 from runtime.pulses.manifest import fail, quoted, read_text
-from runtime.rounding import beside
 
 HEADER = "control,frequency_hz,target_pulses,steps"
 MAX_TABLE_BYTES = 64_000_000

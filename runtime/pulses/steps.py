@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runtime.frames import Array
+from runtime.core.frames import Array
 
 MOST_STEPS = 200_000
 """Longest move in steps: 2000 s of 10 ms."""

@@ -7,13 +7,13 @@ of it. Nothing outside of the folder of a file is opened.
 from dataclasses import dataclass
 from pathlib import Path
 
+from runtime.core.tomlfile import FileFault, Source, read_source
 from runtime.robot import robot_file
 from runtime.robot.drives import Limits, PathLimits
 from runtime.robot.plausibility import doubt_axes
 from runtime.robot.robot_file import RobotFile
 from runtime.robot.sidecar_file import SidecarFile, read_sidecar, sidecar_path
 from runtime.robot.xmlfile import Element, parse_xml
-from runtime.tomlfile import FileFault, Source, read_source
 
 MODEL_ENDINGS = (".urdf", ".xml")
 ROBOT_ENDINGS = (".toml", *MODEL_ENDINGS)

@@ -12,12 +12,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from runtime.frames import Array
-from runtime.linear import norm
+from runtime.core.frames import Array
+from runtime.core.linear import norm
+from runtime.core.tomlfile import FileFault
+from runtime.core.units import GRAVITY, MM
 from runtime.robot.plausibility import Place
 from runtime.robot.spec import Body
-from runtime.tomlfile import FileFault
-from runtime.units import GRAVITY, MM
 
 LONGEST, SHORTEST = 8.0, 0.02
 """Reach of an arm, m: the longest built reach about 5 m."""

@@ -22,9 +22,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runtime.decompositions import solve
-from runtime.frames import Array, frozen, inverse, pose
-from runtime.linear import dot, matmul, norm
+from runtime.core.decompositions import solve
+from runtime.core.frames import Array, frozen, inverse, pose
+from runtime.core.linear import dot, matmul, norm
 from runtime.robot import opw
 from runtime.robot.opw import Placed, PlacedOpw
 from runtime.robot.spec import OpwParameters

@@ -1,6 +1,6 @@
 """Codes of URDF and MJCF files, registered at import; the module imports nothing heavy."""
 
-from runtime.faults import Code, register
+from runtime.core.faults import Code, register
 
 register(
     Code(

@@ -13,11 +13,11 @@ may therefore state a correction of three kinds, none larger than it must be (do
 
 import numpy as np
 
-from runtime.frames import Array, frozen
+from runtime.core.frames import Array, frozen
+from runtime.core.rounding import beside
+from runtime.core.tomlfile import Table
 from runtime.robot.robot_file import CorrectionRow
 from runtime.robot.spec import AxisSpec, Body, Correction, inertia_defect, shift_between_links
-from runtime.rounding import beside
-from runtime.tomlfile import Table
 
 SLACK = 1e-9
 """A correction may exceed the smallest possible one by this much, kg m2."""

@@ -8,8 +8,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from runtime.tomlfile import Table
-from runtime.units import DEG, MM
+from runtime.core.tomlfile import Table
+from runtime.core.units import DEG, MM
 
 STIFFEST = 1e8
 """No gear is stiffer than this at the joint, N m/rad."""

@@ -22,9 +22,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runtime.decompositions import least_squares
-from runtime.frames import Array, inverse
-from runtime.linear import dot, matmul
+from runtime.core.decompositions import least_squares
+from runtime.core.frames import Array, inverse
+from runtime.core.linear import dot, matmul
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.opw import TURN, PlacedOpw, arm_angles
 from runtime.robot.spec import OpwParameters

@@ -22,11 +22,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runtime.frames import Array, inverse, pose
-from runtime.linear import matmul, norm
+from runtime.core.frames import Array, inverse, pose
+from runtime.core.linear import matmul, norm
+from runtime.core.units import DEG
 from runtime.robot.robot_file import DhRow, FlangeRow, LineRow, RobotFile
 from runtime.robot.spec import dh_transform
-from runtime.units import DEG
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -19,13 +19,13 @@ from pathlib import PurePath
 
 import numpy as np
 
-from runtime.frames import Array, frozen, inverse, pose, rotation_about, skew
-from runtime.linear import matmul
+from runtime.core.frames import Array, frozen, inverse, pose, rotation_about, skew
+from runtime.core.linear import matmul
+from runtime.core.tomlfile import FileFault
 from runtime.robot.corrections import flat
 from runtime.robot.drives import joint_label
 from runtime.robot.spec import Body, OpwParameters, inertia_defect
 from runtime.robot.xmlfile import Element
-from runtime.tomlfile import FileFault
 
 FEWEST_AXES, MOST_AXES = 2, 7
 INERTIA_SLACK = 1e-9

@@ -14,7 +14,8 @@ from typing import NoReturn
 
 import numpy as np
 
-from runtime.frames import Array, frozen
+from runtime.core.frames import Array, frozen
+from runtime.core.tomlfile import FileFault, Source, read_source
 from runtime.robot import loader
 from runtime.robot.arm_file import ArmFile, is_model, model_root, read_arm_file, sidecar_source
 from runtime.robot.body_plausibility import doubt_bodies, doubt_torques, offsets, weight_moment
@@ -29,7 +30,6 @@ from runtime.robot.sidecar_file import NO_OVERLAY, Overlay, read_overlay, sideca
 from runtime.robot.spec import RobotSpec
 from runtime.robot.urdf import read_urdf
 from runtime.robot.xmlfile import fault_at
-from runtime.tomlfile import FileFault, Source, read_source
 
 UNIT_SLACK = 1e-3
 """Rounding of the length of an axis."""

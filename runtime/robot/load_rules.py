@@ -12,9 +12,9 @@ import math
 from collections.abc import Sequence
 from typing import Literal
 
-from runtime.faults import Fault
-from runtime.rounding import beside
-from runtime.units import MM
+from runtime.core.faults import Fault
+from runtime.core.rounding import beside
+from runtime.core.units import MM
 
 LoadMode = Literal["add", "replace"]
 """Whether a payload is added to the last link, or takes its place (the literal reading of the document)."""

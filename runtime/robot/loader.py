@@ -11,8 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from runtime.frames import Array, frozen
-from runtime.linear import matmul
+from runtime.core.frames import Array, frozen
+from runtime.core.linear import matmul
+from runtime.core.tomlfile import FileFault, Source, Table, read_source
+from runtime.core.units import DEG
 from runtime.robot import robot_file
 from runtime.robot.body_plausibility import doubt_bodies, doubt_torques, offsets, weight_moment
 from runtime.robot.corrections import check_bodies, correct
@@ -21,8 +23,6 @@ from runtime.robot.geometry import Geometry, geometry_of
 from runtime.robot.plausibility import in_tables
 from runtime.robot.robot_file import AxisFile, OpwRow, RobotFile
 from runtime.robot.spec import AxisSpec, Body, Correction, OpwParameters, RobotSpec
-from runtime.tomlfile import FileFault, Source, Table, read_source
-from runtime.units import DEG
 
 
 @cache

@@ -14,13 +14,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runtime.frames import Array, frozen, pose, rotation_about
-from runtime.linear import dot, matmul, norm
+from runtime.core.frames import Array, frozen, pose, rotation_about
+from runtime.core.linear import dot, matmul, norm
+from runtime.core.units import DEG, GRAVITY
 from runtime.robot.imported import Hinge, Node, rotation_z_to
 from runtime.robot.spec import Body
 from runtime.robot.urdf import unit
 from runtime.robot.xmlfile import HEAVIEST_LINK, Element
-from runtime.units import DEG, GRAVITY
 
 _TOP = frozenset(
     [

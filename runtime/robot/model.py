@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from runtime.frames import Array
+from runtime.core.frames import Array
+from runtime.core.units import GRAVITY
 from runtime.robot.load_rules import LoadMode
 from runtime.robot.payload import NO_PAYLOAD, Payload
 from runtime.robot.spec import Body, RobotSpec
-from runtime.units import GRAVITY
 
 _NO_MASS = 1e-9
 

@@ -21,9 +21,9 @@ from collections.abc import Sequence
 import numpy as np
 import pinocchio as pin
 
-from runtime.decompositions import solve
-from runtime.frames import Array
-from runtime.linear import dot, matmul, norm
+from runtime.core.decompositions import solve
+from runtime.core.frames import Array
+from runtime.core.linear import dot, matmul, norm
 
 TOLERANCE = 1e-10
 """A pose is met when position (m) and orientation (rad) are within this of it."""

@@ -63,9 +63,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from runtime.frames import Array, pose, rotation_about
-from runtime.frames import inverse as inverse_pose
-from runtime.linear import matmul
+from runtime.core.frames import Array, pose, rotation_about
+from runtime.core.frames import inverse as inverse_pose
+from runtime.core.linear import matmul
 from runtime.robot.spec import OpwParameters
 
 ROUNDING = 5e-13

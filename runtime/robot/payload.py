@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from runtime.frames import Array, frozen
+from runtime.core.frames import Array, frozen
 from runtime.robot.load_rules import load_fault
 
 

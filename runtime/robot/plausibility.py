@@ -16,9 +16,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
+from runtime.core.tomlfile import FileFault, Table
+from runtime.core.units import DEG
 from runtime.robot.drives import Limits, Motor, joint_label
-from runtime.tomlfile import FileFault, Table
-from runtime.units import DEG
 
 MOST_TURNS = 2.0 * 2.0 * math.pi
 """Two turns to either side, rad: cables end earlier."""

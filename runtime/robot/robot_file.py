@@ -13,10 +13,10 @@ from functools import cache
 from importlib import resources
 from typing import Literal, cast
 
+from runtime.core.tomlfile import FileFault, Source, Table, load_table
 from runtime.robot import drives
 from runtime.robot.drives import Bandwidths, Limits, Motor, PathLimits
 from runtime.robot.plausibility import doubt_axes
-from runtime.tomlfile import FileFault, Source, Table, load_table
 
 SCHEMA = 1
 MOST_AXES = 7

@@ -7,6 +7,8 @@ drive data are never guessed.
 
 from pathlib import Path
 
+from runtime.core.tomlfile import FileFault
+from runtime.core.units import DEG
 from runtime.robot import corrections as rules
 from runtime.robot.body_plausibility import doubt_torques, offsets, weight_moment
 from runtime.robot.drives import WIDEST, joint_label
@@ -23,8 +25,6 @@ from runtime.robot.sidecar_file import (
     lacking,
 )
 from runtime.robot.spec import AxisSpec, Correction, RobotSpec
-from runtime.tomlfile import FileFault
-from runtime.units import DEG
 
 TYPED = 1e-9
 """An angle nearer to six decimals of a degree was typed with them, deg."""

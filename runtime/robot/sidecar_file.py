@@ -9,11 +9,11 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from runtime.core.tomlfile import Source, Table, load_table
 from runtime.robot import drives
 from runtime.robot.drives import Bandwidths, Limits, Motor, PathLimits
 from runtime.robot.gaps import listed, whole
 from runtime.robot.robot_file import CorrectionRow, correction, rated_payload
-from runtime.tomlfile import Source, Table, load_table
 
 SCHEMA = 1
 ENDING = ".robot.toml"

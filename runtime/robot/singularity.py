@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from runtime.frames import Array
+from runtime.core.frames import Array
 from runtime.robot.spec import OpwParameters
 
 

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runtime.frames import Array
+from runtime.core.frames import Array
+from runtime.core.tomlfile import FileFault
 from runtime.robot.drives import Bandwidths, Limits, Motor, PathLimits
 from runtime.robot.load_rules import moments_defect
-from runtime.tomlfile import FileFault
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,8 +12,8 @@ import math
 
 import numpy as np
 
-from runtime.frames import Array, frozen, pose, rotation_from_rpy
-from runtime.linear import dot, matmul
+from runtime.core.frames import Array, frozen, pose, rotation_from_rpy
+from runtime.core.linear import dot, matmul
 from runtime.robot.imported import Hinge, Node
 from runtime.robot.spec import Body
 from runtime.robot.xmlfile import HEAVIEST_LINK, Element

@@ -16,8 +16,8 @@ from typing import NoReturn
 from xml.parsers import expat
 
 import runtime.robot.codes  # noqa: F401 - registers what is raised here
-from runtime.numerals import number_in, why_none
-from runtime.tomlfile import MAX_ABS, FileFault, Source
+from runtime.core.numerals import number_in, why_none
+from runtime.core.tomlfile import MAX_ABS, FileFault, Source
 
 _LINE_END = re.compile(r"\r\n?|\n")  # XML 2.11: a CR alone ends a line, too
 MAX_DEPTH = 100

@@ -11,7 +11,7 @@ file, smoothed over ``SMOOTH`` rad/s: ``(N^2 B dq + |N| Tc tanh(dq / SMOOTH)) / 
 import numpy as np
 from numpy import multiply
 
-from runtime.frames import Array
+from runtime.core.frames import Array
 from runtime.profile import ServoOptions
 from runtime.robot.model import spec_rotors
 from runtime.robot.spec import RobotSpec

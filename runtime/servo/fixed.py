@@ -15,8 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runtime.core.frames import Array
 from runtime.dynamics.equations import inertia_range
-from runtime.frames import Array
 from runtime.profile import Profile, ServoOptions
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec

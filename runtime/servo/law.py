@@ -40,8 +40,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy import add, copyto, multiply, subtract
 
-from runtime.frames import Array
-from runtime.linear import matmul
+from runtime.core.frames import Array
+from runtime.core.linear import matmul
 from runtime.profile import FeedforwardSource
 
 LEAD_S = 0.02

@@ -12,7 +12,7 @@ import math
 import numpy as np
 from numpy import add, maximum, minimum, multiply, rint, subtract
 
-from runtime.frames import Array
+from runtime.core.frames import Array
 from runtime.robot.spec import RobotSpec
 
 

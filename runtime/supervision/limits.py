@@ -7,7 +7,7 @@ are of the robot file's own limits, so one set of numbers serves every robot.
 from dataclasses import dataclass
 from typing import Literal
 
-from runtime.units import DEG
+from runtime.core.units import DEG
 
 Reaction = Literal["stop", "warn", "off"]
 

@@ -32,9 +32,9 @@ import math
 import numpy as np
 import pinocchio as pin
 
-from runtime.decompositions import inverse_of, solve
-from runtime.frames import Array
-from runtime.linear import dot, matmul
+from runtime.core.decompositions import inverse_of, solve
+from runtime.core.frames import Array
+from runtime.core.linear import dot, matmul
 from runtime.robot.load_rules import LoadMode
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import Payload

@@ -10,11 +10,11 @@ import math
 
 import numpy as np
 
-from runtime.frames import Array
+from runtime.core.frames import Array
+from runtime.core.rounding import beside
 from runtime.robot.load_rules import LoadMode
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
-from runtime.rounding import beside
 from runtime.supervision.finding import Finding
 from runtime.supervision.limits import SupervisionLimits
 from runtime.supervision.observer import FEWEST, STRIDE, LoadModel, Observer

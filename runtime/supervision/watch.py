@@ -17,12 +17,12 @@ the next set-point. Every comparison is written so that NaN fails it. Called onc
 import numpy as np
 from numpy import absolute, add, less_equal, logical_and, maximum, multiply, subtract
 
-from runtime.frames import Array
+from runtime.core.frames import Array
+from runtime.core.rounding import beside
+from runtime.core.units import DEG
 from runtime.robot.spec import RobotSpec
-from runtime.rounding import beside
 from runtime.supervision.finding import Finding
 from runtime.supervision.limits import SupervisionLimits
-from runtime.units import DEG
 
 JUMP = 3.0
 """Share of the joint's speed limit above which a reading is a jump, not a motion."""

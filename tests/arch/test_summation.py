@@ -1,4 +1,4 @@
-"""A run adds in one order on every processor: no sum of it is left to OpenBLAS (runtime/linear.py)."""
+"""A run adds in one order on every processor: no sum of it is left to OpenBLAS (runtime/core/linear.py)."""
 
 import ast
 from pathlib import Path

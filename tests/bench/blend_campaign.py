@@ -12,8 +12,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from runtime.faults import Fault
-from runtime.frames import pose, rotation_about
+from runtime.core.faults import Fault
+from runtime.core.frames import pose, rotation_about
 from runtime.motion.chain import MotionPlanner
 from runtime.motion.commands import MoveArc, MoveJoint, MoveLinear
 from runtime.motion.fine import FineInterpolator

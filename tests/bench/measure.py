@@ -15,11 +15,11 @@ from robolang.project import load_project
 from robolang.runlog import write_log
 from robolang.session import RunResult, Session
 from robolang.step import StepResult, step
-from runtime.frames import inverse, pose, principal_axis, rotation_about, rotation_angle, rotation_from_rpy
+from runtime.core.frames import inverse, pose, principal_axis, rotation_about, rotation_angle, rotation_from_rpy
+from runtime.core.units import badness
 from runtime.motion.path import LinePath
 from runtime.plant.mjcf import build_mjcf
 from runtime.robot.model import spec_rotors
-from runtime.units import badness
 from tests.bench import figures
 from tests.bench.figures import Row
 from tests.experiments import test_step as bench

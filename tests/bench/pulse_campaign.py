@@ -19,8 +19,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from robolang.project import builtin_cell
-from runtime.faults import Fault
-from runtime.frames import pose, rotation_about
+from runtime.core.faults import Fault
+from runtime.core.frames import pose, rotation_about
+from runtime.core.units import MM, badness
 from runtime.motion.commands import MoveLinear
 from runtime.profile import Profile
 from runtime.pulses.channels import default_channels, motor_pulse
@@ -29,7 +30,6 @@ from runtime.pulses.machine import RobotArm, Stand
 from runtime.pulses.mechanism import load_builtin
 from runtime.pulses.move import counted, plan_move
 from runtime.pulses.table import rows_of
-from runtime.units import MM, badness
 from tests.bench import figures
 from tests.bench.figures import Row
 

@@ -25,8 +25,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from runtime.faults import Fault
-from runtime.frames import pose
+from runtime.core.faults import Fault
+from runtime.core.frames import pose
 from runtime.motion.commands import MoveLinear
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.path import LinePath

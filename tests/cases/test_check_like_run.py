@@ -8,10 +8,10 @@ import pytest
 
 from robolang.beside import read_beside
 from robolang.project import load_project
-from runtime.faults import Fault
+from runtime.core.faults import Fault
+from runtime.core.tomlfile import FileFault
 from runtime.plant.cell_file import read_cell_file
 from runtime.profile import load_profile_file
-from runtime.tomlfile import FileFault
 from tests.lang.cli.commands import robolang
 
 CASES = Path(__file__).parent

@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 
 from robolang.step import StepRequest, step
+from runtime.core.faults import Fault
+from runtime.core.frames import pose
+from runtime.core.units import DEG
 from runtime.dynamics.equations import axis_inertia
-from runtime.faults import Fault
-from runtime.frames import pose
 from runtime.profile import Profile, ServoOptions
 from runtime.robot.loader import load_builtin
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import NO_PAYLOAD, Payload
 from runtime.robot.spec import Body
 from runtime.servo.fixed import rated_range
-from runtime.units import DEG
 from tests.campaign import WHOLE, some
 
 PUMA = load_builtin("puma560")

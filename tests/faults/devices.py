@@ -3,7 +3,7 @@
 import numpy as np
 
 from robolang.session import Session
-from runtime.frames import Array
+from runtime.core.frames import Array
 
 
 class Clocked:

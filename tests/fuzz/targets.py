@@ -23,10 +23,10 @@ from robolang.parser import parse
 from robolang.points import load_points
 from robolang.source import Source, decode_program
 from robolang.words import KEYWORDS
-from runtime.faults import Fault, lookup
+from runtime.core.faults import Fault, lookup
+from runtime.core.tomlfile import FileFault
 from runtime.plant.cell import load_cell
 from runtime.robot.importer import read_arm
-from runtime.tomlfile import FileFault
 
 _NAME = "fuzz.rbl"
 _POINTS = ("P1", "P2", "P3")

@@ -5,7 +5,7 @@ import pytest
 from robolang.effects import Pass, Show
 from robolang.evaluator import Nowhere
 from robolang.interpreter import ProgramFault, execute
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 from tests.lang.helpers import parsed
 
 POINTS = ("P1", "P2", "P3", "P4", "P5", "A", "B")

@@ -6,7 +6,7 @@ from robolang.alarms import SHOWN_CALLS, as_diagnostic, calls
 from robolang.diagnostics import Severity
 from robolang.effects import Origin
 from robolang.source import Span
-from runtime.faults import Alarm
+from runtime.core.faults import Alarm
 
 
 def call(at):

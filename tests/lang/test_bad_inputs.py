@@ -14,7 +14,7 @@ from robolang.interpreter import ProgramFault, execute
 from robolang.parser import parse
 from robolang.source import Source, decode_program
 from robolang.words import FUNCTIONS, VALUES
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 from tests.campaign import size
 from tests.lang.helpers import places
 from tests.steps import assert_linear

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import robolang.codes  # noqa: F401
-from runtime.faults import all_codes, lookup
+from runtime.core.faults import all_codes, lookup
 
 ROOT = Path(__file__).parents[2]
 
@@ -69,7 +69,9 @@ for package in (robolang, runtime):
 
 def registered(program):
     """Every code and name that a process knows after some imports."""
-    after = "\nfrom runtime.faults import all_codes\nfor entry in all_codes():\n    print(entry.code, entry.name)\n"
+    after = (
+        "\nfrom runtime.core.faults import all_codes\nfor entry in all_codes():\n    print(entry.code, entry.name)\n"
+    )
     done = subprocess.run([sys.executable, "-c", program + after], check=True, capture_output=True, text=True)
     return done.stdout.splitlines()
 

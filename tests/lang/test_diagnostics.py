@@ -20,8 +20,8 @@ from robolang.diagnostics import (
     to_json,
 )
 from robolang.source import Span
-from runtime.faults import lookup
-from runtime.tomlfile import FileFault
+from runtime.core.faults import lookup
+from runtime.core.tomlfile import FileFault
 from tests.campaign import examples
 from tests.lang.helpers import only, source
 

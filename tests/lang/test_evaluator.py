@@ -4,7 +4,7 @@ import pytest
 
 from robolang.evaluator import MAX_SHIFTS, MAX_TEXT, Evaluator, Nowhere
 from robolang.places import Place, Shift
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 from tests.lang.helpers import parsed
 
 

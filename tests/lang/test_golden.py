@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from robolang.golden import read_golden, write_golden
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 
 N = 40
 Q = np.random.default_rng(1).normal(size=(N, 6)).astype(np.float32)

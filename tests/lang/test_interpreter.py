@@ -9,7 +9,7 @@ from robolang.parser import parse
 from robolang.places import Place, Shift
 from robolang.printer import describe
 from robolang.source import Span
-from runtime.program_line import named
+from runtime.core.program_line import named
 from tests.lang.helpers import parsed, source
 from tests.lang.running import POINTS, World, fault, ran, shows
 

@@ -15,7 +15,7 @@ from robolang.parser import parse
 from robolang.project import load_project
 from robolang.scope import MAX_CELLS, MAX_TEXTS
 from robolang.session import Session
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 from tests.lang.helpers import source
 from tests.lang.running import fault, ran
 

@@ -10,7 +10,7 @@ from robolang.interpreter import execute
 from robolang.lowering import Surroundings
 from robolang.places import Place
 from robolang.project import builtin_cell, load_project
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 from runtime.motion.commands import MoveArc, MoveJoint, MoveLinear
 from runtime.robot.kinematics import Kinematics
 from tests.lang.helpers import parsed

@@ -6,7 +6,7 @@ from robolang import interpreter
 from robolang.effects import MoveTo, Show
 from robolang.interpreter import MAX_CALLS, ProgramFault, execute
 from robolang.source import Span
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 from tests.lang.helpers import parsed
 from tests.lang.running import POINTS, World, fault, shows
 

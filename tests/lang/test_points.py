@@ -5,7 +5,7 @@ import pytest
 from robolang.beside import builtin_cell_file
 from robolang.cell_symbols import CellSymbols
 from robolang.points import Point, load_points
-from runtime.tomlfile import FileFault
+from runtime.core.tomlfile import FileFault
 
 PUMA = builtin_cell_file().arm.limits
 

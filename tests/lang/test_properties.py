@@ -21,8 +21,8 @@ from robolang.printer import print_program
 from robolang.renumber import remove_numbers, renumber
 from robolang.source import read_program
 from robolang.structure import targets
-from runtime.faults import Fault, lookup
-from runtime.tomlfile import FileFault
+from runtime.core.faults import Fault, lookup
+from runtime.core.tomlfile import FileFault
 from tests.campaign import examples
 from tests.lang import generator
 from tests.lang.generator import jumping_programs, programs, texts, written_badly

@@ -5,7 +5,7 @@ import pytest
 from robolang.parser import MAX_LINE
 from robolang.renumber import MAX_NUMBER, remove_numbers, renumber
 from robolang.source import MAX_BYTES
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 from tests.lang.helpers import places, source
 
 TEXT = """\

@@ -17,7 +17,7 @@ import pytest
 
 from robolang import storage
 from robolang.storage import write_atomic, write_folder
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 from tests.lang.cli.commands import robolang
 
 OLD = "10  move P1  ' noqa: RBL119\n20 DELAY 1\n"

@@ -4,7 +4,7 @@ import robolang.scope as scope_module
 from robolang.limits import SIZE
 from robolang.places import Place, Shift
 from robolang.scope import WAY, Scopes
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 
 MAX_ELEMENTS = int(SIZE.high) + 1
 

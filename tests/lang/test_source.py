@@ -3,7 +3,7 @@ import os
 import pytest
 
 from robolang.source import MAX_BYTES, Place, Source, Span, read_program
-from runtime.tomlfile import FileFault
+from runtime.core.tomlfile import FileFault
 
 
 def fault_of(path):

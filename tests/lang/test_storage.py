@@ -13,7 +13,7 @@ import pytest
 
 from robolang import runlog
 from robolang.storage import check_writable, write_atomic, write_json
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 
 SIGNALS = {"t": np.arange(4000) * 1e-3, "q_fb": np.random.default_rng(1).normal(size=(4000, 6))}
 

@@ -10,7 +10,7 @@ import pytest
 from robolang.expectation import Expectation
 from robolang.golden import write_golden
 from robolang.verdict import judge
-from runtime.tomlfile import Source
+from runtime.core.tomlfile import Source
 
 NAN = math.nan
 MEASURES = ("path_deviation_mm", "tool_error_mm", "peak_torque_pct")

@@ -26,8 +26,8 @@ from robolang.motion_check import rehearse
 from robolang.parser import parse
 from robolang.project import Project, load_project
 from robolang.source import read_program
-from runtime.faults import Fault
-from runtime.tomlfile import FileFault
+from runtime.core.faults import Fault
+from runtime.core.tomlfile import FileFault
 from tests.lang.cli.commands import BUILTIN
 
 OF_NUMERICS = frozenset({"RBL606", "RBL615", "RBL616", "RBL617", "RBL618"})

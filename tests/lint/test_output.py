@@ -15,8 +15,8 @@ from robolang.lint.pages import page
 from robolang.output import FOR_PEOPLE, FORMS, render, statistics
 from robolang.output.finding import Region, findings, fingerprints, relative
 from robolang.source import Source, Span
-from runtime.faults import Fault, lookup
-from runtime.tomlfile import FileFault
+from runtime.core.faults import Fault, lookup
+from runtime.core.tomlfile import FileFault
 from tests.lint.helpers import checked
 
 ROOT = Path("/srv/repo")

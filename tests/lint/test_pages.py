@@ -8,7 +8,7 @@ import pytest
 
 from robolang.lint.pages import index, page, pages, write
 from robolang.lint.registry import rules
-from runtime.faults import lookup
+from runtime.core.faults import lookup
 from tests.steps import HANG_S
 
 ROOT = Path(__file__).parents[2]

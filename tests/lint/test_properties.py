@@ -13,7 +13,7 @@ from robolang.lint.apply import fix_all
 from robolang.lint.engine import Checked, lint
 from robolang.output import FORMS, render
 from robolang.source import Source
-from runtime.faults import lookup
+from runtime.core.faults import lookup
 from tests.lint.helpers import POINTS
 
 ROOT = Path("/work/repo")

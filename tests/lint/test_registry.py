@@ -12,7 +12,7 @@ from robolang.motion_check import rehearse
 from robolang.motion_findings import findings
 from robolang.project import load_project
 from robolang.source import Source, read_program
-from runtime.faults import Fault, lookup
+from runtime.core.faults import Fault, lookup
 from tests.lint.helpers import POINTS
 
 RULES = list(rules().values())

@@ -15,8 +15,8 @@ from robolang.lint.engine import Checked
 from robolang.lint.registry import rules
 from robolang.output import render
 from robolang.source import Source
-from runtime.faults import Fault
-from runtime.tomlfile import FileFault
+from runtime.core.faults import Fault
+from runtime.core.tomlfile import FileFault
 from tests.lint.helpers import checked
 from tests.lint.schemas import problems, validator
 

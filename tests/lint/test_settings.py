@@ -8,7 +8,7 @@ import pytest
 from robolang.lint.files import programs
 from robolang.lint.selection import Layer
 from robolang.lint.settings import Settings, files_above
-from runtime.tomlfile import FileFault
+from runtime.core.tomlfile import FileFault
 from tests.lint.helpers import layer
 
 

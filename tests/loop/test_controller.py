@@ -7,12 +7,12 @@ import pytest
 
 from robolang.project import builtin_cell
 from runtime.controller import Controller
-from runtime.faults import Fault
-from runtime.frames import Array
+from runtime.core.faults import Fault
+from runtime.core.frames import Array
+from runtime.core.program_line import ProgramLine
 from runtime.motion.commands import MoveLinear
 from runtime.plant.rigid_plant import RigidPlant
 from runtime.profile import Profile, ServoOptions
-from runtime.program_line import ProgramLine
 from runtime.robot.payload import Payload
 from runtime.supervision.limits import SupervisionLimits
 

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from runtime.controller import Controller
-from runtime.faults import Fault
-from runtime.frames import pose
+from runtime.core.faults import Fault
+from runtime.core.frames import pose
+from runtime.core.units import DEG, MM
 from runtime.motion.commands import MoveLinear
 from runtime.motion.seam import SeamLimits, SeamTracker
 from runtime.plant.rigid_plant import RigidPlant
 from runtime.profile import Profile, ServoOptions
 from runtime.robot.loader import load_builtin
-from runtime.units import DEG, MM
 from tests.loop.test_controller import CELL as BUILTIN
 
 SPEC = load_builtin("irb2400")

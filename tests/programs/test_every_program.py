@@ -8,7 +8,7 @@ import pytest
 from robolang.lowering import pose_si
 from robolang.project import load_project
 from robolang.session import RunResult, Session
-from runtime.frames import inverse, rotation_angle
+from runtime.core.frames import inverse, rotation_angle
 from tests.programs.runs import run
 
 PROGRAMS = sorted((Path(__file__).parents[2] / "programs").glob("*.rbl"))

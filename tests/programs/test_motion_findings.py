@@ -12,8 +12,8 @@ from robolang.diagnostics import Severity
 from robolang.motion_check import rehearse
 from robolang.motion_findings import LoadShare, findings, worst_loads
 from robolang.project import builtin_cell, load_project
+from runtime.core.units import DEG
 from runtime.plant.mujoco_plant import MujocoPlant
-from runtime.units import DEG
 
 
 def looked_at(folder, text, robot=None):

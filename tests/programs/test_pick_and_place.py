@@ -19,7 +19,7 @@ from robolang.project import builtin_cell, load_project
 from robolang.runlog import write_log
 from robolang.session import RunResult, Session
 from runtime import recorder
-from runtime.frames import Array, inverse, rotation_angle
+from runtime.core.frames import Array, inverse, rotation_angle
 from runtime.robot.kinematics import Kinematics
 from runtime.servo.motor import torque_limit
 from tests.programs.runs import run

@@ -7,8 +7,8 @@ import pytest
 
 from robolang.project import load_project
 from robolang.session import Session
+from runtime.core.units import MM
 from runtime.motion.seam import superposed
-from runtime.units import MM
 from tests.lang.cli.commands import robolang
 from tests.programs import runs
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from runtime.decompositions import inverse_of, least_squares, solve, symmetric_eigen
-from runtime.linear import dot, matmul, norm
+from runtime.core.decompositions import inverse_of, least_squares, solve, symmetric_eigen
+from runtime.core.linear import dot, matmul, norm
 
 RNG = np.random.default_rng(3)
 

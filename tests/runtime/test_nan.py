@@ -7,8 +7,9 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from runtime.faults import Fault
-from runtime.frames import pose
+from runtime.core.faults import Fault
+from runtime.core.frames import pose
+from runtime.core.units import badness
 from runtime.motion.blend import _inside
 from runtime.motion.commands import MoveLinear
 from runtime.motion.planner import LinePlanner
@@ -21,7 +22,6 @@ from runtime.robot.payload import declared
 from runtime.supervision.limits import SupervisionLimits
 from runtime.supervision.observer import Observer
 from runtime.supervision.supervisor import CONFIRMED, Supervisor
-from runtime.units import badness
 from tests.runtime.motion.test_planner import HOME, HOME_POSE, KINEMATICS, PROFILE, SPEC, TOOL
 
 NAN = math.nan

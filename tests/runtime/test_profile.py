@@ -1,8 +1,8 @@
 import pytest
 
+from runtime.core.tomlfile import FileFault, Source, load_table
+from runtime.core.units import DEG
 from runtime.profile import Profile, parse_profile
-from runtime.tomlfile import FileFault, Source, load_table
-from runtime.units import DEG
 
 
 def profile(text):

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runtime.rounding import beside, down, up
+from runtime.core.rounding import beside, down, up
 
 numbers = st.floats(allow_nan=False, allow_infinity=False, width=64)
 

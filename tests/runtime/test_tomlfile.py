@@ -2,8 +2,8 @@ import os
 
 import pytest
 
-from runtime.toml_places import locate
-from runtime.tomlfile import MAX_BYTES, FileFault, Source, Table, load_table, read_source
+from runtime.core.toml_places import locate
+from runtime.core.tomlfile import MAX_BYTES, FileFault, Source, Table, load_table, read_source
 
 TEXT = """\
 # a comment, as robot = "x" would be one

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from runtime.frames import frozen
+from runtime.core.frames import frozen
 from runtime.plant.cell import CellSpec, load_cell
 from runtime.plant.hand import hand_body
 from runtime.robot.model import ArmModel

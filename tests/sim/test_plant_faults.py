@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from robolang.builtin import cell_text
+from runtime.core.tomlfile import Source
 from runtime.plant.cell import parse_cell
 from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.model import ArmModel
-from runtime.tomlfile import Source
 
 CELL = parse_cell(Source("cell.toml", cell_text()))
 SPEC = CELL.robot

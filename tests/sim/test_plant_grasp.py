@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 from robolang.builtin import cell_text
-from runtime.frames import Array, inverse, pose_from_xyzrpy, rotation_angle
+from runtime.core.frames import Array, inverse, pose_from_xyzrpy, rotation_angle
+from runtime.core.tomlfile import Source
+from runtime.core.units import DEG
 from runtime.plant.cell import CellSpec, parse_cell
 from runtime.plant.hand import FINGERS, box_inertia, hand_body
 from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import Payload
-from runtime.tomlfile import Source
-from runtime.units import DEG
 
 CELL = parse_cell(Source("cell.toml", cell_text()))
 SPEC = CELL.robot

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from robolang.builtin import cell_text
-from runtime.frames import Array, frozen, pose, pose_from_xyzrpy
+from runtime.core.frames import Array, frozen, pose, pose_from_xyzrpy
+from runtime.core.tomlfile import Source
 from runtime.plant.cell import parse_cell
 from runtime.plant.hand import hand_body
 from runtime.plant.mjcf import build_mjcf
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import Payload
 from runtime.robot.spec import Body
-from runtime.tomlfile import Source
 
 CELL = parse_cell(Source("cell.toml", cell_text()))
 SPEC = CELL.robot

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from robolang.builtin import cell_text
-from runtime.frames import Array, pose_from_xyzrpy
+from runtime.core.frames import Array, pose_from_xyzrpy
+from runtime.core.tomlfile import Source
+from runtime.core.units import DEG
 from runtime.plant.cell import parse_cell
 from runtime.plant.hand import hand_body
 from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
-from runtime.tomlfile import Source
-from runtime.units import DEG
 
 CELL = parse_cell(Source("cell.toml", cell_text()))
 SPEC = CELL.robot

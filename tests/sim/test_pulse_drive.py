@@ -10,12 +10,12 @@ import pytest
 from robolang.project import load_cell_and_settings
 from robolang.pulse_drive import RAMP_S, drive, set_points, start_angles
 from runtime.controller import Controller
-from runtime.faults import Fault
-from runtime.program_line import ProgramLine
+from runtime.core.faults import Fault
+from runtime.core.program_line import ProgramLine
+from runtime.core.units import DEG
 from runtime.pulses.folder import read_export
 from runtime.pulses.replay import replay
 from runtime.robot.kinematics import Kinematics
-from runtime.units import DEG
 from tests.runtime.pulses import Handmade
 
 CELL_FILE = Path(__file__).parents[2] / "programs" / "pick_and_place.cell.toml"

@@ -11,13 +11,13 @@ import pytest
 from robolang import weigh as module
 from robolang.project import load_cell_and_settings
 from robolang.weigh import Declaration, WeighRequest, carried, load_statement, plan_exercise, weigh
+from runtime.core.faults import Fault
+from runtime.core.units import DEG
 from runtime.dynamics.payload_identification import WeighedPayload
-from runtime.faults import Fault
 from runtime.plant.cell import ObstacleSpec
 from runtime.profile import Profile
 from runtime.robot.loader import load_builtin
 from runtime.robot.payload import Payload, declared
-from runtime.units import DEG
 from tests.campaign import some
 from tests.lang.helpers import checked
 

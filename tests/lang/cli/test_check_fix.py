@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 from robolang.cli import check_job
 from robolang.cli.main import app
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 from tests.lang.cli.commands import ROOT, places, robolang
 from tests.steps import HANG_S
 

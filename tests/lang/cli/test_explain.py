@@ -3,7 +3,7 @@ import re
 import pytest
 
 import robolang.project
-from runtime.faults import all_codes
+from runtime.core.faults import all_codes
 from tests.lang.cli.commands import ROOT, flat, robolang, shell
 
 

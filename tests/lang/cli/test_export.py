@@ -11,7 +11,7 @@ import pytest
 from robolang import storage
 from robolang.cli.export import written_here
 from robolang.storage import write_folder
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 from runtime.robot.loader import load_builtin
 from tests.lang.cli.commands import ROOT, flat, places, robolang, shell
 

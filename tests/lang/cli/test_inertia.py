@@ -11,11 +11,11 @@ import pytest
 
 from robolang.inertia import POINTS, AxisInertia, extremes, over_plane, plain
 from robolang.plot import LEFT, SHADES, WIDTH, as_map_svg
+from runtime.core.units import DEG
 from runtime.dynamics.equations import axis_gravity, axis_inertia
 from runtime.robot.loader import load_builtin
 from runtime.robot.model import ArmModel
 from runtime.robot.payload import NO_PAYLOAD, Payload
-from runtime.units import DEG
 from tests.lang.cli.commands import ROOT, flat, robolang
 
 JOINTS = "10,60,150,-20,40,30"

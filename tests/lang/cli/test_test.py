@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 from robolang import verdict
 from robolang.cli.main import app
 from robolang.expectation import Expectation, load_expectation
-from runtime.tomlfile import FileFault
+from runtime.core.tomlfile import FileFault
 from tests.campaign import WHOLE
 from tests.lang.cli.commands import ROOT, places, robolang
 

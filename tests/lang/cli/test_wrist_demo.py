@@ -11,9 +11,9 @@ import pytest
 
 from robolang import wrist_demo as demo
 from robolang.plot import BOTTOM, COLOURS, HEIGHT, LEFT, RIGHT, TOP, WIDTH, Curve, Dots, Mark, as_svg
-from runtime.faults import Fault
+from runtime.core.faults import Fault
+from runtime.core.units import DEG
 from runtime.robot.loader import load_builtin
-from runtime.units import DEG
 from tests.lang.cli.commands import ROOT, flat, robolang
 from tests.steps import HANG_S
 

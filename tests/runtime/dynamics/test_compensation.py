@@ -6,16 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from runtime.core.faults import lookup
+from runtime.core.tomlfile import FileFault
+from runtime.core.units import DEG
 from runtime.dynamics.compensation import AxisCompensation, Compensation, as_toml, load_compensation
-from runtime.faults import lookup
 from runtime.profile import ServoOptions
 from runtime.robot.joint_table import JointTable
 from runtime.robot.loader import load_builtin
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import Payload
 from runtime.servo.axes import ServoAxes, gains, rotors
-from runtime.tomlfile import FileFault
-from runtime.units import DEG
 
 SPEC = load_builtin("puma560")
 N2 = SPEC.per_axis("motor", "gear_ratio") ** 2

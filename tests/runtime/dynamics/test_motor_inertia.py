@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from runtime.core.frames import rotation_about
 from runtime.dynamics import motor_inertia
 from runtime.dynamics.motor_inertia import (
     LinkChain,
@@ -15,7 +16,6 @@ from runtime.dynamics.motor_inertia import (
     link_inertia,
     motor_side,
 )
-from runtime.frames import rotation_about
 from runtime.robot.loader import load_builtin
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import Payload

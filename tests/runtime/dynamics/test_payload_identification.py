@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from runtime.core.frames import pose_from_xyzrpy
 from runtime.dynamics.payload_identification import BodyModel, Knowledge, identify_payload
-from runtime.frames import pose_from_xyzrpy
 from runtime.robot.loader import load_builtin
 from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import NO_PAYLOAD, Payload

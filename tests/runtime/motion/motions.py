@@ -5,8 +5,8 @@ from functools import cache
 
 import numpy as np
 
-from runtime.faults import Fault
-from runtime.frames import Array, pose, rotation_about
+from runtime.core.faults import Fault
+from runtime.core.frames import Array, pose, rotation_about
 from runtime.motion.chain import ChainPlan, MotionPlanner, Part
 from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
 from runtime.motion.fine import FineInterpolator

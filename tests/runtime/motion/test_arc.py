@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runtime.faults import Fault
-from runtime.frames import pose, rotation_about, rotation_angle, rotation_from_rpy
+from runtime.core.faults import Fault
+from runtime.core.frames import pose, rotation_about, rotation_angle, rotation_from_rpy
 from runtime.motion.commands import MoveArc, MoveLinear
 from runtime.motion.hold import frames_along
 from runtime.motion.path import ArcPath

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from runtime.faults import Fault
-from runtime.frames import pose, rotation_about
+from runtime.core.faults import Fault
+from runtime.core.frames import pose, rotation_about
 from runtime.motion.blend import overlapped
 from runtime.motion.chain import ChainFault, ChainPlan
 from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear

@@ -9,8 +9,16 @@ import math
 import numpy as np
 import pytest
 
-from runtime.faults import Fault
-from runtime.frames import Array, inverse, pose, principal_axes, rotation_about, rotation_from_rpy, rpy_from_rotation
+from runtime.core.faults import Fault
+from runtime.core.frames import (
+    Array,
+    inverse,
+    pose,
+    principal_axes,
+    rotation_about,
+    rotation_from_rpy,
+    rpy_from_rotation,
+)
 from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
 from runtime.motion.path import LinePath
 from runtime.motion.planner import LinePlan

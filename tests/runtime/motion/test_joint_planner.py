@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from runtime.faults import Fault
-from runtime.frames import inverse
+from runtime.core.faults import Fault
+from runtime.core.frames import inverse
 from runtime.motion.commands import MoveJoint
 from runtime.motion.joint_planner import changed
 from runtime.motion.planner import FOLLOWS, LinePlan

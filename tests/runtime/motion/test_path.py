@@ -7,7 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runtime.frames import pose, principal_axis, rotation_about, rotation_angle, rotation_from_rpy, rpy_from_rotation
+from runtime.core.frames import (
+    pose,
+    principal_axis,
+    rotation_about,
+    rotation_angle,
+    rotation_from_rpy,
+    rpy_from_rotation,
+)
 from runtime.motion.path import LinePath
 from tests.campaign import examples
 

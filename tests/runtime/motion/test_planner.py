@@ -6,8 +6,8 @@ import re
 import numpy as np
 import pytest
 
-from runtime.faults import Fault
-from runtime.frames import inverse, pose, pose_from_xyzrpy, rotation_about
+from runtime.core.faults import Fault
+from runtime.core.frames import inverse, pose, pose_from_xyzrpy, rotation_about
 from runtime.motion.commands import MoveLinear
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.planner import LinePlan, LinePlanner

@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runtime.faults import Fault
-from runtime.frames import inverse, pose, rotation_from_rpy
+from runtime.core.faults import Fault
+from runtime.core.frames import inverse, pose, rotation_from_rpy
+from runtime.core.units import DEG, MM
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.seam import SeamLimits, SeamMove, SeamTracker, superposed
 from runtime.motion.solver import Arm, LineSolver
 from runtime.profile import WristOptions
-from runtime.units import DEG, MM
 from tests.runtime.motion.wrist_moves import C1_ANY, C3, E1, E2, KINEMATICS, NOTHING, SPEC, TOOL, path_of
 
 DT = 0.008

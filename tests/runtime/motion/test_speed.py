@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 from runtime.motion.speed import SpeedLimits, bound, profile, shortest_s
 
 PERIOD = 0.008

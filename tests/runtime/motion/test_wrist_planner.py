@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runtime.faults import Fault
-from runtime.frames import inverse
+from runtime.core.faults import Fault
+from runtime.core.frames import inverse
 from runtime.motion.commands import MoveLinear
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.path import LinePath

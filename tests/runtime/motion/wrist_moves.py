@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from runtime.frames import Array, inverse, pose, rotation_angles
+from runtime.core.frames import Array, inverse, pose, rotation_angles
 from runtime.motion.path import LinePath
 from runtime.motion.wrist import Trigger, WristLimits, first_trigger, law_from
 from runtime.profile import PostureLaw, WristOptions

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from robolang.builtin import cell_text
-from runtime.frames import pose_from_xyzrpy
+from runtime.core.frames import pose_from_xyzrpy
+from runtime.core.tomlfile import Source
+from runtime.core.units import DEG
 from runtime.plant.cell_file import parse_cell_file, read_cell_file
 from runtime.plant.resting import Box, overlap, unrest
-from runtime.tomlfile import Source
-from runtime.units import DEG
 
 POSE = "pose_mm_deg = [{}]"
 

@@ -54,7 +54,7 @@ def test_it_stands_still_under_the_gravity_torque_of_its_true_load():
 @pytest.fixture
 def at_the_part() -> RigidPlant:
     plant = RigidPlant(SPEC, CELL)
-    from runtime.frames import inverse
+    from runtime.core.frames import inverse
     from runtime.robot.kinematics import Kinematics
 
     X = np.array(CELL.parts[0].X_world_part)

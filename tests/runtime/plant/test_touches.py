@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from runtime.core.program_line import ProgramLine
 from runtime.plant.touches import GAP, LOST_CYCLES, SETTLING, Bodies, Touches
-from runtime.program_line import ProgramLine
 
 PADS = {("pad_left", "part:a"), ("pad_right", "part:a")}
 TABLE = {("obstacle:table", "part:a"), ("obstacle:table", "part:b")}

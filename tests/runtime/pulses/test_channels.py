@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from runtime.core.tomlfile import FileFault
+from runtime.core.units import DEG, MM
 from runtime.pulses.channels import MAX_HZ, MIN_HZ, channels_of, default_channels, motor_pulse, read_channel_file
 from runtime.pulses.mechanism import load_builtin
-from runtime.tomlfile import FileFault
-from runtime.units import DEG, MM
 
 MACHINE = load_builtin("cylindrical")
 TEXT = """\

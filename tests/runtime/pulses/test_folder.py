@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runtime.faults import lookup
+from runtime.core.faults import lookup
+from runtime.core.tomlfile import FileFault
 from runtime.pulses.folder import read_export
 from runtime.pulses.replay import replay
-from runtime.tomlfile import FileFault
 from tests.campaign import examples
 from tests.runtime.pulses import ARM, X_TABLE, Y_TABLE, Handmade, csv, pose, rows, staircase
 

@@ -5,13 +5,13 @@ import re
 import numpy as np
 import pytest
 
-from runtime.faults import Fault
-from runtime.frames import pose, rotation_about
+from runtime.core.faults import Fault
+from runtime.core.frames import pose, rotation_about
+from runtime.core.tomlfile import FileFault, Source
+from runtime.core.units import DEG, MM
 from runtime.motion.commands import MoveLinear
 from runtime.pulses.machine import Stand
 from runtime.pulses.mechanism import library, load_builtin, load_file, parse
-from runtime.tomlfile import FileFault, Source
-from runtime.units import DEG, MM
 
 Z = np.array([0.0, 0.0, 1.0])
 SCARA = load_builtin("scara")

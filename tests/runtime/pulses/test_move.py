@@ -6,15 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runtime.faults import Fault
-from runtime.frames import pose
+from runtime.core.faults import Fault
+from runtime.core.frames import pose
+from runtime.core.units import MM
 from runtime.motion.commands import MoveLinear
 from runtime.pulses import emission
 from runtime.pulses.channels import default_channels
 from runtime.pulses.machine import Stand
 from runtime.pulses.mechanism import load_builtin
 from runtime.pulses.move import counted, off_line, plan_move
-from runtime.units import MM
 from tests.bench.pulse_campaign import campaign, machine_and_pulses
 
 CYLINDRICAL = load_builtin("cylindrical")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 from runtime.pulses import f174
 from runtime.pulses.table import Row, as_csv, data_tables, rows_of
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runtime.frames import frozen, pose, rotation_about
+from runtime.core.frames import frozen, pose, rotation_about
 from runtime.robot.spec import OpwParameters
 
 DEG = np.pi / 180.0

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runtime.frames import frozen, inverse, pose, rotation_about
+from runtime.core.frames import frozen, inverse, pose, rotation_about
 from runtime.robot.loader import load_builtin
 from runtime.robot.spec import OpwParameters, RobotSpec
 from tests.runtime.robot.arms import DEG, Irb2400, X, Z, opw_parameters

@@ -5,13 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runtime.frames import inverse, pose, rotation_about, rotation_from_rpy
+from runtime.core.frames import inverse, pose, rotation_about, rotation_from_rpy
+from runtime.core.tomlfile import Source
 from runtime.robot import opw
 from runtime.robot.closed_form import find_opw
 from runtime.robot.importer import parse_model
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.opw import BRANCHES, PlacedOpw
-from runtime.tomlfile import Source
 from tests.campaign import examples
 from tests.runtime.robot.models import chain
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runtime.frames import pose, pose_from_xyzrpy
+from runtime.core.frames import pose, pose_from_xyzrpy
 from runtime.robot.frozen_wrist import FrozenWrist, Side
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.loader import load_builtin

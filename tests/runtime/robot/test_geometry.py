@@ -6,6 +6,7 @@ from importlib import resources
 import numpy as np
 import pytest
 
+from runtime.core.tomlfile import FileFault, Source
 from runtime.robot.corrections import TOKEN_INERTIA
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.loader import load_builtin, parse_robot
@@ -13,7 +14,6 @@ from runtime.robot.model import ArmModel, spec_rotors
 from runtime.robot.payload import Payload
 from runtime.robot.spec import RobotSpec
 from runtime.servo.motor import torque_limit
-from runtime.tomlfile import FileFault, Source
 from tests.lang.cli.commands import PUMA
 from tests.runtime.robot.arms import DEG, Irb2400
 

@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runtime.frames import pose
+from runtime.core.frames import pose
+from runtime.core.tomlfile import FileFault, Source
+from runtime.core.units import GRAVITY
 from runtime.robot.importer import load_file, parse_model, read_arm, read_model
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.model import ArmModel
 from runtime.robot.sidecar import template
-from runtime.tomlfile import FileFault, Source
-from runtime.units import GRAVITY
 from tests.campaign import examples
 from tests.runtime.robot.models import ANGLES, DATA, SEVEN, chain, fill, inertial, joint, urdf
 

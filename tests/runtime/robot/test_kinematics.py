@@ -4,7 +4,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from runtime.frames import frozen, pose, rotation_about
+from runtime.core.frames import frozen, pose, rotation_about
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.opw import BRANCHES, Branch, wrapped
 from runtime.robot.spec import RobotSpec

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runtime.frames import frozen
+from runtime.core.frames import frozen
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.load import rated_inertia, rated_moment, ratings, wrist_load
 from runtime.robot.loader import load_builtin

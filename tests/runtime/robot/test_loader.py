@@ -6,11 +6,11 @@ import re
 import numpy as np
 import pytest
 
+from runtime.core.tomlfile import FileFault, Source
 from runtime.robot.corrections import TOKEN_MASS
 from runtime.robot.loader import inertia_matrix, load_builtin, load_robot, parse_robot
 from runtime.robot.robot_file import library
 from runtime.robot.spec import inertia_defect
-from runtime.tomlfile import FileFault, Source
 from tests.lang.cli.commands import PUMA
 
 TEXT = PUMA.read_text()

@@ -4,7 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runtime.frames import pose, rotation_about, rotation_from_rpy
+from runtime.core.frames import pose, rotation_about, rotation_from_rpy
 from runtime.robot import opw
 from runtime.robot.opw import BRANCHES, Arm, Branch, Elbow, Wrist
 from tests.runtime.robot.arms import DEG, Irb2400, opw_parameters

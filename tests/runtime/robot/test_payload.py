@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from runtime.faults import Fault
+from runtime.core.faults import Fault
 from runtime.robot.payload import declared
 
 

@@ -6,14 +6,14 @@ import re
 import numpy as np
 import pytest
 
-from runtime.numerals import number_in
+from runtime.core.numerals import number_in
+from runtime.core.tomlfile import FileFault, Source
 from runtime.robot.importer import load_file, parse_model, read_arm, read_model
 from runtime.robot.loader import load_builtin, parse_robot
 from runtime.robot.plausibility import LEAST_ANGLE, MOST_TURNS, Turning, doubt_turning
 from runtime.robot.robot_file import library
 from runtime.robot.sidecar import template
 from runtime.robot.sidecar_file import read_overlay
-from runtime.tomlfile import FileFault, Source
 from tests.runtime.robot.models import ANGLES, SEVEN, chain, fill, inertial
 from tests.runtime.robot.test_loader import TEXT as PUMA
 

@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runtime.frames import pose, rotation_about
+from runtime.core.frames import pose, rotation_about
+from runtime.core.tomlfile import FileFault, Source, Table
+from runtime.core.units import DEG
 from runtime.profile import parse_profile
 from runtime.robot.loader import load_builtin
 from runtime.robot.model import ArmModel, spec_rotors
@@ -13,8 +15,6 @@ from runtime.robot.payload import Payload
 from runtime.supervision.limits import SupervisionLimits
 from runtime.supervision.observer import LoadModel, Observer
 from runtime.supervision.watch import Watch
-from runtime.tomlfile import FileFault, Source, Table
-from runtime.units import DEG
 from tests.messages import numbers
 
 SPEC = load_builtin("puma560")

@@ -12,7 +12,7 @@ as the front end gave it to the controller, so that its place in the program is 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from runtime.program_line import ProgramLine
+from runtime.core.program_line import ProgramLine
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -17,10 +17,10 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any, NoReturn, TypeVar
 
-import runtime.file_codes  # noqa: F401 - registers what is raised here
-from runtime.faults import Fault
-from runtime.rounding import beside
-from runtime.toml_places import clash, lines_of, locate
+import runtime.core.file_codes  # noqa: F401 - registers what is raised here
+from runtime.core.faults import Fault
+from runtime.core.rounding import beside
+from runtime.core.toml_places import clash, lines_of, locate
 
 MAX_BYTES = 1_000_000
 MAX_ABS = 1e9

@@ -1,4 +1,4 @@
-"""Solutions of linear equations and eigenvalues, the same bytes on every processor (see ``runtime.linear``).
+"""Solutions of linear equations and eigenvalues, the same bytes on every processor (see ``runtime.core.linear``).
 
 Eigen computes them: ``eigenpy`` comes with Pinocchio and is compiled for one instruction set. Arrays are float64.
 """
@@ -6,7 +6,7 @@ Eigen computes them: ``eigenpy`` comes with Pinocchio and is compiled for one in
 import eigenpy
 import numpy as np
 
-from runtime.linear import Array
+from runtime.core.linear import Array
 
 
 def solve(A: Array, b: Array) -> Array:

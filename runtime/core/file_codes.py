@@ -1,6 +1,6 @@
 """Codes of TOML files: robots, cells, points, profiles. Registered at import."""
 
-from runtime.faults import Code, register
+from runtime.core.faults import Code, register
 
 register(
     Code(

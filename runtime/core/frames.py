@@ -12,8 +12,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from runtime.linear import dot, matmul, norm
-from runtime.units import DEG
+from runtime.core.linear import dot, matmul, norm
+from runtime.core.units import DEG
 
 Array = NDArray[np.float64]
 

@@ -1,0 +1,1 @@
+"""Numbers and texts, places in programs, faults, files: what everything else stands on."""
