@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from runtime.core.units import MM
 from runtime.plant.cell_file import CellFile, LoadFile
 from runtime.robot.arm_file import ArmFile
-from runtime.robot.drives import SPEED_ROUNDING, Limits
+from runtime.robot.model.drives import SPEED_ROUNDING, Limits
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

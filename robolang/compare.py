@@ -30,7 +30,7 @@ from runtime.core.frames import Array
 from runtime.core.linear import norm
 from runtime.core.units import DEG, MM, badness
 from runtime.plant.cell import CellSpec
-from runtime.robot.payload import NO_PAYLOAD, Payload
+from runtime.robot.model.payload import NO_PAYLOAD, Payload
 
 BAND = 0.02
 LEAST = 1.0 * DEG

@@ -23,7 +23,7 @@ from robolang.nodes import (
 )
 from robolang.printer import print_expression
 from robolang.words import ARGUMENTS, COMPONENTS6, near
-from runtime.robot.drives import beyond_range
+from runtime.robot.model.drives import beyond_range
 
 
 class ExpressionCheck:

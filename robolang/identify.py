@@ -50,10 +50,10 @@ from runtime.plant.cell import CellSpec
 from runtime.plant.hand import hand_body
 from runtime.plant.plant import Plant
 from runtime.plant.rigid_plant import RigidPlant
-from runtime.robot.joint_table import JointTable
-from runtime.robot.model import ArmModel
-from runtime.robot.payload import Payload
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.arm_model import ArmModel
+from runtime.robot.model.joint_table import JointTable
+from runtime.robot.model.payload import Payload
+from runtime.robot.model.spec import RobotSpec
 from runtime.servo.motor import torque_limit
 
 WINDOW = 0.15

@@ -13,9 +13,9 @@ import numpy as np
 from runtime.core.frames import Array
 from runtime.dynamics.compensation import Compensation
 from runtime.dynamics.motor_inertia import link_chain, link_inertia, motor_side
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import Payload
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.payload import Payload
+from runtime.robot.model.spec import RobotSpec
 
 POINTS = 121
 """Points of a map along each of its joints."""

@@ -9,8 +9,8 @@ from robolang.printer import describe
 from robolang.project import Project
 from runtime.core.units import DEG, MM
 from runtime.robot.kinematics import Kinematics
+from runtime.robot.model.spec import OpwParameters
 from runtime.robot.singularity import singularities
-from runtime.robot.spec import OpwParameters
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

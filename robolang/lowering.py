@@ -28,9 +28,9 @@ from runtime.core.linear import matmul
 from runtime.core.units import DEG, MM, PERCENT
 from runtime.motion.commands import Component, MoveArc, MoveJoint, MoveLinear, Wrist
 from runtime.plant.cell import CellSpec
-from runtime.robot.drives import beyond_range
 from runtime.robot.kinematics import Kinematics
-from runtime.robot.payload import Payload, declared
+from runtime.robot.model.drives import beyond_range
+from runtime.robot.model.payload import Payload, declared
 
 Command = MoveLinear | MoveJoint | MoveArc
 

@@ -44,7 +44,7 @@ from runtime.motion.blend import Corner
 from runtime.motion.chain import ChainPlan, tracked
 from runtime.motion.planner import LinePlan
 from runtime.robot.kinematics import Kinematics
-from runtime.robot.payload import NO_PAYLOAD, Payload
+from runtime.robot.model.payload import NO_PAYLOAD, Payload
 
 MAX_CHAIN = 200
 """Most moves that blend into one another without a stop: a program that never stops is carried out nevertheless."""

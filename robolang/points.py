@@ -30,7 +30,7 @@ from robolang.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.words import RESERVED, near
 from runtime.core.faults import lookup
 from runtime.core.tomlfile import FileFault, Source, Table, load_table, read_source
-from runtime.robot.drives import beyond_range
+from runtime.robot.model.drives import beyond_range
 
 SCHEMA = 1
 MAX_MM = 1e5

@@ -35,7 +35,7 @@ from runtime.profile import (
 )
 from runtime.robot import importer, loader, robot_file
 from runtime.robot.arm_file import ROBOT_ENDINGS
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.spec import RobotSpec
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -29,7 +29,7 @@ from runtime.plant.plant import Plant
 from runtime.profile import Profile
 from runtime.pulses.exported import Export, Load, Marker, Move
 from runtime.pulses.replay import distances, joint_values, positions
-from runtime.robot.payload import Payload, declared
+from runtime.robot.model.payload import Payload, declared
 
 SAME = 1e-9
 """Largest difference in the poses of two arms that are the same, m and of a rotation."""

@@ -1,7 +1,7 @@
 """Statements: values out of range, options that contradict, names of the cell that are none, and wrong arguments.
 
 Ranges are those of ``limits``, by which the interpreter judges as well; what the arm may carry is judged by
-``runtime.robot.load_rules``, as in a run.
+``runtime.robot.model.load_rules``, as in a run.
 """
 
 import math
@@ -62,7 +62,7 @@ from robolang.nodes import (
 from robolang.source import Span
 from runtime.core.faults import Fault
 from runtime.core.units import MM
-from runtime.robot.load_rules import centre_fault, inertia_fault, load_fault, mass_fault
+from runtime.robot.model.load_rules import centre_fault, inertia_fault, load_fault, mass_fault
 
 MAX_HELD = 2
 

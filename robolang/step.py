@@ -25,9 +25,9 @@ from runtime.plant.cell import CellSpec
 from runtime.plant.plant import Plant
 from runtime.plant.rigid_plant import RigidPlant
 from runtime.profile import Profile
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import NO_PAYLOAD, Payload
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.payload import NO_PAYLOAD, Payload
+from runtime.robot.model.spec import RobotSpec
 from runtime.servo.axes import rotors
 from runtime.servo.ideal import ideal_drives
 

@@ -23,9 +23,9 @@ from runtime.dynamics.equations import axis_inertia
 from runtime.motion.fine import FineInterpolator
 from runtime.plant.cell import CellSpec
 from runtime.profile import Profile
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import NO_PAYLOAD, Payload
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.payload import NO_PAYLOAD, Payload
+from runtime.robot.model.spec import RobotSpec
 from runtime.servo.motor import torque_limit
 
 STROKE = 0.5

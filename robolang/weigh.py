@@ -31,9 +31,9 @@ from runtime.motion.fine import FineInterpolator
 from runtime.plant.cell import CellSpec
 from runtime.plant.plant import Plant
 from runtime.profile import Profile
-from runtime.robot.load_rules import MAX_COG_DISTANCE
-from runtime.robot.payload import Payload
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.load_rules import MAX_COG_DISTANCE
+from runtime.robot.model.payload import Payload
+from runtime.robot.model.spec import RobotSpec
 from runtime.servo.motor import torque_limit
 
 PlantName = Literal["rigid", "mujoco"]
@@ -283,7 +283,7 @@ def load_statement(found: WeighedPayload, rated: float) -> Declaration:
     """Return the LOAD to paste: kg and mm with the digits that their uncertainty leaves, at most 3 and 1 decimals.
 
     A mass over the rated one by no more than its uncertainty explains is written as the rated one. What no program may
-    declare (``runtime.robot.payload.declared``) is written as the nearest that one may, with a note.
+    declare (``runtime.robot.model.payload.declared``) is written as the nearest that one may, with a note.
     """
     if found.cog is None or found.cog_sd is None:
         less = not found.mass >= -BELIEVED * found.mass_sd

@@ -32,7 +32,7 @@ from runtime.motion.wrist_planner import wrist_limits
 from runtime.profile import WristOptions
 from runtime.robot.frozen_wrist import MAIN_AXES, WRIST_AXES
 from runtime.robot.kinematics import Kinematics
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.spec import RobotSpec
 
 DURATION_S = 4.0
 X_FLANGE_TOOL = pose((0.0, 0.0, 200.0 * MM), np.eye(3))

@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from runtime.core.frames import Array, frozen
-from runtime.robot.payload import NO_PAYLOAD, Payload
+from runtime.robot.model.payload import NO_PAYLOAD, Payload
 
 EMPTY_ROW = frozen(np.zeros(0))
 

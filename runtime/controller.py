@@ -42,9 +42,9 @@ from runtime.plant.touches import Touches
 from runtime.profile import Profile
 from runtime.recorder import Recorder
 from runtime.robot.kinematics import Kinematics
-from runtime.robot.model import ArmModel
-from runtime.robot.payload import Payload
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.arm_model import ArmModel
+from runtime.robot.model.payload import Payload
+from runtime.robot.model.spec import RobotSpec
 from runtime.scheduler import IdleProcessor
 from runtime.servo.axes import ServoAxes, first_moments, rotors
 from runtime.servo.fixed import fixed_inertia

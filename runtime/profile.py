@@ -16,8 +16,8 @@ from typing import Any, Literal, NoReturn, cast
 from runtime.core.faults import Fault, raise_all
 from runtime.core.tomlfile import FileFault, Source, Table, inside, load_table, read_source
 from runtime.core.units import DEG, MM
-from runtime.robot.joint_table import JointTable
-from runtime.robot.load_rules import LoadMode
+from runtime.robot.model.joint_table import JointTable
+from runtime.robot.model.load_rules import LoadMode
 from runtime.supervision.limits import Reaction, SupervisionLimits
 
 ServoMode = Literal["scheduled", "fixed"]

@@ -12,7 +12,7 @@ from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
     from runtime.profile import Settings
-    from runtime.robot.spec import RobotSpec
+    from runtime.robot.model.spec import RobotSpec
 
 app = typer.Typer(no_args_is_help=True, help="The settings in force.")
 

@@ -22,7 +22,7 @@ from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
     from robolang.inertia import InertiaMap
-    from runtime.robot.spec import RobotSpec
+    from runtime.robot.model.spec import RobotSpec
 
 KG_CM2 = 1e-4
 """kg m2 of a kg cm2, in which catalogues of motors give inertia."""

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from runtime.robot.imported import ImportedArm
-    from runtime.robot.spec import Body, Correction, RobotSpec
+    from runtime.robot.model.spec import Body, Correction, RobotSpec
 
 app = typer.Typer(no_args_is_help=True, help="The robot library.")
 

@@ -16,8 +16,8 @@ from runtime.core.rounding import beside
 
 if TYPE_CHECKING:
     from runtime.core.frames import Array
-    from runtime.robot.payload import Payload
-    from runtime.robot.spec import RobotSpec
+    from runtime.robot.model.payload import Payload
+    from runtime.robot.model.spec import RobotSpec
 
 PAYLOAD = ("mass kg", "x mm", "y mm", "z mm")
 MAX_ABS = 1e9
@@ -50,7 +50,7 @@ def payload(text: str, option: str, spec: "RobotSpec", *, heavier: bool = True) 
 
     from runtime.core.faults import Fault
     from runtime.core.units import MM
-    from runtime.robot.payload import declared
+    from runtime.robot.model.payload import declared
 
     mass, *cog = numbers(text, option=option, names=PAYLOAD)
     try:

@@ -47,10 +47,10 @@ from runtime.core.tomlfile import Table, load_table, read_source
 from runtime.core.units import DEG, MM
 from runtime.dynamics.equations import axis_inertia, inertia_range
 from runtime.dynamics.first_moments import scale
-from runtime.robot.joint_table import JointTable
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import NO_PAYLOAD, Payload, declared
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.joint_table import JointTable
+from runtime.robot.model.payload import NO_PAYLOAD, Payload, declared
+from runtime.robot.model.spec import RobotSpec
 
 SCHEMA = 1
 MOST_POSITIONS = 1000

@@ -9,9 +9,9 @@ in the document. Called by the dynamics task, one axis at a time.
 import numpy as np
 
 from runtime.core.frames import Array, frozen
-from runtime.robot.model import ArmModel
-from runtime.robot.payload import NO_PAYLOAD, Payload
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.arm_model import ArmModel
+from runtime.robot.model.payload import NO_PAYLOAD, Payload
+from runtime.robot.model.spec import RobotSpec
 
 
 def axis_inertia(model: ArmModel, q: Array, axis: int) -> float:

@@ -23,9 +23,9 @@ from runtime.core.decompositions import least_squares
 from runtime.core.frames import Array
 from runtime.core.linear import matmul, norm
 from runtime.core.units import GRAVITY
-from runtime.robot.model import ArmModel
-from runtime.robot.payload import Payload
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.arm_model import ArmModel
+from runtime.robot.model.payload import Payload
+from runtime.robot.model.spec import RobotSpec
 
 READING = 5e-4
 """Standard deviation of a torque in the least squares, as a share of the axis' torque limit."""

@@ -40,11 +40,11 @@ import numpy as np
 
 from runtime.core.frames import Array, frozen, skew
 from runtime.core.linear import dot, matmul
-from runtime.robot.payload import NO_PAYLOAD, Payload
-from runtime.robot.spec import Body, RobotSpec
+from runtime.robot.model.payload import NO_PAYLOAD, Payload
+from runtime.robot.model.spec import Body, RobotSpec
 
 if TYPE_CHECKING:
-    from runtime.robot.load_rules import LoadMode
+    from runtime.robot.model.load_rules import LoadMode
 
 _Z = frozen([0.0, 0.0, 1.0])
 _NOTHING = frozen(np.zeros(3))

@@ -37,8 +37,8 @@ from numpy.typing import NDArray
 from runtime.core.decompositions import inverse_of
 from runtime.core.frames import Array, frozen
 from runtime.core.linear import matmul
-from runtime.robot.model import spec_rotors
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.arm_model import spec_rotors
+from runtime.robot.model.spec import RobotSpec
 from runtime.supervision.observer import TURNING, LoadModel
 
 BODY = 10

@@ -14,8 +14,8 @@ from runtime.areas import Areas, AxisLoad
 from runtime.core.frames import Array
 from runtime.dynamics.equations import axis_gravity, axis_row
 from runtime.dynamics.source import InertiaRows
-from runtime.robot.load_rules import LoadMode
-from runtime.robot.model import ArmModel
+from runtime.robot.model.arm_model import ArmModel
+from runtime.robot.model.load_rules import LoadMode
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

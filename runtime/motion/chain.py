@@ -28,7 +28,7 @@ from runtime.motion.planner import LinePlan, LinePlanner, WristChange
 from runtime.motion.solver import Arm
 from runtime.profile import Profile
 from runtime.robot.kinematics import Kinematics
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.spec import RobotSpec
 
 
 class ChainFault(Fault):

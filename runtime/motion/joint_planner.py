@@ -34,7 +34,7 @@ from runtime.motion.speed import MAX_DURATION, SpeedLimits, bound, check_request
 from runtime.motion.wrist_planner import as_taught, turned
 from runtime.profile import Profile
 from runtime.robot.kinematics import LIMIT_ROUNDING, Kinematics
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.spec import RobotSpec
 
 RISE_S = 0.1
 """Time in which the acceleration of a joint builds up, s."""

@@ -20,7 +20,7 @@ from runtime.motion.fine import FineInterpolator
 from runtime.motion.solver import MOST_SLOWDOWN
 from runtime.motion.speed import SpeedLimits, profile
 from runtime.profile import Profile
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.spec import RobotSpec
 
 _MARGIN = 1.0 + 1e-6
 _ROUNDS = 12

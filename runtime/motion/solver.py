@@ -23,8 +23,8 @@ from runtime.motion.path import Path
 from runtime.motion.wrist import SAME_ANGLES, WristLaw
 from runtime.robot.frozen_wrist import FrozenWrist
 from runtime.robot.kinematics import Kinematics
+from runtime.robot.model.spec import RobotSpec
 from runtime.robot.opw import Branch
-from runtime.robot.spec import RobotSpec
 
 RANGE_TOLERANCE = 1e-9
 """How far past its range a joint may be commanded, rad: rounding, nothing more."""

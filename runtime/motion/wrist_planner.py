@@ -44,7 +44,7 @@ from runtime.motion.wrist import (
 from runtime.profile import WristOptions
 from runtime.robot.frozen_wrist import WRIST_AXES
 from runtime.robot.kinematics import LIMIT_ROUNDING, Kinematics
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.spec import RobotSpec
 
 EARLIER = (0.9, 0.75, 0.6, 0.45, 0.3, 0.15, 0.0)
 """Switches tried when the document's does not do: shares of the way to it."""

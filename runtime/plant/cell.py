@@ -23,7 +23,7 @@ from runtime.plant.signals import InputSpec
 from runtime.profile import Layer
 from runtime.robot import importer, robot_file
 from runtime.robot.loader import load_builtin
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.spec import RobotSpec
 
 T = TypeVar("T")
 U = TypeVar("U")

@@ -18,8 +18,8 @@ import numpy as np
 
 from runtime.core.decompositions import inverse_of, symmetric_eigen
 from runtime.core.frames import Array
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.spec import RobotSpec
 
 PHASE_PER_STEP = 0.25
 """Largest w h of a gear spring, rad: its frequency is then right to 0.3 %."""

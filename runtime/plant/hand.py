@@ -11,7 +11,7 @@ import numpy as np
 from runtime.core.frames import Array, pose
 from runtime.core.linear import dot, matmul
 from runtime.plant.cell import HandSpec
-from runtime.robot.spec import Body
+from runtime.robot.model.spec import Body
 
 FINGERS = ("left", "right")
 FINGER_SHARE = 0.125

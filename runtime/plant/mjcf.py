@@ -45,7 +45,7 @@ from runtime.core.linear import matmul, norm
 from runtime.core.units import GRAVITY
 from runtime.plant.cell import CellSpec, HandSpec, ObstacleSpec, PartSpec
 from runtime.plant.hand import FINGERS, box_inertia, finger_body, finger_sign, palm_body, palm_box
-from runtime.robot.spec import AxisSpec, Body, RobotSpec
+from runtime.robot.model.spec import AxisSpec, Body, RobotSpec
 
 # who meets whom: a geom collides where its contype meets the other's conaffinity, either way round
 ENVIRONMENT, ARM, HAND, PART = 1, 2, 4, 8

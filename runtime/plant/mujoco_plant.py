@@ -32,7 +32,7 @@ from runtime.plant.hand import FINGERS, finger_sign
 from runtime.plant.mjcf import build_mjcf, friction_bias, gear_joint, joint_name, own_pair_name, own_pairs
 from runtime.plant.plant import HandState
 from runtime.plant.touches import Bodies, Pair
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.spec import RobotSpec
 
 MAX_PHYSICS_STEP = 1e-3
 """Longest physics step, s: contacts have a time constant of four of them (``mjcf.CONTACT_TIME``)."""

@@ -14,9 +14,9 @@ from runtime.core.linear import matmul, norm
 from runtime.plant.cell import CellSpec
 from runtime.plant.plant import HandState
 from runtime.plant.touches import Pair
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import Payload
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.payload import Payload
+from runtime.robot.model.spec import RobotSpec
 
 REACH = 0.01
 """Largest distance of a part's centre from the tool point at which the hand takes it, m."""

@@ -17,7 +17,7 @@ from runtime.motion.planner import LinePlanner
 from runtime.motion.speed import SpeedLimits
 from runtime.profile import Profile
 from runtime.robot.kinematics import Kinematics
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.spec import RobotSpec
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

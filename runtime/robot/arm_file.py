@@ -9,7 +9,7 @@ from pathlib import Path
 
 from runtime.core.tomlfile import FileFault, Source, read_source
 from runtime.robot import robot_file
-from runtime.robot.drives import Limits, PathLimits
+from runtime.robot.model.drives import Limits, PathLimits
 from runtime.robot.plausibility import doubt_axes
 from runtime.robot.robot_file import RobotFile
 from runtime.robot.sidecar_file import SidecarFile, read_sidecar, sidecar_path

@@ -23,8 +23,8 @@ from runtime.core.frames import Array, frozen, inverse, pose, rotation_about, sk
 from runtime.core.linear import matmul
 from runtime.core.tomlfile import FileFault
 from runtime.robot.corrections import flat
-from runtime.robot.drives import joint_label
-from runtime.robot.spec import Body, OpwParameters, inertia_defect
+from runtime.robot.model.drives import joint_label
+from runtime.robot.model.spec import Body, OpwParameters, inertia_defect
 from runtime.robot.xmlfile import Element
 
 FEWEST_AXES, MOST_AXES = 2, 7

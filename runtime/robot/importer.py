@@ -20,14 +20,14 @@ from runtime.robot import loader
 from runtime.robot.arm_file import ArmFile, is_model, model_root, read_arm_file, sidecar_source
 from runtime.robot.body_plausibility import doubt_bodies, doubt_torques, offsets, weight_moment
 from runtime.robot.closed_form import find_opw
-from runtime.robot.drives import joint_label
 from runtime.robot.imported import ImportedArm, serial_chain
 from runtime.robot.mjcf_import import read_mjcf
+from runtime.robot.model.drives import joint_label
+from runtime.robot.model.spec import RobotSpec
 from runtime.robot.plausibility import Turning, What, doubt_turning
 from runtime.robot.robot_file import RobotFile
 from runtime.robot.sidecar import complete, missing_in_template
 from runtime.robot.sidecar_file import NO_OVERLAY, Overlay, read_overlay, sidecar_path
-from runtime.robot.spec import RobotSpec
 from runtime.robot.urdf import read_urdf
 from runtime.robot.xmlfile import fault_at
 

@@ -28,9 +28,9 @@ from runtime.core.linear import matmul
 from runtime.core.units import DEG
 from runtime.robot import opw
 from runtime.robot.closed_form import find_opw
+from runtime.robot.model.spec import OpwParameters
 from runtime.robot.newton import NewtonSolver
 from runtime.robot.opw import BRANCHES, NUMERIC, TURN, Branch, Geometry
-from runtime.robot.spec import OpwParameters
 
 LIMIT_ROUNDING = 1e-9
 """A joint this far outside its range, rad, is not turned by a whole turn to bring it in."""

@@ -20,8 +20,8 @@ from runtime.core.frames import Array
 from runtime.core.linear import matmul
 from runtime.core.units import GRAVITY
 from runtime.robot.kinematics import Kinematics
-from runtime.robot.payload import Payload
-from runtime.robot.spec import AxisSpec, RobotSpec
+from runtime.robot.model.payload import Payload
+from runtime.robot.model.spec import AxisSpec, RobotSpec
 
 MOMENT_SHARE = 0.5
 """Share of the torque limit of an axis that holding a payload may take, where the robot file says nothing."""

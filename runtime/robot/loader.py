@@ -18,11 +18,11 @@ from runtime.core.units import DEG
 from runtime.robot import robot_file
 from runtime.robot.body_plausibility import doubt_bodies, doubt_torques, offsets, weight_moment
 from runtime.robot.corrections import check_bodies, correct
-from runtime.robot.drives import joint_label
 from runtime.robot.geometry import Geometry, geometry_of
+from runtime.robot.model.drives import joint_label
+from runtime.robot.model.spec import AxisSpec, Body, Correction, OpwParameters, RobotSpec
 from runtime.robot.plausibility import in_tables
 from runtime.robot.robot_file import AxisFile, OpwRow, RobotFile
-from runtime.robot.spec import AxisSpec, Body, Correction, OpwParameters, RobotSpec
 
 
 @cache

@@ -66,7 +66,7 @@ from numpy.typing import ArrayLike
 from runtime.core.frames import Array, pose, rotation_about
 from runtime.core.frames import inverse as inverse_pose
 from runtime.core.linear import matmul
-from runtime.robot.spec import OpwParameters
+from runtime.robot.model.spec import OpwParameters
 
 ROUNDING = 5e-13
 """A length in m or a sine below this is rounding: a pose out of reach by less is on the border, an arm within it of

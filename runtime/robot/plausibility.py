@@ -18,7 +18,7 @@ from typing import Literal, Protocol
 
 from runtime.core.tomlfile import FileFault, Table
 from runtime.core.units import DEG
-from runtime.robot.drives import Limits, Motor, joint_label
+from runtime.robot.model.drives import Limits, Motor, joint_label
 
 MOST_TURNS = 2.0 * 2.0 * math.pi
 """Two turns to either side, rad: cables end earlier."""

@@ -14,8 +14,8 @@ from importlib import resources
 from typing import Literal, cast
 
 from runtime.core.tomlfile import FileFault, Source, Table, load_table
-from runtime.robot import drives
-from runtime.robot.drives import Bandwidths, Limits, Motor, PathLimits
+from runtime.robot.model import drives
+from runtime.robot.model.drives import Bandwidths, Limits, Motor, PathLimits
 from runtime.robot.plausibility import doubt_axes
 
 SCHEMA = 1

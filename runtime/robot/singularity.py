@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from runtime.core.frames import Array
-from runtime.robot.spec import OpwParameters
+from runtime.robot.model.spec import OpwParameters
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

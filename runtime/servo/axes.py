@@ -13,8 +13,8 @@ from numpy import multiply
 
 from runtime.core.frames import Array
 from runtime.profile import ServoOptions
-from runtime.robot.model import spec_rotors
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.arm_model import spec_rotors
+from runtime.robot.model.spec import RobotSpec
 from runtime.servo.law import Gains, ServoLaw
 from runtime.servo.motor import Encoders, Motors, current_limit, encoder_resolution
 

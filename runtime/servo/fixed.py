@@ -18,8 +18,8 @@ import numpy as np
 from runtime.core.frames import Array
 from runtime.dynamics.equations import inertia_range
 from runtime.profile import Profile, ServoOptions
-from runtime.robot.payload import Payload
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.payload import Payload
+from runtime.robot.model.spec import RobotSpec
 from runtime.servo.axes import bandwidths, rotors
 
 

@@ -6,7 +6,7 @@ exact encoder. ``ideal_drives`` gives a robot such drives; bodies, gears, rotors
 
 from dataclasses import replace
 
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.spec import RobotSpec
 
 HUGE = 1e9
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy import add, maximum, minimum, multiply, rint, subtract
 
 from runtime.core.frames import Array
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.spec import RobotSpec
 
 
 class Encoders:

@@ -35,10 +35,10 @@ import pinocchio as pin
 from runtime.core.decompositions import inverse_of, solve
 from runtime.core.frames import Array
 from runtime.core.linear import dot, matmul
-from runtime.robot.load_rules import LoadMode
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import Payload
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.load_rules import LoadMode
+from runtime.robot.model.payload import Payload
+from runtime.robot.model.spec import RobotSpec
 from runtime.supervision.limits import SupervisionLimits
 
 TURNING = 0.05

@@ -12,9 +12,9 @@ import numpy as np
 
 from runtime.core.frames import Array
 from runtime.core.rounding import beside
-from runtime.robot.load_rules import LoadMode
-from runtime.robot.payload import Payload
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.load_rules import LoadMode
+from runtime.robot.model.payload import Payload
+from runtime.robot.model.spec import RobotSpec
 from runtime.supervision.finding import Finding
 from runtime.supervision.limits import SupervisionLimits
 from runtime.supervision.observer import FEWEST, STRIDE, LoadModel, Observer

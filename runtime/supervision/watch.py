@@ -20,7 +20,7 @@ from numpy import absolute, add, less_equal, logical_and, maximum, multiply, sub
 from runtime.core.frames import Array
 from runtime.core.rounding import beside
 from runtime.core.units import DEG
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.spec import RobotSpec
 from runtime.supervision.finding import Finding
 from runtime.supervision.limits import SupervisionLimits
 

@@ -35,7 +35,7 @@ OPEN = {
     "runtime/robot/corrections.py: moments > TOKEN_INERTIA": FILE,
     "runtime/robot/corrections.py: published.mass > 0.0": FILE,
     "runtime/robot/mjcf_import.py: geom.number('mass', 1.0, low=0.0) > 0.0": FILE,
-    "runtime/robot/load_rules.py: moments[0] < 0.0": "refused in either case, NaN before it",
+    "runtime/robot/model/load_rules.py: moments[0] < 0.0": "refused in either case, NaN before it",
     "runtime/supervision/supervisor.py: self._late >= self._limits.overruns": WHOLE,
 }
 """Refusals by an open comparison, with what makes NaN impossible or harmless there."""

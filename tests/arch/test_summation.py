@@ -10,7 +10,10 @@ FILES = sorted((ROOT / "runtime").rglob("*.py"))
 NUMPY = {"dot", "matmul", "inner", "vdot", "tensordot", "convolve", "correlate", "polyfit"}
 ALLOWED = {
     ("runtime/robot/closed_form.py", "linalg.cond"),  # whether lines meet, decided far from the bound
-    ("runtime/robot/spec.py", "linalg.eigvalsh"),  # whether an inertia is refused; a file that is read needs no Eigen
+    (
+        "runtime/robot/model/spec.py",
+        "linalg.eigvalsh",
+    ),  # whether an inertia is refused; a file that is read needs no Eigen
     ("runtime/robot/body_plausibility.py", "linalg.eigvalsh"),  # whether a warning is given
     ("runtime/robot/corrections.py", "linalg.eigvalsh"),  # whether a moment is missing altogether
     ("runtime/plant/mjcf.py", "linalg.det"),  # the sign of 1 or -1

@@ -12,7 +12,7 @@ import numpy as np
 
 from runtime.dynamics.motor_inertia import axis_inertia, inertia_row, link_chain, link_inertia
 from runtime.robot.loader import load_builtin
-from runtime.robot.model import ArmModel
+from runtime.robot.model.arm_model import ArmModel
 from tests.bench import figures
 from tests.bench.figures import Row
 from tests.runtime.dynamics import lagrangian

@@ -19,7 +19,7 @@ from runtime.core.frames import inverse, pose, principal_axis, rotation_about, r
 from runtime.core.units import badness
 from runtime.motion.path import LinePath
 from runtime.plant.mjcf import build_mjcf
-from runtime.robot.model import spec_rotors
+from runtime.robot.model.arm_model import spec_rotors
 from tests.bench import figures
 from tests.bench.figures import Row
 from tests.experiments import test_step as bench

@@ -8,7 +8,7 @@ import numpy as np
 from robolang.plot import Curve, as_svg
 from robolang.step import step
 from runtime.core.units import DEG
-from runtime.robot.payload import NO_PAYLOAD
+from runtime.robot.model.payload import NO_PAYLOAD
 from tests.experiments.test_step import FAR, FIVE, HALF, NEAR, PUMA, REPLACED, STRETCHED, experiment
 
 FOLDER = Path(__file__).parents[2] / "docs" / "plots"

@@ -13,9 +13,9 @@ from runtime.core.units import DEG
 from runtime.dynamics.equations import axis_inertia
 from runtime.profile import Profile, ServoOptions
 from runtime.robot.loader import load_builtin
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import NO_PAYLOAD, Payload
-from runtime.robot.spec import Body
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.payload import NO_PAYLOAD, Payload
+from runtime.robot.model.spec import Body
 from runtime.servo.fixed import rated_range
 from tests.campaign import WHOLE, some
 

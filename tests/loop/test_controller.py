@@ -13,7 +13,7 @@ from runtime.core.program_line import ProgramLine
 from runtime.motion.commands import MoveLinear
 from runtime.plant.rigid_plant import RigidPlant
 from runtime.profile import Profile, ServoOptions
-from runtime.robot.payload import Payload
+from runtime.robot.model.payload import Payload
 from runtime.supervision.limits import SupervisionLimits
 
 CELL = builtin_cell()

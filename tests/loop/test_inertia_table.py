@@ -7,8 +7,8 @@ import pytest
 
 from runtime.dynamics.equations import axis_inertia
 from runtime.profile import Profile
-from runtime.robot.joint_table import JointTable
-from runtime.robot.model import ArmModel, spec_rotors
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.joint_table import JointTable
 from tests.loop.test_controller import CELL, IDEAL, carried_payload, controller, down, signals
 
 TABLE = JointTable(

@@ -3,7 +3,7 @@
 import numpy as np
 
 from runtime.areas import Areas, AxisLoad
-from runtime.robot.payload import NO_PAYLOAD, Payload
+from runtime.robot.model.payload import NO_PAYLOAD, Payload
 
 
 def test_every_load_is_a_version():

@@ -9,9 +9,9 @@ import numpy as np
 from runtime.core.frames import frozen
 from runtime.plant.cell import CellSpec, load_cell
 from runtime.plant.hand import hand_body
-from runtime.robot.model import ArmModel
-from runtime.robot.payload import Payload
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.arm_model import ArmModel
+from runtime.robot.model.payload import Payload
+from runtime.robot.model.spec import RobotSpec
 
 CELL = load_cell(Path(__file__).parents[2] / "programs" / "manutec_pick_and_place.cell.toml")
 SPEC = CELL.robot

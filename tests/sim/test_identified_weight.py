@@ -6,7 +6,7 @@ import pytest
 from robolang.identify import compensation_of, identify, weight_of
 from robolang.trial_motion import Request
 from runtime.dynamics.first_moments import scale
-from runtime.robot.model import ArmModel
+from runtime.robot.model.arm_model import ArmModel
 from tests.campaign import some
 from tests.sim.identified import SEEDS, SPEC, experiment
 

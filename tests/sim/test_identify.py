@@ -8,9 +8,9 @@ import pytest
 
 from robolang.identify import compensation_of, identify, passage, with_errors
 from robolang.trial_motion import Request
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import Payload
-from runtime.robot.spec import inertia_defect
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.payload import Payload
+from runtime.robot.model.spec import inertia_defect
 from runtime.servo.motor import encoder_resolution
 from tests.campaign import size, some
 from tests.sim.identified import N2, SEEDS, SPEC, TABLE_AXES, WITH_TABLE, experiment

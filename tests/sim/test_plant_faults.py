@@ -10,7 +10,7 @@ from robolang.builtin import cell_text
 from runtime.core.tomlfile import Source
 from runtime.plant.cell import parse_cell
 from runtime.plant.mujoco_plant import MujocoPlant
-from runtime.robot.model import ArmModel
+from runtime.robot.model.arm_model import ArmModel
 
 CELL = parse_cell(Source("cell.toml", cell_text()))
 SPEC = CELL.robot

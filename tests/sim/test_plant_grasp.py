@@ -16,8 +16,8 @@ from runtime.plant.cell import CellSpec, parse_cell
 from runtime.plant.hand import FINGERS, box_inertia, hand_body
 from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.kinematics import Kinematics
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import Payload
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.payload import Payload
 
 CELL = parse_cell(Source("cell.toml", cell_text()))
 SPEC = CELL.robot

@@ -13,9 +13,9 @@ from runtime.core.tomlfile import Source
 from runtime.plant.cell import parse_cell
 from runtime.plant.hand import hand_body
 from runtime.plant.mjcf import build_mjcf
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import Payload
-from runtime.robot.spec import Body
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.payload import Payload
+from runtime.robot.model.spec import Body
 
 CELL = parse_cell(Source("cell.toml", cell_text()))
 SPEC = CELL.robot

@@ -12,9 +12,9 @@ from runtime.core.units import DEG
 from runtime.plant.cell import parse_cell
 from runtime.plant.hand import hand_body
 from runtime.plant.mujoco_plant import MujocoPlant
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import Payload
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.payload import Payload
+from runtime.robot.model.spec import RobotSpec
 
 CELL = parse_cell(Source("cell.toml", cell_text()))
 SPEC = CELL.robot

@@ -15,7 +15,7 @@ from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.profile import Profile, ServoOptions
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.loader import load_builtin
-from runtime.robot.payload import Payload
+from runtime.robot.model.payload import Payload
 from runtime.servo.axes import gains
 from tests.sim.elastic import CELL, SPEC, empty
 

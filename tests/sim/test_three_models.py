@@ -13,9 +13,9 @@ import pytest
 
 from runtime.plant.mjcf import build_mjcf
 from runtime.robot.loader import load_builtin
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import Payload
-from runtime.robot.spec import Body, RobotSpec
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.payload import Payload
+from runtime.robot.model.spec import Body, RobotSpec
 from tests.campaign import size
 from tests.runtime.dynamics import lagrangian
 

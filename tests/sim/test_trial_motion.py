@@ -13,8 +13,8 @@ from runtime.motion.fine import FineInterpolator
 from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.loader import load_builtin
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import NO_PAYLOAD, Payload
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.payload import NO_PAYLOAD, Payload
 from tests.sim.identified import ROOT, SPEC
 
 

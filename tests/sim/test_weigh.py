@@ -17,7 +17,7 @@ from runtime.dynamics.payload_identification import WeighedPayload
 from runtime.plant.cell import ObstacleSpec
 from runtime.profile import Profile
 from runtime.robot.loader import load_builtin
-from runtime.robot.payload import Payload, declared
+from runtime.robot.model.payload import Payload, declared
 from tests.campaign import some
 from tests.lang.helpers import checked
 

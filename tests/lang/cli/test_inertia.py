@@ -14,8 +14,8 @@ from robolang.plot import LEFT, SHADES, WIDTH, as_map_svg
 from runtime.core.units import DEG
 from runtime.dynamics.equations import axis_gravity, axis_inertia
 from runtime.robot.loader import load_builtin
-from runtime.robot.model import ArmModel
-from runtime.robot.payload import NO_PAYLOAD, Payload
+from runtime.robot.model.arm_model import ArmModel
+from runtime.robot.model.payload import NO_PAYLOAD, Payload
 from tests.lang.cli.commands import ROOT, flat, robolang
 
 JOINTS = "10,60,150,-20,40,30"

@@ -11,10 +11,10 @@ from runtime.core.tomlfile import FileFault
 from runtime.core.units import DEG
 from runtime.dynamics.compensation import AxisCompensation, Compensation, as_toml, load_compensation
 from runtime.profile import ServoOptions
-from runtime.robot.joint_table import JointTable
 from runtime.robot.loader import load_builtin
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import Payload
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.joint_table import JointTable
+from runtime.robot.model.payload import Payload
 from runtime.servo.axes import ServoAxes, gains, rotors
 
 SPEC = load_builtin("puma560")

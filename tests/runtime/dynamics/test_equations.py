@@ -5,8 +5,8 @@ import pytest
 
 from runtime.dynamics.equations import axis_gravity, axis_inertia
 from runtime.robot.loader import load_builtin
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import Payload
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.payload import Payload
 from tests.runtime.dynamics import lagrangian
 
 SPEC = load_builtin("puma560")

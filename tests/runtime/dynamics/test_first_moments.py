@@ -7,8 +7,8 @@ import pytest
 
 from runtime.dynamics.first_moments import gravity_columns, scale, weigh_links
 from runtime.robot.loader import load_builtin
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import NO_PAYLOAD, Payload
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.payload import NO_PAYLOAD, Payload
 from runtime.servo.motor import torque_limit
 from runtime.supervision.observer import LoadModel
 

@@ -17,8 +17,8 @@ from runtime.dynamics.motor_inertia import (
     motor_side,
 )
 from runtime.robot.loader import load_builtin
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import Payload
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.payload import Payload
 from tests.runtime.dynamics import lagrangian
 
 ROBOTS = ["puma560", "manutec_r3", "irb2400"]

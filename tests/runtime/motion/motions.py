@@ -13,7 +13,7 @@ from runtime.motion.fine import FineInterpolator
 from runtime.profile import Profile
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.loader import load_builtin
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.spec import RobotSpec
 
 ROBOTS = ("puma560", "irb2400", "manutec_r3")
 TOOL = pose((0.0, 0.0, 0.12))

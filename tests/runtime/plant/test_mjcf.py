@@ -14,7 +14,7 @@ from runtime.core.tomlfile import Source
 from runtime.plant.cell import parse_cell
 from runtime.plant.hand import FINGERS, finger_body, hand_body, palm_body
 from runtime.plant.mjcf import build_mjcf, friction_bias, quaternion
-from runtime.robot.spec import inertia_defect
+from runtime.robot.model.spec import inertia_defect
 
 CELL = parse_cell(Source("cell.toml", cell_text()))
 ANGLE = st.floats(-np.pi, np.pi)

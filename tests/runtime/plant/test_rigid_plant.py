@@ -5,8 +5,8 @@ import pytest
 
 from robolang.project import builtin_cell
 from runtime.plant.rigid_plant import RigidPlant
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import Payload
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.payload import Payload
 
 CELL = builtin_cell()
 SPEC = CELL.robot

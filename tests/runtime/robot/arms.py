@@ -3,7 +3,7 @@
 import numpy as np
 
 from runtime.core.frames import frozen, pose, rotation_about
-from runtime.robot.spec import OpwParameters
+from runtime.robot.model.spec import OpwParameters
 
 DEG = np.pi / 180.0
 X, Y, Z = np.eye(3)

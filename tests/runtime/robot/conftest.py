@@ -5,7 +5,7 @@ import pytest
 
 from runtime.core.frames import frozen, inverse, pose, rotation_about
 from runtime.robot.loader import load_builtin
-from runtime.robot.spec import OpwParameters, RobotSpec
+from runtime.robot.model.spec import OpwParameters, RobotSpec
 from tests.runtime.robot.arms import DEG, Irb2400, X, Z, opw_parameters
 
 

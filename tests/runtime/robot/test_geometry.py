@@ -10,9 +10,9 @@ from runtime.core.tomlfile import FileFault, Source
 from runtime.robot.corrections import TOKEN_INERTIA
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.loader import load_builtin, parse_robot
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import Payload
-from runtime.robot.spec import RobotSpec
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.payload import Payload
+from runtime.robot.model.spec import RobotSpec
 from runtime.servo.motor import torque_limit
 from tests.lang.cli.commands import PUMA
 from tests.runtime.robot.arms import DEG, Irb2400

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runtime.robot.joint_table import JointTable
+from runtime.robot.model.joint_table import JointTable
 
 GRID = ((-1.0, 0.1, 2.0), (-0.3, 0.7))
 ONE = JointTable(joints=(2,), grid=GRID[:1], values=(0.1, -0.7, 3.3))

@@ -6,8 +6,8 @@ import pytest
 
 from runtime.core.frames import frozen, pose, rotation_about
 from runtime.robot.kinematics import Kinematics
+from runtime.robot.model.spec import RobotSpec
 from runtime.robot.opw import BRANCHES, Branch, wrapped
-from runtime.robot.spec import RobotSpec
 from tests.campaign import size
 from tests.runtime.robot.arms import DEG, Irb2400
 

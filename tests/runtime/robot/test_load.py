@@ -9,8 +9,8 @@ from runtime.core.frames import frozen
 from runtime.robot.kinematics import Kinematics
 from runtime.robot.load import rated_inertia, rated_moment, ratings, wrist_load
 from runtime.robot.loader import load_builtin
-from runtime.robot.model import ArmModel
-from runtime.robot.payload import NO_PAYLOAD, Payload
+from runtime.robot.model.arm_model import ArmModel
+from runtime.robot.model.payload import NO_PAYLOAD, Payload
 
 PAYLOAD = Payload(
     mass=1.7,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runtime.core.faults import Fault
-from runtime.robot.load_rules import (
+from runtime.robot.model.load_rules import (
     centre_fault,
     inertia_fault,
     load_fault,
@@ -14,7 +14,7 @@ from runtime.robot.load_rules import (
     moments_defect,
     principal_moments,
 )
-from runtime.robot.payload import declared
+from runtime.robot.model.payload import declared
 from tests.messages import numbers
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runtime.core.faults import Fault
-from runtime.robot.payload import declared
+from runtime.robot.model.payload import declared
 
 
 def refusal(*args, **kwargs) -> str:

@@ -10,8 +10,8 @@ from runtime.core.tomlfile import FileFault, Source, Table
 from runtime.core.units import DEG
 from runtime.profile import parse_profile
 from runtime.robot.loader import load_builtin
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import Payload
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.payload import Payload
 from runtime.supervision.limits import SupervisionLimits
 from runtime.supervision.observer import LoadModel, Observer
 from runtime.supervision.watch import Watch

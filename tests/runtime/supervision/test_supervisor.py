@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from runtime.robot.load_rules import LoadMode
 from runtime.robot.loader import load_builtin
-from runtime.robot.model import ArmModel, spec_rotors
-from runtime.robot.payload import Payload
+from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.load_rules import LoadMode
+from runtime.robot.model.payload import Payload
 from runtime.supervision.limits import SupervisionLimits
 from runtime.supervision.observer import LoadModel, Observer
 from runtime.supervision.supervisor import Supervisor

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from runtime.core.frames import Array, frozen
-from runtime.robot.load_rules import load_fault
+from runtime.robot.model.load_rules import load_fault
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

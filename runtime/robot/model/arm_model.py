@@ -13,9 +13,9 @@ import pinocchio as pin
 
 from runtime.core.frames import Array
 from runtime.core.units import GRAVITY
-from runtime.robot.load_rules import LoadMode
-from runtime.robot.payload import NO_PAYLOAD, Payload
-from runtime.robot.spec import Body, RobotSpec
+from runtime.robot.model.load_rules import LoadMode
+from runtime.robot.model.payload import NO_PAYLOAD, Payload
+from runtime.robot.model.spec import Body, RobotSpec
 
 _NO_MASS = 1e-9
 

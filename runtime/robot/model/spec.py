@@ -16,8 +16,8 @@ import numpy as np
 
 from runtime.core.frames import Array
 from runtime.core.tomlfile import FileFault
-from runtime.robot.drives import Bandwidths, Limits, Motor, PathLimits
-from runtime.robot.load_rules import moments_defect
+from runtime.robot.model.drives import Bandwidths, Limits, Motor, PathLimits
+from runtime.robot.model.load_rules import moments_defect
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
