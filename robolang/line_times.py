@@ -8,9 +8,9 @@ from robolang.motion_check import Rehearsal, RehearsedMove
 from robolang.printer import describe
 from robolang.project import Project
 from runtime.core.units import DEG, MM
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
+from runtime.robot.kinematics.singularity import singularities
 from runtime.robot.model.spec import OpwParameters
-from runtime.robot.singularity import singularities
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

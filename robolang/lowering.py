@@ -28,7 +28,7 @@ from runtime.core.linear import matmul
 from runtime.core.units import DEG, MM, PERCENT
 from runtime.motion.commands import Component, MoveArc, MoveJoint, MoveLinear, Wrist
 from runtime.plant.cell import CellSpec
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.drives import beyond_range
 from runtime.robot.model.payload import Payload, declared
 

@@ -43,7 +43,7 @@ from runtime.core.frames import Array
 from runtime.motion.blend import Corner
 from runtime.motion.chain import ChainPlan, tracked
 from runtime.motion.planner import LinePlan
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
 
 MAX_CHAIN = 200

@@ -28,9 +28,9 @@ from robolang.source import Span
 from runtime.core.rounding import beside
 from runtime.core.units import DEG, MM
 from runtime.motion.planner import FOLLOWS
-from runtime.robot.kinematics import Kinematics
-from runtime.robot.load import ratings, wrist_load
-from runtime.robot.singularity import singularities
+from runtime.robot.kinematics.kinematics import Kinematics
+from runtime.robot.kinematics.singularity import singularities
+from runtime.robot.kinematics.wrist_load import ratings, wrist_load
 
 NEAR = 0.5 * DEG
 """A joint nearer than this to the end of its range is named, rad."""

@@ -25,7 +25,7 @@ from robolang.source import Span
 from runtime.core.frames import Array, inverse, pose
 from runtime.plant.mujoco_plant import CLEARANCE, MARGIN, MujocoPlant
 from runtime.plant.touches import NOTICED, shape_text
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
 
 DROP = 5e-3
 """A part that is let go higher than this over its support may land anywhere, m."""

@@ -28,7 +28,7 @@ from runtime.motion.joint_planner import changed
 from runtime.motion.planner import LinePlan
 from runtime.motion.ruling import Ruling, ruling
 from runtime.motion.wrist_planner import as_taught
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
 
 NOTICED = 0.1 * DEG
 """A tool or a joint that is turned less from where it should be keeps it, rad."""

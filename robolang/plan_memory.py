@@ -15,7 +15,7 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.motion.chain import ChainPlan, MotionPlanner
 from runtime.motion.planner import LinePlan
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
 
 
 class PlanMemory:

@@ -219,7 +219,7 @@ def _command(effect: MoveTo, project: Project, machine: Machine, q: Array) -> Mo
 
 
 def _kinematics(project: Project) -> Any:
-    from runtime.robot.kinematics import Kinematics
+    from runtime.robot.kinematics.kinematics import Kinematics
 
     return Kinematics(project.cell.robot)
 

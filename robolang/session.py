@@ -50,7 +50,7 @@ from runtime.motion.seam import SeamTracker
 from runtime.plant.plant import Plant
 from runtime.plant.seam_sensor import SeamSensor
 from runtime.profile import ServoMode
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
 
 
 class ProgramError(Exception):

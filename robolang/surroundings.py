@@ -16,7 +16,7 @@ from runtime.core.frames import Array
 from runtime.core.linear import matmul
 from runtime.plant.cell import CellSpec
 from runtime.plant.signals import Signals
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
 
 
 class RobotWorld:

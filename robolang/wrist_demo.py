@@ -30,8 +30,8 @@ from runtime.motion.solver import Arm, LineSolver, WristSolver
 from runtime.motion.wrist import WristLaw, first_trigger, law_from
 from runtime.motion.wrist_planner import wrist_limits
 from runtime.profile import WristOptions
-from runtime.robot.frozen_wrist import MAIN_AXES, WRIST_AXES
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.frozen_wrist import MAIN_AXES, WRIST_AXES
+from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.spec import RobotSpec
 
 DURATION_S = 4.0

@@ -41,7 +41,7 @@ from runtime.plant.plant import Plant
 from runtime.plant.touches import Touches
 from runtime.profile import Profile
 from runtime.recorder import Recorder
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.arm_model import ArmModel
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import RobotSpec

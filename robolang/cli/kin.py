@@ -27,7 +27,7 @@ from robolang.cli.values import OptionValueError, numbers
 
 if TYPE_CHECKING:
     from runtime.core.frames import Array
-    from runtime.robot.kinematics import Kinematics
+    from runtime.robot.kinematics.kinematics import Kinematics
 
 app = typer.Typer(no_args_is_help=True, help="Forward and inverse kinematics of a robot (mm, deg).")
 
@@ -125,7 +125,7 @@ def _kinematics(robot: str) -> "Kinematics":
 
     from runtime.robot.arm_file import ROBOT_ENDINGS, is_model
     from runtime.robot.importer import load_file, read_arm
-    from runtime.robot.kinematics import Kinematics
+    from runtime.robot.kinematics.kinematics import Kinematics
     from runtime.robot.loader import load_builtin
     from runtime.robot.robot_file import library
 

@@ -93,7 +93,7 @@ def _show_model(robot: str) -> None:
     """Print what a model file without a sidecar says: it has no drives."""
     from robolang.cli.console import Console
     from runtime.robot.importer import read_model
-    from runtime.robot.kinematics import Kinematics
+    from runtime.robot.kinematics.kinematics import Kinematics
     from runtime.robot.sidecar_file import sidecar_path
 
     path = Path(robot)
@@ -175,7 +175,7 @@ def _limits(spec: "RobotSpec") -> "Table":
 
 
 def _wrist(spec: "RobotSpec") -> "Table":
-    from runtime.robot.load import WRIST_AXES, rated_inertia, rated_moment
+    from runtime.robot.kinematics.wrist_load import WRIST_AXES, rated_inertia, rated_moment
 
     table = _table("Payload at the wrist (~: estimated from the drive)", "moment\nN m", "inertia\nkg m2")
     for index, axis in list(enumerate(spec.axes, start=1))[-WRIST_AXES:]:

@@ -27,7 +27,7 @@ from runtime.motion.path import Path
 from runtime.motion.planner import LinePlan, LinePlanner, WristChange
 from runtime.motion.solver import Arm
 from runtime.profile import Profile
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.spec import RobotSpec
 
 

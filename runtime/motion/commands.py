@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from runtime.core.frames import Array
-from runtime.robot.opw import Branch
+from runtime.robot.kinematics.opw import Branch
 
 Component = Literal["TILT", "ADVANCE", "ROTATION"]
 """Components of the tool's posture, about the direction of travel, across it and upright (``runtime.motion.hold``)."""

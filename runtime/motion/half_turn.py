@@ -20,7 +20,7 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.motion.solver import LineSolver
 from runtime.motion.wrist import SAME_ANGLES
-from runtime.robot.kinematics import SAME_ROOM
+from runtime.robot.kinematics.kinematics import SAME_ROOM
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -35,8 +35,8 @@ from runtime.core.frames import Array, frozen
 from runtime.core.linear import matmul, norm
 from runtime.motion.commands import Component
 from runtime.motion.path import ArcPath, Path
-from runtime.robot.frozen_wrist import WRIST_AXES, FrozenWrist, Side
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.frozen_wrist import WRIST_AXES, FrozenWrist, Side
+from runtime.robot.kinematics.kinematics import Kinematics
 
 CANDIDATES = 5
 COMPONENTS: tuple[Component, ...] = ("TILT", "ADVANCE", "ROTATION")

@@ -40,8 +40,8 @@ from runtime.motion.speed import MAX_DURATION, SpeedLimits, bound, check_request
 from runtime.motion.wrist import CONDITIONS, SAME_ANGLES, Condition
 from runtime.motion.wrist_planner import Choice, choose, ends, explained, posture_deviation
 from runtime.profile import Profile
-from runtime.robot.frozen_wrist import MAIN_AXES, WRIST_AXES
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.frozen_wrist import MAIN_AXES, WRIST_AXES
+from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.drives import PathLimits
 from runtime.robot.model.spec import RobotSpec
 

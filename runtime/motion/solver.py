@@ -21,10 +21,10 @@ from runtime.motion.fine import FineInterpolator
 from runtime.motion.hold import WristTable
 from runtime.motion.path import Path
 from runtime.motion.wrist import SAME_ANGLES, WristLaw
-from runtime.robot.frozen_wrist import FrozenWrist
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.frozen_wrist import FrozenWrist
+from runtime.robot.kinematics.kinematics import Kinematics
+from runtime.robot.kinematics.opw import Branch
 from runtime.robot.model.spec import RobotSpec
-from runtime.robot.opw import Branch
 
 RANGE_TOLERANCE = 1e-9
 """How far past its range a joint may be commanded, rad: rounding, nothing more."""

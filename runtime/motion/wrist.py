@@ -4,7 +4,7 @@ A pose is met with either sign of J5. A straight move that keeps the sign and ha
 J4 and J6 half a turn away from where they were taught, and beside J5 = 0 the two turn faster than they can. The method
 of CN103429397A (Kobe Steel) watches *exception conditions* while the move follows its path. From the first that is met
 until the end, the wrist axes go straight to the taught end angles and the main axes are solved for the *position* of
-the path alone (``runtime.robot.frozen_wrist``): the tool point stays on its line at its speed, the posture deviates for
+the path alone (``runtime.robot.kinematics.frozen_wrist``): the tool point stays on its line at its speed, the posture deviates for
 a while, and the move ends exactly as taught.
 
     C1  |theta_ke - theta_k(n)| / T(n) > theta_kd        speed that the wrist would need from here, ``any`` or ``all``
@@ -35,7 +35,7 @@ from numpy.typing import NDArray
 
 from runtime.core.frames import Array, frozen
 from runtime.profile import WristOptions
-from runtime.robot.frozen_wrist import WRIST_AXES
+from runtime.robot.kinematics.frozen_wrist import WRIST_AXES
 
 Mask = NDArray[np.bool_]
 

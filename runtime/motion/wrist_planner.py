@@ -42,8 +42,8 @@ from runtime.motion.wrist import (
     law_from,
 )
 from runtime.profile import WristOptions
-from runtime.robot.frozen_wrist import WRIST_AXES
-from runtime.robot.kinematics import LIMIT_ROUNDING, Kinematics
+from runtime.robot.kinematics.frozen_wrist import WRIST_AXES
+from runtime.robot.kinematics.kinematics import LIMIT_ROUNDING, Kinematics
 from runtime.robot.model.spec import RobotSpec
 
 EARLIER = (0.9, 0.75, 0.6, 0.45, 0.3, 0.15, 0.0)

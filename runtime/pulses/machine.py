@@ -16,7 +16,7 @@ from runtime.motion.commands import MoveLinear
 from runtime.motion.planner import LinePlanner
 from runtime.motion.speed import SpeedLimits
 from runtime.profile import Profile
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.spec import RobotSpec
 
 

@@ -44,7 +44,7 @@ from runtime.core.units import DEG, MM
 from runtime.motion.commands import MoveLinear
 from runtime.motion.speed import SpeedLimits, bound, check_requests
 from runtime.pulses.machine import Joint, Stand
-from runtime.robot.kinematics import SAME_ROOM
+from runtime.robot.kinematics.kinematics import SAME_ROOM
 
 Kind = Literal["cartesian", "cylindrical", "scara"]
 ORDER: dict[str, tuple[str, ...]] = {

@@ -19,8 +19,8 @@ from runtime.core.tomlfile import FileFault, Source, read_source
 from runtime.robot import loader
 from runtime.robot.arm_file import ArmFile, is_model, model_root, read_arm_file, sidecar_source
 from runtime.robot.body_plausibility import doubt_bodies, doubt_torques, offsets, weight_moment
-from runtime.robot.closed_form import find_opw
 from runtime.robot.imported import ImportedArm, serial_chain
+from runtime.robot.kinematics.closed_form import find_opw
 from runtime.robot.mjcf_import import read_mjcf
 from runtime.robot.model.drives import joint_label
 from runtime.robot.model.spec import RobotSpec

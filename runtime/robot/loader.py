@@ -142,7 +142,7 @@ def _check_opw(spec: RobotSpec, table: Table) -> None:
     """Refuse closed-form parameters that describe another arm than the table of axes (RBL615)."""
     if spec.opw is None:
         return
-    from runtime.robot import opw  # needs RobotSpec only; imported here because opw imports this package's spec
+    from runtime.robot.kinematics import opw
 
     error = opw.mismatch(spec)
     if not error < 1e-9:

@@ -12,7 +12,7 @@ from robolang.places import Place
 from robolang.project import builtin_cell, load_project
 from runtime.core.faults import Fault
 from runtime.motion.commands import MoveArc, MoveJoint, MoveLinear
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
 from tests.lang.helpers import parsed
 
 

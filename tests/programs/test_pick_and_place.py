@@ -20,7 +20,7 @@ from robolang.runlog import write_log
 from robolang.session import RunResult, Session
 from runtime import recorder
 from runtime.core.frames import Array, inverse, rotation_angle
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.servo.motor import torque_limit
 from tests.programs.runs import run
 

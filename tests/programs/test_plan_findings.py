@@ -12,7 +12,7 @@ from robolang.motion_findings import findings
 from robolang.plan_findings import SLOWED
 from robolang.project import builtin_cell, load_project
 from robolang.session import Session
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
 
 OTHERWISE = {"RBL414", "RBL419", "RBL428", "RBL429", "RBL434", "RBL435"}
 START = "LOAD (0, 0, 60), 0.8\nMOVEJ JOINT(0, 60, -190, 0, -60, {})\n"

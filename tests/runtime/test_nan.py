@@ -17,8 +17,8 @@ from runtime.motion.speed import SpeedLimits, bound, profile
 from runtime.pulses.machine import Stand
 from runtime.pulses.mechanism import load_builtin
 from runtime.pulses.replay import MoveReplay
+from runtime.robot.kinematics.newton import NewtonSolver
 from runtime.robot.model.payload import declared
-from runtime.robot.newton import NewtonSolver
 from runtime.supervision.limits import SupervisionLimits
 from runtime.supervision.observer import Observer
 from runtime.supervision.supervisor import CONFIRMED, Supervisor

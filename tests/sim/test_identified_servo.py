@@ -12,7 +12,7 @@ from robolang.session import Session
 from robolang.trial_motion import Request
 from runtime.controller import Controller
 from runtime.plant.mujoco_plant import MujocoPlant
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
 from tests.campaign import size
 from tests.sim.identified import ROOT, SPEC, experiment
 

@@ -15,7 +15,7 @@ from runtime.core.units import DEG
 from runtime.plant.cell import CellSpec, parse_cell
 from runtime.plant.hand import FINGERS, box_inertia, hand_body
 from runtime.plant.mujoco_plant import MujocoPlant
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import Payload
 

@@ -15,7 +15,7 @@ from runtime.core.program_line import ProgramLine
 from runtime.core.units import DEG
 from runtime.pulses.folder import read_export
 from runtime.pulses.replay import replay
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
 from tests.runtime.pulses import Handmade
 
 CELL_FILE = Path(__file__).parents[2] / "programs" / "pick_and_place.cell.toml"

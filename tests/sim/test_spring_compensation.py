@@ -13,7 +13,7 @@ import pytest
 from runtime.controller import Controller
 from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.profile import Profile, ServoOptions
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.loader import load_builtin
 from runtime.robot.model.payload import Payload
 from runtime.servo.axes import gains

@@ -85,7 +85,7 @@ class Limits:
     """Joint limits: range rad, speed rad/s, acceleration rad/s2, torque N m (at the joint).
 
     ``rated_moment`` N m and ``rated_inertia`` kg m2 that a payload may have about the axis; None: not published
-    (``runtime.robot.load`` estimates them).
+    (``runtime.robot.kinematics.wrist_load`` estimates them).
     """
 
     lower: float

@@ -55,7 +55,7 @@ def test_it_stands_still_under_the_gravity_torque_of_its_true_load():
 def at_the_part() -> RigidPlant:
     plant = RigidPlant(SPEC, CELL)
     from runtime.core.frames import inverse
-    from runtime.robot.kinematics import Kinematics
+    from runtime.robot.kinematics.kinematics import Kinematics
 
     X = np.array(CELL.parts[0].X_world_part)
     X[:3, :3] = np.diag([-1.0, 1.0, -1.0])

@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 
 from runtime.core.frames import inverse, pose, rotation_about, rotation_from_rpy
 from runtime.core.tomlfile import Source
-from runtime.robot import opw
-from runtime.robot.closed_form import find_opw
 from runtime.robot.importer import parse_model
-from runtime.robot.kinematics import Kinematics
-from runtime.robot.opw import BRANCHES, PlacedOpw
+from runtime.robot.kinematics import opw
+from runtime.robot.kinematics.closed_form import find_opw
+from runtime.robot.kinematics.kinematics import Kinematics
+from runtime.robot.kinematics.opw import BRANCHES, PlacedOpw
 from tests.campaign import examples
 from tests.runtime.robot.models import chain
 

@@ -11,7 +11,7 @@ from runtime.core.frames import pose
 from runtime.core.tomlfile import FileFault, Source
 from runtime.core.units import GRAVITY
 from runtime.robot.importer import load_file, parse_model, read_arm, read_model
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.arm_model import ArmModel
 from runtime.robot.sidecar import template
 from tests.campaign import examples

@@ -5,9 +5,9 @@ import pinocchio as pin
 import pytest
 
 from runtime.core.frames import frozen, pose, rotation_about
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
+from runtime.robot.kinematics.opw import BRANCHES, Branch, wrapped
 from runtime.robot.model.spec import RobotSpec
-from runtime.robot.opw import BRANCHES, Branch, wrapped
 from tests.campaign import size
 from tests.runtime.robot.arms import DEG, Irb2400
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from runtime.core.frames import pose, rotation_about, rotation_from_rpy
-from runtime.robot import opw
-from runtime.robot.opw import BRANCHES, Arm, Branch, Elbow, Wrist
+from runtime.robot.kinematics import opw
+from runtime.robot.kinematics.opw import BRANCHES, Arm, Branch, Elbow, Wrist
 from tests.runtime.robot.arms import DEG, Irb2400, opw_parameters
 
 TOOLBOX = {

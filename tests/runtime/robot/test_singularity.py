@@ -1,7 +1,7 @@
 """Distances from the singular postures, against the determinant of the Jacobian.
 
 For a spherical wrist the determinant is that of the arm times that of the wrist:
-|det J| = c2 k |sin g| |r| |sin t5|, with the names of ``runtime.robot.singularity``.
+|det J| = c2 k |sin g| |r| |sin t5|, with the names of ``runtime.robot.kinematics.singularity``.
 """
 
 import math
@@ -9,9 +9,9 @@ import math
 import numpy as np
 import pytest
 
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
+from runtime.robot.kinematics.singularity import singularities
 from runtime.robot.loader import load_builtin
-from runtime.robot.singularity import singularities
 
 ROBOTS = ["puma560", "irb2400", "manutec_r3"]
 

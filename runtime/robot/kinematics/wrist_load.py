@@ -19,7 +19,7 @@ import numpy as np
 from runtime.core.frames import Array
 from runtime.core.linear import matmul
 from runtime.core.units import GRAVITY
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import AxisSpec, RobotSpec
 

@@ -25,9 +25,9 @@ import numpy as np
 from runtime.core.decompositions import solve
 from runtime.core.frames import Array, frozen, inverse, pose
 from runtime.core.linear import dot, matmul, norm
-from runtime.robot import opw
+from runtime.robot.kinematics import opw
+from runtime.robot.kinematics.opw import Placed, PlacedOpw
 from runtime.robot.model.spec import OpwParameters
-from runtime.robot.opw import Placed, PlacedOpw
 
 ACCEPTED = 1e-9
 """Largest mismatch of a closed form with the chain of axes, m at a radius of 1 m."""

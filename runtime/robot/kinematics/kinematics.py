@@ -26,11 +26,11 @@ from numpy.typing import ArrayLike
 from runtime.core.frames import Array, frozen, is_half_turn
 from runtime.core.linear import matmul
 from runtime.core.units import DEG
-from runtime.robot import opw
-from runtime.robot.closed_form import find_opw
+from runtime.robot.kinematics import opw
+from runtime.robot.kinematics.closed_form import find_opw
+from runtime.robot.kinematics.newton import NewtonSolver
+from runtime.robot.kinematics.opw import BRANCHES, NUMERIC, TURN, Branch, Geometry
 from runtime.robot.model.spec import OpwParameters
-from runtime.robot.newton import NewtonSolver
-from runtime.robot.opw import BRANCHES, NUMERIC, TURN, Branch, Geometry
 
 LIMIT_ROUNDING = 1e-9
 """A joint this far outside its range, rad, is not turned by a whole turn to bring it in."""

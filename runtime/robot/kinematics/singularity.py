@@ -1,4 +1,4 @@
-"""How near joint angles are to the singular postures of an arm with a closed form (``runtime.robot.opw``).
+"""How near joint angles are to the singular postures of an arm with a closed form (``runtime.robot.kinematics.opw``).
 
 With the angles of the closed form, theta = sign q + offset, k = hypot(a2, c3) and g = t3 + atan2(a2, c3):
 

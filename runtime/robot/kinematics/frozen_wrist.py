@@ -25,9 +25,9 @@ import numpy as np
 from runtime.core.decompositions import least_squares
 from runtime.core.frames import Array, inverse
 from runtime.core.linear import dot, matmul
-from runtime.robot.kinematics import Kinematics
+from runtime.robot.kinematics.kinematics import Kinematics
+from runtime.robot.kinematics.opw import TURN, PlacedOpw, arm_angles
 from runtime.robot.model.spec import OpwParameters
-from runtime.robot.opw import TURN, PlacedOpw, arm_angles
 
 WRIST_AXES = 3
 """The wrist is the last three axes."""
