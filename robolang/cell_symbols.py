@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 from runtime.core.units import MM
 from runtime.plant.cell_file import CellFile, LoadFile
-from runtime.robot.arm_file import ArmFile
+from runtime.robot.files.arm_file import ArmFile
 from runtime.robot.model.drives import SPEED_ROUNDING, Limits
 
 

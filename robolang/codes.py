@@ -10,7 +10,7 @@ import runtime.core.faults
 import runtime.core.tomlfile  # registers RBL311 and RBL6xx
 import runtime.motion.codes
 import runtime.pulses.codes
-import runtime.robot.codes
+import runtime.robot.files.codes
 from runtime.core.faults import Code
 
 _TEXT = (

@@ -33,8 +33,8 @@ from runtime.profile import (
     read_options,
     settle,
 )
-from runtime.robot import importer, loader, robot_file
-from runtime.robot.arm_file import ROBOT_ENDINGS
+from runtime.robot.files import importer, loader, robot_file
+from runtime.robot.files.arm_file import ROBOT_ENDINGS
 from runtime.robot.model.spec import RobotSpec
 
 

@@ -123,11 +123,11 @@ def _kinematics(robot: str) -> "Kinematics":
     """Return the kinematics of a built-in robot or a robot file; ``FileFault`` or a usage error otherwise."""
     from pathlib import Path
 
-    from runtime.robot.arm_file import ROBOT_ENDINGS, is_model
-    from runtime.robot.importer import load_file, read_arm
+    from runtime.robot.files.arm_file import ROBOT_ENDINGS, is_model
+    from runtime.robot.files.importer import load_file, read_arm
+    from runtime.robot.files.loader import load_builtin
+    from runtime.robot.files.robot_file import library
     from runtime.robot.kinematics.kinematics import Kinematics
-    from runtime.robot.loader import load_builtin
-    from runtime.robot.robot_file import library
 
     if is_model(robot):
         arm = read_arm(Path(robot))  # drives are not needed to say where the tool is

@@ -15,7 +15,7 @@ from runtime.core.faults import Fault
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from runtime.robot.imported import ImportedArm
+    from runtime.robot.files.imported import ImportedArm
     from runtime.robot.model.spec import Body, Correction, RobotSpec
 
 app = typer.Typer(no_args_is_help=True, help="The robot library.")
@@ -24,8 +24,8 @@ app = typer.Typer(no_args_is_help=True, help="The robot library.")
 @app.command("list")
 def list_robots() -> None:
     """List the built-in robots."""
-    from runtime.robot.loader import load_builtin
-    from runtime.robot.robot_file import library
+    from runtime.robot.files.loader import load_builtin
+    from runtime.robot.files.robot_file import library
 
     with reported():
         names = library()
@@ -40,8 +40,8 @@ def show(robot: Annotated[str, typer.Argument(help="Built-in robot, or a .toml, 
     with reported():
         from robolang.cli.console import Console
         from robolang.project import load_any_robot
-        from runtime.robot.arm_file import is_model
-        from runtime.robot.sidecar_file import sidecar_path
+        from runtime.robot.files.arm_file import is_model
+        from runtime.robot.files.sidecar_file import sidecar_path
 
         if is_model(robot) and not os.path.lexists(sidecar_path(Path(robot))):
             _show_model(robot)
@@ -74,9 +74,9 @@ def import_model(
     """Write the sidecar of a URDF or MJCF file, with what it lacks marked MISSING."""
     with reported():
         from robolang.storage import write_atomic
-        from runtime.robot.importer import read_model
-        from runtime.robot.sidecar import template
-        from runtime.robot.sidecar_file import NO_OVERLAY, sidecar_path
+        from runtime.robot.files.importer import read_model
+        from runtime.robot.files.sidecar import template
+        from runtime.robot.files.sidecar_file import NO_OVERLAY, sidecar_path
 
         target = output if output is not None else sidecar_path(file)
         arm = read_model(file, replace(NO_OVERLAY, flange=flange))
@@ -92,9 +92,9 @@ def import_model(
 def _show_model(robot: str) -> None:
     """Print what a model file without a sidecar says: it has no drives."""
     from robolang.cli.console import Console
-    from runtime.robot.importer import read_model
+    from runtime.robot.files.importer import read_model
+    from runtime.robot.files.sidecar_file import sidecar_path
     from runtime.robot.kinematics.kinematics import Kinematics
-    from runtime.robot.sidecar_file import sidecar_path
 
     path = Path(robot)
     arm = read_model(path)

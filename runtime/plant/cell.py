@@ -21,8 +21,8 @@ from runtime.plant.cell_file import CellFile, parse_cell_file, read_cell_file
 from runtime.plant.seam_sensor import SensorSpec
 from runtime.plant.signals import InputSpec
 from runtime.profile import Layer
-from runtime.robot import importer, robot_file
-from runtime.robot.loader import load_builtin
+from runtime.robot.files import importer, robot_file
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.spec import RobotSpec
 
 T = TypeVar("T")

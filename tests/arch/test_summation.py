@@ -14,8 +14,8 @@ ALLOWED = {
         "runtime/robot/model/spec.py",
         "linalg.eigvalsh",
     ),  # whether an inertia is refused; a file that is read needs no Eigen
-    ("runtime/robot/body_plausibility.py", "linalg.eigvalsh"),  # whether a warning is given
-    ("runtime/robot/corrections.py", "linalg.eigvalsh"),  # whether a moment is missing altogether
+    ("runtime/robot/files/body_plausibility.py", "linalg.eigvalsh"),  # whether a warning is given
+    ("runtime/robot/files/corrections.py", "linalg.eigvalsh"),  # whether a moment is missing altogether
     ("runtime/plant/mjcf.py", "linalg.det"),  # the sign of 1 or -1
     ("runtime/pulses/manifest.py", "linalg.det"),  # the same
     ("runtime/motion/hold.py", "convolve"),  # of ones: whole numbers, exact in any order

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from runtime.dynamics.motor_inertia import axis_inertia, inertia_row, link_chain, link_inertia
-from runtime.robot.loader import load_builtin
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel
 from tests.bench import figures
 from tests.bench.figures import Row

@@ -26,7 +26,7 @@ from robolang.words import KEYWORDS
 from runtime.core.faults import Fault, lookup
 from runtime.core.tomlfile import FileFault
 from runtime.plant.cell import load_cell
-from runtime.robot.importer import read_arm
+from runtime.robot.files.importer import read_arm
 
 _NAME = "fuzz.rbl"
 _POINTS = ("P1", "P2", "P3")

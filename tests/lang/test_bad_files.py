@@ -16,7 +16,7 @@ from robolang.lint.settings import Settings
 from robolang.points import load_points
 from robolang.source import read_program
 from runtime.core.tomlfile import FileFault
-from runtime.robot.importer import load_file, read_arm
+from runtime.robot.files.importer import load_file, read_arm
 from tests.lang.cli.commands import ROOT, flat, robolang
 from tests.runtime.robot.models import ANGLES, chain
 from tests.steps import calls, guarded

@@ -4,7 +4,7 @@ from robolang.beside import cell_beside, taught_points
 from robolang.project import builtin_cell, load_any_robot, load_project
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault
-from runtime.robot.loader import load_builtin
+from runtime.robot.files.loader import load_builtin
 from tests.lang.cli.commands import BUILTIN, PUMA
 
 CELL = (BUILTIN / "cell.toml").read_text()

@@ -5,7 +5,7 @@ import pytest
 
 from runtime.areas import Areas
 from runtime.dynamics.task import StepCosts, dynamics_task
-from runtime.robot.loader import load_builtin
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel
 from runtime.robot.model.payload import Payload
 from runtime.scheduler import IdleProcessor

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from robolang.identify import identify, with_errors
 from robolang.trial_motion import Request
-from runtime.robot.loader import load_builtin
+from runtime.robot.files.loader import load_builtin
 from tests.campaign import size, some
 
 ROOT = Path(__file__).parents[2]

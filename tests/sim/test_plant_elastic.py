@@ -5,8 +5,8 @@ import pytest
 
 from runtime.plant.gears import PHASE_PER_STEP, fastest_spring, physics_steps, spring_frequencies
 from runtime.plant.mujoco_plant import MujocoPlant
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
-from runtime.robot.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from tests.sim.elastic import CELL, SPEC, empty, frictionless, only, true_arm, undamped, with_motors
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from runtime.plant.mjcf import build_mjcf
-from runtime.robot.loader import load_builtin
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import Body, RobotSpec

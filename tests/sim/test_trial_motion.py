@@ -11,8 +11,8 @@ from robolang.trial_motion import LEAST_STROKE, MARGIN, Request, bench, folds, p
 from runtime.core.faults import Fault
 from runtime.motion.fine import FineInterpolator
 from runtime.plant.mujoco_plant import MujocoPlant
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
-from runtime.robot.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
 from tests.sim.identified import ROOT, SPEC

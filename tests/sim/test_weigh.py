@@ -16,7 +16,7 @@ from runtime.core.units import DEG
 from runtime.dynamics.payload_identification import WeighedPayload
 from runtime.plant.cell import ObstacleSpec
 from runtime.profile import Profile
-from runtime.robot.loader import load_builtin
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.payload import Payload, declared
 from tests.campaign import some
 from tests.lang.helpers import checked

@@ -12,7 +12,7 @@ from robolang import storage
 from robolang.cli.export import written_here
 from robolang.storage import write_folder
 from runtime.core.faults import Fault
-from runtime.robot.loader import load_builtin
+from runtime.robot.files.loader import load_builtin
 from tests.lang.cli.commands import ROOT, flat, places, robolang, shell
 
 PICK = ROOT / "programs/pick_and_place.rbl"

@@ -11,7 +11,7 @@ import pytest
 from robolang import identify as identification
 from robolang.project import builtin_cell, load_project
 from runtime.dynamics.compensation import load_compensation
-from runtime.robot.loader import load_builtin
+from runtime.robot.files.loader import load_builtin
 from tests.campaign import some
 from tests.lang.cli.commands import BUILTIN, PUMA, ROOT, dry, flat, places, robolang
 

@@ -13,7 +13,7 @@ from robolang.inertia import POINTS, AxisInertia, extremes, over_plane, plain
 from robolang.plot import LEFT, SHADES, WIDTH, as_map_svg
 from runtime.core.units import DEG
 from runtime.dynamics.equations import axis_gravity, axis_inertia
-from runtime.robot.loader import load_builtin
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
 from tests.lang.cli.commands import ROOT, flat, robolang

@@ -12,8 +12,8 @@ from robolang.cli.kin import MOST_TURNS, app
 from robolang.cli.values import OptionValueError, numbers
 from runtime.core.frames import pose_from_xyzrpy, xyzrpy_from_pose
 from runtime.core.units import DEG, MM
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
-from runtime.robot.loader import load_builtin
 from tests.runtime.robot.models import SEVEN
 
 LIBRARY = Path(__file__).parents[3] / "runtime" / "robot" / "library"

@@ -2,8 +2,8 @@ import os
 
 import pytest
 
-from runtime.robot.loader import load_builtin
-from runtime.robot.robot_file import library
+from runtime.robot.files.loader import load_builtin
+from runtime.robot.files.robot_file import library
 from tests.lang.cli.commands import PUMA, robolang
 
 

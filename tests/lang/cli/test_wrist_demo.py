@@ -13,7 +13,7 @@ from robolang import wrist_demo as demo
 from robolang.plot import BOTTOM, COLOURS, HEIGHT, LEFT, RIGHT, TOP, WIDTH, Curve, Dots, Mark, as_svg
 from runtime.core.faults import Fault
 from runtime.core.units import DEG
-from runtime.robot.loader import load_builtin
+from runtime.robot.files.loader import load_builtin
 from tests.lang.cli.commands import ROOT, flat, robolang
 from tests.steps import HANG_S
 

@@ -11,7 +11,7 @@ from runtime.core.tomlfile import FileFault
 from runtime.core.units import DEG
 from runtime.dynamics.compensation import AxisCompensation, Compensation, as_toml, load_compensation
 from runtime.profile import ServoOptions
-from runtime.robot.loader import load_builtin
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.joint_table import JointTable
 from runtime.robot.model.payload import Payload

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from runtime.dynamics.equations import axis_gravity, axis_inertia
-from runtime.robot.loader import load_builtin
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import Payload
 from tests.runtime.dynamics import lagrangian

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runtime.dynamics.first_moments import gravity_columns, scale, weigh_links
-from runtime.robot.loader import load_builtin
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
 from runtime.servo.motor import torque_limit

@@ -16,7 +16,7 @@ from runtime.dynamics.motor_inertia import (
     link_inertia,
     motor_side,
 )
-from runtime.robot.loader import load_builtin
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import Payload
 from tests.runtime.dynamics import lagrangian

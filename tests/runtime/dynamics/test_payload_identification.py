@@ -7,7 +7,7 @@ import pytest
 
 from runtime.core.frames import pose_from_xyzrpy
 from runtime.dynamics.payload_identification import BodyModel, Knowledge, identify_payload
-from runtime.robot.loader import load_builtin
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
 

@@ -11,8 +11,8 @@ from runtime.motion.chain import ChainPlan, MotionPlanner, Part
 from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
 from runtime.motion.fine import FineInterpolator
 from runtime.profile import Profile
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
-from runtime.robot.loader import load_builtin
 from runtime.robot.model.spec import RobotSpec
 
 ROBOTS = ("puma560", "irb2400", "manutec_r3")

@@ -12,8 +12,8 @@ from runtime.motion.commands import MoveLinear
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.planner import LinePlan, LinePlanner
 from runtime.profile import Profile
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
-from runtime.robot.loader import load_builtin
 
 SPEC = load_builtin("puma560")
 KINEMATICS = Kinematics(SPEC)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from runtime.core.frames import frozen, inverse, pose, rotation_about
-from runtime.robot.loader import load_builtin
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.spec import OpwParameters, RobotSpec
 from tests.runtime.robot.arms import DEG, Irb2400, X, Z, opw_parameters
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from runtime.core.frames import inverse, pose, rotation_about, rotation_from_rpy
 from runtime.core.tomlfile import Source
-from runtime.robot.importer import parse_model
+from runtime.robot.files.importer import parse_model
 from runtime.robot.kinematics import opw
 from runtime.robot.kinematics.closed_form import find_opw
 from runtime.robot.kinematics.kinematics import Kinematics

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from runtime.core.frames import pose, pose_from_xyzrpy
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.frozen_wrist import FrozenWrist, Side
 from runtime.robot.kinematics.kinematics import Kinematics
-from runtime.robot.loader import load_builtin
 
 TOOL = pose_from_xyzrpy((0.03, -0.02, 0.2, 0.3, -0.4, 0.5))
 ROBOTS = ["irb2400", "puma560", "manutec_r3"]

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from runtime.core.tomlfile import FileFault, Source
-from runtime.robot.corrections import TOKEN_INERTIA
+from runtime.robot.files.corrections import TOKEN_INERTIA
+from runtime.robot.files.loader import load_builtin, parse_robot
 from runtime.robot.kinematics.kinematics import Kinematics
-from runtime.robot.loader import load_builtin, parse_robot
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import RobotSpec

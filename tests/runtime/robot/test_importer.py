@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from runtime.core.frames import pose
 from runtime.core.tomlfile import FileFault, Source
 from runtime.core.units import GRAVITY
-from runtime.robot.importer import load_file, parse_model, read_arm, read_model
+from runtime.robot.files.importer import load_file, parse_model, read_arm, read_model
+from runtime.robot.files.sidecar import template
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.arm_model import ArmModel
-from runtime.robot.sidecar import template
 from tests.campaign import examples
 from tests.runtime.robot.models import ANGLES, DATA, SEVEN, chain, fill, inertial, joint, urdf
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from runtime.core.frames import frozen
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.kinematics.wrist_load import rated_inertia, rated_moment, ratings, wrist_load
-from runtime.robot.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
 

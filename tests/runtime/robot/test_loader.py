@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from runtime.core.tomlfile import FileFault, Source
-from runtime.robot.corrections import TOKEN_MASS
-from runtime.robot.loader import inertia_matrix, load_builtin, load_robot, parse_robot
+from runtime.robot.files.corrections import TOKEN_MASS
+from runtime.robot.files.loader import inertia_matrix, load_builtin, load_robot, parse_robot
+from runtime.robot.files.robot_file import library
 from runtime.robot.model.spec import inertia_defect
-from runtime.robot.robot_file import library
 from tests.lang.cli.commands import PUMA
 
 TEXT = PUMA.read_text()

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from runtime.core.frames import rotation_about, rotation_angle
 from runtime.core.tomlfile import Source
-from runtime.robot.importer import parse_model, read_arm
+from runtime.robot.files.importer import parse_model, read_arm
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.kinematics.newton import TOLERANCE
 from runtime.robot.kinematics.opw import BRANCHES, NUMERIC

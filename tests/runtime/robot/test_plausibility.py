@@ -8,12 +8,12 @@ import pytest
 
 from runtime.core.numerals import number_in
 from runtime.core.tomlfile import FileFault, Source
-from runtime.robot.importer import load_file, parse_model, read_arm, read_model
-from runtime.robot.loader import load_builtin, parse_robot
-from runtime.robot.plausibility import LEAST_ANGLE, MOST_TURNS, Turning, doubt_turning
-from runtime.robot.robot_file import library
-from runtime.robot.sidecar import template
-from runtime.robot.sidecar_file import read_overlay
+from runtime.robot.files.importer import load_file, parse_model, read_arm, read_model
+from runtime.robot.files.loader import load_builtin, parse_robot
+from runtime.robot.files.plausibility import LEAST_ANGLE, MOST_TURNS, Turning, doubt_turning
+from runtime.robot.files.robot_file import library
+from runtime.robot.files.sidecar import template
+from runtime.robot.files.sidecar_file import read_overlay
 from tests.runtime.robot.models import ANGLES, SEVEN, chain, fill, inertial
 from tests.runtime.robot.test_loader import TEXT as PUMA
 
@@ -97,8 +97,8 @@ def test_an_mjcf_of_degrees_with_radians_in_it():
 
 
 def with_limits(text):
-    from runtime.robot.importer import _with_limits_doubted
-    from runtime.robot.sidecar_file import NO_OVERLAY
+    from runtime.robot.files.importer import _with_limits_doubted
+    from runtime.robot.files.sidecar_file import NO_OVERLAY
 
     return _with_limits_doubted(parse_model(Source("a.xml", text)), NO_OVERLAY).warnings
 

@@ -9,9 +9,9 @@ import math
 import numpy as np
 import pytest
 
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.kinematics.singularity import singularities
-from runtime.robot.loader import load_builtin
 
 ROBOTS = ["puma560", "irb2400", "manutec_r3"]
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from runtime.robot.loader import load_builtin
+from runtime.robot.files.loader import load_builtin
 from runtime.servo.motor import Encoders, Motors, current_limit, encoder_resolution, torque_limit
 
 SPEC = load_builtin("puma560")

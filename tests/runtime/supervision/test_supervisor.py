@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runtime.robot.loader import load_builtin
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.load_rules import LoadMode
 from runtime.robot.model.payload import Payload

@@ -16,8 +16,8 @@ import numpy as np
 from runtime.core.frames import Array, frozen
 from runtime.core.rounding import beside
 from runtime.core.tomlfile import Table
+from runtime.robot.files.robot_file import CorrectionRow
 from runtime.robot.model.spec import AxisSpec, Body, Correction, inertia_defect, shift_between_links
-from runtime.robot.robot_file import CorrectionRow
 
 SLACK = 1e-9
 """A correction may exceed the smallest possible one by this much, kg m2."""

@@ -25,8 +25,8 @@ import numpy as np
 from runtime.core.frames import Array, inverse, pose
 from runtime.core.linear import matmul, norm
 from runtime.core.units import DEG
+from runtime.robot.files.robot_file import DhRow, FlangeRow, LineRow, RobotFile
 from runtime.robot.model.spec import dh_transform
-from runtime.robot.robot_file import DhRow, FlangeRow, LineRow, RobotFile
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,13 +9,11 @@ from pathlib import Path
 
 from runtime.core.tomlfile import FileFault
 from runtime.core.units import DEG
-from runtime.robot import corrections as rules
-from runtime.robot.body_plausibility import doubt_torques, offsets, weight_moment
-from runtime.robot.imported import ImportedArm, ImportedAxis
-from runtime.robot.model.drives import WIDEST, joint_label
-from runtime.robot.model.spec import AxisSpec, Correction, RobotSpec
-from runtime.robot.plausibility import doubt_axes, in_tables
-from runtime.robot.sidecar_file import (
+from runtime.robot.files import corrections as rules
+from runtime.robot.files.body_plausibility import doubt_torques, offsets, weight_moment
+from runtime.robot.files.imported import ImportedArm, ImportedAxis
+from runtime.robot.files.plausibility import doubt_axes, in_tables
+from runtime.robot.files.sidecar_file import (
     GROUPS,
     LIMIT_KEYS,
     MOTOR_KEYS,
@@ -25,6 +23,8 @@ from runtime.robot.sidecar_file import (
     SidecarFile,
     lacking,
 )
+from runtime.robot.model.drives import WIDEST, joint_label
+from runtime.robot.model.spec import AxisSpec, Correction, RobotSpec
 
 TYPED = 1e-9
 """An angle nearer to six decimals of a degree was typed with them, deg."""

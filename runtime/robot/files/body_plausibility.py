@@ -16,8 +16,8 @@ from runtime.core.frames import Array
 from runtime.core.linear import norm
 from runtime.core.tomlfile import FileFault
 from runtime.core.units import GRAVITY, MM
+from runtime.robot.files.plausibility import Place
 from runtime.robot.model.spec import Body
-from runtime.robot.plausibility import Place
 
 LONGEST, SHORTEST = 8.0, 0.02
 """Reach of an arm, m: the longest built reach about 5 m."""

@@ -15,7 +15,7 @@ from pathlib import PurePosixPath, PureWindowsPath
 from typing import NoReturn
 from xml.parsers import expat
 
-import runtime.robot.codes  # noqa: F401 - registers what is raised here
+import runtime.robot.files.codes  # noqa: F401 - registers what is raised here
 from runtime.core.numerals import number_in, why_none
 from runtime.core.tomlfile import MAX_ABS, FileFault, Source
 

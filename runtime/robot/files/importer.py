@@ -16,20 +16,20 @@ import numpy as np
 
 from runtime.core.frames import Array, frozen
 from runtime.core.tomlfile import FileFault, Source, read_source
-from runtime.robot import loader
-from runtime.robot.arm_file import ArmFile, is_model, model_root, read_arm_file, sidecar_source
-from runtime.robot.body_plausibility import doubt_bodies, doubt_torques, offsets, weight_moment
-from runtime.robot.imported import ImportedArm, serial_chain
+from runtime.robot.files import loader
+from runtime.robot.files.arm_file import ArmFile, is_model, model_root, read_arm_file, sidecar_source
+from runtime.robot.files.body_plausibility import doubt_bodies, doubt_torques, offsets, weight_moment
+from runtime.robot.files.imported import ImportedArm, serial_chain
+from runtime.robot.files.mjcf_import import read_mjcf
+from runtime.robot.files.plausibility import Turning, What, doubt_turning
+from runtime.robot.files.robot_file import RobotFile
+from runtime.robot.files.sidecar import complete, missing_in_template
+from runtime.robot.files.sidecar_file import NO_OVERLAY, Overlay, read_overlay, sidecar_path
+from runtime.robot.files.urdf import read_urdf
+from runtime.robot.files.xmlfile import fault_at
 from runtime.robot.kinematics.closed_form import find_opw
-from runtime.robot.mjcf_import import read_mjcf
 from runtime.robot.model.drives import joint_label
 from runtime.robot.model.spec import RobotSpec
-from runtime.robot.plausibility import Turning, What, doubt_turning
-from runtime.robot.robot_file import RobotFile
-from runtime.robot.sidecar import complete, missing_in_template
-from runtime.robot.sidecar_file import NO_OVERLAY, Overlay, read_overlay, sidecar_path
-from runtime.robot.urdf import read_urdf
-from runtime.robot.xmlfile import fault_at
 
 UNIT_SLACK = 1e-3
 """Rounding of the length of an axis."""

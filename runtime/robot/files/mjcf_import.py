@@ -17,10 +17,10 @@ import numpy as np
 from runtime.core.frames import Array, frozen, pose, rotation_about
 from runtime.core.linear import dot, matmul, norm
 from runtime.core.units import DEG, GRAVITY
-from runtime.robot.imported import Hinge, Node, rotation_z_to
+from runtime.robot.files.imported import Hinge, Node, rotation_z_to
+from runtime.robot.files.urdf import unit
+from runtime.robot.files.xmlfile import HEAVIEST_LINK, Element
 from runtime.robot.model.spec import Body
-from runtime.robot.urdf import unit
-from runtime.robot.xmlfile import HEAVIEST_LINK, Element
 
 _TOP = frozenset(
     [

@@ -15,14 +15,14 @@ from runtime.core.frames import Array, frozen
 from runtime.core.linear import matmul
 from runtime.core.tomlfile import FileFault, Source, Table, read_source
 from runtime.core.units import DEG
-from runtime.robot import robot_file
-from runtime.robot.body_plausibility import doubt_bodies, doubt_torques, offsets, weight_moment
-from runtime.robot.corrections import check_bodies, correct
-from runtime.robot.geometry import Geometry, geometry_of
+from runtime.robot.files import robot_file
+from runtime.robot.files.body_plausibility import doubt_bodies, doubt_torques, offsets, weight_moment
+from runtime.robot.files.corrections import check_bodies, correct
+from runtime.robot.files.geometry import Geometry, geometry_of
+from runtime.robot.files.plausibility import in_tables
+from runtime.robot.files.robot_file import AxisFile, OpwRow, RobotFile
 from runtime.robot.model.drives import joint_label
 from runtime.robot.model.spec import AxisSpec, Body, Correction, OpwParameters, RobotSpec
-from runtime.robot.plausibility import in_tables
-from runtime.robot.robot_file import AxisFile, OpwRow, RobotFile
 
 
 @cache

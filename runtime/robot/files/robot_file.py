@@ -14,9 +14,9 @@ from importlib import resources
 from typing import Literal, cast
 
 from runtime.core.tomlfile import FileFault, Source, Table, load_table
+from runtime.robot.files.plausibility import doubt_axes
 from runtime.robot.model import drives
 from runtime.robot.model.drives import Bandwidths, Limits, Motor, PathLimits
-from runtime.robot.plausibility import doubt_axes
 
 SCHEMA = 1
 MOST_AXES = 7

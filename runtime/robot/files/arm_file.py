@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from runtime.core.tomlfile import FileFault, Source, read_source
-from runtime.robot import robot_file
+from runtime.robot.files import robot_file
+from runtime.robot.files.plausibility import doubt_axes
+from runtime.robot.files.robot_file import RobotFile
+from runtime.robot.files.sidecar_file import SidecarFile, read_sidecar, sidecar_path
+from runtime.robot.files.xmlfile import Element, parse_xml
 from runtime.robot.model.drives import Limits, PathLimits
-from runtime.robot.plausibility import doubt_axes
-from runtime.robot.robot_file import RobotFile
-from runtime.robot.sidecar_file import SidecarFile, read_sidecar, sidecar_path
-from runtime.robot.xmlfile import Element, parse_xml
 
 MODEL_ENDINGS = (".urdf", ".xml")
 ROBOT_ENDINGS = (".toml", *MODEL_ENDINGS)

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from runtime.core.tomlfile import Source, Table, load_table
-from runtime.robot.gaps import listed, whole
+from runtime.robot.files.gaps import listed, whole
+from runtime.robot.files.robot_file import CorrectionRow, correction, rated_payload
 from runtime.robot.model import drives
 from runtime.robot.model.drives import Bandwidths, Limits, Motor, PathLimits
-from runtime.robot.robot_file import CorrectionRow, correction, rated_payload
 
 SCHEMA = 1
 ENDING = ".robot.toml"

@@ -14,9 +14,9 @@ import numpy as np
 
 from runtime.core.frames import Array, frozen, pose, rotation_from_rpy
 from runtime.core.linear import dot, matmul
-from runtime.robot.imported import Hinge, Node
+from runtime.robot.files.imported import Hinge, Node
+from runtime.robot.files.xmlfile import HEAVIEST_LINK, Element
 from runtime.robot.model.spec import Body
-from runtime.robot.xmlfile import HEAVIEST_LINK, Element
 
 _IGNORED = ("gazebo", "transmission", "material", "sensor", "ros2_control")
 _TURNING = ("revolute", "continuous")

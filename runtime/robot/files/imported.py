@@ -22,10 +22,10 @@ import numpy as np
 from runtime.core.frames import Array, frozen, inverse, pose, rotation_about, skew
 from runtime.core.linear import matmul
 from runtime.core.tomlfile import FileFault
-from runtime.robot.corrections import flat
+from runtime.robot.files.corrections import flat
+from runtime.robot.files.xmlfile import Element
 from runtime.robot.model.drives import joint_label
 from runtime.robot.model.spec import Body, OpwParameters, inertia_defect
-from runtime.robot.xmlfile import Element
 
 FEWEST_AXES, MOST_AXES = 2, 7
 INERTIA_SLACK = 1e-9

@@ -1,0 +1,1 @@
+"""Files of robots: TOML, URDF and MJCF, read without trust."""
