@@ -22,7 +22,10 @@ from runtime.core.frames import Array
 from runtime.dynamics.compensation import load_compensation
 from runtime.plant import cell as cells
 from runtime.plant.cell import CellSpec
-from runtime.profile import (
+from runtime.robot.files import importer, loader, robot_file
+from runtime.robot.files.arm_file import ROBOT_ENDINGS
+from runtime.robot.model.spec import RobotSpec
+from runtime.settings.profile import (
     Layer,
     Profile,
     ServoMode,
@@ -33,9 +36,6 @@ from runtime.profile import (
     read_options,
     settle,
 )
-from runtime.robot.files import importer, loader, robot_file
-from runtime.robot.files.arm_file import ROBOT_ENDINGS
-from runtime.robot.model.spec import RobotSpec
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

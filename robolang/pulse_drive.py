@@ -26,10 +26,10 @@ from runtime.core.rounding import beside
 from runtime.core.units import DEG, MM
 from runtime.plant.cell import CellSpec
 from runtime.plant.plant import Plant
-from runtime.profile import Profile
 from runtime.pulses.exported import Export, Load, Marker, Move
 from runtime.pulses.replay import distances, joint_values, positions
 from runtime.robot.model.payload import Payload, declared
+from runtime.settings.profile import Profile
 
 SAME = 1e-9
 """Largest difference in the poses of two arms that are the same, m and of a rotation."""

@@ -49,8 +49,8 @@ from runtime.motion.chain import ChainPlan
 from runtime.motion.seam import SeamTracker
 from runtime.plant.plant import Plant
 from runtime.plant.seam_sensor import SeamSensor
-from runtime.profile import ServoMode
 from runtime.robot.kinematics.kinematics import Kinematics
+from runtime.settings.profile import ServoMode
 
 
 class ProgramError(Exception):

@@ -24,12 +24,12 @@ from runtime.motion.fine import FineInterpolator
 from runtime.plant.cell import CellSpec
 from runtime.plant.plant import Plant
 from runtime.plant.rigid_plant import RigidPlant
-from runtime.profile import Profile
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
 from runtime.robot.model.spec import RobotSpec
 from runtime.servo.axes import rotors
 from runtime.servo.ideal import ideal_drives
+from runtime.settings.profile import Profile
 
 HOLD_S = 0.5
 """Time under servo before the step, s."""

@@ -22,11 +22,11 @@ from runtime.core.units import DEG
 from runtime.dynamics.equations import axis_inertia
 from runtime.motion.fine import FineInterpolator
 from runtime.plant.cell import CellSpec
-from runtime.profile import Profile
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
 from runtime.robot.model.spec import RobotSpec
 from runtime.servo.motor import torque_limit
+from runtime.settings.profile import Profile
 
 STROKE = 0.5
 """Way of a test motion, rad, where the range has room for it."""

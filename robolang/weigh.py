@@ -30,11 +30,11 @@ from runtime.dynamics.payload_identification import BodyModel, Knowledge, Weighe
 from runtime.motion.fine import FineInterpolator
 from runtime.plant.cell import CellSpec
 from runtime.plant.plant import Plant
-from runtime.profile import Profile
 from runtime.robot.model.load_rules import MAX_COG_DISTANCE
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import RobotSpec
 from runtime.servo.motor import torque_limit
+from runtime.settings.profile import Profile
 
 PlantName = Literal["rigid", "mujoco"]
 

@@ -29,10 +29,10 @@ from runtime.motion.seam import SeamLimits, SeamMove, SeamTracker, superposed
 from runtime.motion.solver import Arm, LineSolver, WristSolver
 from runtime.motion.wrist import WristLaw, first_trigger, law_from
 from runtime.motion.wrist_planner import wrist_limits
-from runtime.profile import WristOptions
 from runtime.robot.kinematics.frozen_wrist import MAIN_AXES, WRIST_AXES
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.spec import RobotSpec
+from runtime.settings.profile import WristOptions
 
 DURATION_S = 4.0
 X_FLANGE_TOOL = pose((0.0, 0.0, 200.0 * MM), np.eye(3))

@@ -39,7 +39,6 @@ from runtime.motion.speed import check_requests
 from runtime.motion.stop import stopping_rows
 from runtime.plant.plant import Plant
 from runtime.plant.touches import Touches
-from runtime.profile import Profile
 from runtime.recorder import Recorder
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.arm_model import ArmModel
@@ -49,6 +48,7 @@ from runtime.scheduler import IdleProcessor
 from runtime.servo.axes import ServoAxes, first_moments, rotors
 from runtime.servo.fixed import fixed_inertia
 from runtime.servo.motor import encoder_resolution, torque_limit
+from runtime.settings.profile import Profile
 from runtime.supervision.finding import Finding
 from runtime.supervision.observer import LoadModel
 from runtime.supervision.supervisor import LOST, Supervisor

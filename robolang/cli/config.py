@@ -11,8 +11,8 @@ from robolang.cli.errors import reported, say_warnings
 from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
-    from runtime.profile import Settings
     from runtime.robot.model.spec import RobotSpec
+    from runtime.settings.profile import Settings
 
 app = typer.Typer(no_args_is_help=True, help="The settings in force.")
 
@@ -64,8 +64,8 @@ def show(
 
 
 def _rows(robot: "RobotSpec", settings: "Settings") -> list[dict[str, Any]]:
-    from runtime.profile import KEYS, UNITS
     from runtime.servo.axes import bandwidths
+    from runtime.settings.profile import KEYS, UNITS
 
     in_force = dict(zip(("position", "velocity"), bandwidths(robot, settings.profile.servo), strict=True))
     rows = []

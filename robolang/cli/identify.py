@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
     from robolang.identify import Progress
     from robolang.trial_motion import PlantName, Request
-    from runtime.profile import Profile
     from runtime.robot.model.payload import Payload
     from runtime.robot.model.spec import RobotSpec
+    from runtime.settings.profile import Profile
 
 ENDING = ".compensation.toml"
 POSITIONS = 5
@@ -119,8 +119,8 @@ def _is_program(subject: str) -> bool:
 def _subject(subject: str) -> "tuple[RobotSpec, Profile, Payload]":
     """Return robot, controller and what hangs on the flange: of a program's cell, or of a robot on its own."""
     from robolang.project import load_any_robot, load_cell_and_settings
-    from runtime.profile import Profile
     from runtime.robot.model.payload import NO_PAYLOAD, Payload
+    from runtime.settings.profile import Profile
 
     if not _is_program(subject):
         return load_any_robot(subject), Profile(), NO_PAYLOAD

@@ -16,12 +16,12 @@ import numpy as np
 from runtime.core.frames import Array, frozen
 from runtime.dynamics.equations import axis_row
 from runtime.dynamics.motor_inertia import inertia_row, link_chain
-from runtime.profile import InertiaSource
 from runtime.robot.model.arm_model import ArmModel
 from runtime.robot.model.joint_table import JointTable
 from runtime.robot.model.load_rules import LoadMode
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import RobotSpec
+from runtime.settings.profile import InertiaSource
 
 Row = Callable[[Array, int], Array]
 """Of joint angles (n,) rad and an axis (0-based): the row of the mass matrix (n,), kg m2, without rotors."""

@@ -26,9 +26,9 @@ from runtime.motion.pacing import Pace
 from runtime.motion.path import Path
 from runtime.motion.planner import LinePlan, LinePlanner, WristChange
 from runtime.motion.solver import Arm
-from runtime.profile import Profile
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.spec import RobotSpec
+from runtime.settings.profile import Profile
 
 
 class ChainFault(Fault):

@@ -32,9 +32,9 @@ from runtime.motion.planner import NOTHING_TO_DO, LinePlan
 from runtime.motion.solver import RANGE_TOLERANCE, Arm, check_range
 from runtime.motion.speed import MAX_DURATION, SpeedLimits, bound, check_requests, profile
 from runtime.motion.wrist_planner import as_taught, turned
-from runtime.profile import Profile
 from runtime.robot.kinematics.kinematics import LIMIT_ROUNDING, Kinematics
 from runtime.robot.model.spec import RobotSpec
+from runtime.settings.profile import Profile
 
 RISE_S = 0.1
 """Time in which the acceleration of a joint builds up, s."""

@@ -19,8 +19,8 @@ from runtime.core.units import DEG
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.solver import MOST_SLOWDOWN
 from runtime.motion.speed import SpeedLimits, profile
-from runtime.profile import Profile
 from runtime.robot.model.spec import RobotSpec
+from runtime.settings.profile import Profile
 
 _MARGIN = 1.0 + 1e-6
 _ROUNDS = 12

@@ -44,7 +44,7 @@ from runtime.core.frames import (
 from runtime.core.linear import dot, matmul, norm
 from runtime.core.rounding import beside
 from runtime.core.units import MM
-from runtime.profile import PostureLaw
+from runtime.settings.profile import PostureLaw
 
 FLATTEST = 1e-6
 """Least height of the triangle of start, via point and end over its longest side, m."""

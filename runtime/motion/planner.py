@@ -39,11 +39,11 @@ from runtime.motion.solver import Arm, LineSolver, WristSolver
 from runtime.motion.speed import MAX_DURATION, SpeedLimits, bound, check_requests, profile
 from runtime.motion.wrist import CONDITIONS, SAME_ANGLES, Condition
 from runtime.motion.wrist_planner import Choice, choose, ends, explained, posture_deviation
-from runtime.profile import Profile
 from runtime.robot.kinematics.frozen_wrist import MAIN_AXES, WRIST_AXES
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.drives import PathLimits
 from runtime.robot.model.spec import RobotSpec
+from runtime.settings.profile import Profile
 
 FOLLOWS, EXCEPTION, HELD = 0, 1, 2
 """``wrist_mode``: the wrist follows the path, goes to its end angles, does so with posture components held."""

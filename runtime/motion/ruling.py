@@ -16,8 +16,8 @@ from runtime.motion.pacing import Slowdown
 from runtime.motion.path import ArcPath
 from runtime.motion.planner import LinePlan, arc_limits
 from runtime.motion.speed import bound, shortest_s
-from runtime.profile import Profile
 from runtime.robot.model.spec import RobotSpec
+from runtime.settings.profile import Profile
 
 IN_PLACE = 1e-3
 """A tool whose point moves less than this, m, turns in place: its speed along the path is of no interest."""

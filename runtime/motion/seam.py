@@ -32,9 +32,9 @@ from runtime.core.units import DEG, MM
 from runtime.motion.solver import LineSolver
 from runtime.motion.wrist import Conditions, WristLaw, law_from
 from runtime.motion.wrist_planner import wrist_limits
-from runtime.profile import WristOptions
 from runtime.robot.kinematics.frozen_wrist import MAIN_AXES, WRIST_AXES, FrozenWrist, Side
 from runtime.robot.kinematics.opw import Branch
+from runtime.settings.profile import WristOptions
 
 SPEED_SLACK = 1.1
 """A tracked point may ask for this much of a joint's speed limit: the plan knew nothing of the deviation."""

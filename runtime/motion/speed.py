@@ -16,7 +16,7 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.rounding import beside
 from runtime.core.units import badness
-from runtime.profile import SpeedShape
+from runtime.settings.profile import SpeedShape
 
 MAX_DURATION = 600.0
 """Longest move that is planned, s: its set-points are held in memory as a whole."""

@@ -34,8 +34,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runtime.core.frames import Array, frozen
-from runtime.profile import WristOptions
 from runtime.robot.kinematics.frozen_wrist import WRIST_AXES
+from runtime.settings.profile import WristOptions
 
 Mask = NDArray[np.bool_]
 

@@ -41,10 +41,10 @@ from runtime.motion.wrist import (
     law_between,
     law_from,
 )
-from runtime.profile import WristOptions
 from runtime.robot.kinematics.frozen_wrist import WRIST_AXES
 from runtime.robot.kinematics.kinematics import LIMIT_ROUNDING, Kinematics
 from runtime.robot.model.spec import RobotSpec
+from runtime.settings.profile import WristOptions
 
 EARLIER = (0.9, 0.75, 0.6, 0.45, 0.3, 0.15, 0.0)
 """Switches tried when the document's does not do: shares of the way to it."""

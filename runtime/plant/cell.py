@@ -20,10 +20,10 @@ from runtime.core.units import DEG, MM
 from runtime.plant.cell_file import CellFile, parse_cell_file, read_cell_file
 from runtime.plant.seam_sensor import SensorSpec
 from runtime.plant.signals import InputSpec
-from runtime.profile import Layer
 from runtime.robot.files import importer, robot_file
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.spec import RobotSpec
+from runtime.settings.profile import Layer
 
 T = TypeVar("T")
 U = TypeVar("U")

@@ -17,9 +17,9 @@ from runtime.core.units import DEG
 from runtime.plant.resting import Box, unrest
 from runtime.plant.sensor_file import SensorFile, read_sensor_file
 from runtime.plant.signals import InputSpec, read_inputs
-from runtime.profile import Layer, read_layer
 from runtime.robot.files import robot_file
 from runtime.robot.files.arm_file import ROBOT_ENDINGS, ArmFile, read_arm_file
+from runtime.settings.profile import Layer, read_layer
 
 SCHEMA = 1
 REACH_MM = 20_000.0

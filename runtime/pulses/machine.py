@@ -15,9 +15,9 @@ from runtime.core.linear import matmul
 from runtime.motion.commands import MoveLinear
 from runtime.motion.planner import LinePlanner
 from runtime.motion.speed import SpeedLimits
-from runtime.profile import Profile
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.spec import RobotSpec
+from runtime.settings.profile import Profile
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,11 +12,11 @@ import numpy as np
 from numpy import multiply
 
 from runtime.core.frames import Array
-from runtime.profile import ServoOptions
 from runtime.robot.model.arm_model import spec_rotors
 from runtime.robot.model.spec import RobotSpec
 from runtime.servo.law import Gains, ServoLaw
 from runtime.servo.motor import Encoders, Motors, current_limit, encoder_resolution
+from runtime.settings.profile import ServoOptions
 
 SMOOTH = 0.01
 """Speed over which the sign of the commanded speed is smoothed, rad/s."""

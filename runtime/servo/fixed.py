@@ -17,10 +17,10 @@ import numpy as np
 
 from runtime.core.frames import Array
 from runtime.dynamics.equations import inertia_range
-from runtime.profile import Profile, ServoOptions
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import RobotSpec
 from runtime.servo.axes import bandwidths, rotors
+from runtime.settings.profile import Profile, ServoOptions
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

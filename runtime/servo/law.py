@@ -42,7 +42,7 @@ from numpy import add, copyto, multiply, subtract
 
 from runtime.core.frames import Array
 from runtime.core.linear import matmul
-from runtime.profile import FeedforwardSource
+from runtime.settings.profile import FeedforwardSource
 
 LEAD_S = 0.02
 """Time constant with which the lead for the weight follows T, s."""

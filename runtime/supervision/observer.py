@@ -39,7 +39,7 @@ from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.load_rules import LoadMode
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import RobotSpec
-from runtime.supervision.limits import SupervisionLimits
+from runtime.settings.supervision import SupervisionLimits
 
 TURNING = 0.05
 """Speed above which the sign of the friction is known, rad/s."""

@@ -15,8 +15,8 @@ from runtime.core.rounding import beside
 from runtime.robot.model.load_rules import LoadMode
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import RobotSpec
+from runtime.settings.supervision import SupervisionLimits
 from runtime.supervision.finding import Finding
-from runtime.supervision.limits import SupervisionLimits
 from runtime.supervision.observer import FEWEST, STRIDE, LoadModel, Observer
 from runtime.supervision.watch import Watch
 

@@ -21,8 +21,8 @@ from runtime.core.frames import Array
 from runtime.core.rounding import beside
 from runtime.core.units import DEG
 from runtime.robot.model.spec import RobotSpec
+from runtime.settings.supervision import SupervisionLimits
 from runtime.supervision.finding import Finding
-from runtime.supervision.limits import SupervisionLimits
 
 JUMP = 3.0
 """Share of the joint's speed limit above which a reading is a jump, not a motion."""

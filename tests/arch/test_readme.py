@@ -10,10 +10,10 @@ import robolang
 from robolang.cli.main import app
 from robolang.session import Session
 from robolang.words import INSTRUCTIONS
-from runtime.profile import Profile
 from runtime.robot.files.imported import FEWEST_AXES, MOST_AXES
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.files.robot_file import library
+from runtime.settings.profile import Profile
 
 ROOT = Path(__file__).parents[2]
 SECTION = (ROOT / "README.md").read_text("utf-8").partition("Limits to know")[2].partition("\n## ")[0]

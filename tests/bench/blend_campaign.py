@@ -17,9 +17,9 @@ from runtime.core.frames import pose, rotation_about
 from runtime.motion.chain import MotionPlanner
 from runtime.motion.commands import MoveArc, MoveJoint, MoveLinear
 from runtime.motion.fine import FineInterpolator
-from runtime.profile import Profile
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
+from runtime.settings.profile import Profile
 from tests.bench import figures
 from tests.bench.figures import Row
 

@@ -23,13 +23,13 @@ from runtime.core.faults import Fault
 from runtime.core.frames import pose, rotation_about
 from runtime.core.units import MM, badness
 from runtime.motion.commands import MoveLinear
-from runtime.profile import Profile
 from runtime.pulses.channels import default_channels, motor_pulse
 from runtime.pulses.emission import least_step
 from runtime.pulses.machine import RobotArm, Stand
 from runtime.pulses.mechanism import load_builtin
 from runtime.pulses.move import counted, plan_move
 from runtime.pulses.table import rows_of
+from runtime.settings.profile import Profile
 from tests.bench import figures
 from tests.bench.figures import Row
 

@@ -35,9 +35,9 @@ from runtime.motion.solver import Arm, LineSolver, WristSolver
 from runtime.motion.speed import profile
 from runtime.motion.wrist import first_trigger, law_from
 from runtime.motion.wrist_planner import wrist_limits
-from runtime.profile import Profile, WristOptions
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
+from runtime.settings.profile import Profile, WristOptions
 from tests.bench import figures
 from tests.bench.figures import Row
 

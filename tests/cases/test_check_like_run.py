@@ -11,7 +11,7 @@ from robolang.project import load_project
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault
 from runtime.plant.cell_file import read_cell_file
-from runtime.profile import load_profile_file
+from runtime.settings.profile import load_profile_file
 from tests.lang.cli.commands import robolang
 
 CASES = Path(__file__).parent

@@ -11,12 +11,12 @@ from runtime.core.faults import Fault
 from runtime.core.frames import pose
 from runtime.core.units import DEG
 from runtime.dynamics.equations import axis_inertia
-from runtime.profile import Profile, ServoOptions
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
 from runtime.robot.model.spec import Body
 from runtime.servo.fixed import rated_range
+from runtime.settings.profile import Profile, ServoOptions
 from tests.campaign import WHOLE, some
 
 PUMA = load_builtin("puma560")

@@ -12,7 +12,7 @@ import numpy as np
 
 from robolang.project import Project, load_project
 from robolang.session import RunResult, Session
-from runtime.profile import Profile
+from runtime.settings.profile import Profile
 from tests.bench import figures
 from tests.bench.figures import Row
 from tests.faults.devices import break_drive, break_encoder, break_hand_over, break_plant

@@ -12,9 +12,9 @@ from runtime.core.frames import Array
 from runtime.core.program_line import ProgramLine
 from runtime.motion.commands import MoveLinear
 from runtime.plant.rigid_plant import RigidPlant
-from runtime.profile import Profile, ServoOptions
 from runtime.robot.model.payload import Payload
-from runtime.supervision.limits import SupervisionLimits
+from runtime.settings.profile import Profile, ServoOptions
+from runtime.settings.supervision import SupervisionLimits
 
 CELL = builtin_cell()
 IDEAL = ServoOptions(friction_compensation=0.0)

@@ -5,8 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from runtime.profile import Profile
-from runtime.supervision.limits import SupervisionLimits
+from runtime.settings.profile import Profile
+from runtime.settings.supervision import SupervisionLimits
 from tests.loop.test_controller import carried_payload, controller, down, signals
 
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from runtime.dynamics.equations import axis_inertia
-from runtime.profile import Profile
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.joint_table import JointTable
+from runtime.settings.profile import Profile
 from tests.loop.test_controller import CELL, IDEAL, carried_payload, controller, down, signals
 
 TABLE = JointTable(

@@ -12,8 +12,8 @@ from runtime.core.units import DEG, MM
 from runtime.motion.commands import MoveLinear
 from runtime.motion.seam import SeamLimits, SeamTracker
 from runtime.plant.rigid_plant import RigidPlant
-from runtime.profile import Profile, ServoOptions
 from runtime.robot.files.loader import load_builtin
+from runtime.settings.profile import Profile, ServoOptions
 from tests.loop.test_controller import CELL as BUILTIN
 
 SPEC = load_builtin("irb2400")

@@ -19,7 +19,7 @@ from runtime.pulses.mechanism import load_builtin
 from runtime.pulses.replay import MoveReplay
 from runtime.robot.kinematics.newton import NewtonSolver
 from runtime.robot.model.payload import declared
-from runtime.supervision.limits import SupervisionLimits
+from runtime.settings.supervision import SupervisionLimits
 from runtime.supervision.observer import Observer
 from runtime.supervision.supervisor import CONFIRMED, Supervisor
 from tests.runtime.motion.test_planner import HOME, HOME_POSE, KINEMATICS, PROFILE, SPEC, TOOL

@@ -2,7 +2,7 @@ import pytest
 
 from runtime.core.tomlfile import FileFault, Source, load_table
 from runtime.core.units import DEG
-from runtime.profile import Profile, parse_profile
+from runtime.settings.profile import Profile, parse_profile
 
 
 def profile(text):

@@ -12,11 +12,11 @@ import pytest
 
 from runtime.controller import Controller
 from runtime.plant.mujoco_plant import MujocoPlant
-from runtime.profile import Profile, ServoOptions
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.payload import Payload
 from runtime.servo.axes import gains
+from runtime.settings.profile import Profile, ServoOptions
 from tests.sim.elastic import CELL, SPEC, empty
 
 STRETCHED = (0, 85, 5, 0, 0, 0)

@@ -15,9 +15,9 @@ from runtime.core.faults import Fault
 from runtime.core.units import DEG
 from runtime.dynamics.payload_identification import WeighedPayload
 from runtime.plant.cell import ObstacleSpec
-from runtime.profile import Profile
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.payload import Payload, declared
+from runtime.settings.profile import Profile
 from tests.campaign import some
 from tests.lang.helpers import checked
 

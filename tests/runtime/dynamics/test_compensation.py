@@ -10,12 +10,12 @@ from runtime.core.faults import lookup
 from runtime.core.tomlfile import FileFault
 from runtime.core.units import DEG
 from runtime.dynamics.compensation import AxisCompensation, Compensation, as_toml, load_compensation
-from runtime.profile import ServoOptions
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.joint_table import JointTable
 from runtime.robot.model.payload import Payload
 from runtime.servo.axes import ServoAxes, gains, rotors
+from runtime.settings.profile import ServoOptions
 
 SPEC = load_builtin("puma560")
 N2 = SPEC.per_axis("motor", "gear_ratio") ** 2

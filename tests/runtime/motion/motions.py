@@ -10,10 +10,10 @@ from runtime.core.frames import Array, pose, rotation_about
 from runtime.motion.chain import ChainPlan, MotionPlanner, Part
 from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
 from runtime.motion.fine import FineInterpolator
-from runtime.profile import Profile
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.spec import RobotSpec
+from runtime.settings.profile import Profile
 
 ROBOTS = ("puma560", "irb2400", "manutec_r3")
 TOOL = pose((0.0, 0.0, 0.12))

@@ -22,7 +22,7 @@ from runtime.core.frames import (
 from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
 from runtime.motion.path import LinePath
 from runtime.motion.planner import LinePlan
-from runtime.profile import Profile, WristOptions
+from runtime.settings.profile import Profile, WristOptions
 from tests.runtime.motion.motions import TOOL, Bench, bench
 
 DEG = math.pi / 180.0

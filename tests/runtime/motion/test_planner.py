@@ -11,9 +11,9 @@ from runtime.core.frames import inverse, pose, pose_from_xyzrpy, rotation_about
 from runtime.motion.commands import MoveLinear
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.planner import LinePlan, LinePlanner
-from runtime.profile import Profile
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
+from runtime.settings.profile import Profile
 
 SPEC = load_builtin("puma560")
 KINEMATICS = Kinematics(SPEC)

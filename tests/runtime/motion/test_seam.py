@@ -12,7 +12,7 @@ from runtime.core.units import DEG, MM
 from runtime.motion.fine import FineInterpolator
 from runtime.motion.seam import SeamLimits, SeamMove, SeamTracker, superposed
 from runtime.motion.solver import Arm, LineSolver
-from runtime.profile import WristOptions
+from runtime.settings.profile import WristOptions
 from tests.runtime.motion.wrist_moves import C1_ANY, C3, E1, E2, KINEMATICS, NOTHING, SPEC, TOOL, path_of
 
 DT = 0.008

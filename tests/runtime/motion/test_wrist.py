@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runtime.motion.wrist import WristLaw, WristLimits, first_trigger
-from runtime.profile import WristOptions
+from runtime.settings.profile import WristOptions
 from tests.runtime.motion.wrist_moves import (
     C1_ALL,
     C1_ANY,

@@ -15,9 +15,9 @@ from runtime.motion.path import LinePath
 from runtime.motion.planner import EXCEPTION, FOLLOWS, HELD, LinePlan, LinePlanner
 from runtime.motion.solver import Arm, LineSolver
 from runtime.motion.wrist_planner import _windows
-from runtime.profile import Profile, WristOptions
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
+from runtime.settings.profile import Profile, WristOptions
 from tests.bench.wrist_campaign import Bench
 from tests.campaign import size
 from tests.runtime.motion.wrist_moves import E1, E2, E3, KINEMATICS, SPEC, TOOL

@@ -7,10 +7,10 @@ import numpy as np
 from runtime.core.frames import Array, inverse, pose, rotation_angles
 from runtime.motion.path import LinePath
 from runtime.motion.wrist import Trigger, WristLimits, first_trigger, law_from
-from runtime.profile import PostureLaw, WristOptions
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.frozen_wrist import FrozenWrist
 from runtime.robot.kinematics.kinematics import Kinematics
+from runtime.settings.profile import PostureLaw, WristOptions
 
 SPEC = load_builtin("irb2400")
 KINEMATICS = Kinematics(SPEC)

@@ -8,11 +8,11 @@ import pytest
 from runtime.core.frames import pose, rotation_about
 from runtime.core.tomlfile import FileFault, Source, Table
 from runtime.core.units import DEG
-from runtime.profile import parse_profile
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import Payload
-from runtime.supervision.limits import SupervisionLimits
+from runtime.settings.profile import parse_profile
+from runtime.settings.supervision import SupervisionLimits
 from runtime.supervision.observer import LoadModel, Observer
 from runtime.supervision.watch import Watch
 from tests.messages import numbers

@@ -7,7 +7,7 @@ from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.load_rules import LoadMode
 from runtime.robot.model.payload import Payload
-from runtime.supervision.limits import SupervisionLimits
+from runtime.settings.supervision import SupervisionLimits
 from runtime.supervision.observer import LoadModel, Observer
 from runtime.supervision.supervisor import Supervisor
 from tests.messages import numbers

@@ -1,6 +1,6 @@
 """Limits of supervision; docs/supervision.md has the reasons.
 
-``runtime.profile`` reads them from ``[controller.supervision]``: degrees and milliseconds there, rad and s here. Shares
+``runtime.settings.profile`` reads them from ``[controller.supervision]``: degrees and milliseconds there, rad and s here. Shares
 are of the robot file's own limits, so one set of numbers serves every robot.
 """
 

@@ -18,7 +18,7 @@ from runtime.core.tomlfile import FileFault, Source, Table, inside, load_table, 
 from runtime.core.units import DEG, MM
 from runtime.robot.model.joint_table import JointTable
 from runtime.robot.model.load_rules import LoadMode
-from runtime.supervision.limits import Reaction, SupervisionLimits
+from runtime.settings.supervision import Reaction, SupervisionLimits
 
 ServoMode = Literal["scheduled", "fixed"]
 FixedAt = Literal["min", "mid", "max"]
