@@ -50,8 +50,8 @@ from runtime.servo.fixed import fixed_inertia
 from runtime.servo.motor import encoder_resolution, torque_limit
 from runtime.settings.profile import Profile
 from runtime.supervision.finding import Finding
-from runtime.supervision.observer import LoadModel
 from runtime.supervision.supervisor import LOST, Supervisor
+from runtime.supervision.torque_observer import LoadModel
 
 AT_REST = 0.01
 """Detected joint speed below which an arm that has stopped is held by its brakes, rad/s."""

@@ -1,6 +1,6 @@
 r"""The payload from the torques of a whole motion: mass, centre of gravity and how well they are known.
 
-What the motors gave beyond the bare arm, over two cycles (the triangle of ``runtime.supervision.observer``),
+What the motors gave beyond the bare arm, over two cycles (the triangle of ``runtime.supervision.torque_observer``),
 
     r = tau - (M(q) + N^2 J) ddq - h(q, dq) - f(dq)  =  Y p + F s + V v + o + noise,        one row per axis that turns
 
@@ -39,7 +39,7 @@ from runtime.core.frames import Array, frozen
 from runtime.core.linear import matmul
 from runtime.robot.model.arm_model import spec_rotors
 from runtime.robot.model.spec import RobotSpec
-from runtime.supervision.observer import TURNING, LoadModel
+from runtime.supervision.torque_observer import TURNING, LoadModel
 
 BODY = 10
 """Parameters of a rigid body: m, m c (3), inertia about the joint (6)."""

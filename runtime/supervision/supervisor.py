@@ -17,8 +17,8 @@ from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.supervision import SupervisionLimits
 from runtime.supervision.finding import Finding
-from runtime.supervision.observer import FEWEST, STRIDE, LoadModel, Observer
-from runtime.supervision.watch import Watch
+from runtime.supervision.tick_monitor import Watch
+from runtime.supervision.torque_observer import FEWEST, STRIDE, LoadModel, Observer
 
 MOVING = 0.02
 """Commanded speed, as a share of the fastest joint's limit, from which the payload is weighed."""

@@ -46,8 +46,8 @@ MASKED = {
     "runtime/motion/wrist.py: away > SAME_ANGLES": REACH,
     "runtime/motion/wrist.py: wrist < limits.lower": REACH,
     "runtime/motion/wrist.py: wrist > limits.upper": REACH,
-    "runtime/supervision/watch.py: away[k, 3] > CATCH_UP * command": JUMPED,
-    "runtime/supervision/watch.py: command > self._fast": JUMPED,
+    "runtime/supervision/tick_monitor.py: away[k, 3] > CATCH_UP * command": JUMPED,
+    "runtime/supervision/tick_monitor.py: command > self._fast": JUMPED,
 }
 """Masks of bad rows by an open comparison, with the reason."""
 

@@ -128,7 +128,7 @@ def test_a_figure_that_is_no_number_ends_a_bench_with_an_error(value, monkeypatc
 def test_what_no_test_finds_was_not_run_or_is_missing_is_no_mutant_found(tmp_path):
     """From results as mutmut leaves them: 1, 3 failed, 36 did not end, 0 passed, 33 had no tests, null was not run."""
     names = mutants.scope()
-    assert "runtime/supervision/watch.py" in names
+    assert "runtime/supervision/tick_monitor.py" in names
     for ends, good in (([1, 3, 36, *[1] * 16, 0], True), ([1] * 17 + [0, 33, None], False), ([], False)):
         for name in names:
             path = tmp_path / f"{name}.meta"

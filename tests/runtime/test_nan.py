@@ -20,8 +20,8 @@ from runtime.pulses.replay import MoveReplay
 from runtime.robot.kinematics.newton import NewtonSolver
 from runtime.robot.model.payload import declared
 from runtime.settings.supervision import SupervisionLimits
-from runtime.supervision.observer import Observer
 from runtime.supervision.supervisor import CONFIRMED, Supervisor
+from runtime.supervision.torque_observer import Observer
 from tests.runtime.motion.test_planner import HOME, HOME_POSE, KINEMATICS, PROFILE, SPEC, TOOL
 
 NAN = math.nan

@@ -10,7 +10,7 @@ from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
 from runtime.servo.motor import torque_limit
-from runtime.supervision.observer import LoadModel
+from runtime.supervision.torque_observer import LoadModel
 
 ROBOTS = ("puma560", "manutec_r3", "irb2400")
 

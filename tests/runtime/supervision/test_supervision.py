@@ -13,8 +13,8 @@ from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import Payload
 from runtime.settings.profile import parse_profile
 from runtime.settings.supervision import SupervisionLimits
-from runtime.supervision.observer import LoadModel, Observer
-from runtime.supervision.watch import Watch
+from runtime.supervision.tick_monitor import Watch
+from runtime.supervision.torque_observer import LoadModel, Observer
 from tests.messages import numbers
 
 SPEC = load_builtin("puma560")

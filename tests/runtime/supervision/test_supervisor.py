@@ -8,8 +8,8 @@ from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.load_rules import LoadMode
 from runtime.robot.model.payload import Payload
 from runtime.settings.supervision import SupervisionLimits
-from runtime.supervision.observer import LoadModel, Observer
 from runtime.supervision.supervisor import Supervisor
+from runtime.supervision.torque_observer import LoadModel, Observer
 from tests.messages import numbers
 
 SPEC = load_builtin("puma560")
