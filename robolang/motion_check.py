@@ -41,8 +41,8 @@ from robolang.surroundings import RobotWorld
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.motion.blend import Corner
-from runtime.motion.chain import ChainPlan, tracked
-from runtime.motion.planner import LinePlan
+from runtime.motion.cartesian_planner import LinePlan
+from runtime.motion.motion_planner import ChainPlan, tracked
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
 
@@ -54,7 +54,7 @@ MAX_RUN_US = 1_800_000_000
 
 
 class Planner(Protocol):
-    """What plans moves and joins them: ``runtime.motion.chain.MotionPlanner``."""
+    """What plans moves and joins them: ``runtime.motion.motion_planner.MotionPlanner``."""
 
     def plan(self, q_start: Array, command: Command, X_flange_tool: Array, /) -> LinePlan:
         """Return the plan of one move; ``Fault`` where there is none."""

@@ -27,7 +27,7 @@ from robolang.project import Project
 from robolang.source import Span
 from runtime.core.rounding import beside
 from runtime.core.units import DEG, MM
-from runtime.motion.planner import FOLLOWS
+from runtime.motion.cartesian_planner import FOLLOWS
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.kinematics.singularity import singularities
 from runtime.robot.kinematics.wrist_load import ratings, wrist_load

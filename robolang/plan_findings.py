@@ -23,9 +23,9 @@ from runtime.core.frames import Array
 from runtime.core.rounding import beside, down, up
 from runtime.core.units import DEG, MM
 from runtime.motion.blend import Corner
+from runtime.motion.cartesian_planner import LinePlan
 from runtime.motion.commands import MoveJoint
 from runtime.motion.joint_planner import changed
-from runtime.motion.planner import LinePlan
 from runtime.motion.ruling import Ruling, ruling
 from runtime.motion.wrist_planner import as_taught
 from runtime.robot.kinematics.kinematics import Kinematics

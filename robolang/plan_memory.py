@@ -13,8 +13,8 @@ from robolang.lowering import Command
 from robolang.project import Project
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
-from runtime.motion.chain import ChainPlan, MotionPlanner
-from runtime.motion.planner import LinePlan
+from runtime.motion.cartesian_planner import LinePlan
+from runtime.motion.motion_planner import ChainPlan, MotionPlanner
 from runtime.robot.kinematics.kinematics import Kinematics
 
 

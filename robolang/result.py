@@ -7,8 +7,8 @@ from robolang.effects import Origin
 from robolang.project import Project
 from runtime.controller import Controller
 from runtime.core.frames import Array
+from runtime.motion.cartesian_planner import WristChange
 from runtime.motion.path import Path
-from runtime.motion.planner import WristChange
 from runtime.motion.seam import SeamTracker
 
 

@@ -45,7 +45,7 @@ from runtime.clock import PacedClock, VirtualClock, wall_s
 from runtime.controller import Controller
 from runtime.core.faults import Fault
 from runtime.core.units import MM
-from runtime.motion.chain import ChainPlan
+from runtime.motion.motion_planner import ChainPlan
 from runtime.motion.seam import SeamTracker
 from runtime.plant.plant import Plant
 from runtime.plant.seam_sensor import SeamSensor

@@ -20,7 +20,7 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array, pose
 from runtime.core.units import DEG
 from runtime.dynamics.equations import axis_inertia
-from runtime.motion.fine import FineInterpolator
+from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.plant.cell import CellSpec
 from runtime.plant.plant import Plant
 from runtime.plant.rigid_plant import RigidPlant

@@ -20,7 +20,7 @@ from runtime.core.linear import matmul
 from runtime.core.rounding import beside
 from runtime.core.units import DEG
 from runtime.dynamics.equations import axis_inertia
-from runtime.motion.fine import FineInterpolator
+from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.plant.cell import CellSpec
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import NO_PAYLOAD, Payload

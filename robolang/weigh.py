@@ -27,7 +27,7 @@ from runtime.core.frames import Array, frozen
 from runtime.core.rounding import beside
 from runtime.core.units import DEG, MM
 from runtime.dynamics.payload_identification import BodyModel, Knowledge, WeighedPayload, identify_payload
-from runtime.motion.fine import FineInterpolator
+from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.plant.cell import CellSpec
 from runtime.plant.plant import Plant
 from runtime.robot.model.load_rules import MAX_COG_DISTANCE

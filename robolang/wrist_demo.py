@@ -22,11 +22,11 @@ from runtime.core.frames import Array, frozen, inverse, pose, rotation_angles
 from runtime.core.linear import matmul
 from runtime.core.units import DEG, MM
 from runtime.motion.commands import Component
-from runtime.motion.fine import FineInterpolator
+from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.hold import COMPONENTS, Suppression, WristTable, posture_components, weld_line_frame
 from runtime.motion.path import LinePath
+from runtime.motion.path_ik import Arm, LineSolver, WristSolver
 from runtime.motion.seam import SeamLimits, SeamMove, SeamTracker, superposed
-from runtime.motion.solver import Arm, LineSolver, WristSolver
 from runtime.motion.wrist import WristLaw, first_trigger, law_from
 from runtime.motion.wrist_planner import wrist_limits
 from runtime.robot.kinematics.frozen_wrist import MAIN_AXES, WRIST_AXES

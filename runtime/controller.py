@@ -29,14 +29,14 @@ from runtime.core.program_line import ProgramLine, logged
 from runtime.dynamics.equations import axis_gravity, axis_row
 from runtime.dynamics.source import InertiaRows
 from runtime.dynamics.task import StepCosts, dynamics_task
-from runtime.motion.chain import ChainPlan, MotionPlanner, tracked_row
+from runtime.motion.cartesian_planner import FOLLOWS, LinePlan
 from runtime.motion.commands import Command, MoveLinear
-from runtime.motion.fine import FineInterpolator
+from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.interpolator import Interpolator
-from runtime.motion.planner import FOLLOWS, LinePlan
+from runtime.motion.motion_planner import ChainPlan, MotionPlanner, tracked_row
 from runtime.motion.seam import SeamTracker
-from runtime.motion.speed import check_requests
 from runtime.motion.stop import stopping_rows
+from runtime.motion.velocity_profile import check_requests
 from runtime.plant.plant import Plant
 from runtime.plant.touches import Touches
 from runtime.recorder import Recorder
@@ -112,7 +112,7 @@ class Controller:
         self._before = 0  # moves of a row before those that the interpolator has
         self._statements: tuple[ProgramLine, ...] = ()
         self.wrist_mode = FOLLOWS
-        """Whether the wrist follows the path at the set-point in INA, or goes its own way (``runtime.motion.planner``).
+        """Whether the wrist follows the path at the set-point in INA, or goes its own way (``runtime.motion.cartesian_planner``).
         """
         self._interpolator = Interpolator()
         self._fine = fine or FineInterpolator(profile.ticks_per_cycle, profile.period_s, self.areas.ina)

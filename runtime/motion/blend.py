@@ -28,8 +28,8 @@ import numpy as np
 
 from runtime.core.frames import Array, rotation_angles
 from runtime.core.linear import matmul
-from runtime.motion.pacing import Pace
-from runtime.motion.solver import RANGE_TOLERANCE, Arm
+from runtime.motion.path_ik import RANGE_TOLERANCE, Arm
+from runtime.motion.time_scaling import Pace
 
 _SLACK = 1.0 + 1e-9
 _TOOL_SLACK = 1.0 + 1e-6

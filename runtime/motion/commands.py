@@ -25,7 +25,7 @@ Wrist = Literal["auto", "keep"]
 class Motion:
     """What every move may be told. ``acceleration`` is a share of the robot's in (0, 1]; ``speed`` None: its default.
 
-    ``override`` in (0, 1] is a share of every speed, those of the limits included (``runtime.motion.planner``).
+    ``override`` in (0, 1] is a share of every speed, those of the limits included (``runtime.motion.cartesian_planner``).
     """
 
     speed: float | None = None

@@ -12,8 +12,8 @@ import numpy as np
 
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
-from runtime.motion.chain import ChainPlan
-from runtime.motion.planner import EXCEPTION, FOLLOWS, LinePlan
+from runtime.motion.cartesian_planner import EXCEPTION, FOLLOWS, LinePlan
+from runtime.motion.motion_planner import ChainPlan
 from runtime.motion.seam import SeamMove
 
 

@@ -14,7 +14,7 @@ are eased by it first; what is then still too fast is slowed as every move (``pa
 Where only a pose is given, its solutions are those of all configurations, each joint turned into its range. Of those
 that fit what the point is taught with, only those count in which the arm keeps the configuration that it is in, where
 there are any; of these the one is taken to which the slowest joint gets soonest (docs/decisions/0030). Refused: no
-solution (RBL410), none in the ranges (RBL411), none as taught (RBL412). Called by ``runtime.motion.chain``; rad, s.
+solution (RBL410), none in the ranges (RBL411), none as taught (RBL412). Called by ``runtime.motion.motion_planner``; rad, s.
 """
 
 from dataclasses import replace
@@ -26,11 +26,11 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array, frozen, inverse
 from runtime.core.linear import matmul
 from runtime.core.units import DEG, MM
+from runtime.motion.cartesian_planner import NOTHING_TO_DO, LinePlan
 from runtime.motion.commands import MoveJoint
-from runtime.motion.pacing import Pace
-from runtime.motion.planner import NOTHING_TO_DO, LinePlan
-from runtime.motion.solver import RANGE_TOLERANCE, Arm, check_range
-from runtime.motion.speed import MAX_DURATION, SpeedLimits, bound, check_requests, profile
+from runtime.motion.path_ik import RANGE_TOLERANCE, Arm, check_range
+from runtime.motion.time_scaling import Pace
+from runtime.motion.velocity_profile import MAX_DURATION, SpeedLimits, bound, check_requests, profile
 from runtime.motion.wrist_planner import as_taught, turned
 from runtime.robot.kinematics.kinematics import LIMIT_ROUNDING, Kinematics
 from runtime.robot.model.spec import RobotSpec

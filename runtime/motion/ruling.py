@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from runtime.core.units import DEG, MM
+from runtime.motion.cartesian_planner import LinePlan, arc_limits
 from runtime.motion.commands import Command, MoveJoint
-from runtime.motion.pacing import Slowdown
 from runtime.motion.path import ArcPath
-from runtime.motion.planner import LinePlan, arc_limits
-from runtime.motion.speed import bound, shortest_s
+from runtime.motion.time_scaling import Slowdown
+from runtime.motion.velocity_profile import bound, shortest_s
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import Profile
 

@@ -29,7 +29,7 @@ from runtime.core.frames import Array, inverse, pose, rotation_from_rpy
 from runtime.core.linear import matmul, norm
 from runtime.core.rounding import beside
 from runtime.core.units import DEG, MM
-from runtime.motion.solver import LineSolver
+from runtime.motion.path_ik import LineSolver
 from runtime.motion.wrist import Conditions, WristLaw, law_from
 from runtime.motion.wrist_planner import wrist_limits
 from runtime.robot.kinematics.frozen_wrist import MAIN_AXES, WRIST_AXES, FrozenWrist, Side

@@ -15,7 +15,7 @@ import numpy as np
 
 from runtime.core.frames import Array
 from runtime.core.units import badness
-from runtime.motion.fine import FineInterpolator
+from runtime.motion.fine_interpolator import FineInterpolator
 
 _SHORTEST = 3
 _LONGEST = 250

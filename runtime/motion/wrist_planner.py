@@ -31,7 +31,7 @@ from runtime.core.units import DEG, badness
 from runtime.motion.commands import Component, MoveJoint, PathMove, in_configuration
 from runtime.motion.hold import COMPONENTS, Suppression, WristTable, component_deviation, held_ways
 from runtime.motion.path import Path
-from runtime.motion.solver import MOST_SLOWDOWN, LineSolver, WristSolver
+from runtime.motion.path_ik import MOST_SLOWDOWN, LineSolver, WristSolver
 from runtime.motion.wrist import (
     CONDITIONS,
     SAME_ANGLES,

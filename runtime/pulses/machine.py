@@ -12,9 +12,9 @@ import numpy as np
 
 from runtime.core.frames import Array, frozen
 from runtime.core.linear import matmul
+from runtime.motion.cartesian_planner import LinePlanner
 from runtime.motion.commands import MoveLinear
-from runtime.motion.planner import LinePlanner
-from runtime.motion.speed import SpeedLimits
+from runtime.motion.velocity_profile import SpeedLimits
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import Profile

@@ -42,7 +42,7 @@ from runtime.core.rounding import beside
 from runtime.core.tomlfile import Source, Table, load_table, read_source
 from runtime.core.units import DEG, MM
 from runtime.motion.commands import MoveLinear
-from runtime.motion.speed import SpeedLimits, bound, check_requests
+from runtime.motion.velocity_profile import SpeedLimits, bound, check_requests
 from runtime.pulses.machine import Joint, Stand
 from runtime.robot.kinematics.kinematics import SAME_ROOM
 

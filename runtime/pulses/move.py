@@ -22,7 +22,7 @@ from runtime.core.linear import dot, matmul
 from runtime.core.rounding import beside, down
 from runtime.core.units import MM
 from runtime.motion.commands import MoveLinear
-from runtime.motion.speed import MAX_DURATION, SpeedLimits, check_duration
+from runtime.motion.velocity_profile import MAX_DURATION, SpeedLimits, check_duration
 from runtime.pulses.channels import Channel
 from runtime.pulses.emission import Emission, Pulses, emit, least_step
 from runtime.pulses.machine import Machine, Stand, Way

@@ -14,9 +14,9 @@ import numpy as np
 
 from runtime.core.faults import Fault
 from runtime.core.frames import pose, rotation_about
-from runtime.motion.chain import MotionPlanner
 from runtime.motion.commands import MoveArc, MoveJoint, MoveLinear
-from runtime.motion.fine import FineInterpolator
+from runtime.motion.fine_interpolator import FineInterpolator
+from runtime.motion.motion_planner import MotionPlanner
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.settings.profile import Profile

@@ -27,12 +27,12 @@ import numpy as np
 
 from runtime.core.faults import Fault
 from runtime.core.frames import pose
+from runtime.motion.cartesian_planner import LinePlan, LinePlanner, speed_limits
 from runtime.motion.commands import MoveLinear
-from runtime.motion.fine import FineInterpolator
+from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.path import LinePath
-from runtime.motion.planner import LinePlan, LinePlanner, speed_limits
-from runtime.motion.solver import Arm, LineSolver, WristSolver
-from runtime.motion.speed import profile
+from runtime.motion.path_ik import Arm, LineSolver, WristSolver
+from runtime.motion.velocity_profile import profile
 from runtime.motion.wrist import first_trigger, law_from
 from runtime.motion.wrist_planner import wrist_limits
 from runtime.robot.files.loader import load_builtin

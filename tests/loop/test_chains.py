@@ -8,9 +8,9 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array, pose
 from runtime.core.program_line import ProgramLine
 from runtime.core.units import MM
-from runtime.motion.chain import ChainFault, ChainPlan
+from runtime.motion.cartesian_planner import LinePlan
 from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
-from runtime.motion.planner import LinePlan
+from runtime.motion.motion_planner import ChainFault, ChainPlan
 from runtime.motion.seam import SeamLimits, SeamTracker
 from tests.loop import test_seam_stops
 from tests.loop.test_controller import CELL, carried_payload, controller, down, signals

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runtime.motion.fine import FineInterpolator
+from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.stop import stopping_rows
 from tests.faults.devices import BadPlant
 from tests.loop.test_controller import CELL, carried_payload, controller, down, signals

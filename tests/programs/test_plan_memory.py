@@ -2,7 +2,7 @@
 
 from robolang.motion_check import motion_check, rehearse
 from robolang.project import load_project
-from runtime.motion.chain import MotionPlanner
+from runtime.motion.motion_planner import MotionPlanner
 
 TEXT = """
 n = 0

@@ -11,9 +11,9 @@ from runtime.core.faults import Fault
 from runtime.core.frames import pose
 from runtime.core.units import badness
 from runtime.motion.blend import _inside
+from runtime.motion.cartesian_planner import LinePlanner
 from runtime.motion.commands import MoveLinear
-from runtime.motion.planner import LinePlanner
-from runtime.motion.speed import SpeedLimits, bound, profile
+from runtime.motion.velocity_profile import SpeedLimits, bound, profile
 from runtime.pulses.machine import Stand
 from runtime.pulses.mechanism import load_builtin
 from runtime.pulses.replay import MoveReplay

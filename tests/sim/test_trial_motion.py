@@ -9,7 +9,7 @@ from robolang.identify import RubbingPlant, identify, with_errors
 from robolang.project import load_project
 from robolang.trial_motion import LEAST_STROKE, MARGIN, Request, bench, folds, plan, plan_table, posture
 from runtime.core.faults import Fault
-from runtime.motion.fine import FineInterpolator
+from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics

@@ -7,9 +7,9 @@ import numpy as np
 
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, pose, rotation_about
-from runtime.motion.chain import ChainPlan, MotionPlanner, Part
 from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
-from runtime.motion.fine import FineInterpolator
+from runtime.motion.fine_interpolator import FineInterpolator
+from runtime.motion.motion_planner import ChainPlan, MotionPlanner, Part
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.spec import RobotSpec

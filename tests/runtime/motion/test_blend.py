@@ -7,9 +7,9 @@ import pytest
 
 from runtime.motion.blend import _largest, blend, overlapped
 from runtime.motion.commands import MoveJoint
-from runtime.motion.fine import FineInterpolator
-from runtime.motion.pacing import Pace
-from runtime.motion.solver import Arm
+from runtime.motion.fine_interpolator import FineInterpolator
+from runtime.motion.path_ik import Arm
+from runtime.motion.time_scaling import Pace
 from tests.runtime.motion.motions import TOOL, bench, limits_broken
 
 ROBOT = bench("irb2400")

@@ -8,9 +8,9 @@ import pytest
 from runtime.core.faults import Fault
 from runtime.core.frames import pose, rotation_about
 from runtime.motion.blend import overlapped
-from runtime.motion.chain import ChainFault, ChainPlan
+from runtime.motion.cartesian_planner import EXCEPTION, LinePlanner
 from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
-from runtime.motion.planner import EXCEPTION, LinePlanner
+from runtime.motion.motion_planner import ChainFault, ChainPlan
 from tests.campaign import size
 from tests.runtime.motion.motions import (
     ROBOTS,

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from runtime.motion.fine import FineInterpolator
-from runtime.motion.speed import bound, profile
+from runtime.motion.fine_interpolator import FineInterpolator
+from runtime.motion.velocity_profile import bound, profile
 
 PERIOD = 0.008
 

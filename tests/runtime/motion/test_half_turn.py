@@ -19,9 +19,9 @@ from runtime.core.frames import (
     rotation_from_rpy,
     rpy_from_rotation,
 )
+from runtime.motion.cartesian_planner import LinePlan
 from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
 from runtime.motion.path import LinePath
-from runtime.motion.planner import LinePlan
 from runtime.settings.profile import Profile, WristOptions
 from tests.runtime.motion.motions import TOOL, Bench, bench
 
@@ -193,7 +193,7 @@ def test_an_arc_makes_a_half_turn_in_the_direction_that_keeps_the_range():
 def test_three_angles_that_are_each_interpolated_have_every_direction_as_well():
     robot = bench("puma560")
     profile = Profile(wrist=WristOptions(posture="rpy"))
-    from runtime.motion.chain import MotionPlanner
+    from runtime.motion.motion_planner import MotionPlanner
 
     planner = MotionPlanner(robot.spec, robot.kinematics, profile)
     for start in (200.0, -200.0):

@@ -7,9 +7,9 @@ import pytest
 
 from runtime.core.faults import Fault
 from runtime.core.frames import inverse
+from runtime.motion.cartesian_planner import FOLLOWS, LinePlan
 from runtime.motion.commands import MoveJoint
 from runtime.motion.joint_planner import changed
-from runtime.motion.planner import FOLLOWS, LinePlan
 from tests.campaign import size
 from tests.runtime.motion.motions import ROBOTS, TOOL, bench, limits_broken
 

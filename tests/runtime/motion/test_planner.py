@@ -8,9 +8,9 @@ import pytest
 
 from runtime.core.faults import Fault
 from runtime.core.frames import inverse, pose, pose_from_xyzrpy, rotation_about
+from runtime.motion.cartesian_planner import LinePlan, LinePlanner
 from runtime.motion.commands import MoveLinear
-from runtime.motion.fine import FineInterpolator
-from runtime.motion.planner import LinePlan, LinePlanner
+from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.settings.profile import Profile

@@ -9,9 +9,9 @@ import pytest
 from runtime.core.faults import Fault
 from runtime.core.frames import inverse, pose, rotation_from_rpy
 from runtime.core.units import DEG, MM
-from runtime.motion.fine import FineInterpolator
+from runtime.motion.fine_interpolator import FineInterpolator
+from runtime.motion.path_ik import Arm, LineSolver
 from runtime.motion.seam import SeamLimits, SeamMove, SeamTracker, superposed
-from runtime.motion.solver import Arm, LineSolver
 from runtime.settings.profile import WristOptions
 from tests.runtime.motion.wrist_moves import C1_ANY, C3, E1, E2, KINEMATICS, NOTHING, SPEC, TOOL, path_of
 

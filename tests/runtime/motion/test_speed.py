@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runtime.core.faults import Fault
-from runtime.motion.speed import SpeedLimits, bound, profile, shortest_s
+from runtime.motion.velocity_profile import SpeedLimits, bound, profile, shortest_s
 
 PERIOD = 0.008
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runtime.motion.fine import FineInterpolator
+from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.stop import stopping_rows
 
 TICKS, PERIOD = 8, 8e-3

@@ -9,11 +9,11 @@ import pytest
 
 from runtime.core.faults import Fault
 from runtime.core.frames import inverse
+from runtime.motion.cartesian_planner import EXCEPTION, FOLLOWS, HELD, LinePlan, LinePlanner
 from runtime.motion.commands import MoveLinear
-from runtime.motion.fine import FineInterpolator
+from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.path import LinePath
-from runtime.motion.planner import EXCEPTION, FOLLOWS, HELD, LinePlan, LinePlanner
-from runtime.motion.solver import Arm, LineSolver
+from runtime.motion.path_ik import Arm, LineSolver
 from runtime.motion.wrist_planner import _windows
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics

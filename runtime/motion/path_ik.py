@@ -17,7 +17,7 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array, inverse
 from runtime.core.linear import matmul
 from runtime.core.units import DEG, MM
-from runtime.motion.fine import FineInterpolator
+from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.hold import WristTable
 from runtime.motion.path import Path
 from runtime.motion.wrist import SAME_ANGLES, WristLaw

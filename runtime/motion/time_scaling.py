@@ -16,9 +16,9 @@ import numpy as np
 
 from runtime.core.frames import Array
 from runtime.core.units import DEG
-from runtime.motion.fine import FineInterpolator
-from runtime.motion.solver import MOST_SLOWDOWN
-from runtime.motion.speed import SpeedLimits, profile
+from runtime.motion.fine_interpolator import FineInterpolator
+from runtime.motion.path_ik import MOST_SLOWDOWN
+from runtime.motion.velocity_profile import SpeedLimits, profile
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import Profile
 

@@ -20,12 +20,12 @@ from numpy.typing import NDArray
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, frozen
 from runtime.motion.blend import Corner, blend
+from runtime.motion.cartesian_planner import LinePlan, LinePlanner, WristChange
 from runtime.motion.commands import Command, MoveJoint, MoveLinear
 from runtime.motion.joint_planner import JointPlanner
-from runtime.motion.pacing import Pace
 from runtime.motion.path import Path
-from runtime.motion.planner import LinePlan, LinePlanner, WristChange
-from runtime.motion.solver import Arm
+from runtime.motion.path_ik import Arm
+from runtime.motion.time_scaling import Pace
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import Profile

@@ -32,11 +32,11 @@ from runtime.core.linear import matmul
 from runtime.core.units import DEG, MM, badness
 from runtime.motion.commands import Component, MoveArc, MoveLinear, PathMove
 from runtime.motion.half_turn import in_order
-from runtime.motion.pacing import Pace, Slowdown
 from runtime.motion.path import ArcPath, LinePath, Path
+from runtime.motion.path_ik import Arm, LineSolver, WristSolver
 from runtime.motion.seam import SeamMove, SeamTracker
-from runtime.motion.solver import Arm, LineSolver, WristSolver
-from runtime.motion.speed import MAX_DURATION, SpeedLimits, bound, check_requests, profile
+from runtime.motion.time_scaling import Pace, Slowdown
+from runtime.motion.velocity_profile import MAX_DURATION, SpeedLimits, bound, check_requests, profile
 from runtime.motion.wrist import CONDITIONS, SAME_ANGLES, Condition
 from runtime.motion.wrist_planner import Choice, choose, ends, explained, posture_deviation
 from runtime.robot.kinematics.frozen_wrist import MAIN_AXES, WRIST_AXES
