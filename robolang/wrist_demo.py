@@ -6,7 +6,7 @@ the robot (IRB 2400), the tool (200 mm along the flange axis), 4 s at constant s
 project's acceptance experiments.
 
 Figures 17 to 22 are reconstructions: the document's text on them, on suppression, is lost. They show the experiments
-that the project put in its place, with frame, candidates and choice of ``runtime.motion.hold``, a switch at 2.2 s (E2)
+that the project put in its place, with frame, candidates and choice of ``runtime.motion.wrist.hold``, a switch at 2.2 s (E2)
 or 1.8 s (E3), 20 ms, limits of 180, 180 and 225 deg/s. The seam of figure 11 is made up too.
 
 Nothing is planned here, so nothing is slowed, smoothed or refused; ``LinePlanner`` would make some of these moves in
@@ -23,12 +23,12 @@ from runtime.core.linear import matmul
 from runtime.core.units import DEG, MM
 from runtime.motion.commands import Component
 from runtime.motion.fine_interpolator import FineInterpolator
-from runtime.motion.hold import COMPONENTS, Suppression, WristTable, posture_components, weld_line_frame
 from runtime.motion.path import LinePath
 from runtime.motion.path_ik import Arm, LineSolver, WristSolver
 from runtime.motion.seam import SeamLimits, SeamMove, SeamTracker, superposed
-from runtime.motion.wrist import WristLaw, first_trigger, law_from
-from runtime.motion.wrist_planner import wrist_limits
+from runtime.motion.wrist.hold import COMPONENTS, Suppression, WristTable, posture_components, weld_line_frame
+from runtime.motion.wrist.planner import wrist_limits
+from runtime.motion.wrist.switch import WristLaw, first_trigger, law_from
 from runtime.robot.kinematics.frozen_wrist import MAIN_AXES, WRIST_AXES
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.spec import RobotSpec

@@ -16,7 +16,7 @@ from runtime.core.frames import Array
 from runtime.robot.kinematics.opw import Branch
 
 Component = Literal["TILT", "ADVANCE", "ROTATION"]
-"""Components of the tool's posture, about the direction of travel, across it and upright (``runtime.motion.hold``)."""
+"""Components of the tool's posture, about the direction of travel, across it and upright (``runtime.motion.wrist.hold``)."""
 
 Wrist = Literal["auto", "keep"]
 

@@ -19,7 +19,7 @@ import numpy as np
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.motion.path_ik import LineSolver
-from runtime.motion.wrist import SAME_ANGLES
+from runtime.motion.wrist.switch import SAME_ANGLES
 from runtime.robot.kinematics.kinematics import SAME_ROOM
 
 

@@ -18,9 +18,9 @@ from runtime.core.frames import Array, inverse
 from runtime.core.linear import matmul
 from runtime.core.units import DEG, MM
 from runtime.motion.fine_interpolator import FineInterpolator
-from runtime.motion.hold import WristTable
 from runtime.motion.path import Path
-from runtime.motion.wrist import SAME_ANGLES, WristLaw
+from runtime.motion.wrist.hold import WristTable
+from runtime.motion.wrist.switch import SAME_ANGLES, WristLaw
 from runtime.robot.kinematics.frozen_wrist import FrozenWrist
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.kinematics.opw import Branch

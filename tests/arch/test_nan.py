@@ -43,9 +43,9 @@ OPEN = {
 REACH = "NaN is out of reach, which is a condition of its own"
 JUMPED = "a speed that is NaN has jumped, which is judged in the same tick"
 MASKED = {
-    "runtime/motion/wrist.py: away > SAME_ANGLES": REACH,
-    "runtime/motion/wrist.py: wrist < limits.lower": REACH,
-    "runtime/motion/wrist.py: wrist > limits.upper": REACH,
+    "runtime/motion/wrist/switch.py: away > SAME_ANGLES": REACH,
+    "runtime/motion/wrist/switch.py: wrist < limits.lower": REACH,
+    "runtime/motion/wrist/switch.py: wrist > limits.upper": REACH,
     "runtime/supervision/tick_monitor.py: away[k, 3] > CATCH_UP * command": JUMPED,
     "runtime/supervision/tick_monitor.py: command > self._fast": JUMPED,
 }

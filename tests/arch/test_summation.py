@@ -18,7 +18,7 @@ ALLOWED = {
     ("runtime/robot/files/corrections.py", "linalg.eigvalsh"),  # whether a moment is missing altogether
     ("runtime/plant/mjcf.py", "linalg.det"),  # the sign of 1 or -1
     ("runtime/pulses/manifest.py", "linalg.det"),  # the same
-    ("runtime/motion/hold.py", "convolve"),  # of ones: whole numbers, exact in any order
+    ("runtime/motion/wrist/hold.py", "convolve"),  # of ones: whole numbers, exact in any order
     ("runtime/dynamics/payload_identification.py", "convolve"),  # the same
 }
 

@@ -12,8 +12,8 @@ from runtime.core.faults import Fault
 from runtime.core.frames import pose, rotation_about, rotation_angle, rotation_from_rpy
 from runtime.motion.cartesian_planner import LinePlan
 from runtime.motion.commands import MoveArc, MoveLinear
-from runtime.motion.hold import frames_along
 from runtime.motion.path import ArcPath
+from runtime.motion.wrist.hold import frames_along
 from tests.runtime.motion.motions import ROBOTS, TOOL, bench, limits_broken
 
 S = np.linspace(0.0, 1.0, 101)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from runtime.core.frames import rotation_from_rpy
-from runtime.motion.hold import COMPONENTS, Suppression, held_ways, posture_components, weld_line_frame
-from runtime.motion.wrist import law_from
+from runtime.motion.wrist.hold import COMPONENTS, Suppression, held_ways, posture_components, weld_line_frame
+from runtime.motion.wrist.switch import law_from
 from tests.runtime.motion.wrist_moves import E2, E3, FROZEN, KINEMATICS, SECONDS, TOOL, conventional, path_of
 
 SPEED = np.radians([180.0, 180.0, 225.0])

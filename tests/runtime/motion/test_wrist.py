@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runtime.motion.wrist import WristLaw, WristLimits, first_trigger
+from runtime.motion.wrist.switch import WristLaw, WristLimits, first_trigger
 from runtime.settings.profile import WristOptions
 from tests.runtime.motion.wrist_moves import (
     C1_ALL,

@@ -14,7 +14,7 @@ from runtime.motion.commands import MoveLinear
 from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.path import LinePath
 from runtime.motion.path_ik import Arm, LineSolver
-from runtime.motion.wrist_planner import _windows
+from runtime.motion.wrist.planner import _windows
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.settings.profile import Profile, WristOptions
@@ -112,7 +112,7 @@ def test_a_path_that_arrives_is_slowed_before_its_posture_is_left():
 
 
 def test_held_components_change_less_than_the_free_ones():
-    from runtime.motion.hold import component_deviation
+    from runtime.motion.wrist.hold import component_deviation
 
     def off(found: LinePlan) -> np.ndarray:
         taken = (KINEMATICS.forward(found.q) @ TOOL)[:, :3, :3]

@@ -6,7 +6,7 @@ import numpy as np
 
 from runtime.core.frames import Array, inverse, pose, rotation_angles
 from runtime.motion.path import LinePath
-from runtime.motion.wrist import Trigger, WristLimits, first_trigger, law_from
+from runtime.motion.wrist.switch import Trigger, WristLimits, first_trigger, law_from
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.frozen_wrist import FrozenWrist
 from runtime.robot.kinematics.kinematics import Kinematics

@@ -29,10 +29,10 @@ from runtime.core.linear import matmul
 from runtime.core.rounding import beside
 from runtime.core.units import DEG, badness
 from runtime.motion.commands import Component, MoveJoint, PathMove, in_configuration
-from runtime.motion.hold import COMPONENTS, Suppression, WristTable, component_deviation, held_ways
 from runtime.motion.path import Path
 from runtime.motion.path_ik import MOST_SLOWDOWN, LineSolver, WristSolver
-from runtime.motion.wrist import (
+from runtime.motion.wrist.hold import COMPONENTS, Suppression, WristTable, component_deviation, held_ways
+from runtime.motion.wrist.switch import (
     CONDITIONS,
     SAME_ANGLES,
     Trigger,

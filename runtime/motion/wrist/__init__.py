@@ -1,0 +1,1 @@
+"""Straight moves through a change of the wrist configuration (docs/wrist.md)."""
