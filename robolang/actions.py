@@ -46,7 +46,7 @@ from runtime.core.faults import Fault
 Action: TypeAlias = Moving | Load | LoadNamed | Hand | Wrist | Seam | Setting | Out | Pulse
 
 WORLD = "WORLD"
-"""The frame that every cell has, and none may define; its tool is FLANGE (``runtime.plant.cell_file``)."""
+"""The frame that every cell has, and none may define; its tool is FLANGE (``runtime.cell.cell_file``)."""
 _SET = {
     "SPEED": "speed_mm_s",
     "SPEEDJ": "speed_pct",

@@ -15,10 +15,10 @@ from pathlib import Path
 from robolang.builtin import cell_text
 from robolang.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.points import PointStore, load_points
+from runtime.cell.cell_file import CellFile, parse_cell_file, read_arm_alone, read_cell_file
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault, Source, read_source
 from runtime.core.units import DEG
-from runtime.plant.cell_file import CellFile, parse_cell_file, read_arm_alone, read_cell_file
 from runtime.robot.files import robot_file
 from runtime.robot.files.arm_file import ROBOT_ENDINGS, ArmFile, read_arm_file
 from runtime.settings.profile import Layer, Settings, check_axes, compensation_file, settle

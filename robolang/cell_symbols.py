@@ -7,8 +7,8 @@ cannot disagree. A fact that is None is not known and not checked. Names are in 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
+from runtime.cell.cell_file import CellFile, LoadFile
 from runtime.core.units import MM
-from runtime.plant.cell_file import CellFile, LoadFile
 from runtime.robot.files.arm_file import ArmFile
 from runtime.robot.model.drives import SPEED_ROUNDING, Limits
 

@@ -26,10 +26,10 @@ from robolang.lowering import payload
 from robolang.project import Project, load_project
 from robolang.result import StatementRun
 from robolang.session import Session
+from runtime.cell.cell import CellSpec
 from runtime.core.frames import Array
 from runtime.core.linear import norm
 from runtime.core.units import DEG, MM, badness
-from runtime.plant.cell import CellSpec
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
 
 BAND = 0.02

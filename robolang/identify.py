@@ -38,6 +38,7 @@ from typing import Any
 import numpy as np
 
 from robolang.trial_motion import Grid, PlantName, Request, Test, bench, plan, plan_table, quintic
+from runtime.cell.cell import CellSpec
 from runtime.controller import Controller
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
@@ -46,7 +47,6 @@ from runtime.core.units import DEG
 from runtime.dynamics.compensation import AxisCompensation, Compensation
 from runtime.dynamics.equations import axis_inertia
 from runtime.dynamics.first_moments import Weight, gravity_columns, weigh_links
-from runtime.plant.cell import CellSpec
 from runtime.plant.hand import hand_body
 from runtime.plant.plant import Plant
 from runtime.plant.rigid_plant import RigidPlant

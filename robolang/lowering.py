@@ -22,12 +22,12 @@ from robolang.effects import MoveTo, SetHand, SetPayload
 from robolang.limits import DWELL
 from robolang.places import Frame, Place, Shift, Six
 from robolang.points import Point, PointStore
+from runtime.cell.cell import CellSpec
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, inverse, pose_from_xyzrpy, xyzrpy_from_pose
 from runtime.core.linear import matmul
 from runtime.core.units import DEG, MM, PERCENT
 from runtime.motion.commands import Component, MoveArc, MoveJoint, MoveLinear, Wrist
-from runtime.plant.cell import CellSpec
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.drives import beyond_range
 from runtime.robot.model.payload import Payload, declared

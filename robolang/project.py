@@ -17,11 +17,11 @@ from robolang.nodes import Program
 from robolang.parser import parse
 from robolang.points import PointStore
 from robolang.source import Source, read_program
+from runtime.cell import cell as cells
+from runtime.cell.cell import CellSpec
 from runtime.core.faults import Fault, raise_all
 from runtime.core.frames import Array
 from runtime.dynamics.compensation import load_compensation
-from runtime.plant import cell as cells
-from runtime.plant.cell import CellSpec
 from runtime.robot.files import importer, loader, robot_file
 from runtime.robot.files.arm_file import ROBOT_ENDINGS
 from runtime.robot.model.spec import RobotSpec

@@ -17,6 +17,7 @@ import numpy as np
 
 from robolang.motion_check import MAX_RUN_US
 from robolang.trial_motion import quintic
+from runtime.cell.cell import CellSpec
 from runtime.controller import Controller
 from runtime.core.faults import Alarm, Fault
 from runtime.core.frames import Array, frozen
@@ -24,7 +25,6 @@ from runtime.core.linear import norm
 from runtime.core.program_line import ProgramLine
 from runtime.core.rounding import beside
 from runtime.core.units import DEG, MM
-from runtime.plant.cell import CellSpec
 from runtime.plant.plant import Plant
 from runtime.pulses.exported import Export, Load, Marker, Move
 from runtime.pulses.replay import distances, joint_values, positions

@@ -41,6 +41,7 @@ from robolang.report import build_report
 from robolang.result import RunRecord, RunResult, StatementRun
 from robolang.source import Span
 from robolang.surroundings import RobotWorld
+from runtime.cell.seam_sensor import SeamSensor
 from runtime.clock import PacedClock, VirtualClock, wall_s
 from runtime.controller import Controller
 from runtime.core.faults import Fault
@@ -48,7 +49,6 @@ from runtime.core.units import MM
 from runtime.motion.motion_planner import ChainPlan
 from runtime.motion.seam import SeamTracker
 from runtime.plant.plant import Plant
-from runtime.plant.seam_sensor import SeamSensor
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.settings.profile import ServoMode
 

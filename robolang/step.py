@@ -15,13 +15,13 @@ from typing import Any, Literal
 import numpy as np
 
 from robolang.project import builtin_cell
+from runtime.cell.cell import CellSpec
 from runtime.controller import Controller
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, pose
 from runtime.core.units import DEG
 from runtime.dynamics.equations import axis_inertia
 from runtime.motion.fine_interpolator import FineInterpolator
-from runtime.plant.cell import CellSpec
 from runtime.plant.plant import Plant
 from runtime.plant.rigid_plant import RigidPlant
 from runtime.robot.model.arm_model import ArmModel, spec_rotors

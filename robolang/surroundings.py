@@ -12,10 +12,10 @@ from robolang import lowering
 from robolang.lowering import Surroundings
 from robolang.places import Frame, Place, Six
 from robolang.points import PointStore
+from runtime.cell.cell import CellSpec
+from runtime.cell.signals import Signals
 from runtime.core.frames import Array
 from runtime.core.linear import matmul
-from runtime.plant.cell import CellSpec
-from runtime.plant.signals import Signals
 from runtime.robot.kinematics.kinematics import Kinematics
 
 

@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 
 from robolang.project import builtin_cell
+from runtime.cell.cell import CellSpec
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.linear import matmul
@@ -21,7 +22,6 @@ from runtime.core.rounding import beside
 from runtime.core.units import DEG
 from runtime.dynamics.equations import axis_inertia
 from runtime.motion.fine_interpolator import FineInterpolator
-from runtime.plant.cell import CellSpec
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
 from runtime.robot.model.spec import RobotSpec

@@ -21,6 +21,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from runtime.cell.cell import CellSpec
 from runtime.controller import Controller
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, frozen
@@ -28,7 +29,6 @@ from runtime.core.rounding import beside
 from runtime.core.units import DEG, MM
 from runtime.dynamics.payload_identification import BodyModel, Knowledge, WeighedPayload, identify_payload
 from runtime.motion.fine_interpolator import FineInterpolator
-from runtime.plant.cell import CellSpec
 from runtime.plant.plant import Plant
 from runtime.robot.model.load_rules import MAX_COG_DISTANCE
 from runtime.robot.model.payload import Payload

@@ -4,5 +4,5 @@ from importlib import resources
 
 
 def cell_text() -> str:
-    """Return the text of the built-in cell file, for ``runtime.plant.cell.parse_cell``."""
+    """Return the text of the built-in cell file, for ``runtime.cell.cell.parse_cell``."""
     return resources.files(__name__).joinpath("cell.toml").read_text("utf-8")

@@ -25,7 +25,7 @@ from runtime.core.rounding import beside
 
 if TYPE_CHECKING:
     from robolang.weigh import PlantName, WeighRequest
-    from runtime.plant.cell import CellSpec
+    from runtime.cell.cell import CellSpec
 
 MOST_AMPLITUDE = 90.0
 

@@ -8,9 +8,9 @@ estimate, since no hand of this kind is published with its inertia. Frames: flan
 
 import numpy as np
 
+from runtime.cell.cell import HandSpec
 from runtime.core.frames import Array, pose
 from runtime.core.linear import dot, matmul
-from runtime.plant.cell import HandSpec
 from runtime.robot.model.spec import Body
 
 FINGERS = ("left", "right")

@@ -24,9 +24,9 @@ from typing import Any, cast
 import mujoco
 import numpy as np
 
+from runtime.cell.cell import CellSpec
 from runtime.core.frames import Array, pose
 from runtime.core.linear import dot, norm
-from runtime.plant.cell import CellSpec
 from runtime.plant.gears import elastic_axes, physics_steps
 from runtime.plant.hand import FINGERS, finger_sign
 from runtime.plant.mjcf import build_mjcf, friction_bias, gear_joint, joint_name, own_pair_name, own_pairs

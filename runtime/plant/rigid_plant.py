@@ -9,9 +9,9 @@ within ``REACH`` of the tool point, and the arm then carries that part's true ma
 
 import numpy as np
 
+from runtime.cell.cell import CellSpec
 from runtime.core.frames import Array, inverse
 from runtime.core.linear import matmul, norm
-from runtime.plant.cell import CellSpec
 from runtime.plant.plant import HandState
 from runtime.plant.touches import Pair
 from runtime.robot.model.arm_model import ArmModel, spec_rotors

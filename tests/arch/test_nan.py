@@ -27,7 +27,7 @@ OPEN = {
     "robolang/checker.py: line.number < previous": WHOLE,
     "robolang/golden.py: size < _END.size": WHOLE,
     "robolang/interpreter.py: rounds > MAX_ROUNDS": "the language has no NaN",
-    "runtime/plant/signals.py: round(seconds * 1000000.0) <= changes[-1][0]": WHOLE,
+    "runtime/cell/signals.py: round(seconds * 1000000.0) <= changes[-1][0]": WHOLE,
     "runtime/pulses/folder.py: steps > most": WHOLE,
     "runtime/robot/files/corrections.py: mass > 0.0": FILE,
     "runtime/robot/files/corrections.py: mass > TOKEN_MASS": FILE,

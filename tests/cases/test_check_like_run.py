@@ -8,9 +8,9 @@ import pytest
 
 from robolang.beside import read_beside
 from robolang.project import load_project
+from runtime.cell.cell_file import read_cell_file
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault
-from runtime.plant.cell_file import read_cell_file
 from runtime.settings.profile import load_profile_file
 from tests.lang.cli.commands import robolang
 

@@ -23,9 +23,9 @@ from robolang.parser import parse
 from robolang.points import load_points
 from robolang.source import Source, decode_program
 from robolang.words import KEYWORDS
+from runtime.cell.cell import load_cell
 from runtime.core.faults import Fault, lookup
 from runtime.core.tomlfile import FileFault
-from runtime.plant.cell import load_cell
 from runtime.robot.files.importer import read_arm
 
 _NAME = "fuzz.rbl"

@@ -17,10 +17,10 @@ from robolang.lint.registry import rules
 from robolang.output.finding import findings
 from robolang.points import load_points
 from robolang.source import Source, Span
+from runtime.cell.cell import load_cell
 from runtime.core.faults import lookup
 from runtime.core.toml_places import lines_of
 from runtime.core.tomlfile import FileFault
-from runtime.plant.cell import load_cell
 from tests.campaign import size
 from tests.lang.test_bad_inputs import GOLDEN, GOOD
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from runtime.cell.cell import CellSpec, load_cell
 from runtime.core.frames import frozen
-from runtime.plant.cell import CellSpec, load_cell
 from runtime.plant.hand import hand_body
 from runtime.robot.model.arm_model import ArmModel
 from runtime.robot.model.payload import Payload

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from robolang.builtin import cell_text
+from runtime.cell.cell import parse_cell
 from runtime.core.tomlfile import Source
-from runtime.plant.cell import parse_cell
 from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.model.arm_model import ArmModel
 

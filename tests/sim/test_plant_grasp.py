@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from robolang.builtin import cell_text
+from runtime.cell.cell import CellSpec, parse_cell
 from runtime.core.frames import Array, inverse, pose_from_xyzrpy, rotation_angle
 from runtime.core.tomlfile import Source
 from runtime.core.units import DEG
-from runtime.plant.cell import CellSpec, parse_cell
 from runtime.plant.hand import FINGERS, box_inertia, hand_body
 from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.kinematics.kinematics import Kinematics

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from robolang.builtin import cell_text
+from runtime.cell.cell import parse_cell
 from runtime.core.frames import Array, frozen, pose, pose_from_xyzrpy
 from runtime.core.tomlfile import Source
-from runtime.plant.cell import parse_cell
 from runtime.plant.hand import hand_body
 from runtime.plant.mjcf import build_mjcf
 from runtime.robot.model.arm_model import ArmModel, spec_rotors

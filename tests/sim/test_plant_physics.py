@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from robolang.builtin import cell_text
+from runtime.cell.cell import parse_cell
 from runtime.core.frames import Array, pose_from_xyzrpy
 from runtime.core.tomlfile import Source
 from runtime.core.units import DEG
-from runtime.plant.cell import parse_cell
 from runtime.plant.hand import hand_body
 from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.model.arm_model import ArmModel, spec_rotors

@@ -11,10 +11,10 @@ import pytest
 from robolang import weigh as module
 from robolang.project import load_cell_and_settings
 from robolang.weigh import Declaration, WeighRequest, carried, load_statement, plan_exercise, weigh
+from runtime.cell.cell import ObstacleSpec
 from runtime.core.faults import Fault
 from runtime.core.units import DEG
 from runtime.dynamics.payload_identification import WeighedPayload
-from runtime.plant.cell import ObstacleSpec
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.payload import Payload, declared
 from runtime.settings.profile import Profile

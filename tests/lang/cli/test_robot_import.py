@@ -7,10 +7,10 @@ import pytest
 
 from robolang.project import builtin_cell, load_any_robot, load_project
 from robolang.session import Session
+from runtime.cell.seam_sensor import SensorSpec
+from runtime.cell.sensor_file import read_sensor_file
 from runtime.core.frames import frozen
 from runtime.core.tomlfile import FileFault, Source, load_table
-from runtime.plant.seam_sensor import SensorSpec
-from runtime.plant.sensor_file import read_sensor_file
 from tests.lang.cli.commands import flat, robolang
 from tests.runtime.robot.models import ANGLES, SEVEN, fill
 

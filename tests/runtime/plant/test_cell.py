@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from robolang.builtin import cell_text
+from runtime.cell.cell import CellSpec, load_cell, parse_cell
 from runtime.core.frames import pose_from_xyzrpy
 from runtime.core.tomlfile import FileFault, Source
-from runtime.plant.cell import CellSpec, load_cell, parse_cell
 
 ROBOT = resources.files("runtime.robot.library").joinpath("puma560.toml").read_text("utf-8")
 

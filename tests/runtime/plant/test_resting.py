@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from robolang.builtin import cell_text
+from runtime.cell.cell_file import parse_cell_file, read_cell_file
+from runtime.cell.resting import Box, overlap, unrest
 from runtime.core.frames import pose_from_xyzrpy
 from runtime.core.tomlfile import Source
 from runtime.core.units import DEG
-from runtime.plant.cell_file import parse_cell_file, read_cell_file
-from runtime.plant.resting import Box, overlap, unrest
 
 POSE = "pose_mm_deg = [{}]"
 

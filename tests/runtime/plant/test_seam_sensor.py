@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from runtime.cell.seam_sensor import SeamSensor, SensorSpec
+from runtime.cell.sensor_file import read_sensor_file
 from runtime.core.tomlfile import FileFault, Source, load_table
 from runtime.core.units import DEG, MM
-from runtime.plant.seam_sensor import SeamSensor, SensorSpec
-from runtime.plant.sensor_file import read_sensor_file
 
 RAMP = 'kind = "ramp"\ndeviation_mm_deg = [0, 5, -3, 0, 0, 2]\nover_mm = 100\n'
 X = np.array([1.0, 0.0, 0.0])

@@ -16,12 +16,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runtime.cell.sensor_file import Kind, SensorFile
 from runtime.core.frames import Array, frozen, rotation_from_rpy, rpy_from_rotation
 from runtime.core.linear import matmul, norm
 from runtime.core.units import DEG, MM
 from runtime.motion.seam import SeamLimits
 from runtime.motion.wrist.hold import weld_line_frame
-from runtime.plant.sensor_file import Kind, SensorFile
 
 SCALE = np.array([MM, MM, MM, DEG, DEG, DEG])
 SHORTEST_TRAVEL = 1e-6

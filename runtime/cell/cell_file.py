@@ -12,11 +12,11 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TypeVar
 
+from runtime.cell.resting import Box, unrest
+from runtime.cell.sensor_file import SensorFile, read_sensor_file
+from runtime.cell.signals import InputSpec, read_inputs
 from runtime.core.tomlfile import FileFault, Source, Table, inside, load_table, read_source
 from runtime.core.units import DEG
-from runtime.plant.resting import Box, unrest
-from runtime.plant.sensor_file import SensorFile, read_sensor_file
-from runtime.plant.signals import InputSpec, read_inputs
 from runtime.robot.files import robot_file
 from runtime.robot.files.arm_file import ROBOT_ENDINGS, ArmFile, read_arm_file
 from runtime.settings.profile import Layer, read_layer
@@ -34,7 +34,7 @@ Numbers = tuple[float, ...]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HandFile:
-    """``[hand]``: see ``runtime.plant.cell.HandSpec``."""
+    """``[hand]``: see ``runtime.cell.cell.HandSpec``."""
 
     mass_kg: float
     cog_mm: Numbers

@@ -14,12 +14,12 @@ from typing import TypeVar
 
 import numpy as np
 
+from runtime.cell.cell_file import CellFile, parse_cell_file, read_cell_file
+from runtime.cell.seam_sensor import SensorSpec
+from runtime.cell.signals import InputSpec
 from runtime.core.frames import Array, frozen, pose_from_xyzrpy
 from runtime.core.tomlfile import FileFault, Source
 from runtime.core.units import DEG, MM
-from runtime.plant.cell_file import CellFile, parse_cell_file, read_cell_file
-from runtime.plant.seam_sensor import SensorSpec
-from runtime.plant.signals import InputSpec
 from runtime.robot.files import importer, robot_file
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.spec import RobotSpec
