@@ -14,8 +14,8 @@ from numpy import multiply
 from runtime.core.frames import Array
 from runtime.robot.model.arm_model import spec_rotors
 from runtime.robot.model.spec import RobotSpec
-from runtime.servo.law import Gains, ServoLaw
 from runtime.servo.motor import Encoders, Motors, current_limit, encoder_resolution
+from runtime.servo.servo_law import Gains, ServoLaw
 from runtime.settings.profile import ServoOptions
 
 SMOOTH = 0.01

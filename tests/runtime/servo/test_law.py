@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from runtime.servo.law import LEAD_S, Gains, ServoLaw
+from runtime.servo.servo_law import LEAD_S, Gains, ServoLaw
 
 SMALLEST, LARGEST = 2.341, 9.680
 MIDDLE = 0.5 * (SMALLEST + LARGEST)
