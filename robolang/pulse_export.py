@@ -28,7 +28,8 @@ from runtime.core.frames import Array
 from runtime.core.program_line import named
 from runtime.core.units import MM
 from runtime.motion.commands import MoveLinear
-from runtime.pulses import f174, mechanism
+from runtime.pulses import mechanism
+from runtime.pulses import panasonic_f174 as f174
 from runtime.pulses.channels import Channel, ChannelFile, channels_of, default_channels, motor_pulse, read_channel_file
 from runtime.pulses.emission import Pulses
 from runtime.pulses.machine import Machine, RobotArm

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from runtime.core.faults import Fault
-from runtime.pulses import f174
+from runtime.pulses import panasonic_f174 as f174
 from runtime.pulses.table import Row, as_csv, data_tables, rows_of
 
 STEPS = np.array([0, 0, 4, 5, 0, -6, -7, 8], dtype=np.int64)
