@@ -39,7 +39,7 @@ import numpy as np
 
 from robolang.trial_motion import Grid, PlantName, Request, Test, bench, plan, plan_table, quintic
 from runtime.cell.cell import CellSpec
-from runtime.controller import Controller
+from runtime.control.controller import Controller
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.linear import dot

@@ -18,7 +18,7 @@ import numpy as np
 from robolang.motion_check import MAX_RUN_US
 from robolang.trial_motion import quintic
 from runtime.cell.cell import CellSpec
-from runtime.controller import Controller
+from runtime.control.controller import Controller
 from runtime.core.faults import Alarm, Fault
 from runtime.core.frames import Array, frozen
 from runtime.core.linear import norm

@@ -13,7 +13,7 @@ import numpy as np
 from robolang.alarms import as_json
 from robolang.diagnostics import Severity
 from robolang.result import RunRecord, StatementRun
-from runtime.controller import Controller
+from runtime.control.controller import Controller
 from runtime.core.faults import Alarm
 from runtime.core.frames import Array, xyzrpy_from_pose
 from runtime.core.units import DEG, MM, PERCENT

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from robolang.diagnostics import Diagnostic
 from robolang.effects import Origin
 from robolang.project import Project
-from runtime.controller import Controller
+from runtime.control.controller import Controller
 from runtime.core.frames import Array
 from runtime.motion.cartesian_planner import WristChange
 from runtime.motion.path import Path

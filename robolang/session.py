@@ -42,8 +42,8 @@ from robolang.result import RunRecord, RunResult, StatementRun
 from robolang.source import Span
 from robolang.surroundings import RobotWorld
 from runtime.cell.seam_sensor import SeamSensor
-from runtime.clock import PacedClock, VirtualClock, wall_s
-from runtime.controller import Controller
+from runtime.control.clock import PacedClock, VirtualClock, wall_s
+from runtime.control.controller import Controller
 from runtime.core.faults import Fault
 from runtime.core.units import MM
 from runtime.motion.motion_planner import ChainPlan

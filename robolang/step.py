@@ -16,7 +16,7 @@ import numpy as np
 
 from robolang.project import builtin_cell
 from runtime.cell.cell import CellSpec
-from runtime.controller import Controller
+from runtime.control.controller import Controller
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, pose
 from runtime.core.units import DEG

@@ -22,7 +22,7 @@ from typing import Any, Literal
 import numpy as np
 
 from runtime.cell.cell import CellSpec
-from runtime.controller import Controller
+from runtime.control.controller import Controller
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, frozen
 from runtime.core.rounding import beside

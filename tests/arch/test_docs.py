@@ -27,8 +27,8 @@ from robolang.cli.run_table import print_result
 from robolang.diagnostics import has_errors
 from robolang.parser import parse
 from robolang.source import Source
+from runtime.control.recorder import Recorder
 from runtime.core.faults import all_codes
-from runtime.recorder import Recorder
 
 ROOT = Path(__file__).parents[2]
 CODES = ROOT / "docs" / "codes.md"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runtime.controller import Controller
+from runtime.control.controller import Controller
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, pose
 from runtime.core.program_line import ProgramLine

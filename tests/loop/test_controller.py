@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from robolang.project import builtin_cell
-from runtime.controller import Controller
+from runtime.control.controller import Controller
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.program_line import ProgramLine

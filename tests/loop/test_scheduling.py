@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from runtime.areas import Areas
-from runtime.dynamics.task import StepCosts, dynamics_task
+from runtime.control.dynamics_task import StepCosts, dynamics_task
+from runtime.control.memory_areas import Areas
+from runtime.control.scheduler import IdleProcessor
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel
 from runtime.robot.model.payload import Payload
-from runtime.scheduler import IdleProcessor
 
 PERIOD_US = 8000
 TICK_US = 1000

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from runtime.controller import Controller
+from runtime.control.controller import Controller
 from runtime.core.faults import Fault
 from runtime.core.frames import pose
 from runtime.core.units import DEG, MM

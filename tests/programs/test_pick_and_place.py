@@ -18,7 +18,7 @@ from robolang.lowering import pose_si
 from robolang.project import builtin_cell, load_project
 from robolang.runlog import write_log
 from robolang.session import RunResult, Session
-from runtime import recorder
+from runtime.control import recorder
 from runtime.core.frames import Array, inverse, rotation_angle
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.servo.motor import torque_limit

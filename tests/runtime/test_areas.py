@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runtime.areas import Areas, AxisLoad
+from runtime.control.memory_areas import Areas, AxisLoad
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from runtime import clock
+from runtime.control import clock
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ from robolang.identify import compensation_of, identify, with_errors
 from robolang.project import load_project
 from robolang.session import Session
 from robolang.trial_motion import Request
-from runtime.controller import Controller
+from runtime.control.controller import Controller
 from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.kinematics.kinematics import Kinematics
 from tests.campaign import size

@@ -9,7 +9,7 @@ import pytest
 
 from robolang.project import load_cell_and_settings
 from robolang.pulse_drive import RAMP_S, drive, set_points, start_angles
-from runtime.controller import Controller
+from runtime.control.controller import Controller
 from runtime.core.faults import Fault
 from runtime.core.program_line import ProgramLine
 from runtime.core.units import DEG

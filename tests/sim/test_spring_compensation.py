@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from runtime.controller import Controller
+from runtime.control.controller import Controller
 from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics

@@ -9,7 +9,7 @@ import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-from runtime.recorder import Recorder
+from runtime.control.recorder import Recorder
 from tests.lang.cli.commands import dry, robolang
 
 REPORT_KEYS = {

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 from robolang import runlog
 from robolang.cli.main import app
-from runtime.controller import Controller
+from runtime.control.controller import Controller
 from tests.lang.cli.commands import ROOT, robolang
 from tests.steps import HANG_S
 

@@ -20,15 +20,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from runtime.areas import Areas, AxisLoad
-from runtime.clock import Clock, VirtualClock
+from runtime.control.clock import Clock, VirtualClock
+from runtime.control.dynamics_task import StepCosts, dynamics_task
+from runtime.control.memory_areas import Areas, AxisLoad
+from runtime.control.recorder import Recorder
+from runtime.control.scheduler import IdleProcessor
 from runtime.core.faults import Alarm, lookup
 from runtime.core.frames import Array
 from runtime.core.linear import matmul
 from runtime.core.program_line import ProgramLine, logged
 from runtime.dynamics.equations import axis_gravity, axis_row
 from runtime.dynamics.source import InertiaRows
-from runtime.dynamics.task import StepCosts, dynamics_task
 from runtime.motion.cartesian_planner import FOLLOWS, LinePlan
 from runtime.motion.commands import Command, MoveLinear
 from runtime.motion.fine_interpolator import FineInterpolator
@@ -39,12 +41,10 @@ from runtime.motion.stop import stopping_rows
 from runtime.motion.velocity_profile import check_requests
 from runtime.plant.plant import Plant
 from runtime.plant.touches import Touches
-from runtime.recorder import Recorder
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.arm_model import ArmModel
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import RobotSpec
-from runtime.scheduler import IdleProcessor
 from runtime.servo.axes import ServoAxes, first_moments, rotors
 from runtime.servo.fixed import fixed_inertia
 from runtime.servo.motor import encoder_resolution, torque_limit

@@ -10,7 +10,7 @@ The angles are read anew for every axis, so the cells of ITA are of different ag
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from runtime.areas import Areas, AxisLoad
+from runtime.control.memory_areas import Areas, AxisLoad
 from runtime.core.frames import Array
 from runtime.dynamics.equations import axis_gravity, axis_row
 from runtime.dynamics.source import InertiaRows

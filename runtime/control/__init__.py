@@ -1,0 +1,1 @@
+"""The running controller: its cycle, its background task, its memory areas and its recorder."""
