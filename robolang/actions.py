@@ -10,7 +10,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, TypeAlias, TypeGuard
 
-from robolang import effects, limits
+from robolang import effects
+from robolang.core import limits
 from robolang.effects import Effect, origin
 from robolang.evaluator import Evaluator, finite
 from robolang.nodes import (

@@ -6,9 +6,9 @@ The calls that led to it follow as related places.
 
 from itertools import groupby
 
-from robolang.diagnostics import Diagnostic, Related, Severity, to_json
+from robolang.core.diagnostics import Diagnostic, Related, Severity, to_json
+from robolang.core.source import Source, Span
 from robolang.effects import Origin
-from robolang.source import Source, Span
 from runtime.core.faults import Alarm
 from runtime.core.program_line import ProgramLine
 

@@ -9,6 +9,7 @@ such a value somewhere. What depends on numbers of the program alone goes the wa
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from robolang.core.source import Span
 from robolang.names import names_in
 from robolang.nodes import (
     Assign,
@@ -25,7 +26,6 @@ from robolang.nodes import (
     Sub,
     Wait,
 )
-from robolang.source import Span
 from robolang.tree import Node
 
 _OUTSIDE = frozenset({"IN", "TIMER", "ERR"})

@@ -11,8 +11,8 @@ from sys import intern
 from lark import Token, Transformer, v_args
 
 from robolang import nodes
+from robolang.core.source import Span
 from robolang.nodes import Expression
-from robolang.source import Span
 
 Parsed = tuple[nodes.Name | None, nodes.Statement | None, nodes.Comment | None]
 """Label, statement and comment of a line."""

@@ -16,12 +16,12 @@ from collections.abc import Iterator
 from itertools import chain, islice
 
 from robolang.cell_symbols import NOTHING_KNOWN, CellSymbols
-from robolang.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related, Severity, has_errors, in_order
+from robolang.core.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related, Severity, has_errors, in_order
+from robolang.core.source import Span
 from robolang.flow_check import flow_check
 from robolang.names import Defined
 from robolang.nodes import Line, Program, Unparsed
 from robolang.rounding_check import rounding_check
-from robolang.source import Span
 from robolang.statement_check import StatementCheck
 from robolang.structure import Structure, structure_of
 from robolang.tree import is_deeper

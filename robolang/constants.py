@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import NoReturn
 
-from robolang.diagnostics import Diagnostic
+from robolang.core.diagnostics import Diagnostic
 from robolang.evaluator import Evaluator, Nowhere
 from robolang.nodes import Call, Expression, Name, Negate, Number, Text, walk
 from robolang.places import Value

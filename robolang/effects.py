@@ -8,9 +8,9 @@ that every alarm, log row and progress line can name it.
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
+from robolang.core.source import Span
 from robolang.nodes import Line, Statement
 from robolang.places import Frame, Place
-from robolang.source import Span
 from runtime.core.program_line import ProgramLine
 
 Way = Literal["line", "joint", "arc"]

@@ -27,7 +27,7 @@ import difflib
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import robolang.codes  # noqa: F401 - all codes must be registered
+import robolang.core.codes  # noqa: F401 - all codes must be registered
 from runtime.core.faults import all_codes
 from runtime.core.toml_places import locate
 from runtime.core.tomlfile import FileFault, Source, Table, load_table, read_source

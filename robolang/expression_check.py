@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from robolang import other_languages
 from robolang.cell_symbols import CellSymbols
 from robolang.constants import fixed, no_value
-from robolang.diagnostics import Diagnostic, Severity
+from robolang.core.diagnostics import Diagnostic, Severity
 from robolang.names import Defined, hint_for
 from robolang.nodes import (
     Call,

@@ -15,7 +15,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from robolang.constants import fixed
-from robolang.diagnostics import Diagnostic, Related, Severity
+from robolang.core.diagnostics import Diagnostic, Related, Severity
+from robolang.core.source import Span
 from robolang.flow import MAX_LINES, facts_before, ways_of
 from robolang.nodes import (
     Approach,
@@ -46,7 +47,6 @@ from robolang.nodes import (
     Zone,
 )
 from robolang.reading import reads_state
-from robolang.source import Span
 from robolang.structure import Structure, word_of
 from robolang.tabulation import Way, Ways
 

@@ -22,11 +22,11 @@ import re
 from collections import Counter
 from dataclasses import dataclass, field
 
-from robolang.diagnostics import Diagnostic
+from robolang.core.diagnostics import Diagnostic
+from robolang.core.source import MAX_BYTES, Source, Span
 from robolang.nodes import Comment, Line, Program, Unparsed
 from robolang.parser import MAX_LINE, parse
 from robolang.printer import print_code
-from robolang.source import MAX_BYTES, Source, Span
 from robolang.structure import targets, word_of
 
 INDENT = "  "

@@ -20,8 +20,8 @@ from typing import IO
 
 import numpy as np
 
-import robolang.codes  # noqa: F401 - RBL711 must be registered
-from robolang.storage import write_atomic
+import robolang.core.codes  # noqa: F401 - RBL711 must be registered
+from robolang.core.storage import write_atomic
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.rounding import beside

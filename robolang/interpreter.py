@@ -20,9 +20,9 @@ head; ``MAX_STEPS`` statements are RBL505; ``MAX_CALLS`` CALLs or GOSUBs within 
 import math
 from collections.abc import Callable, Collection, Generator
 
-from robolang import limits
 from robolang.actions import ACTIONS, Action, Actions
 from robolang.branches import Decisions
+from robolang.core import limits
 from robolang.effects import Drain, Effect, Halt, Origin, Pass, Show, origin
 from robolang.evaluator import Evaluator, Nowhere, World, finite, shown
 from robolang.nodes import (

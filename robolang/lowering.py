@@ -18,8 +18,8 @@ from typing import cast
 
 import numpy as np
 
+from robolang.core.limits import DWELL
 from robolang.effects import MoveTo, SetHand, SetPayload
-from robolang.limits import DWELL
 from robolang.places import Frame, Place, Shift, Six
 from robolang.points import Point, PointStore
 from runtime.cell.cell import CellSpec

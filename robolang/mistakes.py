@@ -10,8 +10,8 @@ from collections.abc import Set
 from dataclasses import dataclass
 
 from robolang import other_languages
-from robolang.diagnostics import Diagnostic
-from robolang.source import Span
+from robolang.core.diagnostics import Diagnostic
+from robolang.core.source import Span
 from robolang.words import (
     COMPONENTS,
     COMPONENTS6,

@@ -17,7 +17,8 @@ import numpy as np
 from robolang import lowering
 from robolang.alarms import calls
 from robolang.branches import Decisions
-from robolang.diagnostics import Diagnostic
+from robolang.core.diagnostics import Diagnostic
+from robolang.core.source import Span
 from robolang.effects import (
     Drain,
     Effect,
@@ -36,7 +37,6 @@ from robolang.lowering import Command
 from robolang.nodes import Delay, Wait
 from robolang.plan_memory import PlanMemory
 from robolang.project import Project
-from robolang.source import Span
 from robolang.surroundings import RobotWorld
 from runtime.core.faults import Fault
 from runtime.core.frames import Array

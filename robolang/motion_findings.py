@@ -17,14 +17,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from robolang.diagnostics import Diagnostic, Severity
+from robolang.core.diagnostics import Diagnostic, Severity
+from robolang.core.source import Span
 from robolang.exploration import Detour
 from robolang.line_times import range_margin
 from robolang.motion_check import Rehearsal, RehearsedMove
 from robolang.part_findings import CellTouches
 from robolang.plan_findings import PlanFindings, PlannedMove
 from robolang.project import Project
-from robolang.source import Span
 from runtime.core.rounding import beside
 from runtime.core.units import DEG, MM
 from runtime.motion.cartesian_planner import FOLLOWS

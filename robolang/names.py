@@ -9,10 +9,12 @@ import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
-from robolang import limits
 from robolang.cell_symbols import CellSymbols
 from robolang.constants import fixed
-from robolang.diagnostics import Diagnostic
+from robolang.core import limits
+from robolang.core.deduplicate import Repeats
+from robolang.core.diagnostics import Diagnostic
+from robolang.core.source import Span
 from robolang.nodes import (
     Assign,
     Call,
@@ -29,8 +31,6 @@ from robolang.nodes import (
     Sub,
     Unparsed,
 )
-from robolang.repeats import Repeats
-from robolang.source import Span
 from robolang.tree import walk
 from robolang.words import KEYWORDS, RESERVED, near
 

@@ -12,7 +12,7 @@ from enum import Enum
 from sys import intern
 from typing import TypeAlias
 
-from robolang.source import Span
+from robolang.core.source import Span
 from robolang.tree import NOWHERE as NOWHERE
 from robolang.tree import Node as Node
 from robolang.tree import walk as walk

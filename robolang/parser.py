@@ -16,10 +16,10 @@ from lark import Token, UnexpectedToken
 
 from robolang import nodes
 from robolang.builder import Parsed, span_of
-from robolang.diagnostics import HIDDEN, MAX_DIAGNOSTICS, Diagnostic, Severity, in_order
+from robolang.core.diagnostics import HIDDEN, MAX_DIAGNOSTICS, Diagnostic, Severity, in_order
+from robolang.core.source import MAX_BYTES, Source, Span
 from robolang.grammar import line_parser
 from robolang.mistakes import Unexpected, explain, quote, suspicious
-from robolang.source import MAX_BYTES, Source, Span
 from robolang.words import NEW
 
 MAX_LINE = 10_000

@@ -18,10 +18,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from robolang.diagnostics import Diagnostic, Severity
+from robolang.core.diagnostics import Diagnostic, Severity
+from robolang.core.source import Span
 from robolang.motion_check import Rehearsal, RehearsedHand, RehearsedMove
 from robolang.project import Project
-from robolang.source import Span
 from runtime.core.frames import Array, inverse, pose
 from runtime.plant.mujoco_plant import CLEARANCE, MARGIN, MujocoPlant
 from runtime.plant.touches import NOTICED, shape_text

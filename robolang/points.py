@@ -25,7 +25,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import NoReturn
 
-import robolang.codes  # noqa: F401 - the codes raised here must be registered
+import robolang.core.codes  # noqa: F401 - the codes raised here must be registered
 from robolang.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.words import RESERVED, near
 from runtime.core.faults import lookup

@@ -16,7 +16,7 @@ import numpy as np
 
 from robolang import lowering
 from robolang.alarms import calls
-from robolang.diagnostics import Diagnostic
+from robolang.core.diagnostics import Diagnostic
 from robolang.effects import Drain, Effect, MoveTo, SetHand, SetPayload, SetSeam, SetTool, SetWrist
 from robolang.interpreter import ProgramFault, execute
 from robolang.lowering import Surroundings

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from robolang.diagnostics import safe
+from robolang.core.diagnostics import safe
+from robolang.core.storage import write_atomic
 from robolang.plot import COLOURS, LEFT, RIGHT, WIDTH, Curve, Mark, as_html, as_svg, stacked
-from robolang.storage import write_atomic
 from runtime.core.frames import Array
 from runtime.core.units import badness
 from runtime.pulses.exported import Export, Move

@@ -13,12 +13,12 @@ more. Time is linear in the text.
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from robolang.diagnostics import Diagnostic, Related, has_errors, in_order
+from robolang.core.diagnostics import Diagnostic, Related, has_errors, in_order
+from robolang.core.source import Source, Span
 from robolang.formatter import outgrown
 from robolang.mistakes import quote
 from robolang.nodes import Line, Program, Target
 from robolang.parser import MAX_LINE, MAX_NUMBER_DIGITS, parse
-from robolang.source import Source, Span
 from robolang.structure import targets
 from runtime.core.faults import Fault
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from robolang.alarms import as_json
-from robolang.diagnostics import Severity
+from robolang.core.diagnostics import Severity
 from robolang.result import RunRecord, StatementRun
 from runtime.control.controller import Controller
 from runtime.core.faults import Alarm

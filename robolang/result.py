@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from robolang.diagnostics import Diagnostic
+from robolang.core.diagnostics import Diagnostic
 from robolang.effects import Origin
 from robolang.project import Project
 from runtime.control.controller import Controller

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import get_args
 
-from robolang.diagnostics import Diagnostic, Related, Severity
+from robolang.core.diagnostics import Diagnostic, Related, Severity
 from robolang.nodes import (
     Assign,
     Block,

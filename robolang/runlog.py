@@ -13,7 +13,7 @@ from typing import IO, Any
 
 import numpy as np
 
-from robolang.storage import write_atomic
+from robolang.core.storage import write_atomic
 from runtime.core.frames import Array
 
 SUFFIXES = (".npz", ".mcap")

@@ -16,7 +16,7 @@ RBL507), and what texts and the ways behind poses hold beyond that (``MAX_TEXTS`
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from robolang.limits import SIZE
+from robolang.core.limits import SIZE
 from robolang.places import Place, Value, kind_of
 from runtime.core.faults import Fault
 

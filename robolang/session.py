@@ -14,7 +14,8 @@ import numpy as np
 
 from robolang import lowering
 from robolang.alarms import as_diagnostic
-from robolang.diagnostics import Diagnostic, Severity, render
+from robolang.core.diagnostics import Diagnostic, Severity, render
+from robolang.core.source import Span
 from robolang.effects import (
     Drain,
     Effect,
@@ -39,7 +40,6 @@ from robolang.printer import describe
 from robolang.project import Project, load_project
 from robolang.report import build_report
 from robolang.result import RunRecord, RunResult, StatementRun
-from robolang.source import Span
 from robolang.surroundings import RobotWorld
 from runtime.cell.seam_sensor import SeamSensor
 from runtime.control.clock import PacedClock, VirtualClock, wall_s

@@ -7,12 +7,14 @@ Ranges are those of ``limits``, by which the interpreter judges as well; what th
 import math
 from collections.abc import Callable, Iterator
 
-from robolang import limits, other_languages
+from robolang import other_languages
 from robolang.cell_symbols import CellSymbols
 from robolang.constants import fixed
-from robolang.diagnostics import Diagnostic, Related, Severity
+from robolang.core import limits
+from robolang.core.diagnostics import Diagnostic, Related, Severity
+from robolang.core.limits import Limit
+from robolang.core.source import Span
 from robolang.expression_check import ExpressionCheck
-from robolang.limits import Limit
 from robolang.names import Defined, hint_for, names_hint, of_cell
 from robolang.nodes import (
     Accel,
@@ -59,7 +61,6 @@ from robolang.nodes import (
     Wrist,
     Zone,
 )
-from robolang.source import Span
 from runtime.core.faults import Fault
 from runtime.core.units import MM
 from runtime.robot.model.load_rules import centre_fault, inertia_fault, load_fault, mass_fault

@@ -18,7 +18,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from robolang import other_languages
-from robolang.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related
+from robolang.core.deduplicate import Repeats
+from robolang.core.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related
+from robolang.core.source import Span
 from robolang.nodes import (
     Assign,
     Block,
@@ -39,8 +41,6 @@ from robolang.nodes import (
     Unparsed,
     Wait,
 )
-from robolang.repeats import Repeats
-from robolang.source import Span
 from robolang.words import INSTRUCTIONS, KEYWORDS, near
 
 _CLOSES = {"ENDIF": "IF", "WEND": "WHILE", "ENDSELECT": "SELECT", "ENDSUB": "SUB", "NEXT": "FOR"}

@@ -7,7 +7,7 @@ through like fields.
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields
 
-from robolang.source import Span
+from robolang.core.source import Span
 
 NOWHERE = Span(0, 0)
 

@@ -6,9 +6,10 @@ Taught points that nothing names are found with ``named``; their finding stands 
 import re
 from collections.abc import Iterator
 
-from robolang import limits, other_languages
+from robolang import other_languages
 from robolang.constants import fixed
-from robolang.diagnostics import Diagnostic, Related, Severity
+from robolang.core import limits
+from robolang.core.diagnostics import Diagnostic, Related, Severity
 from robolang.names import names_in
 from robolang.nodes import Assign, Call, Const, Dim, For, If, Name, Node, Print, Program, Statement, Wait
 from robolang.structure import Structure

@@ -15,7 +15,8 @@ import typer
 from robolang.beside import CellFiles
 from robolang.cli.errors import DIAGNOSTICS, reader_may_leave, say, say_all, say_warnings
 from robolang.cli.rewrite import Loaded, load, store, unified
-from robolang.diagnostics import Diagnostic, Severity, has_errors, in_order, safe
+from robolang.core.diagnostics import Diagnostic, Severity, has_errors, in_order, safe
+from robolang.core.source import Source
 from robolang.lint.apply import fix_all
 from robolang.lint.engine import Checked, check_points, check_source
 from robolang.lint.files import STANDARD_INPUT, programs
@@ -24,7 +25,6 @@ from robolang.lint.settings import Settings
 from robolang.lint.suppress import add_later
 from robolang.lint.watch import watch
 from robolang.output import render
-from robolang.source import Source
 from runtime.core.faults import Fault, lookup
 from runtime.core.tomlfile import FileFault
 
@@ -84,7 +84,7 @@ def run_once(job: Job) -> int:
     """Check everything once, print the report and return the exit code; ``Fault`` for a wrong configuration."""
     for path in (job.output, job.times):
         if path is not None:
-            from robolang.storage import check_writable
+            from robolang.core.storage import check_writable
 
             check_writable(path)
     settings = Settings()
@@ -194,7 +194,7 @@ def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
 
 def _write_times(path: Path, outcomes: Sequence[_Outcome]) -> None:
     """Write the times of the programs that were planned, as one JSON array."""
-    from robolang.storage import write_atomic
+    from robolang.core.storage import write_atomic
 
     text = json.dumps([outcome.times for outcome in outcomes if outcome.times is not None], indent=2) + "\n"
     write_atomic(path, lambda stream: stream.write(text.encode()))
@@ -229,7 +229,7 @@ def _print(job: Job, outcomes: Sequence[_Outcome]) -> None:
         if job.form in ("full", "concise"):
             text += "".join(f"\n{outcome.table}" for outcome in outcomes if outcome.table)
     if job.output is not None:
-        from robolang.storage import write_atomic
+        from robolang.core.storage import write_atomic
 
         write_atomic(job.output, lambda stream: stream.write(text.encode("utf-8", "backslashreplace")))
         return

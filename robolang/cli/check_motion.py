@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 
 from robolang.cli import lines
-from robolang.diagnostics import Diagnostic, safe
+from robolang.core.diagnostics import Diagnostic, safe
 from robolang.exploration import Exploration, explore
 from robolang.line_times import LineTime, line_times
 from robolang.motion_check import Rehearsal

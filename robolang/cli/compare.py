@@ -84,7 +84,7 @@ def _print(program: str, rows: list[dict[str, Any]]) -> None:
     from rich.table import Table
 
     from robolang.cli.console import Console
-    from robolang.diagnostics import safe
+    from robolang.core.diagnostics import safe
 
     console = Console()
     console.print(safe(program), style="italic", soft_wrap=True)

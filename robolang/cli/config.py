@@ -84,7 +84,7 @@ def _print(robot: str, rows: list[dict[str, Any]]) -> None:
     from rich.table import Table
 
     from robolang.cli.console import Console
-    from robolang.diagnostics import safe
+    from robolang.core.diagnostics import safe
 
     table = Table(title=safe(f"Controller of {robot}"), box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
     for heading in ("key", "value", "unit", "from"):

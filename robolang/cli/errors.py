@@ -14,7 +14,7 @@ from contextlib import contextmanager, suppress
 
 import typer
 
-from robolang.diagnostics import Severity, render_fault, safe
+from robolang.core.diagnostics import Severity, render_fault, safe
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault
 

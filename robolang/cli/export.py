@@ -65,7 +65,7 @@ def pulses(
     if plot is not None and plot.suffix not in (".svg", ".html"):
         raise OptionValueError("--plot", f"'{plot}' must end in .svg or .html")
     with reported():
-        from robolang.storage import check_folder, check_writable, write_folder
+        from robolang.core.storage import check_folder, check_writable, write_folder
 
         check_folder(out, written_here)
         if plot is not None:
@@ -78,7 +78,7 @@ def pulses(
         try:
             found = export(project, ExportRequest(channels=channels, step_hz=step_hz, min_hz=fmin, f174=plc == "f174"))
         except NotExportableError as error:
-            from robolang.diagnostics import render
+            from robolang.core.diagnostics import render
 
             typer.echo(render(error.diagnostic, project.source), err=True)
             raise typer.Exit(exit_code(error.diagnostic.code)) from None
@@ -116,7 +116,7 @@ def _step_hz(text: str) -> int:
 
 def _refuse(project: "Project") -> None:
     """Print what is wrong with the text; leave when it has errors."""
-    from robolang.diagnostics import render
+    from robolang.core.diagnostics import render
 
     say_warnings(project.cell.warnings)
     for item in project.diagnostics:
@@ -149,7 +149,7 @@ def _print(found: "Export", out: Path) -> None:
     from rich.table import Table
 
     from robolang.cli.console import Console
-    from robolang.diagnostics import safe
+    from robolang.core.diagnostics import safe
     from robolang.pulse_export import ExportedMove
 
     plain, console = _plain(found, out), Console()
@@ -196,7 +196,7 @@ def _print(found: "Export", out: Path) -> None:
 
 
 def _move_row(entry: dict[str, Any]) -> tuple[str, ...]:
-    from robolang.diagnostics import safe
+    from robolang.core.diagnostics import safe
 
     channels = entry["channels"]
     return (

@@ -76,7 +76,7 @@ class _Run:
         self._leave(STORAGE if say(fault) == STORAGE else BROKEN)
 
     def _format(self, name: str) -> None:
-        from robolang.diagnostics import safe
+        from robolang.core.diagnostics import safe
         from robolang.formatter import format_source
 
         loaded = load(name)

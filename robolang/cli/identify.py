@@ -79,10 +79,10 @@ def identify(
         raise OptionValueError("--out", f"'{out}' must end in {ENDING}")
     day = _day(date)
     with reported():
+        from robolang.core.storage import check_writable, write_atomic
         from robolang.identify import as_json as figures
         from robolang.identify import compensation_of, with_errors
         from robolang.identify import identify as run_all
-        from robolang.storage import check_writable, write_atomic
         from robolang.trial_motion import Request
         from runtime.dynamics.compensation import as_toml
 
@@ -180,7 +180,7 @@ def _print(request: "Request", found: dict[str, Any]) -> None:
     from rich.table import Table
 
     from robolang.cli.console import Console
-    from robolang.diagnostics import safe
+    from robolang.core.diagnostics import safe
 
     real = ", bodies 5 to 20 % heavier than the model" if found["model_errors"] else ""
     places = f"{request.positions} position{'' if request.positions == 1 else 's'} of each axis"

@@ -75,7 +75,7 @@ def inertia(
             return
         plane, mapped = _plane(over, spec), _axis(axis, spec)
         if out is not None:
-            from robolang.storage import check_writable
+            from robolang.core.storage import check_writable
 
             check_writable(out)
         drawn = over_plane(spec, mapped, plane, q, carried)
@@ -139,7 +139,7 @@ def _print(found: dict[str, Any]) -> None:
     from rich.table import Table
 
     from robolang.cli.console import Console
-    from robolang.diagnostics import safe
+    from robolang.core.diagnostics import safe
 
     angles = ", ".join(f"{angle:g}" for angle in found["joints_deg"])
     table = Table(
@@ -173,7 +173,7 @@ def _print(found: dict[str, Any]) -> None:
 
 
 def _print_extremes(found: dict[str, Any]) -> None:
-    from robolang.diagnostics import safe
+    from robolang.core.diagnostics import safe
 
     first, second = found["map"]
     over = f"over J{first} and J{second}{_with(found['payload_kg'])}"
@@ -197,8 +197,8 @@ def _with(mass: float) -> str:
 
 
 def _draw(path: Path, spec: "RobotSpec", found: "InertiaMap", mass: float) -> None:
+    from robolang.core.storage import write_atomic
     from robolang.plot import as_map_svg
-    from robolang.storage import write_atomic
     from runtime.core.units import DEG
 
     first, second = (f"J{joint + 1}" for joint in found.joints)

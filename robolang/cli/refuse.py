@@ -16,7 +16,7 @@ def refuse(project: "Project", *, warnings: bool = True) -> bool:
     Leave when the text has errors or a motion cannot be planned. ``warnings`` False: print errors only. Returns whether
     there are warnings, printed or not.
     """
-    from robolang.diagnostics import Severity, render
+    from robolang.core.diagnostics import Severity, render
 
     if warnings:
         say_warnings(project.cell.warnings)

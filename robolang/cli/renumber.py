@@ -60,7 +60,7 @@ def _renumbered(loaded: "Loaded", start: int, step: int, remove: bool) -> "Renum
 
 def _deliver(loaded: "Loaded", found: "RenumberResult", *, check: bool, diff: bool, out: str) -> None:
     """Show or write the result, and say in a sentence what changed."""
-    from robolang.diagnostics import safe
+    from robolang.core.diagnostics import safe
 
     if diff:
         with reader_may_leave():

@@ -65,7 +65,7 @@ def replay_pulses(
 
         export = read_export(folder)
         if plot is not None:
-            from robolang.storage import check_writable
+            from robolang.core.storage import check_writable
 
             check_writable(plot)
         drive = None if cell is None else _drive(export, cell)
@@ -213,7 +213,7 @@ _NARROWEST, _WIDEST = 8, 40
 
 def _print(found: dict[str, Any]) -> None:
     from robolang.cli.console import Console
-    from robolang.diagnostics import safe
+    from robolang.core.diagnostics import safe
 
     console = Console()
     mechanism, physics = found["mechanism"], found["physics"]
@@ -254,7 +254,7 @@ def _table(found: dict[str, Any], width: int) -> "Table":
 
 
 def _cells(row: dict[str, Any], *, real: bool) -> list[str]:
-    from robolang.diagnostics import safe
+    from robolang.core.diagnostics import safe
 
     head = [safe(row["text"])]
     if row["kind"] == "marker":

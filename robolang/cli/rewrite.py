@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from robolang.diagnostics import has_errors, render, safe
+from robolang.core.diagnostics import has_errors, render, safe
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from robolang.diagnostics import Diagnostic
-    from robolang.source import Source
+    from robolang.core.diagnostics import Diagnostic
+    from robolang.core.source import Source
 
 STDIO = "-"
 CHANGES, BROKEN = 1, 2
@@ -41,7 +41,7 @@ class Loaded:
 
 def load(name: str, shown: str = "<stdin>") -> Loaded:
     """Read a program, that of ``-`` under the name ``shown``; ``FileFault`` RBL701, RBL702, RBL104, RBL106."""
-    from robolang.source import decode_program, read_bytes
+    from robolang.core.source import decode_program, read_bytes
 
     raw, shown = (_standard_input(), shown) if name == STDIO else (read_bytes(name), name)
     mark = _MARK if raw.startswith(_MARK) else b""
@@ -50,7 +50,7 @@ def load(name: str, shown: str = "<stdin>") -> Loaded:
 
 def _standard_input() -> bytes:
     """Return what a program can hold of the standard input, and one byte more."""
-    from robolang.source import MAX_BYTES
+    from robolang.core.source import MAX_BYTES
     from runtime.core.faults import Fault
 
     if sys.stdin is None:
@@ -66,7 +66,7 @@ def store(loaded: Loaded, text: str, out: str | None = None) -> None:
 
     The program is left alone when it is not what was read any more: somebody else is writing it.
     """
-    from robolang.storage import write_atomic
+    from robolang.core.storage import write_atomic
     from runtime.core.faults import Fault
 
     raw, name = loaded.mark + text.encode("utf-8"), loaded.name if out is None else out
@@ -79,7 +79,7 @@ def store(loaded: Loaded, text: str, out: str | None = None) -> None:
 
 
 def _still(loaded: Loaded) -> bool:
-    from robolang.source import read_bytes
+    from robolang.core.source import read_bytes
     from runtime.core.faults import Fault
 
     try:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robolang.cli.errors import reported, say_warnings
-from robolang.diagnostics import safe
+from robolang.core.diagnostics import safe
 from runtime.core.faults import Fault
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def import_model(
 ) -> None:
     """Write the sidecar of a URDF or MJCF file, with what it lacks marked MISSING."""
     with reported():
-        from robolang.storage import write_atomic
+        from robolang.core.storage import write_atomic
         from runtime.robot.files.importer import read_model
         from runtime.robot.files.sidecar import template
         from runtime.robot.files.sidecar_file import NO_OVERLAY, sidecar_path

@@ -24,7 +24,7 @@ from robolang.cli.refuse import refuse
 from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
-    from robolang.diagnostics import Diagnostic
+    from robolang.core.diagnostics import Diagnostic
     from robolang.project import Project
     from robolang.session import Progress, RunResult, Session, StatementRun
 
@@ -96,7 +96,7 @@ def run(
 
 def _show(text: str) -> None:
     """Show what the program prints, as it prints it."""
-    from robolang.diagnostics import safe
+    from robolang.core.diagnostics import safe
 
     with reader_may_leave():
         typer.echo(safe(text))
@@ -115,7 +115,7 @@ def _check_outputs(program: str, report: Path | None, log: Path | None) -> None:
         if os.path.realpath(path) in taken:
             raise OptionValueError(option, f"'{path}' is the program or another output of this run")
         taken.add(os.path.realpath(path))
-    from robolang.storage import check_writable
+    from robolang.core.storage import check_writable
 
     for path in (report, log):
         if path is not None:
@@ -124,8 +124,8 @@ def _check_outputs(program: str, report: Path | None, log: Path | None) -> None:
 
 def _write(result: "RunResult", report: Path | None, log: Path | None) -> int:
     """Write the files that were asked for; what cannot be written is said and does not keep the other from it."""
+    from robolang.core.storage import write_json
     from robolang.runlog import write_log
-    from robolang.storage import write_json
     from runtime.core.faults import Fault
 
     writers: list[tuple[Path | None, Callable[[Path], None]]] = [
@@ -158,7 +158,7 @@ def _print_alarms(project: "Project", result: "RunResult", *, warnings: bool) ->
 
 
 def _print_at(project: "Project", item: "Diagnostic", when: str) -> None:
-    from robolang.diagnostics import render
+    from robolang.core.diagnostics import render
 
     typer.echo(render(replace(item, message=f"{when}: {item.message}"), project.source), err=True)
 

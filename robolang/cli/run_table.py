@@ -11,7 +11,7 @@ from rich.table import Table
 
 from robolang.cli import lines
 from robolang.cli.console import Console
-from robolang.diagnostics import safe
+from robolang.core.diagnostics import safe
 
 _COLUMNS = (
     ("start\n\ns", "start_s", "{:.3f}"),

@@ -100,7 +100,7 @@ def step(
             tool=tool_point,
         )
         if plot is not None:
-            from robolang.storage import check_writable
+            from robolang.core.storage import check_writable
 
             check_writable(plot)
         try:
@@ -130,7 +130,7 @@ _LINES = (
 
 
 def _print(found: dict[str, Any]) -> None:
-    from robolang.diagnostics import safe
+    from robolang.core.diagnostics import safe
 
     drives = "ideal drives" if found["ideal_drives"] else "real drives"
     typer.echo(
@@ -148,8 +148,8 @@ def _print(found: dict[str, Any]) -> None:
 
 
 def _write_plot(path: Path, request: "StepRequest", result: "StepResult") -> None:
+    from robolang.core.storage import write_atomic
     from robolang.plot import Curve, as_html, as_svg
-    from robolang.storage import write_atomic
     from runtime.core.units import DEG
 
     title = f"{request.robot.name}: step on J{request.axis + 1}, D' = {result.inertia:.3g} kg m2"

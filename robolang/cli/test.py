@@ -15,7 +15,7 @@ import typer
 from robolang.cli.errors import DIAGNOSTICS, USAGE, internal, reported, say_all
 
 if TYPE_CHECKING:
-    from robolang.diagnostics import Diagnostic
+    from robolang.core.diagnostics import Diagnostic
     from robolang.expectation import Expectation
     from robolang.project import Project
     from robolang.verdict import Verdict
@@ -54,7 +54,7 @@ def test(
 ) -> None:
     """Run programs and compare with what their test files expect."""
     with reported():
-        from robolang.storage import check_writable, write_atomic
+        from robolang.core.storage import check_writable, write_atomic
 
         if junit is not None:
             check_writable(junit)
@@ -124,7 +124,7 @@ def _run(file: Path, update: bool) -> _Outcome:
 
 def _judged(program: Path, expected: "Expectation", update: bool) -> "tuple[list[Verdict], float]":
     """Return the verdicts on a program and the time of its run, s."""
-    from robolang.diagnostics import Severity
+    from robolang.core.diagnostics import Severity
     from robolang.motion_check import motion_check
     from robolang.project import load_project
     from robolang.session import Session
@@ -147,7 +147,7 @@ def _shown(project: "Project", item: "Diagnostic") -> str:
 
 def _tell(outcome: _Outcome) -> int:
     """Print an outcome, the faults of its files to stderr, and return its exit code."""
-    from robolang.diagnostics import safe
+    from robolang.core.diagnostics import safe
 
     code = 0 if outcome.ok else DIAGNOSTICS
     typer.echo(safe(f"{'ok  ' if outcome.ok else 'FAIL'} {outcome.name}, {outcome.seconds:.3f} s"))

@@ -97,7 +97,7 @@ def _say_what_comes(request: "WeighRequest", amplitudes: Any) -> None:
 
 
 def _print(found: dict[str, Any]) -> None:
-    from robolang.diagnostics import safe
+    from robolang.core.diagnostics import safe
 
     estimated, true = found["estimated"], found["true"]
     typer.echo(safe(f"{found['robot']}, {found['plant']} arm, {found['seconds']:.1f} s"))

@@ -122,7 +122,7 @@ def _print(robot: str, shown: list["Shown"], out: Path | None) -> None:
     from rich.table import Table
 
     from robolang.cli.console import Console
-    from robolang.diagnostics import safe
+    from robolang.core.diagnostics import safe
 
     console = Console()
     headings = [
@@ -197,7 +197,7 @@ def _file(figure: "Figure") -> str:
 
 def _check_folder(out: Path, figures: Sequence["Figure"]) -> None:
     """Make the folder where there is none; ``Fault`` RBL706 where a file could not be written into it."""
-    from robolang.storage import check_writable
+    from robolang.core.storage import check_writable
 
     with suppress(OSError):  # what it means is said of the first file
         out.mkdir(exist_ok=True)
@@ -212,7 +212,7 @@ def _write(out: Path, robot: str, shown: list["Shown"]) -> None:
 
 
 def _save(path: Path, text: str) -> None:
-    from robolang.storage import write_atomic
+    from robolang.core.storage import write_atomic
 
     write_atomic(path, lambda stream: stream.write(text.encode("utf-8")))
 

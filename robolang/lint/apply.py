@@ -10,8 +10,8 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from robolang.diagnostics import Diagnostic, Edit
-from robolang.source import Source, Span
+from robolang.core.diagnostics import Diagnostic, Edit
+from robolang.core.source import Source, Span
 
 MAX_ROUNDS = 20
 

@@ -11,13 +11,13 @@ from pathlib import Path
 from robolang.beside import CellFiles, read_beside
 from robolang.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.checker import check
-from robolang.diagnostics import Diagnostic, Severity, in_order
+from robolang.core.diagnostics import Diagnostic, Severity, in_order
+from robolang.core.source import Source, Span
 from robolang.lint.fixes import with_fix
 from robolang.lint.selection import Selection, is_syntax_error
 from robolang.lint.suppress import suppress
 from robolang.parser import parse
 from robolang.points import load_points
-from robolang.source import Source, Span
 from robolang.usage_check import named
 from runtime.core.faults import Fault
 from runtime.core.toml_places import locate

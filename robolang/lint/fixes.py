@@ -10,9 +10,9 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from robolang.diagnostics import Diagnostic, Edit, Fix
+from robolang.core.diagnostics import Diagnostic, Edit, Fix
+from robolang.core.source import Source, Span
 from robolang.parser import parse
-from robolang.source import Source, Span
 from robolang.words import COMPONENTS, INSTRUCTIONS, OPTIONS, look_alike
 
 _NO_WIDTH = "\u200b\u200c\u200d\u2060\ufeff"

@@ -1,6 +1,6 @@
 """Rules RBL2xx: the meaning of a program."""
 
-from robolang.diagnostics import Severity
+from robolang.core.diagnostics import Severity
 from robolang.lint.registry import Rule
 
 RULES = (

@@ -1,6 +1,6 @@
 """Rules RBL4xx: payloads, speeds, times and blends that no robot can follow."""
 
-from robolang.diagnostics import Severity
+from robolang.core.diagnostics import Severity
 from robolang.lint.registry import Rule
 
 RULES = (

@@ -3,7 +3,7 @@
 The examples run on the built-in cell.
 """
 
-from robolang.diagnostics import Severity
+from robolang.core.diagnostics import Severity
 from robolang.lint.registry import Rule
 
 RULES = (

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
 
-import robolang.codes  # noqa: F401 - fills the registry of codes
-from robolang.diagnostics import Severity
+import robolang.core.codes  # noqa: F401 - fills the registry of codes
+from robolang.core.diagnostics import Severity
 from runtime.core.faults import Code, all_codes, lookup
 
 _MOST_LINES = 20

@@ -11,8 +11,8 @@ by its whole code or name in ``ignore``, never by a beginning or by selecting so
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-import robolang.codes  # noqa: F401 - selectors are compared with every code there is
-from robolang.diagnostics import Diagnostic, Severity
+import robolang.core.codes  # noqa: F401 - selectors are compared with every code there is
+from robolang.core.diagnostics import Diagnostic, Severity
 from robolang.words import near
 from runtime.core.faults import all_codes
 

@@ -18,10 +18,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import islice
 
-from robolang.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Edit, Fix, Severity
+from robolang.core.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Edit, Fix, Severity
+from robolang.core.source import Source, Span
 from robolang.lint.registry import is_looked_for
 from robolang.lint.selection import guess, is_syntax_error, words
-from robolang.source import Source, Span
 
 UNUSED, UNKNOWN = "RBL190", "RBL191"
 

@@ -1,6 +1,6 @@
 """Rules RBL1xx: the text of a program."""
 
-from robolang.diagnostics import Severity
+from robolang.core.diagnostics import Severity
 from robolang.lint.registry import Rule
 
 _LONG = 10_000

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from robolang.diagnostics import safe
+from robolang.core.diagnostics import safe
 from robolang.lint.engine import Checked
 from robolang.output.finding import Finding, findings
 

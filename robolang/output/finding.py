@@ -13,10 +13,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from robolang.diagnostics import Diagnostic, Fix, Severity, safe
+from robolang.core.diagnostics import Diagnostic, Fix, Severity, safe
+from robolang.core.source import Source, Span
 from robolang.lint.engine import Checked
 from robolang.lint.files import STANDARD_INPUT
-from robolang.source import Source, Span
 from runtime.core.faults import Fault, lookup
 from runtime.core.tomlfile import FileFault
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from robolang.diagnostics import render as excerpt
+from robolang.core.diagnostics import render as excerpt
 from robolang.lint.engine import Checked
 
 

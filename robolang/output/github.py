@@ -8,7 +8,7 @@ runner drops them.
 from collections.abc import Sequence
 from pathlib import Path
 
-from robolang.diagnostics import Severity, safe
+from robolang.core.diagnostics import Severity, safe
 from robolang.lint.engine import Checked
 from robolang.output.finding import Finding, Region, findings, relative
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from robolang.diagnostics import Severity
+from robolang.core.diagnostics import Severity
 from robolang.lint.engine import Checked
 from robolang.lint.pages import page
 from robolang.output.finding import Correction, Finding, Region, findings, fingerprints, relative

@@ -2,7 +2,7 @@
 
 One registry serves diagnostics of a program, errors of robot and cell files, refusals of the planner and
 alarms of the running controller, so that a code means one thing everywhere. Each layer registers the codes it
-raises: the runtime its own below, the language front end its own in ``robolang.codes``.
+raises: the runtime its own below, the language front end its own in ``robolang.core.codes``.
 
 A *fault* (``Fault``) is raised where a request cannot be carried out; the request itself has moved nothing. An
 *alarm* (``Alarm``) is a latched event of the running robot, kept in the report. It carries the statement that ran,

@@ -24,9 +24,9 @@ from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
 from robolang.cli.main import app
 from robolang.cli.run_table import print_result
-from robolang.diagnostics import has_errors
+from robolang.core.diagnostics import has_errors
+from robolang.core.source import Source
 from robolang.parser import parse
-from robolang.source import Source
 from runtime.control.recorder import Recorder
 from runtime.core.faults import all_codes
 

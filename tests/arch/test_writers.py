@@ -1,4 +1,4 @@
-"""Every file that the product writes is written by ``robolang.storage``: the old one or the new one, at any moment."""
+"""Every file that the product writes is written by ``robolang.core.storage``: the old one or the new one, at any moment."""
 
 import ast
 from pathlib import Path
@@ -51,7 +51,7 @@ def writers(path, tree):
 
 def test_files_are_written_in_one_place():
     found = {each for path in FILES for each in writers(path, ast.parse(path.read_text("utf-8")))}
-    assert {each for each in found if not each.startswith("robolang/storage.py: ")} == set(KNOWN)
+    assert {each for each in found if not each.startswith("robolang/core/storage.py: ")} == set(KNOWN)
 
 
 @pytest.mark.parametrize(

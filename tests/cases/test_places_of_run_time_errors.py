@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from robolang.diagnostics import to_json
+from robolang.core.diagnostics import to_json
+from robolang.core.source import read_program
 from robolang.session import run
-from robolang.source import read_program
 from tests.lang.cli.commands import dry
 
 CASES = Path(__file__).parent

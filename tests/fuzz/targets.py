@@ -15,13 +15,13 @@ import numpy as np
 from robolang import checker, formatter, nodes
 from robolang.beside import builtin_cell_file
 from robolang.cell_symbols import CellSymbols
-from robolang.diagnostics import Severity, render, render_fault, to_json
+from robolang.core.diagnostics import Severity, render, render_fault, to_json
+from robolang.core.source import Source, decode_program
 from robolang.golden import read_golden
 from robolang.grammar import line_parser
 from robolang.lint import engine
 from robolang.parser import parse
 from robolang.points import load_points
-from robolang.source import Source, decode_program
 from robolang.words import KEYWORDS
 from runtime.cell.cell import load_cell
 from runtime.core.faults import Fault, lookup

@@ -2,10 +2,10 @@
 
 from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
-from robolang.diagnostics import Diagnostic
+from robolang.core.diagnostics import Diagnostic
+from robolang.core.source import Source
 from robolang.nodes import Program
 from robolang.parser import parse
-from robolang.source import Source
 
 Found = list[tuple[str, int, int, int]]
 

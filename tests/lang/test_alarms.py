@@ -3,9 +3,9 @@
 import pytest
 
 from robolang.alarms import SHOWN_CALLS, as_diagnostic, calls
-from robolang.diagnostics import Severity
+from robolang.core.diagnostics import Severity
+from robolang.core.source import Span
 from robolang.effects import Origin
-from robolang.source import Span
 from runtime.core.faults import Alarm
 
 

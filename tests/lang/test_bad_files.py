@@ -12,9 +12,9 @@ import pytest
 
 from robolang.beside import builtin_cell_file
 from robolang.cell_symbols import CellSymbols
+from robolang.core.source import read_program
 from robolang.lint.settings import Settings
 from robolang.points import load_points
-from robolang.source import read_program
 from runtime.core.tomlfile import FileFault
 from runtime.robot.files.importer import load_file, read_arm
 from tests.lang.cli.commands import ROOT, flat, robolang

@@ -10,9 +10,9 @@ import pytest
 from robolang import actions, effects, evaluator, interpreter, scope
 from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
+from robolang.core.source import Source, decode_program
 from robolang.interpreter import ProgramFault, execute
 from robolang.parser import parse
-from robolang.source import Source, decode_program
 from robolang.words import FUNCTIONS, VALUES
 from runtime.core.faults import Fault
 from tests.campaign import size

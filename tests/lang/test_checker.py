@@ -3,9 +3,9 @@ import pytest
 
 from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
-from robolang.diagnostics import MAX_DIAGNOSTICS, Severity
+from robolang.core.diagnostics import MAX_DIAGNOSTICS, Severity
+from robolang.core.source import Span
 from robolang.parser import parse
-from robolang.source import Span
 from tests.lang.helpers import checked, parsed, places, source
 
 

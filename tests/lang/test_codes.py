@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-import robolang.codes  # noqa: F401
+import robolang.core.codes  # noqa: F401
 from runtime.core.faults import all_codes, lookup
 
 ROOT = Path(__file__).parents[2]
@@ -46,7 +46,7 @@ def test_one_import_fills_the_registry(code):
 
 def test_the_front_end_imports_nothing_heavy():
     program = (
-        "import sys, robolang.codes, robolang.parser, robolang.checker, robolang.interpreter, robolang.points\n"
+        "import sys, robolang.core.codes, robolang.parser, robolang.checker, robolang.interpreter, robolang.points\n"
         "import robolang.lint.registry, robolang.printer\n"
         "heavy = {'numpy', 'pinocchio', 'mujoco', 'rich', 'typer', 'ruckig'} & set(sys.modules)\n"
         "assert not heavy, heavy"
@@ -80,7 +80,7 @@ def test_one_import_knows_as_many_codes_as_all_modules_together():
     """A code that only a heavy module registers is unknown to ``robolang check --select`` and ``robolang explain``."""
     whole = registered(EVERYTHING)
     assert len(whole) > 120
-    assert registered("import robolang.codes") == whole
+    assert registered("import robolang.core.codes") == whole
 
 
 def test_a_code_that_nothing_raises_is_not_registered():

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from robolang.diagnostics import (
+from robolang.core.diagnostics import (
     MAX_DIAGNOSTICS,
     Diagnostic,
     Related,
@@ -19,7 +19,7 @@ from robolang.diagnostics import (
     safe,
     to_json,
 )
-from robolang.source import Span
+from robolang.core.source import Span
 from runtime.core.faults import lookup
 from runtime.core.tomlfile import FileFault
 from tests.campaign import examples

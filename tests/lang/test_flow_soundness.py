@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from robolang.branches import Decisions, open_conditions
 from robolang.checker import check
-from robolang.diagnostics import has_errors
+from robolang.core.diagnostics import has_errors
 from robolang.effects import MoveTo, SetHand, SetPayload, Show
 from robolang.flow import facts_before, ways_of
 from robolang.interpreter import Machine, ProgramFault

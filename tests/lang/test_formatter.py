@@ -2,9 +2,9 @@ from textwrap import dedent
 
 import pytest
 
+from robolang.core.source import MAX_BYTES
 from robolang.formatter import MAX_INDENT, MAX_WIDTH, format_source
 from robolang.parser import MAX_LINE
-from robolang.source import MAX_BYTES
 from tests.lang.helpers import source
 
 

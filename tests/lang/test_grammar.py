@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from robolang import grammar, parser
+from robolang.core.source import Source
 from robolang.grammar import TABLE, line_parser, made, serialized
-from robolang.source import Source
 
 ROOT = Path(__file__).parents[2]
 PROGRAMS = sorted((ROOT / "programs").rglob("*.rbl"))

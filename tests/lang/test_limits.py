@@ -4,12 +4,13 @@ import math
 
 import pytest
 
-from robolang import interpreter, limits, motion_check, session
+from robolang import interpreter, motion_check, session
 from robolang.checker import check
-from robolang.diagnostics import Severity
+from robolang.core import limits
+from robolang.core.diagnostics import Severity
+from robolang.core.limits import SIZE
 from robolang.evaluator import MAX_TEXT
 from robolang.interpreter import MAX_CALLS, MAX_ROUNDS, execute
-from robolang.limits import SIZE
 from robolang.motion_check import rehearse
 from robolang.parser import parse
 from robolang.project import load_project

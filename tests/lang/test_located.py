@@ -11,12 +11,12 @@ from pathlib import Path
 import pytest
 
 from robolang.cell_symbols import CellSymbols
-from robolang.diagnostics import Diagnostic, render, to_json
+from robolang.core.diagnostics import Diagnostic, render, to_json
+from robolang.core.source import Source, Span
 from robolang.lint.engine import Checked, lint
 from robolang.lint.registry import rules
 from robolang.output.finding import findings
 from robolang.points import load_points
-from robolang.source import Source, Span
 from runtime.cell.cell import load_cell
 from runtime.core.faults import lookup
 from runtime.core.toml_places import lines_of

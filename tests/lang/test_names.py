@@ -4,11 +4,11 @@ import pytest
 
 from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
-from robolang.diagnostics import Severity
+from robolang.core.deduplicate import MAX_NOTES
+from robolang.core.diagnostics import Severity
 from robolang.interpreter import execute
 from robolang.names import seems_to_define
 from robolang.parser import parse
-from robolang.repeats import MAX_NOTES
 from tests.lang.helpers import places, source
 
 

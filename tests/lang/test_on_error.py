@@ -3,9 +3,9 @@
 import pytest
 
 from robolang import interpreter
+from robolang.core.source import Span
 from robolang.effects import MoveTo, Show
 from robolang.interpreter import MAX_CALLS, ProgramFault, execute
-from robolang.source import Span
 from runtime.core.faults import Fault
 from tests.lang.helpers import parsed
 from tests.lang.running import POINTS, World, fault, shows

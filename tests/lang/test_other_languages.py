@@ -5,7 +5,7 @@ import pytest
 from robolang import other_languages
 from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
-from robolang.diagnostics import in_order
+from robolang.core.diagnostics import in_order
 from robolang.parser import parse
 from robolang.words import FUNCTIONS, KEYWORDS, VALUES
 from tests.lang.helpers import source

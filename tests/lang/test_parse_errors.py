@@ -2,13 +2,13 @@
 
 import pytest
 
-from robolang.diagnostics import MAX_DIAGNOSTICS, Severity
+from robolang.core.diagnostics import MAX_DIAGNOSTICS, Severity
+from robolang.core.source import Span
 from robolang.nodes import (
     Move,
     Unparsed,
 )
 from robolang.parser import MAX_DEPTH, MAX_LINE, MAX_NUMBER_DIGITS, MAX_OPERATORS, parse
-from robolang.source import Span
 from tests.lang.helpers import only, parse_found, parsed, source
 
 WRIST_FORM = "WRIST KEEP, WRIST AUTO or WRIST HOLD component [, component]"

@@ -7,6 +7,7 @@ import lark
 import pytest
 
 from robolang import grammar
+from robolang.core.source import Span
 from robolang.grammar import line_parser
 from robolang.nodes import (
     Accel,
@@ -27,7 +28,6 @@ from robolang.nodes import (
 )
 from robolang.points import load_points
 from robolang.printer import describe
-from robolang.source import Span
 from robolang.words import FUNCTIONS, KEYWORDS, VALUES
 from tests.lang.helpers import only, parse_found, parsed, source
 

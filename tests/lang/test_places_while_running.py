@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from robolang.core.source import Source
 from robolang.interpreter import ProgramFault, execute
 from robolang.parser import parse
-from robolang.source import Source
 from tests.lang.running import POINTS, World
 
 STATEMENTS = (

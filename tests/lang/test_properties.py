@@ -12,14 +12,14 @@ from hypothesis import strategies as st
 from robolang import nodes, printer
 from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
-from robolang.diagnostics import has_errors, render, to_json
+from robolang.core.diagnostics import has_errors, render, to_json
+from robolang.core.source import read_program
 from robolang.formatter import format_source
 from robolang.interpreter import execute
 from robolang.nodes import Unparsed
 from robolang.parser import parse
 from robolang.printer import print_program
 from robolang.renumber import remove_numbers, renumber
-from robolang.source import read_program
 from robolang.structure import targets
 from runtime.core.faults import Fault, lookup
 from runtime.core.tomlfile import FileFault

@@ -2,9 +2,9 @@ from textwrap import dedent
 
 import pytest
 
+from robolang.core.source import MAX_BYTES
 from robolang.parser import MAX_LINE
 from robolang.renumber import MAX_NUMBER, remove_numbers, renumber
-from robolang.source import MAX_BYTES
 from runtime.core.faults import Fault
 from tests.lang.helpers import places, source
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from robolang.diagnostics import MAX_DIAGNOSTICS
+from robolang.core.diagnostics import MAX_DIAGNOSTICS
 from tests.lang.helpers import checked, parsed
 
 

@@ -1,6 +1,6 @@
 """Saves that are cut off (attack_11): the process is killed before and after each system call, or the call fails.
 
-Every call that ``robolang.storage`` makes of ``os``, ``fcntl`` and ``tempfile`` while it saves is a step. In each crash
+Every call that ``robolang.core.storage`` makes of ``os``, ``fcntl`` and ``tempfile`` while it saves is a step. In each crash
 state the file is the old or the new text, as private as it was, and the next save leaves nothing else in the folder.
 """
 
@@ -15,8 +15,8 @@ from pathlib import Path
 
 import pytest
 
-from robolang import storage
-from robolang.storage import write_atomic, write_folder
+from robolang.core import storage
+from robolang.core.storage import write_atomic, write_folder
 from runtime.core.faults import Fault
 from tests.lang.cli.commands import robolang
 

@@ -2,7 +2,7 @@ import os
 
 import pytest
 
-from robolang.source import MAX_BYTES, Place, Source, Span, read_program
+from robolang.core.source import MAX_BYTES, Place, Source, Span, read_program
 from runtime.core.tomlfile import FileFault
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from robolang.diagnostics import MAX_DIAGNOSTICS, Severity
+from robolang.core.diagnostics import MAX_DIAGNOSTICS, Severity
 from robolang.nodes import Unparsed
 from robolang.parser import parse
 from robolang.structure import MAX_BLOCKS, structure_of

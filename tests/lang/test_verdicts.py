@@ -8,10 +8,10 @@ from dataclasses import replace
 import pytest
 
 from robolang import expression_check, statement_check
-from robolang.diagnostics import has_errors
+from robolang.core.diagnostics import has_errors
+from robolang.core.source import Source
 from robolang.lint import engine
 from robolang.lint.engine import check_source
-from robolang.source import Source
 from tests.lang.verdicts import case, disagreement
 
 SAMPLE = range(80)

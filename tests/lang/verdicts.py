@@ -20,12 +20,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from robolang.builtin import cell_text
-from robolang.diagnostics import Severity
+from robolang.core.diagnostics import Severity
+from robolang.core.source import read_program
 from robolang.lint.engine import check_source
 from robolang.motion_check import rehearse
 from robolang.parser import parse
 from robolang.project import Project, load_project
-from robolang.source import read_program
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault
 from tests.lang.cli.commands import BUILTIN

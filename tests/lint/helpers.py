@@ -1,10 +1,10 @@
 """Short ways to lint a text in this process and to say what was found where."""
 
 from robolang.cell_symbols import CellSymbols
-from robolang.diagnostics import Diagnostic
+from robolang.core.diagnostics import Diagnostic
+from robolang.core.source import Source
 from robolang.lint.engine import Checked, lint
 from robolang.lint.selection import Layer, Selection, selector
-from robolang.source import Source
 
 POINTS = ("P1", "P2", "P3", "P4", "P5")
 

@@ -1,8 +1,8 @@
 """Fixes applied to texts."""
 
-from robolang.diagnostics import Diagnostic, Edit, Fix
+from robolang.core.diagnostics import Diagnostic, Edit, Fix
+from robolang.core.source import Source, Span
 from robolang.lint.apply import MAX_ROUNDS, edited, fix_all
-from robolang.source import Source, Span
 
 
 def finding(*edits, code="RBL115", safe=True):

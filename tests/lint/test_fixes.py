@@ -5,11 +5,11 @@ from itertools import pairwise
 import pytest
 
 from robolang.cell_symbols import CellSymbols
-from robolang.diagnostics import Diagnostic, Edit, Fix
+from robolang.core.diagnostics import Diagnostic, Edit, Fix
+from robolang.core.source import Source, Span
 from robolang.lint.apply import edited, fix_all
 from robolang.lint.engine import lint
 from robolang.lint.fixes import with_fix
-from robolang.source import Source, Span
 from tests.lint.helpers import POINTS, found
 
 

@@ -8,13 +8,13 @@ from urllib.parse import unquote, urlsplit
 
 import pytest
 
-from robolang.diagnostics import Diagnostic, Severity
-from robolang.diagnostics import render as excerpt
+from robolang.core.diagnostics import Diagnostic, Severity
+from robolang.core.diagnostics import render as excerpt
+from robolang.core.source import Source, Span
 from robolang.lint.engine import Checked
 from robolang.lint.pages import page
 from robolang.output import FOR_PEOPLE, FORMS, render, statistics
 from robolang.output.finding import Region, findings, fingerprints, relative
-from robolang.source import Source, Span
 from runtime.core.faults import Fault, lookup
 from runtime.core.tomlfile import FileFault
 from tests.lint.helpers import checked

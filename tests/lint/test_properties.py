@@ -8,11 +8,11 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from robolang.cell_symbols import CellSymbols
-from robolang.diagnostics import MAX_DIAGNOSTICS
+from robolang.core.diagnostics import MAX_DIAGNOSTICS
+from robolang.core.source import Source
 from robolang.lint.apply import fix_all
 from robolang.lint.engine import Checked, lint
 from robolang.output import FORMS, render
-from robolang.source import Source
 from runtime.core.faults import lookup
 from tests.lint.helpers import POINTS
 

@@ -3,7 +3,8 @@
 import pytest
 
 from robolang.cell_symbols import CellSymbols
-from robolang.diagnostics import Severity, has_errors
+from robolang.core.diagnostics import Severity, has_errors
+from robolang.core.source import Source, read_program
 from robolang.lint import meaning_rules, motion_rules, planning_rules, point_rules, run_rules, text_rules
 from robolang.lint.apply import fix_all
 from robolang.lint.engine import check_points, check_source, lint
@@ -11,7 +12,6 @@ from robolang.lint.registry import OF_THE_MOTION, OF_THE_RUN, codes, is_looked_f
 from robolang.motion_check import rehearse
 from robolang.motion_findings import findings
 from robolang.project import load_project
-from robolang.source import Source, read_program
 from runtime.core.faults import Fault, lookup
 from tests.lint.helpers import POINTS
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from robolang.diagnostics import Diagnostic, Severity
+from robolang.core.diagnostics import Diagnostic, Severity
+from robolang.core.source import Span
 from robolang.lint.selection import guess, is_syntax_error, selector, words
-from robolang.source import Span
 from tests.lint.helpers import layer, places, selection
 
 WARNING, ERROR, INFO = Severity.WARNING, Severity.ERROR, Severity.INFO

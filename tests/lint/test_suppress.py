@@ -3,11 +3,11 @@
 import pytest
 
 from robolang.cell_symbols import CellSymbols
-from robolang.diagnostics import MAX_DIAGNOSTICS, Diagnostic
+from robolang.core.diagnostics import MAX_DIAGNOSTICS, Diagnostic
+from robolang.core.source import Source, Span
 from robolang.lint.apply import fix_all
 from robolang.lint.engine import lint
 from robolang.lint.suppress import add_later
-from robolang.source import Source, Span
 from tests.lint.helpers import POINTS, found, layer, marked, places, selection
 
 

@@ -8,11 +8,11 @@ import pytest
 
 from robolang import exploration, motion_findings
 from robolang.branches import Decisions
+from robolang.core.source import Span
 from robolang.exploration import _queue, explore
 from robolang.motion_check import rehearse
 from robolang.motion_findings import findings
 from robolang.project import load_project
-from robolang.source import Span
 from tests.lang.cli.commands import robolang
 
 FAR = "MOVE P1 + (900, 0, 0)"

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from robolang.core.source import Source
 from robolang.formatter import format_source
-from robolang.source import Source
 
 ROOT = Path(__file__).parents[2]
 PROGRAMS = sorted((ROOT / "programs").rglob("*.rbl"))

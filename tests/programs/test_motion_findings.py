@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from robolang import motion_findings
-from robolang.diagnostics import Severity
+from robolang.core.diagnostics import Severity
 from robolang.motion_check import rehearse
 from robolang.motion_findings import LoadShare, findings, worst_loads
 from robolang.project import builtin_cell, load_project

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robolang.diagnostics import Severity
+from robolang.core.diagnostics import Severity
 from robolang.motion_check import rehearse
 from robolang.motion_findings import findings
 from robolang.plan_findings import SLOWED

@@ -6,7 +6,7 @@ import typer
 import robolang.project  # noqa: F401 - registers its codes
 from robolang.cli import errors
 from robolang.cli.errors import exit_code, reader_may_leave, reported, say
-from robolang.diagnostics import safe
+from robolang.core.diagnostics import safe
 from runtime.core.faults import Fault, all_codes
 from runtime.core.tomlfile import Source
 

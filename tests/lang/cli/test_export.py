@@ -8,9 +8,9 @@ import shutil
 import numpy as np
 import pytest
 
-from robolang import storage
 from robolang.cli.export import written_here
-from robolang.storage import write_folder
+from robolang.core import storage
+from robolang.core.storage import write_folder
 from runtime.core.faults import Fault
 from runtime.robot.files.loader import load_builtin
 from tests.lang.cli.commands import ROOT, flat, places, robolang, shell
@@ -249,7 +249,7 @@ def test_a_full_disk_leaves_what_was_there(tmp_path, monkeypatch, there):
         if len(calls) > 1:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr("robolang.storage.os.fsync", full)
+    monkeypatch.setattr("robolang.core.storage.os.fsync", full)
     with pytest.raises(Fault, match="No space left") as caught:
         write_folder(folder, {"manifest.json": b"new", "1_line2_J1.csv": b"row"}, written_here)
     assert caught.value.code == "RBL706"

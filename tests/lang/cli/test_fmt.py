@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from robolang.cli.main import app
 from robolang.cli.rewrite import unified
-from robolang.source import MAX_BYTES
+from robolang.core.source import MAX_BYTES
 from tests.lang.cli.commands import ROOT, flat, places, robolang, shell
 
 BAD, GOOD = "move p1 'x\nhand  on'y\n", "MOVE p1  'x\nHAND ON  'y\n"
@@ -157,7 +157,7 @@ def test_a_write_that_fails_leaves_the_old_file(folder, monkeypatch):
     def full(fd):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("robolang.storage.os.fsync", full)
+    monkeypatch.setattr("robolang.core.storage.os.fsync", full)
     result = robolang("fmt", code=4)
     assert "RBL706" in result.stderr
     assert (folder / "bad.rbl").read_text() == BAD

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from robolang.core.source import Source
 from robolang.formatter import format_source
-from robolang.source import Source
 from tests.campaign import some
 from tests.lang.cli import watched
 from tests.lang.cli.commands import ROOT

@@ -7,8 +7,8 @@ subroutine or target of a jump is one diagnostic for a program.
 from collections.abc import Hashable, Iterable
 from dataclasses import replace
 
-from robolang.diagnostics import Diagnostic, Related
-from robolang.source import Span
+from robolang.core.diagnostics import Diagnostic, Related
+from robolang.core.source import Span
 
 MAX_NOTES = 5
 """Other places that are named; a diagnostic stays readable, and small."""

@@ -1,6 +1,6 @@
 """Codes of programs that run and of what checking them finds: expressions, control, flow, motion, inputs and outputs.
 
-Registered at import, as those of ``robolang.codes``, which imports this module.
+Registered at import, as those of ``robolang.core.codes``, which imports this module.
 """
 
 from runtime.core.faults import Code, register

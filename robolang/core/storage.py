@@ -21,7 +21,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, NoReturn
 
-import robolang.codes  # noqa: F401 - RBL706 must be registered
+import robolang.core.codes  # noqa: F401 - RBL706 must be registered
 from runtime.core.faults import Fault
 
 _PROBE = bytes(4096)

@@ -19,8 +19,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
 
-import robolang.codes  # noqa: F401 - every code a diagnostic may carry
-from robolang.source import Source, Span
+import robolang.core.codes  # noqa: F401 - every code a diagnostic may carry
+from robolang.core.source import Source, Span
 from runtime.core.faults import lookup
 from runtime.core.tomlfile import FileFault
 

@@ -19,7 +19,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import NoReturn
 
-import robolang.codes  # noqa: F401 - the codes raised here must be registered
+import robolang.core.codes  # noqa: F401 - the codes raised here must be registered
 from runtime.core.tomlfile import FileFault
 
 MAX_BYTES = 1_000_000

@@ -5,7 +5,7 @@ in no numerics, so ``robolang check``, ``explain`` and the documentation generat
 its number and its meaning for ever; a message may be reworded. Called once, at import.
 """
 
-import robolang.run_codes  # noqa: F401 - registers 2xx, 50x and 53x
+import robolang.core.run_codes  # noqa: F401 - registers 2xx, 50x and 53x
 import runtime.core.faults
 import runtime.core.tomlfile  # registers RBL311 and RBL6xx
 import runtime.motion.codes
