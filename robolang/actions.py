@@ -14,7 +14,9 @@ from robolang import effects
 from robolang.core import limits
 from robolang.effects import Effect, origin
 from robolang.evaluator import Evaluator, finite
-from robolang.nodes import (
+from robolang.places import Frame, Place, Shift, Six
+from robolang.scope import Scopes
+from robolang.syntax.ast import (
     Accel,
     Approach,
     Depart,
@@ -40,8 +42,6 @@ from robolang.nodes import (
     WristMode,
     Zone,
 )
-from robolang.places import Frame, Place, Shift, Six
-from robolang.scope import Scopes
 from runtime.core.faults import Fault
 
 Action: TypeAlias = Moving | Load | LoadNamed | Hand | Wrist | Seam | Setting | Out | Pulse

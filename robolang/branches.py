@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from robolang.core.source import Span
 from robolang.names import names_in
-from robolang.nodes import (
+from robolang.syntax.ast import (
     Assign,
     Call,
     CallSub,
@@ -26,7 +26,7 @@ from robolang.nodes import (
     Sub,
     Wait,
 )
-from robolang.tree import Node
+from robolang.syntax.tree import Node
 
 _OUTSIDE = frozenset({"IN", "TIMER", "ERR"})
 

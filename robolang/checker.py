@@ -20,11 +20,11 @@ from robolang.core.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related, Seve
 from robolang.core.source import Span
 from robolang.flow_check import flow_check
 from robolang.names import Defined
-from robolang.nodes import Line, Program, Unparsed
 from robolang.rounding_check import rounding_check
 from robolang.statement_check import StatementCheck
-from robolang.structure import Structure, structure_of
-from robolang.tree import is_deeper
+from robolang.syntax.ast import Line, Program, Unparsed
+from robolang.syntax.blocks import Structure, structure_of
+from robolang.syntax.tree import is_deeper
 from robolang.usage_check import loop_check, quote_check, usage_check, wait_check
 
 MAX_LEVELS = 150

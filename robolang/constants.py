@@ -6,8 +6,8 @@ from typing import NoReturn
 
 from robolang.core.diagnostics import Diagnostic
 from robolang.evaluator import Evaluator, Nowhere
-from robolang.nodes import Call, Expression, Name, Negate, Number, Text, walk
 from robolang.places import Value
+from robolang.syntax.ast import Call, Expression, Name, Negate, Number, Text, walk
 from runtime.core.faults import Fault
 
 

@@ -10,9 +10,9 @@ import math
 from collections.abc import Callable, Mapping
 from typing import NoReturn, Protocol
 
-from robolang.nodes import Call, Chain, Component6, Expression, Name, Negate, Not, Number, Text, Vector
 from robolang.places import Frame, Place, Shift, Six, Value, kind_of
-from robolang.words import ARGUMENTS, COMPONENTS6, VALUES
+from robolang.syntax.ast import Call, Chain, Component6, Expression, Name, Negate, Not, Number, Text, Vector
+from robolang.syntax.keywords import ARGUMENTS, COMPONENTS6, VALUES
 from runtime.core.faults import Fault
 from runtime.core.numerals import number_in
 

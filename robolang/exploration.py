@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from robolang.branches import Decisions, open_conditions
 from robolang.core.source import Span
 from robolang.motion_check import Rehearsal, rehearse
-from robolang.nodes import If, Moving, Statement
 from robolang.plan_memory import PlanMemory
 from robolang.project import Project
+from robolang.syntax.ast import If, Moving, Statement
 
 MOST_DETOURS = 60
 """Most rehearsals besides the first."""

@@ -3,12 +3,12 @@
 import math
 from collections.abc import Iterator
 
-from robolang import other_languages
 from robolang.cell_symbols import CellSymbols
 from robolang.constants import fixed, no_value
 from robolang.core.diagnostics import Diagnostic, Severity
 from robolang.names import Defined, hint_for
-from robolang.nodes import (
+from robolang.syntax import other_languages
+from robolang.syntax.ast import (
     Call,
     Chain,
     Component6,
@@ -21,8 +21,8 @@ from robolang.nodes import (
     Vector,
     walk,
 )
-from robolang.printer import print_expression
-from robolang.words import ARGUMENTS, COMPONENTS6, near
+from robolang.syntax.keywords import ARGUMENTS, COMPONENTS6, near
+from robolang.syntax.unparse import print_expression
 from runtime.robot.model.drives import beyond_range
 
 

@@ -6,7 +6,7 @@ and GOSUBs are not too many within one another, and memory is enough. All of it 
 handler would seem to be reached from everywhere.
 """
 
-from robolang.nodes import (
+from robolang.syntax.ast import (
     Assign,
     Block,
     Call,

@@ -17,7 +17,7 @@ lines, whose facts would take more memory than the program.
 
 from robolang.constants import fixed
 from robolang.failing import may_fail
-from robolang.nodes import (
+from robolang.syntax.ast import (
     Block,
     CallSub,
     Case,
@@ -33,7 +33,7 @@ from robolang.nodes import (
     Wait,
     Word,
 )
-from robolang.structure import Structure
+from robolang.syntax.blocks import Structure
 from robolang.tabulation import STOPS, Fact, Kind, Search, Step, Way, Ways
 
 MAX_LINES = 50_000

@@ -18,7 +18,8 @@ from robolang.constants import fixed
 from robolang.core.diagnostics import Diagnostic, Related, Severity
 from robolang.core.source import Span
 from robolang.flow import MAX_LINES, facts_before, ways_of
-from robolang.nodes import (
+from robolang.reading import reads_state
+from robolang.syntax.ast import (
     Approach,
     Delay,
     Depart,
@@ -46,8 +47,7 @@ from robolang.nodes import (
     Word,
     Zone,
 )
-from robolang.reading import reads_state
-from robolang.structure import Structure, word_of
+from robolang.syntax.blocks import Structure, word_of
 from robolang.tabulation import Way, Ways
 
 _STOPS = (Load, LoadNamed, Hand, Seam, Out, Pulse, Delay, Wait, Print)

@@ -25,7 +25,11 @@ from robolang.branches import Decisions
 from robolang.core import limits
 from robolang.effects import Drain, Effect, Halt, Origin, Pass, Show, origin
 from robolang.evaluator import Evaluator, Nowhere, World, finite, shown
-from robolang.nodes import (
+from robolang.places import Place
+from robolang.reading import reads_state
+from robolang.rounds import Rounds
+from robolang.scope import STOPS, Loop, Scopes
+from robolang.syntax.ast import (
     Assign,
     Block,
     Call,
@@ -53,12 +57,8 @@ from robolang.nodes import (
     Wait,
     Word,
 )
-from robolang.places import Place
-from robolang.reading import reads_state
-from robolang.rounds import Rounds
-from robolang.scope import STOPS, Loop, Scopes
-from robolang.structure import Structure, structure_of
-from robolang.tree import Node
+from robolang.syntax.blocks import Structure, structure_of
+from robolang.syntax.tree import Node
 from runtime.core.faults import Fault
 from runtime.core.program_line import named
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from robolang.motion_check import Rehearsal, RehearsedMove
-from robolang.printer import describe
 from robolang.project import Project
+from robolang.syntax.unparse import describe
 from runtime.core.units import DEG, MM
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.kinematics.singularity import singularities

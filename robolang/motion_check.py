@@ -34,10 +34,10 @@ from robolang.effects import (
 )
 from robolang.interpreter import Machine, ProgramFault
 from robolang.lowering import Command
-from robolang.nodes import Delay, Wait
 from robolang.plan_memory import PlanMemory
 from robolang.project import Project
 from robolang.surroundings import RobotWorld
+from robolang.syntax.ast import Delay, Wait
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.motion.blend import Corner

@@ -15,7 +15,7 @@ from robolang.core import limits
 from robolang.core.deduplicate import Repeats
 from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import Span
-from robolang.nodes import (
+from robolang.syntax.ast import (
     Assign,
     Call,
     Component6,
@@ -31,8 +31,8 @@ from robolang.nodes import (
     Sub,
     Unparsed,
 )
-from robolang.tree import walk
-from robolang.words import KEYWORDS, RESERVED, near
+from robolang.syntax.keywords import KEYWORDS, RESERVED, near
+from robolang.syntax.tree import walk
 
 _DEFINING = ("CONST", "DIM", "FOR", "SUB")
 _LABEL = re.compile(r"[ \t]*\*[ \t]*\w*")

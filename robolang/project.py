@@ -14,9 +14,9 @@ from robolang.beside import CellFiles, controller_settings, read_beside
 from robolang.checker import check
 from robolang.core.diagnostics import Diagnostic, has_errors, in_order
 from robolang.core.source import Source, read_program
-from robolang.nodes import Program
-from robolang.parser import parse
 from robolang.points import PointStore
+from robolang.syntax.ast import Program
+from robolang.syntax.parser import parse
 from runtime.cell import cell as cells
 from runtime.cell.cell import CellSpec
 from runtime.core.faults import Fault, raise_all

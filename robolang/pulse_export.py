@@ -20,9 +20,9 @@ from robolang.core.diagnostics import Diagnostic
 from robolang.effects import Drain, Effect, MoveTo, SetHand, SetPayload, SetSeam, SetTool, SetWrist
 from robolang.interpreter import ProgramFault, execute
 from robolang.lowering import Surroundings
-from robolang.nodes import Delay, Number, Wait
-from robolang.printer import describe
 from robolang.project import Project
+from robolang.syntax.ast import Delay, Number, Wait
+from robolang.syntax.unparse import describe
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.program_line import named

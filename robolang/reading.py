@@ -1,7 +1,7 @@
 """Statements that read what changes while the robot moves: before them, all motion ends."""
 
-from robolang.nodes import Call, Component6, Node
-from robolang.tree import walk
+from robolang.syntax.ast import Call, Component6, Node
+from robolang.syntax.tree import walk
 
 _READS = frozenset({"IN", "HERE", "TIMER", "DIST"})
 

@@ -14,7 +14,7 @@ from enum import IntEnum
 from typing import get_args
 
 from robolang.core.diagnostics import Diagnostic, Related, Severity
-from robolang.nodes import (
+from robolang.syntax.ast import (
     Assign,
     Block,
     Call,
@@ -42,8 +42,8 @@ from robolang.nodes import (
     Word,
     Wrist,
 )
-from robolang.printer import print_expression
-from robolang.tree import walk
+from robolang.syntax.tree import walk
+from robolang.syntax.unparse import print_expression
 
 MAX_PASSES = 20
 SMALL = "1E-6"

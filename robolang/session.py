@@ -34,13 +34,13 @@ from robolang.effects import (
 from robolang.interpreter import Machine, ProgramFault
 from robolang.lowering import Command
 from robolang.motion_check import MAX_CHAIN, MAX_RUN_US, motion_check
-from robolang.nodes import Wait
 from robolang.plan_findings import PlanFindings, PlannedMove
-from robolang.printer import describe
 from robolang.project import Project, load_project
 from robolang.report import build_report
 from robolang.result import RunRecord, RunResult, StatementRun
 from robolang.surroundings import RobotWorld
+from robolang.syntax.ast import Wait
+from robolang.syntax.unparse import describe
 from runtime.cell.seam_sensor import SeamSensor
 from runtime.control.clock import PacedClock, VirtualClock, wall_s
 from runtime.control.controller import Controller

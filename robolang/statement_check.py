@@ -7,7 +7,6 @@ Ranges are those of ``limits``, by which the interpreter judges as well; what th
 import math
 from collections.abc import Callable, Iterator
 
-from robolang import other_languages
 from robolang.cell_symbols import CellSymbols
 from robolang.constants import fixed
 from robolang.core import limits
@@ -16,7 +15,8 @@ from robolang.core.limits import Limit
 from robolang.core.source import Span
 from robolang.expression_check import ExpressionCheck
 from robolang.names import Defined, hint_for, names_hint, of_cell
-from robolang.nodes import (
+from robolang.syntax import other_languages
+from robolang.syntax.ast import (
     Accel,
     Approach,
     Assign,

@@ -14,7 +14,7 @@ from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass
 from typing import Generic, Literal, NamedTuple, TypeAlias, TypeVar
 
-from robolang.nodes import Statement
+from robolang.syntax.ast import Statement
 
 MAX_FACTS = 64
 MAX_STEPS = 64

@@ -6,14 +6,14 @@ Taught points that nothing names are found with ``named``; their finding stands 
 import re
 from collections.abc import Iterator
 
-from robolang import other_languages
 from robolang.constants import fixed
 from robolang.core import limits
 from robolang.core.diagnostics import Diagnostic, Related, Severity
 from robolang.names import names_in
-from robolang.nodes import Assign, Call, Const, Dim, For, If, Name, Node, Print, Program, Statement, Wait
-from robolang.structure import Structure
-from robolang.words import near
+from robolang.syntax import other_languages
+from robolang.syntax.ast import Assign, Call, Const, Dim, For, If, Name, Node, Print, Program, Statement, Wait
+from robolang.syntax.blocks import Structure
+from robolang.syntax.keywords import near
 
 MAX_SHOWN = 60
 """Longest text that a remedy repeats, in characters."""

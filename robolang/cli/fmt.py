@@ -77,7 +77,7 @@ class _Run:
 
     def _format(self, name: str) -> None:
         from robolang.core.diagnostics import safe
-        from robolang.formatter import format_source
+        from robolang.syntax.formatter import format_source
 
         loaded = load(name)
         found = format_source(loaded.source)

@@ -17,7 +17,7 @@ from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
     from robolang.cli.rewrite import Loaded
-    from robolang.renumber import RenumberResult
+    from robolang.syntax.renumber import RenumberResult
 
 FIRST = STEP = 10
 
@@ -52,8 +52,8 @@ def renumber(
 
 
 def _renumbered(loaded: "Loaded", start: int, step: int, remove: bool) -> "RenumberResult":
-    from robolang.renumber import remove_numbers
-    from robolang.renumber import renumber as number
+    from robolang.syntax.renumber import remove_numbers
+    from robolang.syntax.renumber import renumber as number
 
     return remove_numbers(loaded.source) if remove else number(loaded.source, start=start, step=step)
 

@@ -16,8 +16,8 @@ from robolang.core.source import Source, Span
 from robolang.lint.fixes import with_fix
 from robolang.lint.selection import Selection, is_syntax_error
 from robolang.lint.suppress import suppress
-from robolang.parser import parse
 from robolang.points import load_points
+from robolang.syntax.parser import parse
 from robolang.usage_check import named
 from runtime.core.faults import Fault
 from runtime.core.toml_places import locate

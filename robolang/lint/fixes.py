@@ -12,8 +12,8 @@ from dataclasses import replace
 
 from robolang.core.diagnostics import Diagnostic, Edit, Fix
 from robolang.core.source import Source, Span
-from robolang.parser import parse
-from robolang.words import COMPONENTS, INSTRUCTIONS, OPTIONS, look_alike
+from robolang.syntax.keywords import COMPONENTS, INSTRUCTIONS, OPTIONS, look_alike
+from robolang.syntax.parser import parse
 
 _NO_WIDTH = "\u200b\u200c\u200d\u2060\ufeff"
 _STARTS = INSTRUCTIONS | {"REM"}

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import robolang.core.codes  # noqa: F401 - selectors are compared with every code there is
 from robolang.core.diagnostics import Diagnostic, Severity
-from robolang.words import near
+from robolang.syntax.keywords import near
 from runtime.core.faults import all_codes
 
 ALL = "ALL"

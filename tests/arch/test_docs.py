@@ -26,7 +26,7 @@ from robolang.cli.main import app
 from robolang.cli.run_table import print_result
 from robolang.core.diagnostics import has_errors
 from robolang.core.source import Source
-from robolang.parser import parse
+from robolang.syntax.parser import parse
 from runtime.control.recorder import Recorder
 from runtime.core.faults import all_codes
 

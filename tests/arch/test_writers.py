@@ -25,7 +25,7 @@ OF_MODULES = {"save", "copy", "move", "rename", "replace"}
 """Names that write where they are of one of these modules; of others, they may be of a text or a list."""
 MODULES = {"os", "shutil", "np", "Path"}
 KNOWN = {
-    "robolang/grammar.py: TABLE.write_text": "run by hand, makes a file of the source",
+    "robolang/syntax/grammar.py: TABLE.write_text": "run by hand, makes a file of the source",
     "robolang/lint/pages.py: folder / name.write_text": "run by hand, makes the pages of the rules",
     "robolang/golden.py: np.savez_compressed": "to a stream of write_atomic",
     "robolang/runlog.py: np.savez": "to a stream of write_atomic",

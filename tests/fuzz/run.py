@@ -16,7 +16,7 @@ PROGRAMS = Path(__file__).parents[2] / "programs"
 OUT = Path("out/fuzz")
 
 with atheris.instrument_imports(include=["robolang", "runtime"]):
-    from robolang.words import ARGUMENTS, KEYWORDS, VALUES
+    from robolang.syntax.keywords import ARGUMENTS, KEYWORDS, VALUES
     from tests.fuzz import targets
 
 _TOML = (

@@ -12,17 +12,19 @@ from tempfile import mkdtemp
 
 import numpy as np
 
-from robolang import checker, formatter, nodes
+from robolang import checker
 from robolang.beside import builtin_cell_file
 from robolang.cell_symbols import CellSymbols
 from robolang.core.diagnostics import Severity, render, render_fault, to_json
 from robolang.core.source import Source, decode_program
 from robolang.golden import read_golden
-from robolang.grammar import line_parser
 from robolang.lint import engine
-from robolang.parser import parse
 from robolang.points import load_points
-from robolang.words import KEYWORDS
+from robolang.syntax import ast as nodes
+from robolang.syntax import formatter
+from robolang.syntax.grammar import line_parser
+from robolang.syntax.keywords import KEYWORDS
+from robolang.syntax.parser import parse
 from runtime.cell.cell import load_cell
 from runtime.core.faults import Fault, lookup
 from runtime.core.tomlfile import FileFault

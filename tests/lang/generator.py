@@ -10,8 +10,8 @@ from dataclasses import replace
 
 from hypothesis import strategies as st
 
-from robolang import nodes
-from robolang.words import ARGUMENTS, NEW, RESERVED, VALUES
+from robolang.syntax import ast as nodes
+from robolang.syntax.keywords import ARGUMENTS, NEW, RESERVED, VALUES
 
 
 def make(kind, **parts):

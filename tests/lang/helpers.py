@@ -4,8 +4,8 @@ from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
 from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import Source
-from robolang.nodes import Program
-from robolang.parser import parse
+from robolang.syntax.ast import Program
+from robolang.syntax.parser import parse
 
 Found = list[tuple[str, int, int, int]]
 

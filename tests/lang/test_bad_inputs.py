@@ -12,8 +12,8 @@ from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
 from robolang.core.source import Source, decode_program
 from robolang.interpreter import ProgramFault, execute
-from robolang.parser import parse
-from robolang.words import FUNCTIONS, VALUES
+from robolang.syntax.keywords import FUNCTIONS, VALUES
+from robolang.syntax.parser import parse
 from runtime.core.faults import Fault
 from tests.campaign import size
 from tests.lang.helpers import places

@@ -5,7 +5,7 @@ from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
 from robolang.core.diagnostics import MAX_DIAGNOSTICS, Severity
 from robolang.core.source import Span
-from robolang.parser import parse
+from robolang.syntax.parser import parse
 from tests.lang.helpers import checked, parsed, places, source
 
 

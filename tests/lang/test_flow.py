@@ -3,8 +3,8 @@
 import pytest
 
 from robolang.flow import facts_before, ways_of
-from robolang.nodes import Print
-from robolang.structure import structure_of
+from robolang.syntax.ast import Print
+from robolang.syntax.blocks import structure_of
 from robolang.tabulation import MAX_FACTS
 from tests.lang.helpers import parsed
 

@@ -20,8 +20,8 @@ from robolang.core.diagnostics import has_errors
 from robolang.effects import MoveTo, SetHand, SetPayload, Show
 from robolang.flow import facts_before, ways_of
 from robolang.interpreter import Machine, ProgramFault
-from robolang.nodes import Hand, HandState, LoadNamed, Move, Print
-from robolang.structure import structure_of, word_of
+from robolang.syntax.ast import Hand, HandState, LoadNamed, Move, Print
+from robolang.syntax.blocks import structure_of, word_of
 from tests.campaign import examples
 from tests.lang.helpers import parsed
 from tests.lang.test_branches import Still

@@ -3,8 +3,8 @@ from textwrap import dedent
 import pytest
 
 from robolang.core.source import MAX_BYTES
-from robolang.formatter import MAX_INDENT, MAX_WIDTH, format_source
-from robolang.parser import MAX_LINE
+from robolang.syntax.formatter import MAX_INDENT, MAX_WIDTH, format_source
+from robolang.syntax.parser import MAX_LINE
 from tests.lang.helpers import source
 
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from robolang import grammar, parser
 from robolang.core.source import Source
-from robolang.grammar import TABLE, line_parser, made, serialized
+from robolang.syntax import grammar, parser
+from robolang.syntax.grammar import TABLE, line_parser, made, serialized
 
 ROOT = Path(__file__).parents[2]
 PROGRAMS = sorted((ROOT / "programs").rglob("*.rbl"))
@@ -30,11 +30,11 @@ def made_once():
 
 
 def test_the_shipped_table_is_that_of_the_grammar():
-    assert TABLE.read_text("utf-8") == serialized(), "run: python -m robolang.grammar"
+    assert TABLE.read_text("utf-8") == serialized(), "run: python -m robolang.syntax.grammar"
 
 
 def test_it_is_the_same_in_every_process():
-    script = "from robolang.grammar import serialized; print(hash_of(serialized()))"
+    script = "from robolang.syntax.grammar import serialized; print(hash_of(serialized()))"
     script = f"import hashlib\nhash_of = lambda text: hashlib.sha256(text.encode()).hexdigest()\n{script}"
     said = {
         subprocess.run(

@@ -6,9 +6,9 @@ from robolang import interpreter
 from robolang.core.source import Span
 from robolang.effects import Drain, MoveTo, Origin, Pass, SetHand, SetPayload, SetSeam, SetWrist
 from robolang.interpreter import MAX_CALLS, ProgramFault, execute
-from robolang.parser import parse
 from robolang.places import Place, Shift
-from robolang.printer import describe
+from robolang.syntax.parser import parse
+from robolang.syntax.unparse import describe
 from runtime.core.program_line import named
 from tests.lang.helpers import parsed, source
 from tests.lang.running import POINTS, World, fault, ran, shows

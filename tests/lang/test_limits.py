@@ -12,10 +12,10 @@ from robolang.core.limits import SIZE
 from robolang.evaluator import MAX_TEXT
 from robolang.interpreter import MAX_CALLS, MAX_ROUNDS, execute
 from robolang.motion_check import rehearse
-from robolang.parser import parse
 from robolang.project import load_project
 from robolang.scope import MAX_CELLS, MAX_TEXTS
 from robolang.session import Session
+from robolang.syntax.parser import parse
 from runtime.core.faults import Fault
 from tests.lang.helpers import source
 from tests.lang.running import fault, ran

@@ -8,7 +8,7 @@ from robolang.core.deduplicate import MAX_NOTES
 from robolang.core.diagnostics import Severity
 from robolang.interpreter import execute
 from robolang.names import seems_to_define
-from robolang.parser import parse
+from robolang.syntax.parser import parse
 from tests.lang.helpers import places, source
 
 

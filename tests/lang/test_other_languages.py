@@ -2,12 +2,12 @@
 
 import pytest
 
-from robolang import other_languages
 from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
 from robolang.core.diagnostics import in_order
-from robolang.parser import parse
-from robolang.words import FUNCTIONS, KEYWORDS, VALUES
+from robolang.syntax import other_languages
+from robolang.syntax.keywords import FUNCTIONS, KEYWORDS, VALUES
+from robolang.syntax.parser import parse
 from tests.lang.helpers import source
 
 

@@ -4,11 +4,11 @@ import pytest
 
 from robolang.core.diagnostics import MAX_DIAGNOSTICS, Severity
 from robolang.core.source import Span
-from robolang.nodes import (
+from robolang.syntax.ast import (
     Move,
     Unparsed,
 )
-from robolang.parser import MAX_DEPTH, MAX_LINE, MAX_NUMBER_DIGITS, MAX_OPERATORS, parse
+from robolang.syntax.parser import MAX_DEPTH, MAX_LINE, MAX_NUMBER_DIGITS, MAX_OPERATORS, parse
 from tests.lang.helpers import only, parse_found, parsed, source
 
 WRIST_FORM = "WRIST KEEP, WRIST AUTO or WRIST HOLD component [, component]"

@@ -6,10 +6,10 @@ from pathlib import Path
 import lark
 import pytest
 
-from robolang import grammar
 from robolang.core.source import Span
-from robolang.grammar import line_parser
-from robolang.nodes import (
+from robolang.points import load_points
+from robolang.syntax import grammar
+from robolang.syntax.ast import (
     Accel,
     Component,
     Hand,
@@ -26,9 +26,9 @@ from robolang.nodes import (
     Wrist,
     WristMode,
 )
-from robolang.points import load_points
-from robolang.printer import describe
-from robolang.words import FUNCTIONS, KEYWORDS, VALUES
+from robolang.syntax.grammar import line_parser
+from robolang.syntax.keywords import FUNCTIONS, KEYWORDS, VALUES
+from robolang.syntax.unparse import describe
 from tests.lang.helpers import only, parse_found, parsed, source
 
 
@@ -361,7 +361,7 @@ def test_a_point_may_have_the_name_of_a_new_word(tmp_path):
 
 
 def test_a_new_instruction_clashes_with_a_variable_in_one_error_that_names_it(monkeypatch):
-    monkeypatch.setattr("robolang.parser.NEW", frozenset({"PULSE"}))
+    monkeypatch.setattr("robolang.syntax.parser.NEW", frozenset({"PULSE"}))
     for text in ("MOVE PULSE, SPEED PULSE", "*PULSE PULSE 1, 0.5", "FRAME PULSE", "x = PULSE + PULSE", "CALL f(PULSE)"):
         assert parse_found(text) == []
     assert parse_found("PULSE = 5") == [("RBL111", 1, 7, 1)]

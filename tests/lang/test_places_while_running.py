@@ -11,7 +11,7 @@ import pytest
 
 from robolang.core.source import Source
 from robolang.interpreter import ProgramFault, execute
-from robolang.parser import parse
+from robolang.syntax.parser import parse
 from tests.lang.running import POINTS, World
 
 STATEMENTS = (

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from robolang import nodes
-from robolang.parser import MAX_DEPTH, MAX_OPERATORS, parse
-from robolang.printer import describe, print_code, print_expression, print_line, print_program
+from robolang.syntax import ast as nodes
+from robolang.syntax.parser import MAX_DEPTH, MAX_OPERATORS, parse
+from robolang.syntax.unparse import describe, print_code, print_expression, print_line, print_program
 from tests.lang.helpers import only, parsed, source
 
 PAGE = """\

@@ -9,18 +9,19 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from robolang import nodes, printer
 from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
 from robolang.core.diagnostics import has_errors, render, to_json
 from robolang.core.source import read_program
-from robolang.formatter import format_source
 from robolang.interpreter import execute
-from robolang.nodes import Unparsed
-from robolang.parser import parse
-from robolang.printer import print_program
-from robolang.renumber import remove_numbers, renumber
-from robolang.structure import targets
+from robolang.syntax import ast as nodes
+from robolang.syntax import unparse as printer
+from robolang.syntax.ast import Unparsed
+from robolang.syntax.blocks import targets
+from robolang.syntax.formatter import format_source
+from robolang.syntax.parser import parse
+from robolang.syntax.renumber import remove_numbers, renumber
+from robolang.syntax.unparse import print_program
 from runtime.core.faults import Fault, lookup
 from runtime.core.tomlfile import FileFault
 from tests.campaign import examples

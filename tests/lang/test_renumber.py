@@ -3,8 +3,8 @@ from textwrap import dedent
 import pytest
 
 from robolang.core.source import MAX_BYTES
-from robolang.parser import MAX_LINE
-from robolang.renumber import MAX_NUMBER, remove_numbers, renumber
+from robolang.syntax.parser import MAX_LINE
+from robolang.syntax.renumber import MAX_NUMBER, remove_numbers, renumber
 from runtime.core.faults import Fault
 from tests.lang.helpers import places, source
 

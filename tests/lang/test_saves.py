@@ -259,7 +259,7 @@ def test_a_link_stays_and_a_further_name_keeps_the_old_text(command, program):
 
 
 def test_a_program_that_somebody_else_writes_is_left_alone(program, monkeypatch):
-    from robolang import formatter, renumber
+    from robolang.syntax import formatter, renumber
 
     for module, name, command in ((formatter, "format_source", "fmt"), (renumber, "renumber", "renumber")):
         real = getattr(module, name)

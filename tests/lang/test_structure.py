@@ -3,9 +3,9 @@
 import pytest
 
 from robolang.core.diagnostics import MAX_DIAGNOSTICS, Severity
-from robolang.nodes import Unparsed
-from robolang.parser import parse
-from robolang.structure import MAX_BLOCKS, structure_of
+from robolang.syntax.ast import Unparsed
+from robolang.syntax.blocks import MAX_BLOCKS, structure_of
+from robolang.syntax.parser import parse
 from tests.lang.helpers import parsed, places, source
 
 

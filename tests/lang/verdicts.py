@@ -24,8 +24,8 @@ from robolang.core.diagnostics import Severity
 from robolang.core.source import read_program
 from robolang.lint.engine import check_source
 from robolang.motion_check import rehearse
-from robolang.parser import parse
 from robolang.project import Project, load_project
+from robolang.syntax.parser import parse
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault
 from tests.lang.cli.commands import BUILTIN

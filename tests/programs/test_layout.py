@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from robolang.core.source import Source
-from robolang.formatter import format_source
+from robolang.syntax.formatter import format_source
 
 ROOT = Path(__file__).parents[2]
 PROGRAMS = sorted((ROOT / "programs").rglob("*.rbl"))

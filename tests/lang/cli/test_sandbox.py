@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from robolang.core.source import Source
-from robolang.formatter import format_source
+from robolang.syntax.formatter import format_source
 from tests.campaign import some
 from tests.lang.cli import watched
 from tests.lang.cli.commands import ROOT

@@ -13,9 +13,9 @@ from sys import intern
 from typing import TypeAlias
 
 from robolang.core.source import Span
-from robolang.tree import NOWHERE as NOWHERE
-from robolang.tree import Node as Node
-from robolang.tree import walk as walk
+from robolang.syntax.tree import NOWHERE as NOWHERE
+from robolang.syntax.tree import Node as Node
+from robolang.syntax.tree import walk as walk
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -15,11 +15,11 @@ from dataclasses import dataclass
 
 from robolang.core.diagnostics import Diagnostic, Related, has_errors, in_order
 from robolang.core.source import Source, Span
-from robolang.formatter import outgrown
-from robolang.mistakes import quote
-from robolang.nodes import Line, Program, Target
-from robolang.parser import MAX_LINE, MAX_NUMBER_DIGITS, parse
-from robolang.structure import targets
+from robolang.syntax.ast import Line, Program, Target
+from robolang.syntax.blocks import targets
+from robolang.syntax.formatter import outgrown
+from robolang.syntax.parser import MAX_LINE, MAX_NUMBER_DIGITS, parse
+from robolang.syntax.syntax_errors import quote
 from runtime.core.faults import Fault
 
 MAX_NUMBER = 10**MAX_NUMBER_DIGITS - 1

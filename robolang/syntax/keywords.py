@@ -9,7 +9,7 @@ import re
 import unicodedata
 from collections.abc import Iterable
 
-from robolang import other_languages
+from robolang.syntax import other_languages
 
 _INSTRUCTIONS = """
     MOVE MOVEJ MOVEC APPROACH DEPART LOAD HAND WRIST SEAM SPEED SPEEDJ ACCEL OVERRIDE ZONE TOOL FRAME OUT WAIT DELAY

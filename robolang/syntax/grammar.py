@@ -5,7 +5,7 @@ gives of it, as plain data; Lark reads it back in a tenth of the time. Nothing i
 is unpickled from a folder that others may write to. The form is that of one version of Lark: under another one the
 table is made from the grammar, as if the file were not there.
 
-``python -m robolang.grammar`` writes the file anew after a change of the grammar; a test says when that was forgotten
+``python -m robolang.syntax.grammar`` writes the file anew after a change of the grammar; a test says when that was forgotten
 (docs/decisions/0022).
 """
 
@@ -20,8 +20,8 @@ from lark import Lark, Token
 from lark.grammar import Rule
 from lark.lexer import TerminalDef
 
-from robolang.builder import builder
-from robolang.words import kind_of
+from robolang.syntax.builder import builder
+from robolang.syntax.keywords import kind_of
 
 TABLE = Path(__file__).with_name("grammar.json")
 _GRAMMAR = Path(__file__).with_name("grammar.lark")

@@ -17,11 +17,11 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from robolang import other_languages
 from robolang.core.deduplicate import Repeats
 from robolang.core.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related
 from robolang.core.source import Span
-from robolang.nodes import (
+from robolang.syntax import other_languages
+from robolang.syntax.ast import (
     Assign,
     Block,
     Call,
@@ -41,7 +41,7 @@ from robolang.nodes import (
     Unparsed,
     Wait,
 )
-from robolang.words import INSTRUCTIONS, KEYWORDS, near
+from robolang.syntax.keywords import INSTRUCTIONS, KEYWORDS, near
 
 _CLOSES = {"ENDIF": "IF", "WEND": "WHILE", "ENDSELECT": "SELECT", "ENDSUB": "SUB", "NEXT": "FOR"}
 _CLOSED_BY = {head: word for word, head in _CLOSES.items()}

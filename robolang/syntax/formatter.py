@@ -24,10 +24,10 @@ from dataclasses import dataclass, field
 
 from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import MAX_BYTES, Source, Span
-from robolang.nodes import Comment, Line, Program, Unparsed
-from robolang.parser import MAX_LINE, parse
-from robolang.printer import print_code
-from robolang.structure import targets, word_of
+from robolang.syntax.ast import Comment, Line, Program, Unparsed
+from robolang.syntax.blocks import targets, word_of
+from robolang.syntax.parser import MAX_LINE, parse
+from robolang.syntax.unparse import print_code
 
 INDENT = "  "
 MAX_INDENT = 20

@@ -10,9 +10,9 @@ from sys import intern
 
 from lark import Token, Transformer, v_args
 
-from robolang import nodes
 from robolang.core.source import Span
-from robolang.nodes import Expression
+from robolang.syntax import ast as nodes
+from robolang.syntax.ast import Expression
 
 Parsed = tuple[nodes.Name | None, nodes.Statement | None, nodes.Comment | None]
 """Label, statement and comment of a line."""

@@ -9,10 +9,10 @@ import re
 from collections.abc import Set
 from dataclasses import dataclass
 
-from robolang import other_languages
 from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import Span
-from robolang.words import (
+from robolang.syntax import other_languages
+from robolang.syntax.keywords import (
     COMPONENTS,
     COMPONENTS6,
     INNER_WORDS,

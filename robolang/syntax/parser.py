@@ -14,13 +14,13 @@ from dataclasses import dataclass
 
 from lark import Token, UnexpectedToken
 
-from robolang import nodes
-from robolang.builder import Parsed, span_of
 from robolang.core.diagnostics import HIDDEN, MAX_DIAGNOSTICS, Diagnostic, Severity, in_order
 from robolang.core.source import MAX_BYTES, Source, Span
-from robolang.grammar import line_parser
-from robolang.mistakes import Unexpected, explain, quote, suspicious
-from robolang.words import NEW
+from robolang.syntax import ast as nodes
+from robolang.syntax.builder import Parsed, span_of
+from robolang.syntax.grammar import line_parser
+from robolang.syntax.keywords import NEW
+from robolang.syntax.syntax_errors import Unexpected, explain, quote, suspicious
 
 MAX_LINE = 10_000
 MAX_DEPTH = 100

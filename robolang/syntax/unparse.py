@@ -12,9 +12,9 @@ each. Used for progress, logs and pulse tables (``describe``), and by the format
 
 from typing import TypeAlias, assert_never
 
-from robolang import nodes
-from robolang.nodes import Expression, Option, Statement
-from robolang.words import FUNCTIONS, VALUES
+from robolang.syntax import ast as nodes
+from robolang.syntax.ast import Expression, Option, Statement
+from robolang.syntax.keywords import FUNCTIONS, VALUES
 
 _OR, _AND, _NOT, _COMPARE, _SUM, _PRODUCT, _SIGNED, _POWER, _EXPONENT, _OPERAND = range(10)
 _SIGNS = {

@@ -1,0 +1,1 @@
+"""From text to tree and back: grammar, parser, formatter, line numbers."""
