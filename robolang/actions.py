@@ -13,8 +13,8 @@ from typing import Any, TypeAlias, TypeGuard
 from robolang import effects
 from robolang.core import limits
 from robolang.effects import Effect, origin
-from robolang.evaluator import Evaluator, finite
-from robolang.places import Frame, Place, Shift, Six
+from robolang.evaluation.evaluator import Evaluator, finite
+from robolang.evaluation.values import Frame, Place, Shift, Six
 from robolang.scope import Scopes
 from robolang.syntax.ast import (
     Accel,

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 from robolang.core.source import Span
-from robolang.places import Frame, Place
+from robolang.evaluation.values import Frame, Place
 from robolang.syntax.ast import Line, Statement
 from runtime.core.program_line import ProgramLine
 

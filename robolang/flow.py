@@ -15,7 +15,7 @@ none more than ``MOST_STEPS``, which bound the memory. Neither is anything said 
 lines, whose facts would take more memory than the program.
 """
 
-from robolang.constants import fixed
+from robolang.evaluation.constant_folding import fixed
 from robolang.failing import may_fail
 from robolang.syntax.ast import (
     Block,

@@ -14,9 +14,9 @@ Called for programs without errors.
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from robolang.constants import fixed
 from robolang.core.diagnostics import Diagnostic, Related, Severity
 from robolang.core.source import Span
+from robolang.evaluation.constant_folding import fixed
 from robolang.flow import MAX_LINES, facts_before, ways_of
 from robolang.reading import reads_state
 from robolang.syntax.ast import (

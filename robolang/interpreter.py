@@ -24,8 +24,8 @@ from robolang.actions import ACTIONS, Action, Actions
 from robolang.branches import Decisions
 from robolang.core import limits
 from robolang.effects import Drain, Effect, Halt, Origin, Pass, Show, origin
-from robolang.evaluator import Evaluator, Nowhere, World, finite, shown
-from robolang.places import Place
+from robolang.evaluation.evaluator import Evaluator, Nowhere, World, finite, shown
+from robolang.evaluation.values import Place
 from robolang.reading import reads_state
 from robolang.rounds import Rounds
 from robolang.scope import STOPS, Loop, Scopes

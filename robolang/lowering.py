@@ -3,7 +3,7 @@
 An effect of the interpreter and the facts of the project (taught points, cell) give a motion command, a payload or a
 waiting time. Errors are ``Fault`` values with a code; the session adds the place in the program.
 
-A place (``robolang.places``) becomes a pose of the tool point in the world:
+A place (``robolang.evaluation.values``) becomes a pose of the tool point in the world:
 
     taught pose     X_world_frame X_pose, and where it was taught with another tool X inverse(X_taught) X_tool
     taught joints   forward kinematics of them, with the tool in use; the move ends at these very joints
@@ -20,7 +20,7 @@ import numpy as np
 
 from robolang.core.limits import DWELL
 from robolang.effects import MoveTo, SetHand, SetPayload
-from robolang.places import Frame, Place, Shift, Six
+from robolang.evaluation.values import Frame, Place, Shift, Six
 from robolang.points import Point, PointStore
 from runtime.cell.cell import CellSpec
 from runtime.core.faults import Fault

@@ -10,11 +10,11 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from robolang.cell_symbols import CellSymbols
-from robolang.constants import fixed
 from robolang.core import limits
 from robolang.core.deduplicate import Repeats
 from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import Span
+from robolang.evaluation.constant_folding import fixed
 from robolang.syntax.ast import (
     Assign,
     Call,

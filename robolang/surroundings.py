@@ -9,8 +9,8 @@ from collections.abc import Callable
 import numpy as np
 
 from robolang import lowering
+from robolang.evaluation.values import Frame, Place, Six
 from robolang.lowering import Surroundings
-from robolang.places import Frame, Place, Six
 from robolang.points import PointStore
 from runtime.cell.cell import CellSpec
 from runtime.cell.signals import Signals

@@ -3,7 +3,7 @@
 import pytest
 
 from robolang.effects import Pass, Show
-from robolang.evaluator import Nowhere
+from robolang.evaluation.evaluator import Nowhere
 from robolang.interpreter import ProgramFault, execute
 from runtime.core.faults import Fault
 from tests.lang.helpers import parsed

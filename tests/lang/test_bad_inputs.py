@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from robolang import actions, effects, evaluator, interpreter, scope
+from robolang import actions, effects, interpreter, scope
 from robolang.cell_symbols import CellSymbols
 from robolang.checker import check
 from robolang.core.source import Source, decode_program
+from robolang.evaluation import evaluator
 from robolang.interpreter import ProgramFault, execute
 from robolang.syntax.keywords import FUNCTIONS, VALUES
 from robolang.syntax.parser import parse

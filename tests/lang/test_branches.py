@@ -4,7 +4,7 @@ import pytest
 
 from robolang.branches import Decisions, open_conditions
 from robolang.effects import Show
-from robolang.evaluator import Nowhere
+from robolang.evaluation.evaluator import Nowhere
 from robolang.interpreter import execute
 from tests.lang.helpers import parsed, source
 from tests.steps import assert_linear

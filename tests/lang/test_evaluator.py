@@ -2,8 +2,8 @@ import math
 
 import pytest
 
-from robolang.evaluator import MAX_SHIFTS, MAX_TEXT, Evaluator, Nowhere
-from robolang.places import Place, Shift
+from robolang.evaluation.evaluator import MAX_SHIFTS, MAX_TEXT, Evaluator, Nowhere
+from robolang.evaluation.values import Place, Shift
 from runtime.core.faults import Fault
 from tests.lang.helpers import parsed
 

@@ -9,7 +9,7 @@ from robolang.checker import check
 from robolang.core import limits
 from robolang.core.diagnostics import Severity
 from robolang.core.limits import SIZE
-from robolang.evaluator import MAX_TEXT
+from robolang.evaluation.evaluator import MAX_TEXT
 from robolang.interpreter import MAX_CALLS, MAX_ROUNDS, execute
 from robolang.motion_check import rehearse
 from robolang.project import load_project

@@ -5,10 +5,10 @@ import pytest
 
 from robolang import lowering
 from robolang.effects import MoveTo, SetPayload
-from robolang.evaluator import Nowhere
+from robolang.evaluation.evaluator import Nowhere
+from robolang.evaluation.values import Place
 from robolang.interpreter import execute
 from robolang.lowering import Surroundings
-from robolang.places import Place
 from robolang.project import builtin_cell, load_project
 from runtime.core.faults import Fault
 from runtime.motion.commands import MoveArc, MoveJoint, MoveLinear

@@ -2,7 +2,7 @@ import pytest
 
 import robolang.scope as scope_module
 from robolang.core.limits import SIZE
-from robolang.places import Place, Shift
+from robolang.evaluation.values import Place, Shift
 from robolang.scope import WAY, Scopes
 from runtime.core.faults import Fault
 

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Mapping
 from typing import NoReturn, Protocol
 
-from robolang.places import Frame, Place, Shift, Six, Value, kind_of
+from robolang.evaluation.values import Frame, Place, Shift, Six, Value, kind_of
 from robolang.syntax.ast import Call, Chain, Component6, Expression, Name, Negate, Not, Number, Text, Vector
 from robolang.syntax.keywords import ARGUMENTS, COMPONENTS6, VALUES
 from runtime.core.faults import Fault

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from typing import NoReturn
 
 from robolang.core.diagnostics import Diagnostic
-from robolang.evaluator import Evaluator, Nowhere
-from robolang.places import Value
+from robolang.evaluation.evaluator import Evaluator, Nowhere
+from robolang.evaluation.values import Value
 from robolang.syntax.ast import Call, Expression, Name, Negate, Number, Text, walk
 from runtime.core.faults import Fault
 

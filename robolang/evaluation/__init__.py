@@ -1,0 +1,1 @@
+"""Values of expressions: numbers, texts, poses; what the text alone gives."""
