@@ -12,8 +12,8 @@ from functools import cache
 from importlib import resources
 from pathlib import Path
 
+from robolang.analysis.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.builtin import cell_text
-from robolang.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.points import PointStore, load_points
 from runtime.cell.cell_file import CellFile, parse_cell_file, read_arm_alone, read_cell_file
 from runtime.core.faults import Fault

@@ -9,8 +9,8 @@ such a value somewhere. What depends on numbers of the program alone goes the wa
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from robolang.analysis.symbols import names_in
 from robolang.core.source import Span
-from robolang.names import names_in
 from robolang.syntax.ast import (
     Assign,
     Call,

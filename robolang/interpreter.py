@@ -21,12 +21,12 @@ import math
 from collections.abc import Callable, Collection, Generator
 
 from robolang.actions import ACTIONS, Action, Actions
+from robolang.analysis.state_reads import reads_state
 from robolang.branches import Decisions
 from robolang.core import limits
 from robolang.effects import Drain, Effect, Halt, Origin, Pass, Show, origin
 from robolang.evaluation.evaluator import Evaluator, Nowhere, World, finite, shown
 from robolang.evaluation.values import Place
-from robolang.reading import reads_state
 from robolang.rounds import Rounds
 from robolang.scope import STOPS, Loop, Scopes
 from robolang.syntax.ast import (

@@ -26,7 +26,7 @@ from types import MappingProxyType
 from typing import NoReturn
 
 import robolang.core.codes  # noqa: F401 - the codes raised here must be registered
-from robolang.cell_symbols import NOTHING_KNOWN, CellSymbols
+from robolang.analysis.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.syntax.keywords import RESERVED, near
 from runtime.core.faults import lookup
 from runtime.core.tomlfile import FileFault, Source, Table, load_table, read_source

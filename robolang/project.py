@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from robolang import beside
+from robolang.analysis.checker import check
 from robolang.beside import CellFiles, controller_settings, read_beside
-from robolang.checker import check
 from robolang.core.diagnostics import Diagnostic, has_errors, in_order
 from robolang.core.source import Source, read_program
 from robolang.points import PointStore

@@ -20,8 +20,8 @@ from typer.main import get_command
 
 import robolang
 import runtime
-from robolang.cell_symbols import CellSymbols
-from robolang.checker import check
+from robolang.analysis.cell_symbols import CellSymbols
+from robolang.analysis.checker import check
 from robolang.cli.main import app
 from robolang.cli.run_table import print_result
 from robolang.core.diagnostics import has_errors

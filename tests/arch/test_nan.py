@@ -24,7 +24,7 @@ MEASURE = re.compile(r"\w+_(mm|deg|pct|hz)|speed|acceleration|jerk|ratio|length|
 FILE = "read from a file, and what is read is finite"
 WHOLE = "whole numbers"
 OPEN = {
-    "robolang/checker.py: line.number < previous": WHOLE,
+    "robolang/analysis/checker.py: line.number < previous": WHOLE,
     "robolang/golden.py: size < _END.size": WHOLE,
     "robolang/interpreter.py: rounds > MAX_ROUNDS": "the language has no NaN",
     "runtime/cell/signals.py: round(seconds * 1000000.0) <= changes[-1][0]": WHOLE,

@@ -12,9 +12,9 @@ from tempfile import mkdtemp
 
 import numpy as np
 
-from robolang import checker
+from robolang.analysis import checker
+from robolang.analysis.cell_symbols import CellSymbols
 from robolang.beside import builtin_cell_file
-from robolang.cell_symbols import CellSymbols
 from robolang.core.diagnostics import Severity, render, render_fault, to_json
 from robolang.core.source import Source, decode_program
 from robolang.golden import read_golden

@@ -1,7 +1,7 @@
 """Short ways to parse a text and to say what was found where."""
 
-from robolang.cell_symbols import CellSymbols
-from robolang.checker import check
+from robolang.analysis.cell_symbols import CellSymbols
+from robolang.analysis.checker import check
 from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import Source
 from robolang.syntax.ast import Program

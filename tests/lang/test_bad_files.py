@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from robolang.analysis.cell_symbols import CellSymbols
 from robolang.beside import builtin_cell_file
-from robolang.cell_symbols import CellSymbols
 from robolang.core.source import read_program
 from robolang.lint.settings import Settings
 from robolang.points import load_points

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from robolang import actions, effects, interpreter, scope
-from robolang.cell_symbols import CellSymbols
-from robolang.checker import check
+from robolang.analysis.cell_symbols import CellSymbols
+from robolang.analysis.checker import check
 from robolang.core.source import Source, decode_program
 from robolang.evaluation import evaluator
 from robolang.interpreter import ProgramFault, execute

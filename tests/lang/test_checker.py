@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from robolang.cell_symbols import CellSymbols
-from robolang.checker import check
+from robolang.analysis.cell_symbols import CellSymbols
+from robolang.analysis.checker import check
 from robolang.core.diagnostics import MAX_DIAGNOSTICS, Severity
 from robolang.core.source import Span
 from robolang.syntax.parser import parse

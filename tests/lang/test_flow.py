@@ -2,10 +2,10 @@
 
 import pytest
 
-from robolang.flow import facts_before, ways_of
+from robolang.analysis.dataflow import facts_before, ways_of
+from robolang.analysis.tabulation import MAX_FACTS
 from robolang.syntax.ast import Print
 from robolang.syntax.blocks import structure_of
-from robolang.tabulation import MAX_FACTS
 from tests.lang.helpers import parsed
 
 

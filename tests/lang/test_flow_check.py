@@ -2,8 +2,8 @@
 
 import pytest
 
-from robolang import flow_check
-from robolang.checker import check
+from robolang.analysis import flow_check
+from robolang.analysis.checker import check
 from tests.lang.helpers import checked, parsed
 
 LISTING = """10 LOAD (0, 0, 60), 0.8

@@ -14,11 +14,11 @@ from collections import defaultdict
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robolang.analysis.checker import check
+from robolang.analysis.dataflow import facts_before, ways_of
 from robolang.branches import Decisions, open_conditions
-from robolang.checker import check
 from robolang.core.diagnostics import has_errors
 from robolang.effects import MoveTo, SetHand, SetPayload, Show
-from robolang.flow import facts_before, ways_of
 from robolang.interpreter import Machine, ProgramFault
 from robolang.syntax.ast import Hand, HandState, LoadNamed, Move, Print
 from robolang.syntax.blocks import structure_of, word_of

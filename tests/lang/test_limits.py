@@ -5,7 +5,7 @@ import math
 import pytest
 
 from robolang import interpreter, motion_check, session
-from robolang.checker import check
+from robolang.analysis.checker import check
 from robolang.core import limits
 from robolang.core.diagnostics import Severity
 from robolang.core.limits import SIZE

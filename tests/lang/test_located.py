@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from robolang.cell_symbols import CellSymbols
+from robolang.analysis.cell_symbols import CellSymbols
 from robolang.core.diagnostics import Diagnostic, render, to_json
 from robolang.core.source import Source, Span
 from robolang.lint.engine import Checked, lint

@@ -2,12 +2,12 @@
 
 import pytest
 
-from robolang.cell_symbols import CellSymbols
-from robolang.checker import check
+from robolang.analysis.cell_symbols import CellSymbols
+from robolang.analysis.checker import check
+from robolang.analysis.symbols import seems_to_define
 from robolang.core.deduplicate import MAX_NOTES
 from robolang.core.diagnostics import Severity
 from robolang.interpreter import execute
-from robolang.names import seems_to_define
 from robolang.syntax.parser import parse
 from tests.lang.helpers import places, source
 

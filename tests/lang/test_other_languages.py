@@ -2,8 +2,8 @@
 
 import pytest
 
-from robolang.cell_symbols import CellSymbols
-from robolang.checker import check
+from robolang.analysis.cell_symbols import CellSymbols
+from robolang.analysis.checker import check
 from robolang.core.diagnostics import in_order
 from robolang.syntax import other_languages
 from robolang.syntax.keywords import FUNCTIONS, KEYWORDS, VALUES

@@ -2,8 +2,8 @@ import os
 
 import pytest
 
+from robolang.analysis.cell_symbols import CellSymbols
 from robolang.beside import builtin_cell_file
-from robolang.cell_symbols import CellSymbols
 from robolang.points import Point, load_points
 from runtime.core.tomlfile import FileFault
 

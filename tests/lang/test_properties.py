@@ -9,8 +9,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from robolang.cell_symbols import CellSymbols
-from robolang.checker import check
+from robolang.analysis.cell_symbols import CellSymbols
+from robolang.analysis.checker import check
 from robolang.core.diagnostics import has_errors, render, to_json
 from robolang.core.source import read_program
 from robolang.interpreter import execute

@@ -64,7 +64,7 @@ def test_what_rounding_cannot_part(text):
     ],
 )
 def test_the_remedy_is_written_out(text, remedy):
-    from robolang.rounding_check import rounding_check
+    from robolang.analysis.rounding_check import rounding_check
 
     (diagnostic,) = rounding_check(parsed(text))
     assert diagnostic.hint == remedy

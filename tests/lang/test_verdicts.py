@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from robolang import expression_check, statement_check
+from robolang.analysis import expression_check, statement_check
 from robolang.core.diagnostics import has_errors
 from robolang.core.source import Source
 from robolang.lint import engine

@@ -1,6 +1,6 @@
 """Short ways to lint a text in this process and to say what was found where."""
 
-from robolang.cell_symbols import CellSymbols
+from robolang.analysis.cell_symbols import CellSymbols
 from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import Source
 from robolang.lint.engine import Checked, lint

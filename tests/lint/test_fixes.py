@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import pytest
 
-from robolang.cell_symbols import CellSymbols
+from robolang.analysis.cell_symbols import CellSymbols
 from robolang.core.diagnostics import Diagnostic, Edit, Fix
 from robolang.core.source import Source, Span
 from robolang.lint.apply import edited, fix_all

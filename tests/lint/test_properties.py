@@ -7,7 +7,7 @@ from pathlib import Path
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from robolang.cell_symbols import CellSymbols
+from robolang.analysis.cell_symbols import CellSymbols
 from robolang.core.diagnostics import MAX_DIAGNOSTICS
 from robolang.core.source import Source
 from robolang.lint.apply import fix_all

@@ -2,7 +2,7 @@
 
 import pytest
 
-from robolang.cell_symbols import CellSymbols
+from robolang.analysis.cell_symbols import CellSymbols
 from robolang.core.diagnostics import Severity, has_errors
 from robolang.core.source import Source, read_program
 from robolang.lint import meaning_rules, motion_rules, planning_rules, point_rules, run_rules, text_rules

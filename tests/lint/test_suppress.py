@@ -2,7 +2,7 @@
 
 import pytest
 
-from robolang.cell_symbols import CellSymbols
+from robolang.analysis.cell_symbols import CellSymbols
 from robolang.core.diagnostics import MAX_DIAGNOSTICS, Diagnostic
 from robolang.core.source import Source, Span
 from robolang.lint.apply import fix_all

@@ -6,10 +6,10 @@ Taught points that nothing names are found with ``named``; their finding stands 
 import re
 from collections.abc import Iterator
 
+from robolang.analysis.symbols import names_in
 from robolang.core import limits
 from robolang.core.diagnostics import Diagnostic, Related, Severity
 from robolang.evaluation.constant_folding import fixed
-from robolang.names import names_in
 from robolang.syntax import other_languages
 from robolang.syntax.ast import Assign, Call, Const, Dim, For, If, Name, Node, Print, Program, Statement, Wait
 from robolang.syntax.blocks import Structure

@@ -9,7 +9,7 @@ import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
-from robolang.cell_symbols import CellSymbols
+from robolang.analysis.cell_symbols import CellSymbols
 from robolang.core import limits
 from robolang.core.deduplicate import Repeats
 from robolang.core.diagnostics import Diagnostic

@@ -15,8 +15,9 @@ none more than ``MOST_STEPS``, which bound the memory. Neither is anything said 
 lines, whose facts would take more memory than the program.
 """
 
+from robolang.analysis.failing import may_fail
+from robolang.analysis.tabulation import STOPS, Fact, Kind, Search, Step, Way, Ways
 from robolang.evaluation.constant_folding import fixed
-from robolang.failing import may_fail
 from robolang.syntax.ast import (
     Block,
     CallSub,
@@ -34,7 +35,6 @@ from robolang.syntax.ast import (
     Word,
 )
 from robolang.syntax.blocks import Structure
-from robolang.tabulation import STOPS, Fact, Kind, Search, Step, Way, Ways
 
 MAX_LINES = 50_000
 

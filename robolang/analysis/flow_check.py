@@ -14,11 +14,12 @@ Called for programs without errors.
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from robolang.analysis.dataflow import MAX_LINES, facts_before, ways_of
+from robolang.analysis.state_reads import reads_state
+from robolang.analysis.tabulation import Way, Ways
 from robolang.core.diagnostics import Diagnostic, Related, Severity
 from robolang.core.source import Span
 from robolang.evaluation.constant_folding import fixed
-from robolang.flow import MAX_LINES, facts_before, ways_of
-from robolang.reading import reads_state
 from robolang.syntax.ast import (
     Approach,
     Delay,
@@ -48,7 +49,6 @@ from robolang.syntax.ast import (
     Zone,
 )
 from robolang.syntax.blocks import Structure, word_of
-from robolang.tabulation import Way, Ways
 
 _STOPS = (Load, LoadNamed, Hand, Seam, Out, Pulse, Delay, Wait, Print)
 """Statements before which the arm comes to rest, besides TOOL, PAUSE and the end."""

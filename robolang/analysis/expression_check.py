@@ -3,10 +3,10 @@
 import math
 from collections.abc import Iterator
 
-from robolang.cell_symbols import CellSymbols
+from robolang.analysis.cell_symbols import CellSymbols
+from robolang.analysis.symbols import Defined, hint_for
 from robolang.core.diagnostics import Diagnostic, Severity
 from robolang.evaluation.constant_folding import fixed, no_value
-from robolang.names import Defined, hint_for
 from robolang.syntax import other_languages
 from robolang.syntax.ast import (
     Call,

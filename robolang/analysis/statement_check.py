@@ -7,14 +7,14 @@ Ranges are those of ``limits``, by which the interpreter judges as well; what th
 import math
 from collections.abc import Callable, Iterator
 
-from robolang.cell_symbols import CellSymbols
+from robolang.analysis.cell_symbols import CellSymbols
+from robolang.analysis.expression_check import ExpressionCheck
+from robolang.analysis.symbols import Defined, hint_for, names_hint, of_cell
 from robolang.core import limits
 from robolang.core.diagnostics import Diagnostic, Related, Severity
 from robolang.core.limits import Limit
 from robolang.core.source import Span
 from robolang.evaluation.constant_folding import fixed
-from robolang.expression_check import ExpressionCheck
-from robolang.names import Defined, hint_for, names_hint, of_cell
 from robolang.syntax import other_languages
 from robolang.syntax.ast import (
     Accel,

@@ -15,17 +15,17 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 from itertools import chain, islice
 
-from robolang.cell_symbols import NOTHING_KNOWN, CellSymbols
+from robolang.analysis.cell_symbols import NOTHING_KNOWN, CellSymbols
+from robolang.analysis.flow_check import flow_check
+from robolang.analysis.rounding_check import rounding_check
+from robolang.analysis.statement_check import StatementCheck
+from robolang.analysis.symbols import Defined
+from robolang.analysis.usage_check import loop_check, quote_check, usage_check, wait_check
 from robolang.core.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related, Severity, has_errors, in_order
 from robolang.core.source import Span
-from robolang.flow_check import flow_check
-from robolang.names import Defined
-from robolang.rounding_check import rounding_check
-from robolang.statement_check import StatementCheck
 from robolang.syntax.ast import Line, Program, Unparsed
 from robolang.syntax.blocks import Structure, structure_of
 from robolang.syntax.tree import is_deeper
-from robolang.usage_check import loop_check, quote_check, usage_check, wait_check
 
 MAX_LEVELS = 150
 """Deepest tree of a statement: expressions are evaluated by recursion, in at most five calls for a level."""

@@ -1,0 +1,1 @@
+"""What is wrong with a program, known without running it."""
