@@ -8,7 +8,7 @@ from itertools import groupby
 
 from robolang.core.diagnostics import Diagnostic, Related, Severity, to_json
 from robolang.core.source import Source, Span
-from robolang.effects import Origin
+from robolang.interpreter.effects import Origin
 from runtime.core.faults import Alarm
 from runtime.core.program_line import ProgramLine
 

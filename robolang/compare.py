@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from robolang.effects import Effect, SetPayload
+from robolang.interpreter.effects import Effect, SetPayload
 from robolang.lowering import payload
 from robolang.project import Project, load_project
 from robolang.result import StatementRun

@@ -12,8 +12,8 @@ from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from robolang.branches import Decisions, open_conditions
 from robolang.core.source import Span
+from robolang.interpreter.branches import Decisions, open_conditions
 from robolang.motion_check import Rehearsal, rehearse
 from robolang.plan_memory import PlanMemory
 from robolang.project import Project

@@ -19,8 +19,8 @@ from typing import cast
 import numpy as np
 
 from robolang.core.limits import DWELL
-from robolang.effects import MoveTo, SetHand, SetPayload
 from robolang.evaluation.values import Frame, Place, Shift, Six
+from robolang.interpreter.effects import MoveTo, SetHand, SetPayload
 from robolang.points import Point, PointStore
 from runtime.cell.cell import CellSpec
 from runtime.core.faults import Fault

@@ -16,10 +16,10 @@ import numpy as np
 
 from robolang import lowering
 from robolang.alarms import calls
-from robolang.branches import Decisions
 from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import Span
-from robolang.effects import (
+from robolang.interpreter.branches import Decisions
+from robolang.interpreter.effects import (
     Drain,
     Effect,
     Halt,
@@ -32,7 +32,7 @@ from robolang.effects import (
     SetTool,
     SetWrist,
 )
-from robolang.interpreter import Machine, ProgramFault
+from robolang.interpreter.machine import Machine, ProgramFault
 from robolang.lowering import Command
 from robolang.plan_memory import PlanMemory
 from robolang.project import Project

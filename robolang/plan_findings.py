@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robolang.effects import MoveTo
+from robolang.interpreter.effects import MoveTo
 from robolang.lowering import Command
 from robolang.project import Project
 from runtime.core.frames import Array

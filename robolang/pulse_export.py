@@ -17,8 +17,8 @@ import numpy as np
 from robolang import lowering
 from robolang.alarms import calls
 from robolang.core.diagnostics import Diagnostic
-from robolang.effects import Drain, Effect, MoveTo, SetHand, SetPayload, SetSeam, SetTool, SetWrist
-from robolang.interpreter import ProgramFault, execute
+from robolang.interpreter.effects import Drain, Effect, MoveTo, SetHand, SetPayload, SetSeam, SetTool, SetWrist
+from robolang.interpreter.machine import ProgramFault, execute
 from robolang.lowering import Surroundings
 from robolang.project import Project
 from robolang.syntax.ast import Delay, Number, Wait

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from robolang.core.diagnostics import Diagnostic
-from robolang.effects import Origin
+from robolang.interpreter.effects import Origin
 from robolang.project import Project
 from runtime.control.controller import Controller
 from runtime.core.frames import Array

@@ -16,7 +16,7 @@ from robolang import lowering
 from robolang.alarms import as_diagnostic
 from robolang.core.diagnostics import Diagnostic, Severity, render
 from robolang.core.source import Span
-from robolang.effects import (
+from robolang.interpreter.effects import (
     Drain,
     Effect,
     Halt,
@@ -31,7 +31,7 @@ from robolang.effects import (
     SetWrist,
     Show,
 )
-from robolang.interpreter import Machine, ProgramFault
+from robolang.interpreter.machine import Machine, ProgramFault
 from robolang.lowering import Command
 from robolang.motion_check import MAX_CHAIN, MAX_RUN_US, motion_check
 from robolang.plan_findings import PlanFindings, PlannedMove

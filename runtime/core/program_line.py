@@ -3,7 +3,7 @@
 A line is counted in two manners that are never put into one field. ``line`` is its place in the file, from 1: that is
 what editors, diagnostics and people who look at the file go by. ``number`` is the line number that the programmer has
 written before the statement (``30 MOVE P1``), which GOTO goes by; most lines have none. The front end derives from this
-class what it knows more (``robolang.effects.Origin``), and gets it back from an alarm.
+class what it knows more (``robolang.interpreter.effects.Origin``), and gets it back from an alarm.
 """
 
 from dataclasses import dataclass

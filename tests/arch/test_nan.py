@@ -26,7 +26,7 @@ WHOLE = "whole numbers"
 OPEN = {
     "robolang/analysis/checker.py: line.number < previous": WHOLE,
     "robolang/golden.py: size < _END.size": WHOLE,
-    "robolang/interpreter.py: rounds > MAX_ROUNDS": "the language has no NaN",
+    "robolang/interpreter/machine.py: rounds > MAX_ROUNDS": "the language has no NaN",
     "runtime/cell/signals.py: round(seconds * 1000000.0) <= changes[-1][0]": WHOLE,
     "runtime/pulses/folder.py: steps > most": WHOLE,
     "runtime/robot/files/corrections.py: mass > 0.0": FILE,

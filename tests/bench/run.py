@@ -15,7 +15,7 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
-from robolang.effects import MoveTo
+from robolang.interpreter.effects import MoveTo
 from robolang.project import Project, load_project
 from robolang.session import Session
 from runtime.plant.mujoco_plant import MujocoPlant

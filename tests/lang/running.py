@@ -2,9 +2,9 @@
 
 import pytest
 
-from robolang.effects import Pass, Show
 from robolang.evaluation.evaluator import Nowhere
-from robolang.interpreter import ProgramFault, execute
+from robolang.interpreter.effects import Pass, Show
+from robolang.interpreter.machine import ProgramFault, execute
 from runtime.core.faults import Fault
 from tests.lang.helpers import parsed
 

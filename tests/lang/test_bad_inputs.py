@@ -7,12 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from robolang import actions, effects, interpreter, scope
 from robolang.analysis.cell_symbols import CellSymbols
 from robolang.analysis.checker import check
 from robolang.core.source import Source, decode_program
 from robolang.evaluation import evaluator
-from robolang.interpreter import ProgramFault, execute
+from robolang.interpreter import actions, effects, scope
+from robolang.interpreter import machine as interpreter
+from robolang.interpreter.machine import ProgramFault, execute
 from robolang.syntax.keywords import FUNCTIONS, VALUES
 from robolang.syntax.parser import parse
 from runtime.core.faults import Fault

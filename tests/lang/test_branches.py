@@ -2,10 +2,10 @@
 
 import pytest
 
-from robolang.branches import Decisions, open_conditions
-from robolang.effects import Show
 from robolang.evaluation.evaluator import Nowhere
-from robolang.interpreter import execute
+from robolang.interpreter.branches import Decisions, open_conditions
+from robolang.interpreter.effects import Show
+from robolang.interpreter.machine import execute
 from tests.lang.helpers import parsed, source
 from tests.steps import assert_linear
 

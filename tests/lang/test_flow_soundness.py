@@ -16,10 +16,10 @@ from hypothesis import strategies as st
 
 from robolang.analysis.checker import check
 from robolang.analysis.dataflow import facts_before, ways_of
-from robolang.branches import Decisions, open_conditions
 from robolang.core.diagnostics import has_errors
-from robolang.effects import MoveTo, SetHand, SetPayload, Show
-from robolang.interpreter import Machine, ProgramFault
+from robolang.interpreter.branches import Decisions, open_conditions
+from robolang.interpreter.effects import MoveTo, SetHand, SetPayload, Show
+from robolang.interpreter.machine import Machine, ProgramFault
 from robolang.syntax.ast import Hand, HandState, LoadNamed, Move, Print
 from robolang.syntax.blocks import structure_of, word_of
 from tests.campaign import examples

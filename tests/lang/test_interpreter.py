@@ -2,11 +2,11 @@ from pathlib import Path
 
 import pytest
 
-from robolang import interpreter
 from robolang.core.source import Span
-from robolang.effects import Drain, MoveTo, Origin, Pass, SetHand, SetPayload, SetSeam, SetWrist
 from robolang.evaluation.values import Place, Shift
-from robolang.interpreter import MAX_CALLS, ProgramFault, execute
+from robolang.interpreter import machine as interpreter
+from robolang.interpreter.effects import Drain, MoveTo, Origin, Pass, SetHand, SetPayload, SetSeam, SetWrist
+from robolang.interpreter.machine import MAX_CALLS, ProgramFault, execute
 from robolang.syntax.parser import parse
 from robolang.syntax.unparse import describe
 from runtime.core.program_line import named

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from robolang import lowering
-from robolang.effects import MoveTo, SetPayload
 from robolang.evaluation.evaluator import Nowhere
 from robolang.evaluation.values import Place
-from robolang.interpreter import execute
+from robolang.interpreter.effects import MoveTo, SetPayload
+from robolang.interpreter.machine import execute
 from robolang.lowering import Surroundings
 from robolang.project import builtin_cell, load_project
 from runtime.core.faults import Fault

@@ -7,7 +7,7 @@ from robolang.analysis.checker import check
 from robolang.analysis.symbols import seems_to_define
 from robolang.core.deduplicate import MAX_NOTES
 from robolang.core.diagnostics import Severity
-from robolang.interpreter import execute
+from robolang.interpreter.machine import execute
 from robolang.syntax.parser import parse
 from tests.lang.helpers import places, source
 

@@ -2,10 +2,10 @@
 
 import pytest
 
-from robolang import interpreter
 from robolang.core.source import Span
-from robolang.effects import MoveTo, Show
-from robolang.interpreter import MAX_CALLS, ProgramFault, execute
+from robolang.interpreter import machine as interpreter
+from robolang.interpreter.effects import MoveTo, Show
+from robolang.interpreter.machine import MAX_CALLS, ProgramFault, execute
 from runtime.core.faults import Fault
 from tests.lang.helpers import parsed
 from tests.lang.running import POINTS, World, fault, shows

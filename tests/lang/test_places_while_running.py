@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from robolang.core.source import Source
-from robolang.interpreter import ProgramFault, execute
+from robolang.interpreter.machine import ProgramFault, execute
 from robolang.syntax.parser import parse
 from tests.lang.running import POINTS, World
 

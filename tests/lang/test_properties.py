@@ -13,7 +13,7 @@ from robolang.analysis.cell_symbols import CellSymbols
 from robolang.analysis.checker import check
 from robolang.core.diagnostics import has_errors, render, to_json
 from robolang.core.source import read_program
-from robolang.interpreter import execute
+from robolang.interpreter.machine import execute
 from robolang.syntax import ast as nodes
 from robolang.syntax import unparse as printer
 from robolang.syntax.ast import Unparsed

@@ -3,9 +3,9 @@
 import pytest
 
 from robolang import motion_check, session
+from robolang.interpreter.rounds import Rounds
 from robolang.motion_check import rehearse
 from robolang.project import load_project
-from robolang.rounds import Rounds
 from robolang.session import Session
 
 TEXTS = {

@@ -1,9 +1,9 @@
 import pytest
 
-import robolang.scope as scope_module
+import robolang.interpreter.scope as scope_module
 from robolang.core.limits import SIZE
 from robolang.evaluation.values import Place, Shift
-from robolang.scope import WAY, Scopes
+from robolang.interpreter.scope import WAY, Scopes
 from runtime.core.faults import Fault
 
 MAX_ELEMENTS = int(SIZE.high) + 1

@@ -7,9 +7,9 @@ from importlib import resources
 import pytest
 
 from robolang import exploration, motion_findings
-from robolang.branches import Decisions
 from robolang.core.source import Span
 from robolang.exploration import _queue, explore
+from robolang.interpreter.branches import Decisions
 from robolang.motion_check import rehearse
 from robolang.motion_findings import findings
 from robolang.project import load_project

@@ -20,15 +20,15 @@ head; ``MAX_STEPS`` statements are RBL505; ``MAX_CALLS`` CALLs or GOSUBs within 
 import math
 from collections.abc import Callable, Collection, Generator
 
-from robolang.actions import ACTIONS, Action, Actions
 from robolang.analysis.state_reads import reads_state
-from robolang.branches import Decisions
 from robolang.core import limits
-from robolang.effects import Drain, Effect, Halt, Origin, Pass, Show, origin
 from robolang.evaluation.evaluator import Evaluator, Nowhere, World, finite, shown
 from robolang.evaluation.values import Place
-from robolang.rounds import Rounds
-from robolang.scope import STOPS, Loop, Scopes
+from robolang.interpreter.actions import ACTIONS, Action, Actions
+from robolang.interpreter.branches import Decisions
+from robolang.interpreter.effects import Drain, Effect, Halt, Origin, Pass, Show, origin
+from robolang.interpreter.rounds import Rounds
+from robolang.interpreter.scope import STOPS, Loop, Scopes
 from robolang.syntax.ast import (
     Assign,
     Block,

@@ -10,12 +10,12 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, TypeAlias, TypeGuard
 
-from robolang import effects
 from robolang.core import limits
-from robolang.effects import Effect, origin
 from robolang.evaluation.evaluator import Evaluator, finite
 from robolang.evaluation.values import Frame, Place, Shift, Six
-from robolang.scope import Scopes
+from robolang.interpreter import effects
+from robolang.interpreter.effects import Effect, origin
+from robolang.interpreter.scope import Scopes
 from robolang.syntax.ast import (
     Accel,
     Approach,

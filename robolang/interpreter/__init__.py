@@ -1,0 +1,1 @@
+"""Statements to effects: scopes, evaluation of statements, the vocabulary of effects. No robot, no clock."""
