@@ -23,7 +23,7 @@ import numpy as np
 
 from robolang.interpreter.effects import Effect, SetPayload
 from robolang.lowering import payload
-from robolang.project import Project, load_project
+from robolang.project.project import Project, load_project
 from robolang.result import StatementRun
 from robolang.session import Session
 from runtime.cell.cell import CellSpec

@@ -16,7 +16,7 @@ from robolang.core.source import Span
 from robolang.interpreter.branches import Decisions, open_conditions
 from robolang.motion_check import Rehearsal, rehearse
 from robolang.plan_memory import PlanMemory
-from robolang.project import Project
+from robolang.project.project import Project
 from robolang.syntax.ast import If, Moving, Statement
 
 MOST_DETOURS = 60

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robolang.motion_check import Rehearsal, RehearsedMove
-from robolang.project import Project
+from robolang.project.project import Project
 from robolang.syntax.unparse import describe
 from runtime.core.units import DEG, MM
 from runtime.robot.kinematics.kinematics import Kinematics

@@ -21,7 +21,7 @@ import numpy as np
 from robolang.core.limits import DWELL
 from robolang.evaluation.values import Frame, Place, Shift, Six
 from robolang.interpreter.effects import MoveTo, SetHand, SetPayload
-from robolang.points import Point, PointStore
+from robolang.project.points import Point, PointStore
 from runtime.cell.cell import CellSpec
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, inverse, pose_from_xyzrpy, xyzrpy_from_pose

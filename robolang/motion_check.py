@@ -35,7 +35,7 @@ from robolang.interpreter.effects import (
 from robolang.interpreter.machine import Machine, ProgramFault
 from robolang.lowering import Command
 from robolang.plan_memory import PlanMemory
-from robolang.project import Project
+from robolang.project.project import Project
 from robolang.surroundings import RobotWorld
 from robolang.syntax.ast import Delay, Wait
 from runtime.core.faults import Fault

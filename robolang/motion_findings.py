@@ -24,7 +24,7 @@ from robolang.line_times import range_margin
 from robolang.motion_check import Rehearsal, RehearsedMove
 from robolang.part_findings import CellTouches
 from robolang.plan_findings import PlanFindings, PlannedMove
-from robolang.project import Project
+from robolang.project.project import Project
 from runtime.core.rounding import beside
 from runtime.core.units import DEG, MM
 from runtime.motion.cartesian_planner import FOLLOWS

@@ -21,7 +21,7 @@ import numpy as np
 from robolang.core.diagnostics import Diagnostic, Severity
 from robolang.core.source import Span
 from robolang.motion_check import Rehearsal, RehearsedHand, RehearsedMove
-from robolang.project import Project
+from robolang.project.project import Project
 from runtime.core.frames import Array, inverse, pose
 from runtime.plant.mujoco_plant import CLEARANCE, MARGIN, MujocoPlant
 from runtime.plant.touches import NOTICED, shape_text

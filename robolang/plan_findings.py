@@ -18,7 +18,7 @@ import numpy as np
 
 from robolang.interpreter.effects import MoveTo
 from robolang.lowering import Command
-from robolang.project import Project
+from robolang.project.project import Project
 from runtime.core.frames import Array
 from runtime.core.rounding import beside, down, up
 from runtime.core.units import DEG, MM

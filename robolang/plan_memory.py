@@ -10,7 +10,7 @@ from dataclasses import fields
 import numpy as np
 
 from robolang.lowering import Command
-from robolang.project import Project
+from robolang.project.project import Project
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.motion.cartesian_planner import LinePlan

@@ -20,7 +20,7 @@ from robolang.core.diagnostics import Diagnostic
 from robolang.interpreter.effects import Drain, Effect, MoveTo, SetHand, SetPayload, SetSeam, SetTool, SetWrist
 from robolang.interpreter.machine import ProgramFault, execute
 from robolang.lowering import Surroundings
-from robolang.project import Project
+from robolang.project.project import Project
 from robolang.syntax.ast import Delay, Number, Wait
 from robolang.syntax.unparse import describe
 from runtime.core.faults import Fault

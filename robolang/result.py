@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 from robolang.core.diagnostics import Diagnostic
 from robolang.interpreter.effects import Origin
-from robolang.project import Project
+from robolang.project.project import Project
 from runtime.control.controller import Controller
 from runtime.core.frames import Array
 from runtime.motion.cartesian_planner import WristChange

@@ -35,7 +35,7 @@ from robolang.interpreter.machine import Machine, ProgramFault
 from robolang.lowering import Command
 from robolang.motion_check import MAX_CHAIN, MAX_RUN_US, motion_check
 from robolang.plan_findings import PlanFindings, PlannedMove
-from robolang.project import Project, load_project
+from robolang.project.project import Project, load_project
 from robolang.report import build_report
 from robolang.result import RunRecord, RunResult, StatementRun
 from robolang.surroundings import RobotWorld

@@ -14,7 +14,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from robolang.project import builtin_cell
+from robolang.project.project import builtin_cell
 from runtime.cell.cell import CellSpec
 from runtime.control.controller import Controller
 from runtime.core.faults import Fault

@@ -11,7 +11,7 @@ import numpy as np
 from robolang import lowering
 from robolang.evaluation.values import Frame, Place, Six
 from robolang.lowering import Surroundings
-from robolang.points import PointStore
+from robolang.project.points import PointStore
 from runtime.cell.cell import CellSpec
 from runtime.cell.signals import Signals
 from runtime.core.frames import Array

@@ -13,7 +13,7 @@ from typing import Literal
 
 import numpy as np
 
-from robolang.project import builtin_cell
+from robolang.project.project import builtin_cell
 from runtime.cell.cell import CellSpec
 from runtime.core.faults import Fault
 from runtime.core.frames import Array

@@ -12,7 +12,6 @@ from pathlib import Path
 
 import typer
 
-from robolang.beside import CellFiles
 from robolang.cli.errors import DIAGNOSTICS, reader_may_leave, say, say_all, say_warnings
 from robolang.cli.rewrite import Loaded, load, store, unified
 from robolang.core.diagnostics import Diagnostic, Severity, has_errors, in_order, safe
@@ -25,6 +24,7 @@ from robolang.lint.settings import Settings
 from robolang.lint.suppress import add_later
 from robolang.lint.watch import watch
 from robolang.output import render
+from robolang.project.discovery import CellFiles
 from runtime.core.faults import Fault, lookup
 from runtime.core.tomlfile import FileFault
 

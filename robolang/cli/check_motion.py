@@ -14,7 +14,7 @@ from robolang.exploration import Exploration, explore
 from robolang.line_times import LineTime, line_times
 from robolang.motion_check import Rehearsal
 from robolang.motion_findings import findings, worst_loads
-from robolang.project import Project, load_project
+from robolang.project.project import Project, load_project
 from runtime.core.tomlfile import FileFault
 
 _STATEMENT = 30

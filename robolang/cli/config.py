@@ -50,7 +50,7 @@ def show(
     if program is not None and not Path(program).exists():
         raise OptionValueError("PROG", f"there is no file '{program}'")
     with reported():
-        from robolang.project import load_cell_and_settings
+        from robolang.project.project import load_cell_and_settings
 
         found, in_force = load_cell_and_settings(
             None if program is None else Path(program), cell, robot, profile, options

@@ -21,7 +21,7 @@ from runtime.core.rounding import beside
 from runtime.core.units import badness
 
 if TYPE_CHECKING:
-    from robolang.project import Project
+    from robolang.project.project import Project
     from robolang.pulse_export import Export
     from runtime.pulses.channels import Channel
 
@@ -70,7 +70,7 @@ def pulses(
         check_folder(out, written_here)
         if plot is not None:
             check_writable(plot)
-        from robolang.project import load_project
+        from robolang.project.project import load_project
         from robolang.pulse_export import ExportRequest, NotExportableError, export
 
         project = load_project(program, cell, robot)

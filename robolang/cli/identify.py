@@ -118,7 +118,7 @@ def _is_program(subject: str) -> bool:
 
 def _subject(subject: str) -> "tuple[RobotSpec, Profile, Payload]":
     """Return robot, controller and what hangs on the flange: of a program's cell, or of a robot on its own."""
-    from robolang.project import load_any_robot, load_cell_and_settings
+    from robolang.project.project import load_any_robot, load_cell_and_settings
     from runtime.robot.model.payload import NO_PAYLOAD, Payload
     from runtime.settings.profile import Profile
 

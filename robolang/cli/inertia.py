@@ -52,7 +52,7 @@ def inertia(
         import numpy as np
 
         from robolang.inertia import at_posture, extremes, over_plane, plain
-        from robolang.project import load_any_robot
+        from robolang.project.project import load_any_robot
 
         spec = load_any_robot(robot)
         say_warnings(spec.warnings)

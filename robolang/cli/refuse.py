@@ -7,7 +7,7 @@ import typer
 from robolang.cli.errors import DIAGNOSTICS, exit_code, say_warnings
 
 if TYPE_CHECKING:
-    from robolang.project import Project
+    from robolang.project.project import Project
 
 
 def refuse(project: "Project", *, warnings: bool = True) -> bool:

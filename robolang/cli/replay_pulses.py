@@ -88,7 +88,7 @@ def replay_pulses(
 
 
 def _drive(export: "Export", cell: str) -> "Drive":
-    from robolang.project import load_cell_and_settings
+    from robolang.project.project import load_cell_and_settings
     from robolang.pulse_drive import drive, start_angles
 
     spec, settings = load_cell_and_settings(None, cell, None, None, {})

@@ -39,7 +39,7 @@ def show(robot: Annotated[str, typer.Argument(help="Built-in robot, or a .toml, 
     """Show a robot: limits, drives, gear springs, bodies, corrections of published data, sources."""
     with reported():
         from robolang.cli.console import Console
-        from robolang.project import load_any_robot
+        from robolang.project.project import load_any_robot
         from runtime.robot.files.arm_file import is_model
         from runtime.robot.files.sidecar_file import sidecar_path
 

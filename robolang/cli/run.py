@@ -25,7 +25,7 @@ from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
     from robolang.core.diagnostics import Diagnostic
-    from robolang.project import Project
+    from robolang.project.project import Project
     from robolang.session import Progress, RunResult, Session, StatementRun
 
 
@@ -68,7 +68,7 @@ def run(
     )
     with reported():
         _check_outputs(program, report, log)
-        from robolang.project import load_project
+        from robolang.project.project import load_project
 
         with _handled(_left_before_motion):
             project = load_project(program, cell, robot, profile=profile, options=options)

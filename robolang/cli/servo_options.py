@@ -48,7 +48,7 @@ CHOICES = {
 }
 
 Options = dict[str, tuple[str, Any]]
-"""Dotted key to (name of the option, value), as ``robolang.project.load_project`` takes it."""
+"""Dotted key to (name of the option, value), as ``robolang.project.project.load_project`` takes it."""
 
 
 def controller_options(

@@ -64,7 +64,7 @@ def step(
     with reported():
         import numpy as np
 
-        from robolang.project import load_any_robot, load_settings
+        from robolang.project.project import load_any_robot, load_settings
         from robolang.step import StepRequest
         from robolang.step import as_json as figures
         from robolang.step import step as run_step

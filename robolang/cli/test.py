@@ -17,7 +17,7 @@ from robolang.cli.errors import DIAGNOSTICS, USAGE, internal, reported, say_all
 if TYPE_CHECKING:
     from robolang.core.diagnostics import Diagnostic
     from robolang.expectation import Expectation
-    from robolang.project import Project
+    from robolang.project.project import Project
     from robolang.verdict import Verdict
     from runtime.core.faults import Fault
 
@@ -126,7 +126,7 @@ def _judged(program: Path, expected: "Expectation", update: bool) -> "tuple[list
     """Return the verdicts on a program and the time of its run, s."""
     from robolang.core.diagnostics import Severity
     from robolang.motion_check import motion_check
-    from robolang.project import load_project
+    from robolang.project.project import load_project
     from robolang.session import Session
     from robolang.verdict import judge, judge_refused
 

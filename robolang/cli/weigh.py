@@ -52,7 +52,7 @@ def weigh(
     if program is not None and not Path(program).exists():
         raise OptionValueError("PROG", f"there is no file '{program}'")
     with reported():
-        from robolang.project import load_cell_and_settings
+        from robolang.project.project import load_cell_and_settings
         from robolang.weigh import WeighRequest, carried, plan_exercise
         from robolang.weigh import as_json as figures
         from robolang.weigh import weigh as run_weigh

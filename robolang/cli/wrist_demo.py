@@ -39,7 +39,7 @@ def wrist_demo(
 ) -> None:
     """Straight moves through a change of the wrist, as in the figures of CN103429397A."""
     with reported():
-        from robolang.project import load_any_robot
+        from robolang.project.project import load_any_robot
         from robolang.wrist_demo import FIGURES, run, unusable
         from runtime.core.faults import Fault
 

@@ -11,13 +11,13 @@ from pathlib import Path
 from robolang.analysis.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.analysis.checker import check
 from robolang.analysis.usage_check import named
-from robolang.beside import CellFiles, read_beside
 from robolang.core.diagnostics import Diagnostic, Severity, in_order
 from robolang.core.source import Source, Span
 from robolang.lint.fixes import with_fix
 from robolang.lint.selection import Selection, is_syntax_error
 from robolang.lint.suppress import suppress
-from robolang.points import load_points
+from robolang.project.discovery import CellFiles, read_beside
+from robolang.project.points import load_points
 from robolang.syntax.parser import parse
 from runtime.core.faults import Fault
 from runtime.core.toml_places import locate

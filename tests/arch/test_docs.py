@@ -240,7 +240,12 @@ def keys_of(value: object) -> set[str]:
 
 @pytest.mark.parametrize(
     "module",
-    ["runtime/cell/cell_file.py", "runtime/cell/sensor_file.py", "runtime/settings/profile.py", "robolang/points.py"],
+    [
+        "runtime/cell/cell_file.py",
+        "runtime/cell/sensor_file.py",
+        "runtime/settings/profile.py",
+        "robolang/project/points.py",
+    ],
 )
 def test_every_key_of_the_files_is_explained(module):
     getters = r"(?:numbers?|integer|text|flag|tables?|named_tables|raw_list|_pose|_point|_size|_named)"

@@ -15,10 +15,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from robolang.builtin import cell_text
 from robolang.exploration import explore
 from robolang.motion_findings import findings
-from robolang.project import load_project
+from robolang.project.builtin import cell_text
+from robolang.project.project import load_project
 from tests.bench import figures
 from tests.bench.figures import Row
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from robolang.lowering import pose_si
-from robolang.project import load_project
+from robolang.project.project import load_project
 from robolang.runlog import write_log
 from robolang.session import RunResult, Session
 from robolang.step import StepResult, step

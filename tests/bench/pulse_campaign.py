@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from robolang.project import builtin_cell
+from robolang.project.project import builtin_cell
 from runtime.core.faults import Fault
 from runtime.core.frames import pose, rotation_about
 from runtime.core.units import MM, badness

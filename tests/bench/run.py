@@ -16,7 +16,7 @@ import mujoco
 import numpy as np
 
 from robolang.interpreter.effects import MoveTo
-from robolang.project import Project, load_project
+from robolang.project.project import Project, load_project
 from robolang.session import Session
 from runtime.plant.mujoco_plant import MujocoPlant
 from tests.bench import figures

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from robolang.beside import read_beside
-from robolang.project import load_project
+from robolang.project.discovery import read_beside
+from robolang.project.project import load_project
 from runtime.cell.cell_file import read_cell_file
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from robolang.motion_check import motion_check
-from robolang.project import load_project
+from robolang.project.project import load_project
 from tests.lang.cli.commands import dry, places, robolang
 
 HERE = Path(__file__).parent

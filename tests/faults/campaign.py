@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from robolang.project import Project, load_project
+from robolang.project.project import Project, load_project
 from robolang.session import RunResult, Session
 from runtime.settings.profile import Profile
 from tests.bench import figures

@@ -8,7 +8,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from robolang.project import load_project
+from robolang.project.project import load_project
 from robolang.session import Session
 from tests.faults.campaign import (
     PROGRAM,

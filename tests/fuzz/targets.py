@@ -14,12 +14,12 @@ import numpy as np
 
 from robolang.analysis import checker
 from robolang.analysis.cell_symbols import CellSymbols
-from robolang.beside import builtin_cell_file
 from robolang.core.diagnostics import Severity, render, render_fault, to_json
 from robolang.core.source import Source, decode_program
 from robolang.golden import read_golden
 from robolang.lint import engine
-from robolang.points import load_points
+from robolang.project.discovery import builtin_cell_file
+from robolang.project.points import load_points
 from robolang.syntax import ast as nodes
 from robolang.syntax import formatter
 from robolang.syntax.grammar import line_parser

@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 from robolang.analysis.cell_symbols import CellSymbols
-from robolang.beside import builtin_cell_file
 from robolang.core.source import read_program
 from robolang.lint.settings import Settings
-from robolang.points import load_points
+from robolang.project.discovery import builtin_cell_file
+from robolang.project.points import load_points
 from runtime.core.tomlfile import FileFault
 from runtime.robot.files.importer import load_file, read_arm
 from tests.lang.cli.commands import ROOT, flat, robolang

@@ -14,7 +14,7 @@ from robolang.interpreter import machine as interpreter
 from robolang.interpreter.machine import MAX_CALLS, MAX_ROUNDS, execute
 from robolang.interpreter.scope import MAX_CELLS, MAX_TEXTS
 from robolang.motion_check import rehearse
-from robolang.project import load_project
+from robolang.project.project import load_project
 from robolang.session import Session
 from robolang.syntax.parser import parse
 from runtime.core.faults import Fault

@@ -16,7 +16,7 @@ from robolang.core.source import Source, Span
 from robolang.lint.engine import Checked, lint
 from robolang.lint.registry import rules
 from robolang.output.finding import findings
-from robolang.points import load_points
+from robolang.project.points import load_points
 from runtime.cell.cell import load_cell
 from runtime.core.faults import lookup
 from runtime.core.toml_places import lines_of

@@ -9,7 +9,7 @@ from robolang.evaluation.values import Place
 from robolang.interpreter.effects import MoveTo, SetPayload
 from robolang.interpreter.machine import execute
 from robolang.lowering import Surroundings
-from robolang.project import builtin_cell, load_project
+from robolang.project.project import builtin_cell, load_project
 from runtime.core.faults import Fault
 from runtime.motion.commands import MoveArc, MoveJoint, MoveLinear
 from runtime.robot.kinematics.kinematics import Kinematics

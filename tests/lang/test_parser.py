@@ -7,7 +7,7 @@ import lark
 import pytest
 
 from robolang.core.source import Span
-from robolang.points import load_points
+from robolang.project.points import load_points
 from robolang.syntax import grammar
 from robolang.syntax.ast import (
     Accel,

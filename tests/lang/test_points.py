@@ -3,8 +3,8 @@ import os
 import pytest
 
 from robolang.analysis.cell_symbols import CellSymbols
-from robolang.beside import builtin_cell_file
-from robolang.points import Point, load_points
+from robolang.project.discovery import builtin_cell_file
+from robolang.project.points import Point, load_points
 from runtime.core.tomlfile import FileFault
 
 PUMA = builtin_cell_file().arm.limits

@@ -1,7 +1,7 @@
 import pytest
 
-from robolang.beside import cell_beside, taught_points
-from robolang.project import builtin_cell, load_any_robot, load_project
+from robolang.project.discovery import cell_beside, taught_points
+from robolang.project.project import builtin_cell, load_any_robot, load_project
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault
 from runtime.robot.files.loader import load_builtin

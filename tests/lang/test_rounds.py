@@ -5,7 +5,7 @@ import pytest
 from robolang import motion_check, session
 from robolang.interpreter.rounds import Rounds
 from robolang.motion_check import rehearse
-from robolang.project import load_project
+from robolang.project.project import load_project
 from robolang.session import Session
 
 TEXTS = {

@@ -19,12 +19,12 @@ import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from robolang.builtin import cell_text
 from robolang.core.diagnostics import Severity
 from robolang.core.source import read_program
 from robolang.lint.engine import check_source
 from robolang.motion_check import rehearse
-from robolang.project import Project, load_project
+from robolang.project.builtin import cell_text
+from robolang.project.project import Project, load_project
 from robolang.syntax.parser import parse
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault

@@ -11,7 +11,7 @@ from robolang.lint.engine import check_points, check_source, lint
 from robolang.lint.registry import OF_THE_MOTION, OF_THE_RUN, codes, is_looked_for, rule, rules
 from robolang.motion_check import rehearse
 from robolang.motion_findings import findings
-from robolang.project import load_project
+from robolang.project.project import load_project
 from runtime.core.faults import Fault, lookup
 from tests.lint.helpers import POINTS
 

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from robolang.project import builtin_cell
+from robolang.project.project import builtin_cell
 from runtime.control.controller import Controller
 from runtime.core.faults import Fault
 from runtime.core.frames import Array

@@ -3,7 +3,7 @@
 from functools import cache
 from pathlib import Path
 
-from robolang.project import load_project
+from robolang.project.project import load_project
 from robolang.session import RunResult, Session
 
 ROOT = Path(__file__).parents[2] / "programs"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from robolang.lowering import pose_si
-from robolang.project import load_project
+from robolang.project.project import load_project
 from robolang.session import RunResult, Session
 from runtime.core.frames import inverse, rotation_angle
 from tests.programs.runs import run

@@ -12,7 +12,7 @@ from robolang.exploration import _queue, explore
 from robolang.interpreter.branches import Decisions
 from robolang.motion_check import rehearse
 from robolang.motion_findings import findings
-from robolang.project import load_project
+from robolang.project.project import load_project
 from tests.lang.cli.commands import robolang
 
 FAR = "MOVE P1 + (900, 0, 0)"
@@ -37,7 +37,7 @@ def found(tmp_path):
 
 
 def builtin(name):
-    return resources.files("robolang.builtin").joinpath(name).read_text("utf-8")
+    return resources.files("robolang.project.builtin").joinpath(name).read_text("utf-8")
 
 
 def test_a_branch_that_the_inputs_do_not_take_is_planned(found):

@@ -11,7 +11,7 @@ from robolang import motion_findings
 from robolang.core.diagnostics import Severity
 from robolang.motion_check import rehearse
 from robolang.motion_findings import LoadShare, findings, worst_loads
-from robolang.project import builtin_cell, load_project
+from robolang.project.project import builtin_cell, load_project
 from runtime.core.units import DEG
 from runtime.plant.mujoco_plant import MujocoPlant
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from robolang.motion_check import rehearse
-from robolang.project import load_project
+from robolang.project.project import load_project
 from robolang.pulse_export import ExportRequest, export
 from robolang.session import Session
 from tests.campaign import some

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from robolang.lowering import pose_si
-from robolang.project import builtin_cell, load_project
+from robolang.project.project import builtin_cell, load_project
 from robolang.runlog import write_log
 from robolang.session import RunResult, Session
 from runtime.control import recorder

@@ -10,7 +10,7 @@ from robolang.core.diagnostics import Severity
 from robolang.motion_check import rehearse
 from robolang.motion_findings import findings
 from robolang.plan_findings import SLOWED
-from robolang.project import builtin_cell, load_project
+from robolang.project.project import builtin_cell, load_project
 from robolang.session import Session
 from runtime.robot.kinematics.kinematics import Kinematics
 
@@ -21,7 +21,7 @@ ROOT = Path(__file__).parents[2]
 
 def both(tmp_path, text, points=""):
     """Return (code, line, message, hint) of what checking finds, after comparing it with the warnings of a run."""
-    taught = (ROOT / "robolang/builtin/points.toml").read_text("utf-8")
+    taught = (ROOT / "robolang/project/builtin/points.toml").read_text("utf-8")
     (tmp_path / "p.points.toml").write_text(taught + points, "utf-8")
     (tmp_path / "p.rbl").write_text(text, "utf-8")
     project = load_project(tmp_path / "p.rbl")

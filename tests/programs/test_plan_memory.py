@@ -1,7 +1,7 @@
 """A program that comes to a move again from the same place plans it once, before the run as well as in check."""
 
 from robolang.motion_check import motion_check, rehearse
-from robolang.project import load_project
+from robolang.project.project import load_project
 from runtime.motion.motion_planner import MotionPlanner
 
 TEXT = """

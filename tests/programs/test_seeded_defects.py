@@ -9,7 +9,7 @@ import pytest
 
 from robolang.motion_check import rehearse
 from robolang.motion_findings import findings
-from robolang.project import load_project
+from robolang.project.project import load_project
 
 ROOT = Path(__file__).parents[2] / "programs"
 PALLET, TEND, DISPENSE, RECOVER, INSPECT, SORT, PICK = (

@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from robolang.project import builtin_cell, load_project
+from robolang.project.project import builtin_cell, load_project
 from robolang.session import Session
 from runtime.plant.mjcf import own_pairs
 from runtime.plant.mujoco_plant import MujocoPlant

@@ -4,7 +4,7 @@ import pytest
 
 from robolang.cli.run_table import print_result
 from robolang.compare import measures
-from robolang.project import load_project
+from robolang.project.project import load_project
 from robolang.session import Session
 
 TEXT = """\

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robolang.project import load_project
+from robolang.project.project import load_project
 from robolang.session import Session
 from runtime.core.units import MM
 from runtime.motion.seam import superposed

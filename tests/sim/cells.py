@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from robolang.builtin import cell_text
-from robolang.project import load_project
+from robolang.project.builtin import cell_text
+from robolang.project.project import load_project
 
 POINTS = Path(__file__).parents[2] / "programs/pick_and_place.points.toml"
 PART = """

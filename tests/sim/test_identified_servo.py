@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from robolang.identify import compensation_of, identify, with_errors
-from robolang.project import load_project
+from robolang.project.project import load_project
 from robolang.session import Session
 from robolang.trial_motion import Request
 from runtime.control.controller import Controller

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from robolang.builtin import cell_text
+from robolang.project.builtin import cell_text
 from runtime.cell.cell import parse_cell
 from runtime.core.tomlfile import Source
 from runtime.plant.mujoco_plant import MujocoPlant

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robolang.builtin import cell_text
+from robolang.project.builtin import cell_text
 from runtime.cell.cell import CellSpec, parse_cell
 from runtime.core.frames import Array, inverse, pose_from_xyzrpy, rotation_angle
 from runtime.core.tomlfile import Source

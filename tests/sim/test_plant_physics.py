@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robolang.builtin import cell_text
+from robolang.project.builtin import cell_text
 from runtime.cell.cell import parse_cell
 from runtime.core.frames import Array, pose_from_xyzrpy
 from runtime.core.tomlfile import Source

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robolang.project import load_cell_and_settings
+from robolang.project.project import load_cell_and_settings
 from robolang.pulse_drive import RAMP_S, drive, set_points, start_angles
 from runtime.control.controller import Controller
 from runtime.core.faults import Fault

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from robolang.identify import RubbingPlant, identify, with_errors
-from robolang.project import load_project
+from robolang.project.project import load_project
 from robolang.trial_motion import LEAST_STROKE, MARGIN, Request, bench, folds, plan, plan_table, posture
 from runtime.core.faults import Fault
 from runtime.motion.fine_interpolator import FineInterpolator

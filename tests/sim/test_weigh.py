@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from robolang import weigh as module
-from robolang.project import load_cell_and_settings
+from robolang.project.project import load_cell_and_settings
 from robolang.weigh import Declaration, WeighRequest, carried, load_statement, plan_exercise, weigh
 from runtime.cell.cell import ObstacleSpec
 from runtime.core.faults import Fault

@@ -3,7 +3,7 @@ import errno
 import pytest
 import typer
 
-import robolang.project  # noqa: F401 - registers its codes
+import robolang.project.project  # noqa: F401 - registers its codes
 from robolang.cli import errors
 from robolang.cli.errors import exit_code, reader_may_leave, reported, say
 from robolang.core.diagnostics import safe

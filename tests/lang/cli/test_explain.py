@@ -2,7 +2,7 @@ import re
 
 import pytest
 
-import robolang.project
+import robolang.project.project
 from runtime.core.faults import all_codes
 from tests.lang.cli.commands import ROOT, flat, robolang, shell
 

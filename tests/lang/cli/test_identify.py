@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from robolang import identify as identification
-from robolang.project import builtin_cell, load_project
+from robolang.project.project import builtin_cell, load_project
 from runtime.dynamics.compensation import load_compensation
 from runtime.robot.files.loader import load_builtin
 from tests.campaign import some

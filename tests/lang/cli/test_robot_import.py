@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robolang.project import builtin_cell, load_any_robot, load_project
+from robolang.project.project import builtin_cell, load_any_robot, load_project
 from robolang.session import Session
 from runtime.cell.seam_sensor import SensorSpec
 from runtime.cell.sensor_file import read_sensor_file

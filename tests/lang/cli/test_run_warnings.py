@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from robolang.project import load_project
+from robolang.project.project import load_project
 from robolang.session import Session
 from tests.lang.cli.commands import dry, places
 

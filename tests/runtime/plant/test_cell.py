@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robolang.builtin import cell_text
+from robolang.project.builtin import cell_text
 from runtime.cell.cell import CellSpec, load_cell, parse_cell
 from runtime.core.frames import pose_from_xyzrpy
 from runtime.core.tomlfile import FileFault, Source

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolang.builtin import cell_text
+from robolang.project.builtin import cell_text
 from runtime.cell.cell import parse_cell
 from runtime.core.frames import frozen, pose_from_xyzrpy, rotation_from_rpy, skew
 from runtime.core.tomlfile import Source

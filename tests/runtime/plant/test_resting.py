@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robolang.builtin import cell_text
+from robolang.project.builtin import cell_text
 from runtime.cell.cell_file import parse_cell_file, read_cell_file
 from runtime.cell.resting import Box, overlap, unrest
 from runtime.core.frames import pose_from_xyzrpy

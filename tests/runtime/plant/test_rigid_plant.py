@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from robolang.project import builtin_cell
+from robolang.project.project import builtin_cell
 from runtime.plant.rigid_plant import RigidPlant
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import Payload

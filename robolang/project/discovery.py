@@ -13,8 +13,8 @@ from importlib import resources
 from pathlib import Path
 
 from robolang.analysis.cell_symbols import NOTHING_KNOWN, CellSymbols
-from robolang.builtin import cell_text
-from robolang.points import PointStore, load_points
+from robolang.project.builtin import cell_text
+from robolang.project.points import PointStore, load_points
 from runtime.cell.cell_file import CellFile, parse_cell_file, read_arm_alone, read_cell_file
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault, Source, read_source
@@ -124,7 +124,7 @@ def taught_points(program: Path, *, builtin: bool, symbols: CellSymbols = NOTHIN
         return load_points(beside, symbols)
     if not builtin:
         return PointStore(path=str(beside))
-    with resources.as_file(resources.files("robolang.builtin").joinpath("points.toml")) as path:
+    with resources.as_file(resources.files("robolang.project.builtin").joinpath("points.toml")) as path:
         return load_points(path, replace(symbols, robot=None))
 
 

@@ -9,12 +9,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from robolang import beside
 from robolang.analysis.checker import check
-from robolang.beside import CellFiles, controller_settings, read_beside
 from robolang.core.diagnostics import Diagnostic, has_errors, in_order
 from robolang.core.source import Source, read_program
-from robolang.points import PointStore
+from robolang.project import discovery as beside
+from robolang.project.discovery import CellFiles, controller_settings, read_beside
+from robolang.project.points import PointStore
 from robolang.syntax.ast import Program
 from robolang.syntax.parser import parse
 from runtime.cell import cell as cells
