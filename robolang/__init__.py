@@ -10,7 +10,7 @@ TYPE_CHECKING = False  # a type checker takes this name for True
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
-    from robolang.session import ProgramError, RunResult, run
+    from robolang.execution.session import ProgramError, RunResult, run
 
 __all__ = ["ProgramError", "RunResult", "__version__", "run"]
 
@@ -18,7 +18,7 @@ __all__ = ["ProgramError", "RunResult", "__version__", "run"]
 def __getattr__(name: str) -> object:
     # parsing and checking must not pay for numpy, pinocchio and mujoco: the run is imported when it is asked for
     if name in ("run", "RunResult", "ProgramError"):
-        from robolang import session
+        from robolang.execution import session
 
         return getattr(session, name)
     raise AttributeError(f"module 'robolang' has no attribute '{name}'")

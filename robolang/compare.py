@@ -21,11 +21,11 @@ from typing import Any
 
 import numpy as np
 
+from robolang.execution.lowering import payload
+from robolang.execution.result import StatementRun
+from robolang.execution.session import Session
 from robolang.interpreter.effects import Effect, SetPayload
-from robolang.lowering import payload
 from robolang.project.project import Project, load_project
-from robolang.result import StatementRun
-from robolang.session import Session
 from runtime.cell.cell import CellSpec
 from runtime.core.frames import Array
 from runtime.core.linear import norm

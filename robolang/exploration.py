@@ -13,9 +13,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from robolang.core.source import Span
+from robolang.execution.dry_run import Rehearsal, rehearse
+from robolang.execution.plan_memory import PlanMemory
 from robolang.interpreter.branches import Decisions, open_conditions
-from robolang.motion_check import Rehearsal, rehearse
-from robolang.plan_memory import PlanMemory
 from robolang.project.project import Project
 from robolang.syntax.ast import If, Moving, Statement
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robolang.motion_check import Rehearsal, RehearsedMove
+from robolang.execution.dry_run import Rehearsal, RehearsedMove
 from robolang.project.project import Project
 from robolang.syntax.unparse import describe
 from runtime.core.units import DEG, MM

@@ -19,11 +19,11 @@ import numpy as np
 
 from robolang.core.diagnostics import Diagnostic, Severity
 from robolang.core.source import Span
+from robolang.execution.dry_run import Rehearsal, RehearsedMove
+from robolang.execution.plan_findings import PlanFindings, PlannedMove
 from robolang.exploration import Detour
 from robolang.line_times import range_margin
-from robolang.motion_check import Rehearsal, RehearsedMove
 from robolang.part_findings import CellTouches
-from robolang.plan_findings import PlanFindings, PlannedMove
 from robolang.project.project import Project
 from runtime.core.rounding import beside
 from runtime.core.units import DEG, MM

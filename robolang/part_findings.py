@@ -20,7 +20,7 @@ import numpy as np
 
 from robolang.core.diagnostics import Diagnostic, Severity
 from robolang.core.source import Span
-from robolang.motion_check import Rehearsal, RehearsedHand, RehearsedMove
+from robolang.execution.dry_run import Rehearsal, RehearsedHand, RehearsedMove
 from robolang.project.project import Project
 from runtime.core.frames import Array, inverse, pose
 from runtime.plant.mujoco_plant import CLEARANCE, MARGIN, MujocoPlant

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from robolang.motion_check import MAX_RUN_US
+from robolang.execution.dry_run import MAX_RUN_US
 from robolang.trial_motion import quintic
 from runtime.cell.cell import CellSpec
 from runtime.control.controller import Controller

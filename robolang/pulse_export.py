@@ -14,12 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from robolang import lowering
-from robolang.alarms import calls
 from robolang.core.diagnostics import Diagnostic
+from robolang.execution import lowering
+from robolang.execution.alarms import calls
+from robolang.execution.lowering import Surroundings
 from robolang.interpreter.effects import Drain, Effect, MoveTo, SetHand, SetPayload, SetSeam, SetTool, SetWrist
 from robolang.interpreter.machine import ProgramFault, execute
-from robolang.lowering import Surroundings
 from robolang.project.project import Project
 from robolang.syntax.ast import Delay, Number, Wait
 from robolang.syntax.unparse import describe

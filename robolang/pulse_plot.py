@@ -11,7 +11,7 @@ import numpy as np
 
 from robolang.core.diagnostics import safe
 from robolang.core.storage import write_atomic
-from robolang.plot import COLOURS, LEFT, RIGHT, WIDTH, Curve, Mark, as_html, as_svg, stacked
+from robolang.execution.plot import COLOURS, LEFT, RIGHT, WIDTH, Curve, Mark, as_html, as_svg, stacked
 from runtime.core.frames import Array
 from runtime.core.units import badness
 from runtime.pulses.exported import Export, Move

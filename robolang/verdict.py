@@ -11,10 +11,10 @@ from typing import Any, cast
 
 import numpy as np
 
+from robolang.execution.report import pose_mm_deg
+from robolang.execution.session import Session
 from robolang.expectation import Expectation
 from robolang.golden import read_golden, write_golden
-from robolang.report import pose_mm_deg
-from robolang.session import Session
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, pose_from_xyzrpy, rotation_angles
 from runtime.core.linear import norm

@@ -198,7 +198,7 @@ def _with(mass: float) -> str:
 
 def _draw(path: Path, spec: "RobotSpec", found: "InertiaMap", mass: float) -> None:
     from robolang.core.storage import write_atomic
-    from robolang.plot import as_map_svg
+    from robolang.execution.plot import as_map_svg
     from runtime.core.units import DEG
 
     first, second = (f"J{joint + 1}" for joint in found.joints)

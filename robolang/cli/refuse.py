@@ -25,7 +25,7 @@ def refuse(project: "Project", *, warnings: bool = True) -> bool:
             typer.echo(render(item, project.source), err=True)
     if not project.ok:
         raise typer.Exit(DIAGNOSTICS)
-    from robolang.motion_check import motion_check
+    from robolang.execution.dry_run import motion_check
 
     refused = motion_check(project)
     for item in refused:

@@ -25,8 +25,8 @@ from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
     from robolang.core.diagnostics import Diagnostic
+    from robolang.execution.session import Progress, RunResult, Session, StatementRun
     from robolang.project.project import Project
-    from robolang.session import Progress, RunResult, Session, StatementRun
 
 
 _MOST_SHOWN = 3
@@ -73,7 +73,7 @@ def run(
         with _handled(_left_before_motion):
             project = load_project(program, cell, robot, profile=profile, options=options)
             warned = refuse(project, warnings=strict or not quiet)
-        from robolang.session import Session
+        from robolang.execution.session import Session
 
         with _progress(quiet) as progress:
             session = Session(project, physics=not no_physics, realtime=realtime, progress=progress, show=_show)
@@ -125,7 +125,7 @@ def _check_outputs(program: str, report: Path | None, log: Path | None) -> None:
 def _write(result: "RunResult", report: Path | None, log: Path | None) -> int:
     """Write the files that were asked for; what cannot be written is said and does not keep the other from it."""
     from robolang.core.storage import write_json
-    from robolang.runlog import write_log
+    from robolang.execution.runlog import write_log
     from runtime.core.faults import Fault
 
     writers: list[tuple[Path | None, Callable[[Path], None]]] = [

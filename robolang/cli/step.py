@@ -149,7 +149,7 @@ def _print(found: dict[str, Any]) -> None:
 
 def _write_plot(path: Path, request: "StepRequest", result: "StepResult") -> None:
     from robolang.core.storage import write_atomic
-    from robolang.plot import Curve, as_html, as_svg
+    from robolang.execution.plot import Curve, as_html, as_svg
     from runtime.core.units import DEG
 
     title = f"{request.robot.name}: step on J{request.axis + 1}, D' = {result.inertia:.3g} kg m2"

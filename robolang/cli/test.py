@@ -125,9 +125,9 @@ def _run(file: Path, update: bool) -> _Outcome:
 def _judged(program: Path, expected: "Expectation", update: bool) -> "tuple[list[Verdict], float]":
     """Return the verdicts on a program and the time of its run, s."""
     from robolang.core.diagnostics import Severity
-    from robolang.motion_check import motion_check
+    from robolang.execution.dry_run import motion_check
+    from robolang.execution.session import Session
     from robolang.project.project import load_project
-    from robolang.session import Session
     from robolang.verdict import judge, judge_refused
 
     project = load_project(program)

@@ -15,7 +15,7 @@ from robolang.cli.values import OptionValueError
 from runtime.core.units import badness
 
 if TYPE_CHECKING:
-    from robolang.plot import Mark
+    from robolang.execution.plot import Mark
     from robolang.wrist_demo import Figure, Run
 
     Shown = tuple[Figure, list[Run]]
@@ -237,7 +237,7 @@ def _joints_svg(title: str, figure: "Figure", runs: list["Run"]) -> str:
     """Draw J4 to J6 of the runs over time, the second one dashed, with the switches and the taught end angles."""
     import numpy as np
 
-    from robolang.plot import Curve, Dots, as_svg
+    from robolang.execution.plot import Curve, Dots, as_svg
     from runtime.core.units import DEG
 
     curves = [
@@ -259,7 +259,7 @@ def _joints_svg(title: str, figure: "Figure", runs: list["Run"]) -> str:
 
 def _marks(figure: "Figure", runs: list["Run"]) -> list["Mark"]:
     """Return the switches, and the ends of the range where a run has to do with them."""
-    from robolang.plot import Mark
+    from robolang.execution.plot import Mark
     from robolang.wrist_demo import RANGE
     from runtime.core.units import DEG
 
@@ -277,7 +277,7 @@ def _marks(figure: "Figure", runs: list["Run"]) -> list["Mark"]:
 
 def _components_svg(title: str, figure: "Figure", run: "Run") -> str:
     """Draw the change of tilt, advance and rotation over time."""
-    from robolang.plot import Curve, Mark, as_svg
+    from robolang.execution.plot import Curve, Mark, as_svg
     from runtime.core.units import DEG
 
     switch = run.switch_s or 0.0

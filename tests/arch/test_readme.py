@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 import robolang
 from robolang.cli.main import app
-from robolang.session import Session
+from robolang.execution.session import Session
 from robolang.syntax.keywords import INSTRUCTIONS
 from runtime.robot.files.imported import FEWEST_AXES, MOST_AXES
 from runtime.robot.files.loader import load_builtin

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from robolang.plot import Curve, as_svg
+from robolang.execution.plot import Curve, as_svg
 from robolang.step import step
 from runtime.core.units import DEG
 from runtime.robot.model.payload import NO_PAYLOAD

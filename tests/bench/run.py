@@ -15,9 +15,9 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
+from robolang.execution.session import Session
 from robolang.interpreter.effects import MoveTo
 from robolang.project.project import Project, load_project
-from robolang.session import Session
 from runtime.plant.mujoco_plant import MujocoPlant
 from tests.bench import figures
 from tests.bench.figures import Row

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from robolang.motion_check import motion_check
+from robolang.execution.dry_run import motion_check
 from robolang.project.project import load_project
 from tests.lang.cli.commands import dry, places, robolang
 

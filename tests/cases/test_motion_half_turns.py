@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robolang.session import run
+from robolang.execution.session import run
 
 HERE = Path(__file__).parent
 

@@ -6,7 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 from robolang.cli.main import app
-from robolang.session import run
+from robolang.execution.session import run
 
 LIGHT = Path(__file__).parent / "attack_13_light_part_lost_silently" / "p.rbl"
 

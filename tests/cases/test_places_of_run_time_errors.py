@@ -7,7 +7,7 @@ import pytest
 
 from robolang.core.diagnostics import to_json
 from robolang.core.source import read_program
-from robolang.session import run
+from robolang.execution.session import run
 from tests.lang.cli.commands import dry
 
 CASES = Path(__file__).parent

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from robolang.compare import VARIANTS, Request, compare, last_approach, wrong_mass
-from robolang.session import Session
+from robolang.execution.session import Session
 from tests.campaign import some
 from tests.lang.cli.commands import ROOT, robolang
 

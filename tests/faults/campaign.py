@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
+from robolang.execution.session import RunResult, Session
 from robolang.project.project import Project, load_project
-from robolang.session import RunResult, Session
 from runtime.settings.profile import Profile
 from tests.bench import figures
 from tests.bench.figures import Row
@@ -176,7 +176,7 @@ def random_program(rng: np.random.Generator) -> tuple[str, dict[str, list[float]
 
 def variant(rng: np.random.Generator, error_share: float, profile: Profile | None = None) -> Project:
     """Return a random project whose last LOAD is off by a share of the rated 2.5 kg (sign at random where it fits)."""
-    from robolang.motion_check import motion_check
+    from robolang.execution.dry_run import motion_check
 
     while True:
         text, points = random_program(rng)

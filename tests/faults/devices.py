@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from robolang.session import Session
+from robolang.execution.session import Session
 from runtime.core.frames import Array
 
 

@@ -8,8 +8,8 @@ import dataclasses
 import numpy as np
 import pytest
 
+from robolang.execution.session import Session
 from robolang.project.project import load_project
-from robolang.session import Session
 from tests.faults.campaign import (
     PROGRAM,
     WITHIN_MS,

@@ -2,9 +2,9 @@
 
 import pytest
 
-from robolang.alarms import SHOWN_CALLS, as_diagnostic, calls
 from robolang.core.diagnostics import Severity
 from robolang.core.source import Span
+from robolang.execution.alarms import SHOWN_CALLS, as_diagnostic, calls
 from robolang.interpreter.effects import Origin
 from runtime.core.faults import Alarm
 

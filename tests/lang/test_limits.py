@@ -4,18 +4,19 @@ import math
 
 import pytest
 
-from robolang import motion_check, session
 from robolang.analysis.checker import check
 from robolang.core import limits
 from robolang.core.diagnostics import Severity
 from robolang.core.limits import SIZE
 from robolang.evaluation.evaluator import MAX_TEXT
+from robolang.execution import dry_run as motion_check
+from robolang.execution import session
+from robolang.execution.dry_run import rehearse
+from robolang.execution.session import Session
 from robolang.interpreter import machine as interpreter
 from robolang.interpreter.machine import MAX_CALLS, MAX_ROUNDS, execute
 from robolang.interpreter.scope import MAX_CELLS, MAX_TEXTS
-from robolang.motion_check import rehearse
 from robolang.project.project import load_project
-from robolang.session import Session
 from robolang.syntax.parser import parse
 from runtime.core.faults import Fault
 from tests.lang.helpers import source

@@ -2,11 +2,12 @@
 
 import pytest
 
-from robolang import motion_check, session
+from robolang.execution import dry_run as motion_check
+from robolang.execution import session
+from robolang.execution.dry_run import rehearse
+from robolang.execution.session import Session
 from robolang.interpreter.rounds import Rounds
-from robolang.motion_check import rehearse
 from robolang.project.project import load_project
-from robolang.session import Session
 
 TEXTS = {
     "wait": "LOAD (0, 0, 60), 0.8\nN = 0\nWHILE 1\nDELAY 0.02\nN = N + 1\nIF N = 3 THEN «WAIT TIMER < 0»\nWEND",

@@ -5,7 +5,7 @@ import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-from robolang.runlog import SUFFIXES, write_log
+from robolang.execution.runlog import SUFFIXES, write_log
 
 NAN = float("nan")
 

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robolang import runlog
 from robolang.core.storage import check_writable, write_atomic, write_json
+from robolang.execution import runlog
 from runtime.core.faults import Fault
 
 SIGNALS = {"t": np.arange(4000) * 1e-3, "q_fb": np.random.default_rng(1).normal(size=(4000, 6))}

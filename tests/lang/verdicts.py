@@ -21,8 +21,8 @@ from pathlib import Path
 
 from robolang.core.diagnostics import Severity
 from robolang.core.source import read_program
+from robolang.execution.dry_run import rehearse
 from robolang.lint.engine import check_source
-from robolang.motion_check import rehearse
 from robolang.project.builtin import cell_text
 from robolang.project.project import Project, load_project
 from robolang.syntax.parser import parse

@@ -3,8 +3,8 @@
 from functools import cache
 from pathlib import Path
 
+from robolang.execution.session import RunResult, Session
 from robolang.project.project import load_project
-from robolang.session import RunResult, Session
 
 ROOT = Path(__file__).parents[2] / "programs"
 

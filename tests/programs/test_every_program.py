@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robolang.lowering import pose_si
+from robolang.execution.lowering import pose_si
+from robolang.execution.session import RunResult, Session
 from robolang.project.project import load_project
-from robolang.session import RunResult, Session
 from runtime.core.frames import inverse, rotation_angle
 from tests.programs.runs import run
 

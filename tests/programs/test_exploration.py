@@ -8,9 +8,9 @@ import pytest
 
 from robolang import exploration, motion_findings
 from robolang.core.source import Span
+from robolang.execution.dry_run import rehearse
 from robolang.exploration import _queue, explore
 from robolang.interpreter.branches import Decisions
-from robolang.motion_check import rehearse
 from robolang.motion_findings import findings
 from robolang.project.project import load_project
 from tests.lang.cli.commands import robolang

@@ -9,7 +9,7 @@ import pytest
 
 from robolang import motion_findings
 from robolang.core.diagnostics import Severity
-from robolang.motion_check import rehearse
+from robolang.execution.dry_run import rehearse
 from robolang.motion_findings import LoadShare, findings, worst_loads
 from robolang.project.project import builtin_cell, load_project
 from runtime.core.units import DEG
@@ -111,7 +111,7 @@ def test_an_end_in_other_joint_angles_is_named(tmp_path):
 
 
 def test_a_wrist_statement_ends_no_blend_in_the_rehearsal_either(tmp_path):
-    from robolang.session import Session
+    from robolang.execution.session import Session
 
     text = "LOAD empty\nSPEED 200\nZONE 20\nMOVE P2\nWRIST KEEP\nMOVE P5\n"
     project, rehearsal = looked_at(tmp_path, text)

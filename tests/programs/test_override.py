@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from robolang.motion_check import rehearse
+from robolang.execution.dry_run import rehearse
+from robolang.execution.session import Session
 from robolang.project.project import load_project
 from robolang.pulse_export import ExportRequest, export
-from robolang.session import Session
 from tests.campaign import some
 
 HAND = "LOAD (0, 0, 60), 0.8"

@@ -2,8 +2,8 @@
 
 import pytest
 
+from robolang.execution.dry_run import rehearse
 from robolang.exploration import explore
-from robolang.motion_check import rehearse
 from robolang.motion_findings import findings
 from tests.sim.cells import BESIDE, GRIP, LEDGE, LET_GO, OWN, job
 from tests.sim.test_touches import ALLOWED

@@ -14,10 +14,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robolang.lowering import pose_si
+from robolang.execution.lowering import pose_si
+from robolang.execution.runlog import write_log
+from robolang.execution.session import RunResult, Session
 from robolang.project.project import builtin_cell, load_project
-from robolang.runlog import write_log
-from robolang.session import RunResult, Session
 from runtime.control import recorder
 from runtime.core.frames import Array, inverse, rotation_angle
 from runtime.robot.kinematics.kinematics import Kinematics

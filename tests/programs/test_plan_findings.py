@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from robolang.core.diagnostics import Severity
-from robolang.motion_check import rehearse
+from robolang.execution.dry_run import rehearse
+from robolang.execution.plan_findings import SLOWED
+from robolang.execution.session import Session
 from robolang.motion_findings import findings
-from robolang.plan_findings import SLOWED
 from robolang.project.project import builtin_cell, load_project
-from robolang.session import Session
 from runtime.robot.kinematics.kinematics import Kinematics
 
 OTHERWISE = {"RBL414", "RBL419", "RBL428", "RBL429", "RBL434", "RBL435"}
@@ -140,7 +140,7 @@ def test_a_pose_taught_with_a_configuration_that_a_kept_wrist_does_not_reach_is_
     q = np.radians([0.0, 60.0, -190.0, 0.0, -50.0, 0.0])
     cell = builtin_cell()
     kinematics = Kinematics(cell.robot)
-    from robolang.lowering import six_of
+    from robolang.execution.lowering import six_of
 
     pose = [round(value, 6) for value in six_of(kinematics.forward(q) @ cell.hand.X_flange_tool)]
     point = f'\n[points.P9]\npose = {pose}\nconfiguration = "RIGHTY ABOVE NOFLIP"\n'

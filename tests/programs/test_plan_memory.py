@@ -1,6 +1,6 @@
 """A program that comes to a move again from the same place plans it once, before the run as well as in check."""
 
-from robolang.motion_check import motion_check, rehearse
+from robolang.execution.dry_run import motion_check, rehearse
 from robolang.project.project import load_project
 from runtime.motion.motion_planner import MotionPlanner
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from robolang.motion_check import rehearse
+from robolang.execution.dry_run import rehearse
 from robolang.motion_findings import findings
 from robolang.project.project import load_project
 
@@ -154,7 +154,7 @@ def test_the_good_programs_have_none(name):
 
 @pytest.mark.parametrize(("name", "old", "new", "code"), DEFECTS, ids=lambda value: str(value)[:24].replace("\n", "/"))
 def test_a_defect_is_found_at_its_line(tmp_path, monkeypatch, name, old, new, code):
-    monkeypatch.setattr("robolang.motion_check.MAX_RUN_US", 20_000_000)  # two of them never end
+    monkeypatch.setattr("robolang.execution.dry_run.MAX_RUN_US", 20_000_000)  # two of them never end
     text, path = copied(tmp_path, name)
     assert old in text
     path.write_text(text.replace(old, new, 1), "utf-8")

@@ -5,8 +5,8 @@ import re
 
 import pytest
 
+from robolang.execution.session import Session
 from robolang.project.project import builtin_cell, load_project
-from robolang.session import Session
 from runtime.plant.mjcf import own_pairs
 from runtime.plant.mujoco_plant import MujocoPlant
 from tests.lang.cli.commands import BUILTIN, PUMA, robolang

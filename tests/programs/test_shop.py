@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from robolang.motion_check import rehearse
+from robolang.execution.dry_run import rehearse
 from tests.programs.runs import ROOT, run
 
 SHOP = sorted(path.stem for path in (ROOT / "shop").glob("*.rbl"))

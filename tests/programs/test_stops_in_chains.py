@@ -4,8 +4,8 @@ import pytest
 
 from robolang.cli.run_table import print_result
 from robolang.compare import measures
+from robolang.execution.session import Session
 from robolang.project.project import load_project
-from robolang.session import Session
 
 TEXT = """\
 2 LOAD (0, 0, 60), 0.8

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from robolang.execution.session import Session
 from robolang.project.project import load_project
-from robolang.session import Session
 from runtime.core.units import MM
 from runtime.motion.seam import superposed
 from tests.lang.cli.commands import robolang

@@ -6,9 +6,9 @@ from functools import cache
 import numpy as np
 import pytest
 
+from robolang.execution.session import Session
 from robolang.identify import compensation_of, identify, with_errors
 from robolang.project.project import load_project
-from robolang.session import Session
 from robolang.trial_motion import Request
 from runtime.control.controller import Controller
 from runtime.plant.mujoco_plant import MujocoPlant

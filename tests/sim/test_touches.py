@@ -7,7 +7,7 @@ free body before and after the run.
 import numpy as np
 import pytest
 
-from robolang.session import Session
+from robolang.execution.session import Session
 from tests.sim.cells import BESIDE, GRIP, LEDGE, LET_GO, OWN, job
 
 

@@ -9,8 +9,8 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from robolang.execution.plot import LEFT, SHADES, WIDTH, as_map_svg
 from robolang.inertia import POINTS, AxisInertia, extremes, over_plane, plain
-from robolang.plot import LEFT, SHADES, WIDTH, as_map_svg
 from runtime.core.units import DEG
 from runtime.dynamics.equations import axis_gravity, axis_inertia
 from runtime.robot.files.loader import load_builtin

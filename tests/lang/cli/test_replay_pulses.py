@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from robolang.cli import replay_pulses as module
-from robolang.plot import HEIGHT, LEFT, RIGHT, TOP, WIDTH, Curve, as_svg, stacked
+from robolang.execution.plot import HEIGHT, LEFT, RIGHT, TOP, WIDTH, Curve, as_svg, stacked
 from tests.lang.cli.commands import ROOT, flat, places, robolang
 from tests.runtime.pulses import Handmade, staircase, turntable
 from tests.sim.test_pulse_drive import puma, swing

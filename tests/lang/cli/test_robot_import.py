@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from robolang.execution.session import Session
 from robolang.project.project import builtin_cell, load_any_robot, load_project
-from robolang.session import Session
 from runtime.cell.seam_sensor import SensorSpec
 from runtime.cell.sensor_file import read_sensor_file
 from runtime.core.frames import frozen

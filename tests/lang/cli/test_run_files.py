@@ -7,7 +7,7 @@ import os
 import numpy as np
 import pytest
 
-from robolang.session import Session
+from robolang.execution.session import Session
 from tests.lang.cli.commands import dry
 
 
@@ -63,7 +63,7 @@ def test_a_disk_that_fills_up_leaves_old_files_and_is_said(folder, monkeypatch, 
 
 
 def test_one_file_that_fails_does_not_cost_the_other(folder, monkeypatch):
-    from robolang import runlog
+    from robolang.execution import runlog
 
     def full(stream, signals):
         stream.write(b"half")

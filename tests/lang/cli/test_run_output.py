@@ -111,7 +111,7 @@ def test_words_of_other_people_are_printed_and_not_obeyed(tmp_path, monkeypatch)
 
 
 def test_an_alarm_is_located_at_its_statement(program, monkeypatch):
-    from robolang.session import Session
+    from robolang.execution.session import Session
 
     run = Session.run
 

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
+from robolang.execution.session import Session
 from robolang.project.project import load_project
-from robolang.session import Session
 from tests.lang.cli.commands import dry, places
 
 NEVER = ("--set", "in_position_deg=1e-9", "--set", "settle_timeout_s=0")

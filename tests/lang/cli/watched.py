@@ -88,9 +88,9 @@ class Watch:
 def watched(program: str, seed: str) -> list[tuple[str, str]]:
     """Return the events of one run of a program, from the first statement to the last."""
     from robolang.evaluation import evaluator
-    from robolang.motion_check import motion_check
+    from robolang.execution.dry_run import motion_check
+    from robolang.execution.session import Session
     from robolang.project.project import load_project
-    from robolang.session import Session
 
     project = load_project(program)
     assert project.ok, project.diagnostics

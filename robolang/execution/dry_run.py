@@ -14,10 +14,13 @@ from typing import Protocol
 
 import numpy as np
 
-from robolang import lowering
-from robolang.alarms import calls
 from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import Span
+from robolang.execution import lowering
+from robolang.execution.alarms import calls
+from robolang.execution.lowering import Command
+from robolang.execution.plan_memory import PlanMemory
+from robolang.execution.world import RobotWorld
 from robolang.interpreter.branches import Decisions
 from robolang.interpreter.effects import (
     Drain,
@@ -33,10 +36,7 @@ from robolang.interpreter.effects import (
     SetWrist,
 )
 from robolang.interpreter.machine import Machine, ProgramFault
-from robolang.lowering import Command
-from robolang.plan_memory import PlanMemory
 from robolang.project.project import Project
-from robolang.surroundings import RobotWorld
 from robolang.syntax.ast import Delay, Wait
 from runtime.core.faults import Fault
 from runtime.core.frames import Array

@@ -12,10 +12,16 @@ from pathlib import Path
 
 import numpy as np
 
-from robolang import lowering
-from robolang.alarms import as_diagnostic
 from robolang.core.diagnostics import Diagnostic, Severity, render
 from robolang.core.source import Span
+from robolang.execution import lowering
+from robolang.execution.alarms import as_diagnostic
+from robolang.execution.dry_run import MAX_CHAIN, MAX_RUN_US, motion_check
+from robolang.execution.lowering import Command
+from robolang.execution.plan_findings import PlanFindings, PlannedMove
+from robolang.execution.report import build_report
+from robolang.execution.result import RunRecord, RunResult, StatementRun
+from robolang.execution.world import RobotWorld
 from robolang.interpreter.effects import (
     Drain,
     Effect,
@@ -32,13 +38,7 @@ from robolang.interpreter.effects import (
     Show,
 )
 from robolang.interpreter.machine import Machine, ProgramFault
-from robolang.lowering import Command
-from robolang.motion_check import MAX_CHAIN, MAX_RUN_US, motion_check
-from robolang.plan_findings import PlanFindings, PlannedMove
 from robolang.project.project import Project, load_project
-from robolang.report import build_report
-from robolang.result import RunRecord, RunResult, StatementRun
-from robolang.surroundings import RobotWorld
 from robolang.syntax.ast import Wait
 from robolang.syntax.unparse import describe
 from runtime.cell.seam_sensor import SeamSensor

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from robolang.alarms import as_json
 from robolang.core.diagnostics import Severity
-from robolang.result import RunRecord, StatementRun
+from robolang.execution.alarms import as_json
+from robolang.execution.result import RunRecord, StatementRun
 from runtime.control.controller import Controller
 from runtime.core.faults import Alarm
 from runtime.core.frames import Array, xyzrpy_from_pose

@@ -9,7 +9,7 @@ from dataclasses import fields
 
 import numpy as np
 
-from robolang.lowering import Command
+from robolang.execution.lowering import Command
 from robolang.project.project import Project
 from runtime.core.faults import Fault
 from runtime.core.frames import Array

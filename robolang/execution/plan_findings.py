@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from robolang.execution.lowering import Command
 from robolang.interpreter.effects import MoveTo
-from robolang.lowering import Command
 from robolang.project.project import Project
 from runtime.core.frames import Array
 from runtime.core.rounding import beside, down, up

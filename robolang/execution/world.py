@@ -8,9 +8,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from robolang import lowering
 from robolang.evaluation.values import Frame, Place, Six
-from robolang.lowering import Surroundings
+from robolang.execution import lowering
+from robolang.execution.lowering import Surroundings
 from robolang.project.points import PointStore
 from runtime.cell.cell import CellSpec
 from runtime.cell.signals import Signals
