@@ -11,9 +11,9 @@ from dataclasses import asdict, dataclass
 from robolang.cli import lines
 from robolang.core.diagnostics import Diagnostic, safe
 from robolang.execution.dry_run import Rehearsal
-from robolang.exploration import Exploration, explore
-from robolang.line_times import LineTime, line_times
-from robolang.motion_findings import findings, worst_loads
+from robolang.planning.line_times import LineTime, line_times
+from robolang.planning.motion_findings import findings, worst_loads
+from robolang.planning.path_coverage import Exploration, explore
 from robolang.project.project import Project, load_project
 from runtime.core.tomlfile import FileFault
 

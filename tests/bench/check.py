@@ -15,8 +15,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from robolang.exploration import explore
-from robolang.motion_findings import findings
+from robolang.planning.motion_findings import findings
+from robolang.planning.path_coverage import explore
 from robolang.project.builtin import cell_text
 from robolang.project.project import load_project
 from tests.bench import figures

@@ -10,7 +10,7 @@ from robolang.lint import meaning_rules, motion_rules, planning_rules, point_rul
 from robolang.lint.apply import fix_all
 from robolang.lint.engine import check_points, check_source, lint
 from robolang.lint.registry import OF_THE_MOTION, OF_THE_RUN, codes, is_looked_for, rule, rules
-from robolang.motion_findings import findings
+from robolang.planning.motion_findings import findings
 from robolang.project.project import load_project
 from runtime.core.faults import Fault, lookup
 from tests.lint.helpers import POINTS

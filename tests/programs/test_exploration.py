@@ -6,12 +6,13 @@ from importlib import resources
 
 import pytest
 
-from robolang import exploration, motion_findings
 from robolang.core.source import Span
 from robolang.execution.dry_run import rehearse
-from robolang.exploration import _queue, explore
 from robolang.interpreter.branches import Decisions
-from robolang.motion_findings import findings
+from robolang.planning import motion_findings
+from robolang.planning import path_coverage as exploration
+from robolang.planning.motion_findings import findings
+from robolang.planning.path_coverage import _queue, explore
 from robolang.project.project import load_project
 from tests.lang.cli.commands import robolang
 

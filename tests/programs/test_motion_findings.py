@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robolang import motion_findings
 from robolang.core.diagnostics import Severity
 from robolang.execution.dry_run import rehearse
-from robolang.motion_findings import LoadShare, findings, worst_loads
+from robolang.planning import motion_findings
+from robolang.planning.motion_findings import LoadShare, findings, worst_loads
 from robolang.project.project import builtin_cell, load_project
 from runtime.core.units import DEG
 from runtime.plant.mujoco_plant import MujocoPlant

@@ -3,8 +3,8 @@
 import pytest
 
 from robolang.execution.dry_run import rehearse
-from robolang.exploration import explore
-from robolang.motion_findings import findings
+from robolang.planning.motion_findings import findings
+from robolang.planning.path_coverage import explore
 from tests.sim.cells import BESIDE, GRIP, LEDGE, LET_GO, OWN, job
 from tests.sim.test_touches import ALLOWED
 

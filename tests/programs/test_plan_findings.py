@@ -10,7 +10,7 @@ from robolang.core.diagnostics import Severity
 from robolang.execution.dry_run import rehearse
 from robolang.execution.plan_findings import SLOWED
 from robolang.execution.session import Session
-from robolang.motion_findings import findings
+from robolang.planning.motion_findings import findings
 from robolang.project.project import builtin_cell, load_project
 from runtime.robot.kinematics.kinematics import Kinematics
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from robolang.execution.dry_run import rehearse
-from robolang.motion_findings import findings
+from robolang.planning.motion_findings import findings
 from robolang.project.project import load_project
 
 ROOT = Path(__file__).parents[2] / "programs"

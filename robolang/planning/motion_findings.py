@@ -21,9 +21,9 @@ from robolang.core.diagnostics import Diagnostic, Severity
 from robolang.core.source import Span
 from robolang.execution.dry_run import Rehearsal, RehearsedMove
 from robolang.execution.plan_findings import PlanFindings, PlannedMove
-from robolang.exploration import Detour
-from robolang.line_times import range_margin
-from robolang.part_findings import CellTouches
+from robolang.planning.line_times import range_margin
+from robolang.planning.part_findings import CellTouches
+from robolang.planning.path_coverage import Detour
 from robolang.project.project import Project
 from runtime.core.rounding import beside
 from runtime.core.units import DEG, MM

@@ -1,0 +1,1 @@
+"""The motion of a program, known before it runs: branches covered, findings, cycle times."""
