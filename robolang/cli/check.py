@@ -82,7 +82,7 @@ def check(
 
 def _refuse(paths: list[str], form: str, statistics: bool, watch: bool, times: str | None, motion: bool) -> None:
     """Raise ``OptionValueError`` for options that cannot be, alone or together."""
-    from robolang.output import FORMS
+    from robolang.lint.reporters import FORMS
 
     if form not in FORMS:
         raise OptionValueError("--output-format", f"there is no form '{form}'; known: {', '.join(FORMS)}")

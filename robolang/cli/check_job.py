@@ -19,11 +19,11 @@ from robolang.core.source import Source
 from robolang.lint.apply import fix_all
 from robolang.lint.engine import Checked, check_points, check_source
 from robolang.lint.files import STANDARD_INPUT, programs
+from robolang.lint.reporters import render
 from robolang.lint.selection import Layer, Selection
 from robolang.lint.settings import Settings
 from robolang.lint.suppress import add_later
 from robolang.lint.watch import watch
-from robolang.output import render
 from robolang.project.discovery import CellFiles
 from runtime.core.faults import Fault, lookup
 from runtime.core.tomlfile import FileFault
@@ -221,7 +221,7 @@ def _print(job: Job, outcomes: Sequence[_Outcome]) -> None:
     if job.diff:
         text = "".join(line for outcome in outcomes for line in _change(outcome))
     elif job.statistics:
-        from robolang.output import statistics
+        from robolang.lint.reporters import statistics
 
         text = statistics.render(results, as_json=job.form == "json")
     else:

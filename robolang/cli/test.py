@@ -161,7 +161,7 @@ def _tell(outcome: _Outcome) -> int:
 
 def _as_junit(outcomes: list[_Outcome]) -> str:
     """Return the report; a test whose files cannot be used is an error, one that finds a difference a failure."""
-    from robolang.output.junit import quoted
+    from robolang.lint.reporters.junit import quoted
 
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', "<testsuites>"]
     for outcome in outcomes:
@@ -177,7 +177,7 @@ def _as_junit(outcomes: list[_Outcome]) -> str:
 
 
 def _failure(outcome: _Outcome, verdict: "Verdict") -> str:
-    from robolang.output.junit import quoted
+    from robolang.lint.reporters.junit import quoted
 
     if verdict.fault is None:
         return f"<failure message={quoted(outcome.line(verdict))}/>"

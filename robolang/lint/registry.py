@@ -119,7 +119,12 @@ def codes() -> list[Code]:
 @cache
 def rules() -> MappingProxyType[str, Rule]:
     """Return the rules that have a page, by code in numeric order; ``ValueError`` for a code with two."""
-    from robolang.lint import meaning_rules, motion_rules, planning_rules, point_rules, run_rules, text_rules
+    from robolang.lint.rules import meaning as meaning_rules
+    from robolang.lint.rules import motion as motion_rules
+    from robolang.lint.rules import planning as planning_rules
+    from robolang.lint.rules import point as point_rules
+    from robolang.lint.rules import run as run_rules
+    from robolang.lint.rules import text as text_rules
 
     found: dict[str, Rule] = {}
     for module in (text_rules, meaning_rules, point_rules, motion_rules, planning_rules, run_rules):

@@ -15,7 +15,7 @@ from robolang.core.diagnostics import Diagnostic, render, to_json
 from robolang.core.source import Source, Span
 from robolang.lint.engine import Checked, lint
 from robolang.lint.registry import rules
-from robolang.output.finding import findings
+from robolang.lint.reporters.finding import findings
 from robolang.project.points import load_points
 from runtime.cell.cell import load_cell
 from runtime.core.faults import lookup

@@ -13,8 +13,8 @@ from robolang.core.diagnostics import render as excerpt
 from robolang.core.source import Source, Span
 from robolang.lint.engine import Checked
 from robolang.lint.pages import page
-from robolang.output import FOR_PEOPLE, FORMS, render, statistics
-from robolang.output.finding import Region, findings, fingerprints, relative
+from robolang.lint.reporters import FOR_PEOPLE, FORMS, render, statistics
+from robolang.lint.reporters.finding import Region, findings, fingerprints, relative
 from runtime.core.faults import Fault, lookup
 from runtime.core.tomlfile import FileFault
 from tests.lint.helpers import checked
@@ -51,7 +51,9 @@ def as_json(form, results):
 @pytest.mark.parametrize("form", FORMS)
 def test_every_form_is_a_function_of_the_results(form, results):
     assert render(form, results, ROOT) == render(form, list(results), ROOT)
-    module = Path("robolang/output").joinpath(f"{ {'json': 'json_array'}.get(form, form).replace('-', '_') }.py")
+    module = Path("robolang/lint/reporters").joinpath(
+        f"{ {'json': 'json_array'}.get(form, form).replace('-', '_') }.py"
+    )
     assert len((Path(__file__).parents[2] / module).read_text("utf-8").splitlines()) < 120
 
 

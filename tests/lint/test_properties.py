@@ -12,7 +12,7 @@ from robolang.core.diagnostics import MAX_DIAGNOSTICS
 from robolang.core.source import Source
 from robolang.lint.apply import fix_all
 from robolang.lint.engine import Checked, lint
-from robolang.output import FORMS, render
+from robolang.lint.reporters import FORMS, render
 from runtime.core.faults import lookup
 from tests.lint.helpers import POINTS
 

@@ -6,10 +6,15 @@ from robolang.analysis.cell_symbols import CellSymbols
 from robolang.core.diagnostics import Severity, has_errors
 from robolang.core.source import Source, read_program
 from robolang.execution.dry_run import rehearse
-from robolang.lint import meaning_rules, motion_rules, planning_rules, point_rules, run_rules, text_rules
 from robolang.lint.apply import fix_all
 from robolang.lint.engine import check_points, check_source, lint
 from robolang.lint.registry import OF_THE_MOTION, OF_THE_RUN, codes, is_looked_for, rule, rules
+from robolang.lint.rules import meaning as meaning_rules
+from robolang.lint.rules import motion as motion_rules
+from robolang.lint.rules import planning as planning_rules
+from robolang.lint.rules import point as point_rules
+from robolang.lint.rules import run as run_rules
+from robolang.lint.rules import text as text_rules
 from robolang.planning.motion_findings import findings
 from robolang.project.project import load_project
 from runtime.core.faults import Fault, lookup

@@ -14,7 +14,7 @@ import pytest
 from robolang.core.source import Source
 from robolang.lint.engine import Checked
 from robolang.lint.registry import rules
-from robolang.output import render
+from robolang.lint.reporters import render
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault
 from tests.lint.helpers import checked

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from robolang.lint.engine import Checked
-from robolang.output.finding import findings
-from robolang.output.json_array import as_json
+from robolang.lint.reporters.finding import findings
+from robolang.lint.reporters.json_array import as_json
 
 
 def render(results: Sequence[Checked], root: Path) -> str:

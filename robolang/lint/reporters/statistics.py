@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from robolang.lint.engine import Checked
-from robolang.output.finding import findings
+from robolang.lint.reporters.finding import findings
 from runtime.core.faults import lookup
 
 

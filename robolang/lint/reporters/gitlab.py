@@ -7,7 +7,7 @@ from typing import Any
 
 from robolang.core.diagnostics import Severity
 from robolang.lint.engine import Checked
-from robolang.output.finding import Finding, findings, fingerprints, relative
+from robolang.lint.reporters.finding import Finding, findings, fingerprints, relative
 
 _SEVERITIES = {Severity.ERROR: "major", Severity.WARNING: "minor", Severity.INFO: "info"}
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from robolang.lint.engine import Checked
-from robolang.output.finding import Correction, Finding, findings
+from robolang.lint.reporters.finding import Correction, Finding, findings
 
 
 def render(results: Sequence[Checked], root: Path) -> str:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from robolang.core.diagnostics import safe
 from robolang.lint.engine import Checked
-from robolang.output.finding import Finding, findings
+from robolang.lint.reporters.finding import Finding, findings
 
 
 def render(results: Sequence[Checked], root: Path) -> str:

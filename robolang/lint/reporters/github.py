@@ -10,7 +10,7 @@ from pathlib import Path
 
 from robolang.core.diagnostics import Severity, safe
 from robolang.lint.engine import Checked
-from robolang.output.finding import Finding, Region, findings, relative
+from robolang.lint.reporters.finding import Finding, Region, findings, relative
 
 _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}
 

@@ -13,7 +13,7 @@ from xml.sax.saxutils import escape, quoteattr
 
 from robolang.core.diagnostics import Severity
 from robolang.lint.engine import Checked
-from robolang.output.finding import Finding, findings, relative
+from robolang.lint.reporters.finding import Finding, findings, relative
 
 _FORBIDDEN = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 

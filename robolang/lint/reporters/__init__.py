@@ -19,6 +19,6 @@ _MODULES = {"json": "json_array"}
 
 def render(form: str, results: Sequence[Checked], root: Path) -> str:
     """Return findings in one of ``FORMS``; ``root`` is the folder that forms for a repository name files from."""
-    module = import_module(f"robolang.output.{_MODULES.get(form, form.replace('-', '_'))}")
+    module = import_module(f"robolang.lint.reporters.{_MODULES.get(form, form.replace('-', '_'))}")
     text: str = module.render(results, root)
     return text

@@ -15,7 +15,7 @@ from urllib.parse import quote
 from robolang.core.diagnostics import Severity
 from robolang.lint.engine import Checked
 from robolang.lint.pages import page
-from robolang.output.finding import Correction, Finding, Region, findings, fingerprints, relative
+from robolang.lint.reporters.finding import Correction, Finding, Region, findings, fingerprints, relative
 from runtime.core.faults import lookup
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"

@@ -1,0 +1,1 @@
+"""Rules, one file for each group; registering is in ``robolang.lint.registry``."""
