@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from robolang.execution.dry_run import MAX_RUN_US
-from robolang.trial_motion import quintic
+from robolang.experiments.excitation import quintic
 from runtime.cell.cell import CellSpec
 from runtime.control.controller import Controller
 from runtime.core.faults import Alarm, Fault

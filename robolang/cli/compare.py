@@ -32,8 +32,8 @@ def compare(
         feedforward=feedforward, load_mode=load_mode, servo_period=servo_period, settings=settings
     )
     with reported():
-        from robolang.compare import VARIANTS, Request
-        from robolang.compare import compare as run_all
+        from robolang.experiments.compare import VARIANTS, Request
+        from robolang.experiments.compare import compare as run_all
 
         names = [item.name for item in VARIANTS] if only is None else only.split(",")
         unknown = sorted(set(names) - {item.name for item in VARIANTS})

@@ -23,8 +23,8 @@ from robolang.cli.weigh import weigh
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from robolang.identify import Progress
-    from robolang.trial_motion import PlantName, Request
+    from robolang.experiments.excitation import PlantName, Request
+    from robolang.experiments.identify import Progress
     from runtime.robot.model.payload import Payload
     from runtime.robot.model.spec import RobotSpec
     from runtime.settings.profile import Profile
@@ -80,10 +80,10 @@ def identify(
     day = _day(date)
     with reported():
         from robolang.core.storage import check_writable, write_atomic
-        from robolang.identify import as_json as figures
-        from robolang.identify import compensation_of, with_errors
-        from robolang.identify import identify as run_all
-        from robolang.trial_motion import Request
+        from robolang.experiments.excitation import Request
+        from robolang.experiments.identify import as_json as figures
+        from robolang.experiments.identify import compensation_of, with_errors
+        from robolang.experiments.identify import identify as run_all
         from runtime.dynamics.compensation import as_toml
 
         spec, profile, hand = _subject(subject)

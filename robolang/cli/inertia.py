@@ -21,7 +21,7 @@ from robolang.cli.errors import reported, say_warnings
 from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
-    from robolang.inertia import InertiaMap
+    from robolang.experiments.inertia import InertiaMap
     from runtime.robot.model.spec import RobotSpec
 
 KG_CM2 = 1e-4
@@ -51,7 +51,7 @@ def inertia(
     with reported():
         import numpy as np
 
-        from robolang.inertia import at_posture, extremes, over_plane, plain
+        from robolang.experiments.inertia import at_posture, extremes, over_plane, plain
         from robolang.project.project import load_any_robot
 
         spec = load_any_robot(robot)

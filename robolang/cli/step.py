@@ -13,7 +13,7 @@ from robolang.cli.values import OptionValueError, numbers
 from runtime.core.rounding import beside
 
 if TYPE_CHECKING:
-    from robolang.step import PlantName, StepRequest, StepResult
+    from robolang.experiments.step import PlantName, StepRequest, StepResult
 
 MOST_S = 60.0
 """Longest time after the step, s."""
@@ -64,10 +64,10 @@ def step(
     with reported():
         import numpy as np
 
+        from robolang.experiments.step import StepRequest
+        from robolang.experiments.step import as_json as figures
+        from robolang.experiments.step import step as run_step
         from robolang.project.project import load_any_robot, load_settings
-        from robolang.step import StepRequest
-        from robolang.step import as_json as figures
-        from robolang.step import step as run_step
         from runtime.core.frames import pose
         from runtime.core.units import DEG, MM
 

@@ -24,7 +24,7 @@ from robolang.cli.values import OptionValueError
 from runtime.core.rounding import beside
 
 if TYPE_CHECKING:
-    from robolang.weigh import PlantName, WeighRequest
+    from robolang.experiments.weigh import PlantName, WeighRequest
     from runtime.cell.cell import CellSpec
 
 MOST_AMPLITUDE = 90.0
@@ -52,10 +52,10 @@ def weigh(
     if program is not None and not Path(program).exists():
         raise OptionValueError("PROG", f"there is no file '{program}'")
     with reported():
+        from robolang.experiments.weigh import WeighRequest, carried, plan_exercise
+        from robolang.experiments.weigh import as_json as figures
+        from robolang.experiments.weigh import weigh as run_weigh
         from robolang.project.project import load_cell_and_settings
-        from robolang.weigh import WeighRequest, carried, plan_exercise
-        from robolang.weigh import as_json as figures
-        from robolang.weigh import weigh as run_weigh
         from runtime.core.units import DEG
 
         where = None if program is None else Path(program)
@@ -89,7 +89,7 @@ def _note(mass: float, cell: "CellSpec") -> None:
 
 
 def _say_what_comes(request: "WeighRequest", amplitudes: Any) -> None:
-    from robolang.weigh import SECONDS
+    from robolang.experiments.weigh import SECONDS
     from runtime.core.units import DEG
 
     swings = ", ".join(f"J{axis + 1} {by / DEG:.3g}" for axis, by in enumerate(amplitudes) if by > 0.0)

@@ -16,7 +16,7 @@ from runtime.core.units import badness
 
 if TYPE_CHECKING:
     from robolang.execution.plot import Mark
-    from robolang.wrist_demo import Figure, Run
+    from robolang.experiments.wrist_figures import Figure, Run
 
     Shown = tuple[Figure, list[Run]]
 
@@ -39,8 +39,8 @@ def wrist_demo(
 ) -> None:
     """Straight moves through a change of the wrist, as in the figures of CN103429397A."""
     with reported():
+        from robolang.experiments.wrist_figures import FIGURES, run, unusable
         from robolang.project.project import load_any_robot
-        from robolang.wrist_demo import FIGURES, run, unusable
         from runtime.core.faults import Fault
 
         chosen = _chosen(figures or [], FIGURES)
@@ -219,7 +219,7 @@ def _save(path: Path, text: str) -> None:
 
 def _title(figure: "Figure") -> str:
     """Return a title that says which move it is, as the document does: by J5."""
-    from robolang.wrist_demo import MOVES
+    from robolang.experiments.wrist_figures import MOVES
 
     move = figure.trials[0].move
     first, last = (ends[4] for ends in MOVES[move])
@@ -260,7 +260,7 @@ def _joints_svg(title: str, figure: "Figure", runs: list["Run"]) -> str:
 def _marks(figure: "Figure", runs: list["Run"]) -> list["Mark"]:
     """Return the switches, and the ends of the range where a run has to do with them."""
     from robolang.execution.plot import Mark
-    from robolang.wrist_demo import RANGE
+    from robolang.experiments.wrist_figures import RANGE
     from runtime.core.units import DEG
 
     marks: list[Mark] = []

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from robolang.execution.plot import Curve, as_svg
-from robolang.step import step
+from robolang.experiments.step import step
 from runtime.core.units import DEG
 from runtime.robot.model.payload import NO_PAYLOAD
 from tests.experiments.test_step import FAR, FIVE, HALF, NEAR, PUMA, REPLACED, STRETCHED, experiment

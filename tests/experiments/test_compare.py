@@ -6,8 +6,8 @@ import re
 import numpy as np
 import pytest
 
-from robolang.compare import VARIANTS, Request, compare, last_approach, wrong_mass
 from robolang.execution.session import Session
+from robolang.experiments.compare import VARIANTS, Request, compare, last_approach, wrong_mass
 from tests.campaign import some
 from tests.lang.cli.commands import ROOT, robolang
 
@@ -64,7 +64,7 @@ def test_an_omitted_load_leaves_a_droop_and_never_settles(rows):
 
 
 def test_a_wrong_load_never_changes_the_commanded_path():
-    from robolang.compare import _Loads
+    from robolang.experiments.compare import _Loads
 
     request = Request(program=PROGRAM, physics=False)
     plans = []

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robolang.step import StepRequest, step
+from robolang.experiments.step import StepRequest, step
 from runtime.core.faults import Fault
 from runtime.core.frames import pose
 from runtime.core.units import DEG

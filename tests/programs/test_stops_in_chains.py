@@ -3,8 +3,8 @@
 import pytest
 
 from robolang.cli.run_table import print_result
-from robolang.compare import measures
 from robolang.execution.session import Session
+from robolang.experiments.compare import measures
 from robolang.project.project import load_project
 
 TEXT = """\

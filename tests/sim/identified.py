@@ -3,8 +3,8 @@
 from functools import cache
 from pathlib import Path
 
-from robolang.identify import identify, with_errors
-from robolang.trial_motion import Request
+from robolang.experiments.excitation import Request
+from robolang.experiments.identify import identify, with_errors
 from runtime.robot.files.loader import load_builtin
 from tests.campaign import size, some
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from robolang.execution.session import Session
-from robolang.identify import compensation_of, identify, with_errors
+from robolang.experiments.excitation import Request
+from robolang.experiments.identify import compensation_of, identify, with_errors
 from robolang.project.project import load_project
-from robolang.trial_motion import Request
 from runtime.control.controller import Controller
 from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.kinematics.kinematics import Kinematics

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from robolang.identify import compensation_of, identify, weight_of
-from robolang.trial_motion import Request
+from robolang.experiments.excitation import Request
+from robolang.experiments.identify import compensation_of, identify, weight_of
 from runtime.dynamics.first_moments import scale
 from runtime.robot.model.arm_model import ArmModel
 from tests.campaign import some

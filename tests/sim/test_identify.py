@@ -6,8 +6,8 @@ Friction and encoder steps are on in every experiment; the drive's current and i
 import numpy as np
 import pytest
 
-from robolang.identify import compensation_of, identify, passage, with_errors
-from robolang.trial_motion import Request
+from robolang.experiments.excitation import Request
+from robolang.experiments.identify import compensation_of, identify, passage, with_errors
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import inertia_defect

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robolang.identify import RubbingPlant, identify, with_errors
+from robolang.experiments.excitation import LEAST_STROKE, MARGIN, Request, bench, folds, plan, plan_table, posture
+from robolang.experiments.identify import RubbingPlant, identify, with_errors
 from robolang.project.project import load_project
-from robolang.trial_motion import LEAST_STROKE, MARGIN, Request, bench, folds, plan, plan_table, posture
 from runtime.core.faults import Fault
 from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.plant.mujoco_plant import MujocoPlant
@@ -107,7 +107,7 @@ def test_a_table_shrinks_off_the_ground():
 def test_a_table_without_room_is_refused_before_anything_moves(monkeypatch):
     request = Request(robot=SPEC, axes=(1,), table=2)
     test = plan(request, NO_PAYLOAD, 1)
-    monkeypatch.setattr("robolang.trial_motion.CLEARANCE", 9.0)
+    monkeypatch.setattr("robolang.experiments.excitation.CLEARANCE", 9.0)
     with pytest.raises(Fault, match="J2 has no room for a table over J3") as caught:
         plan_table(request, NO_PAYLOAD, test)
     assert caught.value.code == "RBL420"
@@ -164,7 +164,7 @@ def test_a_plant_that_does_not_follow_stops_the_identification():
 
 def test_a_contact_stops_the_identification(monkeypatch):
     """The Puma reaches the ground when nothing keeps it off."""
-    monkeypatch.setattr("robolang.trial_motion.CLEARANCE", -9.0)
+    monkeypatch.setattr("robolang.experiments.excitation.CLEARANCE", -9.0)
     with pytest.raises(Fault, match=r"J2 at -?\d+\.\d deg: floor touches \w+") as caught:
         identify(Request(robot=SPEC, axes=(1,)))
     assert caught.value.code == "RBL516"

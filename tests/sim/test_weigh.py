@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robolang import weigh as module
+from robolang.experiments import weigh as module
+from robolang.experiments.weigh import Declaration, WeighRequest, carried, load_statement, plan_exercise, weigh
 from robolang.project.project import load_cell_and_settings
-from robolang.weigh import Declaration, WeighRequest, carried, load_statement, plan_exercise, weigh
 from runtime.cell.cell import ObstacleSpec
 from runtime.core.faults import Fault
 from runtime.core.units import DEG

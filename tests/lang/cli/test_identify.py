@@ -8,7 +8,7 @@ import shutil
 import numpy as np
 import pytest
 
-from robolang import identify as identification
+from robolang.experiments import identify as identification
 from robolang.project.project import builtin_cell, load_project
 from runtime.dynamics.compensation import load_compensation
 from runtime.robot.files.loader import load_builtin

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from robolang.execution.plot import LEFT, SHADES, WIDTH, as_map_svg
-from robolang.inertia import POINTS, AxisInertia, extremes, over_plane, plain
+from robolang.experiments.inertia import POINTS, AxisInertia, extremes, over_plane, plain
 from runtime.core.units import DEG
 from runtime.dynamics.equations import axis_gravity, axis_inertia
 from runtime.robot.files.loader import load_builtin

@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from robolang import weigh as module
+from robolang.experiments import weigh as module
 from tests.lang.cli.commands import ROOT, flat, robolang
 from tests.lang.helpers import checked
 

@@ -9,8 +9,8 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from robolang import wrist_demo as demo
 from robolang.execution.plot import BOTTOM, COLOURS, HEIGHT, LEFT, RIGHT, TOP, WIDTH, Curve, Dots, Mark, as_svg
+from robolang.experiments import wrist_figures as demo
 from runtime.core.faults import Fault
 from runtime.core.units import DEG
 from runtime.robot.files.loader import load_builtin

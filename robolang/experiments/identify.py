@@ -37,7 +37,7 @@ from typing import Any
 
 import numpy as np
 
-from robolang.trial_motion import Grid, PlantName, Request, Test, bench, plan, plan_table, quintic
+from robolang.experiments.excitation import Grid, PlantName, Request, Test, bench, plan, plan_table, quintic
 from runtime.cell.cell import CellSpec
 from runtime.control.controller import Controller
 from runtime.core.faults import Fault

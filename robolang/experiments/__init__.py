@@ -1,0 +1,1 @@
+"""Experiments on controller and arm: step response, comparison, identification, weighing, inertia, the wrist."""
