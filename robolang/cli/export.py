@@ -22,7 +22,7 @@ from runtime.core.units import badness
 
 if TYPE_CHECKING:
     from robolang.project.project import Project
-    from robolang.pulse_export import Export
+    from robolang.pulse_tables.export import Export
     from runtime.pulses.channels import Channel
 
 app = typer.Typer(no_args_is_help=True, help="Turn a program into what other controllers run.")
@@ -71,7 +71,7 @@ def pulses(
         if plot is not None:
             check_writable(plot)
         from robolang.project.project import load_project
-        from robolang.pulse_export import ExportRequest, NotExportableError, export
+        from robolang.pulse_tables.export import ExportRequest, NotExportableError, export
 
         project = load_project(program, cell, robot)
         _refuse(project)
@@ -126,7 +126,7 @@ def _refuse(project: "Project") -> None:
 
 
 def _plain(found: "Export", out: Path) -> dict[str, Any]:
-    from robolang.pulse_export import MANIFEST, summary
+    from robolang.pulse_tables.export import MANIFEST, summary
 
     sequence = json.loads(found.files[MANIFEST])["sequence"]
     head = ("line", "number", "text")
@@ -150,7 +150,7 @@ def _print(found: "Export", out: Path) -> None:
 
     from robolang.cli.console import Console
     from robolang.core.diagnostics import safe
-    from robolang.pulse_export import ExportedMove
+    from robolang.pulse_tables.export import ExportedMove
 
     plain, console = _plain(found, out), Console()
     moves, markers = plain["moves"], plain["markers"]
@@ -235,7 +235,7 @@ def _notes(moves: list[dict[str, Any]]) -> list[str]:
 
 def _plot(folder: Path, file: Path) -> None:
     """Draw what a PLC would do with the tables, from the files themselves."""
-    from robolang.pulse_plot import write_plot
+    from robolang.pulse_tables.plots import write_plot
     from runtime.pulses.folder import read_export
     from runtime.pulses.replay import replay
 

@@ -32,7 +32,7 @@ from runtime.core.units import badness
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from robolang.pulse_drive import Drive, DrivenMove
+    from robolang.pulse_tables.drive import Drive, DrivenMove
     from runtime.core.faults import Alarm
     from runtime.pulses.exported import Export, Marker
     from runtime.pulses.replay import MoveReplay
@@ -72,7 +72,7 @@ def replay_pulses(
         replays = replay(export)
         found = _figures(folder, export, replays, drive)
         if plot is not None:
-            from robolang.pulse_plot import write_plot
+            from robolang.pulse_tables.plots import write_plot
 
             write_plot(plot, export, replays)
         with reader_may_leave():
@@ -89,7 +89,7 @@ def replay_pulses(
 
 def _drive(export: "Export", cell: str) -> "Drive":
     from robolang.project.project import load_cell_and_settings
-    from robolang.pulse_drive import drive, start_angles
+    from robolang.pulse_tables.drive import drive, start_angles
 
     spec, settings = load_cell_and_settings(None, cell, None, None, {})
     say_warnings(spec.robot.warnings)

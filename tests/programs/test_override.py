@@ -6,7 +6,7 @@ import pytest
 from robolang.execution.dry_run import rehearse
 from robolang.execution.session import Session
 from robolang.project.project import load_project
-from robolang.pulse_export import ExportRequest, export
+from robolang.pulse_tables.export import ExportRequest, export
 from tests.campaign import some
 
 HAND = "LOAD (0, 0, 60), 0.8"

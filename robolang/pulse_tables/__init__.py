@@ -1,0 +1,1 @@
+"""Programs as pulse tables: export, the arm driven by them, plots."""
