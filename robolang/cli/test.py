@@ -16,9 +16,9 @@ from robolang.cli.errors import DIAGNOSTICS, USAGE, internal, reported, say_all
 
 if TYPE_CHECKING:
     from robolang.core.diagnostics import Diagnostic
-    from robolang.expectation import Expectation
     from robolang.project.project import Project
-    from robolang.verdict import Verdict
+    from robolang.testing.expectation import Expectation
+    from robolang.testing.verdict import Verdict
     from runtime.core.faults import Fault
 
 
@@ -74,9 +74,9 @@ def test(
 
 def _files(paths: list[str], allow_empty: bool) -> Iterator[Path | _Outcome]:
     """Yield the test files that paths mean, each once; for a path that means none, the outcome that says so."""
-    from robolang.expectation import ENDING
     from robolang.lint.files import programs
     from robolang.lint.settings import Settings
+    from robolang.testing.expectation import ENDING
     from runtime.core.faults import Fault
 
     seen: set[Path] = set()
@@ -99,7 +99,7 @@ def _files(paths: list[str], allow_empty: bool) -> Iterator[Path | _Outcome]:
 
 
 def _unusable(name: str, fault: "Fault", expected: "Expectation | None" = None) -> _Outcome:
-    from robolang.verdict import Verdict
+    from robolang.testing.verdict import Verdict
 
     verdict = Verdict(name="files", ok=False, said=f"{fault.code} {fault.message}", fault=fault)
     return _Outcome(name=name, verdicts=[verdict], expected=expected)
@@ -107,7 +107,7 @@ def _unusable(name: str, fault: "Fault", expected: "Expectation | None" = None) 
 
 def _run(file: Path, update: bool) -> _Outcome:
     """Run one program; whatever goes wrong is the outcome of this test alone."""
-    from robolang.expectation import ENDING, load_expectation
+    from robolang.testing.expectation import ENDING, load_expectation
     from runtime.core.faults import Fault
 
     program = file.with_name(file.name.removesuffix(ENDING) + ".rbl")
@@ -128,7 +128,7 @@ def _judged(program: Path, expected: "Expectation", update: bool) -> "tuple[list
     from robolang.execution.dry_run import motion_check
     from robolang.execution.session import Session
     from robolang.project.project import load_project
-    from robolang.verdict import judge, judge_refused
+    from robolang.testing.verdict import judge, judge_refused
 
     project = load_project(program)
     refused = [item for item in project.diagnostics if item.severity is Severity.ERROR] or list(motion_check(project))

@@ -25,7 +25,7 @@ FILE = "read from a file, and what is read is finite"
 WHOLE = "whole numbers"
 OPEN = {
     "robolang/analysis/checker.py: line.number < previous": WHOLE,
-    "robolang/golden.py: size < _END.size": WHOLE,
+    "robolang/testing/golden.py: size < _END.size": WHOLE,
     "robolang/interpreter/machine.py: rounds > MAX_ROUNDS": "the language has no NaN",
     "runtime/cell/signals.py: round(seconds * 1000000.0) <= changes[-1][0]": WHOLE,
     "runtime/pulses/folder.py: steps > most": WHOLE,

@@ -27,7 +27,7 @@ MODULES = {"os", "shutil", "np", "Path"}
 KNOWN = {
     "robolang/syntax/grammar.py: TABLE.write_text": "run by hand, makes a file of the source",
     "robolang/lint/pages.py: folder / name.write_text": "run by hand, makes the pages of the rules",
-    "robolang/golden.py: np.savez_compressed": "to a stream of write_atomic",
+    "robolang/testing/golden.py: np.savez_compressed": "to a stream of write_atomic",
     "robolang/execution/runlog.py: np.savez": "to a stream of write_atomic",
 }
 

@@ -16,7 +16,6 @@ from robolang.analysis import checker
 from robolang.analysis.cell_symbols import CellSymbols
 from robolang.core.diagnostics import Severity, render, render_fault, to_json
 from robolang.core.source import Source, decode_program
-from robolang.golden import read_golden
 from robolang.lint import engine
 from robolang.project.discovery import builtin_cell_file
 from robolang.project.points import load_points
@@ -25,6 +24,7 @@ from robolang.syntax import formatter
 from robolang.syntax.grammar import line_parser
 from robolang.syntax.keywords import KEYWORDS
 from robolang.syntax.parser import parse
+from robolang.testing.golden import read_golden
 from runtime.cell.cell import load_cell
 from runtime.core.faults import Fault, lookup
 from runtime.core.tomlfile import FileFault

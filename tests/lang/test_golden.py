@@ -8,7 +8,7 @@ import zipfile
 import numpy as np
 import pytest
 
-from robolang.golden import read_golden, write_golden
+from robolang.testing.golden import read_golden, write_golden
 from runtime.core.faults import Fault
 
 N = 40

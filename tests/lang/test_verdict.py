@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from robolang.expectation import Expectation
-from robolang.golden import write_golden
-from robolang.verdict import judge
+from robolang.testing.expectation import Expectation
+from robolang.testing.golden import write_golden
+from robolang.testing.verdict import judge
 from runtime.core.tomlfile import Source
 
 NAN = math.nan

@@ -7,9 +7,9 @@ from dataclasses import fields
 import pytest
 from typer.testing import CliRunner
 
-from robolang import verdict
 from robolang.cli.main import app
-from robolang.expectation import Expectation, load_expectation
+from robolang.testing import verdict
+from robolang.testing.expectation import Expectation, load_expectation
 from runtime.core.tomlfile import FileFault
 from tests.campaign import WHOLE
 from tests.lang.cli.commands import ROOT, places, robolang

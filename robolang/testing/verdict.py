@@ -13,8 +13,8 @@ import numpy as np
 
 from robolang.execution.report import pose_mm_deg
 from robolang.execution.session import Session
-from robolang.expectation import Expectation
-from robolang.golden import read_golden, write_golden
+from robolang.testing.expectation import Expectation
+from robolang.testing.golden import read_golden, write_golden
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, pose_from_xyzrpy, rotation_angles
 from runtime.core.linear import norm

@@ -20,7 +20,7 @@
     part_1 = [400, 150, 640]             # where a part lies in the end
     part_mm = 1.0                        # how far from there, default 1
 
-``robolang.verdict`` compares a run with it. A key that nothing would be compared by is refused.
+``robolang.testing.verdict`` compares a run with it. A key that nothing would be compared by is refused.
 """
 
 import difflib
