@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from robolang.cli import (
+from robolang.cli.commands import (
     check,
     compare,
     config,

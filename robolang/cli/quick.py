@@ -5,7 +5,7 @@ It is what editors and hooks call, often and for one file. Usage, help and error
 
 import typer
 
-from robolang.cli.check import check
+from robolang.cli.commands.check import check
 from robolang.cli.errors import escape_what_a_terminal_lacks
 
 app = typer.Typer(name="robolang", no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)

@@ -54,7 +54,7 @@ MASKED = {
 PLANNED = "of moves that are planned: theirs is finite"
 SOLVED = "no solution of the inverse kinematics has a NaN"
 EXTREMES = {
-    "robolang/cli/export.py: max((move['highest_hz'] for move in moves), default=0)": WHOLE,
+    "robolang/cli/commands/export.py: max((move['highest_hz'] for move in moves), default=0)": WHOLE,
     "robolang/experiments/compare.py: max(settled, float(t[stop + outside[-1] + 1] - t[stop]))": "times of ticks",
     "robolang/pulse_tables/plots.py: max(float(x[-1] - x[0]), 1e-09)": "a width of a drawing",
     "robolang/experiments/step.py: max(_LOST * abs(request.size), np.pi)": "the size of a step is checked to be finite",

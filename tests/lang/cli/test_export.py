@@ -8,7 +8,7 @@ import shutil
 import numpy as np
 import pytest
 
-from robolang.cli.export import written_here
+from robolang.cli.commands.export import written_here
 from robolang.core import storage
 from robolang.core.storage import write_folder
 from runtime.core.faults import Fault

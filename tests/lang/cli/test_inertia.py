@@ -280,7 +280,7 @@ def test_a_picture_that_cannot_be_written(tmp_path):
 
 def test_importing_the_command_loads_no_numerics():
     heavy = ("numpy", "pinocchio", "mujoco", "ruckig", "rich.table")
-    code = f"import sys, robolang.cli.inertia; print([m for m in {heavy} if m in sys.modules])"
+    code = f"import sys, robolang.cli.commands.inertia; print([m for m in {heavy} if m in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "[]\n"
 
 

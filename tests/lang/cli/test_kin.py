@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from robolang.cli.kin import MOST_TURNS, app
+from robolang.cli.commands.kin import MOST_TURNS, app
 from robolang.cli.values import OptionValueError, numbers
 from runtime.core.frames import pose_from_xyzrpy, xyzrpy_from_pose
 from runtime.core.units import DEG, MM
@@ -199,5 +199,5 @@ def test_numbers_carry_their_code_and_place():
 
 def test_importing_the_commands_loads_no_numerics():
     heavy = ("numpy", "pinocchio", "mujoco", "ruckig")
-    code = f"import sys, robolang.cli.kin; print([m for m in {heavy} if m in sys.modules])"
+    code = f"import sys, robolang.cli.commands.kin; print([m for m in {heavy} if m in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "[]\n"

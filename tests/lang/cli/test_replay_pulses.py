@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from robolang.cli import replay_pulses as module
+from robolang.cli.commands import replay_pulses as module
 from robolang.execution.plot import HEIGHT, LEFT, RIGHT, TOP, WIDTH, Curve, as_svg, stacked
 from tests.lang.cli.commands import ROOT, flat, places, robolang
 from tests.runtime.pulses import Handmade, staircase, turntable

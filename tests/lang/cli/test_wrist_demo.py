@@ -232,7 +232,7 @@ def test_the_plots_of_the_pages_are_what_the_command_draws(tmp_path):
 
 def test_figures_that_take_long_are_named_on_stderr(monkeypatch):
     assert robolang("wrist-demo", "4").stderr == ""
-    monkeypatch.setattr("robolang.cli.wrist_demo.SILENT_S", -1.0)
+    monkeypatch.setattr("robolang.cli.commands.wrist_demo.SILENT_S", -1.0)
     assert robolang("wrist-demo", "4", "6").stderr.splitlines() == ["1/2 figure 4", "2/2 figure 6"]
 
 
@@ -271,7 +271,7 @@ def test_a_figure_that_another_robot_cannot_make_is_named():
 
 
 def test_a_folder_that_cannot_be_written_is_rbl706_before_anything_is_computed(tmp_path, monkeypatch):
-    monkeypatch.setattr("robolang.cli.wrist_demo.SILENT_S", -1.0)  # so that a figure that is computed says so
+    monkeypatch.setattr("robolang.cli.commands.wrist_demo.SILENT_S", -1.0)  # so that a figure that is computed says so
     (tmp_path / "file").write_text("")
     for folder in (tmp_path / "no" / "such", tmp_path / "file", "/proc"):
         said = robolang("wrist-demo", "4", "--out", folder, code=4)

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 import typer
 
 from robolang.cli import values
+from robolang.cli.commands.weigh import weigh
 from robolang.cli.errors import reported, say_warnings
 from robolang.cli.values import OptionValueError
-from robolang.cli.weigh import weigh
 
 if TYPE_CHECKING:
     from rich.table import Table
