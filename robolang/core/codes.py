@@ -1,8 +1,8 @@
 """Codes of the language: text (1xx), meaning (2xx), points (3xx), command line (7xx), internal (9xx).
 
-Importing this module fills the registry of ``runtime.core.faults`` completely, the runtime's own codes included, and brings
-in no numerics, so ``robolang check``, ``explain`` and the documentation generator need only this import. A code keeps
-its number and its meaning for ever; a message may be reworded. Called once, at import.
+Importing this module fills the registry of ``runtime.core.faults`` completely, the runtime's own codes included, and
+brings in no numerics, so ``robolang check``, ``explain`` and the documentation generator need only this import. A
+code keeps its number and its meaning for ever; a message may be reworded. Called once, at import.
 """
 
 import robolang.core.run_codes  # noqa: F401 - registers 2xx, 50x and 53x

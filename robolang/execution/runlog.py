@@ -1,7 +1,7 @@
 """The log of a run as a file: ``.npz`` for numpy, ``.mcap`` for log viewers.
 
-``.npz`` holds one array per signal of ``runtime.control.recorder``, first dimension the servo ticks. ``.mcap`` holds one
-protobuf message ``robolang.Sample`` per tick on the channel ``/controller``, with the schema inside, so a viewer
+``.npz`` holds one array per signal of ``runtime.control.recorder``, first dimension the servo ticks. ``.mcap`` holds
+one protobuf message ``robolang.Sample`` per tick on the channel ``/controller``, with the schema inside, so a viewer
 that reads MCAP shows the fields by name; times are simulated, in ns from power-up. A run without a tick gives a valid
 file without a message. Both repeat byte for byte: neither carries the time of day.
 """

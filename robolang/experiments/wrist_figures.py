@@ -6,8 +6,8 @@ the robot (IRB 2400), the tool (200 mm along the flange axis), 4 s at constant s
 project's acceptance experiments.
 
 Figures 17 to 22 are reconstructions: the document's text on them, on suppression, is lost. They show the experiments
-that the project put in its place, with frame, candidates and choice of ``runtime.motion.wrist.hold``, a switch at 2.2 s (E2)
-or 1.8 s (E3), 20 ms, limits of 180, 180 and 225 deg/s. The seam of figure 11 is made up too.
+that the project put in its place, with frame, candidates and choice of ``runtime.motion.wrist.hold``, a switch at 2.2
+s (E2) or 1.8 s (E3), 20 ms, limits of 180, 180 and 225 deg/s. The seam of figure 11 is made up too.
 
 Nothing is planned here, so nothing is slowed, smoothed or refused; ``LinePlanner`` would make some of these moves in
 another way. What the document's rule alone does, good or bad, is what is to be seen. Angles rad, lengths m, times s.

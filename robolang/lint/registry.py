@@ -1,10 +1,10 @@
 """The rules of ``robolang check``: what is known of a code beyond its name, meaning and remedy.
 
-Code, name, meaning and remedy are in the registry of ``runtime.core.faults``; here is what a page of documentation needs
-besides: why the finding matters, a program that has it, the same program without it, and what ``--fix`` does. A code
-without an entry is a rule all the same: it can be selected, ignored and suppressed, and its page is short. One module
-holds the entries of one group of a hundred codes; a new one is a ``Rule`` in its list and, after
-``python -m robolang.lint.pages``, a page.
+Code, name, meaning and remedy are in the registry of ``runtime.core.faults``; here is what a page of documentation
+needs besides: why the finding matters, a program that has it, the same program without it, and what ``--fix`` does. A
+code without an entry is a rule all the same: it can be selected, ignored and suppressed, and its page is short. One
+module holds the entries of one group of a hundred codes; a new one is a ``Rule`` in its list and, after ``python -m
+robolang.lint.pages``, a page.
 """
 
 from dataclasses import dataclass

@@ -12,7 +12,7 @@ from typing import Any
 from robolang.analysis.checker import check
 from robolang.core.diagnostics import Diagnostic, has_errors, in_order
 from robolang.core.source import Source, read_program
-from robolang.project import discovery as beside
+from robolang.project import discovery
 from robolang.project.discovery import CellFiles, controller_settings, read_beside
 from robolang.project.points import PointStore
 from robolang.syntax.ast import Program
@@ -107,12 +107,12 @@ def load_any_robot(name: str) -> RobotSpec:
         return loader.load_builtin(name)
     if name.lower().endswith(ROBOT_ENDINGS):
         return importer.load_file(Path(name))
-    raise beside.no_robot(name)
+    raise discovery.no_robot(name)
 
 
 def builtin_cell() -> CellSpec:
     """Return the built-in cell."""
-    return cells.build(beside.builtin_cell_file())
+    return cells.build(discovery.builtin_cell_file())
 
 
 def load_cell_and_settings(
@@ -123,10 +123,10 @@ def load_cell_and_settings(
     options: Mapping[str, tuple[str, Any]],
 ) -> tuple[CellSpec, Settings]:
     """Return the cell of a program (None: the built-in cell) and the settings in force; see ``load_project``."""
-    where = Path(cell) if cell is not None else None if program is None else beside.cell_beside(program)
+    where = Path(cell) if cell is not None else None if program is None else discovery.cell_beside(program)
     file = CellFiles().cell(where)
     if robot is not None:
-        file = beside.with_robot(file, beside.named_arm(robot))
+        file = discovery.with_robot(file, discovery.named_arm(robot))
     settings = controller_settings(file, _layers(profile, options))
     spec = cells.build(file)
     return spec, judged(spec.robot, spec.hand.X_flange_tool, settings)

@@ -28,8 +28,7 @@ from runtime.core.frames import Array
 from runtime.core.program_line import named
 from runtime.core.units import MM
 from runtime.motion.commands import MoveLinear
-from runtime.pulses import mechanism
-from runtime.pulses import panasonic_f174 as f174
+from runtime.pulses import mechanism, panasonic_f174
 from runtime.pulses.channels import Channel, ChannelFile, channels_of, default_channels, motor_pulse, read_channel_file
 from runtime.pulses.emission import Pulses
 from runtime.pulses.machine import Machine, RobotArm
@@ -270,7 +269,7 @@ def _tables(
         ]
         texts = [(f"{stem}.csv", as_csv(rows, [*comments, "frequency in Hz, target in pulses from zero"]))]
         if request.f174:
-            plc = f174.as_csv(list(data_tables(rows, start)), channel.output, [*comments, *F174_COMMENTS])
+            plc = panasonic_f174.as_csv(list(data_tables(rows, start)), channel.output, [*comments, *F174_COMMENTS])
             texts.append((f"{stem}.f174.csv", plc))
         found.append(texts)
     return found

@@ -5,8 +5,8 @@ gives of it, as plain data; Lark reads it back in a tenth of the time. Nothing i
 is unpickled from a folder that others may write to. The form is that of one version of Lark: under another one the
 table is made from the grammar, as if the file were not there.
 
-``python -m robolang.syntax.grammar`` writes the file anew after a change of the grammar; a test says when that was forgotten
-(docs/decisions/0022).
+``python -m robolang.syntax.grammar`` writes the file anew after a change of the grammar; a test says when that was
+forgotten (docs/decisions/0022).
 """
 
 import json

@@ -16,7 +16,7 @@ from lark import Token, UnexpectedToken
 
 from robolang.core.diagnostics import HIDDEN, MAX_DIAGNOSTICS, Diagnostic, Severity, in_order
 from robolang.core.source import MAX_BYTES, Source, Span
-from robolang.syntax import ast as nodes
+from robolang.syntax import ast
 from robolang.syntax.builder import Parsed, span_of
 from robolang.syntax.grammar import line_parser
 from robolang.syntax.keywords import NEW
@@ -42,7 +42,7 @@ class ParseResult:
     is not read and not in the tree.
     """
 
-    program: nodes.Program
+    program: ast.Program
     diagnostics: tuple[Diagnostic, ...]
 
 
@@ -51,8 +51,8 @@ def parse(source: Source) -> ParseResult:
     if len(source.text) > MAX_BYTES:
         message = f"the program has {len(source.text)} characters, more than {MAX_BYTES}"
         problem = Diagnostic(code="RBL106", message=message, span=Span(0, 0))
-        return ParseResult(program=nodes.Program(source_path=source.path, lines=()), diagnostics=(problem,))
-    lines: list[nodes.Line] = []
+        return ParseResult(program=ast.Program(source_path=source.path, lines=()), diagnostics=(problem,))
+    lines: list[ast.Line] = []
     problems = _mixed_line_ends(source)
     for row, span in enumerate(source.line_spans, start=1):
         text = source.slice(span)
@@ -64,7 +64,7 @@ def parse(source: Source) -> ParseResult:
             problems.append(found)
             if len(problems) > MAX_DIAGNOSTICS:
                 break
-    program = nodes.Program(source_path=source.path, lines=tuple(lines))
+    program = ast.Program(source_path=source.path, lines=tuple(lines))
     return ParseResult(program=program, diagnostics=in_order(problems))
 
 
@@ -79,7 +79,7 @@ def _mixed_line_ends(source: Source) -> list[Diagnostic]:
     return [Diagnostic(code="RBL110", severity=Severity.INFO, message=message, span=Span(other.start(), other.start()))]
 
 
-def _parse_line(text: str, span: Span, row: int) -> tuple[nodes.Line, Diagnostic | None]:
+def _parse_line(text: str, span: Span, row: int) -> tuple[ast.Line, Diagnostic | None]:
     """Parse one line that is not blank; ``text`` is the text of ``span``."""
     head = _HEAD.match(text)
     assert head is not None
@@ -87,7 +87,7 @@ def _parse_line(text: str, span: Span, row: int) -> tuple[nodes.Line, Diagnostic
     number = int(digits) if digits and len(digits) <= MAX_NUMBER_DIGITS else None
     code, base = text[head.end() :], span.start + head.end()
     parsed: Parsed | Diagnostic | None = _refusal(text, span.start)
-    number_span = _part(span, span.start + head.start(1), span.start + head.end(1)) if digits else nodes.NOWHERE
+    number_span = _part(span, span.start + head.start(1), span.start + head.end(1)) if digits else ast.NOWHERE
     if parsed is None and digits and number is None:
         message = f"the line number {quote(digits)} has more than {MAX_NUMBER_DIGITS} digits"
         parsed = Diagnostic(code="RBL114", message=message, span=number_span)
@@ -95,8 +95,8 @@ def _parse_line(text: str, span: Span, row: int) -> tuple[nodes.Line, Diagnostic
         parsed = _parse_statement(code, base, span)
     problem = parsed if isinstance(parsed, Diagnostic) else None
     if isinstance(parsed, Diagnostic):
-        parsed = None, nodes.Unparsed(text=code, span=_part(span, base, span.end)), None
-    line = nodes.Line(
+        parsed = None, ast.Unparsed(text=code, span=_part(span, base, span.end)), None
+    line = ast.Line(
         number=number,
         label=parsed[0],
         statement=parsed[1],
@@ -156,7 +156,7 @@ def _parse_statement(code: str, base: int, line: Span) -> Parsed | Diagnostic:
         return None, None, None
     if code[0] == "'":
         text = code.rstrip()
-        return None, None, nodes.Comment(text=text, span=_part(line, base, base + len(text)))
+        return None, None, ast.Comment(text=text, span=_part(line, base, base + len(text)))
     session = line_parser().parse_interactive(code, start="start")
     token = None
     try:

@@ -12,7 +12,7 @@ each. Used for progress, logs and pulse tables (``describe``), and by the format
 
 from typing import TypeAlias, assert_never
 
-from robolang.syntax import ast as nodes
+from robolang.syntax import ast
 from robolang.syntax.ast import Expression, Option, Statement
 from robolang.syntax.keywords import FUNCTIONS, VALUES
 
@@ -37,38 +37,36 @@ _QUOTE = '"'
 _Piece: TypeAlias = str | tuple[Expression, int]
 """Text, or an expression with the lowest level that its place can hold."""
 
-_Payload: TypeAlias = nodes.Load | nodes.LoadNamed | nodes.Hand | nodes.Wrist | nodes.Seam | nodes.Setting
-_Data: TypeAlias = (
-    nodes.Assign | nodes.Dim | nodes.Const | nodes.Out | nodes.Pulse | nodes.Delay | nodes.Wait | nodes.Print
-)
+_Payload: TypeAlias = ast.Load | ast.LoadNamed | ast.Hand | ast.Wrist | ast.Seam | ast.Setting
+_Data: TypeAlias = ast.Assign | ast.Dim | ast.Const | ast.Out | ast.Pulse | ast.Delay | ast.Wait | ast.Print
 _Control: TypeAlias = (
-    nodes.If
-    | nodes.Block
-    | nodes.Head
-    | nodes.Case
-    | nodes.For
-    | nodes.Next
-    | nodes.Jump
-    | nodes.Sub
-    | nodes.CallSub
-    | nodes.Word
-    | nodes.OnError
+    ast.If
+    | ast.Block
+    | ast.Head
+    | ast.Case
+    | ast.For
+    | ast.Next
+    | ast.Jump
+    | ast.Sub
+    | ast.CallSub
+    | ast.Word
+    | ast.OnError
 )
 
 
-def print_program(program: nodes.Program) -> str:
+def print_program(program: ast.Program) -> str:
     """Return the lines of a program, each with a line end; without indentation, and blank lines are not kept."""
     return "".join(f"{print_line(line)}\n" for line in program.lines)
 
 
-def print_line(line: nodes.Line) -> str:
+def print_line(line: ast.Line) -> str:
     """Return one line as canonical text without a line end."""
     number = [] if line.number is None else [str(line.number)]
     comment = [] if line.comment is None else [line.comment.text]
     return " ".join([*number, *filter(None, [print_code(line)]), *comment])
 
 
-def print_code(line: nodes.Line) -> str:
+def print_code(line: ast.Line) -> str:
     """Return the label and the statement of a line; ``""`` when it has neither."""
     label = [] if line.label is None else [f"*{line.label.text}"]
     statement = [] if line.statement is None else [describe(line.statement)]
@@ -78,38 +76,29 @@ def print_code(line: nodes.Line) -> str:
 def describe(statement: Statement) -> str:
     """Return a statement as canonical text, such as ``MOVE P1, SPEED 200``."""
     match statement:
-        case nodes.Move() | nodes.MoveJ() | nodes.MoveC() | nodes.Approach() | nodes.Depart():
+        case ast.Move() | ast.MoveJ() | ast.MoveC() | ast.Approach() | ast.Depart():
             return ", ".join([_moving(statement), *map(_option, statement.options)])
-        case nodes.Load() | nodes.LoadNamed() | nodes.Hand() | nodes.Wrist() | nodes.Seam() | nodes.Setting():
+        case ast.Load() | ast.LoadNamed() | ast.Hand() | ast.Wrist() | ast.Seam() | ast.Setting():
             return _payload(statement)
-        case nodes.Unparsed():
+        case ast.Unparsed():
             return statement.text
-        case (
-            nodes.Assign()
-            | nodes.Dim()
-            | nodes.Const()
-            | nodes.Out()
-            | nodes.Pulse()
-            | nodes.Delay()
-            | nodes.Wait()
-            | nodes.Print()
-        ):
+        case ast.Assign() | ast.Dim() | ast.Const() | ast.Out() | ast.Pulse() | ast.Delay() | ast.Wait() | ast.Print():
             return _data(statement)
         case _:
             return _control(statement)
 
 
-def _moving(node: nodes.Moving) -> str:
+def _moving(node: ast.Moving) -> str:
     match node:
-        case nodes.Move():
+        case ast.Move():
             return f"MOVE {print_expression(node.target)}"
-        case nodes.MoveJ():
+        case ast.MoveJ():
             return f"MOVEJ {print_expression(node.target)}"
-        case nodes.MoveC():
+        case ast.MoveC():
             return f"MOVEC {_comma(node.via, node.target)}"
-        case nodes.Approach():
+        case ast.Approach():
             return f"APPROACH {_comma(node.target, node.distance)}"
-        case nodes.Depart():
+        case ast.Depart():
             return f"DEPART {print_expression(node.distance)}"
         case _:
             assert_never(node)
@@ -117,15 +106,15 @@ def _moving(node: nodes.Moving) -> str:
 
 def _option(option: Option) -> str:
     match option:
-        case nodes.Speed():
+        case ast.Speed():
             return f"SPEED {print_expression(option.value)}"
-        case nodes.Accel():
+        case ast.Accel():
             return f"ACCEL {print_expression(option.value)}"
-        case nodes.Time():
+        case ast.Time():
             return f"TIME {print_expression(option.value)}"
-        case nodes.Zone():
+        case ast.Zone():
             return "FINE" if option.value is None else f"ZONE {print_expression(option.value)}"
-        case nodes.Wrist():
+        case ast.Wrist():
             return _wrist(option)
         case _:
             assert_never(option)
@@ -133,17 +122,17 @@ def _option(option: Option) -> str:
 
 def _payload(node: _Payload) -> str:
     match node:
-        case nodes.Load():
+        case ast.Load():
             return f"LOAD {_comma(node.cog, node.mass, node.inertia)}"
-        case nodes.LoadNamed():
+        case ast.LoadNamed():
             return f"LOAD {node.name.text}"
-        case nodes.Hand():
+        case ast.Hand():
             return f"HAND {node.state.value}{_optional(', ', node.dwell)}"
-        case nodes.Wrist():
+        case ast.Wrist():
             return _wrist(node)
-        case nodes.Seam():
+        case ast.Seam():
             return "SEAM OFF" if node.sensor is None else f"SEAM ON, {node.sensor.text}"
-        case nodes.Setting():
+        case ast.Setting():
             return f"{node.word} {print_expression(node.value)}"
         case _:
             assert_never(node)
@@ -151,22 +140,22 @@ def _payload(node: _Payload) -> str:
 
 def _data(node: _Data) -> str:
     match node:
-        case nodes.Assign():
+        case ast.Assign():
             return f"{print_expression(node.target)} = {print_expression(node.value)}"
-        case nodes.Dim():
+        case ast.Dim():
             return f"DIM {node.name.text}({print_expression(node.size)})"
-        case nodes.Const():
+        case ast.Const():
             return f"CONST {node.name.text} = {print_expression(node.value)}"
-        case nodes.Out():
+        case ast.Out():
             return f"OUT({print_expression(node.index)}) = {print_expression(node.value)}"
-        case nodes.Pulse():
+        case ast.Pulse():
             return f"PULSE {_comma(node.index, node.seconds)}"
-        case nodes.Delay():
+        case ast.Delay():
             return f"DELAY {print_expression(node.seconds)}"
-        case nodes.Wait():
+        case ast.Wait():
             goto = "" if node.target is None else f", GOTO {_target(node.target)}"
             return f"WAIT {print_expression(node.condition)}{_optional(', TIMEOUT ', node.timeout)}{goto}"
-        case nodes.Print():
+        case ast.Print():
             return f"PRINT {'; '.join(map(print_expression, node.items))}".rstrip()
         case _:
             assert_never(node)
@@ -174,39 +163,39 @@ def _data(node: _Data) -> str:
 
 def _control(node: _Control) -> str:
     match node:
-        case nodes.If():
+        case ast.If():
             otherwise = "" if node.otherwise is None else f" ELSE {describe(node.otherwise)}"
             return f"IF {print_expression(node.condition)} THEN {describe(node.then)}{otherwise}"
-        case nodes.Block() | nodes.Word():
+        case ast.Block() | ast.Word():
             return node.word
-        case nodes.Head():
+        case ast.Head():
             then = " THEN" if node.word in ("IF", "ELSEIF") else ""
             return f"{node.word} {print_expression(node.value)}{then}"
-        case nodes.Case():
+        case ast.Case():
             return f"CASE {_comma(*node.values)}"
-        case nodes.For():
+        case ast.For():
             limits = f"{print_expression(node.first)} TO {print_expression(node.last)}"
             return f"FOR {node.variable.text} = {limits}{_optional(' STEP ', node.step)}"
-        case nodes.Next():
+        case ast.Next():
             return f"NEXT{_optional(' ', node.variable)}"
-        case nodes.Jump():
+        case ast.Jump():
             return f"{node.word} {_target(node.target)}"
-        case nodes.Sub():
+        case ast.Sub():
             return f"SUB {node.name.text}{_bracketed(node.parameters, node.parentheses)}"
-        case nodes.CallSub():
+        case ast.CallSub():
             return f"CALL {node.name.text}{_bracketed(node.arguments, node.parentheses)}"
-        case nodes.OnError():
+        case ast.OnError():
             return f"ON ERROR GOTO {_target(node.target)}"
         case _:
             assert_never(node)
 
 
-def _wrist(wrist: nodes.Wrist) -> str:
+def _wrist(wrist: ast.Wrist) -> str:
     held = f" {', '.join(component.value for component in wrist.held)}" if wrist.held else ""
     return f"WRIST {wrist.mode.value}{held}"
 
 
-def _target(target: nodes.Target) -> str:
+def _target(target: ast.Target) -> str:
     return str(target.number) if target.label is None else f"*{target.label.text}"
 
 
@@ -244,16 +233,16 @@ def print_expression(expression: Expression) -> str:
 
 
 def _needs_parentheses(node: Expression, lowest: int) -> bool:
-    return _level(node) < lowest and not (lowest == _EXPONENT and isinstance(node, nodes.Negate))
+    return _level(node) < lowest and not (lowest == _EXPONENT and isinstance(node, ast.Negate))
 
 
 def _level(node: Expression) -> int:
     match node:
-        case nodes.Chain():
+        case ast.Chain():
             return _SIGNS[node.rest[0][0]]
-        case nodes.Not():
+        case ast.Not():
             return _NOT
-        case nodes.Negate():
+        case ast.Negate():
             return _SIGNED
         case _:
             return _OPERAND
@@ -262,28 +251,28 @@ def _level(node: Expression) -> int:
 def _pieces(node: Expression, lowest: int) -> list[_Piece]:
     """Return what an expression consists of, in the order of the text."""
     match node:
-        case nodes.Number() | nodes.Name():
+        case ast.Number() | ast.Name():
             return [node.text]
-        case nodes.Text():
+        case ast.Text():
             return [f'"{node.value.replace(_QUOTE, 2 * _QUOTE)}"']
-        case nodes.Not():
+        case ast.Not():
             return ["NOT ", (node.operand, _NOT)]
-        case nodes.Negate():
+        case ast.Negate():
             return ["-", (node.operand, _EXPONENT if lowest == _EXPONENT else _SIGNED)]
-        case nodes.Chain():
+        case ast.Chain():
             return _chain(node)
-        case nodes.Call():
+        case ast.Call():
             word = node.name.key if node.name.key in _WORDS else node.name.text
             return [word, *_list(node.arguments)] if node.arguments else [word]
-        case nodes.Component6():
+        case ast.Component6():
             return [(node.base, _OPERAND), f".{node.name.key}"]
-        case nodes.Vector():
+        case ast.Vector():
             return _list(node.items)
         case _:
             assert_never(node)
 
 
-def _chain(node: nodes.Chain) -> list[_Piece]:
+def _chain(node: ast.Chain) -> list[_Piece]:
     level = _level(node)
     operand = _OPERAND_OF[level]
     pieces: list[_Piece] = [(node.first, operand)]

@@ -112,7 +112,8 @@ class Controller:
         self._before = 0  # moves of a row before those that the interpolator has
         self._statements: tuple[ProgramLine, ...] = ()
         self.wrist_mode = FOLLOWS
-        """Whether the wrist follows the path at the set-point in INA, or goes its own way (``runtime.motion.cartesian_planner``).
+        """Whether the wrist follows the path at the set-point in INA, or goes its own way
+        (``runtime.motion.cartesian_planner``).
         """
         self._interpolator = Interpolator()
         self._fine = fine or FineInterpolator(profile.ticks_per_cycle, profile.period_s, self.areas.ina)

@@ -16,7 +16,7 @@ from runtime.core.frames import Array
 from runtime.robot.kinematics.opw import Branch
 
 Component = Literal["TILT", "ADVANCE", "ROTATION"]
-"""Components of the tool's posture, about the direction of travel, across it and upright (``runtime.motion.wrist.hold``)."""
+"""The tool's posture: about the direction of travel, across it and upright (``runtime.motion.wrist.hold``)."""
 
 Wrist = Literal["auto", "keep"]
 
@@ -25,7 +25,8 @@ Wrist = Literal["auto", "keep"]
 class Motion:
     """What every move may be told. ``acceleration`` is a share of the robot's in (0, 1]; ``speed`` None: its default.
 
-    ``override`` in (0, 1] is a share of every speed, those of the limits included (``runtime.motion.cartesian_planner``).
+    ``override`` in (0, 1] is a share of every speed, those of the limits included
+    (``runtime.motion.cartesian_planner``).
     """
 
     speed: float | None = None

@@ -14,7 +14,8 @@ are eased by it first; what is then still too fast is slowed as every move (``pa
 Where only a pose is given, its solutions are those of all configurations, each joint turned into its range. Of those
 that fit what the point is taught with, only those count in which the arm keeps the configuration that it is in, where
 there are any; of these the one is taken to which the slowest joint gets soonest (docs/decisions/0030). Refused: no
-solution (RBL410), none in the ranges (RBL411), none as taught (RBL412). Called by ``runtime.motion.motion_planner``; rad, s.
+solution (RBL410), none in the ranges (RBL411), none as taught (RBL412). Called by ``runtime.motion.motion_planner``;
+rad, s.
 """
 
 from dataclasses import replace

@@ -8,8 +8,8 @@ itself, row by row:
     joint     = pulses x pulse equivalent
 
 ``runtime.pulses.folder`` makes an ``Export`` of a folder and lets nothing through that cannot be played,
-``runtime.pulses.replay`` plays it, ``robolang.pulse_tables.drive`` drives an arm with it. Here are also the codes of all that
-can be wrong with one.
+``runtime.pulses.replay`` plays it, ``robolang.pulse_tables.drive`` drives an arm with it. Here are also the codes of
+all that can be wrong with one.
 """
 
 from dataclasses import dataclass, field

@@ -69,7 +69,8 @@ class ServoOptions:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WristOptions:
-    """When and how a straight move leaves its posture to change the wrist (``runtime.motion.wrist.switch``, docs/wrist.md).
+    """When and how a straight move leaves its posture to change the wrist (``runtime.motion.wrist.switch``,
+    docs/wrist.md).
 
     ``mode`` for moves that name none. C1 ``speed_condition``; C2 ``remaining_time`` s and ``remaining_distance`` m, 0
     for off; C3 ``range_condition``, ``look_ahead`` cycles; C4 ``deviation_condition``, ``deviation`` rad of J4 to

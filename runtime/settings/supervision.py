@@ -1,7 +1,7 @@
 """Limits of supervision; docs/supervision.md has the reasons.
 
-``runtime.settings.profile`` reads them from ``[controller.supervision]``: degrees and milliseconds there, rad and s here. Shares
-are of the robot file's own limits, so one set of numbers serves every robot.
+``runtime.settings.profile`` reads them from ``[controller.supervision]``: degrees and milliseconds there, rad and s
+here. Shares are of the robot file's own limits, so one set of numbers serves every robot.
 """
 
 from dataclasses import dataclass

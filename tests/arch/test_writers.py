@@ -1,4 +1,4 @@
-"""Every file that the product writes is written by ``robolang.core.storage``: the old one or the new one, at any moment."""
+"""Every file that the product writes is written by ``robolang.core.storage``: the old or the new one, at any moment."""
 
 import ast
 from pathlib import Path

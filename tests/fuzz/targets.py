@@ -19,8 +19,7 @@ from robolang.core.source import Source, decode_program
 from robolang.lint import engine
 from robolang.project.discovery import builtin_cell_file
 from robolang.project.points import load_points
-from robolang.syntax import ast as nodes
-from robolang.syntax import formatter
+from robolang.syntax import ast, formatter
 from robolang.syntax.grammar import line_parser
 from robolang.syntax.keywords import KEYWORDS
 from robolang.syntax.parser import parse
@@ -61,7 +60,7 @@ def read(data):
         return
     found = parse(source)
     _assert_located(source, found.diagnostics)
-    bad = [line for line in found.program.lines if isinstance(line.statement, nodes.Unparsed)]
+    bad = [line for line in found.program.lines if isinstance(line.statement, ast.Unparsed)]
     errors = [item for item in found.diagnostics if item.severity is Severity.ERROR and item.code != "RBL107"]
     assert len(bad) >= len(errors)
     rows = [line.source_line for line in found.program.lines]
@@ -69,7 +68,7 @@ def read(data):
     for line in found.program.lines:
         whole = source.line_spans[line.source_line - 1]
         for part in (line, line.label, line.statement, line.comment):
-            for node in () if part is None else nodes.walk(part):
+            for node in () if part is None else ast.walk(part):
                 assert whole.start <= node.span.start <= node.span.end <= whole.end
 
 
@@ -212,7 +211,7 @@ def _assert_located(source, diagnostics):
 def _canonical(program):
     """The tree with REM in capitals, which is all of it that the formatter changes."""
     return [
-        replace(line, comment=None if line.comment is None else nodes.Comment(text=_spelt(line.comment.text)))
+        replace(line, comment=None if line.comment is None else ast.Comment(text=_spelt(line.comment.text)))
         for line in program.lines
     ]
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from hypothesis import strategies as st
 
-from robolang.syntax import ast as nodes
+from robolang.syntax import ast
 from robolang.syntax.keywords import ARGUMENTS, NEW, RESERVED, VALUES
 
 
@@ -39,16 +39,16 @@ literals = st.one_of(
     st.floats(0, 1e300, allow_nan=False).map(repr),
     st.sampled_from([".5", "5.", "1E3", "1e-3", "00", "3.25E+2"]),
 )
-numbers = literals.map(lambda text: nodes.Number(value=float(text), text=text))
+numbers = literals.map(lambda text: ast.Number(value=float(text), text=text))
 names = (
     (st.from_regex(r"[A-Za-z_][A-Za-z0-9_]{0,6}\$?", fullmatch=True) | st.sampled_from(sorted(NEW)))
     .filter(lambda text: text.upper() not in RESERVED and text.upper() != "REM$")
-    .map(lambda text: nodes.Name(text=text))
+    .map(lambda text: ast.Name(text=text))
 )
-parts = st.sampled_from(["X", "y", "Z", "rx", "RY", "RZ", "Q"]).map(lambda text: nodes.Name(text=text))
+parts = st.sampled_from(["X", "y", "Z", "rx", "RY", "RZ", "Q"]).map(lambda text: ast.Name(text=text))
 strings = st.text(st.characters(categories=["L", "N", "P", "S"], include_characters=' "') | st.just('"'), max_size=8)
-words = st.sampled_from(sorted(VALUES)).map(lambda word: nodes.Call(name=nodes.Name(text=word)))
-functions = st.sampled_from(sorted(ARGUMENTS)).map(lambda word: nodes.Name(text=word))
+words = st.sampled_from(sorted(VALUES)).map(lambda word: ast.Call(name=ast.Name(text=word)))
+functions = st.sampled_from(sorted(ARGUMENTS)).map(lambda word: ast.Name(text=word))
 
 LEVELS = (("OR", "XOR"), ("AND",), ("+", "-"), ("*", "/", "MOD"), ("^",))
 COMPARISONS = ("=", "<>", "<", ">", "<=", ">=")
@@ -56,60 +56,60 @@ COMPARISONS = ("=", "<>", "<", ">", "<=", ">=")
 
 def chains(inner):
     longer = st.sampled_from(LEVELS).flatmap(
-        lambda signs: make(nodes.Chain, first=inner, rest=several(st.tuples(st.sampled_from(signs), inner)))
+        lambda signs: make(ast.Chain, first=inner, rest=several(st.tuples(st.sampled_from(signs), inner)))
     )
     compared = st.tuples(st.sampled_from(COMPARISONS), inner)
-    return longer | make(nodes.Chain, first=inner, rest=several(compared, most=1))
+    return longer | make(ast.Chain, first=inner, rest=several(compared, most=1))
 
 
 def calls(inner):
-    return make(nodes.Call, name=names | functions, arguments=several(inner))
+    return make(ast.Call, name=names | functions, arguments=several(inner))
 
 
 def compound(inner):
     """The kinds of expression that hold others."""
     return {
-        nodes.Negate: make(nodes.Negate, operand=inner),
-        nodes.Not: make(nodes.Not, operand=inner),
-        nodes.Chain: chains(inner),
-        nodes.Call: calls(inner),
-        nodes.Component6: make(nodes.Component6, base=names | words | calls(inner), name=parts),
-        nodes.Vector: make(nodes.Vector, items=several(inner, least=2, most=6)),
+        ast.Negate: make(ast.Negate, operand=inner),
+        ast.Not: make(ast.Not, operand=inner),
+        ast.Chain: chains(inner),
+        ast.Call: calls(inner),
+        ast.Component6: make(ast.Component6, base=names | words | calls(inner), name=parts),
+        ast.Vector: make(ast.Vector, items=several(inner, least=2, most=6)),
     }
 
 
-simple_values = {nodes.Number: numbers, nodes.Name: names, nodes.Text: make(nodes.Text, value=strings)}
+simple_values = {ast.Number: numbers, ast.Name: names, ast.Text: make(ast.Text, value=strings)}
 expressions = brief(
     st.recursive(
-        st.one_of(numbers, names, numbers, names, simple_values[nodes.Text], words),
+        st.one_of(numbers, names, numbers, names, simple_values[ast.Text], words),
         lambda inner: brief(st.one_of(chains(inner), *compound(inner).values())),
         max_leaves=8,
     ).flatmap(lambda node: st.integers(0, 2).map(lambda count: replace(node, parentheses=count)))
 )
 EXPRESSIONS = {**simple_values, **compound(expressions)}
-vectors = EXPRESSIONS[nodes.Vector]
+vectors = EXPRESSIONS[ast.Vector]
 
 
 # --- statements ------------------------------------------------------------------------------------------------------
 
 wrists = st.one_of(
-    make(nodes.Wrist, mode=st.sampled_from([nodes.WristMode.KEEP, nodes.WristMode.AUTO])),
+    make(ast.Wrist, mode=st.sampled_from([ast.WristMode.KEEP, ast.WristMode.AUTO])),
     make(
-        nodes.Wrist,
-        mode=st.just(nodes.WristMode.HOLD),
-        held=several(st.sampled_from(nodes.Component), most=4),
+        ast.Wrist,
+        mode=st.just(ast.WristMode.HOLD),
+        held=several(st.sampled_from(ast.Component), most=4),
     ),
 )
 OPTIONS = {
-    nodes.Speed: make(nodes.Speed, value=expressions),
-    nodes.Accel: make(nodes.Accel, value=expressions),
-    nodes.Time: make(nodes.Time, value=expressions),
-    nodes.Zone: make(nodes.Zone, value=st.none() | expressions),
-    nodes.Wrist: wrists,
+    ast.Speed: make(ast.Speed, value=expressions),
+    ast.Accel: make(ast.Accel, value=expressions),
+    ast.Time: make(ast.Time, value=expressions),
+    ast.Zone: make(ast.Zone, value=st.none() | expressions),
+    ast.Wrist: wrists,
 }
 options = several(st.one_of(*OPTIONS.values()), least=0)
 line_numbers = st.integers(0, 999_999_999)
-labels = make(nodes.Target, label=names)
+labels = make(ast.Target, label=names)
 SETTINGS = ("SPEED", "SPEEDJ", "ACCEL", "OVERRIDE", "ZONE", "TOOL", "FRAME")
 BLOCKS = ("ELSE", "ENDIF", "WEND", "CASE ELSE", "ENDSELECT", "ENDSUB")
 HEADS = ("IF", "ELSEIF", "WHILE", "SELECT")
@@ -118,8 +118,8 @@ WORDS = ("RETURN", "END", "STOP", "PAUSE", "RESUME", "RESUME NEXT", "ON ERROR ST
 
 def waits(targets):
     return st.one_of(
-        make(nodes.Wait, condition=expressions, timeout=st.none() | expressions),
-        make(nodes.Wait, condition=expressions, timeout=expressions, target=targets),
+        make(ast.Wait, condition=expressions, timeout=st.none() | expressions),
+        make(ast.Wait, condition=expressions, timeout=expressions, target=targets),
     )
 
 
@@ -127,33 +127,33 @@ def simple_statements(targets):
     """What may stand behind THEN, by class; ``targets`` are where a jump may lead."""
     moved = {"options": options}
     return {
-        nodes.Move: make(nodes.Move, target=expressions, **moved),
-        nodes.MoveJ: make(nodes.MoveJ, target=expressions, **moved),
-        nodes.MoveC: make(nodes.MoveC, via=expressions, target=expressions, **moved),
-        nodes.Approach: make(nodes.Approach, target=expressions, distance=expressions, **moved),
-        nodes.Depart: make(nodes.Depart, distance=expressions, **moved),
-        nodes.Load: make(nodes.Load, cog=vectors, mass=expressions, inertia=st.none() | vectors),
-        nodes.LoadNamed: make(nodes.LoadNamed, name=names),
-        nodes.Hand: make(nodes.Hand, state=st.sampled_from(nodes.HandState), dwell=st.none() | expressions),
-        nodes.Wrist: wrists,
-        nodes.Seam: make(nodes.Seam, sensor=st.none() | names),
-        nodes.Setting: make(nodes.Setting, word=st.sampled_from(SETTINGS), value=expressions),
-        nodes.Assign: make(
-            nodes.Assign,
-            target=names | make(nodes.Call, name=names, arguments=several(expressions, most=1)),
+        ast.Move: make(ast.Move, target=expressions, **moved),
+        ast.MoveJ: make(ast.MoveJ, target=expressions, **moved),
+        ast.MoveC: make(ast.MoveC, via=expressions, target=expressions, **moved),
+        ast.Approach: make(ast.Approach, target=expressions, distance=expressions, **moved),
+        ast.Depart: make(ast.Depart, distance=expressions, **moved),
+        ast.Load: make(ast.Load, cog=vectors, mass=expressions, inertia=st.none() | vectors),
+        ast.LoadNamed: make(ast.LoadNamed, name=names),
+        ast.Hand: make(ast.Hand, state=st.sampled_from(ast.HandState), dwell=st.none() | expressions),
+        ast.Wrist: wrists,
+        ast.Seam: make(ast.Seam, sensor=st.none() | names),
+        ast.Setting: make(ast.Setting, word=st.sampled_from(SETTINGS), value=expressions),
+        ast.Assign: make(
+            ast.Assign,
+            target=names | make(ast.Call, name=names, arguments=several(expressions, most=1)),
             value=expressions,
         ),
-        nodes.Dim: make(nodes.Dim, name=names, size=expressions),
-        nodes.Const: make(nodes.Const, name=names, value=expressions),
-        nodes.Out: make(nodes.Out, index=expressions, value=expressions),
-        nodes.Pulse: make(nodes.Pulse, index=expressions, seconds=expressions),
-        nodes.Delay: make(nodes.Delay, seconds=expressions),
-        nodes.Wait: waits(targets),
-        nodes.Print: make(nodes.Print, items=several(expressions, least=0)),
-        nodes.Jump: make(nodes.Jump, word=st.sampled_from(["GOTO", "GOSUB"]), target=targets),
-        nodes.CallSub: make(nodes.CallSub, name=names, arguments=several(expressions, least=0)),
-        nodes.Word: make(nodes.Word, word=st.sampled_from(WORDS)),
-        nodes.OnError: make(nodes.OnError, target=targets),
+        ast.Dim: make(ast.Dim, name=names, size=expressions),
+        ast.Const: make(ast.Const, name=names, value=expressions),
+        ast.Out: make(ast.Out, index=expressions, value=expressions),
+        ast.Pulse: make(ast.Pulse, index=expressions, seconds=expressions),
+        ast.Delay: make(ast.Delay, seconds=expressions),
+        ast.Wait: waits(targets),
+        ast.Print: make(ast.Print, items=several(expressions, least=0)),
+        ast.Jump: make(ast.Jump, word=st.sampled_from(["GOTO", "GOSUB"]), target=targets),
+        ast.CallSub: make(ast.CallSub, name=names, arguments=several(expressions, least=0)),
+        ast.Word: make(ast.Word, word=st.sampled_from(WORDS)),
+        ast.OnError: make(ast.OnError, target=targets),
     }
 
 
@@ -162,17 +162,17 @@ def all_statements(targets):
     inner = brief(st.one_of(*simple.values()))
     return {
         **simple,
-        nodes.If: make(nodes.If, condition=expressions, then=inner, otherwise=st.none() | inner),
-        nodes.Block: make(nodes.Block, word=st.sampled_from(BLOCKS)),
-        nodes.Head: make(nodes.Head, word=st.sampled_from(HEADS), value=expressions),
-        nodes.Case: make(nodes.Case, values=several(expressions)),
-        nodes.For: make(nodes.For, variable=names, first=expressions, last=expressions, step=st.none() | expressions),
-        nodes.Next: make(nodes.Next, variable=st.none() | names),
-        nodes.Sub: make(nodes.Sub, name=names, parameters=several(names, least=0)),
+        ast.If: make(ast.If, condition=expressions, then=inner, otherwise=st.none() | inner),
+        ast.Block: make(ast.Block, word=st.sampled_from(BLOCKS)),
+        ast.Head: make(ast.Head, word=st.sampled_from(HEADS), value=expressions),
+        ast.Case: make(ast.Case, values=several(expressions)),
+        ast.For: make(ast.For, variable=names, first=expressions, last=expressions, step=st.none() | expressions),
+        ast.Next: make(ast.Next, variable=st.none() | names),
+        ast.Sub: make(ast.Sub, name=names, parameters=several(names, least=0)),
     }
 
 
-anywhere = make(nodes.Target, number=line_numbers) | labels
+anywhere = make(ast.Target, number=line_numbers) | labels
 STATEMENTS = all_statements(anywhere)
 statements = brief(st.one_of(*STATEMENTS.values()))
 
@@ -181,21 +181,21 @@ statements = brief(st.one_of(*STATEMENTS.values()))
 
 _letters = st.text(st.characters(categories=["L", "N", "P", "S", "Zs"]), max_size=20)
 comments = st.one_of(
-    _letters.map(lambda text: nodes.Comment(text=f"'{text}".rstrip())),
-    _letters.map(lambda text: nodes.Comment(text=f"REM {text}".rstrip())),
-    st.sampled_from(["' fmt: off", "' fmt: on"]).map(lambda text: nodes.Comment(text=text)),
+    _letters.map(lambda text: ast.Comment(text=f"'{text}".rstrip())),
+    _letters.map(lambda text: ast.Comment(text=f"REM {text}".rstrip())),
+    st.sampled_from(["' fmt: off", "' fmt: on"]).map(lambda text: ast.Comment(text=text)),
 )
 
 
 def lines(found, numbered):
     made = make(
-        nodes.Line, number=numbered, label=st.none() | names, statement=st.none() | found, comment=st.none() | comments
+        ast.Line, number=numbered, label=st.none() | names, statement=st.none() | found, comment=st.none() | comments
     )
     return made.filter(lambda line: (line.number, line.label, line.statement, line.comment) != (None,) * 4)
 
 
 programs = several(lines(statements, st.none() | line_numbers), least=0, most=8).map(
-    lambda found: nodes.Program(source_path="p", lines=found)
+    lambda found: ast.Program(source_path="p", lines=found)
 )
 
 
@@ -203,12 +203,12 @@ programs = several(lines(statements, st.none() | line_numbers), least=0, most=8)
 def jumping_programs(draw):
     """Programs in which no number is given twice and every jump leads to a line or a label."""
     chosen = draw(st.lists(line_numbers, min_size=1, max_size=6, unique=True))
-    leading = st.sampled_from(chosen).map(lambda number: nodes.Target(number=number)) | labels
+    leading = st.sampled_from(chosen).map(lambda number: ast.Target(number=number)) | labels
     found = brief(st.one_of(*all_statements(leading).values()))
     numbered = [draw(lines(found, st.just(number))) for number in chosen]
     others = draw(st.lists(lines(found, st.none()), max_size=4))
     order = draw(st.permutations([*numbered, *others]))
-    return nodes.Program(source_path="p", lines=tuple(order))
+    return ast.Program(source_path="p", lines=tuple(order))
 
 
 # --- texts -----------------------------------------------------------------------------------------------------------

@@ -11,8 +11,7 @@ from robolang.analysis.cell_symbols import CellSymbols
 from robolang.analysis.checker import check
 from robolang.core.source import Source, decode_program
 from robolang.evaluation import evaluator
-from robolang.interpreter import actions, effects, scope
-from robolang.interpreter import machine as interpreter
+from robolang.interpreter import actions, effects, machine, scope
 from robolang.interpreter.machine import ProgramFault, execute
 from robolang.syntax.keywords import FUNCTIONS, VALUES
 from robolang.syntax.parser import parse
@@ -374,7 +373,7 @@ FORBIDDEN = {
 }
 
 
-@pytest.mark.parametrize("module", [actions, evaluator, interpreter, scope], ids=lambda module: module.__name__)
+@pytest.mark.parametrize("module", [actions, evaluator, machine, scope], ids=lambda module: module.__name__)
 def test_what_runs_a_program_cannot_reach_files_processes_or_python(module):
     tree = ast.parse(Path(module.__file__).read_text(encoding="utf-8"))
     called = {node.func.id for node in ast.walk(tree) if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}

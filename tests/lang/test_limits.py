@@ -9,11 +9,10 @@ from robolang.core import limits
 from robolang.core.diagnostics import Severity
 from robolang.core.limits import SIZE
 from robolang.evaluation.evaluator import MAX_TEXT
-from robolang.execution import dry_run as motion_check
-from robolang.execution import session
+from robolang.execution import dry_run, session
 from robolang.execution.dry_run import rehearse
 from robolang.execution.session import Session
-from robolang.interpreter import machine as interpreter
+from robolang.interpreter import machine
 from robolang.interpreter.machine import MAX_CALLS, MAX_ROUNDS, execute
 from robolang.interpreter.scope import MAX_CELLS, MAX_TEXTS
 from robolang.project.project import load_project
@@ -59,7 +58,7 @@ def test_a_limit_of_values(code, inside, beyond):
 )
 def test_a_limit_of_the_run(name, code, text, monkeypatch):
     """Counts that take long to reach, with a smaller limit in their place."""
-    monkeypatch.setattr(interpreter, name, 20)
+    monkeypatch.setattr(machine, name, 20)
     within, beyond = ("".join(text.format(k, k, k) for k in range(count)) for count in (20, 21))
     ran(within)
     assert fault(beyond).code == code
@@ -83,7 +82,7 @@ def in_a_cell(tmp_path, text):
 @pytest.mark.parametrize(("seconds", "good"), [(0.392, True), (0.4, False)])
 def test_simulated_time(tmp_path, monkeypatch, seconds, good):
     """A run and its rehearsal end at the same cycle; 0.4 s in place of half an hour."""
-    for module in (motion_check, session):
+    for module in (dry_run, session):
         monkeypatch.setattr(module, "MAX_RUN_US", 400_000)
     project = in_a_cell(tmp_path, f"DELAY {seconds}\n")
     result = Session(project, physics=False).run()
@@ -92,7 +91,7 @@ def test_simulated_time(tmp_path, monkeypatch, seconds, good):
 
 
 def test_no_handler_outlives_the_simulated_time(tmp_path, monkeypatch):
-    monkeypatch.setattr(motion_check, "MAX_RUN_US", 400_000)
+    monkeypatch.setattr(dry_run, "MAX_RUN_US", 400_000)
     project = in_a_cell(tmp_path, "ON ERROR GOTO *H\n*TOP DELAY 0.08\nGOTO *TOP\n*H RESUME NEXT\n")
     found = rehearse(project)
     assert [item.code for item in found.refused] == ["RBL509"]

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from robolang.syntax import ast as nodes
+from robolang.syntax import ast
 from robolang.syntax.parser import MAX_DEPTH, MAX_OPERATORS, parse
 from robolang.syntax.unparse import describe, print_code, print_expression, print_line, print_program
 from tests.lang.helpers import only, parsed, source
@@ -244,4 +244,4 @@ def test_parts_of_a_line():
     (line,) = parsed("10 *L hand on 'x").lines
     assert print_code(line) == "*L HAND ON"
     assert print_code(parsed("10").lines[0]) == ""
-    assert print_line(nodes.Line(number=10)) == "10"
+    assert print_line(ast.Line(number=10)) == "10"

@@ -14,8 +14,7 @@ from robolang.analysis.checker import check
 from robolang.core.diagnostics import has_errors, render, to_json
 from robolang.core.source import read_program
 from robolang.interpreter.machine import execute
-from robolang.syntax import ast as nodes
-from robolang.syntax import unparse as printer
+from robolang.syntax import ast, unparse
 from robolang.syntax.ast import Unparsed
 from robolang.syntax.blocks import targets
 from robolang.syntax.formatter import format_source
@@ -32,9 +31,9 @@ from tests.steps import assert_linear
 
 
 def test_the_generator_makes_every_kind_of_node():
-    assert set(generator.EXPRESSIONS) == set(get_args(nodes.Expression))
-    assert set(generator.OPTIONS) == set(get_args(nodes.Option))
-    assert set(generator.STATEMENTS) == set(get_args(nodes.Statement)) - {Unparsed}
+    assert set(generator.EXPRESSIONS) == set(get_args(ast.Expression))
+    assert set(generator.OPTIONS) == set(get_args(ast.Option))
+    assert set(generator.STATEMENTS) == set(get_args(ast.Statement)) - {Unparsed}
 
 
 @given(programs)
@@ -54,7 +53,7 @@ def canonical(program):
     lines = [
         line
         if line.comment is None or line.comment.text.startswith("'")
-        else replace(line, comment=nodes.Comment(text=f"REM{line.comment.text[3:]}"))
+        else replace(line, comment=ast.Comment(text=f"REM{line.comment.text[3:]}"))
         for line in program.lines
     ]
     return replace(program, lines=tuple(lines))
@@ -96,7 +95,7 @@ def test_formatting_is_done_once_and_keeps_the_tree_and_the_comments(text):
 @examples(150)
 def test_one_tree_has_one_layout(program, data):
     kept = [replace(line, comment=None) for line in program.lines]
-    program = replace(program, lines=tuple(line for line in kept if line != nodes.Line()))
+    program = replace(program, lines=tuple(line for line in kept if line != ast.Line()))
     clean = print_program(program)
     badly = data.draw(written_badly(clean))
     spelt = format_source(source(badly)).text.upper().split()
@@ -122,10 +121,10 @@ def without_numbers(program):
     index = {line.number: at for at, line in enumerate(program.lines) if line.number is not None}
 
     def led(statement):
-        if isinstance(statement, nodes.Jump | nodes.OnError | nodes.Wait) and statement.target is not None:
+        if isinstance(statement, ast.Jump | ast.OnError | ast.Wait) and statement.target is not None:
             number = statement.target.number
-            return statement if number is None else replace(statement, target=nodes.Target(number=index[number]))
-        if isinstance(statement, nodes.If):
+            return statement if number is None else replace(statement, target=ast.Target(number=index[number]))
+        if isinstance(statement, ast.If):
             return replace(statement, then=led(statement.then), otherwise=led(statement.otherwise))
         return statement
 
@@ -162,7 +161,7 @@ def test_numbers_are_removed_where_nothing_leads(text):
     after = parse(source(found.text)).program
     named = {target.number for line in before.lines for target in targets(line.statement)} - {None}
     assert {line.number for line in after.lines} - {None} == named
-    empty = nodes.Line()
+    empty = ast.Line()
     expected = [replace(line, number=line.number if line.number in named else None) for line in before.lines]
     assert list(after.lines) == [line for line in expected if line != empty]
 
@@ -240,7 +239,7 @@ def trace(text):
     program = parse(source(text)).program
     assert not has_errors(check(program))
     effects, fault = carried_out(program)
-    return [replace(effect, line=0, span=nodes.NOWHERE) for effect in effects], fault
+    return [replace(effect, line=0, span=ast.NOWHERE) for effect in effects], fault
 
 
 @given(written_badly(PROGRAM))
@@ -308,27 +307,27 @@ def test_any_bytes_are_text_or_a_fault(tmp_path_factory, raw):
 # --- what a broken printer would do ----------------------------------------------------------------------------------
 
 DEFECTS = {
-    "a - (b - c) as a - b - c": {printer._SUM: printer._SUM},
-    "a / (b / c) as a / b / c": {printer._PRODUCT: printer._PRODUCT},
-    "(a + b) * c as a + b * c": {printer._PRODUCT: printer._SUM},
-    "(a = b) = c as a = b = c": {printer._COMPARE: printer._COMPARE},
-    "a OR (b OR c) as a OR b OR c": {printer._OR: printer._OR},
-    "a AND (b OR c) as a AND b OR c": {printer._AND: printer._OR},
-    "(-a)^b as -a^b": {printer._POWER: printer._SIGNED},
-    "(a^b)^c as a^b^c": {printer._POWER: printer._POWER},
+    "a - (b - c) as a - b - c": {unparse._SUM: unparse._SUM},
+    "a / (b / c) as a / b / c": {unparse._PRODUCT: unparse._PRODUCT},
+    "(a + b) * c as a + b * c": {unparse._PRODUCT: unparse._SUM},
+    "(a = b) = c as a = b = c": {unparse._COMPARE: unparse._COMPARE},
+    "a OR (b OR c) as a OR b OR c": {unparse._OR: unparse._OR},
+    "a AND (b OR c) as a AND b OR c": {unparse._AND: unparse._OR},
+    "(-a)^b as -a^b": {unparse._POWER: unparse._SIGNED},
+    "(a^b)^c as a^b^c": {unparse._POWER: unparse._POWER},
 }
 
 
-NUMBER = nodes.Number(value=1.0, text="1")
+NUMBER = ast.Number(value=1.0, text="1")
 SIGNS = (*(sign for level in generator.LEVELS for sign in level), *generator.COMPARISONS)
 
 
 def holding(inner):
     """Every expression with one operator that holds another expression, on either side of it."""
-    yield from (nodes.Negate(operand=inner), nodes.Not(operand=inner))
+    yield from (ast.Negate(operand=inner), ast.Not(operand=inner))
     for sign in SIGNS:
-        yield nodes.Chain(first=inner, rest=((sign, NUMBER),))
-        yield nodes.Chain(first=NUMBER, rest=((sign, inner),))
+        yield ast.Chain(first=inner, rest=((sign, NUMBER),))
+        yield ast.Chain(first=NUMBER, rest=((sign, inner),))
 
 
 PAIRS = [outer for inner in holding(NUMBER) for outer in holding(inner)]
@@ -336,8 +335,8 @@ PAIRS = [outer for inner in holding(NUMBER) for outer in holding(inner)]
 
 def misprinted(value):
     """Whether an expression is another one once it has been printed and parsed."""
-    line = nodes.Line(statement=nodes.Delay(seconds=value))
-    return parse(source(printer.print_line(line))).program.lines != (line,)
+    line = ast.Line(statement=ast.Delay(seconds=value))
+    return parse(source(unparse.print_line(line))).program.lines != (line,)
 
 
 def test_every_operator_in_every_other_keeps_its_parentheses():
@@ -348,7 +347,7 @@ def test_every_operator_in_every_other_keeps_its_parentheses():
 @pytest.mark.parametrize("defect", DEFECTS)
 def test_a_printer_without_these_parentheses_is_caught(defect, monkeypatch):
     for level, lowest in DEFECTS[defect].items():
-        monkeypatch.setitem(printer._OPERAND_OF, level, lowest)
+        monkeypatch.setitem(unparse._OPERAND_OF, level, lowest)
     assert any(misprinted(value) for value in PAIRS)
 
 

@@ -2,8 +2,7 @@
 
 import pytest
 
-from robolang.execution import dry_run as motion_check
-from robolang.execution import session
+from robolang.execution import dry_run, session
 from robolang.execution.dry_run import rehearse
 from robolang.execution.session import Session
 from robolang.interpreter.rounds import Rounds
@@ -26,7 +25,7 @@ TEXTS = {
 
 @pytest.mark.parametrize("name", TEXTS)
 def test_a_run_and_its_rehearsal_name_what_does_not_end(name, tmp_path, monkeypatch):
-    for module in (motion_check, session):
+    for module in (dry_run, session):
         monkeypatch.setattr(module, "MAX_RUN_US", 400_000)
     text = TEXTS[name]
     start, end = text.index("«"), text.index("»") - 1

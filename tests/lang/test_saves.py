@@ -1,7 +1,8 @@
 """Saves that are cut off (attack_11): the process is killed before and after each system call, or the call fails.
 
-Every call that ``robolang.core.storage`` makes of ``os``, ``fcntl`` and ``tempfile`` while it saves is a step. In each crash
-state the file is the old or the new text, as private as it was, and the next save leaves nothing else in the folder.
+Every call that ``robolang.core.storage`` makes of ``os``, ``fcntl`` and ``tempfile`` while it saves is a step. In
+each crash state the file is the old or the new text, as private as it was, and the next save leaves nothing else in
+the folder.
 """
 
 import errno

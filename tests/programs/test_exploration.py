@@ -9,8 +9,7 @@ import pytest
 from robolang.core.source import Span
 from robolang.execution.dry_run import rehearse
 from robolang.interpreter.branches import Decisions
-from robolang.planning import motion_findings
-from robolang.planning import path_coverage as exploration
+from robolang.planning import motion_findings, path_coverage
 from robolang.planning.motion_findings import findings
 from robolang.planning.path_coverage import _queue, explore
 from robolang.project.project import load_project
@@ -104,7 +103,7 @@ def test_the_first_rehearsal_is_the_plain_one(found, tmp_path):
 
 
 def test_there_is_an_end_to_detours(found, monkeypatch):
-    monkeypatch.setattr(exploration, "MOST_DETOURS", 3)
+    monkeypatch.setattr(path_coverage, "MOST_DETOURS", 3)
     _, explored = found("".join(f"IF IN(1) = {n} THEN MOVE P2\n" for n in range(6)))
     assert len(explored.detours) == 3
     assert len(explored.missed) == 3

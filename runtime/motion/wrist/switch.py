@@ -1,11 +1,11 @@
 r"""Straight moves through a change of the wrist configuration: when to leave the planned posture, and how.
 
-A pose is met with either sign of J5. A straight move that keeps the sign and has to end with the other one arrives with
-J4 and J6 half a turn away from where they were taught, and beside J5 = 0 the two turn faster than they can. The method
-of CN103429397A (Kobe Steel) watches *exception conditions* while the move follows its path. From the first that is met
-until the end, the wrist axes go straight to the taught end angles and the main axes are solved for the *position* of
-the path alone (``runtime.robot.kinematics.frozen_wrist``): the tool point stays on its line at its speed, the posture deviates for
-a while, and the move ends exactly as taught.
+A pose is met with either sign of J5. A straight move that keeps the sign and has to end with the other one arrives
+with J4 and J6 half a turn away from where they were taught, and beside J5 = 0 the two turn faster than they can. The
+method of CN103429397A (Kobe Steel) watches *exception conditions* while the move follows its path. From the first
+that is met until the end, the wrist axes go straight to the taught end angles and the main axes are solved for the
+*position* of the path alone (``runtime.robot.kinematics.frozen_wrist``): the tool point stays on its line at its
+speed, the posture deviates for a while, and the move ends exactly as taught.
 
     C1  |theta_ke - theta_k(n)| / T(n) > theta_kd        speed that the wrist would need from here, ``any`` or ``all``
     C2  T(n) or the distance left at most a given value

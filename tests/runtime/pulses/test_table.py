@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from runtime.core.faults import Fault
-from runtime.pulses import panasonic_f174 as f174
+from runtime.pulses import panasonic_f174
 from runtime.pulses.table import Row, as_csv, data_tables, rows_of
 
 STEPS = np.array([0, 0, 4, 5, 0, -6, -7, 8], dtype=np.int64)
@@ -51,7 +51,7 @@ def test_csv_says_what_the_columns_are():
 
 def test_f174_words_stand_in_their_order():
     tables = list(data_tables(rows_of(STEPS, 100, 8, 100), 100))
-    lines = f174.as_csv(tables, "pulse-direction", ["x"]).splitlines()
+    lines = panasonic_f174.as_csv(tables, "pulse-direction", ["x"]).splitlines()
     assert lines[:2] == ["# x", "table,start_step,word,value,meaning"]
     assert lines[2:8] == [
         "1,2,0,16#0212,control code",
@@ -76,13 +76,13 @@ def test_f174_words_stand_in_their_order():
 def test_the_control_code_has_duty_range_position_and_output(frequencies, output, code):
     rows = tuple(Row("up", f, k + 1, 1) for k, f in enumerate(frequencies))
     (table,) = data_tables(rows, 0)
-    assert f174.control_code(table, output) == code
+    assert panasonic_f174.control_code(table, output) == code
 
 
 def test_what_f174_cannot_hold_is_refused():
     for rows in ((Row("up", 40, 1, 1), Row("up", 20_000, 2, 1)), (Row("up", 200_000, 1, 1),)):
         with pytest.raises(Fault, match="no frequency range") as caught:
-            f174.as_csv(list(data_tables(rows, 0)), "cw-ccw", [])
+            panasonic_f174.as_csv(list(data_tables(rows, 0)), "cw-ccw", [])
         assert caught.value.code == "RBL433"
     with pytest.raises(Fault, match="double word"):
-        f174.as_csv(list(data_tables((Row("up", 200, 2**31, 1),), 0)), "cw-ccw", [])
+        panasonic_f174.as_csv(list(data_tables((Row("up", 200, 2**31, 1),), 0)), "cw-ccw", [])
