@@ -72,7 +72,7 @@ supervision-campaign: $(READY)
 	$(BIN)/python -m tests.faults.campaign payload
 
 verdict-campaign: $(READY)
-	$(BIN)/python -m tests.lang.verdicts 2000
+	$(BIN)/python -m tests.robolang.verdicts 2000
 
 blend-campaign: $(READY)
 	$(BIN)/python -m tests.bench.blend_campaign

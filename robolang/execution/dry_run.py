@@ -21,7 +21,7 @@ from robolang.execution.alarms import calls
 from robolang.execution.lowering import Command
 from robolang.execution.plan_memory import PlanMemory
 from robolang.execution.world import RobotWorld
-from robolang.interpreter.branches import Decisions
+from robolang.interpreter.branch_oracle import Decisions
 from robolang.interpreter.effects import (
     Drain,
     Effect,

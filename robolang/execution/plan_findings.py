@@ -27,7 +27,7 @@ from runtime.motion.cartesian_planner import LinePlan
 from runtime.motion.commands import MoveJoint
 from runtime.motion.joint_planner import changed
 from runtime.motion.ruling import Ruling, ruling
-from runtime.motion.wrist.planner import as_taught
+from runtime.motion.wrist_planner import as_taught
 from runtime.robot.kinematics.kinematics import Kinematics
 
 NOTICED = 0.1 * DEG

@@ -27,8 +27,8 @@ from runtime.motion.path import LinePath
 from runtime.motion.path_ik import Arm, LineSolver, WristSolver
 from runtime.motion.seam import SeamLimits, SeamMove, SeamTracker, superposed
 from runtime.motion.wrist.hold import COMPONENTS, Suppression, WristTable, posture_components, weld_line_frame
-from runtime.motion.wrist.planner import wrist_limits
 from runtime.motion.wrist.switch import WristLaw, first_trigger, law_from
+from runtime.motion.wrist_planner import wrist_limits
 from runtime.robot.kinematics.frozen_wrist import MAIN_AXES, WRIST_AXES
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.spec import RobotSpec

@@ -25,7 +25,7 @@ from robolang.core import limits
 from robolang.evaluation.evaluator import Evaluator, Nowhere, World, finite, shown
 from robolang.evaluation.values import Place
 from robolang.interpreter.actions import ACTIONS, Action, Actions
-from robolang.interpreter.branches import Decisions
+from robolang.interpreter.branch_oracle import Decisions
 from robolang.interpreter.effects import Drain, Effect, Halt, Origin, Pass, Show, origin
 from robolang.interpreter.rounds import Rounds
 from robolang.interpreter.scope import STOPS, Loop, Scopes

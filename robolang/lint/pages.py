@@ -6,7 +6,8 @@ Everything on a page comes from the registries; nothing is written twice.
 import sys
 from pathlib import Path
 
-from robolang.lint.registry import Rule, rule, rules
+from robolang.lint.registry import rule, rules
+from robolang.lint.rule import Rule
 from runtime.core.faults import lookup
 
 _INDEX = """\

@@ -7,15 +7,13 @@ module holds the entries of one group of a hundred codes; a new one is a ``Rule`
 robolang.lint.pages``, a page.
 """
 
-from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
 
 import robolang.core.codes  # noqa: F401 - fills the registry of codes
-from robolang.core.diagnostics import Severity
-from runtime.core.faults import Code, all_codes, lookup
-
-_MOST_LINES = 20
+from robolang.lint.rule import Rule
+from robolang.lint.rules import meaning, motion, planning, point, run, text
+from runtime.core.faults import Code, all_codes
 
 CHECKED = ("RBL1", "RBL2", "RBL3", "RBL40", "RBL413", "RBL415", "RBL507", "RBL534")
 """Beginnings of the codes that reading and checking a program can find."""
@@ -52,55 +50,6 @@ OF_THE_RUN = frozenset(
 """Codes of values, which a run may work out: checking finds those of numbers alone."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Rule:
-    """What a page says of one code.
-
-    ``bad`` is a program that yields the code at 1-based ``line`` and nowhere else, ``good`` its correction. ``shown``
-    is printed in place of a ``bad`` that cannot be: too long, or with invisible characters; a byte that is not UTF-8
-    is written as its surrogate, ``\\udcb0`` for B0. ``fix`` says what ``--fix`` does; empty: there is none.
-    ``motion``: the finding needs the motion, in the built-in cell. ``points``: ``bad`` and ``good`` are the points file
-    ``pick.points.toml`` beside a program; ``line`` 0: there is no such file, and ``bad`` shows the folder.
-    """
-
-    code: str
-    severity: Severity = Severity.ERROR
-    why: str
-    bad: str
-    good: str
-    line: int = 1
-    shown: str = ""
-    fix: str = ""
-    motion: bool = False
-    points: bool = False
-
-    @property
-    def found_by(self) -> str:
-        """Option and command with which a finding appears."""
-        return "check --motion" if self.motion else "check"
-
-    @property
-    def entry(self) -> Code:
-        """Name, meaning and remedy of the code."""
-        return lookup(self.code)
-
-    @property
-    def example(self) -> str:
-        """The program that has the finding, as it is printed: without a line end at its end."""
-        return _printed(self.shown or self.bad)
-
-    @property
-    def instead(self) -> str:
-        """Its correction, as it is printed."""
-        return _printed(self.good)
-
-
-def _printed(program: str) -> str:
-    """Return the lines of a program with one kind of line end, of many the first."""
-    lines = program.splitlines()
-    return "\n".join(lines if len(lines) <= _MOST_LINES else [*lines[:2], "' and so on"])
-
-
 def is_rule(code: str) -> bool:
     """Return whether checking a program can find a code, its motion included."""
     return code.startswith(CHECKED) or code in OF_THE_MOTION
@@ -119,15 +68,8 @@ def codes() -> list[Code]:
 @cache
 def rules() -> MappingProxyType[str, Rule]:
     """Return the rules that have a page, by code in numeric order; ``ValueError`` for a code with two."""
-    from robolang.lint.rules import meaning as meaning_rules
-    from robolang.lint.rules import motion as motion_rules
-    from robolang.lint.rules import planning as planning_rules
-    from robolang.lint.rules import point as point_rules
-    from robolang.lint.rules import run as run_rules
-    from robolang.lint.rules import text as text_rules
-
     found: dict[str, Rule] = {}
-    for module in (text_rules, meaning_rules, point_rules, motion_rules, planning_rules, run_rules):
+    for module in (text, meaning, point, motion, planning, run):
         for rule in module.RULES:
             if rule.code in found:
                 raise ValueError(f"{rule.code} has two pages")

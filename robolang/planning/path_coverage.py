@@ -15,7 +15,8 @@ from dataclasses import dataclass
 from robolang.core.source import Span
 from robolang.execution.dry_run import Rehearsal, rehearse
 from robolang.execution.plan_memory import PlanMemory
-from robolang.interpreter.branches import Decisions, open_conditions
+from robolang.interpreter.branch_oracle import Decisions
+from robolang.planning.branch_forcing import open_conditions
 from robolang.project.project import Project
 from robolang.syntax.ast import If, Moving, Statement
 

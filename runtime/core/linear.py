@@ -3,8 +3,9 @@
 numpy gives ``@``, ``np.dot`` and ``np.linalg`` to OpenBLAS, which picks a kernel for the processor that it finds.
 Kernels add in different orders, so the last digits of a run would differ between processor families. ``np.einsum``
 adds in numpy's own loops, in one order. Equations are solved in ``runtime.core.decompositions`` for the same reason.
-``tests/arch/test_summation.py`` keeps the other functions out of a run; ``tests/sim/test_processors.py`` runs programs
-under three kernels of OpenBLAS and compares the bytes of their logs.
+``tests/arch/test_summation.py`` keeps the other functions out of a run;
+``tests/robolang/execution/test_processors.py`` runs programs under three kernels of OpenBLAS and compares the bytes
+of their logs.
 
 Arrays are float64.
 """

@@ -37,8 +37,8 @@ from runtime.motion.path_ik import Arm, LineSolver, WristSolver
 from runtime.motion.seam import SeamMove, SeamTracker
 from runtime.motion.time_scaling import Pace, Slowdown
 from runtime.motion.velocity_profile import MAX_DURATION, SpeedLimits, bound, check_requests, profile
-from runtime.motion.wrist.planner import Choice, choose, ends, explained, posture_deviation
 from runtime.motion.wrist.switch import CONDITIONS, SAME_ANGLES, Condition
+from runtime.motion.wrist_planner import Choice, choose, ends, explained, posture_deviation
 from runtime.robot.kinematics.frozen_wrist import MAIN_AXES, WRIST_AXES
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.drives import PathLimits

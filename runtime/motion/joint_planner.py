@@ -32,7 +32,7 @@ from runtime.motion.commands import MoveJoint
 from runtime.motion.path_ik import RANGE_TOLERANCE, Arm, check_range
 from runtime.motion.time_scaling import Pace
 from runtime.motion.velocity_profile import MAX_DURATION, SpeedLimits, bound, check_requests, profile
-from runtime.motion.wrist.planner import as_taught, turned
+from runtime.motion.wrist_planner import as_taught, turned
 from runtime.robot.kinematics.kinematics import LIMIT_ROUNDING, Kinematics
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import Profile

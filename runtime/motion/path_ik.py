@@ -200,7 +200,8 @@ def _steepest(s: Array, q: Array, axis: int) -> float:
 def check_range(arm: Arm, s: Array, q: Array) -> None:
     """Refuse a path that leaves a joint's range at any servo tick: between set-points the command may pass them."""
     spec = arm.spec
-    # no segment leaves its set-points by more than a step of its neighbours (tests/runtime/motion/test_fine.py)
+    # no segment leaves its set-points by more than a step of its neighbours
+    # (tests/runtime/motion/test_fine_interpolator.py)
     between = np.abs(np.diff(q, axis=0)).max(axis=0, initial=0.0)
     if (q.min(axis=0) - between >= spec.lower).all() and (q.max(axis=0) + between <= spec.upper).all():
         return

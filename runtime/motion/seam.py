@@ -30,8 +30,8 @@ from runtime.core.linear import matmul, norm
 from runtime.core.rounding import beside
 from runtime.core.units import DEG, MM
 from runtime.motion.path_ik import LineSolver
-from runtime.motion.wrist.planner import wrist_limits
 from runtime.motion.wrist.switch import Conditions, WristLaw, law_from
+from runtime.motion.wrist_planner import wrist_limits
 from runtime.robot.kinematics.frozen_wrist import MAIN_AXES, WRIST_AXES, FrozenWrist, Side
 from runtime.robot.kinematics.opw import Branch
 from runtime.settings.profile import WristOptions

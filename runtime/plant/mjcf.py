@@ -1,8 +1,9 @@
 """The MuJoCo model of a robot in its cell, written as MJCF text from ``RobotSpec`` and ``CellSpec``.
 
-Everything the controller's Pinocchio model has must come out the same here to 1e-9 (tests/sim/test_plant_model.py):
-the same placements, the same bodies, rotor inertia as ``armature`` N^2 J. The plant has in addition what the
-controller does not know: viscous friction N^2 B (``damping``), Coulomb friction, the true hand, parts, contacts.
+Everything the controller's Pinocchio model has must come out the same here to 1e-9
+(tests/runtime/plant/test_plant_model.py): the same placements, the same bodies, rotor inertia as ``armature`` N^2 J.
+The plant has in addition what the controller does not know: viscous friction N^2 B (``damping``), Coulomb friction,
+the true hand, parts, contacts.
 
 Coulomb friction that differs by direction: ``frictionloss`` is symmetric, so it takes the mean m = (Tf + Tb) / 2
 and the rest is a constant torque c = (Tb - Tf) / 2 that the plant applies (``friction_bias``). Turning forward
@@ -22,13 +23,13 @@ A grasp is friction between pads and part and nothing else. Two errors of the si
   A that the row sees, divided by ``impratio`` for friction (MuJoCo documentation, Computation, "Constraint
   model"). With the values below that is under 1e-6 m/s for a held part and 1e-6 rad/s for a joint at rest.
 * Curvature, which is far larger. The rows ask for J a = -b J v and leave out J' v, the difference of the
-  accelerations that pad and part have at zero ``qacc``: a pad on a turning arm moves on an arc, a free part along
-  a tangent. The relative speed u = J v then settles at J' v / b; the integrator, which steps with the new speed,
-  adds (h / 2 - h) J' v to it. So the part drifts by J' v (1 / b - h / 2): 1.5 mm/s for each m/s2 with the contact
-  time constant of 4 h, whatever ``impratio`` or ``noslip`` (both were tried: they change nothing). The drift
-  vanishes at b h = 2, where u alternates undamped (its factor per step is 1 - b h); ``GRIP_DAMPING`` = 1.75
-  leaves a seventh of the drift of the stiffest ordinary contact and a factor of -0.75. tests/sim/test_plant_grasp.py
-  measures it. Shorter steps would have bought the same for 20 times the cost; a weld would have been no grasp.
+  accelerations that pad and part have at zero ``qacc``: a pad on a turning arm moves on an arc, a free part along a
+  tangent. The relative speed u = J v then settles at J' v / b; the integrator, which steps with the new speed, adds
+  (h / 2 - h) J' v to it. So the part drifts by J' v (1 / b - h / 2): 1.5 mm/s for each m/s2 with the contact time
+  constant of 4 h, whatever ``impratio`` or ``noslip`` (both were tried: they change nothing). The drift vanishes at b
+  h = 2, where u alternates undamped (its factor per step is 1 - b h); ``GRIP_DAMPING`` = 1.75 leaves a seventh of the
+  drift of the stiffest ordinary contact and a factor of -0.75. tests/runtime/plant/test_plant_grasp.py measures it.
+  Shorter steps would have bought the same for 20 times the cost; a weld would have been no grasp.
 
 The text is built here and never read from a user's file, so none of MJCF's own ways in (includes, plugins,
 meshes) exists (R22). Pure Python: MuJoCo is imported by ``mujoco_plant`` only. Read at start, no rate.

@@ -22,12 +22,12 @@ from runtime.plant.mjcf import build_mjcf
 from runtime.robot.model.arm_model import spec_rotors
 from tests.bench import figures
 from tests.bench.figures import Row
-from tests.experiments import test_step as bench
-from tests.loop.test_scheduling import Bench
+from tests.robolang.experiments import test_step as bench
+from tests.runtime.control.test_scheduling import Bench
 from tests.runtime.dynamics import lagrangian
 from tests.runtime.dynamics import test_equations as a2
-from tests.sim import test_plant_grasp as grasp
-from tests.sim import test_plant_model as agreement
+from tests.runtime.plant import test_plant_grasp as grasp
+from tests.runtime.plant import test_plant_model as agreement
 
 PROGRAM = Path("programs/pick_and_place.rbl")
 

@@ -9,7 +9,7 @@ from robolang.execution.plot import Curve, as_svg
 from robolang.experiments.step import step
 from runtime.core.units import DEG
 from runtime.robot.model.payload import NO_PAYLOAD
-from tests.experiments.test_step import FAR, FIVE, HALF, NEAR, PUMA, REPLACED, STRETCHED, experiment
+from tests.robolang.experiments.test_step import FAR, FIVE, HALF, NEAR, PUMA, REPLACED, STRETCHED, experiment
 
 FOLDER = Path(__file__).parents[2] / "docs" / "plots"
 

@@ -33,8 +33,8 @@ from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.path import LinePath
 from runtime.motion.path_ik import Arm, LineSolver, WristSolver
 from runtime.motion.velocity_profile import profile
-from runtime.motion.wrist.planner import wrist_limits
 from runtime.motion.wrist.switch import first_trigger, law_from
+from runtime.motion.wrist_planner import wrist_limits
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.settings.profile import Profile, WristOptions

@@ -12,7 +12,7 @@ from runtime.cell.cell_file import read_cell_file
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault
 from runtime.settings.profile import load_profile_file
-from tests.lang.cli.commands import robolang
+from tests.robolang.cli.commands import robolang
 
 CASES = Path(__file__).parent
 CELL = "attack_09_check_reads_no_cell"

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.lang.cli.commands import places, robolang
+from tests.robolang.cli.commands import places, robolang
 
 CASES = Path(__file__).parent
 

@@ -6,7 +6,7 @@ import pytest
 
 from robolang.execution.dry_run import motion_check
 from robolang.project.project import load_project
-from tests.lang.cli.commands import dry, places, robolang
+from tests.robolang.cli.commands import dry, places, robolang
 
 HERE = Path(__file__).parent
 

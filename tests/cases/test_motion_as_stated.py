@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from robolang.execution.session import run
-from tests.lang.cli.commands import dry, places, robolang
+from tests.robolang.cli.commands import dry, places, robolang
 
 HERE = Path(__file__).parent
 

@@ -8,7 +8,7 @@ import pytest
 from robolang.core.diagnostics import to_json
 from robolang.core.source import read_program
 from robolang.execution.session import run
-from tests.lang.cli.commands import dry
+from tests.robolang.cli.commands import dry
 
 CASES = Path(__file__).parent
 ATTACK = "attack_01_runtime_error_wrong_place"

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.lang.cli.commands import dry, places, robolang
+from tests.robolang.cli.commands import dry, places, robolang
 
 HERE = Path(__file__).parent
 SPEEDS = np.array([151.0, 87.7, 176.0, 237.0, 250.0, 235.0])

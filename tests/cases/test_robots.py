@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.lang.cli.commands import places, robolang
+from tests.robolang.cli.commands import places, robolang
 
 HERE = Path(__file__).parent
 AT = "824.279,405.912,949.109,123.512,-33.314,138.411"

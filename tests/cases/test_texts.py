@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from tests.lang.cli.commands import dry, places, robolang
+from tests.robolang.cli.commands import dry, places, robolang
 
 HERE = Path(__file__).parent
 

@@ -9,7 +9,7 @@ from robolang.execution.session import Session
 from robolang.project.project import builtin_cell, load_project
 from runtime.plant.mjcf import own_pairs
 from runtime.plant.mujoco_plant import MujocoPlant
-from tests.lang.cli.commands import BUILTIN, PUMA, robolang
+from tests.robolang.cli.commands import BUILTIN, PUMA, robolang
 
 FOLDED = "10 MOVEJ JOINT(-60, 210, 25, -70, 65, -75), SPEED 30\n"
 SHAPED = PUMA.read_text()

@@ -9,8 +9,8 @@ from robolang.execution.session import Session
 from robolang.project.project import load_project
 from runtime.core.units import MM
 from runtime.motion.seam import superposed
-from tests.lang.cli.commands import robolang
 from tests.programs import runs
+from tests.robolang.cli.commands import robolang
 
 FOLDER = Path(__file__).parents[2] / "programs" / "wrist"
 MOVES = {"e1": (0, -10, 45, -55, -65, 85), "e2": (25, 15, 0, -45, 10, 35), "e3": (-15, -10, 0, 30, -10, 50)}

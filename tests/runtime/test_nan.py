@@ -22,7 +22,7 @@ from runtime.robot.model.payload import declared
 from runtime.settings.supervision import SupervisionLimits
 from runtime.supervision.supervisor import CONFIRMED, Supervisor
 from runtime.supervision.torque_observer import Observer
-from tests.runtime.motion.test_planner import HOME, HOME_POSE, KINEMATICS, PROFILE, SPEC, TOOL
+from tests.runtime.motion.test_cartesian_planner import HOME, HOME_POSE, KINEMATICS, PROFILE, SPEC, TOOL
 
 NAN = math.nan
 

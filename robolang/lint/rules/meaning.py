@@ -1,7 +1,7 @@
 """Rules RBL2xx: the meaning of a program."""
 
 from robolang.core.diagnostics import Severity
-from robolang.lint.registry import Rule
+from robolang.lint.rule import Rule
 
 RULES = (
     Rule(

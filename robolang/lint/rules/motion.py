@@ -1,7 +1,7 @@
 """Rules RBL4xx: payloads, speeds, times and blends that no robot can follow."""
 
 from robolang.core.diagnostics import Severity
-from robolang.lint.registry import Rule
+from robolang.lint.rule import Rule
 
 RULES = (
     Rule(

@@ -4,7 +4,7 @@ The examples run on the built-in cell.
 """
 
 from robolang.core.diagnostics import Severity
-from robolang.lint.registry import Rule
+from robolang.lint.rule import Rule
 
 RULES = (
     Rule(

@@ -1,6 +1,6 @@
 """Rules RBL3xx: taught points and the names of the cell."""
 
-from robolang.lint.registry import Rule
+from robolang.lint.rule import Rule
 
 RULES = (
     Rule(

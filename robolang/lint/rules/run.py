@@ -1,6 +1,6 @@
 """Rules RBL5xx: what a run would stop at and can be seen before it."""
 
-from robolang.lint.registry import Rule
+from robolang.lint.rule import Rule
 
 RULES = (
     Rule(

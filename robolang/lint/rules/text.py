@@ -1,7 +1,7 @@
 """Rules RBL1xx: the text of a program."""
 
 from robolang.core.diagnostics import Severity
-from robolang.lint.registry import Rule
+from robolang.lint.rule import Rule
 
 _LONG = 10_000
 

@@ -14,7 +14,7 @@ from runtime.motion.commands import MoveLinear
 from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.path import LinePath
 from runtime.motion.path_ik import Arm, LineSolver
-from runtime.motion.wrist.planner import _windows
+from runtime.motion.wrist_planner import _windows
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.settings.profile import Profile, WristOptions

@@ -1,0 +1,119 @@
+"""Conditions that may take another branch than they did: those that depend on inputs, time or errors.
+
+Which conditions can go either way in the cell is ``open_conditions``: those that read an input, the time or the error,
+or a name that was given such a value somewhere. What depends on numbers of the program alone goes as it went.
+``robolang.interpreter.branch_oracle.Decisions`` forces them.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from robolang.analysis.symbols import names_in
+from robolang.core.source import Span
+from robolang.syntax.ast import (
+    Assign,
+    Call,
+    CallSub,
+    Case,
+    Const,
+    Expression,
+    For,
+    Head,
+    If,
+    Program,
+    Statement,
+    Sub,
+    Wait,
+)
+from robolang.syntax.tree import Node
+
+_OUTSIDE = frozenset({"IN", "TIMER", "ERR"})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Condition:
+    """A condition: its ``place`` and source line, and whether it is that of a WAIT."""
+
+    place: Span
+    line: int
+    wait: bool = False
+
+
+def open_conditions(program: Program) -> dict[Span, Condition]:
+    """Return the conditions of a program that can go either way, by place."""
+    outside = _from_outside(program)
+    return {
+        place: Condition(place=place, line=line, wait=wait)
+        for place, line, wait, asked in _conditions(program)
+        if any(_is_outside(node, outside) for node in asked)
+    }
+
+
+def _conditions(program: Program) -> Iterator[tuple[Span, int, bool, tuple[Expression, ...]]]:
+    """Yield place, line, whether it is a WAIT that may time out, and what is asked, of every condition."""
+    selected: list[Expression] = []
+    for line in program.statements:
+        for node in _parts(line.statement):
+            if isinstance(node, If):
+                yield node.condition.span, line.source_line, False, (node.condition,)
+            elif isinstance(node, Wait) and node.timeout is not None:
+                yield node.condition.span, line.source_line, True, (node.condition,)
+            elif isinstance(node, Head) and node.word == "SELECT":
+                selected.append(node.value)
+            elif isinstance(node, Head):
+                yield node.value.span, line.source_line, False, (node.value,)
+            elif isinstance(node, Case):
+                yield node.span, line.source_line, False, (*node.values, *selected[-1:])
+            elif getattr(node, "word", "") == "ENDSELECT" and selected:
+                selected.pop()
+
+
+def _parts(node: Statement | None) -> Iterator[Statement]:
+    if node is None:
+        return
+    yield node
+    if isinstance(node, If):
+        yield from _parts(node.then)
+        yield from _parts(node.otherwise)
+
+
+def _from_outside(program: Program) -> frozenset[str]:
+    """Return the names that are given a value from outside somewhere, in capitals."""
+    into: dict[str, set[str]] = {}
+    todo: list[str] = []
+    for name, value in _given(program):
+        for read in _names(value):
+            into.setdefault(read, set()).add(name)
+        if _is_outside(value, frozenset()):
+            todo.append(name)
+    found: set[str] = set()
+    while todo:
+        name = todo.pop()
+        if name not in found:
+            found.add(name)
+            todo += into.get(name, ())
+    return frozenset(found)
+
+
+def _given(program: Program) -> Iterator[tuple[str, Expression]]:
+    """Yield every name that is given a value, and the value; of an array its name."""
+    subs = {line.statement.name.key: line.statement for line in program.statements if isinstance(line.statement, Sub)}
+    for line in program.statements:
+        for node in _parts(line.statement):
+            if isinstance(node, Assign):
+                yield (node.target.name if isinstance(node.target, Call) else node.target).key, node.value
+            elif isinstance(node, Const):
+                yield node.name.key, node.value
+            elif isinstance(node, For):
+                yield from ((node.variable.key, limit) for limit in (node.first, node.last, node.step) if limit)
+            elif isinstance(node, CallSub) and node.name.key in subs:
+                parameters = subs[node.name.key].parameters
+                yield from zip((name.key for name in parameters), node.arguments, strict=False)
+
+
+def _is_outside(node: Node, names: frozenset[str]) -> bool:
+    return any(key in _OUTSIDE or key in names for key in _names(node))
+
+
+def _names(node: Node) -> Iterator[str]:
+    return (name.key for name in names_in(node))

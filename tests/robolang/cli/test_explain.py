@@ -1,0 +1,70 @@
+import re
+
+import pytest
+
+import robolang.project.project
+from runtime.core.faults import all_codes
+from tests.robolang.cli.commands import ROOT, flat, robolang, shell
+
+
+@pytest.mark.parametrize("word", ["RBL412", "rbl412", "412", "wrist-singularity", " RBL412 "])
+def test_a_code_is_explained(word):
+    text = robolang("explain", word).stdout
+    assert text.startswith("RBL412 wrist-singularity\n\n")
+    assert "What to do: Teach a via point away from J5 = 0" in text
+    assert max(map(len, text.splitlines())) <= 80
+
+
+@pytest.mark.parametrize("entry", all_codes(), ids=lambda entry: entry.code)
+def test_every_code_has_a_meaning_and_says_what_to_do(entry):
+    words = flat(robolang("explain", entry.code).stdout)
+    assert flat(entry.meaning) in words
+    assert f"What to do: {flat(entry.remedy)}" in words
+    assert len(entry.meaning) > 20
+    assert len(entry.remedy) >= 10
+
+
+@pytest.mark.parametrize(
+    ("word", "near"),
+    [
+        ("RBL5111", "RBL511"),
+        ("5111", "RBL511"),
+        ("RLB412", "RBL412"),
+        ("wrist-singularty", "wrist-singularity"),
+        ("joint-limits", "joint-limit"),
+    ],
+)
+def test_an_unknown_code_is_answered_with_the_nearest(word, near):
+    words = flat(robolang("explain", word, code=2).stderr)
+    found = re.search(r"did you mean (\S+)\?", words)
+    assert f"there is no code '{word}'" in words
+    assert found
+    assert found[1] == near
+
+
+@pytest.mark.parametrize("word", ["", "zzzzzz", "RBL", "٤١٢"])
+def test_a_word_like_no_code_is_refused(word):
+    said = robolang("explain", word, code=2).stderr
+    assert "RBL703" in said
+    assert "did you mean" not in said
+
+
+def test_all_codes_are_listed_in_an_aligned_table():
+    lines = robolang("explain").stdout.splitlines()
+    heading = next(line for line in lines if line.split() == ["code", "name", "meaning"])
+    name, meaning = heading.index("name"), heading.index("meaning")
+    rows = [line for line in lines if re.match(r" RBL\d{3} ", line)]
+    assert [row[1:7] for row in rows] == [entry.code for entry in all_codes()]
+    assert [row[name:meaning].strip() for row in rows] == [entry.name for entry in all_codes()]
+    assert all(row[7:name].isspace() and row[meaning - 2 : meaning].isspace() for row in rows)
+    assert max(map(len, lines)) <= 80
+    assert "…" not in "".join(lines)
+
+
+def test_a_fresh_process_knows_every_code_of_the_page():
+    """Here the tests have imported everything; a user's command imports no more than it asks for."""
+    page = (ROOT / "docs" / "codes.md").read_text("utf-8")
+    listed = shell("explain").stdout
+    codes = re.findall(r"^\| (RBL\d{3}) \|", page, re.M)
+    assert len(codes) > 80
+    assert re.findall(r"^ (RBL\d{3}) ", listed, re.M) == codes

@@ -1,0 +1,127 @@
+import os
+
+import pytest
+
+from runtime.robot.files.loader import load_builtin
+from runtime.robot.files.robot_file import library
+from tests.robolang.cli.commands import PUMA, robolang
+
+
+def test_the_library_is_listed():
+    assert robolang("robot", "list").stdout.splitlines() == [
+        "irb2400     ABB IRB 2400/10, 6 axes, 10 kg",
+        "manutec_r3  Manutec r3, 6 axes, 15 kg",
+        "puma560     Unimation Puma 560, 6 axes, 2.5 kg",
+    ]
+
+
+def test_every_column_fits_80_characters_uncut():
+    text = robolang("robot", "show", "puma560").stdout
+    assert "…" not in text
+    assert max(map(len, text.splitlines())) <= 80
+    spec = load_builtin("puma560")
+    for axis in spec.axes:
+        motor = axis.motor
+        for number in (motor.gear_ratio, motor.rotor_inertia, motor.viscous_friction, axis.limits.torque):
+            assert f" {number:g} " in text
+        assert " {:g}/{:g} ".format(*motor.coulomb_friction) in text
+        assert f"{axis.name} " in text
+    loops = next(
+        line for line in text.splitlines()[text.splitlines().index("Servo loops ".ljust(60)) :] if " J1 " in line
+    )
+    assert loops.split() == ["J1", "30", "120", "300", "131072"]
+    bodies = [line.split() for line in text.splitlines() if line.startswith(" J3 ")][-1]
+    assert bodies == ["J3", "4.8", "0", "70", "164.15", "0.066", "0.0125", "0.086", "0.06975", "0.01625", "0.086"]
+
+
+@pytest.mark.parametrize("name", library())
+def test_every_robot_is_shown_within_80_characters(name):
+    text = robolang("robot", "show", name).stdout
+    assert "…" not in text
+    assert max(map(len, text.splitlines())) <= 80
+    words, spec = " ".join(text.split()), load_builtin(name)
+    assert all(note in words for note in (*spec.sources, *spec.notes))
+
+
+def test_gear_springs_are_shown_where_there_are_any():
+    assert "Gear springs" not in robolang("robot", "show", "puma560").stdout
+    lines = robolang("robot", "show", "manutec_r3").stdout.splitlines()
+    start = lines.index(next(line for line in lines if line.startswith("Gear springs")))
+    rows = [line.split() for line in lines[start:] if line.startswith(" J")][:6]
+    # 43 N m/rad and 0.005 N m s/rad at the motor, times 105^2; 9 A x 1.1616 N m/A x 105 over the stiffness
+    assert rows[0] == ["J1", "474075", "55.125", "0.133"]
+    assert rows[1] == ["J2", "352800", "441", "0.357"]
+    assert rows[3] == ["J4", "rigid"]
+
+
+def test_a_body_published_as_a_point_is_shown_with_what_it_was_given():
+    words = " ".join(robolang("robot", "show", "manutec_r3").stdout.split())
+    assert "J6: 1e-12 kg m2 added about every axis. Published as a point mass" in words
+    assert "J1: 0.58 kg m2 across the joint, from the base to link 1. Only the 1.16" in words
+
+
+def test_corrections_sources_and_notes_are_given_in_full():
+    words = " ".join(robolang("robot", "show", "puma560").stdout.split())
+    spec = load_builtin("puma560")
+    for text in (*spec.sources, *spec.notes, *(correction.reason for correction in spec.corrections)):
+        assert text in words
+    assert "J3: 0.00375 kg m2 across the joint, from link 2 to link 3" in words
+    assert "J1: 0.175 kg m2 across the joint, from the base to link 1; 1e-06 kg added" in words
+
+
+def test_a_robot_file_is_shown_like_a_built_in_one():
+    assert robolang("robot", "show", PUMA).stdout == robolang("robot", "show", "puma560").stdout
+
+
+def test_words_of_a_robot_file_are_printed_and_not_obeyed(tmp_path):
+    path = tmp_path / "r.toml"
+    text = PUMA.read_text().replace('"waist"', '"[/red] :smile: \\u001b[2J"')
+    path.write_text(text.replace('"Unimation', '"\\u001b[2J[bold]Unimation', 1))
+    shown = robolang("robot", "show", path).stdout
+    assert "[/red] :smile: \ufffd[2J" in shown
+    assert "puma560: \ufffd[2J[bold]Unimation" in shown
+    assert "\x1b" not in shown
+
+
+def test_long_names_and_numbers_are_folded_and_never_cut(tmp_path):
+    path = tmp_path / "r.toml"
+    text = PUMA.read_text().replace('"shoulder"', f'"{"long " * 20}"')
+    for old, new in (
+        ("coulomb_friction_nm = [0.395, 0.435]", "coulomb_friction_nm = [0.00395678, 0.00435678]"),
+        ("gear_ratio = -62.6111", "gear_ratio = -1234.56"),
+        ("viscous_friction_nm_s = 1.48e-3", "viscous_friction_nm_s = 1.48765e-5"),
+        ("rotor_inertia_kg_m2 = 200e-6", "rotor_inertia_kg_m2 = 1.23456e-5"),
+    ):
+        text = text.replace(old, new, 1)
+    path.write_text(text)
+    shown = robolang("robot", "show", path).stdout
+    assert "…" not in shown
+    assert max(map(len, shown.splitlines())) <= 80
+    assert shown.count("long ") + shown.count("long\n") >= 20
+    assert all(part in shown for part in ("-1234.56", "1.48765e-05", "1.23456e-05"))
+
+
+@pytest.mark.parametrize(
+    ("name", "code", "said"),
+    [
+        ("puma56", "RBL708", "did you mean puma560?"),
+        ("nothing", "RBL708", "built in: irb2400, manutec_r3, puma560"),
+        ("", "RBL708", "built in: irb2400, manutec_r3, puma560"),
+        ("none.toml", "RBL600", "none.toml:1:1: error"),
+        ("folder.toml", "RBL600", "is not a regular file"),
+        ("pipe.toml", "RBL600", "is not a regular file"),
+        ("empty.toml", "RBL608", "'schema' is missing"),
+        ("short.toml", "RBL601", "short.toml:"),
+    ],
+)
+def test_a_robot_that_cannot_be_shown(tmp_path, monkeypatch, name, code, said):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder.toml").mkdir()
+    os.mkfifo(tmp_path / "pipe.toml")
+    (tmp_path / "empty.toml").touch()
+    (tmp_path / "short.toml").write_bytes(PUMA.read_bytes().partition(b"0.126")[0])
+    result = robolang("robot", "show", name, code=2)
+    assert code in result.stderr
+    assert said in result.stderr
+    assert "help: " in result.stderr
+    assert result.stdout == ""

@@ -1,0 +1,228 @@
+"""What ``robolang run`` prints: the table at 80 columns, progress on a terminal and elsewhere, and odd streams."""
+
+import os
+import pty
+import re
+import subprocess
+import sys
+
+import pytest
+
+from robolang.cli import run_table
+from tests.campaign import some
+from tests.robolang.cli.commands import ROOT, dry, robolang, shell
+from tests.steps import HANG_S
+
+LONG = "100 MOVE P1, SPEED 123.456789, ACCEL 12.345678901"
+
+
+@pytest.fixture
+def program(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "p.rbl"
+    path.write_text("10 HAND ON\n20 LOAD (0, 0, 60), 0.8\n30 MOVE P5\n")
+    return path
+
+
+def test_progress_goes_to_stderr_and_the_table_to_stdout(program):
+    result = dry("p.rbl")
+    assert [line.split(None, 2)[2] for line in result.stderr.splitlines()] == [
+        "line 1 (number 10) HAND ON",
+        "line 2 (number 20) LOAD (0, 0, 60), 0.8",
+        "line 3 (number 30) MOVE P5",
+    ]
+    rows = [line.split()[:2] for line in result.stdout.splitlines() if re.match(r" +\d+ ", line)]
+    assert rows == [["1", "10"], ["2", "20"], ["3", "30"]]
+    assert result.stdout.startswith("p.rbl on puma560\n")
+    assert "line 1 (number 10): closed on nothing" in result.stdout
+
+
+def test_quiet_prints_nothing(program):
+    for words in ([], ["--report", "r.json", "--log", "l.npz"]):
+        result = robolang("run", "p.rbl", "--quiet", *words)
+        assert (result.stdout, result.stderr) == ("", "")
+
+
+def test_quiet_still_prints_errors(program):
+    program.write_text("MOVE P9\n")
+    assert "RBL301" in dry("p.rbl", "--quiet", code=1).stderr
+
+
+def report(**changes):
+    statement = {
+        "line": 99_999,
+        "number": None,
+        "text": LONG[4:],
+        "begun": True,
+        "start_s": 3599.123,
+        "duration_s": 3600.123,
+        "joint_error_deg": 123.4567,
+        "tool_error_mm": 12.3456,
+        "path_deviation_mm": 12.3456,
+        "peak_torque_pct": 100.0,
+        "notes": [],
+    }
+    return {
+        "program": "p.rbl",
+        "robot": "puma560",
+        "sim_time_s": 0.0,
+        "wall_time_s": 0.0,
+        "realtime_factor": 0.0,
+        "cycles": 0,
+        "overruns": 0,
+        "dynamics": {},
+        "objects": {},
+        "statements": [statement | changes] * 2,
+    }
+
+
+@pytest.mark.parametrize("width", [60, 80, 100, 200])
+def test_only_a_statement_is_ever_cut(width, monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", str(width))
+    run_table.print_result(report())
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines)) <= max(width, 74)
+    if width >= 80:
+        row = next(line for line in lines if "99999" in line)
+        numbers = row.split("P1", 1)[1].split("…")[-1].split()
+        assert numbers[-6:] == ["3599.123", "3600.123", "123.4567", "12.346", "12.346", "100"]
+        assert row.count("…") == 1
+        assert " 99999  MOVE P1, SP" in row
+        heading = " ".join(lines[1:6])
+        assert all(word in heading for word in ("statement", "start", "torque", "path", "deg", "mm", "%"))
+
+
+def test_a_short_statement_is_not_cut_and_a_wide_terminal_shows_more(monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", "80")
+    run_table.print_result(report(text="MOVE P1, SPEED 100", start_s=0.0, duration_s=1.0))
+    assert "…" not in capsys.readouterr().out
+    monkeypatch.setenv("COLUMNS", "120")
+    run_table.print_result(report(text=LONG[4 : 4 + 40]))
+    assert "…" not in capsys.readouterr().out
+
+
+def test_words_of_other_people_are_printed_and_not_obeyed(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    name = "[red]x[bold] :smile: \x1b[2J.rbl"
+    (tmp_path / name).write_text("MOVE P1\n")
+    result = dry(name)
+    assert "[red]x[bold] :smile: \ufffd[2J.rbl on puma560" in result.stdout
+    assert "\x1b" not in result.stdout + result.stderr
+
+
+def test_an_alarm_is_located_at_its_statement(program, monkeypatch):
+    from robolang.execution.session import Session
+
+    run = Session.run
+
+    def stopped(self):
+        self.request_stop()
+        return run(self)
+
+    monkeypatch.setattr(Session, "run", stopped)
+    result = dry("p.rbl", "--report", "r.json", code=3)
+    assert "p.rbl:1:4: error RBL530 at 0.000 s: the run was stopped from outside\n   1 | 10 HAND ON" in result.stderr
+    assert '"code": "RBL530"' in (program.parent / "r.json").read_text()
+
+
+def read_terminal(master):
+    """Return what was written to a terminal until its writer has gone."""
+    text = b""
+    while True:
+        try:
+            part = os.read(master, 65536)
+        except OSError:  # EIO: the other end is closed
+            part = b""
+        if not part:
+            return text.decode()
+        text += part
+
+
+def test_on_a_terminal_progress_is_one_live_line(program):
+    program.write_text("10 MOVE P1\n20 MOVE P5\n")
+    master, slave = pty.openpty()
+    process = subprocess.Popen(
+        [sys.executable, "-m", "robolang", "run", "--no-physics", "--realtime", "p.rbl"],
+        stdout=subprocess.PIPE,
+        stderr=slave,
+        text=True,
+        cwd=program.parent,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "TERM": "xterm", "COLUMNS": "80"},
+    )
+    os.close(slave)
+    shown = read_terminal(master)
+    os.close(master)
+    table, _ = process.communicate(timeout=HANG_S)
+    assert process.returncode == 0
+    assert re.search(r"^ +2 +20 +MOVE P5 ", table, re.M)
+    assert "line 1 (number 10) MOVE P1" in shown
+    assert "line 2 (number 20) MOVE P5" in shown
+    assert shown.partition("p.rbl:")[0].count("\n") <= 2  # rewritten in place, not one line after the other
+    assert "\x1b[2K" in shown or "\x1b[K" in shown
+    assert shown.rstrip().endswith("\x1b[?25h") or "\x1b[?25h" in shown  # the cursor is given back
+
+
+def test_a_reader_that_leaves_changes_nothing(program):
+    """``robolang run ... | true``: no trace, the exit code of the run, the files written."""
+    commands = (
+        (["run", "--no-physics", "p.rbl", "--report", "r.json"], 0),
+        (["explain"], 0),
+        (["robot", "show", "puma560"], 0),
+        (["robot", "list"], 0),
+        (["check", "bad.rbl"], 1),
+    )
+    for words, code in some(commands, 0, 1, 4):
+        (program.parent / "bad.rbl").write_text("MOV P1\n")
+        reading, writing = os.pipe()
+        os.close(reading)
+        result = shell(*words, cwd=program.parent, capture_output=False, stdout=writing, stderr=subprocess.PIPE)
+        os.close(writing)
+        assert result.returncode == code, words
+        assert "Error" not in result.stderr, words
+        assert "error" not in result.stderr, words
+    assert (program.parent / "r.json").exists()
+
+
+def test_a_standard_output_that_is_full_is_a_storage_fault(program):
+    with open("/dev/full", "w") as full:  # noqa: PTH123
+        result = shell(
+            "run",
+            "--no-physics",
+            "p.rbl",
+            cwd=program.parent,
+            capture_output=False,
+            stdout=full,
+            stderr=subprocess.PIPE,
+        )
+    assert result.returncode == 4
+    assert "error RBL706 cannot write the standard output" in result.stderr
+    assert "Exception ignored" not in result.stderr
+
+
+def test_closed_streams_and_a_plain_encoding_do_not_stop_a_run(program):
+    run = (
+        "import os, sys; os.closerange({}, {}); "
+        "os.execv(sys.executable, [sys.executable, '-m', 'robolang', *sys.argv[1:]])"
+    )
+    for first, last in some(((1, 2), (2, 3), (1, 3)), 2):
+        words = [sys.executable, "-c", run.format(first, last), "run", "--no-physics", "p.rbl", "--report", "r.json"]
+        env = {**os.environ, "PYTHONPATH": str(ROOT)}
+        assert subprocess.run(words, cwd=program.parent, env=env, timeout=HANG_S).returncode == 0
+        (program.parent / "r.json").unlink()
+    program.write_text("MOVE P9 ' \u03a9\n", encoding="utf-8")
+    result = shell("check", "p.rbl", cwd=program.parent, env={"PYTHONIOENCODING": "latin-1"})
+    assert result.returncode == 1
+    assert "\\u03a9" in result.stdout
+
+
+def test_the_same_table_comes_out_whatever_the_wall_clock_does(program):
+    first, second = (re.sub(r"in [\d.]+ s \([\d.]+ x", "", dry("p.rbl").stdout) for _ in range(2))
+    assert first == second
+
+
+def test_python_m_robolang_and_a_program_named_like_an_option(program):
+    (program.parent / "-x.rbl").write_text("LOAD (0, 0, 60), 0.8\n")
+    result = shell("run", "--no-physics", "--", "-x.rbl", cwd=program.parent)
+    assert result.returncode == 0, result.stderr
+    assert "-x.rbl on puma560" in result.stdout
+    robolang("run", "--no-physics", "--quiet", "--", "-x.rbl")

@@ -1,0 +1,85 @@
+"""``robolang weigh``: what it prints, that its LOAD can be pasted, and what it does not take."""
+
+import json
+import re
+
+import pytest
+
+from robolang.experiments import weigh as module
+from tests.robolang.cli.commands import ROOT, flat, robolang
+from tests.robolang.helpers import checked
+
+BODY = "1.5,30,-20,113.7"
+
+
+def test_it_prints_the_estimate_the_truth_and_a_load_that_parses():
+    result = robolang("weigh", "--payload", BODY)
+    rows = dict(re.findall(r"^  (mass, kg|cog [xyz], mm) +(.*)$", result.stdout, re.M))
+    for name, true, near in (
+        ("mass, kg", 2.3, 0.01),
+        ("cog x, mm", 19.57, 0.2),
+        ("cog y, mm", -13.04, 0.2),
+        ("cog z, mm", 95.02, 0.5),
+    ):
+        value, sd, shown = map(float, rows[name].split())
+        assert (value, shown) == (pytest.approx(true, abs=near), pytest.approx(true, abs=0.005))
+        assert 0.0 < sd <= near
+    load = result.stdout.splitlines()[-1]
+    assert checked(load, rated=2.5) == []
+    x, y, z, mass = map(float, re.fullmatch(r"LOAD \((\S+), (\S+), (\S+)\), (\S+)", load).groups())
+    assert (x, y, z) == pytest.approx((19.57, -13.04, 95.02), abs=0.5)
+    assert mass == pytest.approx(2.3, abs=0.01)
+    assert "J2 5, J3 5, J4 25, J5 25, J6 50 deg" in result.stderr
+
+
+def test_json_holds_the_same_and_repeats():
+    first, second = (robolang("weigh", "--json", "--plant", "rigid").stdout for _ in range(2))
+    assert first == second
+    found = json.loads(first)
+    assert (found["robot"], found["plant"], found["seconds"]) == ("puma560", "rigid", pytest.approx(12.408))
+    assert found["true"] == {"mass_kg": 0.8, "cog_mm": pytest.approx([0, 0, 60])}
+    assert found["estimated"]["mass_kg"] == pytest.approx(0.8, abs=0.01)
+    assert set(found["estimated"]) == {"mass_kg", "mass_sd_kg", "cog_mm", "cog_sd_mm"}
+    assert found["load"].startswith("LOAD (")
+    assert all(len(found[key]) == 6 for key in ("home_deg", "amplitudes_deg", "friction_off_pct", "left_rms_nm"))
+
+
+def test_the_cell_beside_the_program_counts():
+    found = json.loads(
+        robolang(
+            "weigh", ROOT / "programs" / "manutec_pick_and_place.rbl", "--plant", "rigid", "--json", "--amplitude", "15"
+        ).stdout
+    )
+    assert (found["robot"], found["true"]["mass_kg"]) == ("manutec_r3", 2.5)
+    assert found["amplitudes_deg"] == pytest.approx([0, 3, 3, 15, 15, 30])
+
+
+def test_more_than_rated_is_said_and_weighed():
+    result = robolang("weigh", "--payload", "2.2,0,0,80", "--plant", "rigid")
+    assert "note: hand and --payload weigh 3 kg, over the rated 2.5 kg" in result.stderr
+    assert re.search(r"mass, kg +(2\.99|3\.00)", result.stdout)
+    assert checked(result.stdout.splitlines()[-1], rated=2.5) == []
+    assert result.stdout.endswith(", 2.5\n")
+    assert "may be declared" in result.stderr
+
+
+BAD = [
+    (["--plant", "gazebo"], "RBL703 --plant: 'gazebo' is not one of mujoco, rigid", 2),
+    (["--amplitude", "0"], "RBL703 --amplitude: 0 is not above 0", 2),
+    (["--amplitude", "nan"], "RBL703 --amplitude: nan is not above 0", 2),
+    (["--payload", "1,0,0"], "RBL703 --payload: 4 are needed", 2),
+    (["--payload", "1,0,x,0"], "RBL703 --payload, number 3: y mm is 'x', not a number", 2),
+    (["--payload=-1,0,0,0"], "RBL703 --payload: a payload of -1 kg is not a mass", 2),
+    (["--payload", "1,0,0,5000"], "RBL703 --payload: the centre of gravity", 2),
+    (["nothing.rbl"], "RBL703 PROG: there is no file 'nothing.rbl'", 2),
+    (["--cell", "nothing.toml"], "RBL600", 2),
+    (["--robot", "manutec_r3"], "RBL709 the cell's home position is outside the range of J3", 2),
+    (["--robot", "manutec"], "RBL708 there is no robot 'manutec'", 2),
+    (["--amplitude", "60"], "RBL411 J5 would swing to -133.9 deg", 3),
+]
+
+
+@pytest.mark.parametrize(("words", "said", "code"), BAD, ids=[" ".join(words) for words, _, _ in BAD])
+def test_what_it_does_not_take(monkeypatch, words, said, code):
+    monkeypatch.setattr(module, "Controller", lambda *_: pytest.fail("something moved"))
+    assert said in flat(robolang("weigh", *words, code=code).stderr)

@@ -1,0 +1,179 @@
+"""Where the motion is not the one that the program states: a run warns of it and ``check --motion`` finds it, alike."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from robolang.core.diagnostics import Severity
+from robolang.execution.dry_run import rehearse
+from robolang.execution.plan_findings import SLOWED
+from robolang.execution.session import Session
+from robolang.planning.motion_findings import findings
+from robolang.project.project import builtin_cell, load_project
+from runtime.robot.kinematics.kinematics import Kinematics
+
+OTHERWISE = {"RBL414", "RBL419", "RBL428", "RBL429", "RBL434", "RBL435"}
+START = "LOAD (0, 0, 60), 0.8\nMOVEJ JOINT(0, 60, -190, 0, -60, {})\n"
+ROOT = Path(__file__).parents[3]
+
+
+def both(tmp_path, text, points=""):
+    """Return (code, line, message, hint) of what checking finds, after comparing it with the warnings of a run."""
+    taught = (ROOT / "robolang/project/builtin/points.toml").read_text("utf-8")
+    (tmp_path / "p.points.toml").write_text(taught + points, "utf-8")
+    (tmp_path / "p.rbl").write_text(text, "utf-8")
+    project = load_project(tmp_path / "p.rbl")
+    assert project.ok, project.diagnostics
+    found = [item for item in findings(project, rehearse(project)) if item.code in OTHERWISE]
+    assert all(item.severity == Severity.WARNING for item in found)
+    said = [(item.code, project.source.place(item.span.start).line, item.message, item.hint) for item in found]
+    report = Session(project, physics=False).run().report
+    warned = [(row["code"], row["line"], row["message"], row["hint"]) for row in report["warnings"]]
+    assert sorted(said) == sorted(warned)
+    return said
+
+
+def only(tmp_path, text, points=""):
+    ((code, line, message, hint),) = both(tmp_path, text, points)
+    return code, line, message, hint
+
+
+@pytest.mark.parametrize(
+    ("text", "rule"),
+    [
+        ("SPEED 250\nMOVE (HERE + (0, 60, 0)) * (0, 0, 0, 0, 0, 170)\n", r"the tool turns by 170.0 deg on 60.0 mm"),
+        ("OVERRIDE 50\nMOVE (HERE + (0, 60, 0)) * (0, 0, 0, 0, 0, 170), SPEED 250\n", r"the tool turns by 170.0 deg"),
+        ("SPEED 400\nA = HERE\nMOVEC A + (-8, 0, 0), A + (-1.17, -2.83, 0)\n", r"on a radius of 4.0 mm"),
+        ("MOVEJ JOINT(0, 60, -190, 0, -3, 0)\nMOVE HERE + (0, 100, 0), SPEED 900, WRIST KEEP\n", r"J\d is at its sp"),
+        (
+            "MOVEJ JOINT(0, 60, -190, 0, -3, 0)\nOVERRIDE 50\nMOVE HERE + (0, 100, 0), SPEED 900, WRIST KEEP\n",
+            r"J\d is at",
+        ),
+    ],
+)
+def test_a_speed_that_is_not_reached_names_what_rules_and_a_speed_that_is(tmp_path, text, rule):
+    code, line, message, hint = only(tmp_path, START.format(0) + text)
+    assert (code, line) == ("RBL429", 2 + text.count("\n"))
+    assert re.search(rf"reaches \d+\.\d mm/s at most, not SPEED \d+.* and takes .* instead of .*: {rule}", message)
+    if not rule.startswith("J"):  # a joint may rule at a lower speed as well
+        (speed,) = re.findall(r"Give SPEED ([\d.]+), which", hint)
+        assert both(tmp_path, START.format(0) + re.sub(r"SPEED \d+", f"SPEED {speed}", text)) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "SPEED 500\nMOVE HERE + (20, 0, 0)\nMOVE HERE + (0.5, 0, 0)\n",  # too short to reach it
+        "MOVE (HERE + (0, 60, 0)) * (0, 0, 0, 0, 0, 170)\n",  # no SPEED is asked for
+        "SPEED 250\nMOVE HERE * (0.5, 0, 0, 0, 0, 170)\n",  # turns in place
+        "SPEED 250\nMOVE (HERE + (0, 60, 0)) * (0, 0, 0, 0, 0, 10)\n",
+        "SPEED 100\nOVERRIDE 20\nMOVE HERE + (0, 60, 0)\n",
+        "SPEED 100\nMOVEC HERE + (20, 20, 0), HERE + (40, 0, 0)\n",
+    ],
+)
+def test_what_is_short_or_turns_in_place_is_no_finding(tmp_path, text):
+    assert both(tmp_path, START.format(0) + text) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "MOVE HERE + (0, 100, 0), TIME 0.3\n",
+        "MOVE HERE * (0, 0, 0, 0, 0, 150), TIME 0.3\n",
+        "OVERRIDE 50\nMOVE HERE + (0, 100, 0), TIME 0.1\n",
+        "MOVEJ BY_J6, TIME 0.1\n",
+    ],
+)
+def test_a_time_that_is_not_kept_is_named_with_one_that_is(tmp_path, text):
+    text = START.format(0) + text.replace("BY_J6", "JOINT(0, 60, -190, 0, -60, 90)")
+    code, line, message, hint = only(tmp_path, text)
+    assert (code, line) == ("RBL429", text.count("\n"))
+    took, asked = re.findall(r"takes ([\d.]+) s, not the ([\d.]+) s of TIME", message)[0]
+    assert float(took) > float(asked)
+    (time,) = re.findall(r"Give TIME ([\d.]+) or more", hint)
+    assert both(tmp_path, re.sub(r"TIME [\d.]+", f"TIME {time}", text)) == []
+
+
+def test_a_time_a_little_too_short_is_named_as_well(tmp_path):
+    """1.184 s is the shortest."""
+    text = START.format(0) + "MOVE HERE * (0, 0, 0, 0, 0, 150), TIME {}\n"
+    assert [row[0] for row in both(tmp_path, text.format(1.1))] == ["RBL429"]
+    assert both(tmp_path, text.format(1.184)) == []
+
+
+def test_a_joint_move_that_changes_the_configuration_is_named(tmp_path):
+    code, line, message, _ = only(tmp_path, "LOAD (0, 0, 60), 0.8\nMOVEJ JOINT(0, 60, -190, 0, 60, 0)\nMOVEJ P5\n")
+    assert (code, line) == ("RBL434", 3)
+    assert re.match(r"changes the arm configuration from NOFLIP to FLIP: J\d turns by [\d.]+ deg, from ", message)
+
+
+def test_a_point_that_names_its_configuration_is_no_surprise(tmp_path):
+    point = '\n[points.P9]\npose = [480, -220, 840, 180, 0, 180]\nconfiguration = "RIGHTY ABOVE FLIP"\n'
+    assert both(tmp_path, "LOAD (0, 0, 60), 0.8\nMOVEJ JOINT(0, 60, -190, 0, 60, 0)\nMOVEJ P9\n", point) == []
+
+
+def test_a_joint_that_turns_the_long_way_is_named(tmp_path):
+    text = START.format(250) + "MOVEJ HERE * (0, 0, 0, 0, 0, {})\n"
+    code, line, message, _ = only(tmp_path, text.format(40))
+    assert (code, line) == ("RBL435", 3)
+    assert message == (
+        "J6 turns by 320.0 deg, from 250.0 to -70.0 deg: the nearer angle of 290.0 deg is beyond the "
+        "range -266 to 266 deg"
+    )
+    assert both(tmp_path, text.format(10)) == []
+    assert both(tmp_path, START.format(250) + "MOVEJ JOINT(0, 60, -190, 0, -60, -70)\n") == []  # the text says so
+
+
+def test_a_zone_in_which_the_arm_stops_is_named(tmp_path):
+    text = START.format(0) + "SPEED 200\nMOVE HERE + (0, 100, 0), ZONE 20\nMOVE P5 + (0, 0, {})\nMOVE P5\n"
+    assert both(tmp_path, text.format(50)) == []
+    short = START.format(0) + "SPEED 200\nA = HERE\nMOVE A + (0, 100, 0), ZONE 20\nMOVE A + (0, 100.0001, 0)\nMOVE A\n"
+    code, line, message, _ = only(tmp_path, short)
+    assert (code, line) == ("RBL414", 5)
+    assert message == "a zone of 20 mm leaves no room for a blend: the arm stops at the corner"
+
+
+def test_a_pose_taught_with_a_configuration_that_a_kept_wrist_does_not_reach_is_named(tmp_path):
+    """The same pose with the wrist the other way round: WRIST KEEP passes over what the point says of it."""
+    q = np.radians([0.0, 60.0, -190.0, 0.0, -50.0, 0.0])
+    cell = builtin_cell()
+    kinematics = Kinematics(cell.robot)
+    from robolang.execution.lowering import six_of
+
+    pose = [round(value, 6) for value in six_of(kinematics.forward(q) @ cell.hand.X_flange_tool)]
+    point = f'\n[points.P9]\npose = {pose}\nconfiguration = "RIGHTY ABOVE NOFLIP"\n'
+    assert str(kinematics.branch_of(q)) == "RIGHTY ABOVE FLIP"
+    code, line, message, _ = only(tmp_path, START.format(0) + "SPEED 100\nMOVE P9, WRIST KEEP\n", point)
+    assert (code, line) == ("RBL419", 4)
+    assert message.startswith("ends RIGHTY ABOVE FLIP with turns [0, 0, -1, 0, 0, 0], not RIGHTY ABOVE ")
+
+
+def test_a_zone_of_a_move_under_a_seam_sensor_is_named(tmp_path):
+    """Such moves do not blend, whatever the program says."""
+    for suffix in (".cell.toml", ".points.toml"):
+        (tmp_path / f"p{suffix}").write_text((ROOT / f"programs/wrist/seam{suffix}").read_text("utf-8"), "utf-8")
+    text = (ROOT / "programs/wrist/seam.rbl").read_text("utf-8")
+    (tmp_path / "p.rbl").write_text(text.replace("SPEED 70, WRIST AUTO", "SPEED 70, WRIST AUTO, ZONE 20"), "utf-8")
+    project = load_project(tmp_path / "p.rbl")
+    assert project.ok, project.diagnostics
+    (found,) = [item for item in findings(project, rehearse(project)) if item.code in OTHERWISE]
+    assert (found.code, project.source.place(found.span.start).line) == ("RBL414", 6)
+    report = Session(project, physics=False).run().report
+    assert [row["message"] for row in report["warnings"] if row["code"] == "RBL414"] == [found.message]
+
+
+def test_a_statement_in_a_loop_is_named_once(tmp_path):
+    text = (
+        "SPEED 250\nFOR n = 1 TO 3\nMOVE (HERE + (0, 40, 0)) * (0, 0, 0, 0, 0, 100)\n"
+        "MOVE (HERE + (0, -40, 0)) * (0, 0, 0, 0, 0, -100)\nNEXT n\n"
+    )
+    assert [(row[0], row[1]) for row in both(tmp_path, START.format(0) + text)] == [("RBL429", 5), ("RBL429", 6)]
+
+
+@pytest.mark.parametrize("program", sorted((ROOT / "programs").rglob("*.rbl")), ids=lambda path: path.stem)
+def test_the_programs_that_come_along_say_nothing(program):
+    project = load_project(program)
+    assert [item for item in findings(project, rehearse(project)) if item.code in OTHERWISE] == []
+    assert SLOWED > 1.02

@@ -1,0 +1,225 @@
+"""Words and signs of other languages: one error, and its remedy names what this language has."""
+
+import pytest
+
+from robolang.analysis.cell_symbols import CellSymbols
+from robolang.analysis.checker import check
+from robolang.core.diagnostics import in_order
+from robolang.syntax import other_languages
+from robolang.syntax.keywords import FUNCTIONS, KEYWORDS, VALUES
+from robolang.syntax.parser import parse
+from tests.robolang.helpers import source
+
+
+def found(text):
+    """Code, line and hint of everything in a text."""
+    parsed = parse(source(text))
+    items = in_order((*parsed.diagnostics, *check(parsed.program, CellSymbols.named(points=["P1"]))))
+    return [(item.code, source(text).place(item.span.start).line, item.hint) for item in items]
+
+
+@pytest.mark.parametrize(
+    ("text", "remedy"),
+    [
+        ("SPEED = 100", "leave = out: the form is SPEED"),
+        ("SPEED := 5", "leave := out"),
+        ("MOVE P1, SPEED = 100", "leave = out: SPEED value"),
+        ("DELAY = 5", "leave = out"),
+        ("IF 1 == 1 THEN END", "one = compares"),
+        ("x := 5", "= assigns"),
+        ("FOR i := 1 TO 3\nNEXT", "= assigns"),
+        ("IF 1 != 2 THEN END", "<>"),
+        ("IF 1 && 2 THEN END", "AND"),
+        ("IF 1 || 2 THEN END", "OR"),
+        ("OUT(1) = ON", "write 1"),
+        ("WAIT IN(1) = OFF, TIMEOUT 2", "write 0"),
+        ("OUT(1) = TRUE", "write 1"),
+        ("P1.Z = 90", "P1 = POSE(P1.X, P1.Y, value, P1.RX, P1.RY, P1.RZ)"),
+        ("PCU.rx=1", "value, PCU.RY, PCU.RZ"),
+        ("OUT(1) = 1 : OUT(2) = 1", "one statement on each line"),
+        ("LABEL:", "*LABEL"),
+        ("GOTO LABEL", "GOTO *LABEL"),
+        ("// text", "' or REM"),
+        ("; text", "' or REM"),
+        ("MOVE P1 ; text", "' or REM"),
+        ("# text", "' or REM"),
+        ("-- text", "' or REM"),
+        ("MOVE P1 ! text", "' or REM"),
+        ("OUT(1) = 5 % 3", "MOD"),
+        ("OUT(1) = 5 DIV 3", "INT("),
+        ("x += 1", "write x = x + value"),
+        ("x++", "write x = x + 1"),
+        ("LET x = 1", "without LET"),
+        ("INT x = 1", "name = value"),
+        ("DECL INT x", "name = value"),
+        ("x = [1, 2]", "( )"),
+        ("PTP P1", "MOVEJ"),
+        ("LIN P1", "MOVE "),
+        ("MoveL P1, v100", "MOVE "),
+        ("MOVL P1", "MOVE "),
+        ("CIRC P1, P1", "MOVEC"),
+        ("MoveJ P1, v100, fine, tool0;", "SPEED 100"),
+        ("MOVE P1, z10", "ZONE 10"),
+        ("J P[1] 100% FINE", "MOVEJ"),
+        ("WAIT SEC 2", "DELAY"),
+        ("WAIT 2(sec)", "DELAY"),
+        ("WAIT 2 sec", "DELAY"),
+        ("WAIT FOR $IN[1]", "WAIT IN(1) = 1"),
+        ("WaitTime 1;", "DELAY"),
+        ("SLEEP 1", "DELAY"),
+        ("$IN[1]", "IN(n)"),
+        ("$OUT[1] = TRUE", "OUT(n)"),
+        ("$VEL.CP = 2", "SPEED"),
+        ("DO[1]=ON", "OUT(n)"),
+        ("OUT[1] = 1", "( )"),
+        ("SET DO1", "OUT(n)"),
+        ("set_digital_out(1, True)", "OUT(n)"),
+        ("M_Out(1) = 1", "OUT(n)"),
+        ("IN(1) = 1", "IN reads"),
+        ("UFRAME(1)", "FRAME"),
+        ("UFRAME_NUM = 1", "FRAME"),
+        ("BASE P1", "FRAME"),
+        ("UTOOL_NUM[1]=2", "TOOL"),
+        ("JMP LBL[1]", "GOTO"),
+        ("LBL[1]", "label"),
+        ("EXIT FOR", "GOTO"),
+        ("BREAK", "GOTO"),
+        ("REPEAT", "WHILE"),
+        ("R[1]=5", "x = 5"),
+        ("HALT", "STOP"),
+        ("PROC main()", "SUB"),
+        ("ENDPROC", "ENDSUB"),
+        ("ENDFOR", "NEXT"),
+        ("END FOR", "NEXT"),
+        ("END WHILE", "WEND"),
+        ("WHILE 1 DO\nDELAY 1\nWEND", "leave DO out"),
+        ("IF 1 MOVE P1", "THEN before MOVE"),
+        ("IF 1 THEN MOVE P1 ENDIF", "no ENDIF"),
+        ('PRINT "a", 1', "; stands between"),
+        ("GRIPPER ON", "HAND"),
+        ("PAYLOAD 2", "LOAD"),
+        ("OUT(1) = SQRT(4)", "SQR"),
+        ("TPWrite 1", "PRINT"),
+    ],
+)
+def test_one_error_names_the_word_of_this_language(text, remedy):
+    ((_, _, hint),) = found(text)
+    assert remedy in hint
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("WHILE 1\nEXIT WHILE\nDELAY 1\nWEND", 2),
+        ("FOR i = 1 TO 3\nEXIT FOR\nNEXT", 2),
+        ("FOR i = 1 TO 3\nWHILE 1\nNEXXT\nDELAY 1\nWEND\nNEXT", 3),
+        ("Base P1\nMOVE P1", 1),
+        ("MOVE P1\nCASSE 1", 2),
+        ("IF 1 MOVE P1\nMOVE P1", 1),
+        ("FOR i = 1, 3\nMOVE P1", 1),
+        ("IF 1 THEN\nSUBB f(x)\nMOVE P1\nENDIF", 2),
+        ("*L MOVE P1\nSUBB f(x)\nGOTO *L", 2),
+        ("WHILE 1\nDELAY 1\nENDWHILE", 3),
+        ("SELECT 1\nCASE ELSE\nMOVE P1\nCASEE 1\nENDSELECT", 4),
+        ("ELSE IF 1 THEN\nMOVE P1", 1),
+    ],
+)
+def test_a_guess_makes_no_second_error(text, line):
+    assert [item[:2] for item in found(text) if item[0] not in ("RBL111", "RBL112")] == []
+    assert [item[1] for item in found(text)] == [line]
+
+
+def test_words_of_this_language_are_not_among_them():
+    assert not set(other_languages.WORDS) & (KEYWORDS | FUNCTIONS | VALUES)
+    assert set(other_languages.ENDS) <= set(other_languages.WORDS)
+
+
+def test_a_wait_for_a_number_waits_for_nothing():
+    assert found("WAIT 2") == [("RBL233", 1, "DELAY 2 waits for 2 s")]
+    text = "WAIT -1\nWAIT 1E9, TIMEOUT 1\nWAIT 0, TIMEOUT 2"
+    assert [item[:2] for item in found(text)] == [("RBL233", 1), ("RBL233", 2)]
+
+
+@pytest.mark.parametrize("name", ["c", "l", "j", "do", "lin", "v", "run"])
+def test_an_ordinary_name_is_no_word_of_another_language(name):
+    foreign = other_languages.instruction(name)
+    hints = [hint for text in (f"{name} = 5", f"{name} = 5 6", f"{name} = 5 lin") for _, _, hint in found(text)]
+    assert len(hints) == 3
+    assert foreign
+    assert foreign not in hints
+
+
+@pytest.mark.parametrize("name", ["c", "l", "lin", "v", "run"])
+def test_an_element_of_an_ordinary_name_lacks_its_array(name):
+    assert found(f"{name}(1) = 2") == [("RBL215", 1, f"DIM {name}(n) makes one")]
+
+
+@pytest.mark.parametrize(
+    ("text", "remedy"),
+    [
+        ("MOVE P1, SPEED 0", "give SPEED in mm/s, above 0 to 10000"),
+        ("MOVE P1, TIME 0", "give TIME in s, above 0 to 600"),
+        ("MOVEJ P1, SPEED 250", "give SPEED of MOVEJ in %, above 0 to 100"),
+        ("MOVE P1, SPEED NAN", "mm/s"),
+        ("SPEEDJ 150", "give SPEEDJ in %, above 0 to 100"),
+        ("OVERRIDE 0", "give OVERRIDE in %, above 0 to 100"),
+        ("MOVE P1, ACCEL NAN", "give ACCEL in %, above 0 to 100"),
+    ],
+)
+def test_the_remedy_of_a_range_names_its_quantity(text, remedy):
+    hints = [hint for code, _, hint in found(text) if code == "RBL404"]
+    assert [remedy in hint for hint in hints] == [True]
+
+
+@pytest.mark.parametrize(
+    ("text", "remedy"),
+    [
+        ("MOVE P1, SPEED 200 mm/s", "mm/s: 200"),
+        ("MOVE P1, SPEED 0.2 m/s, ZONE 5", "mm/s: 200"),
+        ("MOVEJ P1, SPEED 50 %", "%: 50"),
+        ("SPEEDJ 50%", "%: 50"),
+        ("DELAY 500 ms", "DELAY is in s: 0.5"),
+        ("DELAY 500ms", "DELAY is in s: 0.5"),
+        ("HAND ON, 1 min", "s: 60"),
+        ("APPROACH P1, 5 cm", "mm: 50"),
+        ("WAIT IN(1) = 1, TIMEOUT 5 s", "s: 5"),
+        ("LOAD (0, 0, 60 mm), 1", "lengths are in mm"),
+        ("x = 5 mm", "no unit"),
+        ("d = 1,5", "1.5"),
+        ("DELAY 0,5", "0.5"),
+        ("MOVE P1, ZONE 1,5", "1.5"),
+        ("LOAD (0, 0, 6), 0,8", "0.8"),
+        ("STOP 1", "STOP takes no value"),
+        ("RETURN x", "RETURN takes no value"),
+        ("y = SIN(90", ") is missing at the end"),
+        ("IF (1 = 2 THEN END", ") is missing before THEN"),
+        ("y = SIN(90))", "remove this )"),
+        ('*A1: PRINT "lab"', "no colon"),
+        ("*A1:", "no colon"),
+        ("WAIT DI[1]=ON", "IN(1)"),
+        ("x = R[1]", "DIM"),
+        ("MOVE P[3]", "MOVE P3"),
+        ("movej([0,0,0,0,0,0], a=1.2)", "MOVEJ JOINT("),
+        ("move([1, 2])", "MOVE POSE("),
+        ("CALL foo", "SUB foo"),
+        ("s$ = 'a'", '"a"'),
+        ("PRINT 'hello'", 'PRINT "hello"'),
+        ("IF 1 THEN PRINT 'hello' ", 'PRINT "hello"'),
+    ],
+)
+def test_a_usual_slip_has_its_remedy(text, remedy):
+    ((_, _, hint),) = found(text)
+    assert remedy in hint
+
+
+@pytest.mark.parametrize(
+    "text", ["x = 5 6", "x =", "x = (", "x =, 5", "NEXT 5", "OUT(1, 1) = 1", "FOR i = 1,3", "PRINT 1,5"]
+)
+def test_every_unexpected_token_has_a_remedy_of_its_own(text):
+    hints = [hint for code, _, hint in found(text) if code == "RBL111"]
+    assert [bool(hint) and "decimal" not in hint for hint in hints] == [True]
+
+
+@pytest.mark.parametrize("text", ["PRINT", "PRINT 'an empty line", "PRINT 1 'one'", "DELAY 1 'a second'", "'text'"])
+def test_a_comment_is_no_text(text):
+    assert [code for code, _, _ in found(text) if code == "RBL234"] == []
