@@ -41,7 +41,7 @@ from robolang.syntax.ast import Delay, Wait
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.motion.blend import Corner
-from runtime.motion.cartesian_planner import LinePlan
+from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.motion_planner import ChainPlan, tracked
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
@@ -56,10 +56,10 @@ MAX_RUN_US = 1_800_000_000
 class Planner(Protocol):
     """What plans moves and joins them: ``runtime.motion.motion_planner.MotionPlanner``."""
 
-    def plan(self, q_start: Array, command: Command, X_flange_tool: Array, /) -> LinePlan:
+    def plan(self, q_start: Array, command: Command, X_flange_tool: Array, /) -> MovePlan:
         """Return the plan of one move; ``Fault`` where there is none."""
 
-    def join(self, plans: Sequence[LinePlan], zones: Sequence[float], X_flange_tool: Array, /) -> ChainPlan:
+    def join(self, plans: Sequence[MovePlan], zones: Sequence[float], X_flange_tool: Array, /) -> ChainPlan:
         """Return moves blended in their zones."""
 
 
@@ -73,7 +73,7 @@ class RehearsedMove:
     """
 
     effect: MoveTo
-    plan: LinePlan
+    plan: MovePlan
     command: Command
     begins_us: int
     ends_us: int
@@ -154,7 +154,7 @@ class _Rehearsal:
         self._machine = Machine(project.program, self._world, project.points.names, decisions)
         self._tracked = False
         self._payload = NO_PAYLOAD
-        self._chain: list[tuple[MoveTo, Command, LinePlan]] = []
+        self._chain: list[tuple[MoveTo, Command, MovePlan]] = []
         self._q_next: Array = np.array(cell.home)
         self._moves: list[RehearsedMove] = []
         self._hands: list[RehearsedHand] = []

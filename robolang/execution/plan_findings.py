@@ -23,7 +23,7 @@ from runtime.core.frames import Array
 from runtime.core.rounding import beside, down, up
 from runtime.core.units import DEG, MM
 from runtime.motion.blend import Corner
-from runtime.motion.cartesian_planner import LinePlan
+from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.commands import MoveJoint
 from runtime.motion.joint_planner import changed
 from runtime.motion.ruling import Ruling, ruling
@@ -44,9 +44,9 @@ class PlannedMove:
 
     effect: MoveTo
     command: Command
-    plan: LinePlan
+    plan: MovePlan
     corner: Corner | None = None
-    after: LinePlan | None = None
+    after: MovePlan | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -13,7 +13,7 @@ from robolang.execution.lowering import Command
 from robolang.project.project import Project
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
-from runtime.motion.cartesian_planner import LinePlan
+from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.motion_planner import ChainPlan, MotionPlanner
 from runtime.robot.kinematics.kinematics import Kinematics
 
@@ -24,10 +24,10 @@ class PlanMemory:
     def __init__(self, project: Project) -> None:
         robot = project.cell.robot
         self._planner = MotionPlanner(robot, Kinematics(robot), project.profile)
-        self._plans: dict[tuple[object, ...], LinePlan | Fault] = {}
+        self._plans: dict[tuple[object, ...], MovePlan | Fault] = {}
         self._chains: dict[tuple[object, ...], ChainPlan] = {}
 
-    def plan(self, q_start: Array, command: Command, X_flange_tool: Array, /) -> LinePlan:
+    def plan(self, q_start: Array, command: Command, X_flange_tool: Array, /) -> MovePlan:
         """Return the plan of one move, as ``MotionPlanner.plan`` does."""
         key = (q_start.tobytes(), *_key(command), X_flange_tool.tobytes())
         if key not in self._plans:
@@ -40,7 +40,7 @@ class PlanMemory:
             raise Fault(found.code, found.message, found.hint)
         return found
 
-    def join(self, plans: Sequence[LinePlan], zones: Sequence[float], X_flange_tool: Array, /) -> ChainPlan:
+    def join(self, plans: Sequence[MovePlan], zones: Sequence[float], X_flange_tool: Array, /) -> ChainPlan:
         """Return moves blended in their zones, as ``MotionPlanner.join`` does."""
         key = (*(id(plan) for plan in plans), *zones, X_flange_tool.tobytes())  # plans are kept, so ids stay theirs
         if key not in self._chains:

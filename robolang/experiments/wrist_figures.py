@@ -9,8 +9,9 @@ Figures 17 to 22 are reconstructions: the document's text on them, on suppressio
 that the project put in its place, with frame, candidates and choice of ``runtime.motion.wrist.hold``, a switch at 2.2
 s (E2) or 1.8 s (E3), 20 ms, limits of 180, 180 and 225 deg/s. The seam of figure 11 is made up too.
 
-Nothing is planned here, so nothing is slowed, smoothed or refused; ``LinePlanner`` would make some of these moves in
-another way. What the document's rule alone does, good or bad, is what is to be seen. Angles rad, lengths m, times s.
+Nothing is planned here, so nothing is slowed, smoothed or refused; ``CartesianPlanner`` would make some of these
+moves in another way. What the document's rule alone does, good or bad, is what is to be seen. Angles rad, lengths m,
+times s.
 """
 
 from dataclasses import dataclass, replace

@@ -31,7 +31,7 @@ from runtime.core.linear import matmul
 from runtime.core.program_line import ProgramLine, logged
 from runtime.dynamics.equations import axis_gravity, axis_row
 from runtime.dynamics.source import InertiaRows
-from runtime.motion.cartesian_planner import FOLLOWS, LinePlan
+from runtime.motion.cartesian_planner import FOLLOWS, MovePlan
 from runtime.motion.commands import Command, MoveLinear
 from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.interpolator import Interpolator
@@ -108,7 +108,7 @@ class Controller:
         self._planner = MotionPlanner(spec, self.kinematics, profile)
         self._override = 1.0
         self._tracker: SeamTracker | None = None
-        self._waiting: list[tuple[LinePlan, MoveLinear]] = []  # under the tracker a move begins where the last one led
+        self._waiting: list[tuple[MovePlan, MoveLinear]] = []  # under the tracker a move begins where the last one led
         self._before = 0  # moves of a row before those that the interpolator has
         self._statements: tuple[ProgramLine, ...] = ()
         self.wrist_mode = FOLLOWS
@@ -185,7 +185,7 @@ class Controller:
         if self.touches is not None:
             self.touches.hand(closed, self.statement)
 
-    def move(self, command: Command) -> LinePlan:
+    def move(self, command: Command) -> MovePlan:
         """Plan a move from the commanded position and start it; ``Fault`` RBL4xx before anything moves."""
         return self.move_chain([command]).parts[0].plan
 
@@ -238,7 +238,7 @@ class Controller:
         check_requests(("OVERRIDE in %", share * 100.0, 100.0))
         self._override = min(share, 1.0)
 
-    def rehearse(self, q_start: Array, command: Command) -> LinePlan:
+    def rehearse(self, q_start: Array, command: Command) -> MovePlan:
         """Return the plan of a motion from q_start (n,) rad, without starting it; ``Fault`` RBL4xx."""
         if isinstance(command, MoveLinear) and self._tracker is not None:
             command = replace(command, tracked=True)

@@ -80,7 +80,7 @@ class WristChange:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LinePlan:
+class MovePlan:
     """A planned move: joint set-points ``q`` (N + 1, n) rad, from the start to the end, 8 ms apart.
 
     ``path`` of the tool point, None where the joints go their own way; ``s`` (N + 1,) path parameter of each row.
@@ -134,7 +134,7 @@ class LineWay:
             raise explained(fault, self.path, self.choice.trigger) from None
 
 
-class LinePlanner:
+class CartesianPlanner:
     """Plans moves along lines and arcs for one robot under one controller profile."""
 
     def __init__(self, spec: RobotSpec, kinematics: Kinematics, profile: Profile) -> None:
@@ -143,7 +143,7 @@ class LinePlanner:
         self._profile = profile
         self._pace = Pace.of(spec, profile)
 
-    def plan(self, q_start: Array, command: PathMove, X_flange_tool: Array, override: float = 1.0) -> LinePlan:
+    def plan(self, q_start: Array, command: PathMove, X_flange_tool: Array, override: float = 1.0) -> MovePlan:
         """Return the plan of a move from joint angles q_start (n,) rad; ``Fault`` RBL404, 410, 411, 412 or 416.
 
         ``X_flange_tool`` (4, 4) is the tool whose point moves, ``override`` in (0, 1] a share of every speed
@@ -151,7 +151,7 @@ class LinePlanner:
         """
         way = self.way(q_start, command, X_flange_tool)
         if way.limits is None:
-            return LinePlan(path=way.path, s=np.ones(1), q=frozen([q_start]), slowdown=None, notes=("already there",))
+            return MovePlan(path=way.path, s=np.ones(1), q=frozen([q_start]), slowdown=None, notes=("already there",))
         override *= command.override
         pace = self._pace.overridden(override)
         duration = None if command.duration is None else command.duration / override
@@ -160,7 +160,7 @@ class LinePlanner:
         wrist = _wrist_change(way.choice, way.line, s, q, command.held)
         notes = pace.slow_note(slowdown, len(s) - 1) + pace.time_note(duration, len(s) - 1)
         notes += _wrist_notes(wrist) + _kept_notes(command, q)
-        return LinePlan(
+        return MovePlan(
             path=way.path,
             s=frozen(s),
             q=frozen(q),
@@ -201,7 +201,7 @@ class LinePlanner:
 
     def tracked(
         self,
-        plan: LinePlan,
+        plan: MovePlan,
         command: MoveLinear,
         q_from: Array,
         q_here: Array,

@@ -12,7 +12,7 @@ import numpy as np
 
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
-from runtime.motion.cartesian_planner import EXCEPTION, FOLLOWS, LinePlan
+from runtime.motion.cartesian_planner import EXCEPTION, FOLLOWS, MovePlan
 from runtime.motion.motion_planner import ChainPlan
 from runtime.motion.seam import SeamMove
 
@@ -29,7 +29,7 @@ class Interpolator:
         self.fault: Fault | None = None
         """What the last set-point has to stop the arm for: a seam that cannot be followed."""
 
-    def start(self, plan: LinePlan | ChainPlan, seam: SeamMove | None = None) -> None:
+    def start(self, plan: MovePlan | ChainPlan, seam: SeamMove | None = None) -> None:
         """Begin a move, with ``seam`` point by point; ``RuntimeError`` when another one still runs."""
         if self.busy:
             raise RuntimeError("a move is running")

@@ -27,7 +27,7 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array, frozen, inverse
 from runtime.core.linear import matmul
 from runtime.core.units import DEG, MM
-from runtime.motion.cartesian_planner import NOTHING_TO_DO, LinePlan
+from runtime.motion.cartesian_planner import NOTHING_TO_DO, MovePlan
 from runtime.motion.commands import MoveJoint
 from runtime.motion.path_ik import RANGE_TOLERANCE, Arm, check_range
 from runtime.motion.time_scaling import Pace
@@ -72,7 +72,7 @@ class JointPlanner:
         self._spec, self._kinematics, self._profile = spec, kinematics, profile
         self._pace = Pace.of(spec, profile)
 
-    def plan(self, q_start: Array, command: MoveJoint, X_flange_tool: Array, override: float = 1.0) -> LinePlan:
+    def plan(self, q_start: Array, command: MoveJoint, X_flange_tool: Array, override: float = 1.0) -> MovePlan:
         """Return the plan of a move from joint angles q_start (n,) rad; ``Fault`` RBL404, 410, 411 or 412.
 
         ``X_flange_tool`` (4, 4) is the tool that is put at the pose, ``override`` in (0, 1] a share of every speed
@@ -82,7 +82,7 @@ class JointPlanner:
         q_end = self.end(q_start, command, X_flange_tool)
         way = np.abs(q_end - q_start)
         if way.max() < NOTHING_TO_DO:
-            return LinePlan(path=None, s=np.ones(1), q=frozen([q_start]), slowdown=None, notes=("already there",))
+            return MovePlan(path=None, s=np.ones(1), q=frozen([q_start]), slowdown=None, notes=("already there",))
         override *= command.override
         pace = self._pace.overridden(override)
         duration = None if command.duration is None else command.duration / override
@@ -91,7 +91,7 @@ class JointPlanner:
         limits = self._eased(curve, limits.overridden(override), duration)
         s, q, slowdown = pace.within_limits(curve, limits, duration)
         notes = pace.time_note(duration, len(s) - 1)
-        return LinePlan(
+        return MovePlan(
             path=None,
             s=frozen(s),
             q=frozen(q),

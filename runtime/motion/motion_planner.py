@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, frozen
 from runtime.motion.blend import Corner, blend
-from runtime.motion.cartesian_planner import LinePlan, LinePlanner, WristChange
+from runtime.motion.cartesian_planner import CartesianPlanner, MovePlan, WristChange
 from runtime.motion.commands import Command, MoveJoint, MoveLinear
 from runtime.motion.joint_planner import JointPlanner
 from runtime.motion.path import Path
@@ -65,7 +65,7 @@ class Part:
     which row 0 of the plan lies.
     """
 
-    plan: LinePlan
+    plan: MovePlan
     first: int
     last: int
     offset: int
@@ -116,14 +116,14 @@ class MotionPlanner:
     """Plans any move of one robot under one controller profile, alone or in a row."""
 
     def __init__(self, spec: RobotSpec, kinematics: Kinematics, profile: Profile) -> None:
-        self.lines = LinePlanner(spec, kinematics, profile)
+        self.lines = CartesianPlanner(spec, kinematics, profile)
         """Plans moves that have a path."""
         self.joints = JointPlanner(spec, kinematics, profile)
         """Plans those that have none."""
         self._spec, self._kinematics = spec, kinematics
         self._pace = Pace.of(spec, profile)
 
-    def plan(self, q_start: Array, command: Command, X_flange_tool: Array, override: float = 1.0) -> LinePlan:
+    def plan(self, q_start: Array, command: Command, X_flange_tool: Array, override: float = 1.0) -> MovePlan:
         """Return the plan of one move from joint angles q_start (n,) rad; ``Fault`` RBL404, 410, 411, 412 or 416.
 
         ``X_flange_tool`` (4, 4) is the tool whose point moves, ``override`` in (0, 1] a share of every speed
@@ -137,7 +137,7 @@ class MotionPlanner:
         self, q_start: Array, commands: Sequence[Command], X_flange_tool: Array, override: float = 1.0
     ) -> ChainPlan:
         """Return the plan of moves in a row from q_start (n,) rad; ``ChainFault`` names the first that is refused."""
-        plans: list[LinePlan] = []
+        plans: list[MovePlan] = []
         for index, command in enumerate(commands):
             try:
                 plans.append(self.plan(plans[-1].q[-1] if plans else q_start, command, X_flange_tool, override))
@@ -145,7 +145,7 @@ class MotionPlanner:
                 raise ChainFault(fault, index) from None
         return self.join(plans, [command.zone for command in commands], X_flange_tool)
 
-    def join(self, plans: Sequence[LinePlan], zones: Sequence[float], X_flange_tool: Array) -> ChainPlan:
+    def join(self, plans: Sequence[MovePlan], zones: Sequence[float], X_flange_tool: Array) -> ChainPlan:
         """Return moves, each planned from the end of the one before, blended in the zones (m) at their ends.
 
         The last one stops, whatever its zone is.

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from runtime.core.units import DEG, MM
-from runtime.motion.cartesian_planner import LinePlan, arc_limits
+from runtime.motion.cartesian_planner import MovePlan, arc_limits
 from runtime.motion.commands import Command, MoveJoint
 from runtime.motion.path import ArcPath
 from runtime.motion.time_scaling import Slowdown
@@ -43,7 +43,7 @@ class Ruling:
     keeps: float = 0.0
 
 
-def ruling(plan: LinePlan, command: Command, spec: RobotSpec, profile: Profile) -> Ruling:
+def ruling(plan: MovePlan, command: Command, spec: RobotSpec, profile: Profile) -> Ruling:
     """Return what rules a plan of a move that has something to do."""
     path = plan.path
     if path is None or isinstance(command, MoveJoint):
@@ -96,7 +96,7 @@ def ruling(plan: LinePlan, command: Command, spec: RobotSpec, profile: Profile) 
     return Ruling(why=why, remedy=remedy, asked_s=asked_s, peak=peak, keeps=keeps)
 
 
-def _of_joints(plan: LinePlan, spec: RobotSpec) -> Ruling:
+def _of_joints(plan: MovePlan, spec: RobotSpec) -> Ruling:
     """Return what rules a joint move: the joint that needs the longest time for its turn, or was slowed for."""
     turns = np.abs(plan.q[-1] - plan.q[0])
     axis = int(np.argmax(turns / spec.per_axis("limits", "speed")))

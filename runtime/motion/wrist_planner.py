@@ -13,7 +13,7 @@ wrist (H3) or main axis (H4) beyond its speed, a range passed. Tried in this ord
     5  where none of them has a solution at all, detours of the wrist on its way, likewise
 
 ``remedies = false`` in the profile is the document alone: 1 only where no condition is met, then 2. Places to try are
-shares of the path, so the choice does not depend on the sampling. Called by ``LinePlanner``; docs/wrist.md has the
+shares of the path, so the choice does not depend on the sampling. Called by ``CartesianPlanner``; docs/wrist.md has the
 hazards and what each remedy is good for.
 """
 

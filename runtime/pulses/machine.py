@@ -12,7 +12,7 @@ import numpy as np
 
 from runtime.core.frames import Array, frozen
 from runtime.core.linear import matmul
-from runtime.motion.cartesian_planner import LinePlanner
+from runtime.motion.cartesian_planner import CartesianPlanner
 from runtime.motion.commands import MoveLinear
 from runtime.motion.velocity_profile import SpeedLimits
 from runtime.robot.kinematics.kinematics import Kinematics
@@ -119,7 +119,7 @@ class RobotArm:
     def __init__(self, spec: RobotSpec, profile: Profile, X_flange_tool: Array, home: Array) -> None:
         self._spec, self._X_flange_tool = spec, X_flange_tool
         self._kinematics = Kinematics(spec)
-        self._planner = LinePlanner(spec, self._kinematics, profile)
+        self._planner = CartesianPlanner(spec, self._kinematics, profile)
         self.name = spec.name
         self.home = Stand(q=frozen(home))
         self.joints = tuple(

@@ -146,8 +146,8 @@ def test_names_of_the_code_exist(page):
 
 
 def test_a_name_that_does_not_exist_is_noticed():
-    assert inspect.isfunction(resolve("runtime.motion.cartesian_planner.LinePlanner.plan"))
-    for wrong in ("runtime.motion.plan", "runtime.motion.cartesian_planner.LinePlanner.plans", "robolang.nothing"):
+    assert inspect.isfunction(resolve("runtime.motion.cartesian_planner.CartesianPlanner.plan"))
+    for wrong in ("runtime.motion.plan", "runtime.motion.cartesian_planner.CartesianPlanner.plans", "robolang.nothing"):
         with pytest.raises((ModuleNotFoundError, AttributeError)):
             resolve(wrong)
 

@@ -11,7 +11,8 @@ mm/s, a tool of 200 mm. Nothing is known of whether the straight line between th
 - document: the first of C1 (any), C3, C4, C6 and the linear way from there, at the programmed speed; executed where
   every 8 ms sample keeps position and speed of every joint and the end is the taught one. The document's switch is a
   step of speed, so accelerations are counted apart.
-- ours: ``LinePlanner.plan``. Every plan is checked again from its rows alone, at every servo tick: position, speed and
+- ours: ``CartesianPlanner.plan``. Every plan is checked again from its rows alone, at every servo tick: position,
+speed and
   acceleration of every joint, the line, the end angles. What fails there would fail in the middle of a path.
 """
 
@@ -27,7 +28,7 @@ import numpy as np
 
 from runtime.core.faults import Fault
 from runtime.core.frames import pose
-from runtime.motion.cartesian_planner import LinePlan, LinePlanner, speed_limits
+from runtime.motion.cartesian_planner import CartesianPlanner, MovePlan, speed_limits
 from runtime.motion.commands import MoveLinear
 from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.path import LinePath
@@ -70,7 +71,7 @@ class Bench:
         self.spec = load_builtin(name)
         self.kinematics = Kinematics(self.spec)
         self.profile = Profile()
-        self.planner = LinePlanner(self.spec, self.kinematics, self.profile)
+        self.planner = CartesianPlanner(self.spec, self.kinematics, self.profile)
         self.fine = FineInterpolator(self.profile.ticks_per_cycle, self.profile.period_s, np.zeros(6))
         self.speed, self.acceleration = (self.spec.per_axis("limits", each) for each in ("speed", "acceleration"))
 
@@ -120,7 +121,7 @@ class Bench:
         ddq = np.abs(self.fine.expand(q)[2]).max(axis=0)
         return "executed" if (ddq <= self.acceleration).all() else "executed, with a step of speed"
 
-    def violations(self, plan: LinePlan, end: np.ndarray) -> list[str]:
+    def violations(self, plan: MovePlan, end: np.ndarray) -> list[str]:
         """Return what a plan does wrong, from its rows alone."""
         q, dq, ddq = self.fine.expand(plan.q)
         tool = (self.kinematics.forward(plan.q) @ TOOL)[:, :3, 3]

@@ -150,7 +150,10 @@ def test_every_documented_signal_is_in_the_log_with_ticks_first(result):
 def test_the_built_in_cell_is_the_cell_beside_the_program():
     """The listing runs alike with its own files and, copied to an empty folder, on the built-in cell."""
     for own, builtin in (("pick_and_place.cell.toml", "cell.toml"), ("pick_and_place.points.toml", "points.toml")):
-        texts = [(ROOT / "programs" / own).read_text(), (ROOT / "robolang" / "project" / "builtin" / builtin).read_text()]
+        texts = [
+            (ROOT / "programs" / own).read_text(),
+            (ROOT / "robolang/project/builtin" / builtin).read_text(),
+        ]
         assert texts[0].splitlines()[1:] == texts[1].splitlines()[1:]
 
 

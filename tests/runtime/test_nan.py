@@ -11,7 +11,7 @@ from runtime.core.faults import Fault
 from runtime.core.frames import pose
 from runtime.core.units import badness
 from runtime.motion.blend import _inside
-from runtime.motion.cartesian_planner import LinePlanner
+from runtime.motion.cartesian_planner import CartesianPlanner
 from runtime.motion.commands import MoveLinear
 from runtime.motion.velocity_profile import SpeedLimits, bound, profile
 from runtime.pulses.machine import Stand
@@ -38,7 +38,7 @@ def test_a_pose_of_nan_is_planned_by_nobody(place):
     X = HOME_POSE.copy()
     X[place] = NAN
     with pytest.raises((Fault, ValueError)):
-        LinePlanner(SPEC, KINEMATICS, PROFILE).plan(HOME, MoveLinear(X_world_tool=X), TOOL)
+        CartesianPlanner(SPEC, KINEMATICS, PROFILE).plan(HOME, MoveLinear(X_world_tool=X), TOOL)
 
 
 def test_no_joint_angles_meet_a_pose_of_nan():

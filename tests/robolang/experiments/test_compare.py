@@ -26,7 +26,7 @@ def heavy(folder, robot):
     program.write_text(
         (ROOT / "programs" / "pick_and_place.rbl").read_text().replace("(0, 0, 95), 2.3", "(0, 0, 94.6), 2.25")
     )
-    cell = (ROOT / "robolang" / "project" / "builtin" / "cell.toml").read_text().replace("mass_kg = 1.5", "mass_kg = 1.45")
+    cell = (ROOT / "robolang/project/builtin/cell.toml").read_text().replace("mass_kg = 1.5", "mass_kg = 1.45")
     (folder / "cell.toml").write_text(cell)
     points = (ROOT / "robolang" / "project" / "builtin" / "points.toml").read_text()
     (folder / "heavy.points.toml").write_text(points)

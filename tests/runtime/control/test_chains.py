@@ -8,7 +8,7 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array, pose
 from runtime.core.program_line import ProgramLine
 from runtime.core.units import MM
-from runtime.motion.cartesian_planner import LinePlan
+from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
 from runtime.motion.motion_planner import ChainFault, ChainPlan
 from runtime.motion.seam import SeamLimits, SeamTracker
@@ -112,7 +112,7 @@ def test_a_move_alone_may_be_of_any_kind(kind):
         last = MoveArc(X_via=via, X_world_tool=end)
     command = {"line": first, "arc": last, "joint": MoveJoint(q_end=q + 0.2, speed=0.5)}[kind]
     plan = robot.move(command)
-    assert isinstance(plan, LinePlan)
+    assert isinstance(plan, MovePlan)
     run_out(robot)
     np.testing.assert_array_equal(signals(robot)["q_plan"][::8][: len(plan.q)], plan.q)
     assert (plan.path is None) == (kind == "joint")

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from runtime.core.faults import Fault
 from runtime.core.frames import pose, rotation_about, rotation_angle, rotation_from_rpy
-from runtime.motion.cartesian_planner import LinePlan
+from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.commands import MoveArc, MoveLinear
 from runtime.motion.path import ArcPath
 from runtime.motion.wrist.hold import frames_along
@@ -97,7 +97,7 @@ def planned(
     turn: float = 0.5,
     override: float = 1.0,
     **options,
-) -> LinePlan:
+) -> MovePlan:
     robot = bench(name, shape)
     q = robot.home()
     X = robot.tool(q)

@@ -8,7 +8,7 @@ import pytest
 
 from runtime.core.faults import Fault
 from runtime.core.frames import inverse, pose, pose_from_xyzrpy, rotation_about
-from runtime.motion.cartesian_planner import LinePlan, LinePlanner
+from runtime.motion.cartesian_planner import CartesianPlanner, MovePlan
 from runtime.motion.commands import MoveLinear
 from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.robot.files.loader import load_builtin
@@ -33,16 +33,16 @@ def joints_at(X_world_tool: np.ndarray) -> np.ndarray:
 HOME = joints_at(HOME_POSE)
 
 
-def plan(x, y, z, rpy=DOWN, start=HOME, profile=PROFILE, **options) -> LinePlan:
+def plan(x, y, z, rpy=DOWN, start=HOME, profile=PROFILE, **options) -> MovePlan:
     command = MoveLinear(X_world_tool=pose_from_xyzrpy((x, y, z, *rpy)), **options)
-    return LinePlanner(SPEC, KINEMATICS, profile).plan(start, command, TOOL)
+    return CartesianPlanner(SPEC, KINEMATICS, profile).plan(start, command, TOOL)
 
 
-def seconds(result: LinePlan) -> float:
+def seconds(result: MovePlan) -> float:
     return (len(result.q) - 1) * PROFILE.period_s
 
 
-def at_the_servo(result: LinePlan) -> np.ndarray:
+def at_the_servo(result: MovePlan) -> np.ndarray:
     return FineInterpolator(8, PROFILE.period_s, result.q[0]).expand(result.q)
 
 
@@ -73,13 +73,13 @@ def test_no_joint_passes_its_speed_or_acceleration_at_any_tick(move, options):
     assert (ddq <= ACCELERATION * (1 + 1e-9)).all()
 
 
-def past_the_waist(**options) -> LinePlan:
+def past_the_waist(**options) -> MovePlan:
     """A line that passes 250 mm from axis 1: the waist has to turn fast in its middle."""
     start = joints_at(pose_from_xyzrpy((0.25, -0.35, 0.8, *DOWN)))
     return plan(0.25, 0.35, 0.8, start=start, **options)
 
 
-def used(result: LinePlan) -> float:
+def used(result: MovePlan) -> float:
     _, dq, ddq = np.abs(at_the_servo(result)).max(axis=1)
     return np.maximum((dq / SPEED).max(), np.sqrt((ddq / ACCELERATION).max()))
 
@@ -161,11 +161,11 @@ def test_a_line_through_the_straight_wrist_is_refused_before_it_moves():
     q_start[4], q_end[4] = math.radians(-40.0), math.radians(40.0)
     X_end = KINEMATICS.forward(q_end) @ TOOL
     with pytest.raises(Fault) as caught:
-        LinePlanner(SPEC, KINEMATICS, PROFILE).plan(q_start, MoveLinear(X_world_tool=X_end, wrist="keep"), TOOL)
+        CartesianPlanner(SPEC, KINEMATICS, PROFILE).plan(q_start, MoveLinear(X_world_tool=X_end, wrist="keep"), TOOL)
     assert caught.value.code in ("RBL411", "RBL412")
 
 
-def past_the_straight_wrist(bend_deg: float, **options) -> LinePlan:
+def past_the_straight_wrist(bend_deg: float, **options) -> MovePlan:
     """Turn the hand by 50 deg so that in the middle J5 comes within ``bend_deg`` of the singularity."""
     q_middle = HOME.copy()
     q_middle[3:] = np.radians([30.0, -bend_deg, 20.0])
@@ -176,7 +176,7 @@ def past_the_straight_wrist(bend_deg: float, **options) -> LinePlan:
         X[:3, :3] = rotation_about(across, math.radians(angle)) @ X[:3, :3]
     start = KINEMATICS.inverse_branch(ends[0] @ inverse(TOOL), KINEMATICS.branch_of(q_middle), q_middle)
     command = MoveLinear(X_world_tool=ends[1], wrist="keep", **options)
-    return LinePlanner(SPEC, KINEMATICS, PROFILE).plan(start, command, TOOL)
+    return CartesianPlanner(SPEC, KINEMATICS, PROFILE).plan(start, command, TOOL)
 
 
 def test_a_line_past_the_wrist_singularity_is_slowed_far_from_it_and_refused_close_to_it():
@@ -219,7 +219,7 @@ def test_the_range_is_kept_to_a_hair_at_the_servo(beyond_deg):
 
     start = HOME.copy()
     start[0] = SPEC.upper[0] - 0.3
-    planner = LinePlanner(SPEC, KINEMATICS, Profile(speed_shape="trapezoid"))
+    planner = CartesianPlanner(SPEC, KINEMATICS, Profile(speed_shape="trapezoid"))
     inside = planner.plan(start, MoveLinear(X_world_tool=end(SPEC.upper[0] - math.radians(0.05))), TOOL)
     assert at_the_servo(inside)[0][:, 0].max() <= SPEC.upper[0]
     with pytest.raises(Fault, match="RBL411: J1"):

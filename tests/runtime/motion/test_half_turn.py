@@ -19,7 +19,7 @@ from runtime.core.frames import (
     rotation_from_rpy,
     rpy_from_rotation,
 )
-from runtime.motion.cartesian_planner import LinePlan
+from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
 from runtime.motion.path import LinePath
 from runtime.settings.profile import Profile, WristOptions
@@ -49,7 +49,7 @@ def turned_by(R_a: Array, R_b: Array) -> float:
     return 2.0 * math.acos(min(1.0, abs(float(quaternion(R_a) @ quaternion(R_b)))))
 
 
-def plan(robot: Bench, q: Array, command: Command) -> LinePlan:
+def plan(robot: Bench, q: Array, command: Command) -> MovePlan:
     return robot.planner.plan(q, command, TOOL)
 
 

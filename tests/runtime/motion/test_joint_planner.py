@@ -7,7 +7,7 @@ import pytest
 
 from runtime.core.faults import Fault
 from runtime.core.frames import inverse
-from runtime.motion.cartesian_planner import FOLLOWS, LinePlan
+from runtime.motion.cartesian_planner import FOLLOWS, MovePlan
 from runtime.motion.commands import MoveJoint
 from runtime.motion.joint_planner import changed
 from tests.campaign import size
@@ -27,7 +27,7 @@ def ways(name: str) -> list[tuple[np.ndarray, np.ndarray]]:
     return found
 
 
-def plan(name: str, start: np.ndarray, shape: str = "jerk", override: float = 1.0, **options) -> LinePlan:
+def plan(name: str, start: np.ndarray, shape: str = "jerk", override: float = 1.0, **options) -> MovePlan:
     return bench(name, shape).planner.plan(start, MoveJoint(**options), TOOL, override)
 
 

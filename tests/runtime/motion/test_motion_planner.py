@@ -8,7 +8,7 @@ import pytest
 from runtime.core.faults import Fault
 from runtime.core.frames import pose, rotation_about
 from runtime.motion.blend import overlapped
-from runtime.motion.cartesian_planner import EXCEPTION, LinePlanner
+from runtime.motion.cartesian_planner import EXCEPTION, CartesianPlanner
 from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
 from runtime.motion.motion_planner import ChainFault, ChainPlan
 from tests.campaign import size
@@ -86,7 +86,7 @@ def test_a_blend_that_leaves_its_zone_or_a_limit_would_be_noticed():
 @pytest.mark.parametrize("name", ROBOTS)
 def test_without_zones_the_rows_are_those_of_the_plans_to_the_last_bit(name):
     robot, random = bench(name), np.random.default_rng(6)
-    lines = LinePlanner(robot.spec, robot.kinematics, robot.profile)
+    lines = CartesianPlanner(robot.spec, robot.kinematics, robot.profile)
     for _ in range(5):
         start, commands = random_chain(robot, random, 3)
         stops = [

@@ -9,7 +9,7 @@ import pytest
 
 from runtime.core.faults import Fault
 from runtime.core.frames import inverse
-from runtime.motion.cartesian_planner import EXCEPTION, FOLLOWS, HELD, LinePlan, LinePlanner
+from runtime.motion.cartesian_planner import EXCEPTION, FOLLOWS, HELD, CartesianPlanner, MovePlan
 from runtime.motion.commands import MoveLinear
 from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.path import LinePath
@@ -26,16 +26,16 @@ SPEED = SPEC.per_axis("limits", "speed")
 ACCELERATION = SPEC.per_axis("limits", "acceleration")
 
 
-def plan(move, options: WristOptions | None = None, **command) -> LinePlan:
+def plan(move, options: WristOptions | None = None, **command) -> MovePlan:
     start, end = (np.radians(q) for q in move)
     X = KINEMATICS.forward(end) @ TOOL
     length = np.linalg.norm((X - KINEMATICS.forward(start) @ TOOL)[:3, 3])
     given = {"q_end": end, "speed": length / 4.0, **command}
-    planner = LinePlanner(SPEC, KINEMATICS, Profile(wrist=options or WristOptions()))
+    planner = CartesianPlanner(SPEC, KINEMATICS, Profile(wrist=options or WristOptions()))
     return planner.plan(start, MoveLinear(X_world_tool=X, **given), TOOL)
 
 
-def must_hold(found: LinePlan, end_deg) -> None:
+def must_hold(found: MovePlan, end_deg) -> None:
     """Line, end angles, and every joint limit at every servo tick."""
     q, dq, ddq = FineInterpolator(8, 0.008, found.q[0]).expand(found.q)
     tool = (KINEMATICS.forward(found.q) @ TOOL)[:, :3, 3]
@@ -114,7 +114,7 @@ def test_a_path_that_arrives_is_slowed_before_its_posture_is_left():
 def test_held_components_change_less_than_the_free_ones():
     from runtime.motion.wrist.hold import component_deviation
 
-    def off(found: LinePlan) -> np.ndarray:
+    def off(found: MovePlan) -> np.ndarray:
         taken = (KINEMATICS.forward(found.q) @ TOOL)[:, :3, :3]
         planned = found.path.poses(found.s)[:, :3, :3]
         return np.degrees(component_deviation(found.path, found.s, planned, taken).max(axis=0))
@@ -247,7 +247,7 @@ def test_an_arm_without_a_closed_form_goes_through_its_wrist_by_newton():
     kinematics = Kinematics(spec)
     kinematics._opw = None
     start, end = (np.radians(q) for q in E3)
-    planner = LinePlanner(spec, kinematics, Profile(wrist=WristOptions(remedies=False)))
+    planner = CartesianPlanner(spec, kinematics, Profile(wrist=WristOptions(remedies=False)))
     command = MoveLinear(X_world_tool=kinematics.forward(end) @ TOOL, q_end=end, speed=0.1)
     found = planner.plan(start, command, TOOL)
     must_hold(found, E3[1])
@@ -275,7 +275,7 @@ def test_a_taught_pose_is_not_flipped_to_it_to_save_a_little_time():
         for q in ((-23.33, 39.95, -8.25, -11.66, -66.85, 137.2), (-45.03, 60.33, 12.57, -10.49, -83.68, 123.09))
     )
     X = kinematics.forward(end) @ TOOL
-    found = LinePlanner(spec, kinematics, Profile()).plan(start, MoveLinear(X_world_tool=X), TOOL)
+    found = CartesianPlanner(spec, kinematics, Profile()).plan(start, MoveLinear(X_world_tool=X), TOOL)
     assert found.wrist is None
 
 
