@@ -66,7 +66,7 @@ def planned(program: str, max_cycle_s: float | None) -> Planned:
 
 
 def _times(project: Project, explored: Exploration, rows: Sequence[LineTime]) -> dict[str, object]:
-    shares = worst_loads(project, explored.rehearsal.moves)
+    shares = worst_loads(project, explored.rehearsal.kinematics, explored.rehearsal.moves)
     return {
         "program": project.source.path,
         "robot": project.cell.robot.name,
@@ -136,7 +136,7 @@ def _shapes(project: Project) -> str:
 
 def _wrist(project: Project, rehearsal: Rehearsal) -> list[str]:
     """Return the lines that say what the payload asks of the wrist in its worst posture, and of what; ~ estimated."""
-    shares = worst_loads(project, rehearsal.moves)
+    shares = worst_loads(project, rehearsal.kinematics, rehearsal.moves)
     said_of = []
     for what in ("moment", "inertia"):
         said = [

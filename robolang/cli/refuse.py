@@ -7,14 +7,15 @@ import typer
 from robolang.cli.errors import DIAGNOSTICS, exit_code, say_warnings
 
 if TYPE_CHECKING:
+    from robolang.execution.plan_memory import PlanMemory
     from robolang.project.project import Project
 
 
-def refuse(project: "Project", *, warnings: bool = True) -> bool:
+def refuse(project: "Project", *, warnings: bool = True, plans: "PlanMemory | None" = None) -> bool:
     """Print the diagnostics and what is unlikely about the robot and the cell.
 
-    Leave when the text has errors or a motion cannot be planned. ``warnings`` False: print errors only. Returns whether
-    there are warnings, printed or not.
+    Leave when the text has errors or a motion cannot be planned. ``warnings`` False: print errors only. ``plans``
+    keeps what is planned, for the run. Returns whether there are warnings, printed or not.
     """
     from robolang.core.diagnostics import Severity, render
 
@@ -27,7 +28,7 @@ def refuse(project: "Project", *, warnings: bool = True) -> bool:
         raise typer.Exit(DIAGNOSTICS)
     from robolang.execution.dry_run import motion_check
 
-    refused = motion_check(project)
+    refused = motion_check(project, plans)
     for item in refused:
         typer.echo(render(item, project.source), err=True)
     if refused:

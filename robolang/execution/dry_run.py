@@ -8,9 +8,8 @@ rehearsal: where the arm would be after it is not known.
 """
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -18,7 +17,6 @@ from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import Span
 from robolang.execution import lowering
 from robolang.execution.alarms import calls
-from robolang.execution.lowering import Command
 from robolang.execution.plan_memory import PlanMemory
 from robolang.execution.world import RobotWorld
 from robolang.interpreter.branch_oracle import Decisions
@@ -42,7 +40,8 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.motion.blend import Corner
 from runtime.motion.cartesian_planner import MovePlan
-from runtime.motion.motion_planner import ChainPlan, tracked
+from runtime.motion.commands import Command
+from runtime.motion.motion_planner import tracked
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
 
@@ -51,16 +50,6 @@ MAX_CHAIN = 200
 _NOT_STARTED = ("RBL3", "RBL4", "RBL505", "RBL508", "RBL509")
 MAX_RUN_US = 1_800_000_000
 """Longest run, us of simulated time: about a kilobyte of log is kept for every tick."""
-
-
-class Planner(Protocol):
-    """What plans moves and joins them: ``runtime.motion.motion_planner.MotionPlanner``."""
-
-    def plan(self, q_start: Array, command: Command, X_flange_tool: Array, /) -> MovePlan:
-        """Return the plan of one move; ``Fault`` where there is none."""
-
-    def join(self, plans: Sequence[MovePlan], zones: Sequence[float], X_flange_tool: Array, /) -> ChainPlan:
-        """Return moves blended in their zones."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,6 +91,7 @@ class Rehearsal:
 
     ``times_us`` and ``runs`` give by line of the file what statements that take time took, and how often they ran;
     ``tried`` the places of all moves that were asked for, those that were refused and caught by ON ERROR among them.
+    ``kinematics`` are those that it was planned with.
     """
 
     moves: tuple[RehearsedMove, ...]
@@ -111,30 +101,30 @@ class Rehearsal:
     refused: tuple[Diagnostic, ...]
     tried: frozenset[Span]
     runs: Mapping[int, int]
+    kinematics: Kinematics
 
 
-def motion_check(project: Project) -> tuple[Diagnostic, ...]:
+def motion_check(project: Project, plans: PlanMemory | None = None) -> tuple[Diagnostic, ...]:
     """Return what keeps a checked program from being started: RBL3xx, RBL4xx, and loops and runs without an end.
+
+    ``plans`` keeps what is planned, for the run.
 
     An error of its calculations or a WAIT that times out is none of that: it comes in the run, where it comes.
     """
-    return tuple(item for item in rehearse(project).refused if item.code.startswith(_NOT_STARTED))
+    return tuple(item for item in rehearse(project, plans=plans).refused if item.code.startswith(_NOT_STARTED))
 
 
 def rehearse(
-    project: Project, *, decisions: Decisions | None = None, planner: Planner | None = None, most_us: int | None = None
+    project: Project, *, decisions: Decisions | None = None, plans: PlanMemory | None = None, most_us: int | None = None
 ) -> Rehearsal:
     """Plan a checked program from its first statement to its last, or to what cannot be carried out.
 
-    ``decisions`` may send conditions another way, ``planner`` may know plans already, ``most_us`` ends it earlier than
+    ``decisions`` may send conditions another way, ``plans`` may know plans already, ``most_us`` ends it earlier than
     ``MAX_RUN_US``.
     """
-    cell = project.cell
-    kinematics = Kinematics(cell.robot)
     return _Rehearsal(
         project,
-        kinematics,
-        planner or PlanMemory(project),
+        plans or PlanMemory(project),
         decisions or Decisions(),
         MAX_RUN_US if most_us is None else most_us,
     ).run()
@@ -143,14 +133,12 @@ def rehearse(
 class _Rehearsal:
     """A rehearsal under way."""
 
-    def __init__(
-        self, project: Project, kinematics: Kinematics, planner: Planner, decisions: Decisions, most_us: int
-    ) -> None:
+    def __init__(self, project: Project, planner: PlanMemory, decisions: Decisions, most_us: int) -> None:
         cell = project.cell
         self._project, self._period_us, self._planner = project, project.profile.period_us, planner
         self._most_us = most_us
         self._now_us = 0
-        self._world = RobotWorld(project.points, cell, kinematics, lambda: self._now_us)
+        self._world = RobotWorld(project.points, cell, planner.kinematics, lambda: self._now_us)
         self._machine = Machine(project.program, self._world, project.points.names, decisions)
         self._tracked = False
         self._payload = NO_PAYLOAD
@@ -198,6 +186,7 @@ class _Rehearsal:
             refused=refused,
             tried=frozenset(self._tried),
             runs=dict(self._runs),
+            kinematics=self._planner.kinematics,
         )
 
     def _take(self, effect: Effect) -> bool:

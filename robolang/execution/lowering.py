@@ -27,12 +27,10 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array, inverse, pose_from_xyzrpy, xyzrpy_from_pose
 from runtime.core.linear import matmul
 from runtime.core.units import DEG, MM, PERCENT
-from runtime.motion.commands import Component, MoveArc, MoveJoint, MoveLinear, Wrist
+from runtime.motion.commands import Command, Component, MoveArc, MoveJoint, MoveLinear, Wrist
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.drives import beyond_range
 from runtime.robot.model.payload import Payload, declared
-
-Command = MoveLinear | MoveJoint | MoveArc
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

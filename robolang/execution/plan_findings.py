@@ -16,7 +16,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robolang.execution.lowering import Command
 from robolang.interpreter.effects import MoveTo
 from robolang.project.project import Project
 from runtime.core.frames import Array
@@ -24,7 +23,7 @@ from runtime.core.rounding import beside, down, up
 from runtime.core.units import DEG, MM
 from runtime.motion.blend import Corner
 from runtime.motion.cartesian_planner import MovePlan
-from runtime.motion.commands import MoveJoint
+from runtime.motion.commands import Command, MoveJoint
 from runtime.motion.joint_planner import changed
 from runtime.motion.ruling import Ruling, ruling
 from runtime.motion.wrist_planner import as_taught
@@ -64,9 +63,9 @@ Found = Iterator[PlanFinding]
 class PlanFindings:
     """Finds what the plans of one project's moves do otherwise than its program says."""
 
-    def __init__(self, project: Project) -> None:
+    def __init__(self, project: Project, kinematics: Kinematics) -> None:
         self._spec, self._profile = project.cell.robot, project.profile
-        self._kinematics = Kinematics(self._spec)
+        self._kinematics = kinematics
 
     def of(self, move: PlannedMove) -> Found:
         """Yield the findings of a move, at most one of a code."""

@@ -1,7 +1,7 @@
-"""Plans remembered by what they depend on: start, command and tool; chains by their plans and zones.
+"""Plans remembered by what they depend on: start, command, tool and override; chains by their plans and zones.
 
-A program that comes to a move again from where it did before gets the plan, or the refusal, that it got then. Used by
-every rehearsal, so a loop that goes on for ever is found without planning it for ever.
+The plan that was checked is the plan that runs: dry run, ``Controller.rehearse`` and ``move_chain`` share one
+memory, so a move that starts from bit-identical conditions gets the plan, or the refusal, that it got before.
 """
 
 from collections.abc import Sequence
@@ -9,42 +9,44 @@ from dataclasses import fields
 
 import numpy as np
 
-from robolang.execution.lowering import Command
 from robolang.project.project import Project
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.motion.cartesian_planner import MovePlan
+from runtime.motion.commands import Command
 from runtime.motion.motion_planner import ChainPlan, MotionPlanner
 from runtime.robot.kinematics.kinematics import Kinematics
 
 
-class PlanMemory:
-    """A planner of one project that plans nothing twice, refusals included."""
+class PlanMemory(MotionPlanner):
+    """The planner of one project: plans nothing twice, refusals included."""
 
     def __init__(self, project: Project) -> None:
         robot = project.cell.robot
-        self._planner = MotionPlanner(robot, Kinematics(robot), project.profile)
+        self.kinematics = Kinematics(robot)
+        """The kinematics of the robot, one for all who plan with this."""
+        super().__init__(robot, self.kinematics, project.profile)
         self._plans: dict[tuple[object, ...], MovePlan | Fault] = {}
         self._chains: dict[tuple[object, ...], ChainPlan] = {}
 
-    def plan(self, q_start: Array, command: Command, X_flange_tool: Array, /) -> MovePlan:
+    def plan(self, q_start: Array, command: Command, X_flange_tool: Array, override: float = 1.0) -> MovePlan:
         """Return the plan of one move, as ``MotionPlanner.plan`` does."""
-        key = (q_start.tobytes(), *_key(command), X_flange_tool.tobytes())
+        key = (q_start.tobytes(), *_key(command), X_flange_tool.tobytes(), override)
         if key not in self._plans:
             try:
-                self._plans[key] = self._planner.plan(q_start, command, X_flange_tool)
+                self._plans[key] = super().plan(q_start, command, X_flange_tool, override)
             except Fault as fault:
                 self._plans[key] = fault
         found = self._plans[key]
-        if isinstance(found, Fault):
+        if isinstance(found, Fault):  # a new one: an exception that is raised again would keep all frames before
             raise Fault(found.code, found.message, found.hint)
         return found
 
-    def join(self, plans: Sequence[MovePlan], zones: Sequence[float], X_flange_tool: Array, /) -> ChainPlan:
+    def join(self, plans: Sequence[MovePlan], zones: Sequence[float], X_flange_tool: Array) -> ChainPlan:
         """Return moves blended in their zones, as ``MotionPlanner.join`` does."""
         key = (*(id(plan) for plan in plans), *zones, X_flange_tool.tobytes())  # plans are kept, so ids stay theirs
         if key not in self._chains:
-            self._chains[key] = self._planner.join(plans, zones, X_flange_tool)
+            self._chains[key] = super().join(plans, zones, X_flange_tool)
         return self._chains[key]
 
 

@@ -17,8 +17,8 @@ from robolang.core.source import Span
 from robolang.execution import lowering
 from robolang.execution.alarms import as_diagnostic
 from robolang.execution.dry_run import MAX_CHAIN, MAX_RUN_US, motion_check
-from robolang.execution.lowering import Command
 from robolang.execution.plan_findings import PlanFindings, PlannedMove
+from robolang.execution.plan_memory import PlanMemory
 from robolang.execution.report import build_report
 from robolang.execution.result import RunRecord, RunResult, StatementRun
 from robolang.execution.world import RobotWorld
@@ -46,10 +46,10 @@ from runtime.control.clock import PacedClock, VirtualClock, wall_s
 from runtime.control.controller import Controller
 from runtime.core.faults import Fault
 from runtime.core.units import MM
+from runtime.motion.commands import Command
 from runtime.motion.motion_planner import ChainPlan
 from runtime.motion.seam import SeamTracker
 from runtime.plant.plant import Plant
-from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.settings.profile import ServoMode
 
 
@@ -87,7 +87,9 @@ class Session:
         progress: Progress | None = None,
         alter: Alter | None = None,
         show: Callable[[str], None] | None = None,
+        plans: PlanMemory | None = None,
     ) -> None:
+        """``plans`` are those of the check before the run: what begins as it did there is not planned again."""
         if not project.ok:
             raise ProgramError(project, project.diagnostics)
         self.project = project
@@ -105,16 +107,22 @@ class Session:
         if not physics:  # the ideal arm has no friction and no gear springs, so there is nothing to compensate
             servo = replace(profile.servo, friction_compensation=0.0, spring_compensation=0.0, gravity_lead=0.0)
             profile = replace(profile, servo=servo)
-        self._kinematics = Kinematics(cell.robot)
+        plans = plans or PlanMemory(project)
         clock = PacedClock(profile.period_us) if realtime else VirtualClock()
         self.controller = Controller(
-            cell.robot, make_plant(project, physics), profile, cell.hand.X_flange_tool, clock, self._kinematics
+            cell.robot,
+            make_plant(project, physics),
+            profile,
+            cell.hand.X_flange_tool,
+            clock,
+            plans.kinematics,
+            planner=plans,
         )
         self.record = RunRecord(project=project, controller=self.controller, physics=physics)
-        self.world = RobotWorld(project.points, cell, self._kinematics, lambda: self.controller.time_us)
+        self.world = RobotWorld(project.points, cell, plans.kinematics, lambda: self.controller.time_us)
         self._machine = Machine(project.program, self.world, project.points.names)
         self._chain: list[tuple[MoveTo, Command]] = []
-        self._plans = PlanFindings(project)
+        self._plans = PlanFindings(project, plans.kinematics)
         self._warned: set[tuple[str, Span]] = set()
 
     def request_stop(self) -> None:
@@ -415,10 +423,11 @@ def run(
     project = load_project(program, cell, robot, servo)
     if not project.ok:
         raise ProgramError(project, project.diagnostics)
-    refused = motion_check(project)
+    plans = PlanMemory(project)
+    refused = motion_check(project, plans)
     if refused:
         raise ProgramError(project, refused, planned=True)
-    return Session(project, physics=physics, realtime=realtime, progress=progress).run()
+    return Session(project, physics=physics, realtime=realtime, progress=progress, plans=plans).run()
 
 
 __all__ = ["ProgramError", "Progress", "RunResult", "Session", "StatementRun", "make_plant", "run"]

@@ -8,7 +8,6 @@ from robolang.execution.dry_run import Rehearsal, RehearsedMove
 from robolang.project.project import Project
 from robolang.syntax.unparse import describe
 from runtime.core.units import DEG, MM
-from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.kinematics.singularity import singularities
 from runtime.robot.model.spec import OpwParameters
 
@@ -35,7 +34,7 @@ def line_times(project: Project, rehearsal: Rehearsal) -> list[LineTime]:
     """Return what each line takes, in the order of the file."""
     spec = project.cell.robot
     speed = spec.per_axis("limits", "speed")
-    opw = Kinematics(spec).opw
+    opw = rehearsal.kinematics.opw
     rows = []
     for line in project.program.statements:
         if line.source_line not in rehearsal.times_us or line.statement is None:

@@ -52,7 +52,7 @@ def findings(
     Of ``detours`` it is what the rehearsal has not shown: errors of planning and what the moves show, with the way to
     it. What stops a detour otherwise, such as a WAIT that times out, is what its program wants.
     """
-    moves = _Moves(project)
+    moves = _Moves(project, rehearsal.kinematics)
     found: dict[tuple[str, Span], Diagnostic] = {}
     for item in (*rehearsal.refused, *moves.findings(rehearsal)):
         found.setdefault((item.code, item.span), item)
@@ -91,11 +91,11 @@ def _at(code: str, move: RehearsedMove, message: str, severity: Severity = Sever
 class _Moves:
     """Checks of the moves of rehearsals; what was looked at before is not looked at again."""
 
-    def __init__(self, project: Project) -> None:
+    def __init__(self, project: Project, kinematics: Kinematics) -> None:
         self._spec, self._period_s = project.cell.robot, project.profile.period_s
-        self._kinematics = Kinematics(self._spec)
-        self._cell = CellTouches(project)
-        self._plans = PlanFindings(project)
+        self._kinematics = kinematics
+        self._cell = CellTouches(project, kinematics)
+        self._plans = PlanFindings(project, kinematics)
         self._project = project
         self._seen: set[tuple[object, ...]] = set()
 
@@ -113,7 +113,7 @@ class _Moves:
         for move, after in zip(rehearsal.moves, (*rehearsal.moves[1:], None), strict=False):
             if id(move) in fresh:
                 yield from self.otherwise(move, after)
-        yield from _loads(self._project, new)
+        yield from _loads(self._project, self._kinematics, new)
 
     def _is_new(self, move: RehearsedMove) -> bool:
         load = move.payload
@@ -200,10 +200,10 @@ class LoadShare:
         return "N m" if self.what == "moment" else "kg m2"
 
 
-def worst_loads(project: Project, moves: Sequence[RehearsedMove]) -> list[LoadShare]:
+def worst_loads(project: Project, kinematics: Kinematics, moves: Sequence[RehearsedMove]) -> list[LoadShare]:
     """Return moments, then inertias of the last axes, each at the move with the worst posture."""
     spec = project.cell.robot
-    kinematics, limits = Kinematics(spec), dict(zip(("moment", "inertia"), ratings(spec), strict=True))
+    limits = dict(zip(("moment", "inertia"), ratings(spec), strict=True))
     worst: dict[tuple[str, int], LoadShare] = {}
     for move in moves:
         load = wrist_load(kinematics, move.q, move.payload)
@@ -218,9 +218,9 @@ def worst_loads(project: Project, moves: Sequence[RehearsedMove]) -> list[LoadSh
     return sorted(worst.values(), key=lambda share: (share.what != "moment", share.axis))
 
 
-def _loads(project: Project, moves: Sequence[RehearsedMove]) -> Found:
+def _loads(project: Project, kinematics: Kinematics, moves: Sequence[RehearsedMove]) -> Found:
     """Report each axis of the wrist that a payload overloads, at the move with the worst posture."""
-    shares = worst_loads(project, moves)
+    shares = worst_loads(project, kinematics, moves)
     for share in sorted(shares, key=lambda share: (not share.given, share.limit / share.value)):  # worst first
         if not share.value <= share.limit * (1.0 + OVERLOAD) + NOTHING:
             value, limit = beside(share.value, share.limit, form=".3g")

@@ -81,9 +81,9 @@ Followed = Generator[Diagnostic, None, Scene]
 class CellTouches:
     """Follows the parts of a cell through rehearsals; what was checked before is remembered."""
 
-    def __init__(self, project: Project) -> None:
+    def __init__(self, project: Project, kinematics: Kinematics) -> None:
         cell = project.cell
-        self._cell, self._kinematics = cell, Kinematics(cell.robot)
+        self._cell, self._kinematics = cell, kinematics
         self.shapes = MujocoPlant(cell.robot, cell, project.profile.tick_s)
         self._swept: dict[tuple[object, ...], tuple[Meeting | None, Meeting | None]] = {}
         self._sizes = {part.name: part.size for part in cell.parts}

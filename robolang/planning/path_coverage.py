@@ -45,10 +45,10 @@ class Exploration:
 
 def explore(project: Project) -> Exploration:
     """Rehearse a checked program on every way that it may take."""
-    planner = PlanMemory(project)
+    plans = PlanMemory(project)
     conditions = open_conditions(project.program)
     decisions = Decisions()
-    first = rehearse(project, decisions=decisions, planner=planner)
+    first = rehearse(project, decisions=decisions, plans=plans)
     gone: set[tuple[Span, bool]] = set()
     known: set[tuple[Span, bool]] = set()  # gone or queued: each way is queued once, behind the fewest others
     todo: deque[dict[Span, bool]] = deque()
@@ -61,7 +61,7 @@ def explore(project: Project) -> Exploration:
             continue
         gone.add((place, way))  # also where a fault keeps it from being asked
         decisions = Decisions(forced, patient=False)
-        rehearsal = rehearse(project, decisions=decisions, planner=planner, most_us=DETOUR_US)
+        rehearsal = rehearse(project, decisions=decisions, plans=plans, most_us=DETOUR_US)
         detours.append(Detour(rehearsal=rehearsal, forced=forced))
         gone |= {(each, taken) for each, ways in decisions.taken.items() for taken in ways}
         _queue(todo, forced, conditions, known, decisions)

@@ -74,7 +74,9 @@ class Controller:
         clock: Clock | None = None,
         kinematics: Kinematics | None = None,
         fine: FineInterpolator | None = None,
+        planner: MotionPlanner | None = None,
     ) -> None:
+        """``planner`` plans what is requested: one that remembers plans (``robolang.execution.plan_memory``)."""
         self.spec = spec
         self.plant = plant
         self.profile = profile
@@ -105,7 +107,7 @@ class Controller:
         self._hold(q)
         self.processor = IdleProcessor(self._dynamics)
         self.recorder = Recorder(spec.n, profile.ticks_per_cycle, profile.tick_us, plant.q_link)
-        self._planner = MotionPlanner(spec, self.kinematics, profile)
+        self._planner = planner or MotionPlanner(spec, self.kinematics, profile)
         self._override = 1.0
         self._tracker: SeamTracker | None = None
         self._waiting: list[tuple[MovePlan, MoveLinear]] = []  # under the tracker a move begins where the last one led

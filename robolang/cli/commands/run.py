@@ -72,11 +72,16 @@ def run(
 
         with _handled(_left_before_motion):
             project = load_project(program, cell, robot, profile=profile, options=options)
-            warned = refuse(project, warnings=strict or not quiet)
+            from robolang.execution.plan_memory import PlanMemory
+
+            plans = PlanMemory(project)
+            warned = refuse(project, warnings=strict or not quiet, plans=plans)
         from robolang.execution.session import Session
 
         with _progress(quiet) as progress:
-            session = Session(project, physics=not no_physics, realtime=realtime, progress=progress, show=_show)
+            session = Session(
+                project, physics=not no_physics, realtime=realtime, progress=progress, show=_show, plans=plans
+            )
             with _signals(session) as stopped:  # until the files are written: a signal must not cut them off
                 result = session.run()
                 code = _write(result, report, log)

@@ -126,16 +126,20 @@ def _judged(program: Path, expected: "Expectation", update: bool) -> "tuple[list
     """Return the verdicts on a program and the time of its run, s."""
     from robolang.core.diagnostics import Severity
     from robolang.execution.dry_run import motion_check
+    from robolang.execution.plan_memory import PlanMemory
     from robolang.execution.session import Session
     from robolang.project.project import load_project
     from robolang.testing.verdict import judge, judge_refused
 
     project = load_project(program)
-    refused = [item for item in project.diagnostics if item.severity is Severity.ERROR] or list(motion_check(project))
+    plans = PlanMemory(project)
+    refused = [item for item in project.diagnostics if item.severity is Severity.ERROR] or list(
+        motion_check(project, plans)
+    )
     if refused:
         why = "; ".join(_shown(project, item) for item in refused)
         return judge_refused(expected, [item.code for item in refused], why), 0.0
-    session = Session(project, physics=expected.physics)
+    session = Session(project, physics=expected.physics, plans=plans)
     result = session.run()
     return judge(expected, session, result.report, result.log, update), session.controller.time_us / 1e6
 

@@ -162,7 +162,7 @@ def test_published_ratings_make_it_an_error(tmp_path):
 @pytest.mark.parametrize("mass", [0.0, 1.0])
 def test_worst_loads_are_of_what_is_declared(tmp_path, mass):
     project, rehearsal = looked_at(tmp_path, f"LOAD (0, 0, 100), {mass}\nMOVE P1\nMOVE P2\n")
-    shares = worst_loads(project, rehearsal.moves)
+    shares = worst_loads(project, rehearsal.kinematics, rehearsal.moves)
     inertia = {share.axis: share.value for share in shares if share.what == "inertia"}
     if mass:
         assert inertia[4] == pytest.approx(mass * 0.1**2, rel=1e-6)  # J5 has it across, whatever the posture
