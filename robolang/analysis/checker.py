@@ -12,14 +12,17 @@ beside errors of other lines as well. Time is linear in the program.
 """
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from itertools import chain, islice
 
 from robolang.analysis.cell_symbols import NOTHING_KNOWN, CellSymbols
+from robolang.analysis.dataflow import ways_of
 from robolang.analysis.flow_check import flow_check
 from robolang.analysis.rounding_check import rounding_check
 from robolang.analysis.statement_check import StatementCheck
 from robolang.analysis.symbols import Defined
+from robolang.analysis.tabulation import Ways
 from robolang.analysis.usage_check import loop_check, quote_check, usage_check, wait_check
 from robolang.core.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related, Severity, has_errors, in_order
 from robolang.core.source import Span
@@ -31,12 +34,18 @@ MAX_LEVELS = 150
 """Deepest tree of a statement: expressions are evaluated by recursion, in at most five calls for a level."""
 
 
-def check(program: Program, symbols: CellSymbols = NOTHING_KNOWN) -> tuple[Diagnostic, ...]:
+def check(
+    program: Program,
+    symbols: CellSymbols = NOTHING_KNOWN,
+    blocks: Structure | None = None,
+    flow: Callable[[], Ways] | None = None,
+) -> tuple[Diagnostic, ...]:
     """Return what is wrong with a program in its cell, by place.
 
     ``Unparsed`` statements are passed over, the parser has reported them. What is not known of the cell is not checked.
+    ``blocks`` and ``flow`` are those of the program, where they have been computed; ``analysis`` keeps them.
     """
-    structure = structure_of(program)
+    structure = structure_of(program) if blocks is None else blocks
     found = list(
         islice(
             chain(
@@ -50,7 +59,8 @@ def check(program: Program, symbols: CellSymbols = NOTHING_KNOWN) -> tuple[Diagn
     )
     found += _beside(found, chain(wait_check(program), quote_check(program), rounding_check(program)))
     if not has_errors(found) and not any(isinstance(line.statement, Unparsed) for line in program.statements):
-        found += chain(flow_check(program, structure), loop_check(program, structure), usage_check(program))
+        ways = flow or partial(ways_of, program, structure)
+        found += chain(flow_check(program, structure, ways), loop_check(program, structure), usage_check(program))
     return in_order(islice(found, MAX_DIAGNOSTICS + 1))
 
 

@@ -11,10 +11,10 @@ Each rule is a fact that ``flow`` follows through the program, and what is repor
 Called for programs without errors.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
-from robolang.analysis.dataflow import MAX_LINES, facts_before, ways_of
+from robolang.analysis.dataflow import MAX_LINES, facts_before
 from robolang.analysis.state_reads import reads_state
 from robolang.analysis.tabulation import Way, Ways
 from robolang.core.diagnostics import Diagnostic, Related, Severity
@@ -55,11 +55,11 @@ _STOPS = (Load, LoadNamed, Hand, Seam, Out, Pulse, Delay, Wait, Print)
 _MOVES = (Move, MoveJ, MoveC, Approach, Depart)
 
 
-def flow_check(program: Program, structure: Structure) -> Iterator[Diagnostic]:
-    """Report what the order of the statements of a program shows, as warnings."""
+def flow_check(program: Program, structure: Structure, flow: Callable[[], Ways]) -> Iterator[Diagnostic]:
+    """Report what the order of the statements of a program shows, as warnings; ``flow`` gives its control flow."""
     if len(program.lines) > MAX_LINES:
         return
-    ways = ways_of(program, structure)
+    ways = flow()
     before = facts_before(_resumed(program, structure, ways), True, lambda at, node, fact: (fact,))
     if before is None:  # where following nothing is too much, so is following anything
         return

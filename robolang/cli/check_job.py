@@ -169,13 +169,13 @@ def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
     since it is ignored or has a ``noqa``, is reported all the same: nothing was planned, and that is no pass.
     """
     checked = outcome.checked
-    if checked.faults or outcome.before.name == STANDARD_INPUT:
+    if checked.analysis is None or checked.faults or outcome.before.name == STANDARD_INPUT:
         return outcome
     from robolang.cli.check_motion import planned
 
     selection = _selection(checked.source.path, job, settings)
     try:
-        plan = planned(checked.source.path, job.max_cycle_s)
+        plan = planned(checked.analysis, job.max_cycle_s)
     except Fault as fault:
         return replace(outcome, checked=replace(checked, faults=(*checked.faults, *fault.all)))
     known = {(item.code, item.span) for item in checked.diagnostics}

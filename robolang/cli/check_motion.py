@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 
+from robolang.analysis.analysis import Analysis
 from robolang.cli import lines
 from robolang.core.diagnostics import Diagnostic, safe
 from robolang.execution.dry_run import Rehearsal
@@ -46,7 +47,7 @@ class Planned:
     times: dict[str, object] | None = None
 
 
-def planned(program: str, max_cycle_s: float | None) -> Planned:
+def planned(program: Analysis, max_cycle_s: float | None) -> Planned:
     """Return what planning the motion of a program shows; ``Fault`` for files beside it.
 
     What the cell makes an error of the text (a load, a tool or an input that it does not have) is among them.

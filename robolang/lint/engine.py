@@ -1,24 +1,23 @@
-"""Checking one program with everything that ``robolang check`` reports: parse, check, suppress, select, fixes.
+"""Everything that ``robolang check`` reports of one program: its analysis, then suppression, selection, fixes.
 
-The same list is what an editor shows. A cell or points file that cannot be used is a fault beside the findings: the
-text is checked all the same, without the names that such a file has.
+An editor shows the same list. A cell or points file that cannot be used is a fault beside the findings: the text is
+checked without the names that such a file has.
 """
 
 import os
 from dataclasses import dataclass
 from pathlib import Path
 
+from robolang.analysis.analysis import Analysis
 from robolang.analysis.cell_symbols import NOTHING_KNOWN, CellSymbols
-from robolang.analysis.checker import check
 from robolang.analysis.usage_check import named
 from robolang.core.diagnostics import Diagnostic, Severity, in_order
 from robolang.core.source import Source, Span
 from robolang.lint.fixes import with_fix
 from robolang.lint.selection import Selection, is_syntax_error
 from robolang.lint.suppress import suppress
-from robolang.project.discovery import CellFiles, read_beside
+from robolang.project.discovery import CellFiles, points_file, read_beside
 from robolang.project.points import load_points
-from robolang.syntax.parser import parse
 from runtime.core.faults import Fault
 from runtime.core.toml_places import locate
 from runtime.core.tomlfile import FileFault, read_source
@@ -28,10 +27,11 @@ from runtime.core.tomlfile import FileFault, read_source
 class Checked:
     """What was found in one program, by place. A program that could not be read has an empty ``source``.
 
-    ``warnings`` are about its cell and the files of its robot.
+    ``warnings`` are about its cell and the files of its robot. ``analysis`` is None for another file.
     """
 
     source: Source
+    analysis: Analysis | None = None
     diagnostics: tuple[Diagnostic, ...] = ()
     faults: tuple[Fault, ...] = ()
     warnings: tuple[FileFault, ...] = ()
@@ -40,20 +40,23 @@ class Checked:
 def lint(
     source: Source, symbols: CellSymbols = NOTHING_KNOWN, *, selection: Selection | None = None, complete: bool = True
 ) -> tuple[Diagnostic, ...]:
-    """Return the findings of a text by place, with their fixes.
+    """Return the findings of a text by place, with their fixes; arguments as of ``findings``."""
+    return findings(Analysis(source=source, cell=symbols), selection, complete=complete)
+
+
+def findings(
+    analysis: Analysis, selection: Selection | None = None, *, complete: bool = True
+) -> tuple[Diagnostic, ...]:
+    """Return what is reported of a program by place, with its fixes.
 
     Args:
-        source: the text.
-        symbols: what is known of the cell and the taught points.
+        analysis: the program in its cell.
         selection: which codes are reported; None: all.
         complete: False when what is known of the files beside it is not all there is; see ``suppress``.
     """
-    parsed = parse(source)
-    too_large = any(item.code == "RBL106" for item in parsed.diagnostics)  # nothing of it was read
-    found = parsed.diagnostics if too_large else (*parsed.diagnostics, *check(parsed.program, symbols))
-    kept = suppress(source, found, complete=complete)
+    kept = suppress(analysis.source, analysis.diagnostics, complete=complete)
     chosen = kept if selection is None else filter(selection.keeps, kept)
-    return in_order(with_fix(item, source) for item in chosen)
+    return in_order(with_fix(item, analysis.source) for item in chosen)
 
 
 def check_source(source: Source, selection: Selection | None = None, files: CellFiles | None = None) -> Checked:
@@ -62,9 +65,10 @@ def check_source(source: Source, selection: Selection | None = None, files: Cell
     The faults of these files are those that keep a run from starting.
     """
     found = read_beside(Path(source.path), files)
-    diagnostics = lint(source, found.symbols, selection=selection, complete=not found.faults)
+    analysis = Analysis(source=source, cell=found.symbols)
+    diagnostics = findings(analysis, selection, complete=not found.faults)
     warnings = () if found.cell is None else found.cell.warnings
-    return Checked(source=source, diagnostics=diagnostics, faults=found.faults, warnings=warnings)
+    return Checked(source=source, analysis=analysis, diagnostics=diagnostics, faults=found.faults, warnings=warnings)
 
 
 def check_points(checked: Checked, selection: Selection | None = None) -> Checked | None:
@@ -72,14 +76,16 @@ def check_points(checked: Checked, selection: Selection | None = None) -> Checke
 
     A program that does not parse may name points where nothing can be read: then nothing is said.
     """
-    where = Path(checked.source.path).with_suffix(".points.toml")
-    if checked.faults or any(map(is_syntax_error, checked.diagnostics)) or not os.path.lexists(where):
+    where = points_file(Path(checked.source.path))
+    unread = checked.analysis is None or checked.faults or any(map(is_syntax_error, checked.diagnostics))
+    if unread or not os.path.lexists(where):
         return None
     try:
         store, source = load_points(where), Source(str(where), read_source(where).text)
     except Fault:  # it has just been written to: the next check says what is wrong
         return None
-    names = named(parse(checked.source).program)
+    assert checked.analysis is not None
+    names = named(checked.analysis.program)
     unused = (_unused(point.name, source) for key, point in store.points.items() if key not in names)
     found = in_order(item for item in unused if selection is None or selection.keeps(item))
     return Checked(source=source, diagnostics=found) if found else None

@@ -1,6 +1,6 @@
 """A program with the files beside it: cell, taught points and controller profile, read and checked together.
 
-Which files those are is in ``beside``. With none of them a program runs on the built-in cell: the default robot, a
+Which files those are is in ``discovery``. With none of them a program runs on the built-in cell: the default robot, a
 hand, a table and a part, with P1 to P5 taught (docs/language.md).
 """
 
@@ -9,14 +9,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from robolang.analysis.checker import check
-from robolang.core.diagnostics import Diagnostic, has_errors, in_order
+from robolang.analysis.analysis import Analysis
+from robolang.core.diagnostics import Diagnostic, has_errors
 from robolang.core.source import Source, read_program
 from robolang.project import discovery
 from robolang.project.discovery import CellFiles, controller_settings, read_beside
 from robolang.project.points import PointStore
 from robolang.syntax.ast import Program
-from robolang.syntax.parser import parse
 from runtime.cell import cell as cells
 from runtime.cell.cell import CellSpec
 from runtime.core.faults import Fault, raise_all
@@ -40,14 +39,23 @@ from runtime.settings.profile import (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Project:
-    """Everything a run needs. ``diagnostics`` may hold errors: then the program must not run."""
+    """Everything a run needs. ``diagnostics`` are those of the analysis; with an error the program must not run."""
 
-    source: Source
-    program: Program
+    analysis: Analysis
     diagnostics: tuple[Diagnostic, ...]
     cell: CellSpec
     points: PointStore
     settings: Settings
+
+    @property
+    def source(self) -> Source:
+        """The text of the program."""
+        return self.analysis.source
+
+    @property
+    def program(self) -> Program:
+        """The tree of the program."""
+        return self.analysis.program
 
     @property
     def profile(self) -> Profile:
@@ -65,7 +73,7 @@ class Project:
 
 
 def load_project(
-    path: Path | str,
+    program: Path | str | Analysis,
     cell: Path | str | None = None,
     robot: str | None = None,
     servo: ServoMode | None = None,
@@ -74,24 +82,24 @@ def load_project(
 ) -> Project:
     """Read a program and the files beside it.
 
-    ``cell`` names a cell file, ``robot`` a built-in robot or a robot file that replaces the cell's, ``servo`` the
-    servo mode that replaces the profile's, ``profile`` a profile file whose values go over the cell's, and ``options``
-    single settings over both: dotted key to (name of the option, value). Raises ``FileFault`` or
-    ``Fault`` for a file that cannot be used; what is wrong with the program itself is in ``diagnostics``.
+    ``program`` is its path, or an analysis of its text, which is then neither read nor parsed again. ``cell`` names a
+    cell file, ``robot`` a built-in robot or a robot file that replaces the cell's, ``servo`` the servo mode that
+    replaces the profile's, ``profile`` a profile file whose values go over the cell's, and ``options`` single settings
+    over both: dotted key to (name of the option, value). Raises ``FileFault`` or ``Fault`` for a file that cannot be
+    used; what is wrong with the program itself is in ``diagnostics``.
     """
-    source = read_program(path)
-    where = Path(path)
+    analysis = program if isinstance(program, Analysis) else Analysis(source=read_program(program))
+    where = Path(analysis.source.path)
     given = {**({} if servo is None else {"servo.mode": ("--servo", servo)}), **(options or {})}
     found = read_beside(where, cell=None if cell is None else Path(cell), robot=robot, layers=_layers(profile, given))
     raise_all(found.faults)
     assert found.cell is not None and found.points is not None and found.settings is not None
     spec = cells.build(found.cell)
     settings = judged(spec.robot, spec.hand.X_flange_tool, found.settings)
-    parsed = parse(source)
+    analysis = analysis.within(found.symbols)
     return Project(
-        source=source,
-        program=parsed.program,
-        diagnostics=in_order((*parsed.diagnostics, *check(parsed.program, found.symbols))),
+        analysis=analysis,
+        diagnostics=analysis.diagnostics,
         cell=spec,
         points=found.points,
         settings=settings,

@@ -26,7 +26,7 @@ from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import MAX_BYTES, Source, Span
 from robolang.syntax.ast import Comment, Line, Program, Unparsed
 from robolang.syntax.blocks import targets, word_of
-from robolang.syntax.parser import MAX_LINE, parse
+from robolang.syntax.parser import MAX_LINE, ParseResult, parse
 from robolang.syntax.unparse import print_code
 
 INDENT = "  "
@@ -54,9 +54,9 @@ class FormatResult:
     diagnostics: tuple[Diagnostic, ...]
 
 
-def format_source(source: Source) -> FormatResult:
-    """Format a program; any text gives a result, nothing is raised."""
-    parsed = parse(source)
+def format_source(source: Source, parsed: ParseResult | None = None) -> FormatResult:
+    """Format a program; any text gives a result, nothing is raised. ``parsed``: of the source, where it is known."""
+    parsed = parse(source) if parsed is None else parsed
     if any(item.code == "RBL106" for item in parsed.diagnostics):
         return FormatResult(text=source.text, changed=False, diagnostics=parsed.diagnostics)
     rows = _rows(source, parsed.program)

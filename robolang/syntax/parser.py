@@ -10,7 +10,9 @@ The parser of a line is Lark's, with a table that is part of the package (``gram
 """
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from lark import Token, UnexpectedToken
 
@@ -33,6 +35,10 @@ _COMMENT = re.compile(r"'|(?<!\w)REM(?!\w)", re.IGNORECASE)
 _NOT = re.compile(r"(?<!\w)NOT(?!\w)", re.IGNORECASE)
 _LINE_END = re.compile(r"\r\n?|\n")
 
+ParsedLine = tuple[ast.Line, Diagnostic | None]
+"""A line of the tree and why it could not be parsed, if so."""
+_NO_LINES: Mapping[int, ParsedLine] = MappingProxyType({})
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParseResult:
@@ -46,8 +52,12 @@ class ParseResult:
     diagnostics: tuple[Diagnostic, ...]
 
 
-def parse(source: Source) -> ParseResult:
-    """Parse a program; any text gives a result, nothing is raised."""
+def parse(source: Source, known: Mapping[int, ParsedLine] = _NO_LINES) -> ParseResult:
+    """Parse a program; any text gives a result, nothing is raised.
+
+    ``known`` are lines of this text that have been parsed, by the offset at which they begin; they are taken as they
+    are. See ``reparse``.
+    """
     if len(source.text) > MAX_BYTES:
         message = f"the program has {len(source.text)} characters, more than {MAX_BYTES}"
         problem = Diagnostic(code="RBL106", message=message, span=Span(0, 0))
@@ -58,7 +68,7 @@ def parse(source: Source) -> ParseResult:
         text = source.slice(span)
         if not text.strip(" \t"):
             continue
-        line, found = _parse_line(text, span, row)
+        line, found = known.get(span.start) or _parse_line(text, span, row)
         lines.append(line)
         if found is not None:
             problems.append(found)

@@ -18,7 +18,7 @@ from robolang.core.source import Source, Span
 from robolang.syntax.ast import Line, Program, Target
 from robolang.syntax.blocks import targets
 from robolang.syntax.formatter import outgrown
-from robolang.syntax.parser import MAX_LINE, MAX_NUMBER_DIGITS, parse
+from robolang.syntax.parser import MAX_LINE, MAX_NUMBER_DIGITS, ParseResult, parse
 from robolang.syntax.syntax_errors import quote
 from runtime.core.faults import Fault
 
@@ -42,9 +42,12 @@ class RenumberResult:
     targets: int = 0
 
 
-def renumber(source: Source, *, start: int = 10, step: int = 10) -> RenumberResult:
-    """Number the lines of a program; ``Fault`` RBL703 when a number would have more than nine digits."""
-    program, problems = _read(source)
+def renumber(source: Source, *, start: int = 10, step: int = 10, parsed: ParseResult | None = None) -> RenumberResult:
+    """Number the lines of a program; ``Fault`` RBL703 when a number would have more than nine digits.
+
+    ``parsed``: the result of the parser for the source, where it is known.
+    """
+    program, problems = _read(source, parsed)
     if has_errors(problems):
         return RenumberResult(text=source.text, changed=False, diagnostics=problems)
     counted = [line for line in program.lines if (line.number, line.label, line.statement) != (None, None, None)]
@@ -58,9 +61,9 @@ def renumber(source: Source, *, start: int = 10, step: int = 10) -> RenumberResu
     return _edited(source, problems, of_lines, _followed(program, moved))
 
 
-def remove_numbers(source: Source) -> RenumberResult:
-    """Remove the numbers of all lines that no jump leads to."""
-    program, problems = _read(source)
+def remove_numbers(source: Source, parsed: ParseResult | None = None) -> RenumberResult:
+    """Remove the numbers of all lines that no jump leads to; ``parsed`` as of ``renumber``."""
+    program, problems = _read(source, parsed)
     if has_errors(problems):
         return RenumberResult(text=source.text, changed=False, diagnostics=problems)
     named = {target.number for target in _targets(program)}
@@ -68,9 +71,9 @@ def remove_numbers(source: Source) -> RenumberResult:
     return _edited(source, problems, [_unnumbered(line, source.text) for line in free], [])
 
 
-def _read(source: Source) -> tuple[Program, tuple[Diagnostic, ...]]:
+def _read(source: Source, parsed: ParseResult | None) -> tuple[Program, tuple[Diagnostic, ...]]:
     """Return a program and why it cannot be renumbered, if so."""
-    parsed = parse(source)
+    parsed = parse(source) if parsed is None else parsed
     if has_errors(parsed.diagnostics):
         return parsed.program, parsed.diagnostics
     first: dict[int, Line] = {}

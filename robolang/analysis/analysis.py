@@ -1,0 +1,97 @@
+"""What is known of a program without running it, as one value that everybody shares.
+
+Lint, a run, the formatter, renumber and an editor hold the same ``Analysis``. Each part is computed when it is asked
+for the first time, and kept. Nothing of it changes afterwards: an edit gives a new ``Analysis`` (``updated``).
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from robolang.analysis.cell_symbols import NOTHING_KNOWN, CellSymbols
+from robolang.analysis.checker import check
+from robolang.analysis.dataflow import ways_of
+from robolang.analysis.tabulation import Ways
+from robolang.core.diagnostics import Diagnostic, Edit, in_order
+from robolang.core.source import Source
+from robolang.syntax.ast import Program
+from robolang.syntax.blocks import Structure, structure_of
+from robolang.syntax.parser import ParseResult, parse
+
+if TYPE_CHECKING:
+    from robolang.analysis.symbol_table import SymbolTable
+
+
+@dataclass(frozen=True, kw_only=True)  # no slots: cached properties need the dictionary
+class Analysis:
+    """A text in a cell: tree, blocks, names, control flow, diagnostics. Equal when text and cell are.
+
+    ``cell`` are the names and facts of the cell and of the taught points; what is not known is not checked.
+    """
+
+    source: Source
+    cell: CellSymbols = NOTHING_KNOWN
+    _kept: Mapping[str, object] = field(default_factory=dict, compare=False, repr=False)
+    """Parts that are taken over from another analysis, by the name of the property."""
+
+    def __post_init__(self) -> None:
+        self.__dict__.update(self._kept)
+
+    @cached_property
+    def parsed(self) -> ParseResult:
+        """The result of the parser: the tree and the errors of the text."""
+        return parse(self.source)
+
+    @property
+    def program(self) -> Program:
+        """The tree; a line that cannot be parsed is in it as ``Unparsed``."""
+        return self.parsed.program
+
+    @cached_property
+    def blocks(self) -> Structure:
+        """Blocks and jumps: which lines belong together and where each jump leads."""
+        return structure_of(self.program)
+
+    @cached_property
+    def symbols(self) -> "SymbolTable":
+        """Names, with the place of every definition and every use."""
+        from robolang.analysis.symbol_table import SymbolTable  # only an editor needs it: check starts sooner
+
+        return SymbolTable(self.program, self.blocks, self.cell)
+
+    @cached_property
+    def flow(self) -> Ways:
+        """Control flow: the lines to which each line may lead."""
+        return ways_of(self.program, self.blocks)
+
+    @cached_property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """Everything that is wrong, by place: errors of the text, then of its meaning in the cell."""
+        found = self.parsed.diagnostics
+        if self.is_unread:
+            return found
+        return in_order((*found, *check(self.program, self.cell, self.blocks, lambda: self.flow)))
+
+    @property
+    def is_unread(self) -> bool:
+        """Whether the text is too large to be read (RBL106), so that nothing is known of it."""
+        return any(item.code == "RBL106" for item in self.parsed.diagnostics)
+
+    def within(self, cell: CellSymbols) -> "Analysis":
+        """Return the analysis of the same text in another cell; it is parsed once for both."""
+        if cell == self.cell:
+            return self
+        kept: dict[str, object] = {
+            name: self.__dict__[name] for name in ("parsed", "blocks", "flow") if name in self.__dict__
+        }
+        return Analysis(source=self.source, cell=cell, _kept=kept)
+
+    def updated(self, edit: Edit) -> "Analysis":
+        """Return the analysis of the text after an edit; only the lines that it changes are parsed."""
+        from robolang.syntax.reparse import reparse
+
+        text = self.source.text
+        source = Source(self.source.path, f"{text[: edit.span.start]}{edit.text}{text[edit.span.end :]}")
+        kept = {"parsed": reparse(self.parsed, self.source, source, edit)}
+        return Analysis(source=source, cell=self.cell, _kept=kept)
