@@ -1,7 +1,7 @@
 """Expressions: undefined names, values of the wrong kind, calls with the wrong count, and what has no value at all."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from robolang.analysis.cell_symbols import CellSymbols
 from robolang.analysis.symbols import Defined, hint_for
@@ -21,9 +21,16 @@ from robolang.syntax.ast import (
     Vector,
     walk,
 )
-from robolang.syntax.keywords import ARGUMENTS, COMPONENTS6, near
+from robolang.syntax.keywords import COMPONENTS6, near
 from robolang.syntax.unparse import print_expression
+from robolang.values.functions import FUNCTIONS, Function
+from robolang.values.kinds import Kind
 from runtime.robot.model.drives import beyond_range
+
+_OFFSET_COUNTS = {"+": (3,), "*": (3, 6)}
+"""How many values an offset after a pose may have, by the sign between them."""
+_OF_TEXTS = frozenset({"+", "=", "<>", "<", ">", "<=", ">="})
+"""Signs that may stand between two texts."""
 
 
 class ExpressionCheck:
@@ -38,94 +45,110 @@ class ExpressionCheck:
         return frozenset((self._symbols.points or frozenset()) | self._defined.values)
 
     def check(self, node: Expression) -> Iterator[Diagnostic]:
-        """Report what is wrong in an expression and in everything inside of it."""
-        skip: set[int] = set()
-        behind: set[int] = set()
+        """Report what is wrong in an expression and in its parts."""
+        names_no_value: set[int] = set()  # of functions, arrays and components
+        after_pose: set[int] = set()  # operands of a chain, where an offset may stand
         for each in walk(node):
-            if id(each) in skip:
-                continue
-            if isinstance(each, Name):
-                yield from self._name(each)
-            elif isinstance(each, Call):
-                skip.add(id(each.name))
-                yield from self._call(each)
-            elif isinstance(each, Component6):
-                skip.add(id(each.name))
-                yield from _component(each)
+            if isinstance(each, Call | Component6):
+                names_no_value.add(id(each.name))
             elif isinstance(each, Chain):
-                behind.update(id(operand) for _, operand in each.rest)
-                yield from self._chain(each)
-            elif isinstance(each, Negate | Not):
-                yield from self.must_be(each.operand, "a number")
-            elif isinstance(each, Vector) and id(each) not in behind:
-                message = "a way in parentheses stands behind a pose and + or *, as in P1 + (0, 0, 50)"
+                after_pose.update(id(operand) for _, operand in each.rest)
+            if id(each) in names_no_value:
+                continue
+            rule = _RULES.get(type(each))
+            if rule is not None:
+                yield from rule(self, each)
+            if isinstance(each, Vector) and id(each) not in after_pose:
+                message = "an offset (x, y, z) may only follow a pose and + or *, as in P1 + (0, 0, 50)"
                 yield Diagnostic(code="RBL217", message=message, span=each.span)
-            if isinstance(each, Vector):
-                for item in each.items:
-                    yield from self.finite(item)
         yield from no_value(node)
 
     def finite(self, node: Expression) -> Iterator[Diagnostic]:
-        """Report a number that is none, NAN or INF, where only a finite one can stand."""
+        """Report NAN and INF where only a finite number can stand."""
         value = fixed(node)
         if value is not None and not math.isfinite(value):
             yield Diagnostic(code="RBL209", message=f"this has no value: {value:g} is not finite", span=node.span)
+
+    def must_be(self, node: Expression, needed: Kind) -> Iterator[Diagnostic]:
+        """Report an expression of another kind than is needed (RBL217)."""
+        kind = self.kind(node)
+        if kind is not None and kind is not needed:
+            yield Diagnostic(code="RBL217", message=f"{needed} is needed here, not {kind}", span=node.span)
+
+    # --- one node --------------------------------------------------------------------------------------------------
+
+    def _operand(self, node: Negate | Not) -> Iterator[Diagnostic]:
+        return self.must_be(node.operand, Kind.NUMBER)
+
+    def _vector(self, node: Vector) -> Iterator[Diagnostic]:
+        for item in node.items:
+            yield from self.finite(item)
 
     def _name(self, node: Name) -> Iterator[Diagnostic]:
         if self._defined.has_value(node.key) or node.key in ("NAN", "INF"):
             return
         points = self._symbols.points
         if points is not None and node.key not in points and self._defined.is_missing(node):
-            message = f"{node.text} has no value: nothing gives it a first one, and it is no taught point"
+            message = f"{node.text} has no value: no statement assigns it first, and it is not a taught point"
             hint = other_languages.VALUES.get(node.key) or hint_for(node, self._known)
             if self._defined.is_of_a_sub(node.key):
-                message = f"{node.text} has no value here: only a SUB gives it one, which ends with the SUB"
+                message = f"{node.text} has no value here: only a SUB assigns it, and its variables end with it"
                 hint = f"give {node.text} a first value in the main program"
             yield Diagnostic(code="RBL215", message=message, span=node.span, hint=hint)
 
+    def _component(self, node: Component6) -> Iterator[Diagnostic]:
+        if node.name.key not in COMPONENTS6:
+            message = f"a pose has no component {node.name.text}"
+            yield Diagnostic(code="RBL218", message=message, span=node.name.span)
+
+    # --- calls -------------------------------------------------------------------------------------------------------
+
     def _call(self, node: Call) -> Iterator[Diagnostic]:
-        key, count = node.name.key, len(node.arguments)
-        if key in ("HERE", "TIMER", "ERR"):
-            return
-        if key in ARGUMENTS:
-            low, high = ARGUMENTS[key]
-            if not low <= count <= high:
-                wanted = f"{low}" if low == high else f"{low} to {high}"
-                message = f"{key} takes {wanted} value{'s' * (high > 1)}, not {count}"
-                yield Diagnostic(code="RBL214", message=message, span=node.span)
-                return
-            wanted_kind = "a text" if key in ("VAL", "LEN") else "a pose" if key == "DIST" else "a number"
-            for argument in node.arguments:
-                yield from self.must_be(argument, wanted_kind)
-            if key == "IN":
-                yield from self._input(node.arguments[0])
-            elif key == "JOINT":
-                yield from self._joints(node)
-        elif not self._defined.has_array(key):
-            if not self._defined.is_missing(node.name):
-                return
-            guess = other_languages.function(key) or near(key, ARGUMENTS)
+        function = FUNCTIONS.get(node.name.key)
+        if function is not None:
+            yield from self._function(node, function)
+        elif self._defined.has_array(node.name.key):
+            yield from self._array(node)
+        elif self._defined.is_missing(node.name):
+            guess = other_languages.function(node.name.key) or near(node.name.key, FUNCTIONS)
             hint = f"did you mean {guess}?" if guess else f"DIM {node.name.text}(n) makes an array"
-            message = f"{node.name.text} is no array and no function"
+            message = f"{node.name.text} is neither an array nor a function"
             yield Diagnostic(code="RBL215", message=message, span=node.name.span, hint=hint)
-        elif count != 1:
-            yield Diagnostic(code="RBL214", message=f"an element has one number, not {count}", span=node.span)
-        else:
+
+    def _function(self, node: Call, function: Function) -> Iterator[Diagnostic]:
+        low, high, count = function.least, function.most, len(node.arguments)
+        if not low <= count <= high:
+            allowed = f"{low}" if low == high else f"{low} to {high}"
+            message = f"{function.name} takes {allowed} value{'s' * (high > 1)}, not {count}"
+            yield Diagnostic(code="RBL214", message=message, span=node.span, hint=f"the form is {function.form}")
+            return
+        for index, argument in enumerate(node.arguments):
+            yield from self.must_be(argument, function.kind(index))
+        if function.name == "IN":
+            yield from self._input(node.arguments[0])
+        elif function.name == "JOINT":
+            yield from self._joints(node)
+
+    def _array(self, node: Call) -> Iterator[Diagnostic]:
+        if len(node.arguments) == 1:
             yield from self.element(node)
+            return
+        message = f"an element of an array has one index, not {len(node.arguments)}"
+        yield Diagnostic(code="RBL214", message=message, span=node.span)
 
     def element(self, node: Call) -> Iterator[Diagnostic]:
-        """Report an element that no array of its name has, whatever the run does (RBL507)."""
+        """Report an index that is outside of every array of the name, whatever the run does (RBL507)."""
         index, largest = fixed(node.arguments[0]), self._defined.largest(node.name.key)
         if index is not None and index.is_integer() and not (0.0 <= index <= largest):
             highest = "" if math.isinf(largest) else f" to {largest:g}"
-            message = f"{node.name.text} has the elements 0{highest}, no {index:.10g}"
+            message = f"{node.name.text} has the elements 0{highest}, not {index:.10g}"
             yield Diagnostic(code="RBL507", message=message, span=node.span)
 
     def _joints(self, node: Call) -> Iterator[Diagnostic]:
         """Report joint angles of another number than the arm has axes, and angles outside of their range."""
         axes, angles = self._symbols.axes, [fixed(item) for item in node.arguments]
         if axes is not None and len(angles) != axes:
-            message = f"JOINT has {len(angles)} values, the robot {axes} axes"
+            message = f"JOINT has {len(angles)} values, but the robot has {axes} axes"
             yield Diagnostic(code="RBL307", message=message, span=node.span)
             return
         beyond = beyond_range(angles, self._symbols.limits or ())
@@ -139,73 +162,104 @@ class ExpressionCheck:
             message = f"the cell has no input {number:g} (known: {known})"
             yield Diagnostic(code="RBL534", message=message, span=node.span)
 
+    # --- chains ------------------------------------------------------------------------------------------------------
+
     def _chain(self, node: Chain) -> Iterator[Diagnostic]:
-        """Check the kinds of the operands, and that ways in parentheses stand behind poses."""
+        """Check the kinds of the operands, and that offsets follow poses."""
         yield from _mixed_product(node)
-        left = self.kind(node.first)
         if isinstance(node.first, Vector):
-            return  # said of the vector itself
+            return  # reported at the offset itself
+        left = self.kind(node.first)
         for sign, operand in node.rest:
             if isinstance(operand, Vector):
-                wanted = (3,) if sign == "+" else (3, 6) if sign == "*" else ()
-                if left in ("a number", "a text") or not wanted:
-                    message = f"a way in parentheses stands behind {left or 'a value'} and {sign}, not behind a pose"
-                    yield Diagnostic(code="RBL217", message=message, span=operand.span)
-                elif len(operand.items) not in wanted:
-                    counts = " or ".join(map(str, wanted))
-                    yield Diagnostic(
-                        code="RBL220",
-                        message=f"{sign} takes {counts} values in parentheses, not {len(operand.items)}",
-                        span=operand.span,
-                    )
-                left = "a pose"
+                yield from _offset(left, sign, operand)
+                left = Kind.POSE
                 continue
-            right = self.kind(operand)
-            if "a pose" in (left, right):
-                where = node.first if left == "a pose" else operand
-                message = f"a pose stands beside {sign}; behind it stand + or * and a way, as in P1 + (0, 0, 50)"
-                yield Diagnostic(code="RBL217", message=message, span=where.span)
-                return
-            if left is not None and right is not None and left != right:
-                message = f"{left} and {right} stand on the sides of {sign}"
-                yield Diagnostic(code="RBL217", message=message, span=operand.span)
-                return
-            if left == "a text" and sign not in ("+", "=", "<>", "<", ">", "<=", ">="):
-                yield Diagnostic(code="RBL217", message=f"texts stand on the sides of {sign}", span=node.span)
+            problem = self._operands(node, left, sign, operand)
+            if problem is not None:
+                yield problem
                 return
 
-    def kind(self, node: Expression) -> str | None:
-        """Return what an expression is, in words; None where only a run can tell."""
-        if isinstance(node, Number | Negate | Not | Component6):
-            return "a number"
-        if isinstance(node, Text):
-            return "a text"
+    def _operands(self, node: Chain, left: Kind | None, sign: str, operand: Expression) -> Diagnostic | None:
+        """Return what is wrong with the two sides of a sign, of which none is an offset."""
+        right = self.kind(operand)
+        if Kind.POSE in (left, right):
+            message = f"{sign} cannot take a pose; only + or * and an offset may follow one, as in P1 + (0, 0, 50)"
+            place = node.first if left is Kind.POSE else operand
+            return Diagnostic(code="RBL217", message=message, span=place.span)
+        if left is not None and right is not None and left is not right:
+            message = f"{sign} cannot take {left} and {right}"
+            return Diagnostic(code="RBL217", message=message, span=operand.span)
+        if left is Kind.TEXT and sign not in _OF_TEXTS:
+            return Diagnostic(code="RBL217", message=f"{sign} cannot take texts; + joins them", span=node.span)
+        return None
+
+    # --- kinds -------------------------------------------------------------------------------------------------------
+
+    def kind(self, node: Expression) -> Kind | None:
+        """Return the kind of an expression; None where only a run can tell."""
         if isinstance(node, Name):
-            if node.key.endswith("$"):
-                return "a text"
-            taught = self._symbols.points is not None and node.key in self._symbols.points
-            return "a pose" if taught and not self._defined.has_value(node.key) else None
+            return self._kind_of_name(node)
         if isinstance(node, Call):
-            if node.name.key in ("POSE", "JOINT", "HERE"):
-                return "a pose"
-            if node.name.key in ("TIMER", "ERR"):
-                return "a number"
-            return "a text" if node.name.key.endswith("$") else "a number" if node.name.key in ARGUMENTS else None
+            return _kind_of_call(node)
         if isinstance(node, Chain):
-            if any(isinstance(operand, Vector) for _, operand in node.rest):
-                return "a pose"
-            if self.kind(node.first) == "a pose":
-                return None  # reported as a chain
-            if node.rest[0][0] not in "+":
-                return "a number"
-            return self.kind(node.first) or self.kind(node.rest[0][1])
-        return "a way in parentheses" if isinstance(node, Vector) else None
+            return self._kind_of_chain(node)
+        return _KINDS.get(type(node))
 
-    def must_be(self, node: Expression, wanted: str) -> Iterator[Diagnostic]:
-        """Report an expression of another kind than is wanted, ``"a number"`` for one (RBL217)."""
-        kind = self.kind(node)
-        if kind is not None and kind != wanted:
-            yield Diagnostic(code="RBL217", message=f"{kind} stands where {wanted} is needed", span=node.span)
+    def _kind_of_name(self, node: Name) -> Kind | None:
+        if node.key.endswith("$"):
+            return Kind.TEXT
+        taught = self._symbols.points is not None and node.key in self._symbols.points
+        return Kind.POSE if taught and not self._defined.has_value(node.key) else None
+
+    def _kind_of_chain(self, node: Chain) -> Kind | None:
+        if any(isinstance(operand, Vector) for _, operand in node.rest):
+            return Kind.POSE
+        first = self.kind(node.first)
+        if first is Kind.POSE:
+            return None  # reported as a chain
+        if node.rest[0][0] != "+":
+            return Kind.NUMBER
+        return first or self.kind(node.rest[0][1])
+
+
+_KINDS = {
+    Number: Kind.NUMBER,
+    Negate: Kind.NUMBER,
+    Not: Kind.NUMBER,
+    Component6: Kind.NUMBER,
+    Text: Kind.TEXT,
+    Vector: Kind.OFFSET,
+}
+"""Kinds of the nodes whose kind is the same wherever they stand."""
+_RULES: dict[type, Callable[..., Iterator[Diagnostic]]] = {
+    Name: ExpressionCheck._name,
+    Call: ExpressionCheck._call,
+    Component6: ExpressionCheck._component,
+    Chain: ExpressionCheck._chain,
+    Negate: ExpressionCheck._operand,
+    Not: ExpressionCheck._operand,
+    Vector: ExpressionCheck._vector,
+}
+
+
+def _kind_of_call(node: Call) -> Kind | None:
+    function = FUNCTIONS.get(node.name.key)
+    if function is not None:
+        return function.result
+    return Kind.TEXT if node.name.key.endswith("$") else None
+
+
+def _offset(left: Kind | None, sign: str, operand: Vector) -> Iterator[Diagnostic]:
+    """Check an offset after a sign; ``left`` is the kind of what the sign follows."""
+    counts = _OFFSET_COUNTS.get(sign, ())
+    if left in (Kind.NUMBER, Kind.TEXT) or not counts:
+        message = f"an offset may only follow a pose and + or *, not {left or 'a value'} and {sign}"
+        yield Diagnostic(code="RBL217", message=message, span=operand.span)
+    elif len(operand.items) not in counts:
+        allowed = " or ".join(map(str, counts))
+        message = f"an offset after {sign} has {allowed} values, not {len(operand.items)}"
+        yield Diagnostic(code="RBL220", message=message, span=operand.span)
 
 
 def _mixed_product(node: Chain) -> Iterator[Diagnostic]:
@@ -213,15 +267,9 @@ def _mixed_product(node: Chain) -> Iterator[Diagnostic]:
     signs = {sign for sign, _ in node.rest}
     if "MOD" not in signs or signs == {"MOD"}:
         return
-    message = "MOD stands beside * or /; they are worked out from the left"
+    message = "MOD and * or / are of one level here and are computed from the left"
     hint = ""
     if len(node.rest) == 2:
         (sign, second), last = node.rest
         hint = f"write {print_expression(Chain(first=Chain(first=node.first, rest=((sign, second),)), rest=(last,)))}"
     yield Diagnostic(code="RBL231", severity=Severity.WARNING, message=message, span=node.span, hint=hint)
-
-
-def _component(node: Component6) -> Iterator[Diagnostic]:
-    if node.name.key not in COMPONENTS6:
-        message = f"a pose has no component {node.name.text}"
-        yield Diagnostic(code="RBL218", message=message, span=node.name.span)

@@ -36,11 +36,12 @@ from robolang.syntax.ast import (
     Wrist,
     walk,
 )
+from robolang.values.functions import FUNCTIONS
 
 _NEVER = (Block, Hand, Jump, Load, LoadNamed, OnError, Seam, Setting, Sub, Wrist)
 _WORDS = frozenset({"END", "STOP", "PAUSE", "ON ERROR STOP"})
 _COMPUTES = ("+", "-", "*", "AND", "OR", "XOR", "=", "<>", "<", ">", "<=", ">=")
-_HARMLESS = frozenset({"IN", "TIMER", "ERR", "HERE", *_COMPUTES})
+_HARMLESS = frozenset({*_COMPUTES, *(name for name, function in FUNCTIONS.items() if function.always)})
 """Functions and signs that have a value wherever what they are of has one."""
 
 

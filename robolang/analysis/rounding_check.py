@@ -1,7 +1,7 @@
 """Comparisons by = and <> of numbers that rounding may part (RBL232), in ``CASE`` as well.
 
 A float holds 0.1 to 17 digits, so 0.1 + 0.2 is not the float next to 0.3. Numbers are classified by how far that goes
-(``Kind``): whole numbers and binary fractions are exact, so are counters, inputs and what is computed of them alone;
+(``Exactness``): whole numbers and binary fractions are exact, as are counters, inputs and what only these compute;
 a decimal fraction as written, or one division, is the float nearest to its value and equals another that is nearest to
 the same; what is computed further may differ in the last digits, and only that is reported. The kind of a name is the
 worst of all that is assigned to it anywhere. Only names that a comparison can depend on are followed, in
@@ -10,7 +10,6 @@ worst of all that is assigned to it anywhere. Only names that a comparison can d
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from enum import IntEnum
 from typing import get_args
 
 from robolang.core.diagnostics import Diagnostic, Related, Severity
@@ -44,26 +43,12 @@ from robolang.syntax.ast import (
 )
 from robolang.syntax.tree import walk
 from robolang.syntax.unparse import print_expression
+from robolang.values.functions import FUNCTIONS
+from robolang.values.kinds import Exactness
 
 MAX_PASSES = 20
 SMALL = "1E-6"
 """Difference below which the remedy takes two numbers for equal."""
-
-
-class Kind(IntEnum):
-    """How near a number is to the value that the text means."""
-
-    EXACT = 0
-    NEAREST = 1
-    ROUNDED = 2
-
-
-_FUNCTIONS = {
-    **dict.fromkeys(("SQR", "SIN", "COS", "TAN", "ATN2", "DEG", "RAD", "DIST", "TIMER"), Kind.ROUNDED),
-    **dict.fromkeys(("INT", "SGN", "LEN", "IN", "ERR", "STR$", "HERE", "POSE", "JOINT"), Kind.EXACT),
-    "VAL": Kind.NEAREST,
-}
-_OF_ARGUMENTS = ("ABS", "MIN", "MAX")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,15 +61,15 @@ class _Giving:
 
 
 @dataclass(slots=True)
-class _Kinds:
-    """Kinds of names and arrays, by ``_key``, and the first expression that made a name ``ROUNDED``."""
+class _Exactnesses:
+    """Exactnesss of names and arrays, by ``_key``, and the first expression that made a name ``ROUNDED``."""
 
-    names: dict[str, Kind] = field(default_factory=dict)
+    names: dict[str, Exactness] = field(default_factory=dict)
     causes: dict[str, Expression] = field(default_factory=dict)
 
-    def of(self, node: Expression) -> Kind:
+    def of(self, node: Expression) -> Exactness:
         """Return the kind of an expression; without recursion, its parts before itself."""
-        found: dict[int, Kind] = {}
+        found: dict[int, Exactness] = {}
         for part in reversed(list(walk(node))):
             found[id(part)] = self._kind(part, found)  # type: ignore[arg-type]
         return found[id(node)]
@@ -93,63 +78,61 @@ class _Kinds:
         """Let a statement raise the kind of its name; return whether it did."""
         kinds = [self.of(value) for value in giving.values]
         kind = max(kinds)
-        if giving.counts and kind is not Kind.EXACT:
-            kind = Kind.ROUNDED
-        if kind <= self.names.get(giving.key, Kind.EXACT):
+        if giving.counts and kind is not Exactness.EXACT:
+            kind = Exactness.ROUNDED
+        if kind <= self.names.get(giving.key, Exactness.EXACT):
             return False
         self.names[giving.key] = kind
-        if kind is Kind.ROUNDED:
+        if kind is Exactness.ROUNDED:
             self.causes[giving.key] = giving.values[kinds.index(max(kinds))]
         return True
 
-    def _kind(self, node: Expression, found: dict[int, Kind]) -> Kind:
+    def _kind(self, node: Expression, found: dict[int, Exactness]) -> Exactness:
         if isinstance(node, Number):
-            return Kind.EXACT if (node.value * 2.0**20).is_integer() else Kind.NEAREST
+            return Exactness.EXACT if (node.value * 2.0**20).is_integer() else Exactness.NEAREST
         if isinstance(node, Component6):
-            return Kind.ROUNDED
+            return Exactness.ROUNDED
         if isinstance(node, Negate):
             return found[id(node.operand)]
         if isinstance(node, Call):
             return self._of_call(node, [found[id(argument)] for argument in node.arguments])
         if isinstance(node, Chain):
             return _of_chain(node, found)
-        return self.names.get(node.key, Kind.EXACT) if isinstance(node, Name) else Kind.EXACT
+        return self.names.get(node.key, Exactness.EXACT) if isinstance(node, Name) else Exactness.EXACT
 
-    def _of_call(self, node: Call, arguments: list[Kind]) -> Kind:
-        key = node.name.key
-        if key in _OF_ARGUMENTS:
-            return max(arguments, default=Kind.EXACT)
-        if key == "ROUND":
-            return Kind.EXACT if len(arguments) == 1 else Kind.NEAREST
-        return _FUNCTIONS.get(key, self.names.get(_key(node), Kind.EXACT))
+    def _of_call(self, node: Call, arguments: list[Exactness]) -> Exactness:
+        function = FUNCTIONS.get(node.name.key)
+        if function is not None:
+            return function.exactness(arguments)
+        return self.names.get(_key(node), Exactness.EXACT)
 
 
-def _of_chain(node: Chain, found: dict[int, Kind]) -> Kind:
+def _of_chain(node: Chain, found: dict[int, Exactness]) -> Exactness:
     kind = found[id(node.first)]
     for sign, operand in node.rest:
         if isinstance(operand, Vector) or sign not in _COMPUTES:
-            return Kind.EXACT
+            return Exactness.EXACT
         kind = _COMPUTES[sign](kind, node.first, found[id(operand)], operand)
     return kind
 
 
-def _joined(left: Kind, first: Expression, right: Kind, operand: Expression) -> Kind:
-    return Kind.EXACT if max(left, right) is Kind.EXACT else Kind.ROUNDED
+def _joined(left: Exactness, first: Expression, right: Exactness, operand: Expression) -> Exactness:
+    return Exactness.EXACT if max(left, right) is Exactness.EXACT else Exactness.ROUNDED
 
 
-def _multiplied(left: Kind, first: Expression, right: Kind, operand: Expression) -> Kind:
+def _multiplied(left: Exactness, first: Expression, right: Exactness, operand: Expression) -> Exactness:
     if _is_power_of_two(operand):
         return left
-    return right if _is_power_of_two(first) and left is Kind.EXACT else _joined(left, first, right, operand)
+    return right if _is_power_of_two(first) and left is Exactness.EXACT else _joined(left, first, right, operand)
 
 
-def _divided(left: Kind, first: Expression, right: Kind, operand: Expression) -> Kind:
+def _divided(left: Exactness, first: Expression, right: Exactness, operand: Expression) -> Exactness:
     if _is_power_of_two(operand):
         return left
-    return Kind.NEAREST if max(left, right) is Kind.EXACT else Kind.ROUNDED
+    return Exactness.NEAREST if max(left, right) is Exactness.EXACT else Exactness.ROUNDED
 
 
-_COMPUTES: dict[str, Callable[[Kind, Expression, Kind, Expression], Kind]] = {
+_COMPUTES: dict[str, Callable[[Exactness, Expression, Exactness, Expression], Exactness]] = {
     "+": _joined,
     "-": _joined,
     "MOD": _joined,
@@ -172,7 +155,7 @@ def rounding_check(program: Program) -> Iterator[Diagnostic]:
         return
     kinds = _kinds(statements, [side for _, sides, _ in compared for side in sides])
     for place, sides, sign in compared:
-        rounded = next((side for side in sides if kinds.of(side) is Kind.ROUNDED), None)
+        rounded = next((side for side in sides if kinds.of(side) is Exactness.ROUNDED), None)
         if rounded is not None:
             yield _finding(place, sides, sign, rounded, kinds)
 
@@ -201,7 +184,7 @@ def _compared(statements: list[Statement]) -> Iterator[_Compared]:
 
 
 def _finding(
-    place: Expression, sides: tuple[Expression, ...], sign: str, rounded: Expression, kinds: _Kinds
+    place: Expression, sides: tuple[Expression, ...], sign: str, rounded: Expression, kinds: _Exactnesses
 ) -> Diagnostic:
     cause = kinds.causes.get(_key(rounded))
     shown = print_expression(rounded)
@@ -229,7 +212,7 @@ def _key(node: Expression | Name) -> str:
     return node.key if isinstance(node, Name) else ""
 
 
-def _kinds(statements: list[Statement], sides: Iterable[Expression]) -> _Kinds:
+def _kinds(statements: list[Statement], sides: Iterable[Expression]) -> _Exactnesses:
     """Return the kinds of the names that some expressions depend on."""
     by_key: dict[str, list[_Giving]] = {}
     for giving in _givings(statements):
@@ -242,7 +225,7 @@ def _kinds(statements: list[Statement], sides: Iterable[Expression]) -> _Kinds:
             for giving in by_key.get(key, ()):
                 givings.append(giving)
                 todo += [_key(name) for value in giving.values for name in _read(value)]
-    kinds = _Kinds()
+    kinds = _Exactnesses()
     for _ in range(MAX_PASSES):
         if not sum(kinds.take(giving) for giving in givings):
             break

@@ -2,8 +2,9 @@
 
 from robolang.syntax.ast import Call, Component6, Node
 from robolang.syntax.tree import walk
+from robolang.values.functions import FUNCTIONS
 
-_READS = frozenset({"IN", "HERE", "TIMER", "DIST"})
+_READS = frozenset(name for name, function in FUNCTIONS.items() if function.changes)
 
 
 def reads_state(node: Node | None) -> bool:

@@ -61,6 +61,7 @@ from robolang.syntax.ast import (
     Wrist,
     Zone,
 )
+from robolang.values.kinds import Kind
 from runtime.core.faults import Fault
 from runtime.core.units import MM
 from runtime.robot.model.load_rules import centre_fault, inertia_fault, load_fault, mass_fault
@@ -74,12 +75,12 @@ class StatementCheck:
     def __init__(self, symbols: CellSymbols, defined: Defined) -> None:
         self._symbols, self._defined = symbols, defined
         self._expressions = ExpressionCheck(symbols, defined)
-        self._selected: list[str | None] = []
+        self._selected: list[Kind | None] = []
 
     def check(self, node: Statement) -> Iterator[Diagnostic]:
         """Report what is wrong in a statement and in its branches."""
         if isinstance(node, If):
-            yield from self._expressions.must_be(node.condition, "a number")
+            yield from self._expressions.must_be(node.condition, Kind.NUMBER)
             yield from self._expressions.check(node.condition)
             for part in (node.then, node.otherwise):
                 if part is not None:
@@ -126,8 +127,8 @@ class StatementCheck:
                 yield Diagnostic(code="RBL301", message=f"point {node.text} is not taught", span=node.span, hint=hint)
             return
         kind = self._expressions.kind(node)
-        if kind is not None and kind != "a pose":
-            yield Diagnostic(code="RBL217", message=f"{kind} stands where a point is needed", span=node.span)
+        if kind is not None and kind is not Kind.POSE:
+            yield Diagnostic(code="RBL217", message=f"a pose is needed here, not {kind}", span=node.span)
 
     def _option(self, option: Option, word: str, *, joint: bool) -> Iterator[Diagnostic]:
         if isinstance(option, Wrist):
@@ -140,7 +141,7 @@ class StatementCheck:
 
     def _within(self, node: Expression, limit: Limit) -> Iterator[Diagnostic]:
         """Report a value that is no number, or out of a range."""
-        yield from self._expressions.must_be(node, "a number")
+        yield from self._expressions.must_be(node, Kind.NUMBER)
         value = fixed(node)
         if value is not None:
             most = self._symbols.max_speed_mm_s if limit is limits.SPEED else None
@@ -169,7 +170,7 @@ class StatementCheck:
                 if not self._defined.has_value(key) and key not in (self._symbols.points or ()):
                     yield from of_cell(node.value, names, node.word.lower(), self._symbols)
             else:
-                yield from self._expressions.must_be(node.value, "a pose")
+                yield from self._expressions.must_be(node.value, Kind.POSE)
         else:
             yield from self._within(node.value, limits.SETTINGS[node.word])
 
@@ -182,7 +183,7 @@ class StatementCheck:
                 yield Diagnostic(code="RBL220", message=message, span=vector.span)
                 return
         for part in (*node.cog.items, node.mass, *(node.inertia.items if node.inertia else ())):
-            yield from self._expressions.must_be(part, "a number")
+            yield from self._expressions.must_be(part, Kind.NUMBER)
         mass, cog = fixed(node.mass), _fixed(node.cog)
         inertia = None if node.inertia is None else _fixed(node.inertia)
         if mass is not None:
@@ -222,7 +223,7 @@ class StatementCheck:
     def _fits(self, name: Name, value: Expression) -> Iterator[Diagnostic]:
         """Report a value of another kind than a name holds."""
         kind = self._expressions.kind(value)
-        if kind is not None and (kind == "a text") is not name.key.endswith("$"):
+        if kind is not None and (kind is Kind.TEXT) is not name.key.endswith("$"):
             message = f"{kind} is assigned to {name.text}; names that end in $ hold texts, and only they do"
             yield Diagnostic(code="RBL217", message=message, span=value.span)
 
@@ -254,21 +255,21 @@ class StatementCheck:
         if node.word == "SELECT":
             self._selected.append(self._expressions.kind(node.value))
         else:
-            yield from self._expressions.must_be(node.value, "a number")
+            yield from self._expressions.must_be(node.value, Kind.NUMBER)
 
     def _out(self, node: Out | Pulse) -> Iterator[Diagnostic]:
         yield from self._within(node.index, limits.OUTPUT)
         if isinstance(node, Pulse):
             yield from self._within(node.seconds, limits.PULSE)
         else:
-            yield from self._expressions.must_be(node.value, "a number")
+            yield from self._expressions.must_be(node.value, Kind.NUMBER)
             yield from self._expressions.finite(node.value)
 
     def _delay(self, node: Delay) -> Iterator[Diagnostic]:
         yield from self._within(node.seconds, limits.DELAY)
 
     def _wait(self, node: Wait) -> Iterator[Diagnostic]:
-        yield from self._expressions.must_be(node.condition, "a number")
+        yield from self._expressions.must_be(node.condition, Kind.NUMBER)
         if node.timeout is not None:
             yield from self._within(node.timeout, limits.TIMEOUT)
 
@@ -279,7 +280,7 @@ class StatementCheck:
         yield from self._fits(node.variable, node.first)
         for limit in (node.first, node.last, node.step):
             if limit is not None:
-                yield from self._expressions.must_be(limit, "a number")
+                yield from self._expressions.must_be(limit, Kind.NUMBER)
         if node.step is None:
             return
         step = fixed(node.step)

@@ -6,8 +6,8 @@ from typing import NoReturn
 
 from robolang.core.diagnostics import Diagnostic
 from robolang.evaluation.evaluator import Evaluator, Nowhere
-from robolang.evaluation.values import Value
 from robolang.syntax.ast import Call, Expression, Name, Negate, Number, Text, walk
+from robolang.values.poses import Value
 from runtime.core.faults import Fault
 
 

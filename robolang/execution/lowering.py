@@ -3,7 +3,7 @@
 An effect of the interpreter and the facts of the project (taught points, cell) give a motion command, a payload or a
 waiting time. Errors are ``Fault`` values with a code; the session adds the place in the program.
 
-A place (``robolang.evaluation.values``) becomes a pose of the tool point in the world:
+A place (``robolang.values.poses``) becomes a pose of the tool point in the world:
 
     taught pose     X_world_frame X_pose, and where it was taught with another tool X inverse(X_taught) X_tool
     taught joints   forward kinematics of them, with the tool in use; the move ends at these very joints
@@ -19,9 +19,9 @@ from typing import cast
 import numpy as np
 
 from robolang.core.limits import DWELL
-from robolang.evaluation.values import Frame, Place, Shift, Six
 from robolang.interpreter.effects import MoveTo, SetHand, SetPayload
 from robolang.project.points import Point, PointStore
+from robolang.values.poses import Frame, Place, Shift, Six
 from runtime.cell.cell import CellSpec
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, inverse, pose_from_xyzrpy, xyzrpy_from_pose

@@ -8,10 +8,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from robolang.evaluation.values import Frame, Place, Six
 from robolang.execution import lowering
 from robolang.execution.lowering import Surroundings
 from robolang.project.points import PointStore
+from robolang.values.poses import Frame, Place, Six
 from runtime.cell.cell import CellSpec
 from runtime.cell.signals import Signals
 from runtime.core.frames import Array

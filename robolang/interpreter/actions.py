@@ -11,8 +11,7 @@ from dataclasses import replace
 from typing import Any, TypeAlias, TypeGuard
 
 from robolang.core import limits
-from robolang.evaluation.evaluator import Evaluator, finite
-from robolang.evaluation.values import Frame, Place, Shift, Six
+from robolang.evaluation.evaluator import Evaluator
 from robolang.interpreter import effects
 from robolang.interpreter.effects import Effect, origin
 from robolang.interpreter.scope import Scopes
@@ -42,6 +41,8 @@ from robolang.syntax.ast import (
     WristMode,
     Zone,
 )
+from robolang.values.functions import finite
+from robolang.values.poses import Frame, Place, Shift, Six
 from runtime.core.faults import Fault
 
 Action: TypeAlias = Moving | Load | LoadNamed | Hand | Wrist | Seam | Setting | Out | Pulse

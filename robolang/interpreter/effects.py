@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 from robolang.core.source import Span
-from robolang.evaluation.values import Frame, Place
 from robolang.syntax.ast import Line, Statement
+from robolang.values.poses import Frame, Place
 from runtime.core.program_line import ProgramLine
 
 Way = Literal["line", "joint", "arc"]

@@ -22,8 +22,7 @@ from collections.abc import Callable, Collection, Generator
 
 from robolang.analysis.state_reads import reads_state
 from robolang.core import limits
-from robolang.evaluation.evaluator import Evaluator, Nowhere, World, finite, shown
-from robolang.evaluation.values import Place
+from robolang.evaluation.evaluator import Evaluator, Nowhere, World
 from robolang.interpreter.actions import ACTIONS, Action, Actions
 from robolang.interpreter.branch_oracle import Decisions
 from robolang.interpreter.effects import Drain, Effect, Halt, Origin, Pass, Show, origin
@@ -59,6 +58,8 @@ from robolang.syntax.ast import (
 )
 from robolang.syntax.blocks import Structure, structure_of
 from robolang.syntax.tree import Node
+from robolang.values.functions import finite, shown
+from robolang.values.poses import Place
 from runtime.core.faults import Fault
 from runtime.core.program_line import named
 

@@ -17,7 +17,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from robolang.core.limits import SIZE
-from robolang.evaluation.values import Place, Value, kind_of
+from robolang.values.poses import Place, Value, kind_of
 from runtime.core.faults import Fault
 
 MAX_CELLS = 1_000_000

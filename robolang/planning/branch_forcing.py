@@ -26,8 +26,9 @@ from robolang.syntax.ast import (
     Wait,
 )
 from robolang.syntax.tree import Node
+from robolang.values.functions import FUNCTIONS
 
-_OUTSIDE = frozenset({"IN", "TIMER", "ERR"})
+_OUTSIDE = frozenset(name for name, function in FUNCTIONS.items() if function.outside)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

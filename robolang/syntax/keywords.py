@@ -10,6 +10,7 @@ import unicodedata
 from collections.abc import Iterable
 
 from robolang.syntax import other_languages
+from robolang.values import functions
 
 _INSTRUCTIONS = """
     MOVE MOVEJ MOVEC APPROACH DEPART LOAD HAND WRIST SEAM SPEED SPEEDJ ACCEL OVERRIDE ZONE TOOL FRAME OUT WAIT DELAY
@@ -27,21 +28,9 @@ _SIGN_WORDS = ("NOT", "AND", "OR", "XOR", "MOD")
 INNER_WORDS = ("ON", "OFF", *OPTIONS, "KEEP", "AUTO", "HOLD", *COMPONENTS, *_BETWEEN, *_SIGN_WORDS)
 """Words that stand behind an instruction, in the order in which messages list them."""
 KEYWORDS = INSTRUCTIONS | frozenset(INNER_WORDS)
-VALUES = frozenset({"HERE", "TIMER", "ERR"})
-"""Words that are a value by themselves."""
-_OF_ONE = "ABS SGN INT SQR SIN COS TAN DEG RAD STR$ VAL LEN IN"
-ARGUMENTS = {
-    **dict.fromkeys(_OF_ONE.split(), (1, 1)),
-    "ATN2": (2, 2),
-    "DIST": (2, 2),
-    "MIN": (1, 100),
-    "MAX": (1, 100),
-    "ROUND": (1, 2),
-    "POSE": (6, 6),
-    "JOINT": (2, 7),
-}
-"""Functions of the language, with how many arguments each takes: the fewest and the most."""
-FUNCTIONS = frozenset(ARGUMENTS)
+FUNCTIONS = frozenset(name for name, function in functions.FUNCTIONS.items() if function.parameters)
+VALUES = frozenset(functions.FUNCTIONS) - FUNCTIONS
+"""Functions without parameters: words that are a value by themselves."""
 _FORMS = {
     "MOVE": "MOVE point [, SPEED mm/s] [, ACCEL %] [, TIME s] [, ZONE mm] [, WRIST mode]",
     "MOVEJ": "MOVEJ point [, SPEED %] [, ACCEL %] [, TIME s] [, ZONE mm]",

@@ -16,7 +16,7 @@ PROGRAMS = Path(__file__).parents[2] / "programs"
 OUT = Path("out/fuzz")
 
 with atheris.instrument_imports(include=["robolang", "runtime"]):
-    from robolang.syntax.keywords import ARGUMENTS, KEYWORDS, VALUES
+    from robolang.syntax.keywords import FUNCTIONS, KEYWORDS, VALUES
     from tests.fuzz import targets
 
 _TOML = (
@@ -116,7 +116,7 @@ def main():
     seconds = sys.argv[2] if len(sys.argv) > 2 else "60"
     kept = OUT / target
     kept.mkdir(parents=True, exist_ok=True)
-    words = _WORDS.get(target, (*KEYWORDS, *ARGUMENTS, *VALUES, *_SIGNS))
+    words = _WORDS.get(target, (*KEYWORDS, *FUNCTIONS, *VALUES, *_SIGNS))
     dictionary = OUT / f"{target}.dict"
     dictionary.write_text("".join(f'"{word}"\n' for word in words), encoding="utf-8")
     options = [

@@ -11,7 +11,7 @@ from dataclasses import replace
 from hypothesis import strategies as st
 
 from robolang.syntax import ast
-from robolang.syntax.keywords import ARGUMENTS, NEW, RESERVED, VALUES
+from robolang.syntax.keywords import FUNCTIONS, NEW, RESERVED, VALUES
 
 
 def make(kind, **parts):
@@ -48,7 +48,7 @@ names = (
 parts = st.sampled_from(["X", "y", "Z", "rx", "RY", "RZ", "Q"]).map(lambda text: ast.Name(text=text))
 strings = st.text(st.characters(categories=["L", "N", "P", "S"], include_characters=' "') | st.just('"'), max_size=8)
 words = st.sampled_from(sorted(VALUES)).map(lambda word: ast.Call(name=ast.Name(text=word)))
-functions = st.sampled_from(sorted(ARGUMENTS)).map(lambda word: ast.Name(text=word))
+functions = st.sampled_from(sorted(FUNCTIONS)).map(lambda word: ast.Name(text=word))
 
 LEVELS = (("OR", "XOR"), ("AND",), ("+", "-"), ("*", "/", "MOD"), ("^",))
 COMPARISONS = ("=", "<>", "<", ">", "<=", ">=")

@@ -3,7 +3,7 @@ import math
 import pytest
 
 from robolang.evaluation.evaluator import MAX_SHIFTS, MAX_TEXT, Evaluator, Nowhere
-from robolang.evaluation.values import Place, Shift
+from robolang.values.poses import Place, Shift
 from runtime.core.faults import Fault
 from tests.robolang.helpers import parsed
 

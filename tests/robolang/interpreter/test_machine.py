@@ -3,12 +3,12 @@ from pathlib import Path
 import pytest
 
 from robolang.core.source import Span
-from robolang.evaluation.values import Place, Shift
 from robolang.interpreter import machine
 from robolang.interpreter.effects import Drain, MoveTo, Origin, Pass, SetHand, SetPayload, SetSeam, SetWrist
 from robolang.interpreter.machine import MAX_CALLS, ProgramFault, execute
 from robolang.syntax.parser import parse
 from robolang.syntax.unparse import describe
+from robolang.values.poses import Place, Shift
 from runtime.core.program_line import named
 from tests.robolang.helpers import parsed, source
 from tests.robolang.running import POINTS, World, fault, ran, shows

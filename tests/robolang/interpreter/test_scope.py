@@ -2,8 +2,8 @@ import pytest
 
 import robolang.interpreter.scope as scope_module
 from robolang.core.limits import SIZE
-from robolang.evaluation.values import Place, Shift
 from robolang.interpreter.scope import WAY, Scopes
+from robolang.values.poses import Place, Shift
 from runtime.core.faults import Fault
 
 MAX_ELEMENTS = int(SIZE.high) + 1

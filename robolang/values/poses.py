@@ -1,11 +1,14 @@
-"""Values of poses while a program runs: where they come from and what was added, not yet numbers.
+"""Poses while a program runs: what a pose is made of and which offsets were added, not yet its numbers.
 
-``P1 + (0, 0, 50)`` needs the taught point, perhaps the kinematics of the robot, and a frame of the cell, so it is kept
-as it is written until the move is lowered (``lowering``) or a component of it is asked for. Pure data; mm and deg.
+``P1 + (0, 0, 50)`` needs the taught point, perhaps the kinematics of the robot, and a frame of the cell, so it stays
+symbolic until the move is lowered (``robolang.execution.lowering``) or the program reads a component. Pure data; mm and
+deg.
 """
 
 from dataclasses import dataclass, replace
 from typing import Literal
+
+from robolang.values.kinds import Kind
 
 Six = tuple[float, float, float, float, float, float]
 Frame = str | Six
@@ -14,7 +17,7 @@ Frame = str | Six
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shift:
-    """A way and a turn: along the axes of ``frame``, or of the tool where it then is."""
+    """An offset and a rotation: along the axes of ``frame``, or of the tool where it then is."""
 
     kind: Literal["frame", "tool"]
     by: Six
@@ -35,14 +38,14 @@ class Place:
     shifts: tuple[Shift, ...] = ()
 
     def shifted(self, shift: Shift) -> "Place":
-        """Return the place with one more shift; two ways in a row along the same axes are one."""
+        """Return the place with one more shift; two offsets in a row along the same axes become one."""
         if self.shifts and (both := _joined(self.shifts[-1], shift)) is not None:
             return replace(self, shifts=(*self.shifts[:-1], both))
         return replace(self, shifts=(*self.shifts, shift))
 
 
 def _joined(one: Shift, other: Shift) -> Shift | None:
-    """Return the sum of two ways without a turn along the same axes; None when they have no sum."""
+    """Return the sum of two offsets along the same axes; None where one of them rotates or the axes differ."""
     if one.kind != other.kind or one.frame != other.frame or any(one.by[3:]) or any(other.by[3:]):
         return None
     x, y, z = (a + b for a, b in zip(one.by[:3], other.by[:3], strict=True))
@@ -53,6 +56,6 @@ Value = float | str | Place
 """What a variable can hold."""
 
 
-def kind_of(value: Value) -> str:
-    """Return what a value is, in words."""
-    return "a number" if isinstance(value, float) else "a text" if isinstance(value, str) else "a pose"
+def kind_of(value: Value) -> Kind:
+    """Return the kind of a value."""
+    return Kind.NUMBER if isinstance(value, float) else Kind.TEXT if isinstance(value, str) else Kind.POSE
