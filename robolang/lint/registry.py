@@ -9,11 +9,13 @@ robolang.lint.pages``, a page.
 
 from functools import cache
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import robolang.core.codes  # noqa: F401 - fills the registry of codes
-from robolang.lint.rule import Rule
-from robolang.lint.rules import meaning, motion, planning, point, run, text
 from runtime.core.faults import Code, all_codes
+
+if TYPE_CHECKING:
+    from robolang.lint.rule import Rule
 
 CHECKED = ("RBL1", "RBL2", "RBL3", "RBL40", "RBL413", "RBL415", "RBL507", "RBL534")
 """Beginnings of the codes that reading and checking a program can find."""
@@ -66,8 +68,11 @@ def codes() -> list[Code]:
 
 
 @cache
-def rules() -> MappingProxyType[str, Rule]:
+def rules() -> "MappingProxyType[str, Rule]":
     """Return the rules that have a page, by code in numeric order; ``ValueError`` for a code with two."""
+    # Pages are long texts that a check without findings never shows: they are read when one is asked for.
+    from robolang.lint.rules import meaning, motion, planning, point, run, text
+
     found: dict[str, Rule] = {}
     for module in (text, meaning, point, motion, planning, run):
         for rule in module.RULES:
@@ -77,6 +82,6 @@ def rules() -> MappingProxyType[str, Rule]:
     return MappingProxyType({code: found[code] for code in sorted(found)})
 
 
-def rule(code: str) -> Rule | None:
+def rule(code: str) -> "Rule | None":
     """Return the page of a code; None when it has none."""
     return rules().get(code)

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import signal
 import stat
@@ -14,6 +15,7 @@ from typer.testing import CliRunner
 from robolang.cli import check_job
 from robolang.cli.main import app
 from runtime.core.faults import Fault
+from tests.messages import fields, heads
 from tests.robolang.cli.commands import ROOT, places, robolang
 from tests.steps import HANG_S
 
@@ -34,9 +36,13 @@ def test_what_is_certain_is_corrected_in_the_file(folder):
     result = robolang("check", "--fix", code=1)
     assert (folder / "bad.rbl").read_text() == BETTER
     assert places(result.stdout) == [(3, 9, "RBL301")]
-    assert result.stderr == (
-        "bad.rbl: fixed 1 x RBL111 unexpected-token, 2 x RBL115 number-malformed, 1 x RBL190 unused-suppression\n"
-    )
+    counts = re.findall(r"(\d) x (RBL\d+) ([a-z-]+)", result.stderr)
+    assert counts == [
+        ("1", "RBL111", "unexpected-token"),
+        ("2", "RBL115", "number-malformed"),
+        ("1", "RBL190", "unused-suppression"),
+    ]
+    assert result.stderr.startswith("bad.rbl: ")
     assert (folder / "good.rbl").read_text() == "MOVE P1\n"
 
 
@@ -104,7 +110,7 @@ def test_a_file_that_cannot_be_written_is_exit_code_4(folder, monkeypatch):
 
     monkeypatch.setattr(check_job, "store", refuse)
     result = robolang("check", "--fix", code=4)
-    assert "RBL706 cannot write bad.rbl" in result.stderr
+    assert {"RBL706", "bad.rbl"} <= fields(result.stderr)
     assert "fixed" not in result.stderr
     assert (folder / "bad.rbl").read_text() == BAD
 
@@ -118,7 +124,7 @@ def test_a_file_that_changed_meanwhile_is_left_alone(gone, folder, monkeypatch):
         return real(source, find)
 
     monkeypatch.setattr(check_job, "fix_all", fix_all)
-    assert "RBL706 bad.rbl has changed since it was read" in robolang("check", "--fix", code=4).stderr
+    assert {"RBL706", "bad.rbl"} <= fields(robolang("check", "--fix", code=4).stderr)
     assert gone or (folder / "bad.rbl").read_text() == "MOVE P2\n"
 
 
@@ -142,7 +148,7 @@ def test_a_program_from_the_standard_input_goes_to_the_standard_output():
     assert result.exit_code == 1
     assert result.stdout_bytes == BETTER.replace("\n", "\r\n").encode()
     assert "<stdin>:3:9: error RBL301" in result.stderr
-    assert "<stdin>: fixed 1 x RBL111" in result.stderr
+    assert "1 x RBL111" in result.stderr
 
 
 def test_a_program_without_fixes_goes_to_the_standard_output_as_it_is():
@@ -187,7 +193,8 @@ def watched(monkeypatch, *changes):
 def test_watch_checks_again_after_a_change(folder, monkeypatch):
     watched(monkeypatch, lambda: (folder / "bad.rbl").write_text("MOVE P8\n"), lambda: (folder / "bad.rbl").unlink())
     result = robolang("check", "--watch", "--output-format", "concise")
-    assert result.stdout.splitlines()[-1] == "bad.rbl:1:6: error RBL301 point P8 is not taught"
+    assert heads(result.stdout)[-1] == "bad.rbl:1:6: error RBL301"
+    assert "P8" in result.stdout.splitlines()[-1]
     assert result.stderr.count("watching; Ctrl-C ends") == 3
 
 

@@ -1,16 +1,19 @@
 """What ``robolang check`` reports: selection, configuration, forms, exit codes, standard input."""
 
+import importlib.util
 import json
 import os
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
 from robolang.cli.main import app
 from tests.campaign import some
+from tests.messages import fields, heads
 from tests.robolang.cli.commands import ROOT, flat, places, robolang, shell
 from tests.steps import HANG_S
 
@@ -70,16 +73,16 @@ def test_an_error_of_syntax_is_not_ignored_by_a_beginning(folder):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--select", "RBL9999"), "RBL703 --select: 'RBL9999' is no rule"),
-        (("--ignore", "pont-undefined"), "RBL703 --ignore: 'pont-undefined' is no rule; did you mean point-undefined?"),
-        (("--extend-select", "RBL19x"), "there are RBL190, RBL191"),
-        (("--output-format", "xml"), "RBL703 --output-format: there is no form 'xml'; known: full, concise, json,"),
-        (("--statistics", "--output-format", "sarif"), "RBL703 --statistics: counts cannot be printed as sarif"),
-        (("--watch", "-"), "RBL703 --watch: the standard input cannot be watched"),
+        (("--select", "RBL9999"), "RBL703 --select RBL9999"),
+        (("--ignore", "pont-undefined"), "RBL703 --ignore pont-undefined"),
+        (("--extend-select", "RBL19x"), "RBL190 RBL191"),
+        (("--output-format", "xml"), "RBL703 --output-format xml"),
+        (("--statistics", "--output-format", "sarif"), "RBL703 --statistics"),
+        (("--watch", "-"), "RBL703 --watch"),
     ],
 )
 def test_an_option_that_cannot_be_is_a_usage_error(words, said):
-    assert said in flat(robolang("check", *words, code=2).stderr)
+    assert set(said.split()) <= fields(flat(robolang("check", *words, code=2).stderr))
 
 
 def test_a_configuration_file_selects(folder):
@@ -102,8 +105,8 @@ def test_a_wrong_configuration_is_exit_code_2_at_its_place(folder):
     (folder / "robolang.toml").write_text('[lint]\nignor = ["RBL3"]\n')
     result = robolang("check", code=2)
     assert result.stdout == ""
-    assert "robolang.toml:2:1: error RBL707 'lint.ignor' is not a key of this file" in result.stderr
-    assert "did you mean 'ignore'?" in result.stderr
+    assert [Path(head).name for head in heads(result.stderr)] == ["robolang.toml:2:1: error RBL707"]
+    assert {"lint.ignor", "ignore"} <= fields(result.stderr)
 
 
 # --- exit codes ------------------------------------------------------------------------------------------------------
@@ -135,7 +138,7 @@ def test_the_form_is_an_option_or_a_variable(monkeypatch):
     assert len(json.loads(robolang("check", code=1).stdout)) == 3
     assert robolang("check", "--output-format", "concise", code=1).stdout.count("\n") == 3
     monkeypatch.setenv("ROBOLANG_OUTPUT_FORMAT", "yaml")
-    assert "there is no form 'yaml'" in flat(robolang("check", code=2).stderr)
+    assert "yaml" in fields(robolang("check", code=2).stderr)
     monkeypatch.setenv("ROBOLANG_OUTPUT_FORMAT", "")
     assert "help: " in robolang("check", code=1).stdout
 
@@ -188,7 +191,7 @@ def test_a_service_names_files_from_its_checkout(variable, folder, monkeypatch):
 
 def test_a_program_comes_from_the_standard_input():
     assert piped("MOVE P1\n", "-").stdout == ""
-    assert piped("MOVE P9\n", "-", code=1).stdout.startswith("<stdin>:1:6: error RBL301 point P9 is not taught")
+    assert piped("MOVE P9\n", "-", code=1).stdout.startswith("<stdin>:1:6: error RBL301 ")
 
 
 def test_its_name_leads_to_its_points_and_its_configuration(folder):
@@ -214,7 +217,8 @@ def test_files_may_stand_beside_it():
 def test_a_pipe_of_the_shell_is_read(folder):
     result = shell("check", "-", "--output-format", "concise", cwd=folder, input="MOVE P9\n")
     assert result.returncode == 1
-    assert result.stdout == "<stdin>:1:6: error RBL301 point P9 is not taught\n"
+    assert heads(result.stdout) == ["<stdin>:1:6: error RBL301"]
+    assert result.stdout.count("\n") == 1
 
 
 def test_a_reader_that_leaves_changes_no_exit_code(folder):
@@ -257,7 +261,15 @@ def test_other_commands_are_not_imported(folder):
     done = python(f"{code}; from robolang.__main__ import main; main()", "check", "bad.rbl", cwd=folder)
     assert done.returncode == 1
     assert "'robolang.cli.check_job'" in done.stderr
-    for name in ("cli.main", "cli.run", "cli.identify", "lint.text_rules", "output.sarif", "storage"):
+    for name in (
+        "cli.main",
+        "cli.commands.run",
+        "cli.commands.identify",
+        "lint.rules.text",
+        "lint.reporters.sarif",
+        "core.storage",
+    ):
+        assert importlib.util.find_spec(f"robolang.{name}")
         assert f"'robolang.{name}'" not in done.stderr
     for name in ("rich", "numpy"):
         assert f"'{name}'" not in done.stderr
@@ -278,7 +290,8 @@ def test_a_point_that_the_program_does_not_name_is_found_in_the_points_file(fold
     (folder / "bad.rbl").write_text("MOVE P1\n")
     (folder / "bad.points.toml").write_text(POINTS)
     said = robolang("check").stdout
-    assert "bad.points.toml:4:1: warning RBL224 point Old is taught and the program does not name it" in said
+    assert heads(said) == ["bad.points.toml:4:1: warning RBL224"]
+    assert "Old" in said
     assert codes("--strict") == ["RBL224"]
     assert codes("--ignore", "RBL224", code=0) == []
     (item,) = json.loads(robolang("check", "--output-format", "json").stdout)

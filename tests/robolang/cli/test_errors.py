@@ -9,6 +9,7 @@ from robolang.cli.errors import exit_code, reader_may_leave, reported, say
 from robolang.core.diagnostics import safe
 from runtime.core.faults import Fault, all_codes
 from runtime.core.tomlfile import Source
+from tests.messages import heads
 
 
 def left_with(error):
@@ -47,19 +48,17 @@ def test_every_registered_code_has_the_exit_code_of_its_group(code):
 )
 def test_exit_codes_by_name(code, expected, capsys):
     assert exit_code(code) == expected
-    assert left_with(Fault(code, "what is wrong")) == expected
+    assert left_with(Fault(code, "wrong")) == expected
     said = capsys.readouterr()
     assert said.out == ""
-    assert said.err.startswith(f"error {code} what is wrong\n  help: ")
+    assert said.err.startswith(f"error {code} wrong\n  help: ")
 
 
 def test_a_fault_of_a_file_is_said_with_its_place_and_its_line(capsys):
     with pytest.raises(Fault) as caught:
-        Source("a.toml", "x = 1\ny = \x1b2\n").fail("RBL605", "too large", "make it smaller", ["y"])
+        Source("a.toml", "x = 1\ny = \x1b2\n").fail("RBL605", "large", "shrink", ["y"])
     assert say(caught.value) == 2
-    assert capsys.readouterr().err == (
-        "a.toml:2:1: error RBL605 too large\n   2 | y = \ufffd2\n     | ^\n  help: make it smaller\n"
-    )
+    assert capsys.readouterr().err == ("a.toml:2:1: error RBL605 large\n   2 | y = \ufffd2\n     | ^\n  help: shrink\n")
 
 
 @pytest.mark.parametrize("error", [ValueError("x"), RecursionError("deep"), OSError(errno.EPERM, "no"), MemoryError()])
@@ -67,7 +66,8 @@ def test_anything_else_is_an_internal_error_without_a_trace(error, capsys, monke
     monkeypatch.delenv("ROBOLANG_DEBUG", raising=False)
     assert left_with(error) == 70
     said = capsys.readouterr().err
-    assert said.startswith(f"error RBL900 internal error: {type(error).__name__}")
+    assert said.startswith("error RBL900 ")
+    assert type(error).__name__ in said
     assert "ROBOLANG_DEBUG=1" in said
     assert "Traceback" not in said
 
@@ -86,7 +86,7 @@ def test_a_fault_that_cannot_be_shown_is_an_internal_error(error, capsys, monkey
         monkeypatch.setattr(errors, "safe", lambda text: safe(text) if next(shown, None) is None else 1 / 0)
     assert left_with(error) == 70
     said = capsys.readouterr().err
-    assert said.count("error RBL900 internal error: ") == 1
+    assert heads(said) == ["error RBL900"]
     assert "Traceback" not in said
 
 
@@ -109,8 +109,10 @@ def test_a_keyboard_interrupt_is_exit_code_130(capsys):
 
 
 def test_a_full_output_is_a_storage_fault(capsys):
-    assert left_with(OSError(errno.ENOSPC, "No space left on device")) == 4
-    assert "RBL706 cannot write the standard output: No space left on device" in capsys.readouterr().err
+    assert left_with(OSError(errno.ENOSPC, "full")) == 4
+    said = capsys.readouterr().err
+    assert heads(said) == ["error RBL706"]
+    assert "full" in said
 
 
 def test_a_reader_that_leaves_is_no_error(capsys):

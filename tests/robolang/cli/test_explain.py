@@ -3,7 +3,8 @@ import re
 import pytest
 
 import robolang.project.project
-from runtime.core.faults import all_codes
+from runtime.core.faults import all_codes, lookup
+from tests.messages import fields
 from tests.robolang.cli.commands import ROOT, flat, robolang, shell
 
 
@@ -11,7 +12,7 @@ from tests.robolang.cli.commands import ROOT, flat, robolang, shell
 def test_a_code_is_explained(word):
     text = robolang("explain", word).stdout
     assert text.startswith("RBL412 wrist-singularity\n\n")
-    assert "What to do: Teach a via point away from J5 = 0" in text
+    assert flat(lookup("RBL412").remedy) in flat(text)
     assert max(map(len, text.splitlines())) <= 80
 
 
@@ -19,7 +20,7 @@ def test_a_code_is_explained(word):
 def test_every_code_has_a_meaning_and_says_what_to_do(entry):
     words = flat(robolang("explain", entry.code).stdout)
     assert flat(entry.meaning) in words
-    assert f"What to do: {flat(entry.remedy)}" in words
+    assert flat(entry.remedy) in words
     assert len(entry.meaning) > 20
     assert len(entry.remedy) >= 10
 
@@ -36,17 +37,15 @@ def test_every_code_has_a_meaning_and_says_what_to_do(entry):
 )
 def test_an_unknown_code_is_answered_with_the_nearest(word, near):
     words = flat(robolang("explain", word, code=2).stderr)
-    found = re.search(r"did you mean (\S+)\?", words)
-    assert f"there is no code '{word}'" in words
-    assert found
-    assert found[1] == near
+    assert {"RBL703", word} <= fields(words)
+    assert re.findall(r"[\w-]+", words)[-1] == near
 
 
 @pytest.mark.parametrize("word", ["", "zzzzzz", "RBL", "٤١٢"])
 def test_a_word_like_no_code_is_refused(word):
     said = robolang("explain", word, code=2).stderr
     assert "RBL703" in said
-    assert "did you mean" not in said
+    assert not {entry.code for entry in all_codes()} & fields(said) - {"RBL703"}
 
 
 def test_all_codes_are_listed_in_an_aligned_table():

@@ -13,6 +13,7 @@ from robolang.core import storage
 from robolang.core.storage import write_folder
 from runtime.core.faults import Fault
 from runtime.robot.files.loader import load_builtin
+from tests.messages import fields
 from tests.robolang.cli.commands import ROOT, flat, places, robolang, shell
 
 PICK = ROOT / "programs/pick_and_place.rbl"
@@ -103,9 +104,9 @@ def test_every_data_table_of_the_plc_is_one_stretch_of_the_neutral_one(made):
 
 def test_the_summary_fits_80_columns_and_says_what_was_done(made):
     _, result = made
-    assert "puma560: pulse tables in steps of 10 ms" in result.stdout
+    assert {"puma560", "10", "ms"} <= fields(result.stdout.splitlines()[0])
     assert max(map(len, result.stdout.splitlines()[:-1])) <= 80  # the last names the folder
-    for words in ("30 MOVE P1", "40 HAND ON", "6 markers between them", "largest path error 0.0"):
+    for words in ("30 MOVE P1", "40 HAND ON", "6 markers"):
         assert words in flat(result.stdout)
 
 
@@ -158,7 +159,7 @@ def test_what_a_table_cannot_carry_is_refused_at_its_place(tmp_path):
     points = "schema = 1\n[points.P1]\njoints = [0, 90, -180, 0, 45, 0]\n"
     path = program(tmp_path, "10 MOVE P1\n", points)
     result = robolang("export", "pulses", path, "-o", tmp_path / "x", "--channels", "scara", code=3)
-    assert "taught as joint angles" in result.stderr
+    assert [(line, code) for line, _, code in places(result.stderr)] == [(1, "RBL431")]
 
 
 def test_a_program_with_errors_is_not_exported(tmp_path):
@@ -177,18 +178,18 @@ def test_an_empty_program_gives_a_manifest_alone(tmp_path):
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (("--step", "7ms"), "7 ms does not divide a second"),
-        (("--step", "fast"), "not a time such as 10ms"),
-        (("--step", "0.1ms"), "between 1 and 1000 ms"),
-        (("--plc", "s7"), "not one of f174, none"),
-        (("--fmin", "0"), "between 1 and 100000"),
-        (("--fmin", "nan"), "between 1 and 100000"),
-        (("--plot", "x.png"), ".svg or .html"),
+        (("--step", "7ms"), "7 ms"),
+        (("--step", "fast"), "10ms"),
+        (("--step", "0.1ms"), "1 1000 ms"),
+        (("--plc", "s7"), "f174"),
+        (("--fmin", "0"), "1 100000"),
+        (("--fmin", "nan"), "1 100000"),
+        (("--plot", "x.png"), ".svg .html"),
     ],
 )
 def test_options_that_cannot_be_are_refused(tmp_path, words, says):
     result = robolang("export", "pulses", PICK, "-o", tmp_path / "x", *words, code=2)
-    assert says in flat(result.stderr)
+    assert set(says.split()) <= fields(flat(result.stderr))
     assert not (tmp_path / "x").exists()
 
 
@@ -196,10 +197,11 @@ def test_a_channel_file_without_a_joint_is_refused_at_its_end(tmp_path):
     channels = tmp_path / "f.toml"
     channels.write_text('schema = 1\n[[channels]]\njoint = "J1"\n', "utf-8")
     result = robolang("export", "pulses", PICK, "-o", tmp_path / "x", "--channels", channels, code=2)
-    assert "RBL608 joint 'J2' of the puma560 has no channel" in result.stderr
+    assert {"RBL608", "J2", "puma560"} <= fields(result.stderr)
     channels.write_text('schema = 1\nmechanism = "delta"\n[[channels]]\njoint = "J1"\n', "utf-8")
     result = robolang("export", "pulses", PICK, "-o", tmp_path / "x", "--channels", channels, code=2)
-    assert f"{channels}:2:1: error RBL610 'delta' is no built-in mechanism" in result.stderr
+    assert f"{channels}:2:1: error RBL610 " in result.stderr
+    assert "delta" in fields(result.stderr)
 
 
 def test_a_mechanism_file_beside_the_channels_is_used(tmp_path):
@@ -250,7 +252,7 @@ def test_a_full_disk_leaves_what_was_there(tmp_path, monkeypatch, there):
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr("robolang.core.storage.os.fsync", full)
-    with pytest.raises(Fault, match="No space left") as caught:
+    with pytest.raises(Fault, match=os.strerror(errno.ENOSPC)) as caught:
         write_folder(folder, {"manifest.json": b"new", "1_line2_J1.csv": b"row"}, written_here)
     assert caught.value.code == "RBL706"
     assert [item.name for item in tmp_path.iterdir()] == (["x"] if there else [])
@@ -275,7 +277,7 @@ def test_a_folder_that_cannot_take_its_name_is_put_back(tmp_path, monkeypatch):
     monkeypatch.setattr(type(folder), "replace", refuse)
     for exchange in (lambda one, other: False, refuse_exchange):  # a system without an exchange in one step, and one
         monkeypatch.setattr(storage, "_exchange", exchange)
-        with pytest.raises(Fault, match="cannot write"):
+        with pytest.raises(Fault, match="RBL706"):
             write_folder(folder, {"manifest.json": b"new"}, written_here)
         assert (folder / "manifest.json").read_bytes() == b"old"
         assert [item.name for item in tmp_path.iterdir()] == ["x"]
@@ -324,4 +326,4 @@ def test_what_has_no_value_is_refused_at_its_statement_with_the_calls_that_led_t
     path = program(tmp_path, "3 X = 0\n4 CALL S\n5 END\n6 SUB S\n7 IF X = 0 THEN PRINT 1 / X\n8 ENDSUB\n")
     result = robolang("export", "pulses", path, "-o", tmp_path / "out", code=3)
     assert places(result.stderr) == [(5, 17, "RBL501")]
-    assert f"{path}:2:3: note: called here" in result.stderr
+    assert f"{path}:2:3: note: " in result.stderr

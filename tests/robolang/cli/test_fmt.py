@@ -10,7 +10,8 @@ from typer.testing import CliRunner
 from robolang.cli.main import app
 from robolang.cli.rewrite import unified
 from robolang.core.source import MAX_BYTES
-from tests.robolang.cli.commands import ROOT, flat, places, robolang, shell
+from tests.messages import fields, numbers
+from tests.robolang.cli.commands import ROOT, places, robolang, shell
 
 BAD, GOOD = "move p1 'x\nhand  on'y\n", "MOVE p1  'x\nHAND ON  'y\n"
 
@@ -34,9 +35,9 @@ def piped(text, *words, code=0):
 
 def test_files_are_rewritten_and_counted(folder):
     result = robolang("fmt", "bad.rbl", "good.rbl")
-    assert (result.stdout, result.stderr) == ("1 file reformatted, 1 file left unchanged\n", "")
+    assert (numbers(result.stdout), result.stderr) == ([1, 1], "")
     assert (folder / "bad.rbl").read_text() == GOOD
-    assert robolang("fmt", "bad.rbl", "good.rbl").stdout == "2 files left unchanged\n"
+    assert numbers(robolang("fmt", "bad.rbl", "good.rbl").stdout) == [2]
 
 
 def test_a_file_that_is_as_it_should_be_is_not_touched(folder):
@@ -50,22 +51,23 @@ def test_folders_are_searched_for_programs(folder):
     (folder / ".git").mkdir()
     for name in ("a/c.rbl", "a/b/d.rbl", "a/e.txt", ".git/f.rbl"):
         (folder / name).write_text(BAD)
-    assert robolang("fmt").stdout == "3 files reformatted, 1 file left unchanged\n"
+    assert numbers(robolang("fmt").stdout) == [3, 1]
     assert (folder / "a" / "b" / "d.rbl").read_text() == GOOD
     assert (folder / "a" / "e.txt").read_text() == (folder / ".git" / "f.rbl").read_text() == BAD
-    assert robolang("fmt", "a/e.txt", "a", "a/b").stdout == "1 file reformatted, 2 files left unchanged\n"
+    assert numbers(robolang("fmt", "a/e.txt", "a", "a/b").stdout) == [1, 2]
 
 
 def test_nothing_to_format_is_said(folder):
     (folder / "empty").mkdir()
-    assert robolang("fmt", "empty").stdout == "no program (*.rbl) found\n"
+    assert "*.rbl" in robolang("fmt", "empty").stdout
 
 
 def test_check_writes_nothing(folder):
     result = robolang("fmt", "--check", code=1)
-    assert result.stdout == "would reformat bad.rbl\n1 file would be reformatted, 1 file already formatted\n"
+    named, counted = result.stdout.splitlines()
+    assert (fields(named), numbers(counted)) == ({"bad.rbl"}, [1, 1])
     assert (folder / "bad.rbl").read_text() == BAD
-    assert robolang("fmt", "--check", "good.rbl").stdout == "1 file already formatted\n"
+    assert numbers(robolang("fmt", "--check", "good.rbl").stdout) == [1]
 
 
 def test_diff_prints_what_would_change(folder):
@@ -73,7 +75,7 @@ def test_diff_prints_what_would_change(folder):
     assert result.stdout == (
         "--- bad.rbl\n+++ bad.rbl\n@@ -1,2 +1,2 @@\n-move p1 'x\n-hand  on'y\n+MOVE p1  'x\n+HAND ON  'y\n"
     )
-    assert result.stderr == "1 file would be reformatted, 1 file already formatted\n"
+    assert numbers(result.stderr) == [1, 1]
     assert (folder / "bad.rbl").read_text() == BAD
     assert robolang("fmt", "--diff", "good.rbl").stdout == ""
 
@@ -98,7 +100,7 @@ def test_a_file_with_errors_is_left_alone_and_the_others_are_not(folder):
     for words in ([], ["--check"], ["--diff"]):
         result = robolang("fmt", *words, code=2)
         assert places(result.stderr) == [(2, 4, "RBL112")]
-        assert "1 file left alone for errors" in result.stdout + result.stderr
+        assert numbers((result.stderr if words == ["--diff"] else result.stdout).splitlines()[-1])[-1] == 1
     assert (folder / "broken.rbl").read_text() == "move p1\n10 MOV p1\n"
     assert (folder / "bad.rbl").read_text() == GOOD
 
@@ -116,7 +118,7 @@ def test_a_file_that_cannot_be_read_is_reported(folder, name, raw, said):
         (folder / name).write_bytes(raw)
     result = robolang("fmt", name, "bad.rbl", code=2)
     assert f"{name}:1:1: error {said}" in result.stderr
-    assert result.stdout == "1 file reformatted, 1 file left alone for errors\n"
+    assert numbers(result.stdout) == [1, 1]
 
 
 def test_a_pipe_is_refused_without_waiting(folder):
@@ -175,7 +177,7 @@ def test_standard_input_to_standard_output():
 
 
 def test_standard_input_with_check_and_diff():
-    assert piped(BAD, "-", "--check", code=1).stdout == "would reformat <stdin>\n"
+    assert piped(BAD, "-", "--check", code=1).stdout.endswith(" <stdin>\n")
     assert piped(GOOD, "-", "--check").stdout == ""
     assert piped(BAD, "-", "--diff", code=1).stdout.startswith("--- <stdin>\n+++ <stdin>\n@@ -1,2 +1,2 @@\n")
 
@@ -191,7 +193,7 @@ def test_standard_input_with_errors_gives_nothing(raw, said):
 
 
 def test_standard_input_stands_alone():
-    assert "'-' stands alone" in flat(robolang("fmt", "-", "good.rbl", code=2).stderr)
+    assert "-" in fields(robolang("fmt", "-", "good.rbl", code=2).stderr)
 
 
 def test_the_bytes_do_not_depend_on_the_locale(folder):

@@ -16,6 +16,7 @@ from runtime.dynamics.equations import axis_gravity, axis_inertia
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
+from tests.messages import fields
 from tests.robolang.cli.commands import ROOT, flat, robolang
 
 JOINTS = "10,60,150,-20,40,30"
@@ -81,7 +82,7 @@ def test_no_negative_zeros_and_a_posture_in_range_by_default():
 
 def test_a_payload_over_the_rated_one_is_said_and_taken():
     result = robolang("inertia", "--robot", "puma560", "--payload", "5,0,0,100", "--json")
-    assert "over the rated" in result.stderr
+    assert {"2.5", "kg"} <= fields(result.stderr)
     assert json.loads(result.stdout)["axes"][0]["link_inertia"] > found()["axes"][0]["link_inertia"] + 0.5
 
 
@@ -240,30 +241,30 @@ def test_values_of_any_size_and_values_that_are_all_one(scale):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--joints", "1,2,x,4,5,6"), "RBL703 --joints, number 3"),
-        (("--joints", "1,2"), "2 numbers are given"),
-        (("--joints", "1,2,3,4,5,nan"), "number 6"),
+        (("--joints", "1,2,x,4,5,6"), "RBL703 3 --joints"),
+        (("--joints", "1,2"), "2"),
+        (("--joints", "1,2,3,4,5,nan"), "6"),
         (("--payload", "1,2,3"), "RBL703 --payload"),
         (("--payload", "-1,0,0,0"), "RBL703 --payload"),
         (("--payload", "1,0,0,9000"), "RBL703 --payload"),
-        (("--map", "J2"), "RBL703 --map: 2 joints are needed, such as J2,J3, but 1 is given"),
-        (("--map", "J2,J3,J4"), "3 are given"),
-        (("--map", "J2,J7"), "RBL703 --map, number 2: 'J7' is not one of J1 to J6"),
-        (("--map", "J0,J3"), "RBL703 --map, number 1"),
-        (("--map", "elbow,J3"), "RBL703 --map, number 1: 'elbow'"),
-        (("--map", "J³,J2"), "RBL703 --map, number 1"),
-        (("--map", "J2,J٣"), "RBL703 --map, number 2"),
-        (("--map", "J3,3"), "RBL703 --map, number 2"),
-        (("--map", "J2,J3", "--axis", "7"), "RBL703 --axis: 7 is not one of 1 to 6"),
+        (("--map", "J2"), "RBL703 --map 2 J2 J3 1"),
+        (("--map", "J2,J3,J4"), "3"),
+        (("--map", "J2,J7"), "RBL703 --map 2 J7 J1 J6"),
+        (("--map", "J0,J3"), "RBL703 --map 1"),
+        (("--map", "elbow,J3"), "RBL703 --map 1 elbow"),
+        (("--map", "J³,J2"), "RBL703 --map 1"),
+        (("--map", "J2,J٣"), "RBL703 --map 2"),
+        (("--map", "J3,3"), "RBL703 --map 2"),
+        (("--map", "J2,J3", "--axis", "7"), "RBL703 7 --axis 1 6"),
         (("--map", "J2,J3", "--axis", "0"), "RBL703 --axis"),
-        (("--axis", "2"), "RBL703 --axis: is of a map"),
-        (("--out", "map.svg"), "RBL703 --out: is of a map"),
-        (("--map", "J2,J3", "--out", "map.png"), "RBL703 --out: 'map.png' must end in .svg"),
+        (("--axis", "2"), "RBL703 --axis"),
+        (("--out", "map.svg"), "RBL703 --out"),
+        (("--map", "J2,J3", "--out", "map.png"), "RBL703 --out map.png .svg"),
     ],
 )
 def test_a_value_that_cannot_be_used_is_located(words, said):
     result = robolang("inertia", "--robot", "puma560", *words, code=2)
-    assert said in flat(result.stderr)
+    assert set(said.split()) <= fields(flat(result.stderr))
     assert result.stdout == ""
 
 

@@ -2,6 +2,7 @@ import pytest
 from typer.testing import CliRunner
 
 from robolang.cli.main import app
+from tests.messages import fields, numbers
 from tests.robolang.cli.commands import flat, places, robolang
 
 OLD, NEW = "1 MOVE P1 'x\ngoto 1\n", "10 MOVE P1 'x\n20 goto 10\n"
@@ -14,11 +15,18 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
+def counted(line):
+    """The file that a line is of, and how many line numbers and jumps it counts."""
+    name, _, rest = line.partition(": ")
+    assert rest.endswith("\n")
+    return name, numbers(rest)
+
+
 def test_the_file_is_rewritten(folder):
     result = robolang("renumber", "a.rbl")
-    assert (result.stdout, result.stderr) == ("a.rbl: 2 line numbers and 1 jump changed\n", "")
+    assert (counted(result.stdout), result.stderr) == (("a.rbl", [2, 1]), "")
     assert (folder / "a.rbl").read_text() == NEW
-    assert robolang("renumber", "a.rbl").stdout == "a.rbl: nothing to change\n"
+    assert counted(robolang("renumber", "a.rbl").stdout) == ("a.rbl", [])
 
 
 def test_start_and_step(folder):
@@ -27,15 +35,15 @@ def test_start_and_step(folder):
 
 
 def test_check_and_diff_write_nothing(folder):
-    assert robolang("renumber", "a.rbl", "--check", code=1).stdout == "a.rbl: 2 line numbers and 1 jump would change\n"
+    assert counted(robolang("renumber", "a.rbl", "--check", code=1).stdout) == ("a.rbl", [2, 1])
     result = robolang("renumber", "a.rbl", "--diff", code=1)
     assert result.stdout == (
         "--- a.rbl\n+++ a.rbl\n@@ -1,2 +1,2 @@\n-1 MOVE P1 'x\n-goto 1\n+10 MOVE P1 'x\n+20 goto 10\n"
     )
-    assert result.stderr == "a.rbl: 2 line numbers and 1 jump would change\n"
+    assert counted(result.stderr) == ("a.rbl", [2, 1])
     assert (folder / "a.rbl").read_text() == OLD
     (folder / "a.rbl").write_text(NEW)
-    assert robolang("renumber", "a.rbl", "--check").stdout == "a.rbl: nothing to change\n"
+    assert counted(robolang("renumber", "a.rbl", "--check").stdout) == ("a.rbl", [])
     assert robolang("renumber", "a.rbl", "--diff").stdout == ""
 
 
@@ -47,12 +55,12 @@ def test_another_file_and_the_standard_streams(folder):
     assert robolang("renumber", "a.rbl", "-o", "-").stdout == NEW
     result = CliRunner().invoke(app, ["renumber", "-"], input="\ufeffend\r\n".encode())
     assert result.stdout_bytes == "\ufeff10 end\r\n".encode()
-    assert result.stderr == "<stdin>: 1 line number changed\n"
+    assert counted(result.stderr) == ("<stdin>", [1])
 
 
 def test_remove(folder):
     (folder / "a.rbl").write_text("10 MOVE P1\n20 GOTO 10\n30\n")
-    assert robolang("renumber", "a.rbl", "--remove").stdout == "a.rbl: 2 line numbers changed\n"
+    assert counted(robolang("renumber", "a.rbl", "--remove").stdout) == ("a.rbl", [2])
     assert (folder / "a.rbl").read_text() == "10 MOVE P1\nGOTO 10\n\n"
 
 
@@ -77,18 +85,18 @@ def test_a_program_with_errors_is_left_alone(folder, text, found, words):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["a.rbl", "--start", "-1"], "-1 is not in the range"),
-        (["a.rbl", "--step", "0"], "0 is not in the range"),
-        (["a.rbl", "--remove", "--step", "5"], "RBL703 --remove: takes neither --start nor --step"),
-        (["a.rbl", "--check", "-o", "b.rbl"], "RBL703 --out: nothing is written with --check or --diff"),
-        (["a.rbl", "--start", "999999990"], "RBL703 the last of 2 lines would have the number 1000000000"),
+        (["a.rbl", "--start", "-1"], "-1"),
+        (["a.rbl", "--step", "0"], "0"),
+        (["a.rbl", "--remove", "--step", "5"], "RBL703 --remove --start --step"),
+        (["a.rbl", "--check", "-o", "b.rbl"], "RBL703 --out --check --diff"),
+        (["a.rbl", "--start", "999999990"], "RBL703 2 1000000000"),
         (["none.rbl"], "RBL701"),
         (["."], "RBL702"),
-        ([], "Missing argument"),
+        ([], "FILE"),
     ],
 )
 def test_usage_errors(folder, words, said):
-    assert said in flat(robolang("renumber", *words, code=2).stderr)
+    assert set(said.split()) <= fields(flat(robolang("renumber", *words, code=2).stderr))
     assert (folder / "a.rbl").read_text() == OLD
 
 

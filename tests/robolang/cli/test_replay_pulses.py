@@ -10,6 +10,7 @@ import pytest
 
 from robolang.cli.commands import replay_pulses as module
 from robolang.execution.plot import HEIGHT, LEFT, RIGHT, TOP, WIDTH, Curve, as_svg, stacked
+from tests.messages import fields, numbers
 from tests.robolang.cli.commands import ROOT, flat, places, robolang
 from tests.robolang.pulse_tables.test_drive import puma, swing
 from tests.runtime.pulses import Handmade, staircase, turntable
@@ -41,16 +42,14 @@ def rows(text):
 
 def test_the_table_shows_moves_and_markers_in_their_places(stairs):
     result = robolang("replay-pulses", stairs)
-    assert result.stdout.splitlines()[0] == "by_hand.rbl on xy, steps of 10 ms"
+    assert fields(result.stdout.splitlines()[0]) == {"by_hand.rbl", "10", "ms"}
     assert list(rows(result.stdout).items()) == [
         (10, ["LOAD (0, 0, 60), 0.8"]),
         (20, ["HAND OFF", "0.300"]),
         (30, ["MOVE P1", "6", "0.060", "30000 X", "2.4000", "1.8000", "0.0000"]),
         (40, ["MOVE P2", "4", "0.040", "4000 X", "0.0000", "0.0000", "0.0000"]),
     ]
-    assert result.stdout.splitlines()[-1] == (
-        "2 moves, 10 steps, 0.400 s, 1600 pulses; at most 2.4000 mm off, in line 3 (number 30)"
-    )
+    assert numbers(result.stdout.splitlines()[-1]) == [2, 10, 0.4, 1600, 2.4, 3, 30]
     assert result.stderr == ""
 
 
@@ -74,9 +73,7 @@ def test_one_move_without_a_pulse_and_none_at_all(tmp_path):
     export = staircase()
     export.sequence = export.sequence[:2]
     export.files = {}
-    assert robolang("replay-pulses", export.write(tmp_path / "a")).stdout.splitlines()[-1] == (
-        "0 moves, 0 steps, 0.300 s, 0 pulses"
-    )
+    assert numbers(robolang("replay-pulses", export.write(tmp_path / "a")).stdout.splitlines()[-1]) == [0, 0, 0.3, 0]
     export.at = {"X": 100, "Y": 50}
     export.move(3, (1, -1, 120), (1, -1, 120))
     result = robolang("replay-pulses", export.write(tmp_path / "b"), "--plot", tmp_path / "p.svg")
@@ -136,9 +133,8 @@ def test_markers_are_in_the_object_too(stairs):
 
 def test_tables_that_lead_too_far_from_a_line_are_exit_code_1(stairs):
     result = robolang("replay-pulses", stairs, "--max-error", "2.39", code=1)
-    assert result.stderr.splitlines()[0] == (
-        "error RBL635 line 3 (number 30), MOVE P1: 2.4000 mm off its line, 2.39 mm are allowed"
-    )
+    assert result.stderr.startswith("error RBL635 line 3 (number 30), MOVE P1: ")
+    assert {"2.4000", "2.39", "mm"} <= fields(result.stderr)
     assert "2 moves" in result.stdout
     assert robolang("replay-pulses", stairs, "--max-error", "2.41").stderr == ""
 
@@ -148,9 +144,9 @@ def test_the_end_of_a_line_counts_and_the_worst_move_is_named(tmp_path):
     export.sequence[3] |= {"end_mm": [5.0, 11.0, 120.0], "number": None}
     folder = export.write(tmp_path / "out")
     result = robolang("replay-pulses", folder, "--json", "--max-error", "3", code=1)
-    assert "error RBL635 line 4, MOVE P2: 4.0000 mm off its line" in result.stderr
+    assert {"RBL635", "4", "MOVE", "P2", "4.0000", "mm"} <= fields(result.stderr)
     assert json.loads(result.stdout)["path_error_mm"] == pytest.approx(4.0)
-    assert "at most 4.0000 mm off, in line 4" in robolang("replay-pulses", folder).stdout
+    assert numbers(robolang("replay-pulses", folder).stdout.splitlines()[-1])[-2:] == [4.0, 4]
 
 
 # --- the real arm ----------------------------------------------------------------------------------------------------
@@ -162,15 +158,14 @@ def test_the_real_arm_is_driven_and_stands_in_the_table(tmp_path):
     swing(2, export, 5.0)
     folder = export.write(tmp_path / "out")
     result = robolang("replay-pulses", folder, "--physics", "--cell", CELL)
-    assert result.stderr == "driving puma560: 1.0 s of motion\n"
+    assert fields(result.stderr) == {"puma560", "1.0", "s"}
     assert max(map(len, table(result.stdout))) <= 80
     *_, at_rows, _, _, real = map(float, rows(result.stdout)[20][-4:])
     assert at_rows == pytest.approx(0.502, abs=0.01)  # 528 mm (1 - cos 2.5 deg)
     assert real == pytest.approx(0.502, abs=0.1)
-    assert re.fullmatch(
-        rf"real arm: 1\.\d\d\d s simulated; at most {real:.3f} mm off, in line 2 \(number 20\)",
-        result.stdout.splitlines()[-1],
-    )
+    seconds, *others = numbers(result.stdout.splitlines()[-1])
+    assert 1.0 <= seconds < 2.0
+    assert others == [pytest.approx(real, abs=5e-4), 2, 20]
     found = json.loads(robolang("replay-pulses", folder, "--physics", "--cell", CELL, "--json").stdout)
     assert round(found["sequence"][1]["real"]["error_mm"], 3) == real
     assert (found["physics"]["alarms"], found["physics"]["warnings"]) == ([], [])
@@ -246,7 +241,7 @@ def test_a_page_holds_both(stairs, tmp_path):
     robolang("replay-pulses", stairs, "--plot", path)
     text = path.read_text("utf-8")
     assert text.startswith("<!doctype html>")
-    assert "<title>by_hand.rbl: pulse tables</title>" in text
+    assert "<title>by_hand.rbl: " in text
     assert text.count("<svg ") == 2
 
 
@@ -301,7 +296,7 @@ def test_no_peak_is_lost_where_a_curve_has_more_points_than_the_plot(tmp_path):
 def test_the_plot_is_tried_before_anything_is_played(stairs, tmp_path, monkeypatch):
     monkeypatch.setattr("runtime.pulses.replay.replay", lambda *_: pytest.fail("it was played"))
     result = robolang("replay-pulses", stairs, "--plot", tmp_path / "none" / "p.svg", code=4)
-    assert "error RBL706 cannot write" in result.stderr
+    assert "RBL706" in fields(result.stderr)
 
 
 def test_stacked_plots_keep_their_heights():
@@ -315,25 +310,25 @@ def test_stacked_plots_keep_their_heights():
 # --- what it does not take -------------------------------------------------------------------------------------------
 
 BAD = [
-    (["--plot", "p.png"], "RBL703 --plot: 'p.png' must end in .svg or .html"),
-    (["--max-error", "-1"], "RBL703 --max-error: -1 is not a distance in mm"),
-    (["--max-error", "nan"], "RBL703 --max-error: nan is not a distance in mm"),
-    (["--max-error", "inf"], "RBL703 --max-error: inf is not a distance in mm"),
-    (["--physics"], "RBL703 --physics: it needs the cell of the arm, --cell FILE.toml"),
-    (["--cell", "c.toml"], "RBL703 --cell: it has a place beside --physics only"),
+    (["--plot", "p.png"], "RBL703 --plot p.png .svg .html"),
+    (["--max-error", "-1"], "RBL703 --max-error -1"),
+    (["--max-error", "nan"], "RBL703 --max-error"),
+    (["--max-error", "inf"], "RBL703 --max-error"),
+    (["--physics"], "RBL703 --physics --cell FILE.toml"),
+    (["--cell", "c.toml"], "RBL703 --cell --physics"),
     (["--physics", "--cell", "nothing.toml"], "RBL600"),
-    (["--physics", "--cell", CELL], "RBL634 the tables are for a cartesian mechanism; the cell has the arm puma560"),
+    (["--physics", "--cell", CELL], "RBL634 puma560"),
 ]
 
 
 @pytest.mark.parametrize(("words", "said"), BAD, ids=[said for _, said in BAD])
 def test_options_that_cannot_be(stairs, monkeypatch, words, said):
     monkeypatch.setattr(module, "_print", lambda *_: pytest.fail("it was played"))
-    assert said in flat(robolang("replay-pulses", stairs, *words, code=2).stderr)
+    assert set(said.split()) <= fields(flat(robolang("replay-pulses", stairs, *words, code=2).stderr))
 
 
 def test_a_folder_that_is_none_is_exit_code_2(tmp_path):
-    assert "error RBL630 cannot open" in robolang("replay-pulses", tmp_path / "none", code=2).stderr
+    assert "RBL630" in fields(robolang("replay-pulses", tmp_path / "none", code=2).stderr)
     assert "Missing argument" in flat(robolang("replay-pulses", code=2).stderr)
 
 

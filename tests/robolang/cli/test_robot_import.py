@@ -11,6 +11,7 @@ from runtime.cell.seam_sensor import SensorSpec
 from runtime.cell.sensor_file import read_sensor_file
 from runtime.core.frames import frozen
 from runtime.core.tomlfile import FileFault, Source, load_table
+from tests.messages import fields, numbers
 from tests.robolang.cli.commands import flat, robolang
 from tests.runtime.robot.models import ANGLES, SEVEN, fill
 
@@ -27,7 +28,7 @@ def seven(tmp_path):
 def test_import_writes_what_is_known_and_marks_the_rest(seven):
     said = robolang("robot", "import", seven).stdout
     sidecar = seven.with_name("seven.robot.toml")
-    assert "85 values to fill in" in flat(said)
+    assert 85 in numbers(flat(said))
     text = sidecar.read_text()
     assert text.count("MISSING:") == 85
     assert "max_torque_nm = 320.0" in text
@@ -74,8 +75,9 @@ def test_show_says_what_a_model_has_and_that_it_has_no_drives(seven):
     text = robolang("robot", "show", seven).stdout
     assert max(map(len, text.splitlines())) <= 80
     words = flat(text)
-    assert "Drives: none. 'robolang robot import' writes seven.robot.toml" in words
-    assert "Newton's method" in words
+    assert {"robolang robot import", "seven.robot.toml"} <= fields(words)
+    assert "Drives: none" in words
+    assert "Newton" in words
     assert "J4 joint_4 -120 .. 120 129.998 176" in words
 
 

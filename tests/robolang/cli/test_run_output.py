@@ -10,6 +10,7 @@ import pytest
 
 from robolang.cli import run_table
 from tests.campaign import some
+from tests.messages import fields, heads
 from tests.robolang.cli.commands import ROOT, dry, robolang, shell
 from tests.steps import HANG_S
 
@@ -34,7 +35,7 @@ def test_progress_goes_to_stderr_and_the_table_to_stdout(program):
     rows = [line.split()[:2] for line in result.stdout.splitlines() if re.match(r" +\d+ ", line)]
     assert rows == [["1", "10"], ["2", "20"], ["3", "30"]]
     assert result.stdout.startswith("p.rbl on puma560\n")
-    assert "line 1 (number 10): closed on nothing" in result.stdout
+    assert [line for line in result.stdout.splitlines() if line.startswith("  line 1 (number 10): ")]
 
 
 def test_quiet_prints_nothing(program):
@@ -106,7 +107,7 @@ def test_words_of_other_people_are_printed_and_not_obeyed(tmp_path, monkeypatch)
     name = "[red]x[bold] :smile: \x1b[2J.rbl"
     (tmp_path / name).write_text("MOVE P1\n")
     result = dry(name)
-    assert "[red]x[bold] :smile: \ufffd[2J.rbl on puma560" in result.stdout
+    assert "[red]x[bold] :smile: \ufffd[2J.rbl" in result.stdout
     assert "\x1b" not in result.stdout + result.stderr
 
 
@@ -121,7 +122,9 @@ def test_an_alarm_is_located_at_its_statement(program, monkeypatch):
 
     monkeypatch.setattr(Session, "run", stopped)
     result = dry("p.rbl", "--report", "r.json", code=3)
-    assert "p.rbl:1:4: error RBL530 at 0.000 s: the run was stopped from outside\n   1 | 10 HAND ON" in result.stderr
+    assert heads(result.stderr) == ["p.rbl:1:4: error RBL530"]
+    assert "0.000 s" in result.stderr
+    assert "\n   1 | 10 HAND ON" in result.stderr
     assert '"code": "RBL530"' in (program.parent / "r.json").read_text()
 
 
@@ -195,7 +198,7 @@ def test_a_standard_output_that_is_full_is_a_storage_fault(program):
             stderr=subprocess.PIPE,
         )
     assert result.returncode == 4
-    assert "error RBL706 cannot write the standard output" in result.stderr
+    assert "RBL706" in fields(result.stderr)
     assert "Exception ignored" not in result.stderr
 
 
@@ -224,5 +227,5 @@ def test_python_m_robolang_and_a_program_named_like_an_option(program):
     (program.parent / "-x.rbl").write_text("LOAD (0, 0, 60), 0.8\n")
     result = shell("run", "--no-physics", "--", "-x.rbl", cwd=program.parent)
     assert result.returncode == 0, result.stderr
-    assert "-x.rbl on puma560" in result.stdout
+    assert {"-x.rbl", "puma560"} <= fields(result.stdout)
     robolang("run", "--no-physics", "--quiet", "--", "-x.rbl")

@@ -207,8 +207,8 @@ def test_an_empty_program_is_a_warning_and_runs(tmp_path, name):
     (tmp_path / "p.rbl").write_text(PROGRAMS[name])
     result = dry(tmp_path / "p.rbl")
     assert "p.rbl:1:1: warning RBL201" in result.stderr
-    assert "0 cycles of 8 ms" in result.stdout
-    assert "dynamics task" not in result.stdout  # it had no time to refresh anything
+    assert "0 cycles" in result.stdout
+    assert "dynamics" not in result.stdout  # it had no time to refresh anything
 
 
 @pytest.mark.parametrize(
@@ -227,4 +227,4 @@ def test_a_file_name_that_is_not_utf_8_does_not_cost_the_report(tmp_path):
     name.write_text("LOAD (0, 0, 60), 0.8\n")
     result = dry(name, "--report", tmp_path / "r.json")
     assert strict(tmp_path / "r.json")["program"] == str(name)
-    assert "p\ufffd.rbl on puma560\n" in result.stdout
+    assert "p\ufffd.rbl on " in result.stdout

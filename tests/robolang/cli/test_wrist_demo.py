@@ -14,6 +14,7 @@ from robolang.experiments import wrist_figures as demo
 from runtime.core.faults import Fault
 from runtime.core.units import DEG
 from runtime.robot.files.loader import load_builtin
+from tests.messages import fields
 from tests.robolang.cli.commands import ROOT, flat, robolang
 from tests.steps import HANG_S
 
@@ -167,9 +168,8 @@ def test_the_table_has_a_row_for_each_run_within_80_columns(tmp_path):
     assert rows[0] == ["4", "E1", "J5", "kept", "-", "34.6", "9.8", "28.3", "0.0", "180.0", "wrist-fig04.svg"]
     assert rows[1][:11] == ["5", "E1", "C1", "any", "120", "2.71", "J4", "119.6", "92.9", "114.5", "43.6"]
     assert rows[1][-1] == "wrist-fig05.svg"
-    assert "Largest change of the posture components" in shown
     assert ["22", "E3", "TILT", "0.14", "19.69", "9.35"] in rows
-    assert "posture components" not in robolang("wrist-demo", "5").stdout
+    assert "TILT" not in robolang("wrist-demo", "5").stdout
 
 
 def test_plots_and_page_are_written(tmp_path):
@@ -187,13 +187,13 @@ def test_plots_and_page_are_written(tmp_path):
         assert len(root.findall(f".//{SVG}polyline")) == curves
         texts = [item.text for item in root.iter(f"{SVG}text")]
         assert said in texts
-        assert "time, s" in texts
+        assert [text for text in texts if text.endswith(", s")]
         assert any(text.startswith(f"Fig {number}, ") for text in texts)
     page = (folder / "index.html").read_text("utf-8")
     for number in ("05", "07", "18"):
         assert f'src="wrist-fig{number}.svg"' in page
-    assert "switch at 2.71 s by J4" in page
-    assert "tilt, advance, rotation 0.45, 27.79, 6.56" in page
+    assert re.search(r"2\.71 s by J4\b", page)
+    assert "0.45, 27.79, 6.56" in page
 
 
 def test_the_curves_of_figure_5_are_the_angles(tmp_path):
@@ -242,13 +242,13 @@ def test_figures_that_take_long_are_named_on_stderr(monkeypatch):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["9"], "RBL703 FIGURE: '9' is not a figure of the demo; known: 4, 5, 6, 7, 10, 11, 17, 18"),
-        (["4", "x"], "RBL703 FIGURE, number 2: 'x' is not"),
-        (["--robot", "puma"], "RBL708 there is no robot 'puma'"),
+        (["9"], "RBL703 7 FIGURE 9 4 5 6 10 11 17 18"),
+        (["4", "x"], "RBL703 FIGURE 2 x"),
+        (["--robot", "puma"], "RBL708 puma"),
     ],
 )
 def test_what_is_not_known_is_refused(words, said):
-    assert said in flat(robolang("wrist-demo", *words, code=2).stderr)
+    assert set(said.split()) <= fields(flat(robolang("wrist-demo", *words, code=2).stderr))
 
 
 def test_a_robot_that_does_not_get_there_is_refused(tmp_path):
@@ -256,9 +256,9 @@ def test_a_robot_that_does_not_get_there_is_refused(tmp_path):
     assert text.count("range_deg = [-120, 120]") == 1
     (tmp_path / "short.toml").write_text(text.replace("range_deg = [-120, 120]", "range_deg = [-60, 60]"))
     said = flat(robolang("wrist-demo", "--robot", tmp_path / "short.toml", code=2).stderr)
-    assert "RBL703 --robot: J5 of irb2400 does not get to the 65 deg of E1" in said
+    assert {"RBL703", "--robot", "J5", "irb2400", "65", "deg", "E1"} <= fields(said)
     seven = demo.replace(IRB, axes=(*IRB.axes, IRB.axes[0]))
-    assert demo.unusable(seven) == "irb2400 has 7 axes, not 6"
+    assert fields(demo.unusable(seven)) == {"irb2400", "7", "6"}
     assert demo.unusable(IRB) == ""
 
 
@@ -266,7 +266,7 @@ def test_a_figure_that_another_robot_cannot_make_is_named():
     said = robolang("wrist-demo", "11", "--robot", "manutec_r3", code=3).stderr
     assert said.startswith("error RBL526 figure 11: at ")
     slow = demo.replace(demo.FIGURES[5].trials[1], seam=(0.0, 0.5, 0.0, 0.0, 0.0, 0.0))
-    with pytest.raises(Fault, match="sees the seam"):
+    with pytest.raises(Fault, match="RBL524"):
         demo.run(IRB, slow)
 
 
