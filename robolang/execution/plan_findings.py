@@ -26,7 +26,7 @@ from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.commands import Command, MoveJoint
 from runtime.motion.joint_planner import changed
 from runtime.motion.ruling import Ruling, ruling
-from runtime.motion.wrist_planner import as_taught
+from runtime.motion.taught_end import as_taught
 from runtime.robot.kinematics.kinematics import Kinematics
 
 NOTICED = 0.1 * DEG

@@ -27,9 +27,15 @@ from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.path import LinePath
 from runtime.motion.path_ik import Arm, LineSolver, WristSolver
 from runtime.motion.seam import SeamLimits, SeamMove, SeamTracker, superposed
-from runtime.motion.wrist.hold import COMPONENTS, Suppression, WristTable, posture_components, weld_line_frame
-from runtime.motion.wrist.switch import WristLaw, first_trigger, law_from
-from runtime.motion.wrist_planner import wrist_limits
+from runtime.motion.wrist.hold import (
+    COMPONENTS,
+    PathAhead,
+    Suppression,
+    WristTable,
+    posture_components,
+    weld_line_frame,
+)
+from runtime.motion.wrist.switch import PathTiming, WristLaw, WristLimits, first_trigger, law_from
 from runtime.robot.kinematics.frozen_wrist import MAIN_AXES, WRIST_AXES
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.spec import RobotSpec
@@ -299,8 +305,8 @@ def _processed(line: LineSolver, q_end: Array, s: Array, trial: Trial) -> tuple[
     """
     q, options, axis = line.rows(s), trial.options, None
     if trial.switch_s is None:
-        limits = wrist_limits(line.arm.spec, options)
-        trigger = first_trigger(q, q_end, s, trial.period_s, limits, options, line.path.length)
+        timing = PathTiming(s=s, period_s=trial.period_s, length=line.path.length)
+        trigger = first_trigger(q, q_end, timing, WristLimits.of(line.arm.spec, options), options)
         if trigger is None:
             return q, None, None
         index, axis = trigger.index - 1, trigger.axis
@@ -315,15 +321,9 @@ def _processed(line: LineSolver, q_end: Array, s: Array, trial: Trial) -> tuple[
 def _held(line: LineSolver, q_switch: Array, q_end: Array, s: Array, trial: Trial) -> WristTable:
     """Return what suppression chooses at the samples s from the switch on, as it chose it: steps and all."""
     arm, path, end = line.arm, line.path, q_end[-WRIST_AXES:]
-    suppression = Suppression(
-        arm.kinematics,
-        arm.X_flange_tool,
-        path.X_end[:3, 3] - path.X_start[:3, 3],
-        trial.held,
-        wrist_limits(arm.spec, trial.options).speed,
-    )
-    X = path.poses(s[1:])
-    chosen = suppression.way(q_switch, end, s, X[:, :3, 3], X[:, :3, :3], trial.period_s)
+    speed = WristLimits.of(arm.spec, trial.options).speed
+    suppression = Suppression(arm.kinematics, arm.X_flange_tool, trial.held, speed)
+    chosen = suppression.choose(q_switch, end, PathAhead.of(path, s, trial.period_s))
     return WristTable(s_switch=float(s[0]), values=frozen([q_switch[-WRIST_AXES:], *chosen]))
 
 

@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, frozen
 from runtime.core.linear import matmul
-from runtime.core.units import DEG, MM, badness
+from runtime.core.units import DEG, MM
 from runtime.motion.commands import Component, MoveArc, MoveLinear, PathMove
 from runtime.motion.half_turn import in_order
 from runtime.motion.path import ArcPath, LinePath, Path
@@ -37,8 +37,9 @@ from runtime.motion.path_ik import Arm, LineSolver, WristSolver
 from runtime.motion.seam import SeamMove, SeamTracker
 from runtime.motion.time_scaling import Pace, Slowdown
 from runtime.motion.velocity_profile import MAX_DURATION, SpeedLimits, bound, check_requests, profile
-from runtime.motion.wrist.switch import CONDITIONS, SAME_ANGLES, Condition
-from runtime.motion.wrist_planner import Choice, choose, ends, explained, posture_deviation
+from runtime.motion.wrist.switch import CONDITIONS, SAME_ANGLES, Condition, PathTiming
+from runtime.motion.wrist_planner import choose, explained
+from runtime.motion.wrist_request import Candidate, SampledPath, posture_deviation
 from runtime.robot.kinematics.frozen_wrist import MAIN_AXES, WRIST_AXES
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.drives import PathLimits
@@ -116,7 +117,7 @@ class LineWay:
     path: Path
     line: LineSolver
     limits: SpeedLimits | None
-    choice: Choice
+    choice: Candidate
 
     def joints(self, s: Array) -> Array:
         """Return q (N, n) rad at path parameters s (N,); ``Fault`` RBL410, 411 or 412."""
@@ -179,7 +180,7 @@ class CartesianPlanner:
         lines = [LineSolver(arm, path, q_start) for path in self._paths(X_start, command)]
         line, path = lines[0], lines[0].path
         if all(extent < NOTHING_TO_DO for extent in (path.length, path.angle, turn)):
-            return LineWay(path=path, line=line, limits=None, choice=Choice(solver=line))
+            return LineWay(path=path, line=line, limits=None, choice=Candidate(solver=line))
         limits = speed_limits(path, command, self._spec.path, self._profile, turn)
         if len(lines) > 1:
             lines = in_order(lines, profile(limits, self._profile.period_s, command.duration), command.q_end)
@@ -215,7 +216,7 @@ class CartesianPlanner:
         assert plan.path is not None  # a straight move has one
         arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=self._pace.fine, X_flange_tool=X_flange_tool)
         options, wrist = self._profile.wrist, plan.wrist
-        if (command.wrist or options.mode) == "keep" or self._spec.n != MAIN_AXES + WRIST_AXES:
+        if self._keeps_posture(command):
             options = options.only()
         elif wrist is None or wrist.remedy:  # the plan knows better than C1, C2 and C4 when the wrist has to go
             options = options.only(range_condition=options.range_condition, guard=options.guard)
@@ -230,44 +231,35 @@ class CartesianPlanner:
             self._profile.period_s,
         )
 
-    def _choose(self, line: LineSolver, limits: SpeedLimits, command: PathMove) -> Choice:
-        """Return how the move crosses the wrist: to the taught end angles, or to any that its point leaves open."""
+    def _choose(self, line: LineSolver, limits: SpeedLimits, command: PathMove) -> Candidate:
+        """Return how the move goes through the wrist, judged on its samples at the programmed speed."""
         options = self._profile.wrist
-        mode = command.wrist or options.mode
-        if mode == "keep" or self._spec.n != MAIN_AXES + WRIST_AXES:
-            return Choice(solver=line)
+        if self._keeps_posture(command):
+            return Candidate(solver=line)
         s = profile(limits, self._profile.period_s, command.duration)
-        every = -(-(len(s) - 1) // MOST_SAMPLES)  # a long move is looked at in coarser steps, as if it were faster
+        every = -(-(len(s) - 1) // MOST_SAMPLES)  # a long move is judged in coarser steps, as if it were faster
         s, period_s = np.unique(np.append(s[::every], 1.0)), every * self._profile.period_s
         q = line.rows(s)
         q[0] = line.q_start
-        taught = command.q_end is not None or bool(command.configuration or command.turns)
-        most = options.most_deviation if taught else options.untaught_deviation
-        tracked = isinstance(command, MoveLinear) and command.tracked
 
         def excess(q: Array) -> tuple[float, int, str]:
             ratio, axis, quantity = self._pace.excess(q)
             return ratio / every, axis, quantity
 
-        best: Choice | None = None
-        first: Fault | None = None
-        for q_end in ends(line, q, command):
-            try:
-                choice = choose(line, s, q, q_end, period_s, options, excess, most, None if tracked else command.held)
-            except Fault as fault:
-                first = first or fault
-                continue
-            if choice.ratio <= (1.0 if choice.switch is not None else options.posture_first):
-                return choice
-            if best is None or badness(choice.ratio) < badness(best.ratio):
-                best = choice
-        if best is None and first is not None:
-            raise first
-        return best or Choice(solver=line)  # no end to go to: the path itself says where it is lost
+        timing = PathTiming(s=s, period_s=period_s, length=line.path.length)
+        return choose(SampledPath(line=line, timing=timing, q=q, excess=excess), command, options)
+
+    def _keeps_posture(self, command: PathMove) -> bool:
+        """Return whether a move keeps the posture of its path whatever happens: under KEEP.
+
+        So do arms of fewer or more than six axes: a position leaves one of four main axes free, and of two it places
+        none (docs/decisions/0018).
+        """
+        return (command.wrist or self._profile.wrist.mode) == "keep" or self._spec.n != MAIN_AXES + WRIST_AXES
 
 
 def _wrist_change(
-    choice: Choice, line: LineSolver, s: Array, q: Array, held: tuple[Component, ...]
+    choice: Candidate, line: LineSolver, s: Array, q: Array, held: tuple[Component, ...]
 ) -> WristChange | None:
     """Return what the plan does with the wrist, measured on its samples; None where it follows the path."""
     if choice.switch is None:

@@ -30,9 +30,9 @@ from runtime.core.units import DEG, MM
 from runtime.motion.cartesian_planner import NOTHING_TO_DO, MovePlan
 from runtime.motion.commands import MoveJoint
 from runtime.motion.path_ik import RANGE_TOLERANCE, Arm, check_range
+from runtime.motion.taught_end import as_taught, turned
 from runtime.motion.time_scaling import Pace
 from runtime.motion.velocity_profile import MAX_DURATION, SpeedLimits, bound, check_requests, profile
-from runtime.motion.wrist_planner import as_taught, turned
 from runtime.robot.kinematics.kinematics import LIMIT_ROUNDING, Kinematics
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import Profile

@@ -30,8 +30,7 @@ from runtime.core.linear import matmul, norm
 from runtime.core.rounding import beside
 from runtime.core.units import DEG, MM
 from runtime.motion.path_ik import LineSolver
-from runtime.motion.wrist.switch import Conditions, WristLaw, law_from
-from runtime.motion.wrist_planner import wrist_limits
+from runtime.motion.wrist.switch import Conditions, PathTiming, WristLaw, WristLimits, law_from
 from runtime.robot.kinematics.frozen_wrist import MAIN_AXES, WRIST_AXES, FrozenWrist, Side
 from runtime.robot.kinematics.opw import Branch
 from runtime.settings.profile import WristOptions
@@ -161,9 +160,10 @@ class SeamMove:
         self._poses = line.path.poses(s)
         self._travel = line.path.X_end[:3, 3] - line.path.X_start[:3, 3]
         self._end_branch = arm.kinematics.branch_of(q_end)
-        self._limits = wrist_limits(arm.spec, options)
+        self._limits = WristLimits.of(arm.spec, options)
         self._options = options
-        self._conditions = Conditions(s, q_start[-WRIST_AXES:], period_s, self._limits, options, line.path.length)
+        timing = PathTiming(s=s, period_s=period_s, length=line.path.length)
+        self._conditions = Conditions(timing, q_start[-WRIST_AXES:], self._limits, options)
         self._most_step = arm.spec.per_axis("limits", "speed") * period_s * SPEED_SLACK
         self._lower, self._upper = arm.spec.lower, arm.spec.upper
         self.before, self.here = q_start, q_start

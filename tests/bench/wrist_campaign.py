@@ -34,8 +34,7 @@ from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.path import LinePath
 from runtime.motion.path_ik import Arm, LineSolver, WristSolver
 from runtime.motion.velocity_profile import profile
-from runtime.motion.wrist.switch import first_trigger, law_from
-from runtime.motion.wrist_planner import wrist_limits
+from runtime.motion.wrist.switch import PathTiming, WristLimits, first_trigger, law_from
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.settings.profile import Profile, WristOptions
@@ -102,8 +101,8 @@ class Bench:
         s = profile(speed_limits(path, command, self.spec.path, self.profile), self.profile.period_s)
         q = line.rows(s)
         q[0] = start
-        limits = wrist_limits(self.spec, DOCUMENT)
-        found = first_trigger(q, end, s, self.profile.period_s, limits, DOCUMENT, path.length)
+        timing = PathTiming(s=s, period_s=self.profile.period_s, length=path.length)
+        found = first_trigger(q, end, timing, WristLimits.of(self.spec, DOCUMENT), DOCUMENT)
         if found is not None:
             k = found.index - 1
             q = WristSolver(line, law_from(q, s, k, end[3:], "linear"), q[k], end).rows(s)

@@ -9,24 +9,23 @@ the travel, Y = X x gravity, Z = X x Y, the tool's posture is (Rx, Ry, Rz) = (ti
 
 Travel is vertical: Ym is the base's Y. On an arc the travel is the tangent, and the frame turns with it.
 
-In every cycle each wrist axis has ``CANDIDATES`` angles between where the straight way (S8) would take it and what its
-speed allows, never past the end angle:
+In every cycle each wrist axis has ``CANDIDATES`` angles between the straight line of S8 and what its speed allows,
+never past the end angle:
 
     S82   cand_k(m) = lin_k + sgn(theta_ke - lin_k) min(|theta_ke - lin_k|, room_k) m/(M - 1),   m = 0 .. M - 1
           room_k = max(theta_kd - |V_k|, 0) dt
     S83   for each of the M^3 combinations: main axes by the position of the path, posture, components
     S84   the one with the least sum of squares of the chosen components off those of the path; ties: nearest to S8
 
-All candidates lie between the straight way and the end angle, so the end angles are reached in time. The steps so
-chosen are within the speed limit and nothing else: they jump from one candidate to another. ``held_ways`` therefore
-smooths what ``suppress`` chose before it is executed, see there.
+All candidates lie between the straight line and the end angle, so the end angles are reached in time. The steps so
+chosen keep the speed limit and no other: they jump from one candidate to another. ``smoothed_table`` makes of them a
+curve that can be executed.
 
 Source: CN103429397A (Kobe Steel), embodiment 4, whose text is lost past its equation numbers; the reconstruction is
 that of docs/wrist.md. Angles rad.
 """
 
 import itertools
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,14 +34,18 @@ from runtime.core.frames import Array, frozen
 from runtime.core.linear import matmul, norm
 from runtime.motion.commands import Component
 from runtime.motion.path import ArcPath, Path
+from runtime.motion.wrist.switch import WristLaw
 from runtime.robot.kinematics.frozen_wrist import WRIST_AXES, FrozenWrist, Side
 from runtime.robot.kinematics.kinematics import Kinematics
 
 CANDIDATES = 5
+"""M of S82: 125 combinations in a cycle. The document leaves M open; 5 holds one component within 0.5 deg
+(docs/wrist.md)."""
+
 COMPONENTS: tuple[Component, ...] = ("TILT", "ADVANCE", "ROTATION")
 
 STEPS = 120
-"""Steps of the rest of the path in which a way that is to be executed is chosen."""
+"""Steps of the rest of the path at which suppression chooses for a move that runs; between them it is a cubic."""
 
 _STEEP = 1e-6
 """Sine of the angle to the vertical below which the travel has no horizontal direction."""
@@ -83,50 +86,58 @@ def component_deviation(path: Path, s: Array, R_planned: Array, R_base_tool: Arr
     return np.abs(off - 2.0 * np.pi * np.round(off / (2.0 * np.pi)))
 
 
-class Suppression:
-    """Chooses wrist angles cycle by cycle, S81 to S85, for one arm, tool and direction of travel (3,).
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PathAhead:
+    """The rest of a path after a switch, sampled for suppression; base frame.
 
-    ``way`` may be given other weld-line frames than that of the one direction.
+    ``s`` (N + 1,): path parameter at the switch and at the N samples after it, ``period_s`` apart. At these samples:
+    ``p_base_tool`` (N, 3) m and ``R_base_tool`` (N, 3, 3), tool point and posture of the path, and ``R_base_line``
+    (N, 3, 3), the weld-line frames.
     """
 
-    def __init__(
-        self, kinematics: Kinematics, X_flange_tool: Array, travel: Array, held: tuple[Component, ...], speed: Array
-    ) -> None:
+    s: Array
+    period_s: float
+    p_base_tool: Array
+    R_base_tool: Array
+    R_base_line: Array
+
+    @classmethod
+    def of(cls, path: Path, s: Array, period_s: float) -> "PathAhead":
+        """Return a path sampled at s[1:], with s[0] the switch."""
+        X = path.poses(s[1:])
+        R = X[:, :3, :3]
+        frames = np.broadcast_to(frames_along(path, s[1:]), R.shape)
+        return cls(s=s, period_s=period_s, p_base_tool=X[:, :3, 3], R_base_tool=R, R_base_line=frames)
+
+
+class Suppression:
+    """Chooses wrist angles cycle by cycle, S81 to S85, for one arm and tool; ``speed`` (3,) rad/s is theta_kd."""
+
+    def __init__(self, kinematics: Kinematics, X_flange_tool: Array, held: tuple[Component, ...], speed: Array) -> None:
         self._kinematics, self._X_flange_tool = kinematics, X_flange_tool
         self._frozen = FrozenWrist(kinematics, X_flange_tool)
-        self._R_base_line = weld_line_frame(travel)
         self._chosen = [COMPONENTS.index(component) for component in held]
         self._speed = speed
+        # the first of the 125 is (0, 0, 0), the straight line of S8: argmin then takes it where several are equal (S84)
         self._shares = np.array(list(itertools.product(np.linspace(0.0, 1.0, CANDIDATES), repeat=WRIST_AXES)))
 
-    def way(
-        self,
-        q_switch: Array,
-        end: Array,
-        s: Array,
-        p_base_tool: Array,
-        R_path: Array,
-        period_s: float,
-        R_base_line: Array | None = None,
-    ) -> Array:
-        """Return the wrist angles (N, 3) at the samples after a switch at joint angles q_switch (n,), rad.
+    def choose(self, q_switch: Array, end: Array, ahead: PathAhead) -> Array:
+        """Return the wrist angles (N, 3) rad at the samples ``ahead`` of a switch at joint angles q_switch (n,).
 
-        ``end`` (3,): taught wrist angles; s (N + 1,): path parameter at the switch and at the samples, ``period_s``
-        apart; p_base_tool (N, 3) m and R_path (N, 3, 3): the path at the samples; R_base_line (N, 3, 3): the weld-line
-        frames there (None: that of the travel).
+        ``end`` (3,) rad: taught wrist angles, reached at the last sample.
         """
-        frames = np.broadcast_to(self._R_base_line if R_base_line is None else R_base_line, R_path.shape)
-        wanted = posture_components(frames, R_path)
+        s, components = ahead.s, posture_components(ahead.R_base_line, ahead.R_base_tool)
         side = self._frozen.side_of(q_switch)
-        q, chosen = q_switch, np.empty((len(p_base_tool), WRIST_AXES))
-        for k, place in enumerate(p_base_tool):
+        q, chosen = q_switch, np.empty((len(ahead.p_base_tool), WRIST_AXES))
+        for k, place in enumerate(ahead.p_base_tool):
             wrist = q[-WRIST_AXES:]
             straight = wrist + (end - wrist) * ((s[k + 1] - s[k]) / (1.0 - s[k]))
-            room = np.maximum(self._speed * period_s - np.abs(straight - wrist), 0.0)
+            room = np.maximum(self._speed * ahead.period_s - np.abs(straight - wrist), 0.0)
             left = end - straight
+            # never past the end angle: otherwise the arrival in time, which S8 guarantees, would be lost
             candidates = straight + self._shares * (np.sign(left) * np.minimum(np.abs(left), room))
             rows = self._solved(place, candidates, q, side)
-            q = rows[self._best(rows, frames[k], wanted[k])]
+            q = rows[self._best(rows, ahead.R_base_line[k], components[k])]
             chosen[k] = q[-WRIST_AXES:]
         return chosen
 
@@ -135,17 +146,18 @@ class Suppression:
             return self._frozen.solve(np.broadcast_to(place, (len(candidates), 3)), candidates, q_before, side)
         return np.concatenate([self._frozen.solve(place[None], one[None], q_before, side) for one in candidates])
 
-    def _best(self, rows: Array, R_base_line: Array, wanted: Array) -> int:
+    def _best(self, rows: Array, R_base_line: Array, components: Array) -> int:
+        """Return the row of q (M, n) whose held components are nearest to those of the path (3,), S84."""
         R = matmul(self._kinematics.forward(rows), self._X_flange_tool)[:, :3, :3]
-        off = (posture_components(R_base_line, R) - wanted)[:, self._chosen]
+        off = (posture_components(R_base_line, R) - components)[:, self._chosen]
         off -= 2.0 * np.pi * np.round(off / (2.0 * np.pi))
         cost = (off**2).sum(axis=1)
-        return int(np.nanargmin(cost)) if np.isfinite(cost).any() else 0  # candidate 0 is the straight way
+        return int(np.nanargmin(cost)) if np.isfinite(cost).any() else 0  # candidate 0 is the line of S8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WristTable:
-    """A way of the wrist given by angles ``values`` (K, 3) rad at K equal steps of the path parameter from a switch on.
+    """Wrist angles as a table: ``values`` (K, 3) rad at K equal steps of the path parameter from a switch on.
 
     Between them it is the cubic through neighbours with central slopes, so its speed is continuous.
     """
@@ -166,36 +178,30 @@ class WristTable:
         return np.asarray(np.where(at[:, None] >= last, self.values[-1], inside))
 
 
-def held_ways(
-    suppression: Suppression,
-    path: Path,
-    q_switch: Array,
-    slope: Array,
-    end: Array,
-    s_switch: float,
-    rate: float,
-    windows: Sequence[float],
-) -> Iterator[WristTable]:
-    """Yield ways from joint angles q_switch (n,) to ``end`` (3,) that hold components and can be executed.
+def held_angles(suppression: Suppression, path: Path, q_switch: Array, law: WristLaw, rate: float) -> Array:
+    """Return wrist angles (STEPS, 3) rad from joint angles q_switch (n,) on that hold components.
 
-    ``suppress`` is run at the constant rate ds/dt = ``rate``, 1/s, over the rest of the path, once for all ways, and
-    what it chose is averaged twice over each window (a share of that rest): a step of speed becomes a ramp. Before the
-    switch the way goes on with ``slope`` (3,) d theta / ds of the path, after the end it stands, so both ends are met.
+    ``law`` says where the switch is and at which angles the wrist ends. Suppression runs at the constant rate ds/dt =
+    ``rate``, 1/s, over the rest of the path, whatever the speed profile is there.
     """
-    s = np.linspace(s_switch, 1.0, STEPS + 1)
-    X = path.poses(s[1:])
-    period_s = (1.0 - s_switch) / STEPS / rate
-    frames = frames_along(path, s[1:]) if isinstance(path, ArcPath) else None
-    chosen = suppression.way(q_switch, end, s, X[:, :3, 3], X[:, :3, :3], period_s, frames)
-    for window in windows:
-        yield WristTable(
-            s_switch=s_switch,
-            values=_smoothed(chosen, q_switch[-WRIST_AXES:], end, window, slope * (1.0 - s_switch) / STEPS),
-        )
+    s = np.linspace(law.s_switch, 1.0, STEPS + 1)
+    period_s = (1.0 - law.s_switch) / STEPS / rate
+    return suppression.choose(q_switch, law.end, PathAhead.of(path, s, period_s))
+
+
+def smoothed_table(chosen: Array, law: WristLaw, window: float) -> WristTable:
+    """Return chosen angles (STEPS, 3) as a curve that can be executed: averaged twice over ``window``.
+
+    The window is a share of the rest of the path: a step of speed becomes a ramp. Before the switch the angles go on
+    with the slope d theta / ds of ``law``, after the end they stand still, so both ends are met.
+    """
+    step = law.slope * (1.0 - law.s_switch) / STEPS
+    return WristTable(s_switch=law.s_switch, values=_smoothed(chosen, law.start, law.end, window, step))
 
 
 def _smoothed(chosen: Array, start: Array, end: Array, window: float, step: Array) -> Array:
     """Return chosen wrist angles (N, 3) averaged twice, from ``start`` (3,) on; ``step`` (3,): that of the path."""
+    # twice: one average makes a step of speed a ramp of angle with corners, the second one rounds the corners
     width = max(1, round(window * STEPS / 2.0))
     reach = 2 * width
     before = start + np.arange(-reach, 0)[:, None] * step
@@ -203,6 +209,6 @@ def _smoothed(chosen: Array, start: Array, end: Array, window: float, step: Arra
     ramp = np.convolve(np.ones(width), np.ones(width)) / width**2 if width > 1 else np.ones(1)
     smooth = np.stack([np.convolve(column, ramp, mode="same") for column in rows.T], axis=1)[reach:-reach]
     share = np.linspace(0.0, 1.0, STEPS + 1)[:, None]
-    # averaging moves the ends a little
+    # averaging moves the ends a little; a cubic that is flat at the other end puts each back where it belongs
     smooth += (1.0 - share) ** 3 * (start - smooth[0]) + share**3 * (end - smooth[-1])
     return frozen(smooth)

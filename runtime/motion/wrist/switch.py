@@ -1,7 +1,7 @@
 r"""Straight moves through a change of the wrist configuration: when to leave the planned posture, and how.
 
 A pose is met with either sign of J5. A straight move that keeps the sign and has to end with the other one arrives
-with J4 and J6 half a turn away from where they were taught, and beside J5 = 0 the two turn faster than they can. The
+with J4 and J6 half a turn away from where they were taught, and near J5 = 0 the two turn faster than they can. The
 method of CN103429397A (Kobe Steel) watches *exception conditions* while the move follows its path. From the first
 that is met until the end, the wrist axes go straight to the taught end angles and the main axes are solved for the
 *position* of the path alone (``runtime.robot.kinematics.frozen_wrist``): the tool point stays on its line at its
@@ -20,8 +20,8 @@ s.
 
     linear     theta(s) = theta_0 + (theta_e - theta_0) x,   x = (s - s_0) / (1 - s_0)                     (S7, S8)
     hermite    one cubic with the slope of the path at the switch and zero slope at the end             (Figs 7, 8)
-    smooth     the slope passes from that of the path to a constant one within a share w of the way: speed and posture
-               without a jump, and a peak of 1 / (1 - w/2) instead of 1.5; ours
+    smooth     the slope passes from that of the path to a constant one within a share w of the rest: speed and posture
+               without a jump, and a peak of 1 / (1 - w/2) instead of 1.5; not in the document
 
 As functions of s they are one curve in joint space for every speed of the move, so slowing a move down changes nothing
 else, and the wrist comes to rest with the tool. Angles rad; arrays of a path have its samples first.
@@ -35,6 +35,7 @@ from numpy.typing import NDArray
 
 from runtime.core.frames import Array, frozen
 from runtime.robot.kinematics.frozen_wrist import WRIST_AXES
+from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import WristOptions
 
 Mask = NDArray[np.bool_]
@@ -49,7 +50,7 @@ CONDITIONS: dict[str, str] = {
     "reach": "no posture on the path",
     "end": "other end angles than those of the path",
 }
-"""What each condition watches, for people."""
+"""What each condition watches, as messages and reports name it."""
 
 SAME_ANGLES = 1e-8
 """Wrist angles within this, rad, of the taught ones are there."""
@@ -76,23 +77,39 @@ class WristLimits:
     lower: Array
     upper: Array
 
+    @classmethod
+    def of(cls, spec: RobotSpec, options: WristOptions) -> "WristLimits":
+        """Return the ranges of a robot's wrist axes and theta_kd: that of the profile, else the robot's speed."""
+        limits = spec.per_axis("limits", "speed")[-WRIST_AXES:]
+        speed = np.broadcast_to(options.speed, WRIST_AXES) if options.speed else limits
+        return cls(speed=speed, lower=spec.lower[-WRIST_AXES:], upper=spec.upper[-WRIST_AXES:])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PathTiming:
+    """When a move is where on its path: ``s`` (N + 1,) from 0 to 1 at samples ``period_s`` apart; ``length`` m."""
+
+    s: Array
+    period_s: float
+    length: float = 0.0
+
 
 class Conditions:
-    """The exception conditions of one move, evaluated at any of its samples.
+    """The exception conditions of one move, evaluated at any sample of its ``timing``.
 
-    s (N + 1,): path parameter of the samples, ``period_s`` apart; ``start`` (3,): wrist angles where the move begins;
-    ``length`` m of the path, for the distance of C2.
+    ``start`` (3,) rad: wrist angles where the move begins, the reference of C4.
     """
 
-    def __init__(
-        self, s: Array, start: Array, period_s: float, limits: WristLimits, options: WristOptions, length: float = 0.0
-    ) -> None:
+    def __init__(self, timing: PathTiming, start: Array, limits: WristLimits, options: WristOptions) -> None:
+        s, period_s = timing.s, timing.period_s
         self._s, self._start, self._period_s, self._limits, self._options = s, start, period_s, limits, options
         rate = np.diff(s) / period_s
+        # T(n) is counted at the fastest rate still to come: with the average one, a move that brakes at its end would
+        # let the wrist turn faster than theta_kd in its middle
         self._fastest = np.append(np.maximum.accumulate(rate[::-1])[::-1], 0.0)
         left_s = period_s * (len(s) - 1 - np.arange(len(s)))
         self._late = (left_s <= options.remaining_time) & (options.remaining_time > 0.0)
-        self._late |= ((1.0 - s) * length <= options.remaining_distance) & (options.remaining_distance > 0.0)
+        self._late |= ((1.0 - s) * timing.length <= options.remaining_distance) & (options.remaining_distance > 0.0)
 
     def met(self, at: slice, wrist: Array, before: Array, end: Array, outside: Mask) -> dict[Condition, Mask]:
         """Return which conditions the samples ``at`` meet, each (k, 3) by wrist axis; left sides of (11) to (63).
@@ -103,6 +120,7 @@ class Conditions:
         options, s = self._options, self._s[at, None]
         met: dict[Condition, Mask] = {}
         if options.speed_condition != "off":
+            # the linear law keeps its speed; the others exceed it by their peak, which has to keep theta_kd
             met["C1"] = self._speed_to_end(at, wrist, end) > self._limits.speed / options.peak
             if options.speed_condition == "all":
                 met["C1"] = met["C1"] & met["C1"].all(axis=1, keepdims=True)
@@ -112,7 +130,7 @@ class Conditions:
         if options.deviation_condition != "off":
             share = {"moving": s, "start": 0.0 * s, "end": s**0}[options.deviation_condition]
             met["C4"] = np.abs(wrist - (self._start + share * (end - self._start))) > np.array(options.deviation)
-        if options.guard:
+        if options.guard:  # H6: C1 to C4 did not stop 994 deg/s of E3 before the switch
             met["C6"] = np.abs(wrist - before) / self._period_s > self._limits.speed
         return met
 
@@ -125,15 +143,15 @@ class Conditions:
 
 
 def first_trigger(
-    q: Array, q_end: Array, s: Array, period_s: float, limits: WristLimits, options: WristOptions, length: float = 0.0
+    q: Array, q_end: Array, timing: PathTiming, limits: WristLimits, options: WristOptions
 ) -> Trigger | None:
     """Return the first exception condition of a move, S61 of Fig 3; None when there is none.
 
-    q (N + 1, n) rad: the path with the sign of J5 kept, NaN where it has no solution; q_end (n,): the taught end; the
-    rest as ``Conditions`` has it.
+    q (N + 1, n) rad: the path at the samples of ``timing`` with the sign of J5 kept, NaN where it has no solution;
+    q_end (n,) rad: the taught end.
     """
-    wrist = q[:, -WRIST_AXES:]
-    conditions = Conditions(s, wrist[0], period_s, limits, options, length)
+    wrist, s = q[:, -WRIST_AXES:], timing.s
+    conditions = Conditions(timing, wrist[0], limits, options)
     lost: Mask = np.logical_not(np.isfinite(q).all(axis=1))
     with np.errstate(invalid="ignore"):
         outside = _ahead((wrist > limits.upper) | (wrist < limits.lower), options.look_ahead)
@@ -142,13 +160,17 @@ def first_trigger(
     found = [(int(np.argmax(rows)), name) for name, where in met.items() if (rows := where.any(axis=1)).any()]
     if not found:
         return None
-    index, name = min(found, key=lambda each: each[0])  # of equals the one that stands first
+    index, name = min(found, key=lambda each: each[0])  # of several at one sample the first in the order C1 to reach
     axis = None if name == "reach" else q.shape[1] - WRIST_AXES + int(np.argmax(met[name][index]))
     return Trigger(index=index + 1, share=float(s[index + 1]), condition=name, axis=axis)
 
 
 def _ahead(outside: Mask, cycles: int) -> Mask:
-    """Return for each sample whether one of the ``cycles`` next ones, or itself, is outside."""
+    """Return for each sample whether it or one of the ``cycles`` next ones is outside.
+
+    A law that continues the slope of the path goes on towards the limit for a while: the cubic of E2 reaches 181.4 deg
+    where the range ends at 180. So the wrist has to turn back some cycles earlier.
+    """
     seen = outside.copy()
     for k in range(1, min(cycles, len(outside) - 1) + 1):
         seen[:-k] |= outside[k:]
@@ -157,11 +179,11 @@ def _ahead(outside: Mask, cycles: int) -> Mask:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WristLaw:
-    """How the wrist goes from ``start`` (3,) at path parameter ``s_switch`` to ``end`` (3,) at ``s_return``.
+    """Wrist angles from ``start`` (3,) rad at path parameter ``s_switch`` to ``end`` (3,) rad at ``s_return``.
 
     ``slope`` (3,) is d theta / ds of the path at the switch, where ``shape`` continues it; ``width`` in (0, 1] is the
-    share of the way in which ``smooth`` changes its slope. ``slope_return`` (3,) is that of the path to which it
-    returns before the end, ``detour`` (3,) rad how far from the cubic it is half-way; only ``hermite`` has these.
+    share of the interval in which ``smooth`` changes its slope. ``slope_return`` (3,) is that of the path to which the
+    wrist returns before the end, ``detour`` (3,) rad the distance from the cubic half-way; only ``hermite`` has these.
     """
 
     s_switch: float
@@ -178,20 +200,21 @@ class WristLaw:
         """Return the wrist angles (N, 3) rad at s (N,), from the switch on."""
         left = self.s_return - self.s_switch
         x = np.clip((s - self.s_switch) / left, 0.0, 1.0)[:, None]
-        way = self.end - self.start
+        turn = self.end - self.start
         if self.shape == "linear":
-            return np.asarray(self.end - (1.0 - x) * way)
+            return np.asarray(self.end - (1.0 - x) * turn)  # from the end: x = 1 gives the end angles exactly
         slope = self.slope * left
         if self.shape == "hermite":
-            angles = self.start + (x**3 - 2 * x**2 + x) * slope + (3 * x**2 - 2 * x**3) * way
+            angles = self.start + (x**3 - 2 * x**2 + x) * slope + (3 * x**2 - 2 * x**3) * turn
             if self.slope_return is not None:
                 angles = angles + (x**3 - x**2) * self.slope_return * left
             if self.detour is not None:
+                # a bump of height 1 at x = 1/2 whose slope is zero at both ends
                 angles = angles + 16.0 * (x - x**2) ** 2 * self.detour
             return np.asarray(angles)
         w = self.width
         # slope(x) = slope + (final - slope) S(x/w), S = 3u^2 - 2u^3 up to u = 1; its integral ends at the end angles
-        final = (way - slope * w / 2.0) / (1.0 - w / 2.0)
+        final = (turn - slope * w / 2.0) / (1.0 - w / 2.0)
         u = np.minimum(x / w, 1.0)
         passed = w * (u**3 - u**4 / 2.0) + np.maximum(x - w, 0.0)
         angles = self.start + slope * x + (final - slope) * passed
@@ -207,8 +230,8 @@ def law_from(
     with the constant slope, since it stands.
     """
     wrist = q[:, -WRIST_AXES:]
-    start, way = wrist[index], end - wrist[index]
-    slope = way / (1.0 - s[index])
+    start = wrist[index]
+    slope = (end - start) / (1.0 - s[index])
     if index > 0:
         slope = (wrist[index] - wrist[index - 1]) / (s[index] - s[index - 1])
     return WristLaw(
@@ -222,7 +245,7 @@ def law_between(q: Array, q_back: Array, s: Array, first: int, last: int) -> Wri
     q_back (N + 1, n) is the same path in the configuration of the end: before and after, the tool has its posture.
     """
     before, after = q[:, -WRIST_AXES:], q_back[:, -WRIST_AXES:]
-    a, b = max(first, 1), min(last, len(s) - 2)
+    a, b = max(first, 1), min(last, len(s) - 2)  # one-sided slopes, taken on the side where the posture is kept
     return WristLaw(
         s_switch=float(s[first]),
         start=frozen(before[first]),

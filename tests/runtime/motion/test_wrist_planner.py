@@ -14,7 +14,9 @@ from runtime.motion.commands import MoveLinear
 from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.path import LinePath
 from runtime.motion.path_ik import Arm, LineSolver
-from runtime.motion.wrist_planner import _windows
+from runtime.motion.wrist.switch import PathTiming
+from runtime.motion.wrist_remedies import HeldPosture, back_to_the_posture
+from runtime.motion.wrist_request import SampledPath, WristRequest
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.settings.profile import Profile, WristOptions
@@ -325,5 +327,9 @@ def test_the_first_way_back_to_the_posture_is_about_the_place_where_j5_passes_ze
     start, end = (np.radians(q) for q in E3)
     path = LinePath.between(*(KINEMATICS.forward(q) @ TOOL for q in (start, end)))
     line, s = LineSolver(arm, path, start), np.linspace(0.0, 1.0, 501)
-    first = next(_windows(line, line.rows(s), s, end, None))
+    sampled = SampledPath(
+        line=line, timing=PathTiming(s=s, period_s=0.008), q=line.rows(s), excess=lambda q: (1.0, 0, "")
+    )
+    request = WristRequest(sampled=sampled, q_end=end, options=WristOptions(), trigger=None)
+    first = next(back_to_the_posture(request, HeldPosture(request)))
     assert 0.5 * (first.switch + first.solver.law.s_return) == pytest.approx(0.68, abs=0.03)

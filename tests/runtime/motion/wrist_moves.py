@@ -6,7 +6,7 @@ import numpy as np
 
 from runtime.core.frames import Array, inverse, pose, rotation_angles
 from runtime.motion.path import LinePath
-from runtime.motion.wrist.switch import Trigger, WristLimits, first_trigger, law_from
+from runtime.motion.wrist.switch import PathTiming, Trigger, WristLimits, first_trigger, law_from
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.frozen_wrist import FrozenWrist
 from runtime.robot.kinematics.kinematics import Kinematics
@@ -82,7 +82,7 @@ def carry_out(
     q, q_end = conventional(move, s, path), np.radians(move[1])
     reach = np.radians(range_deg) * np.ones(3)
     limits = WristLimits(speed=np.radians(np.broadcast_to(speed_deg_s, 3)), lower=-reach, upper=reach)
-    trigger = first_trigger(q, q_end, s, dt, limits, options, path.length)
+    trigger = first_trigger(q, q_end, PathTiming(s=s, period_s=dt, length=path.length), limits, options)
     if trigger is not None:
         k = trigger.index - 1
         law = law_from(q, s, k, q_end[3:], options.shape, options.width)

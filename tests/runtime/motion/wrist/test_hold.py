@@ -1,4 +1,4 @@
-"""Suppression: the table of section 7.2, the weld-line frame, and the way that is executed."""
+"""Suppression: the table of section 7.2, the weld-line frame, and the curve that is executed."""
 
 import itertools
 
@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 
 from runtime.core.frames import rotation_from_rpy
-from runtime.motion.wrist.hold import COMPONENTS, Suppression, held_ways, posture_components, weld_line_frame
+from runtime.motion.wrist.hold import (
+    COMPONENTS,
+    PathAhead,
+    Suppression,
+    held_angles,
+    posture_components,
+    smoothed_table,
+    weld_line_frame,
+)
 from runtime.motion.wrist.switch import law_from
 from tests.runtime.motion.wrist_moves import E2, E3, FROZEN, KINEMATICS, SECONDS, TOOL, conventional, path_of
 
@@ -20,9 +28,8 @@ def suppressed(move, switch_s, held):
     q, q_end, k = conventional(move, s, path), np.radians(move[1]), round(switch_s / DT)
     X = path.poses(s[k + 1 :])
     if held:
-        travel = path.X_end[:3, 3] - path.X_start[:3, 3]
-        chooser = Suppression(KINEMATICS, TOOL, travel, held, SPEED)
-        wrist = chooser.way(q[k], q_end[3:], s[k:], X[:, :3, 3], X[:, :3, :3], DT)
+        chooser = Suppression(KINEMATICS, TOOL, held, SPEED)
+        wrist = chooser.choose(q[k], q_end[3:], PathAhead.of(path, s[k:], DT))
     else:
         wrist = law_from(q, s, k, q_end[3:], "linear").angles(s[k + 1 :])
     rows = FROZEN.solve(X[:, :3, 3], wrist, q[k], FROZEN.side_of(q[k]))
@@ -80,14 +87,14 @@ def test_components_are_the_angles_they_are_composed_of():
 
 
 @pytest.mark.parametrize("held", [("TILT",), ("ROTATION",)])
-def test_the_way_that_is_executed_starts_on_the_path_ends_as_taught_and_has_no_jumps(held):
+def test_the_curve_that_is_executed_starts_on_the_path_ends_as_taught_and_has_no_jumps(held):
     path, s = path_of(E2), np.linspace(0.0, 1.0, 401)
     q, end = conventional(E2, s, path), np.radians(E2[1][3:])
     law = law_from(q, s, 160, end, "linear")
-    chooser = Suppression(KINEMATICS, TOOL, path.X_end[:3, 3] - path.X_start[:3, 3], held, SPEED)
-    (way,) = held_ways(chooser, path, q[160], law.slope, end, law.s_switch, 1.0 / SECONDS, (0.15,))
+    chosen = held_angles(Suppression(KINEMATICS, TOOL, held, SPEED), path, q[160], law, 1.0 / SECONDS)
+    table = smoothed_table(chosen, law, 0.15)
     fine = np.linspace(law.s_switch, 1.0, 2001)
-    angles = way.angles(fine)
+    angles = table.angles(fine)
     np.testing.assert_allclose(angles[[0, -1]], [q[160, 3:], end], atol=1e-12)
     rate = np.diff(angles, axis=0) / (fine[1] - fine[0]) / SECONDS
     assert np.abs(np.diff(rate, axis=0)).max() < 0.1  # rad/s between neighbours of 2000; the choice itself jumps by 3

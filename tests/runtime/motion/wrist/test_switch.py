@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runtime.motion.wrist.switch import WristLaw, WristLimits, first_trigger
+from runtime.motion.wrist.switch import PathTiming, WristLaw, WristLimits, first_trigger
 from runtime.settings.profile import WristOptions
 from tests.runtime.motion.wrist_moves import (
     C1_ALL,
@@ -202,9 +202,8 @@ def test_a_path_that_is_lost_is_a_condition_of_its_own():
     q = np.zeros((11, 6))
     q[6:] = np.nan
     reach = np.ones(3)
-    found = first_trigger(
-        q, np.zeros(6), np.linspace(0.0, 1.0, 11), 0.008, WristLimits(speed=reach, lower=-reach, upper=reach), NOTHING
-    )
+    timing = PathTiming(s=np.linspace(0.0, 1.0, 11), period_s=0.008)
+    found = first_trigger(q, np.zeros(6), timing, WristLimits(speed=reach, lower=-reach, upper=reach), NOTHING)
     assert (found.index, found.condition, found.axis) == (6, "reach", None)
 
 
