@@ -1,7 +1,8 @@
 """What a program may name and what its arm may do: the facts of the cell that need no numerics.
 
-One ``CellSymbols.of(cell)`` with the taught points of the program serves ``check``, a run and the linter, so that they
-cannot disagree. A fact that is None is not known and not checked. Names are in capitals.
+``CellSymbols.of(cell, points)`` is the only way from files to facts, and one value of it is in the ``Analysis`` that
+check, a run, the dry run and an editor share, so that they cannot disagree. A fact that is None is not known and not
+checked. Names are in capitals.
 """
 
 from collections.abc import Collection, Mapping
@@ -35,55 +36,38 @@ class CellSymbols:
     points_file: str = ""
 
     @staticmethod
-    def of(cell: CellFile) -> "CellSymbols":
-        """Return what a cell file gives."""
+    def of(
+        cell: CellFile | ArmFile | None,
+        points: Collection[str] | None = None,
+        *,
+        cell_file: str = "",
+        points_file: str = "",
+    ) -> "CellSymbols":
+        """Return the facts of a cell and the names of its taught points; None is not known.
+
+        An ``ArmFile`` alone stands for a cell whose file is damaged: nothing is known of it but its robot.
+        ``cell_file`` and ``points_file`` are the files to which names can be added.
+        """
+        arm = cell.arm if isinstance(cell, CellFile) else cell
+        found = CellSymbols(points=_keys(points), cell_file=cell_file, points_file=points_file)
+        if arm is not None:
+            found = replace(
+                found,
+                robot=arm.name,
+                limits=arm.limits,
+                rated_payload=arm.rated_payload,
+                max_speed_mm_s=arm.path.max_speed / MM * (1.0 + SPEED_ROUNDING),
+            )
+        if not isinstance(cell, CellFile):
+            return found
         return replace(
-            CellSymbols.of_arm(cell.arm),
+            found,
             sensors=_keys(cell.sensors),
             tools=_keys(cell.tools),
             frames=_keys(cell.frames),
             loads={name.upper(): load for name, load in cell.loads.items()},
             inputs=frozenset(cell.inputs),
-            cell_file=cell.path,
         )
-
-    @staticmethod
-    def of_arm(arm: ArmFile | None) -> "CellSymbols":
-        """Return what the arm alone gives: of its cell nothing more is known, where the file is damaged."""
-        if arm is None:
-            return NOTHING_KNOWN
-        return CellSymbols(
-            robot=arm.name,
-            limits=arm.limits,
-            rated_payload=arm.rated_payload,
-            max_speed_mm_s=arm.path.max_speed / MM * (1.0 + SPEED_ROUNDING),
-        )
-
-    @staticmethod
-    def named(
-        *,
-        points: Collection[str] | None = None,
-        rated_payload_kg: float | None = None,
-        sensors: Collection[str] | None = None,
-        tools: Collection[str] | None = None,
-        frames: Collection[str] | None = None,
-        loads: Collection[str] | None = None,
-        inputs: Collection[int] | None = None,
-    ) -> "CellSymbols":
-        """Return symbols of names alone, in any case."""
-        return CellSymbols(
-            points=_keys(points),
-            rated_payload=rated_payload_kg,
-            sensors=_keys(sensors),
-            tools=_keys(tools),
-            frames=_keys(frames),
-            loads=None if loads is None else dict.fromkeys(name.upper() for name in loads),
-            inputs=None if inputs is None else frozenset(inputs),
-        )
-
-    def taught(self, points: Collection[str], file: str) -> "CellSymbols":
-        """Return the symbols with the names of taught points, and the file in which points would be taught."""
-        return replace(self, points=_keys(points), points_file=file)
 
     @property
     def axes(self) -> int | None:

@@ -80,24 +80,24 @@ def read_beside(
     found: CellFile | None = None
     settings: Settings | None = None
     points: PointStore | None = None
-    symbols = NOTHING_KNOWN
+    facts: CellFile | ArmFile | None = None
     try:
         found = (files or CellFiles()).cell(where)
         if robot is not None:
             found = with_robot(found, named_arm(robot))
-        symbols = CellSymbols.of(found)
-        if where is None:
-            symbols = replace(symbols, cell_file="")
+        facts = found
         settings = controller_settings(found, layers)
     except Fault as fault:
         faults += fault.all
         if found is None and where is not None and robot is None:
-            symbols = CellSymbols.of_arm(read_arm_alone(where))
+            facts = read_arm_alone(where)  # so that a points file is checked all the same
+    cell_file = "" if where is None else str(where)  # nothing can be added to the built-in cell
     try:
-        points = taught_points(program, builtin=where is None, symbols=symbols)
-        symbols = symbols.taught(points.names, str(points_file(program)))
+        points = taught_points(program, builtin=where is None, symbols=CellSymbols.of(facts, cell_file=cell_file))
     except Fault as fault:
         faults += fault.all
+    names = None if points is None else points.names
+    symbols = CellSymbols.of(facts, names, cell_file=cell_file, points_file=str(points_file(program)))
     return Beside(cell=found, points=points, settings=settings, symbols=symbols, faults=tuple(faults))
 
 

@@ -20,7 +20,6 @@ from typer.main import get_command
 
 import robolang
 import runtime
-from robolang.analysis.cell_symbols import CellSymbols
 from robolang.analysis.checker import check
 from robolang.cli.main import app
 from robolang.cli.run_table import print_result
@@ -29,6 +28,7 @@ from robolang.core.source import Source
 from robolang.syntax.parser import parse
 from runtime.control.recorder import Recorder
 from runtime.core.faults import all_codes
+from tests.robolang.helpers import cell_with
 
 ROOT = Path(__file__).parents[2]
 CODES = ROOT / "docs" / "codes.md"
@@ -269,7 +269,7 @@ def test_programs_in_the_pages_have_no_errors():
     assert len(programs) >= 2
     for page, text in programs:
         parsed = parse(Source(name(page), text))
-        symbols = CellSymbols.named(points=["P1", "P2", "P3", "P5"], rated_payload_kg=2.5)
+        symbols = cell_with(points=["P1", "P2", "P3", "P5"], rated_payload_kg=2.5)
         found = (*parsed.diagnostics, *check(parsed.program, symbols))
         assert not has_errors(found), (name(page), [item.message for item in found])
 

@@ -28,6 +28,7 @@ from runtime.cell.cell import load_cell
 from runtime.core.faults import Fault, lookup
 from runtime.core.tomlfile import FileFault
 from runtime.robot.files.importer import read_arm
+from tests.robolang.helpers import cell_with
 
 _NAME = "fuzz.rbl"
 _POINTS = ("P1", "P2", "P3")
@@ -77,14 +78,14 @@ def check(data):
     source = _program(data)
     if source is None:
         return
-    _assert_located(source, engine.lint(source, CellSymbols.named(points=_POINTS)))
+    _assert_located(source, engine.lint(source, cell_with(points=_POINTS)))
     program = parse(source).program
     _assert_located(source, checker.check(program))
     _assert_located(
         source,
         checker.check(
             program,
-            CellSymbols.named(
+            cell_with(
                 points=_POINTS,
                 rated_payload_kg=2.5,
                 sensors=["TORCH"],

@@ -7,6 +7,17 @@ from robolang.core.source import Source
 from robolang.syntax.ast import Program
 from robolang.syntax.parser import parse
 
+
+def cell_with(*, rated_payload_kg=None, inputs=None, loads=None, **names) -> CellSymbols:
+    """Facts of a cell: what it may carry, kg, and the names that it has, in any case; others are not known."""
+    return CellSymbols(
+        rated_payload=rated_payload_kg,
+        inputs=None if inputs is None else frozenset(inputs),
+        loads=None if loads is None else dict.fromkeys(name.upper() for name in loads),
+        **{kind: None if known is None else frozenset(map(str.upper, known)) for kind, known in names.items()},
+    )
+
+
 Found = list[tuple[str, int, int, int]]
 
 
@@ -44,4 +55,4 @@ def only(text: str) -> Diagnostic:
 def checked(
     text: str, points: tuple[str, ...] | None = None, rated: float | None = None, sensors: tuple[str, ...] | None = None
 ) -> Found:
-    return places(text, check(parsed(text), CellSymbols.named(points=points, rated_payload_kg=rated, sensors=sensors)))
+    return places(text, check(parsed(text), cell_with(points=points, rated_payload_kg=rated, sensors=sensors)))

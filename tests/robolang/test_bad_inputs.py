@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from robolang.analysis.cell_symbols import CellSymbols
 from robolang.analysis.checker import check
 from robolang.core.source import Source, decode_program
 from robolang.evaluation import evaluator
@@ -17,7 +16,7 @@ from robolang.syntax.keywords import FUNCTIONS, VALUES
 from robolang.syntax.parser import parse
 from runtime.core.faults import Fault
 from tests.campaign import size
-from tests.robolang.helpers import places
+from tests.robolang.helpers import cell_with, places
 from tests.steps import assert_linear
 
 POINTS = ("P1", "P2")
@@ -27,7 +26,7 @@ def problems(text, points=POINTS):
     """Code, line, column and length of all that reading and checking find."""
     where = Source("pick.rbl", text)
     parsed = parse(where)
-    found = check(parsed.program, CellSymbols.named(points=points, rated_payload_kg=2.5))
+    found = check(parsed.program, cell_with(points=points, rated_payload_kg=2.5))
     return sorted(places(text, (*parsed.diagnostics, *found)), key=lambda item: item[1:])
 
 

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from robolang.analysis.cell_symbols import CellSymbols
 from robolang.core.diagnostics import Diagnostic, render, to_json
 from robolang.core.source import Source, Span
 from robolang.lint.engine import Checked, lint
@@ -22,6 +21,7 @@ from runtime.core.faults import lookup
 from runtime.core.toml_places import lines_of
 from runtime.core.tomlfile import FileFault
 from tests.campaign import size
+from tests.robolang.helpers import cell_with
 from tests.robolang.test_bad_inputs import GOLDEN, GOOD
 
 ROOT = Path(__file__).parents[2]
@@ -94,7 +94,7 @@ def test_a_finding_outside_its_text_is_noticed(span):
 
 @pytest.mark.parametrize("text", CATALOGUE, ids=range(len(CATALOGUE)))
 def test_the_catalogue_is_located(text):
-    assert_located(text, lint(Source("p.rbl", text), CellSymbols.named(points=POINTS)))
+    assert_located(text, lint(Source("p.rbl", text), cell_with(points=POINTS)))
 
 
 def some_lines(chance: random.Random) -> str:
@@ -140,7 +140,7 @@ def test_mutants_of_programs_are_located(part):
     codes, damaged = set(), 0
     for _ in range(NUMBER // PARTS):
         text = mutated(some_lines(chance), chance)
-        found = lint(Source("p.rbl", text), CellSymbols.named(points=POINTS))
+        found = lint(Source("p.rbl", text), cell_with(points=POINTS))
         assert_located(text, found)
         codes |= {item.code for item in found}
         damaged += bool(found)

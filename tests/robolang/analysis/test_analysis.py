@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from robolang.analysis.analysis import Analysis
+from robolang.analysis.cell_symbols import CellSymbols
 from robolang.cli.check_motion import planned
 from robolang.cli.main import app
 from robolang.core.diagnostics import MAX_DIAGNOSTICS, Edit
@@ -130,7 +131,7 @@ def test_parts_are_computed_once_and_only_when_asked_for(lines):
 def test_another_cell_shares_the_tree_and_not_the_names():
     analysis = Analysis(source=Source("pick.rbl", "10 MOVE P1\n"))
     assert analysis.diagnostics == ()
-    empty = analysis.within(analysis.cell.taught((), "pick.points.toml"))
+    empty = analysis.within(CellSymbols.of(None, points=()))
     assert empty.parsed is analysis.parsed
     assert [item.code for item in empty.diagnostics] == ["RBL301"]
     assert analysis.within(analysis.cell) is analysis

@@ -1,16 +1,15 @@
 import numpy as np
 import pytest
 
-from robolang.analysis.cell_symbols import CellSymbols
 from robolang.analysis.checker import check
 from robolang.core.diagnostics import MAX_DIAGNOSTICS, Severity
 from robolang.core.source import Span
 from robolang.syntax.parser import parse
-from tests.robolang.helpers import checked, parsed, places, source
+from tests.robolang.helpers import cell_with, checked, parsed, places, source
 
 
 def first(text, **facts):
-    (diagnostic,) = check(parsed(text), CellSymbols.named(**facts))
+    (diagnostic,) = check(parsed(text), cell_with(**facts))
     return diagnostic
 
 
@@ -231,7 +230,7 @@ ALL = {
 
 
 def found(text):
-    return places(text, check(parsed(text), CellSymbols.named(**ALL)))
+    return places(text, check(parsed(text), cell_with(**ALL)))
 
 
 @pytest.mark.parametrize(

@@ -2,18 +2,17 @@
 
 import pytest
 
-from robolang.analysis.cell_symbols import CellSymbols
 from robolang.analysis.checker import check
 from robolang.analysis.symbols import seems_to_define
 from robolang.core.deduplicate import MAX_NOTES
 from robolang.core.diagnostics import Severity
 from robolang.interpreter.machine import execute
 from robolang.syntax.parser import parse
-from tests.robolang.helpers import places, source
+from tests.robolang.helpers import cell_with, places, source
 
 
 def found(text, points=("P1",)):
-    return places(text, check(parse(source(text)).program, CellSymbols.named(points=points)))
+    return places(text, check(parse(source(text)).program, cell_with(points=points)))
 
 
 @pytest.mark.parametrize(
@@ -52,7 +51,7 @@ def test_what_a_line_with_an_error_seems_to_define(text, names):
 
 def test_an_undefined_name_is_said_at_its_first_use():
     text = "\n".join(["x = cuont", *["PRINT Cuont; cuont"] * 9, "PRINT other"])
-    diagnostics = check(parse(source(text)).program, CellSymbols.named(points=()))
+    diagnostics = check(parse(source(text)).program, cell_with(points=()))
     assert places(text, diagnostics) == [("RBL215", 1, 5, 5), ("RBL215", 11, 7, 5)]
     assert [source(text).place(note.span.start).line for note in diagnostics[0].related] == [2, 2, 3, 3, 4][:MAX_NOTES]
     assert diagnostics[1].related == ()
@@ -112,9 +111,7 @@ def test_a_use_in_a_line_with_an_error_defines_nothing():
 def test_a_name_is_seen_where_a_run_sees_it(text, expected):
     """What a SUB gives a value ends with the SUB; a run of the accepted ones has no fault (RBL532)."""
     errors = [
-        item
-        for item in check(parse(source(text)).program, CellSymbols.named(points=()))
-        if item.severity is Severity.ERROR
+        item for item in check(parse(source(text)).program, cell_with(points=())) if item.severity is Severity.ERROR
     ]
     assert places(text, errors) == expected
     if not expected:

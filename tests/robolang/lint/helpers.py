@@ -1,17 +1,17 @@
 """Short ways to lint a text in this process and to say what was found where."""
 
-from robolang.analysis.cell_symbols import CellSymbols
 from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import Source
 from robolang.lint.engine import Checked, lint
 from robolang.lint.selection import Layer, Selection, selector
+from tests.robolang.helpers import cell_with
 
 POINTS = ("P1", "P2", "P3", "P4", "P5")
 
 
 def found(text: str, **options) -> tuple[Diagnostic, ...]:
     """The findings of a text with P1 to P5 taught."""
-    return lint(Source("pick.rbl", text), CellSymbols.named(points=POINTS), **options)
+    return lint(Source("pick.rbl", text), cell_with(points=POINTS), **options)
 
 
 def places(text: str, **options) -> list[tuple[str, int, int]]:

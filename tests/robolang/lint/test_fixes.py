@@ -4,17 +4,17 @@ from itertools import pairwise
 
 import pytest
 
-from robolang.analysis.cell_symbols import CellSymbols
 from robolang.core.diagnostics import Diagnostic, Edit, Fix
 from robolang.core.source import Source, Span
 from robolang.lint.apply import edited, fix_all
 from robolang.lint.engine import lint
 from robolang.lint.fixes import with_fix
+from tests.robolang.helpers import cell_with
 from tests.robolang.lint.helpers import POINTS, found
 
 
 def fixed(text):
-    return fix_all(Source("pick.rbl", text), lambda source: lint(source, CellSymbols.named(points=POINTS))).source.text
+    return fix_all(Source("pick.rbl", text), lambda source: lint(source, cell_with(points=POINTS))).source.text
 
 
 def codes(text):

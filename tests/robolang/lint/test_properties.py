@@ -7,13 +7,13 @@ from pathlib import Path
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from robolang.analysis.cell_symbols import CellSymbols
 from robolang.core.diagnostics import MAX_DIAGNOSTICS
 from robolang.core.source import Source
 from robolang.lint.apply import fix_all
 from robolang.lint.engine import Checked, lint
 from robolang.lint.reporters import FORMS, render
 from runtime.core.faults import lookup
+from tests.robolang.helpers import cell_with
 from tests.robolang.lint.helpers import POINTS
 
 ROOT = Path("/work/repo")
@@ -52,7 +52,7 @@ programs = st.lists(lines, max_size=12).map("".join)
 
 
 def find(source):
-    return lint(source, CellSymbols.named(points=POINTS))
+    return lint(source, cell_with(points=POINTS))
 
 
 @given(programs)

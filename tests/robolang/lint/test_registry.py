@@ -2,7 +2,6 @@
 
 import pytest
 
-from robolang.analysis.cell_symbols import CellSymbols
 from robolang.core.diagnostics import Severity, has_errors
 from robolang.core.source import Source, read_program
 from robolang.execution.dry_run import rehearse
@@ -18,6 +17,7 @@ from robolang.lint.rules import text as text_rules
 from robolang.planning.motion_findings import findings
 from robolang.project.project import load_project
 from runtime.core.faults import Fault, lookup
+from tests.robolang.helpers import cell_with
 from tests.robolang.lint.helpers import POINTS
 
 RULES = list(rules().values())
@@ -52,9 +52,7 @@ def examine(text, item, folder):
         assert not has_errors(project.diagnostics)
         found = (*project.diagnostics, *findings(project, rehearse(project), 3.0 if item.code == "RBL423" else None))
     else:
-        found = lint(
-            source, CellSymbols.named(points=POINTS, rated_payload_kg=2.5, sensors=["LASER"], tools=["GRIPPER"])
-        )
+        found = lint(source, cell_with(points=POINTS, rated_payload_kg=2.5, sensors=["LASER"], tools=["GRIPPER"]))
     return [(one.code, source.place(one.span.start).line, one.severity) for one in found]
 
 
@@ -101,7 +99,7 @@ def test_the_corrected_example_has_no_finding(item, tmp_path):
 
 @pytest.mark.parametrize("item", WITH_FIX, ids=name)
 def test_a_fix_that_is_promised_makes_the_correction_of_the_example(item):
-    fixed = fix_all(Source("pick.rbl", item.bad), lambda source: lint(source, CellSymbols.named(points=POINTS)))
+    fixed = fix_all(Source("pick.rbl", item.bad), lambda source: lint(source, cell_with(points=POINTS)))
     assert fixed.counts == {item.code: 1}
     assert fixed.source.text == item.good
 
@@ -109,7 +107,7 @@ def test_a_fix_that_is_promised_makes_the_correction_of_the_example(item):
 @pytest.mark.parametrize("item", [item for item in RULES if not item.fix], ids=name)
 def test_a_rule_without_a_fix_has_none(item):
     if item.code != "RBL104" and not item.points:
-        assert all(found.fix is None for found in lint(Source("pick.rbl", item.bad), CellSymbols.named(points=POINTS)))
+        assert all(found.fix is None for found in lint(Source("pick.rbl", item.bad), cell_with(points=POINTS)))
 
 
 @pytest.mark.parametrize("item", RULES, ids=name)

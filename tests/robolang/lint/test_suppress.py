@@ -2,17 +2,17 @@
 
 import pytest
 
-from robolang.analysis.cell_symbols import CellSymbols
 from robolang.core.diagnostics import MAX_DIAGNOSTICS, Diagnostic
 from robolang.core.source import Source, Span
 from robolang.lint.apply import fix_all
 from robolang.lint.engine import lint
 from robolang.lint.suppress import add_later
+from tests.robolang.helpers import cell_with
 from tests.robolang.lint.helpers import POINTS, found, layer, marked, places, selection
 
 
 def fixed(text):
-    return fix_all(Source("pick.rbl", text), lambda source: lint(source, CellSymbols.named(points=POINTS))).source.text
+    return fix_all(Source("pick.rbl", text), lambda source: lint(source, cell_with(points=POINTS))).source.text
 
 
 @pytest.mark.parametrize(
@@ -156,7 +156,7 @@ def test_with_an_error_of_syntax_nothing_is_called_unused():
 def test_without_the_points_nothing_is_called_unused():
     source = Source("pick.rbl", "MOVE P1 ' noqa: RBL301\n")
     assert lint(source, complete=False) == ()
-    assert [item.code for item in lint(source, CellSymbols.named(points=POINTS))] == ["RBL190"]
+    assert [item.code for item in lint(source, cell_with(points=POINTS))] == ["RBL190"]
 
 
 @pytest.mark.parametrize("code", ["RBL412", "RBL402", "RBL534", "wrist-singularity"])
@@ -167,7 +167,7 @@ def test_a_code_that_needs_the_cell_or_the_motion_is_not_called_unused(code):
 
 def test_what_is_found_later_is_suppressed_as_well():
     source = Source("pick.rbl", "MOVE P1 ' noqa\nMOVE P2 ' noqa: RBL412, RBL30\nMOVE P3\nMOVE P4 ' noqa\n")
-    before = lint(source, CellSymbols.named(points=POINTS))
+    before = lint(source, cell_with(points=POINTS))
     assert [item.code for item in before] == ["RBL190", "RBL191", "RBL190"]
     later = [Diagnostic(code="RBL412", message="", span=Span(at, at + 1)) for at in (0, 15, 45)]
     found = sorted(add_later(source, before, later), key=lambda item: item.span)

@@ -2,19 +2,18 @@
 
 import pytest
 
-from robolang.analysis.cell_symbols import CellSymbols
 from robolang.analysis.checker import check
 from robolang.core.diagnostics import in_order
 from robolang.syntax import other_languages
 from robolang.syntax.keywords import FUNCTIONS, KEYWORDS, VALUES
 from robolang.syntax.parser import parse
-from tests.robolang.helpers import source
+from tests.robolang.helpers import cell_with, source
 
 
 def found(text):
     """Code, line and hint of everything in a text."""
     parsed = parse(source(text))
-    items = in_order((*parsed.diagnostics, *check(parsed.program, CellSymbols.named(points=["P1"]))))
+    items = in_order((*parsed.diagnostics, *check(parsed.program, cell_with(points=["P1"]))))
     return [(item.code, source(text).place(item.span.start).line, item.hint) for item in items]
 
 

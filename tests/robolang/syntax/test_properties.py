@@ -9,7 +9,6 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from robolang.analysis.cell_symbols import CellSymbols
 from robolang.analysis.checker import check
 from robolang.core.diagnostics import has_errors, render, to_json
 from robolang.core.source import read_program
@@ -26,7 +25,7 @@ from runtime.core.tomlfile import FileFault
 from tests.campaign import examples
 from tests.robolang import generator
 from tests.robolang.generator import jumping_programs, programs, texts, written_badly
-from tests.robolang.helpers import source
+from tests.robolang.helpers import cell_with, source
 from tests.steps import assert_linear
 
 
@@ -269,7 +268,7 @@ def test_any_text_gives_a_tree_and_located_diagnostics(text):
     assert len(unparsed) == sum(item.code != "RBL110" for item in result.diagnostics)
     for item in (
         *result.diagnostics,
-        *check(result.program, CellSymbols.named(points=["P1"], rated_payload_kg=2.5, sensors=["P2"])),
+        *check(result.program, cell_with(points=["P1"], rated_payload_kg=2.5, sensors=["P2"])),
     ):
         assert 0 <= item.span.start <= item.span.end <= len(text)
         assert render(item, where).isprintable() or "\n" in render(item, where)
