@@ -33,7 +33,8 @@ from robolang.interpreter.effects import (
     SetTool,
     SetWrist,
 )
-from robolang.interpreter.machine import Machine, ProgramFault
+from robolang.interpreter.machine import Machine
+from robolang.interpreter.program_fault import ProgramFault
 from robolang.project.project import Project
 from robolang.syntax.ast import Delay, Wait
 from runtime.core.faults import Fault

@@ -37,7 +37,8 @@ from robolang.interpreter.effects import (
     SetWrist,
     Show,
 )
-from robolang.interpreter.machine import Machine, ProgramFault
+from robolang.interpreter.machine import Machine
+from robolang.interpreter.program_fault import ProgramFault
 from robolang.project.project import Project, load_project
 from robolang.syntax.ast import Wait
 from robolang.syntax.unparse import describe

@@ -7,7 +7,7 @@ evaluated then, in the units of the text.
 """
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, TypeAlias, TypeGuard
 
 from robolang.core import limits
@@ -59,16 +59,16 @@ _SET = {
 """What each setting sets."""
 
 
-class _Settings:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Settings:
     """What SPEED, ACCEL, WRIST and the like have set for the moves that follow."""
 
-    def __init__(self) -> None:
-        self.speed_mm_s: float | None = None
-        self.speed_pct: float | None = None
-        self.accel_pct: float | None = None
-        self.override_pct = 100.0
-        self.zone_mm = 0.0
-        self.wrist: Wrist | None = None
+    speed_mm_s: float | None = None
+    speed_pct: float | None = None
+    accel_pct: float | None = None
+    override_pct: float = 100.0
+    zone_mm: float = 0.0
+    wrist: Wrist | None = None
 
 
 class Actions:
@@ -76,7 +76,7 @@ class Actions:
 
     def __init__(self, values: Evaluator, scopes: Scopes) -> None:
         self._values, self._scopes = values, scopes
-        self._set = _Settings()
+        self.settings = Settings()
 
     def effect(self, line: Line, node: Action) -> Effect | None:
         """Return what a statement asks for, None for a setting; ``Fault`` where it has no value or is out of range."""
@@ -93,7 +93,7 @@ class Actions:
             via=self._values.place(node.via) if isinstance(node, MoveC) else None,
             wrist=None if wrist is None else _mode(wrist),
             held=() if wrist is None else _held(wrist),
-            override_pct=self._set.override_pct,
+            override_pct=self.settings.override_pct,
             **values,
         )
 
@@ -108,7 +108,7 @@ class Actions:
 
     def _options(self, node: Moving) -> tuple[dict[str, Any], Wrist | None]:
         """Return the values of a move: its options', else those that were set."""
-        joint, found, wrist = isinstance(node, MoveJ), self._set, self._set.wrist
+        joint, found, wrist = isinstance(node, MoveJ), self.settings, self.settings.wrist
         speed: float | None = None
         accel, zone, time = found.accel_pct, found.zone_mm, None
         for option in node.options:
@@ -158,7 +158,7 @@ class Actions:
         )
 
     def _wrist(self, line: Line, node: Wrist) -> Effect:
-        self._set.wrist = node
+        self.settings = replace(self.settings, wrist=node)
         return effects.SetWrist(**origin(line, node), mode=_mode(node), held=_held(node))
 
     def _seam(self, line: Line, node: Seam) -> Effect:
@@ -172,7 +172,8 @@ class Actions:
         if node.word == "FRAME":
             self._values.frame = self._frame(node.value)
             return None
-        setattr(self._set, _SET[node.word], limits.SETTINGS[node.word].checked(self._values.number(node.value)))
+        value: Any = limits.SETTINGS[node.word].checked(self._values.number(node.value))
+        self.settings = replace(self.settings, **{_SET[node.word]: value})
         return None
 
     def _frame(self, node: Expression) -> Frame:

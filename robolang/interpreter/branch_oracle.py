@@ -6,6 +6,7 @@ interpreter see which branch each condition took, and force the other one when t
 """
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from robolang.core.source import Span
 
@@ -35,3 +36,21 @@ class Decisions:
         """Note the way that a condition took, and return it."""
         self.taken.setdefault(place, set()).add(value)
         return value
+
+    def snapshot(self) -> "DecisionsSnapshot":
+        """Return what is left to force, and the branches taken so far."""
+        taken = {place: frozenset(branches) for place, branches in self.taken.items()}
+        return DecisionsSnapshot(forced=self._forced.copy(), taken=taken)
+
+    def restore(self, snapshot: "DecisionsSnapshot") -> None:
+        """Take back the state of a snapshot."""
+        self._forced = dict(snapshot.forced)
+        self.taken = {place: set(branches) for place, branches in snapshot.taken.items()}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DecisionsSnapshot:
+    """State of ``Decisions``: the branches left to force, and those that conditions have taken."""
+
+    forced: Mapping[Span, bool]
+    taken: Mapping[Span, frozenset[bool]]

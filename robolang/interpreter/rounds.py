@@ -6,7 +6,7 @@ statements, so that it is the same in a run, in its rehearsal and in an export.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(slots=True)
@@ -25,6 +25,13 @@ class Rounds:
     def __init__(self) -> None:
         self._idle: dict[int, int] = {}
         self._loops: dict[int, _Loop] = {}
+
+    def copy(self) -> "Rounds":
+        """Return the same counts, counted apart from now on."""
+        other = Rounds()
+        other._idle = self._idle.copy()
+        other._loops = {head: replace(loop) for head, loop in self._loops.items()}
+        return other
 
     def idle(self, head: int) -> int:
         """Count a jump back to a line; return how many have come since something took time."""

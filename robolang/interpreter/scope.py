@@ -13,10 +13,11 @@ Memory is counted where it is given out, and comes back when a SUB ends: names a
 RBL507), and what texts and the ways behind poses hold beyond that (``MAX_TEXTS``, RBL506).
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 from robolang.core.limits import SIZE
+from robolang.interpreter.arrays import Array
 from robolang.values.poses import Place, Value, kind_of
 from runtime.core.faults import Fault
 
@@ -61,7 +62,7 @@ class Scope:
 
     back: int = -1
     values: dict[str, Value] = field(default_factory=dict)
-    arrays: dict[str, list[Value]] = field(default_factory=dict)
+    arrays: dict[str, Array] = field(default_factory=dict)
     constants: set[str] = field(default_factory=set)
     loops: list[Loop] = field(default_factory=list)
     returns: list[int] = field(default_factory=list)
@@ -70,6 +71,17 @@ class Scope:
     failure: Failure | None = None
     cells: int = 0
     texts: int = 0
+
+    def copy(self) -> "Scope":
+        """Return a scope of the same state; values are immutable, and arrays share what neither changes."""
+        return replace(
+            self,
+            values=self.values.copy(),
+            arrays={key: array.copy() for key, array in self.arrays.items()},
+            constants=self.constants.copy(),
+            loops=[replace(loop) for loop in self.loops],
+            returns=self.returns.copy(),
+        )
 
 
 class Scopes:
@@ -83,6 +95,14 @@ class Scopes:
     def here(self) -> Scope:
         """The scope that runs."""
         return self.stack[-1]
+
+    def snapshot(self) -> tuple[Scope, ...]:
+        """Return copies of the scopes, which nothing changes."""
+        return tuple(scope.copy() for scope in self.stack)
+
+    def restore(self, scopes: Sequence[Scope]) -> None:
+        """Take back the scopes of a snapshot."""
+        self.stack = [scope.copy() for scope in scopes]
 
     # --- CALL, GOSUB and ON ERROR -------------------------------------------------------------------------------------
 
@@ -111,9 +131,22 @@ class Scopes:
         here = self.here
         here.handler, here.gosubs, here.failure = handler, len(here.returns), None
 
-    def catch(self, line: int) -> int | None:
-        """Return the line of the handler of an error on a line, and give up what it leaves; None: it ends the run."""
-        index = next((k for k in reversed(range(len(self.stack))) if self.stack[k].handler is not None), 0)
+    def unwind(self, depth: int, returns: int) -> None:
+        """Give up the CALLs beyond a number of scopes, and the GOSUBs of the last of them beyond a number."""
+        del self.stack[depth:]
+        here = self.here
+        del here.returns[returns:]
+        here.gosubs = min(here.gosubs, len(here.returns))
+
+    def catch(self, line: int, outermost: int = 0) -> int | None:
+        """Return the line of the handler of an error on a line, and give up what it leaves; None: nothing catches it.
+
+        Scopes outside of number ``outermost`` have no part in it.
+        """
+        handlers = (k for k in reversed(range(outermost, len(self.stack))) if self.stack[k].handler is not None)
+        index = next(handlers, None)
+        if index is None:
+            return None
         scope = self.stack[index]
         if scope.handler in (None, STOPS) or scope.failure is not None:
             return None
@@ -175,10 +208,10 @@ class Scopes:
         """Make an array of elements 0 to ``largest``, all 0 or empty; ``Fault`` RBL507."""
         SIZE.checked(largest)
         here = self.here
-        old = here.arrays.get(key, [])
+        old: Sequence[Value] | Array = here.arrays.get(key, ())
         self._charge(here, largest + 1 - len(old), -sum(map(characters, old)))
         empty: Value = "" if key.endswith("$") else 0.0
-        here.arrays[key] = [empty] * (largest + 1)
+        here.arrays[key] = Array(largest + 1, empty)
 
     def put(self, key: str, index: int, value: Value) -> None:
         """Give an element of an array a value; ``Fault`` RBL507, RBL532."""
@@ -195,7 +228,7 @@ class Scopes:
         """Return the scope whose array a name means."""
         return next((scope for scope in (self.stack[-1], self.stack[0]) if key in scope.arrays), None)
 
-    def _checked(self, key: str, array: list[Value], index: int) -> int:
+    def _checked(self, key: str, array: Array, index: int) -> int:
         if not 0 <= index < len(array):
             raise Fault("RBL507", f"{key} has the elements 0 to {len(array) - 1}, no {index}")
         return index

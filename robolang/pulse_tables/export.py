@@ -19,7 +19,8 @@ from robolang.execution import lowering
 from robolang.execution.alarms import calls
 from robolang.execution.lowering import Surroundings
 from robolang.interpreter.effects import Drain, Effect, MoveTo, SetHand, SetPayload, SetSeam, SetTool, SetWrist
-from robolang.interpreter.machine import ProgramFault, execute
+from robolang.interpreter.machine import execute
+from robolang.interpreter.program_fault import ProgramFault
 from robolang.project.project import Project
 from robolang.syntax.ast import Delay, Number, Wait
 from robolang.syntax.unparse import describe

@@ -10,6 +10,7 @@ import importlib
 import re
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -26,7 +27,7 @@ WHOLE = "whole numbers"
 OPEN = {
     "robolang/analysis/checker.py: line.number < previous": WHOLE,
     "robolang/testing/golden.py: size < _END.size": WHOLE,
-    "robolang/interpreter/machine.py: rounds > MAX_ROUNDS": "the language has no NaN",
+    "robolang/interpreter/control_flow.py: rounds > run_limits.MAX_ROUNDS": "the language has no NaN",
     "runtime/cell/signals.py: round(seconds * 1000000.0) <= changes[-1][0]": WHOLE,
     "runtime/pulses/folder.py: steps > most": WHOLE,
     "runtime/robot/files/corrections.py: mass > 0.0": FILE,
@@ -69,9 +70,13 @@ EXTREMES = {
 
 @cache
 def constants(path):
-    """Names of a module that are whole numbers."""
+    """Names of a module that are whole numbers, and those of the modules that it imports, as ``module.NAME``."""
     name = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
-    return {key for key, value in vars(importlib.import_module(name)).items() if isinstance(value, int)}
+    names = vars(importlib.import_module(name))
+    found = {f"{key}.": vars(value) for key, value in names.items() if isinstance(value, ModuleType)}
+    return {
+        prefix + key for prefix, held in ({"": names} | found).items() for key in held if isinstance(held[key], int)
+    }
 
 
 def called(node):
@@ -109,7 +114,7 @@ def whole(comparison, path):
     return any(
         called(side) in ("len", "int", "count")
         or (isinstance(side, ast.Constant) and isinstance(side.value, int))
-        or (isinstance(side, ast.Name) and side.id in constants(path))
+        or ast.unparse(side) in constants(path)
         or (isinstance(side, ast.Attribute) and (side.attr.endswith("_us") or side.attr == "st_size"))
         for side in (comparison.left, *comparison.comparators)
     )

@@ -4,7 +4,8 @@ import pytest
 
 from robolang.evaluation.evaluator import Nowhere
 from robolang.interpreter.effects import Pass, Show
-from robolang.interpreter.machine import ProgramFault, execute
+from robolang.interpreter.machine import execute
+from robolang.interpreter.program_fault import ProgramFault
 from runtime.core.faults import Fault
 from tests.robolang.helpers import parsed
 

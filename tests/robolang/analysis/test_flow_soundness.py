@@ -19,7 +19,8 @@ from robolang.analysis.dataflow import facts_before, ways_of
 from robolang.core.diagnostics import has_errors
 from robolang.interpreter.branch_oracle import Decisions
 from robolang.interpreter.effects import MoveTo, SetHand, SetPayload, Show
-from robolang.interpreter.machine import Machine, ProgramFault
+from robolang.interpreter.events import Done, Failed, LineBegun
+from robolang.interpreter.machine import Machine
 from robolang.planning.branch_forcing import open_conditions
 from robolang.syntax.ast import Hand, HandState, LoadNamed, Move, Print
 from robolang.syntax.blocks import structure_of, word_of
@@ -170,8 +171,7 @@ class Followed(Machine):
         self.seen = {"print": defaultdict(set), "hand": defaultdict(set)}
         self.slow_moves, self.bare_hands = 0, set()
 
-    def _count(self, at):
-        super()._count(at)
+    def _come_to(self, at):
         self.lines += 1
         if self.lines > MOST_LINES:
             raise EnoughError
@@ -181,9 +181,12 @@ class Followed(Machine):
     def follow(self):
         """Run to the end, or until it has been long enough."""
         try:
-            for effect in self.run():
-                self._note(effect)
-        except (ProgramFault, EnoughError):
+            while not isinstance(event := self.step(), Done | Failed):
+                if isinstance(event, LineBegun):
+                    self._come_to(event.line - 1)
+                else:
+                    self._note(event)
+        except EnoughError:
             pass
         return self
 

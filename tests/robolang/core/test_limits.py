@@ -12,8 +12,9 @@ from robolang.evaluation.evaluator import MAX_TEXT
 from robolang.execution import dry_run, session
 from robolang.execution.dry_run import rehearse
 from robolang.execution.session import Session
-from robolang.interpreter import machine
-from robolang.interpreter.machine import MAX_CALLS, MAX_ROUNDS, execute
+from robolang.interpreter import run_limits
+from robolang.interpreter.machine import execute
+from robolang.interpreter.run_limits import MAX_CALLS, MAX_ROUNDS
 from robolang.interpreter.scope import MAX_CELLS, MAX_TEXTS
 from robolang.project.project import load_project
 from robolang.syntax.parser import parse
@@ -58,7 +59,7 @@ def test_a_limit_of_values(code, inside, beyond):
 )
 def test_a_limit_of_the_run(name, code, text, monkeypatch):
     """Counts that take long to reach, with a smaller limit in their place."""
-    monkeypatch.setattr(machine, name, 20)
+    monkeypatch.setattr(run_limits, name, 20)
     within, beyond = ("".join(text.format(k, k, k) for k in range(count)) for count in (20, 21))
     ran(within)
     assert fault(beyond).code == code

@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from robolang.core.source import Source
-from robolang.interpreter.machine import ProgramFault, execute
+from robolang.interpreter.machine import execute
+from robolang.interpreter.program_fault import ProgramFault
 from robolang.syntax.parser import parse
 from tests.robolang.running import POINTS, World
 

@@ -3,9 +3,11 @@ from pathlib import Path
 import pytest
 
 from robolang.core.source import Span
-from robolang.interpreter import machine
+from robolang.interpreter import run_limits
 from robolang.interpreter.effects import Drain, MoveTo, Origin, Pass, SetHand, SetPayload, SetSeam, SetWrist
-from robolang.interpreter.machine import MAX_CALLS, ProgramFault, execute
+from robolang.interpreter.machine import execute
+from robolang.interpreter.program_fault import ProgramFault
+from robolang.interpreter.run_limits import MAX_CALLS
 from robolang.syntax.parser import parse
 from robolang.syntax.unparse import describe
 from robolang.values.poses import Place, Shift
@@ -301,7 +303,7 @@ def test_control(text, printed):
 
 
 def test_a_loop_of_a_million_fractions_is_counted_exactly(monkeypatch):
-    monkeypatch.setattr(machine, "MAX_IDLE", 10**9)
+    monkeypatch.setattr(run_limits, "MAX_IDLE", 10**9)
     (last,) = shows("FOR x = 0 TO 99999.9 STEP 0.1\nNEXT\nPRINT ROUND(x * 10)")
     assert last == "999999"
 
@@ -333,7 +335,7 @@ def test_calls_within_one_another_are_bounded(call):
     ],
 )
 def test_a_loop_that_takes_no_time_is_named_at_its_head(text, number, place, monkeypatch):
-    monkeypatch.setattr(machine, "MAX_IDLE", 1000)
+    monkeypatch.setattr(run_limits, "MAX_IDLE", 1000)
     found = fault(text)
     assert (found.code, found.origin.line, found.origin.number) == ("RBL508", place[0], number)
     where = source(text).place(found.origin.span.start)
@@ -343,12 +345,12 @@ def test_a_loop_that_takes_no_time_is_named_at_its_head(text, number, place, mon
 
 @pytest.mark.parametrize("work", ["DELAY 0.01", "MOVE P1", "HAND ON, 0", "WAIT TIMER > 0.008 * n"])
 def test_a_loop_that_takes_time_is_none(work, monkeypatch):
-    monkeypatch.setattr(machine, "MAX_IDLE", 20)
+    monkeypatch.setattr(run_limits, "MAX_IDLE", 20)
     ran(f"FOR n = 1 TO 1000\nx = n\n{work}\nNEXT")
 
 
 def test_idle_statements_are_counted_exactly(monkeypatch):
-    monkeypatch.setattr(machine, "MAX_IDLE", 10)
+    monkeypatch.setattr(run_limits, "MAX_IDLE", 10)
     assert shows("FOR i = 1 TO 11\nNEXT\nPRINT i") == ["11"]
     assert fault("FOR i = 1 TO 12\nNEXT\nPRINT i").code == "RBL508"
 
@@ -363,7 +365,7 @@ def test_idle_statements_are_counted_exactly(monkeypatch):
     ],
 )
 def test_rounds_are_those_of_one_loop(text, monkeypatch):
-    monkeypatch.setattr(machine, "MAX_IDLE", 10)
+    monkeypatch.setattr(run_limits, "MAX_IDLE", 10)
     assert shows(text) == ["1"]
 
 
@@ -382,14 +384,14 @@ def test_resume_next_goes_behind_a_block_whose_head_failed(head, end, shown):
 
 
 def test_statements_are_counted(monkeypatch):
-    monkeypatch.setattr(machine, "MAX_STEPS", 10)
+    monkeypatch.setattr(run_limits, "MAX_STEPS", 10)
     ran("DELAY 1\n" * 10)
     assert fault("DELAY 1\n" * 11).code == "RBL505"
     assert fault("ON ERROR GOTO *H\n*H DELAY 1\nGOTO *H").code == "RBL505"
 
 
 def test_what_is_printed_is_bounded(monkeypatch):
-    monkeypatch.setattr(machine, "MAX_SHOWN", 10)
+    monkeypatch.setattr(run_limits, "MAX_SHOWN", 10)
     assert shows('PRINT "1234"\nPRINT "1234"') == ["1234", "1234"]
     assert fault('PRINT "1234"\nPRINT "12345"').code == "RBL506"
 

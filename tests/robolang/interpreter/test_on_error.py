@@ -3,9 +3,11 @@
 import pytest
 
 from robolang.core.source import Span
-from robolang.interpreter import machine
+from robolang.interpreter import run_limits
 from robolang.interpreter.effects import MoveTo, Show
-from robolang.interpreter.machine import MAX_CALLS, ProgramFault, execute
+from robolang.interpreter.machine import execute
+from robolang.interpreter.program_fault import ProgramFault
+from robolang.interpreter.run_limits import MAX_CALLS
 from runtime.core.faults import Fault
 from tests.robolang.helpers import parsed
 from tests.robolang.running import POINTS, World, fault, shows
@@ -149,13 +151,13 @@ def test_depth_is_what_it_was_after_an_error():
 
 
 def test_a_handler_above_the_statement_that_fails_is_a_loop_as_well(monkeypatch):
-    monkeypatch.setattr(machine, "MAX_IDLE", 1000)
+    monkeypatch.setattr(run_limits, "MAX_IDLE", 1000)
     found = fault("n = 0\nGOTO *TOP\n30 *H RESUME\n*TOP ON ERROR GOTO *H\nx = 1 / n")
     assert (found.code, found.origin.number) == ("RBL508", 30)
 
 
 def test_a_move_that_is_refused_takes_no_time(monkeypatch):
-    monkeypatch.setattr(machine, "MAX_IDLE", 1000)
+    monkeypatch.setattr(run_limits, "MAX_IDLE", 1000)
     program = execute(parsed("10 ON ERROR GOTO *H\n20 MOVE P1\n30 END\n40 *H RESUME"), World(), POINTS)
     next(program)
     with pytest.raises(ProgramFault) as caught:

@@ -1,0 +1,126 @@
+"""Where a program stands inside of a statement: what the next step does, as frozen values.
+
+No generator and no frame of Python is kept between two steps, so a place in a program can be copied, kept and returned
+to. ``Cursor`` is the place; a statement that was fed suspends it (``Suspended``).
+"""
+
+from collections.abc import Sequence
+from copy import copy
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from robolang.interpreter.events import Done, Failed
+from robolang.interpreter.scope import Scope
+from robolang.syntax.ast import Line, Statement, Wait
+from robolang.syntax.tree import Node
+from robolang.values.poses import Value
+from runtime.core.faults import Fault
+
+FED = -2
+"""In place of the index of a line: the statement that was fed, which is on no line of the program."""
+AFTER_FED = FED + 1
+"""Where a statement that was fed goes on, and what it calls returns to: the place that it has suspended.
+
+One more than ``FED``, so that a CALL or GOSUB returns to the line after its own in either case.
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Due:
+    """The line at the cursor has not begun."""
+
+
+@dataclass(frozen=True, slots=True)
+class Begun:
+    """The beginning of the statement has been reported; the statement is to be carried out."""
+
+
+@dataclass(frozen=True, slots=True)
+class Drained:
+    """Motion has ended for a statement, or for the branch of an IF on one line; it is to be carried out."""
+
+    node: Statement
+
+
+@dataclass(frozen=True, slots=True)
+class Asking:
+    """Motion has ended for the condition of an ELSEIF, ``at`` its line."""
+
+    at: int
+
+
+@dataclass(frozen=True, slots=True)
+class Comparing:
+    """Motion has ended for the values of a CASE, ``at`` its line; ``chosen``: the value of the SELECT."""
+
+    at: int
+    chosen: Value
+
+
+@dataclass(frozen=True, slots=True)
+class WaitDue:
+    """Motion has ended for a WAIT; its time is to begin."""
+
+    node: Wait
+
+
+@dataclass(frozen=True, slots=True)
+class Waiting:
+    """A WAIT since ``began``, s, for at most ``timeout``, s; ``forced``: the branch that it takes, None: either."""
+
+    node: Wait
+    began: float
+    timeout: float
+    forced: bool | None
+
+
+@dataclass(frozen=True, slots=True)
+class Given:
+    """The last effect of the statement has been given; the program goes on at line ``to``, None: the next one.
+
+    ``takes_time``: the effect has taken time once the next step is asked for; a refused one has not.
+    """
+
+    to: int | None = None
+    takes_time: bool = False
+
+
+Position: TypeAlias = Due | Begun | Drained | Asking | Comparing | WaitDue | Waiting | Given
+
+DUE, BEGUN, GIVEN, MOVED = Due(), Begun(), Given(), Given(takes_time=True)
+
+
+@dataclass(slots=True)
+class Cursor:
+    """The place of a program: index of the line that runs, or ``FED``, and the position inside of its statement.
+
+    ``part``: line and part of the statement that is carried out, such as the branch of an IF: a fault is located there.
+    ``refused``: the fault of the effect that was given, to be answered by the next step; ``ended``: the event of every
+    further step; ``fed``: the line of the statement that was fed, while that is ``at``.
+    """
+
+    at: int = 0
+    position: Position = DUE
+    part: tuple[int, Node | None] = (0, None)
+    refused: Fault | None = None
+    ended: Done | Failed | None = None
+    fed: Line | None = None
+
+    def copy(self) -> "Cursor":
+        """Return the same place."""
+        return copy(self)
+
+
+@dataclass(frozen=True, slots=True)
+class Suspended:
+    """The place that a statement which was fed has suspended, and how many scopes and GOSUBs there were."""
+
+    cursor: Cursor
+    depth: int
+    returns: int
+
+    def is_awaited(self, stack: Sequence[Scope]) -> bool:
+        """Return whether a CALL or GOSUB that was fed has not returned yet."""
+        called = len(stack) > self.depth and stack[self.depth].back == AFTER_FED
+        gone = len(stack) >= self.depth and stack[self.depth - 1].returns[self.returns :][:1] == [AFTER_FED]
+        return called or gone
