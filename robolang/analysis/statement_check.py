@@ -355,7 +355,7 @@ def _expressions(node: Statement) -> Iterator[Expression]:
             for option in node.options
             if isinstance(option, Speed | Accel | Time | Zone) and option.value is not None
         )
-    for name in type(node).__dataclass_fields__:
+    for name in node.__slots__:
         if name in _NAMED_FIELDS or (isinstance(node, Moving) and name in ("target", "via", "options")):
             continue
         value = getattr(node, name)

@@ -22,6 +22,7 @@ from robolang.interpreter.effects import Drain, Effect, MoveTo, SetHand, SetPayl
 from robolang.interpreter.machine import execute
 from robolang.interpreter.program_fault import ProgramFault
 from robolang.project.project import Project
+from robolang.syntax import ast
 from robolang.syntax.ast import Delay, Number, Wait
 from robolang.syntax.unparse import describe
 from runtime.core.faults import Fault
@@ -170,14 +171,14 @@ def _effects(project: Project) -> Iterator[Effect]:
     """Yield the effects of a program in which nothing depends on a run; a WAIT is passed, for it becomes a marker."""
     waiting = {id(line.statement) for line in project.program.lines if isinstance(line.statement, Wait)}
     passed = tuple(
-        replace(line, statement=Delay(seconds=Number(value=0.0, text="0"), span=line.statement.span))
+        ast.replace(line, statement=Delay(seconds=Number(value=0.0, text="0"), span=line.statement.span))
         if line.statement is not None and id(line.statement) in waiting
         else line
         for line in project.program.lines
     )
     texts = {line.source_line: line.statement for line in project.program.lines}
     try:
-        for effect in execute(replace(project.program, lines=passed), points=project.points.names):
+        for effect in execute(ast.replace(project.program, lines=passed), points=project.points.names):
             original = texts[effect.line]
             yield replace(effect, node=original) if isinstance(original, Wait) else effect
     except ProgramFault as fault:

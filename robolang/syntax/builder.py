@@ -5,14 +5,13 @@ place of its text. Called by ``parser`` alone.
 """
 
 from collections.abc import Iterable
-from dataclasses import replace
 from sys import intern
 
 from lark import Token, Transformer, v_args
 
 from robolang.core.source import Span
 from robolang.syntax import ast
-from robolang.syntax.ast import Expression
+from robolang.syntax.ast import Expression, replace
 
 Parsed = tuple[ast.Name | None, ast.Statement | None, ast.Comment | None]
 """Label, statement and comment of a line."""

@@ -9,6 +9,7 @@ from typing import Any
 
 from robolang.core.diagnostics import Diagnostic, Edit, Fix, Related
 from robolang.core.source import Source, Span
+from robolang.syntax import tree
 from robolang.syntax.ast import NOWHERE, Line, Node, Unparsed
 from robolang.syntax.parser import ParsedLine, ParseResult, parse
 from robolang.syntax.tree import is_deeper
@@ -59,7 +60,7 @@ def _moved_line(line: Line, by: int, rows: int) -> Line:
 def _moved(value: Any, by: int) -> Any:
     """Return a value with every place in it moved; what has no place is the same object.
 
-    ``dataclasses.replace`` would run the checks of every node again, and cannot set a field that a node works out.
+    ``replace`` would run the constructor of every node again, which takes longer.
     """
     if isinstance(value, Span):
         return value if value is NOWHERE else Span(value.start + by, value.end + by)
@@ -69,7 +70,7 @@ def _moved(value: Any, by: int) -> Any:
         return value
     kind = type(value)
     if kind not in _FIELDS:
-        _FIELDS[kind] = tuple(item.name for item in fields(kind))
+        _FIELDS[kind] = tree.fields(kind) if issubclass(kind, Node) else tuple(item.name for item in fields(kind))
     twin = object.__new__(kind)
     for name in _FIELDS[kind]:
         object.__setattr__(twin, name, _moved(getattr(value, name), by))

@@ -6,7 +6,6 @@ registered code, in bounded time; places lie in the text; formatting is done onc
 
 import re
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from tempfile import mkdtemp
 
@@ -212,7 +211,7 @@ def _assert_located(source, diagnostics):
 def _canonical(program):
     """The tree with REM in capitals, which is all of it that the formatter changes."""
     return [
-        replace(line, comment=None if line.comment is None else ast.Comment(text=_spelt(line.comment.text)))
+        ast.replace(line, comment=None if line.comment is None else ast.Comment(text=_spelt(line.comment.text)))
         for line in program.lines
     ]
 

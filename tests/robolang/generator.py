@@ -6,7 +6,6 @@ somewhere only when it times out, THEN and ELSE of one line hold no block. ``EXP
 """
 
 import re
-from dataclasses import replace
 
 from hypothesis import strategies as st
 
@@ -84,7 +83,7 @@ expressions = brief(
         st.one_of(numbers, names, numbers, names, simple_values[ast.Text], words),
         lambda inner: brief(st.one_of(chains(inner), *compound(inner).values())),
         max_leaves=8,
-    ).flatmap(lambda node: st.integers(0, 2).map(lambda count: replace(node, parentheses=count)))
+    ).flatmap(lambda node: st.integers(0, 2).map(lambda count: ast.replace(node, parentheses=count)))
 )
 EXPRESSIONS = {**simple_values, **compound(expressions)}
 vectors = EXPRESSIONS[ast.Vector]

@@ -52,10 +52,10 @@ def canonical(program):
     lines = [
         line
         if line.comment is None or line.comment.text.startswith("'")
-        else replace(line, comment=ast.Comment(text=f"REM{line.comment.text[3:]}"))
+        else ast.replace(line, comment=ast.Comment(text=f"REM{line.comment.text[3:]}"))
         for line in program.lines
     ]
-    return replace(program, lines=tuple(lines))
+    return ast.replace(program, lines=tuple(lines))
 
 
 def assert_formatted_well(text):
@@ -93,8 +93,8 @@ def test_formatting_is_done_once_and_keeps_the_tree_and_the_comments(text):
 @given(programs, st.data())
 @examples(150)
 def test_one_tree_has_one_layout(program, data):
-    kept = [replace(line, comment=None) for line in program.lines]
-    program = replace(program, lines=tuple(line for line in kept if line != ast.Line()))
+    kept = [ast.replace(line, comment=None) for line in program.lines]
+    program = ast.replace(program, lines=tuple(line for line in kept if line != ast.Line()))
     clean = print_program(program)
     badly = data.draw(written_badly(clean))
     spelt = format_source(source(badly)).text.upper().split()
@@ -122,12 +122,12 @@ def without_numbers(program):
     def led(statement):
         if isinstance(statement, ast.Jump | ast.OnError | ast.Wait) and statement.target is not None:
             number = statement.target.number
-            return statement if number is None else replace(statement, target=ast.Target(number=index[number]))
+            return statement if number is None else ast.replace(statement, target=ast.Target(number=index[number]))
         if isinstance(statement, ast.If):
-            return replace(statement, then=led(statement.then), otherwise=led(statement.otherwise))
+            return ast.replace(statement, then=led(statement.then), otherwise=led(statement.otherwise))
         return statement
 
-    return [replace(line, number=None, statement=led(line.statement)) for line in program.lines]
+    return [ast.replace(line, number=None, statement=led(line.statement)) for line in program.lines]
 
 
 @given(
@@ -161,7 +161,7 @@ def test_numbers_are_removed_where_nothing_leads(text):
     named = {target.number for line in before.lines for target in targets(line.statement)} - {None}
     assert {line.number for line in after.lines} - {None} == named
     empty = ast.Line()
-    expected = [replace(line, number=line.number if line.number in named else None) for line in before.lines]
+    expected = [ast.replace(line, number=line.number if line.number in named else None) for line in before.lines]
     assert list(after.lines) == [line for line in expected if line != empty]
 
 

@@ -1,6 +1,5 @@
 import inspect
 import sys
-from dataclasses import replace
 
 import pytest
 
@@ -113,7 +112,7 @@ def test_what_can_be_written_in_two_ways_is_printed_in_one(text, printed):
 
 def bare(node):
     """An expression without the parentheses that are not needed."""
-    return replace(node, parentheses=0)
+    return ast.replace(node, parentheses=0)
 
 
 def value(text):
