@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 
 from robolang.analysis.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.analysis.checker import check
-from robolang.analysis.dataflow import ways_of
+from robolang.analysis.facts import Facts
 from robolang.analysis.tabulation import Ways
 from robolang.core.diagnostics import Diagnostic, Edit, in_order
 from robolang.core.source import Source
 from robolang.syntax.ast import Program
-from robolang.syntax.blocks import Structure, structure_of
+from robolang.syntax.blocks import Structure
 from robolang.syntax.parser import ParseResult, parse
 
 if TYPE_CHECKING:
@@ -49,9 +49,14 @@ class Analysis:
         return self.parsed.program
 
     @cached_property
+    def facts(self) -> Facts:
+        """What lint rules read: blocks, control flow and statements, whatever the cell."""
+        return Facts(self.program)
+
+    @property
     def blocks(self) -> Structure:
         """Blocks and jumps: which lines belong together and where each jump leads."""
-        return structure_of(self.program)
+        return self.facts.blocks
 
     @cached_property
     def symbols(self) -> "SymbolTable":
@@ -60,10 +65,10 @@ class Analysis:
 
         return SymbolTable(self.program, self.blocks, self.cell)
 
-    @cached_property
+    @property
     def flow(self) -> Ways:
         """Control flow: the lines to which each line may lead."""
-        return ways_of(self.program, self.blocks)
+        return self.facts.flow
 
     @cached_property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
@@ -71,7 +76,7 @@ class Analysis:
         found = self.parsed.diagnostics
         if self.is_unread:
             return found
-        return in_order((*found, *check(self.program, self.cell, self.blocks, lambda: self.flow)))
+        return in_order((*found, *check(self.program, self.cell, self.facts)))
 
     @property
     def is_unread(self) -> bool:
@@ -82,9 +87,7 @@ class Analysis:
         """Return the analysis of the same text in another cell; it is parsed once for both."""
         if cell == self.cell:
             return self
-        kept: dict[str, object] = {
-            name: self.__dict__[name] for name in ("parsed", "blocks", "flow") if name in self.__dict__
-        }
+        kept: dict[str, object] = {name: self.__dict__[name] for name in ("parsed", "facts") if name in self.__dict__}
         return Analysis(source=self.source, cell=cell, _kept=kept)
 
     def updated(self, edit: Edit) -> "Analysis":

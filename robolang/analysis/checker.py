@@ -5,47 +5,39 @@ belongs to the planner and is found before the move that breaks it; here are the
 the facts of the cell that need no kinematics (``cell_symbols``): its names (taught points, sensors, tools, frames,
 loads, inputs), what the arm may carry, how fast its tool may be and the ranges of its joints. Values of numbers alone
 are worked out (``evaluator``), so ``SPEED 2 * 50`` is checked like ``SPEED 100``; what depends on a variable is
-checked when it runs. Blocks and jumps are ``structure``'s, what the order of statements shows is ``flow_check``'s,
-names that nothing reads are ``usage_check``'s: both look at programs without errors only, in which one mistake does
-not look like many. What a statement shows alone (``wait_check``, ``quote_check``, ``rounding_check``) is reported
-beside errors of other lines as well. Time is linear in the program.
+checked when it runs. Blocks and jumps are checked by ``blocks``; the lint rules are in ``rules``. Most of these follow
+the program through its branches and need one without errors, in which one mistake does not look like many; those that
+need a single statement are reported beside errors of other lines as well. Time is linear in the program.
 """
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Callable, Iterator
-from functools import partial
+from collections.abc import Iterator
 from itertools import chain, islice
 
 from robolang.analysis.cell_symbols import NOTHING_KNOWN, CellSymbols
-from robolang.analysis.dataflow import ways_of
-from robolang.analysis.flow_check import flow_check
+from robolang.analysis.facts import Facts
 from robolang.analysis.rounding_check import rounding_check
+from robolang.analysis.rules import checks
 from robolang.analysis.statement_check import StatementCheck
 from robolang.analysis.symbols import Defined
-from robolang.analysis.tabulation import Ways
-from robolang.analysis.usage_check import loop_check, quote_check, usage_check, wait_check
 from robolang.core.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related, Severity, has_errors, in_order
 from robolang.core.source import Span
 from robolang.syntax.ast import Line, Program, Unparsed
-from robolang.syntax.blocks import Structure, structure_of
+from robolang.syntax.blocks import Structure
 from robolang.syntax.tree import is_deeper
 
 MAX_LEVELS = 150
 """Deepest tree of a statement: expressions are evaluated by recursion, in at most five calls for a level."""
 
 
-def check(
-    program: Program,
-    symbols: CellSymbols = NOTHING_KNOWN,
-    blocks: Structure | None = None,
-    flow: Callable[[], Ways] | None = None,
-) -> tuple[Diagnostic, ...]:
+def check(program: Program, symbols: CellSymbols = NOTHING_KNOWN, facts: Facts | None = None) -> tuple[Diagnostic, ...]:
     """Return what is wrong with a program in its cell, by place.
 
     ``Unparsed`` statements are passed over, the parser has reported them. What is not known of the cell is not checked.
-    ``blocks`` and ``flow`` are those of the program, where they have been computed; ``analysis`` keeps them.
+    ``facts`` are those of the program, where they are kept.
     """
-    structure = structure_of(program) if blocks is None else blocks
+    facts = Facts(program) if facts is None else facts
+    structure = facts.blocks
     found = list(
         islice(
             chain(
@@ -57,10 +49,10 @@ def check(
             MAX_DIAGNOSTICS + 1,
         )
     )
-    found += _beside(found, chain(wait_check(program), quote_check(program), rounding_check(program)))
+    lints = checks()
+    found += _beside(found, chain(rounding_check(program), *(each.find(facts) for each in lints if each.beside_errors)))
     if not has_errors(found) and not any(isinstance(line.statement, Unparsed) for line in program.statements):
-        ways = flow or partial(ways_of, program, structure)
-        found += chain(flow_check(program, structure, ways), loop_check(program, structure), usage_check(program))
+        found += chain(*(each.find(facts) for each in lints if not each.beside_errors))
     return in_order(islice(found, MAX_DIAGNOSTICS + 1))
 
 

@@ -6,259 +6,268 @@ code keeps its number and its meaning for ever; a message may be reworded. Calle
 """
 
 import robolang.core.run_codes  # noqa: F401 - registers 2xx, 50x and 53x
-import runtime.core.faults
-import runtime.core.tomlfile  # registers RBL311 and RBL6xx
+import runtime.core.tomlfile
 import runtime.motion.codes
 import runtime.pulses.codes
-import runtime.robot.files.codes
-from runtime.core.faults import Code
+import runtime.robot.files.codes  # noqa: F401
+from runtime.core.faults import Code, register
 
-_TEXT = (
-    (
-        "RBL103",
-        "suspicious-character",
-        "A character that hides or reorders text, or that is not plain ASCII outside a comment.",
-        "Retype it with the plain Latin letter or sign; remove invisible and direction-changing characters.",
+register(
+    Code(
+        code="RBL103",
+        name="suspicious-character",
+        meaning="A character that hides or reorders text, or that is not plain ASCII outside a comment.",
+        remedy="Retype it with the plain Latin letter or sign; remove invisible and direction-changing characters.",
     ),
-    ("RBL104", "not-text", "The program is not UTF-8 text.", "Save the file as UTF-8."),
-    ("RBL105", "line-too-long", "A line has more than 10,000 characters.", "Split the line."),
-    ("RBL106", "source-too-large", "The program is larger than 1 MB.", "Split the program."),
-    (
-        "RBL107",
-        "too-many-problems",
-        "More problems were found than are listed.",
-        "Correct the first ones first.",
+    Code(
+        code="RBL104",
+        name="not-text",
+        meaning="The program is not UTF-8 text.",
+        remedy="Save the file as UTF-8.",
     ),
-    (
-        "RBL108",
-        "nested-too-deeply",
-        "Parentheses, signs or blocks are nested more than 100 deep.",
-        "Write the expression in several steps, and inner blocks as a SUB.",
+    Code(
+        code="RBL105",
+        name="line-too-long",
+        meaning="A line has more than 10,000 characters.",
+        remedy="Split the line.",
     ),
-    (
-        "RBL109",
-        "expression-too-long",
-        "A line has more than 1,000 operators.",
-        "Write the expression in several steps.",
+    Code(
+        code="RBL106",
+        name="source-too-large",
+        meaning="The program is larger than 1 MB.",
+        remedy="Split the program.",
     ),
-    (
-        "RBL110",
-        "mixed-line-ends",
-        "The file mixes LF, CR and CR LF line ends.",
-        "Save it with one kind of line end.",
+    Code(
+        code="RBL107",
+        name="too-many-problems",
+        meaning="More problems were found than are listed.",
+        remedy="Correct the first ones first.",
     ),
-    (
-        "RBL111",
-        "unexpected-token",
-        "Something else was expected at this place of the statement.",
-        "Write what is expected at this place, or remove what stands there.",
+    Code(
+        code="RBL108",
+        name="nested-too-deeply",
+        meaning="Parentheses, signs or blocks are nested more than 100 deep.",
+        remedy="Write the expression in several steps, and inner blocks as a SUB.",
     ),
-    (
-        "RBL112",
-        "unknown-instruction",
-        "The line does not start with an instruction of the language.",
-        "Start the line with an instruction such as MOVE, LOAD, HAND or IF, or with name = value.",
+    Code(
+        code="RBL109",
+        name="expression-too-long",
+        meaning="A line has more than 1,000 operators.",
+        remedy="Write the expression in several steps.",
     ),
-    ("RBL113", "line-number-duplicated", "Two lines have the same line number.", "Renumber one of them."),
-    (
-        "RBL114",
-        "number-out-of-range",
-        "A number is too large to be represented.",
-        "Give a number of ordinary size; a line number has at most nine digits.",
+    Code(
+        code="RBL110",
+        name="mixed-line-ends",
+        meaning="The file mixes LF, CR and CR LF line ends.",
+        remedy="Save it with one kind of line end.",
     ),
-    (
-        "RBL115",
-        "number-malformed",
-        "A number is not written as a number.",
-        "Write digits with at most one decimal point, as in 1000 or 0.25, and no unit.",
+    Code(
+        code="RBL111",
+        name="unexpected-token",
+        meaning="Something else was expected at this place of the statement.",
+        remedy="Write what is expected at this place, or remove what stands there.",
     ),
-    (
-        "RBL116",
-        "line-number-order",
-        "A line number is smaller than the one before it.",
-        "Renumber the lines; they run in the order in which they are written.",
+    Code(
+        code="RBL112",
+        name="unknown-instruction",
+        meaning="The line does not start with an instruction of the language.",
+        remedy="Start the line with an instruction such as MOVE, LOAD, HAND or IF, or with name = value.",
     ),
-    (
-        "RBL118",
-        "option-given-twice",
-        "A statement has the same option twice, or WRIST HOLD the same component.",
-        "Remove one of them.",
+    Code(
+        code="RBL113",
+        name="line-number-duplicated",
+        meaning="Two lines have the same line number.",
+        remedy="Renumber one of them.",
     ),
-    (
-        "RBL119",
-        "options-contradict",
-        "SPEED and TIME are both given for one move.",
-        "Give one: TIME fixes the duration, SPEED the speed along the path.",
+    Code(
+        code="RBL114",
+        name="number-out-of-range",
+        meaning="A number is too large to be represented.",
+        remedy="Give a number of ordinary size; a line number has at most nine digits.",
     ),
-    (
-        "RBL120",
-        "too-many-components",
-        "WRIST HOLD names more than two components of the posture.",
-        "Name one or two of TILT, ADVANCE and ROTATION.",
+    Code(
+        code="RBL115",
+        name="number-malformed",
+        meaning="A number is not written as a number.",
+        remedy="Write digits with at most one decimal point, as in 1000 or 0.25, and no unit.",
     ),
-    (
-        "RBL190",
-        "unused-suppression",
-        "A noqa comment suppresses nothing, or names a code that is not found on its line.",
-        "Remove it; robolang check --fix does.",
+    Code(
+        code="RBL116",
+        name="line-number-order",
+        meaning="A line number is smaller than the one before it.",
+        remedy="Renumber the lines; they run in the order in which they are written.",
     ),
-    (
-        "RBL191",
-        "unknown-suppression",
-        "A noqa comment names something that is not a code.",
-        "Write noqa, or noqa: and whole codes as in noqa: RBL301.",
+    Code(
+        code="RBL118",
+        name="option-given-twice",
+        meaning="A statement has the same option twice, or WRIST HOLD the same component.",
+        remedy="Remove one of them.",
     ),
-)
-
-_MEANING = (
-    (
-        "RBL201",
-        "empty-program",
-        "The program has no statement; nothing will move.",
-        "Write at least one instruction.",
+    Code(
+        code="RBL119",
+        name="options-contradict",
+        meaning="SPEED and TIME are both given for one move.",
+        remedy="Give one: TIME fixes the duration, SPEED the speed along the path.",
     ),
-)
-
-_POINTS = (
-    (
-        "RBL301",
-        "point-undefined",
-        "A point is used that has not been taught.",
-        "Correct the name, or write [points.NAME] with pose = [x, y, z, rx, ry, rz] into NAME.points.toml beside the "
-        "program.",
+    Code(
+        code="RBL120",
+        name="too-many-components",
+        meaning="WRIST HOLD names more than two components of the posture.",
+        remedy="Name one or two of TILT, ADVANCE and ROTATION.",
     ),
-    (
-        "RBL302",
-        "points-missing",
-        "The file of taught points does not exist.",
-        "Teach the points, or put NAME.points.toml beside the program.",
+    Code(
+        code="RBL190",
+        name="unused-suppression",
+        meaning="A noqa comment suppresses nothing, or names a code that is not found on its line.",
+        remedy="Remove it; robolang check --fix does.",
     ),
-    (
-        "RBL303",
-        "points-damaged",
-        "The file of taught points is empty, cut off or not what such a file contains.",
-        "Correct the line that is named, or restore the file from a copy.",
+    Code(
+        code="RBL191",
+        name="unknown-suppression",
+        meaning="A noqa comment names something that is not a code.",
+        remedy="Write noqa, or noqa: and whole codes as in noqa: RBL301.",
     ),
-    (
-        "RBL304",
-        "points-newer-schema",
-        "The file of taught points was written by a newer version.",
-        "Update robolang; the file was not changed.",
+    Code(
+        code="RBL201",
+        name="empty-program",
+        meaning="The program has no statement; nothing will move.",
+        remedy="Write at least one instruction.",
     ),
-    (
-        "RBL305",
-        "point-frame-or-tool-unknown",
-        "A program or a point names a frame, a tool or a load that the cell does not have.",
-        "Correct the name, or add [frames.NAME], [tools.NAME] or [loads.NAME] to the cell file.",
+    Code(
+        code="RBL301",
+        name="point-undefined",
+        meaning="A point is used that has not been taught.",
+        remedy="Correct the name, or write [points.NAME] with pose = [x, y, z, rx, ry, rz] into NAME.points.toml "
+        "beside the program.",
     ),
-    (
-        "RBL306",
-        "sensor-unknown",
-        "SEAM ON names a sensor that the cell does not have.",
-        "Add [sensors.NAME] to the cell file, or correct the name.",
+    Code(
+        code="RBL302",
+        name="points-missing",
+        meaning="The file of taught points does not exist.",
+        remedy="Teach the points, or put NAME.points.toml beside the program.",
     ),
-    (
-        "RBL307",
-        "points-wrong-count",
-        "A point has the wrong number of values.",
-        "A pose has six values [x, y, z, rx, ry, rz]; joints has one angle for each axis.",
+    Code(
+        code="RBL303",
+        name="points-damaged",
+        meaning="The file of taught points is empty, cut off or not what such a file contains.",
+        remedy="Correct the line that is named, or restore the file from a copy.",
     ),
-    (
-        "RBL308",
-        "points-unknown-key",
-        "A point has a key or a configuration word that nothing reads.",
-        "Correct the spelling or remove it.",
+    Code(
+        code="RBL304",
+        name="points-newer-schema",
+        meaning="The file of taught points was written by a newer version.",
+        remedy="Update robolang; the file was not changed.",
     ),
-    (
-        "RBL309",
-        "points-value-out-of-range",
-        "A value of a point is not finite or beyond any robot, or a joint angle is outside of the range of its joint.",
-        "Positions are in mm, angles in degrees; teach the point within the ranges of the robot.",
+    Code(
+        code="RBL305",
+        name="point-frame-or-tool-unknown",
+        meaning="A program or a point names a frame, a tool or a load that the cell does not have.",
+        remedy="Correct the name, or add [frames.NAME], [tools.NAME] or [loads.NAME] to the cell file.",
     ),
-    (
-        "RBL310",
-        "points-other-robot",
-        "The points were taught on another robot.",
-        "Run the program on that robot, or teach the points again.",
+    Code(
+        code="RBL306",
+        name="sensor-unknown",
+        meaning="SEAM ON names a sensor that the cell does not have.",
+        remedy="Add [sensors.NAME] to the cell file, or correct the name.",
     ),
-)
-
-_IDENTIFICATION = (
-    (
-        "RBL420",
-        "test-motion-refused",
-        "A test motion of identification would leave the range, the speed, the acceleration or the torque of a joint.",
-        "Identify the other axes with --axis, carry less, or take another robot; nothing has moved.",
+    Code(
+        code="RBL307",
+        name="points-wrong-count",
+        meaning="A point has the wrong number of values.",
+        remedy="A pose has six values [x, y, z, rx, ry, rz]; joints has one angle for each axis.",
+        computed=True,
     ),
-)
-
-_COMMAND = (
-    ("RBL701", "file-missing", "The program file does not exist.", "Check the name and the folder."),
-    (
-        "RBL702",
-        "not-a-file",
-        "The program is a folder, a device or a file that cannot be read.",
-        "Name an ordinary file that you may read.",
+    Code(
+        code="RBL308",
+        name="points-unknown-key",
+        meaning="A point has a key or a configuration word that nothing reads.",
+        remedy="Correct the spelling or remove it.",
     ),
-    (
-        "RBL703",
-        "option-value",
-        "An option of the command line has a value that it cannot take.",
-        "See the help of the command.",
+    Code(
+        code="RBL309",
+        name="points-value-out-of-range",
+        meaning="A value of a point is not finite or beyond any robot, or a joint angle is outside of the range of "
+        "its joint.",
+        remedy="Positions are in mm, angles in degrees; teach the point within the ranges of the robot.",
+        computed=True,
     ),
-    (
-        "RBL706",
-        "output-not-writable",
-        "The log or the report cannot be written.",
-        "Check the folder, its permissions and the free space.",
+    Code(
+        code="RBL310",
+        name="points-other-robot",
+        meaning="The points were taught on another robot.",
+        remedy="Run the program on that robot, or teach the points again.",
     ),
-    (
-        "RBL707",
-        "configuration-key",
-        "A key of the configuration is unknown or given twice.",
-        "Correct the spelling or remove the key.",
+    Code(
+        code="RBL420",
+        name="test-motion-refused",
+        meaning="A test motion of identification would leave the range, the speed, the acceleration or the torque "
+        "of a joint.",
+        remedy="Identify the other axes with --axis, carry less, or take another robot; nothing has moved.",
     ),
-    (
-        "RBL708",
-        "robot-unknown",
-        "No built-in robot and no robot file has the given name.",
-        "Name a built-in robot or the path of a robot file ending in .toml, .urdf or .xml.",
+    Code(
+        code="RBL701",
+        name="file-missing",
+        meaning="The program file does not exist.",
+        remedy="Check the name and the folder.",
     ),
-    (
-        "RBL709",
-        "robot-does-not-fit-cell",
-        "The robot given on the command line has another number of axes than the cell's home position.",
-        "Give a cell file made for that robot with --cell.",
+    Code(
+        code="RBL702",
+        name="not-a-file",
+        meaning="The program is a folder, a device or a file that cannot be read.",
+        remedy="Name an ordinary file that you may read.",
     ),
-    (
-        "RBL710",
-        "rule-unknown",
-        "The configuration selects or ignores a rule that does not exist.",
-        "Give a code such as RBL301, the beginning of one such as RBL2, or a name; robolang rules lists them.",
+    Code(
+        code="RBL703",
+        name="option-value",
+        meaning="An option of the command line has a value that it cannot take.",
+        remedy="See the help of the command.",
     ),
-    (
-        "RBL711",
-        "golden-log-unusable",
-        "A golden log is damaged, has a joint angle that is not finite, or was written on another robot.",
-        "Write it again with robolang test --update, or restore it from a copy.",
+    Code(
+        code="RBL706",
+        name="output-not-writable",
+        meaning="The log or the report cannot be written.",
+        remedy="Check the folder, its permissions and the free space.",
     ),
-    (
-        "RBL712",
-        "no-tests",
-        "robolang test was given a path with no test file in it, so nothing was compared.",
-        "Name a folder with NAME.test.toml files, or allow it with --allow-empty.",
+    Code(
+        code="RBL707",
+        name="configuration-key",
+        meaning="A key of the configuration is unknown or given twice.",
+        remedy="Correct the spelling or remove the key.",
     ),
-    (
-        "RBL900",
-        "internal-error",
-        "robolang itself failed; the program is not the cause.",
-        "Report it with the program and the message.",
+    Code(
+        code="RBL708",
+        name="robot-unknown",
+        meaning="No built-in robot and no robot file has the given name.",
+        remedy="Name a built-in robot or the path of a robot file ending in .toml, .urdf or .xml.",
     ),
-)
-
-runtime.core.faults.register(
-    *(
-        Code(code=code, name=name, meaning=meaning, remedy=remedy)
-        for code, name, meaning, remedy in (*_TEXT, *_MEANING, *_POINTS, *_IDENTIFICATION, *_COMMAND)
-    )
+    Code(
+        code="RBL709",
+        name="robot-does-not-fit-cell",
+        meaning="The robot given on the command line has another number of axes than the cell's home position.",
+        remedy="Give a cell file made for that robot with --cell.",
+    ),
+    Code(
+        code="RBL710",
+        name="rule-unknown",
+        meaning="The configuration selects or ignores a rule that does not exist.",
+        remedy="Give a code such as RBL301, the beginning of one such as RBL2, or a name; robolang rules lists them.",
+    ),
+    Code(
+        code="RBL711",
+        name="golden-log-unusable",
+        meaning="A golden log is damaged, has a joint angle that is not finite, or was written on another robot.",
+        remedy="Write it again with robolang test --update, or restore it from a copy.",
+    ),
+    Code(
+        code="RBL712",
+        name="no-tests",
+        meaning="robolang test was given a path with no test file in it, so nothing was compared.",
+        remedy="Name a folder with NAME.test.toml files, or allow it with --allow-empty.",
+    ),
+    Code(
+        code="RBL900",
+        name="internal-error",
+        meaning="robolang itself failed; the program is not the cause.",
+        remedy="Report it with the program and the message.",
+    ),
 )

@@ -3,7 +3,7 @@
 Registered at import, as those of ``robolang.core.codes``, which imports this module.
 """
 
-from runtime.core.faults import Code, register
+from runtime.core.faults import Code, Stage, register
 
 register(
     Code(
@@ -104,58 +104,10 @@ register(
         remedy="A place has three values, a way and a turn or an inertia six.",
     ),
     Code(
-        code="RBL221",
-        name="unreachable",
-        meaning="A line can never run: the one above it leaves for good, and no jump leads here.",
-        remedy="Remove it, or give it the label that a jump names.",
-    ),
-    Code(
-        code="RBL222",
-        name="sub-unused",
-        meaning="A SUB is never called.",
-        remedy="Call it, or remove it.",
-    ),
-    Code(
-        code="RBL223",
-        name="wait-without-timeout",
-        meaning="A WAIT has no TIMEOUT: where its signal never comes, the program stands there for ever.",
-        remedy="Add TIMEOUT t, and GOTO or ON ERROR for what to do then.",
-    ),
-    Code(
         code="RBL224",
         name="point-unused",
         meaning="A taught point is not named in the program.",
         remedy="Remove it from the points file, or use it.",
-    ),
-    Code(
-        code="RBL225",
-        name="value-unused",
-        meaning="A value is assigned and nothing reads it.",
-        remedy="Correct the name, use the value, or remove it.",
-    ),
-    Code(
-        code="RBL226",
-        name="speed-unset",
-        meaning="A move runs at a speed that the program has not set, though it sets one for others.",
-        remedy="Set SPEED or SPEEDJ before the first move, or give the move a SPEED or TIME.",
-    ),
-    Code(
-        code="RBL227",
-        name="tool-unset",
-        meaning="A move runs before the program has set its TOOL.",
-        remedy="Set TOOL before the first move.",
-    ),
-    Code(
-        code="RBL228",
-        name="load-missing",
-        meaning="The hand has grasped or let go, and the arm moves on without a LOAD.",
-        remedy="Write LOAD with what the arm carries from there on, behind the HAND.",
-    ),
-    Code(
-        code="RBL229",
-        name="load-in-blend",
-        meaning="A LOAD stands between two moves that would blend: the arm stops for it.",
-        remedy="Put the LOAD where the arm stands, behind the HAND, or end the move before it with FINE.",
     ),
     Code(
         code="RBL231",
@@ -170,94 +122,82 @@ register(
         remedy="Compare the difference with a small number, as in ABS(x - 0.3) < 1E-6.",
     ),
     Code(
-        code="RBL233",
-        name="wait-for-a-number",
-        meaning="The condition of a WAIT is a number that is not 0, so it is true at once.",
-        remedy="Wait for a time with DELAY, for a signal with a condition such as IN(1) = 1.",
-    ),
-    Code(
-        code="RBL234",
-        name="text-is-a-comment",
-        meaning="What seems to be a text in single quotes is a comment: PRINT shows an empty line.",
-        remedy="Write the text in double quotes.",
-    ),
-    Code(
-        code="RBL235",
-        name="loop-variable-shared",
-        meaning="A FOR counts with the variable of a FOR around it.",
-        remedy="Count the inner loop with another variable.",
-    ),
-    Code(
-        code="RBL413",
-        name="blend-at-the-end",
-        meaning="A move has a ZONE, or one is set, and no move follows that could be blended into.",
-        remedy="Give it FINE or no ZONE; the arm stops there in any case.",
-    ),
-    Code(
         code="RBL414",
         name="blends-overlap",
         meaning="A ZONE takes more than half of a move at its corner: the blend is smaller than asked for.",
         remedy="Make the zone smaller, or leave out a point between.",
+        found=Stage.MOTION,
     ),
     Code(
         code="RBL415",
         name="blend-radius-negative",
         meaning="The radius of a blend is below 0.",
         remedy="Give 0 or more, or FINE to stop.",
+        found=Stage.CELL,
+        computed=True,
     ),
     Code(
         code="RBL419",
         name="ends-otherwise",
         meaning="A move that keeps the wrist ends in other joint angles than the point was taught with.",
         remedy="Say WRIST AUTO to end as taught, or teach the point in the wrist's configuration of the start.",
+        found=Stage.MOTION,
     ),
     Code(
         code="RBL421",
         name="collision-ahead",
         meaning="A move would lead the arm or the hand into an obstacle of the cell or into the ground.",
         remedy="Go there over a via point, from another side, or move the obstacle in the cell file to where it is.",
+        found=Stage.MOTION,
     ),
     Code(
         code="RBL422",
         name="near-joint-limit",
         meaning="A move brings a joint close to the end of its range.",
         remedy="Teach the point in another configuration, or a little further off.",
+        found=Stage.MOTION,
     ),
     Code(
         code="RBL423",
         name="cycle-too-long",
         meaning="A program takes longer than it was allowed to.",
         remedy="Look where the time goes in the table of robolang check --motion: speeds, zones, dwells.",
+        found=Stage.MOTION,
     ),
     Code(
         code="RBL424",
         name="arm-in-itself",
         meaning="A move would lead the arm or the hand into one of its own links.",
         remedy="Go there over a via point or in another configuration.",
+        found=Stage.MOTION,
     ),
     Code(
         code="RBL425",
         name="wrist-moment",
         meaning="The weight of the payload has a moment about a wrist axis over what that may carry.",
         remedy="Carry it nearer to the flange, carry less, hold it in another posture, or correct LOAD.",
+        found=Stage.MOTION,
     ),
     Code(
         code="RBL426",
         name="wrist-inertia",
         meaning="The payload has an inertia about a wrist axis over what that may carry.",
         remedy="Carry it nearer to the axis, carry less, or correct LOAD.",
+        found=Stage.MOTION,
     ),
     Code(
         code="RBL427",
         name="near-singularity",
         meaning="A path comes near a singular posture, where joints must turn fast for small motions of the tool.",
         remedy="Move the path or the work piece a little, tilt the tool, or go there with MOVEJ.",
+        found=Stage.MOTION,
     ),
     Code(
         code="RBL428",
         name="wrist-leaves-posture",
         meaning="On a straight move or an arc the tool leaves its posture for a while, to change the wrist.",
         remedy="Say WRIST AUTO or WRIST HOLD if that is meant; WRIST KEEP refuses or slows the move instead.",
+        found=Stage.MOTION,
     ),
     Code(
         code="RBL429",
@@ -265,6 +205,7 @@ register(
         meaning="A move does not keep its TIME, or does not reach its SPEED and takes more than 1.2 times as long as "
         "SPEED alone needs: the turning of the tool, an arc or a joint rules it.",
         remedy="Lower its SPEED or give it more TIME, or change what the message names.",
+        found=Stage.MOTION,
     ),
     Code(
         code="RBL434",
@@ -273,6 +214,7 @@ register(
         "and FLIP. The configuration that the arm is in does not reach the pose within the ranges of the joints.",
         remedy="Teach the point with its configuration or as joint angles if the change is meant; otherwise go there "
         "over a point between, or move the work piece.",
+        found=Stage.MOTION,
     ),
     Code(
         code="RBL435",
@@ -280,6 +222,7 @@ register(
         meaning="A MOVEJ to a pose turns a joint by more than half a turn, since the nearer angle is beyond its range.",
         remedy="Turn the joint back on an earlier move, where there is room for it; teach the point as joint angles if "
         "this turn is meant.",
+        found=Stage.MOTION,
     ),
     Code(
         code="RBL440",
@@ -288,6 +231,7 @@ register(
         "another part, an obstacle, the floor or the arm.",
         remedy="Go there over a via point, from another side, or lift the part before it is moved; the cell file "
         "has where parts lie at the start.",
+        found=Stage.MOTION,
     ),
     Code(
         code="RBL441",
@@ -295,6 +239,7 @@ register(
         meaning="HAND ON closes where no part of the cell is between the fingers.",
         remedy="Check the point, the tool and the frame against where the part lies, and the size of the part against "
         "the stroke of the hand.",
+        found=Stage.MOTION,
     ),
     Code(
         code="RBL501",
@@ -320,6 +265,8 @@ register(
         name="no-such-element",
         meaning="An array has no element of that number, or it or all arrays and names together are too large.",
         remedy="Give DIM the largest number that is used; elements count from 0.",
+        found=Stage.CELL,
+        computed=True,
     ),
     Code(
         code="RBL531",
@@ -350,12 +297,14 @@ register(
         name="too-many-statements",
         meaning="A run has carried out more statements than is allowed.",
         remedy="Look for a loop that does not end.",
+        endless=True,
     ),
     Code(
         code="RBL508",
         name="idle-loop",
         meaning="A loop goes round without a statement that takes time.",
         remedy="Put a DELAY, a WAIT or a move into it, or end it.",
+        endless=True,
     ),
     Code(
         code="RBL533",
@@ -368,5 +317,7 @@ register(
         name="no-such-signal",
         meaning="An input or output has a number that the cell does not have.",
         remedy="Give a number of the cell's [inputs] or 1 to 1024 for an output.",
+        found=Stage.CELL,
+        computed=True,
     ),
 )

@@ -37,7 +37,7 @@ from robolang.interpreter.machine import Machine
 from robolang.interpreter.program_fault import ProgramFault
 from robolang.project.project import Project
 from robolang.syntax.ast import Delay, Wait
-from runtime.core.faults import Fault
+from runtime.core.faults import Fault, lookup
 from runtime.core.frames import Array
 from runtime.motion.blend import Corner
 from runtime.motion.cartesian_planner import MovePlan
@@ -48,7 +48,6 @@ from runtime.robot.model.payload import NO_PAYLOAD, Payload
 
 MAX_CHAIN = 200
 """Most moves that blend into one another without a stop: a program that never stops is carried out nevertheless."""
-_NOT_STARTED = ("RBL3", "RBL4", "RBL505", "RBL508", "RBL509")
 MAX_RUN_US = 1_800_000_000
 """Longest run, us of simulated time: about a kilobyte of log is kept for every tick."""
 
@@ -112,7 +111,7 @@ def motion_check(project: Project, plans: PlanMemory | None = None) -> tuple[Dia
 
     An error of its calculations or a WAIT that times out is none of that: it comes in the run, where it comes.
     """
-    return tuple(item for item in rehearse(project, plans=plans).refused if item.code.startswith(_NOT_STARTED))
+    return tuple(item for item in rehearse(project, plans=plans).refused if lookup(item.code).prevents_run)
 
 
 def rehearse(

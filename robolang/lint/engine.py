@@ -10,7 +10,7 @@ from pathlib import Path
 
 from robolang.analysis.analysis import Analysis
 from robolang.analysis.cell_symbols import NOTHING_KNOWN, CellSymbols
-from robolang.analysis.usage_check import named
+from robolang.analysis.reads import named
 from robolang.core.diagnostics import Diagnostic, Severity, in_order
 from robolang.core.source import Source, Span
 from robolang.lint.fixes import with_fix

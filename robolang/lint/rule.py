@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from robolang.core.diagnostics import Severity
-from runtime.core.faults import Code, lookup
+from runtime.core.faults import Code, Stage, lookup
 
 _MOST_LINES = 20
 
@@ -15,8 +15,8 @@ class Rule:
     ``bad`` is a program that yields the code at 1-based ``line`` and nowhere else, ``good`` its correction. ``shown``
     is printed in place of a ``bad`` that cannot be: too long, or with invisible characters; a byte that is not UTF-8
     is written as its surrogate, ``\\udcb0`` for B0. ``fix`` says what ``--fix`` does; empty: there is none.
-    ``motion``: the finding needs the motion, in the built-in cell. ``points``: ``bad`` and ``good`` are the points file
-    ``pick.points.toml`` beside a program; ``line`` 0: there is no such file, and ``bad`` shows the folder.
+    The example of a code that only the motion shows runs in the built-in cell. ``points``: ``bad`` and ``good`` are the
+    points file ``pick.points.toml`` beside a program; ``line`` 0: there is no such file, and ``bad`` shows the folder.
     """
 
     code: str
@@ -27,8 +27,12 @@ class Rule:
     line: int = 1
     shown: str = ""
     fix: str = ""
-    motion: bool = False
     points: bool = False
+
+    @property
+    def motion(self) -> bool:
+        """Whether only the motion shows it."""
+        return self.entry.stage is Stage.MOTION
 
     @property
     def found_by(self) -> str:

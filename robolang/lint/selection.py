@@ -11,10 +11,10 @@ by its whole code or name in ``ignore``, never by a beginning or by selecting so
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-import robolang.core.codes  # noqa: F401 - selectors are compared with every code there is
+import robolang.lint.registry  # noqa: F401 - selectors are compared with every code there is
 from robolang.core.diagnostics import Diagnostic, Severity
 from robolang.syntax.keywords import near
-from runtime.core.faults import all_codes
+from runtime.core.faults import Group, all_codes, lookup
 
 ALL = "ALL"
 _PREFIX = "RBL"
@@ -57,7 +57,7 @@ class Selection:
 
 def is_syntax_error(diagnostic: Diagnostic) -> bool:
     """Return whether a finding is an error of the text itself, which no blanket suppression hides."""
-    return diagnostic.severity is Severity.ERROR and diagnostic.code.startswith("RBL1")
+    return diagnostic.severity is Severity.ERROR and lookup(diagnostic.code).group is Group.TEXT
 
 
 def selector(text: str) -> str | None:

@@ -20,8 +20,8 @@ from itertools import islice
 
 from robolang.core.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Edit, Fix, Severity
 from robolang.core.source import Source, Span
-from robolang.lint.registry import is_looked_for
 from robolang.lint.selection import guess, is_syntax_error, words
+from runtime.core.faults import lookup
 
 UNUSED, UNKNOWN = "RBL190", "RBL191"
 
@@ -174,7 +174,7 @@ def _unused(directive: _Directive, used: set[str], source: Source) -> Iterator[D
     left: list[_Named] = []
     for item in directive.named:
         repeats = item.code != "" and any(item.code == other.code for other in left)
-        needed = item.code in used or item.code in (UNKNOWN, "") or not is_looked_for(item.code)
+        needed = item.code in used or item.code in (UNKNOWN, "") or not lookup(item.code).is_certain
         (left if needed and not repeats else idle).append(item)
     if not idle:
         return

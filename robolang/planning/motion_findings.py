@@ -25,6 +25,7 @@ from robolang.planning.line_times import range_margin
 from robolang.planning.part_findings import CellTouches
 from robolang.planning.path_coverage import Detour
 from robolang.project.project import Project
+from runtime.core.faults import Group, lookup
 from runtime.core.rounding import beside
 from runtime.core.units import DEG, MM
 from runtime.motion.cartesian_planner import FOLLOWS
@@ -57,7 +58,7 @@ def findings(
     for item in (*rehearsal.refused, *moves.findings(rehearsal)):
         found.setdefault((item.code, item.span), item)
     for detour in detours:
-        refused = (item for item in detour.rehearsal.refused if item.code.startswith(("RBL3", "RBL4")))
+        refused = (item for item in detour.rehearsal.refused if lookup(item.code).group in (Group.POINTS, Group.MOTION))
         for item in (*refused, *moves.findings(detour.rehearsal)):
             if item.code == "RBL441":  # where the program went another way, parts may be elsewhere as well
                 continue

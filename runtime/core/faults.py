@@ -11,15 +11,44 @@ as the front end gave it to the controller, so that its place in the program is 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import Enum
 
 from runtime.core.program_line import ProgramLine
+
+
+class Group(Enum):
+    """What a code is about: the first digit of its number."""
+
+    TEXT = "1"
+    MEANING = "2"
+    POINTS = "3"
+    MOTION = "4"
+    RUN = "5"
+    FILES = "6"
+    COMMAND = "7"
+    INTERNAL = "9"
+
+
+class Stage(Enum):
+    """The first step that can find a code: reading the text, checking it in its cell, planning the motion, the run."""
+
+    TEXT = "text"
+    CELL = "cell"
+    MOTION = "motion"
+    RUN = "run"
+
+
+_STAGES = {Group.TEXT: Stage.TEXT, Group.MEANING: Stage.CELL, Group.POINTS: Stage.CELL, Group.RUN: Stage.RUN}
+"""Stage of the codes of a group, where a code does not give its own."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Code:
     """One thing that can go wrong: ``RBL412``, its kebab-case name, what it means and what to do.
 
-    ``category`` is how an alarm of this code stops the arm: 1 on its path, then the brakes; 0 at once.
+    ``category`` is how an alarm of this code stops the arm: 1 on its path, then the brakes; 0 at once. ``found``: the
+    stage that finds it, None for that of its group. ``computed``: it is about a value, and values that a run computes
+    are checked in the run. ``endless``: a program with it is not started, since it would not end.
     """
 
     code: str
@@ -27,6 +56,34 @@ class Code:
     meaning: str
     remedy: str
     category: int = 1
+    found: Stage | None = None
+    computed: bool = False
+    endless: bool = False
+
+    @property
+    def group(self) -> Group:
+        """What the code is about."""
+        return Group(self.code[3])
+
+    @property
+    def stage(self) -> Stage | None:
+        """The first step that can find it; None: no check of a program finds it."""
+        return self.found or _STAGES.get(self.group)
+
+    @property
+    def is_rule(self) -> bool:
+        """Whether checking a program can find it, its motion included."""
+        return self.stage in (Stage.TEXT, Stage.CELL, Stage.MOTION)
+
+    @property
+    def is_certain(self) -> bool:
+        """Whether a check without motion finds it wherever it is; else its absence there says nothing."""
+        return self.stage in (Stage.TEXT, Stage.CELL) and not self.computed
+
+    @property
+    def prevents_run(self) -> bool:
+        """Whether a program whose rehearsal finds it is not started."""
+        return self.endless or self.group in (Group.POINTS, Group.MOTION)
 
 
 _registry: dict[str, Code] = {}
@@ -104,42 +161,54 @@ register(
         name="payload-not-a-mass",
         meaning="The payload given to LOAD is negative or not a finite number.",
         remedy="Give the mass of everything beyond the flange in kg, zero or more.",
+        found=Stage.CELL,
+        computed=True,
     ),
     Code(
         code="RBL402",
         name="payload-over-rated",
         meaning="The declared payload is heavier than the robot is rated for.",
         remedy="Check the mass (kg, not g); use a lighter hand or a larger robot.",
+        found=Stage.CELL,
+        computed=True,
     ),
     Code(
         code="RBL403",
         name="payload-not-physical",
         meaning="The centre of gravity or the inertia of the payload is one that no body on this arm can have.",
         remedy="Give the centre of gravity in mm in the flange frame; inertias must obey the triangle inequality.",
+        found=Stage.CELL,
+        computed=True,
     ),
     Code(
         code="RBL404",
         name="speed-out-of-range",
         meaning="A speed, acceleration or duration is not a positive number in the robot's range.",
         remedy="Give SPEED in mm/s, SPEED of MOVEJ, SPEEDJ, ACCEL and OVERRIDE in % (above 0 to 100), TIME in s.",
+        found=Stage.CELL,
+        computed=True,
     ),
     Code(
         code="RBL405",
         name="dwell-out-of-range",
         meaning="A waiting time is negative, not finite or longer than ten minutes.",
         remedy="Give the time in s, between 0 and 600.",
+        found=Stage.CELL,
+        computed=True,
     ),
     Code(
         code="RBL410",
         name="out-of-reach",
         meaning="No joint angles of this robot put the tool at the pose.",
         remedy="Move the point closer to the robot, or check the tool and the frame it was taught in.",
+        found=Stage.MOTION,
     ),
     Code(
         code="RBL411",
         name="joint-limit",
         meaning="The motion passes the range of a joint.",
         remedy="Teach a via point, choose another arm configuration, or move the work piece.",
+        found=Stage.MOTION,
     ),
     Code(
         code="RBL412",
@@ -147,12 +216,14 @@ register(
         meaning="A straight move passes a configuration where the joints would have to turn infinitely fast, "
         "or reaches its end only with another arm or wrist configuration.",
         remedy="Teach a via point away from J5 = 0, or teach the end in the wrist configuration of the start.",
+        found=Stage.MOTION,
     ),
     Code(
         code="RBL509",
         name="run-too-long",
         meaning="The run has reached the longest simulated time that is recorded.",
         remedy="Give a loop an end and a WAIT a TIMEOUT, or split the program; log and report hold all up to here.",
+        endless=True,
     ),
     Code(
         code="RBL510",

@@ -1,6 +1,6 @@
 """Codes of motion, registered at import; the module imports nothing heavy, so that they are known without numerics."""
 
-from runtime.core.faults import Code, register
+from runtime.core.faults import Code, Stage, register
 
 register(
     Code(
@@ -8,5 +8,6 @@ register(
         name="arc-undefined",
         meaning="Start, via point and end of an arc do not lie on one circle: two are one, or they are in line.",
         remedy="Teach the via point well off the straight line from start to end, or use MOVE.",
+        found=Stage.MOTION,
     ),
 )

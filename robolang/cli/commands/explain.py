@@ -20,7 +20,7 @@ def explain(
     ] = None,
 ) -> None:
     """Explain a code of a diagnostic, a fault or an alarm."""
-    import robolang.core.codes  # noqa: F401 - every code there is
+    import robolang.lint.registry  # noqa: F401 - every code there is
     from runtime.core.faults import all_codes
 
     with reported():

@@ -120,33 +120,6 @@ RULES = (
         good="10 LOAD (0, 0, 60), 0.8\n",
     ),
     Rule(
-        code="RBL221",
-        severity=Severity.WARNING,
-        why="The line looks like part of the work and never is: a condition in front of the jump has been lost, or the "
-        "line is left over.",
-        bad="10 *AGAIN MOVE P1\n20 GOTO *AGAIN\n30 MOVE P2\n",
-        good="10 *AGAIN MOVE P1\n20 IF IN(1) THEN GOTO *AGAIN\n30 MOVE P2\n",
-        line=3,
-    ),
-    Rule(
-        code="RBL222",
-        severity=Severity.WARNING,
-        why="Somebody wrote the steps down and the program leaves them out: a CALL is missing, or the SUB is left "
-        "over.",
-        bad="10 SPEED 200\n20 END\n30 SUB PICK\n40 MOVE P1\n50 ENDSUB\n",
-        good="10 SPEED 200\n15 CALL PICK\n20 END\n30 SUB PICK\n40 MOVE P1\n50 ENDSUB\n",
-        line=3,
-    ),
-    Rule(
-        code="RBL223",
-        severity=Severity.WARNING,
-        why="A sensor fails, a plug comes loose, and the cell stands still without a word. With a TIMEOUT the program "
-        "can say which signal it misses. Where it is meant to wait without end, as for a start button, say so with "
-        "noqa.",
-        bad="10 WAIT IN(1) = 1\n20 MOVE P1\n",
-        good="10 WAIT IN(1) = 1, TIMEOUT 5\n20 MOVE P1\n",
-    ),
-    Rule(
         code="RBL224",
         severity=Severity.WARNING,
         why="A point that no line names is left over from another version, or the line that should name it names "
@@ -156,48 +129,6 @@ RULES = (
         good="schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\n",
         line=4,
         points=True,
-    ),
-    Rule(
-        code="RBL225",
-        severity=Severity.WARNING,
-        why="Mostly the name is misspelt, here or where it should be read. The program runs, and counts something that "
-        "nobody looks at.",
-        bad="10 COUNT = 0\n20 TOTAL = 3\n30 COUNT = COUNT + 1\n40 PRINT TOTAL\n",
-        good="10 COUNT = 0\n20 TOTAL = 3\n30 COUNT = COUNT + 1\n40 PRINT TOTAL; COUNT\n",
-    ),
-    Rule(
-        code="RBL226",
-        severity=Severity.WARNING,
-        why="Whoever sets a speed for some moves has thought about it. The others run at what the robot brings along, "
-        "which is faster than most tasks want, and differs between robots.",
-        bad="10 MOVE P1\n20 SPEED 250\n30 MOVE P2\n",
-        good="10 SPEED 250\n20 MOVE P1\n30 MOVE P2\n",
-    ),
-    Rule(
-        code="RBL227",
-        severity=Severity.WARNING,
-        why="The move goes with the tool point of the hand. Once TOOL is set, as in a second round of the program, the "
-        "same line brings the arm to another place.",
-        bad="10 MOVE P1\n20 TOOL POSE(0, 0, 180, 0, 0, 0)\n30 MOVE P2\n",
-        good="10 TOOL POSE(0, 0, 180, 0, 0, 0)\n20 MOVE P1\n30 MOVE P2\n",
-    ),
-    Rule(
-        code="RBL228",
-        severity=Severity.WARNING,
-        why="Gravity and inertia are computed from the last LOAD. With the load of the empty hand the arm sags under "
-        "the part, leaves its path, and stops for a payload that does not fit.",
-        bad="10 LOAD (0, 0, 60), 0.8\n20 MOVE P1\n30 HAND ON\n40 MOVE P2\n",
-        good="10 LOAD (0, 0, 60), 0.8\n20 MOVE P1\n30 HAND ON\n35 LOAD (0, 0, 95), 2.3\n40 MOVE P2\n",
-        line=3,
-    ),
-    Rule(
-        code="RBL229",
-        severity=Severity.WARNING,
-        why="What the arm carries changes while it stands, not on the way. The blend that the program asks for does "
-        "not take place, and the time that it was to save is lost.",
-        bad="10 MOVE P1, ZONE 20\n20 LOAD (0, 0, 60), 0.8\n30 MOVE P2\n",
-        good="10 LOAD (0, 0, 60), 0.8\n20 MOVE P1, ZONE 20\n30 MOVE P2\n",
-        line=2,
     ),
     Rule(
         code="RBL231",
@@ -215,31 +146,6 @@ RULES = (
         "branch that waits for equality is not taken, or a loop does not end.",
         bad='10 X = 0.1 + 0.2\n20 IF X = 0.3 THEN PRINT "equal"\n',
         good='10 X = 0.1 + 0.2\n20 IF ABS(X - 0.3) < 1E-6 THEN PRINT "equal"\n',
-        line=2,
-    ),
-    Rule(
-        code="RBL233",
-        severity=Severity.WARNING,
-        why="In other languages WAIT with a number is a pause. Here it waits for a condition, and every number but 0 "
-        "is true: the program goes on at once, before a valve or a gripper has moved.",
-        bad="10 WAIT 2\n20 MOVE P1\n",
-        good="10 DELAY 2\n20 MOVE P1\n",
-    ),
-    Rule(
-        code="RBL234",
-        severity=Severity.WARNING,
-        why="Other languages write texts in single quotes. Here ' begins a comment, and the message that an operator "
-        "should read is not shown.",
-        bad="10 PRINT 'part is missing'\n",
-        good='10 PRINT "part is missing"\n',
-    ),
-    Rule(
-        code="RBL235",
-        severity=Severity.WARNING,
-        why="After the inner loop the variable has the inner loop's last value. What the outer loop then does with it, "
-        "such as going to the next place of a row, it does with a wrong number.",
-        bad="10 FOR I = 1 TO 3\n20 FOR I = 1 TO 2\n30 PRINT I\n40 NEXT\n50 NEXT\n",
-        good="10 FOR I = 1 TO 3\n20 FOR K = 1 TO 2\n30 PRINT I; K\n40 NEXT\n50 NEXT\n",
         line=2,
     ),
 )

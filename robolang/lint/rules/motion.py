@@ -39,14 +39,6 @@ RULES = (
         good="10 HAND ON, 1\n",
     ),
     Rule(
-        code="RBL413",
-        severity=Severity.WARNING,
-        why="The corner that was to be cut is none: behind it the arm stops for something else. Either a move is "
-        "missing, or whoever reads the program is led to expect a motion without a stop.",
-        bad="10 MOVE P1, ZONE 20\n20 HAND ON\n",
-        good="10 MOVE P1\n20 HAND ON\n",
-    ),
-    Rule(
         code="RBL415",
         why="A blend leaves the line at a distance from its corner, and a distance below nothing is no place to leave "
         "it.",
@@ -62,7 +54,6 @@ RULES = (
         bad="10 MOVE P5 + (0, 80, 0)\n20 MOVE P1 + (0, 80, 0)\n30 MOVE P1 + (0, 50, 0)\n",
         good="10 MOVE P5 + (0, 80, 0)\n20 MOVE P1 + (0, 80, 0)\n30 MOVE P1 + (0, 70, 0)\n",
         line=3,
-        motion=True,
     ),
     Rule(
         code="RBL441",
@@ -72,6 +63,5 @@ RULES = (
         bad="10 MOVE P5\n20 HAND ON\n",
         good="10 MOVE P1\n20 HAND ON\n",
         line=2,
-        motion=True,
     ),
 )

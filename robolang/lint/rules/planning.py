@@ -12,7 +12,6 @@ RULES = (
         why="The arm is not that long. On a robot the move starts and stops somewhere on the way; here nothing starts.",
         bad="10 MOVE P1 + (900, 0, 0)\n",
         good="10 MOVE P1 + (90, 0, 0)\n",
-        motion=True,
     ),
     Rule(
         code="RBL411",
@@ -20,7 +19,6 @@ RULES = (
         bad="10 MOVEJ JOINT(0, 60, -190, 0, 95, 0)\n20 MOVE HERE * (0, 0, 0, 0, -15, 0), WRIST KEEP\n",
         good="10 MOVEJ JOINT(0, 60, -190, 0, 95, 0)\n20 MOVE HERE * (0, 0, 0, 0, 15, 0), WRIST KEEP\n",
         line=2,
-        motion=True,
     ),
     Rule(
         code="RBL412",
@@ -29,7 +27,6 @@ RULES = (
         bad="10 MOVEJ JOINT(0, 60, -190, 20, -8, 0)\n20 MOVE JOINT(10, 60, -190, 20, 8, 0), WRIST KEEP\n",
         good="10 MOVEJ JOINT(0, 60, -190, 20, -8, 0)\n20 MOVE JOINT(10, 60, -190, 20, 8, 0), WRIST AUTO\n",
         line=2,
-        motion=True,
     ),
     Rule(
         code="RBL414",
@@ -38,14 +35,12 @@ RULES = (
         "closer and slower than the program says.",
         bad="10 MOVE P5 + (0, 0, 40), ZONE 30\n20 MOVE P5 + (100, 0, 40)\n",
         good="10 MOVE P5 + (0, 0, 40), ZONE 15\n20 MOVE P5 + (100, 0, 40)\n",
-        motion=True,
     ),
     Rule(
         code="RBL416",
         why="Through three points in a line goes no circle, and through two that coincide go many.",
         bad="10 MOVEC P5 + (50, 0, 0), P5 + (100, 0, 0)\n",
         good="10 MOVEC P5 + (50, 20, 0), P5 + (100, 0, 0)\n",
-        motion=True,
     ),
     Rule(
         code="RBL419",
@@ -55,14 +50,12 @@ RULES = (
         bad="10 MOVEJ JOINT(0, 60, -190, -30, -30, 0)\n20 MOVE JOINT(10, 60, -190, 150, 30, 180), WRIST KEEP\n",
         good="10 MOVEJ JOINT(0, 60, -190, -30, -30, 0)\n20 MOVE JOINT(10, 60, -190, -30, -30, 0), WRIST KEEP\n",
         line=2,
-        motion=True,
     ),
     Rule(
         code="RBL421",
         why="The joints and the path are possible, and a table is in the way. In the cell that is a broken hand.",
         bad="10 MOVE P1 + (0, 0, -30)\n",
         good="10 MOVE P1 + (0, 0, 30)\n",
-        motion=True,
     ),
     Rule(
         code="RBL422",
@@ -71,7 +64,6 @@ RULES = (
         "not like the end of a range either.",
         bad="10 MOVEJ JOINT(0, 60, -190, 0, 99.8, 0)\n",
         good="10 MOVEJ JOINT(0, 60, -190, 0, 90, 0)\n",
-        motion=True,
     ),
     Rule(
         code="RBL423",
@@ -79,7 +71,6 @@ RULES = (
         "example is allowed 3 s.",
         bad="10 MOVE P2\n20 DELAY 5\n30 MOVE P5\n",
         good="10 MOVE P2\n20 MOVE P5\n",
-        motion=True,
     ),
     Rule(
         code="RBL424",
@@ -88,7 +79,6 @@ RULES = (
         "An arm whose file gives no link_radius_mm has no shapes: it is not checked, and the table says so.",
         bad="10 MOVEJ JOINT(-60, 210, 25, -70, 65, -75)\n",
         good="10 MOVEJ JOINT(-60, 180, 25, -70, 65, -75)\n",
-        motion=True,
     ),
     Rule(
         code="RBL425",
@@ -98,7 +88,6 @@ RULES = (
         bad="10 LOAD (450, 0, 60), 2.4\n20 MOVEJ JOINT(0, 60, -190, 0, 60, 0)\n",
         good="10 LOAD (0, 0, 60), 2.4\n20 MOVEJ JOINT(0, 60, -190, 0, 60, 0)\n",
         line=2,
-        motion=True,
     ),
     Rule(
         code="RBL426",
@@ -108,7 +97,6 @@ RULES = (
         bad="10 LOAD (0, 0, 60), 2.4, (0.2, 0.2, 0.2, 0, 0, 0)\n20 MOVE P2\n",
         good="10 LOAD (0, 0, 60), 2.4, (0.02, 0.02, 0.02, 0, 0, 0)\n20 MOVE P2\n",
         line=2,
-        motion=True,
     ),
     Rule(
         code="RBL427",
@@ -118,7 +106,6 @@ RULES = (
         bad="10 MOVEJ JOINT(0, 60, -190, 0, -1.5, 0)\n20 MOVE HERE + (20, 0, 0), WRIST KEEP\n",
         good="10 MOVEJ JOINT(0, 60, -190, 0, -15, 0)\n20 MOVE HERE + (20, 0, 0), WRIST KEEP\n",
         line=2,
-        motion=True,
     ),
     Rule(
         code="RBL428",
@@ -128,7 +115,6 @@ RULES = (
         bad="10 MOVEJ JOINT(0, 60, -190, 20, -8, 0)\n20 MOVE JOINT(10, 60, -190, 20, 8, 0)\n",
         good="10 MOVEJ JOINT(0, 60, -190, 20, -8, 0)\n20 MOVE JOINT(10, 60, -190, 20, 8, 0), WRIST AUTO\n",
         line=2,
-        motion=True,
     ),
     Rule(
         code="RBL429",
@@ -137,7 +123,6 @@ RULES = (
         "at another speed than programmed is another bead.",
         bad="10 MOVE P2, TIME 0.3\n",
         good="10 MOVE P2, TIME 1.5\n",
-        motion=True,
     ),
     Rule(
         code="RBL434",
@@ -147,7 +132,6 @@ RULES = (
         bad="10 MOVEJ JOINT(0, 80, -190, 0, 60, 0)\n20 MOVEJ P5\n",
         good="10 MOVEJ JOINT(0, 80, -190, 0, -60, 0)\n20 MOVEJ P5\n",
         line=2,
-        motion=True,
     ),
     Rule(
         code="RBL435",
@@ -156,6 +140,5 @@ RULES = (
         bad="10 MOVEJ JOINT(0, 60, -190, 0, 60, 250)\n20 MOVEJ HERE * (0, 0, 0, 0, 0, 40)\n",
         good="10 MOVEJ JOINT(0, 60, -190, 0, 60, 200)\n20 MOVEJ HERE * (0, 0, 0, 0, 0, 40)\n",
         line=2,
-        motion=True,
     ),
 )

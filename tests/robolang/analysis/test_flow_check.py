@@ -2,7 +2,7 @@
 
 import pytest
 
-from robolang.analysis import flow_check
+from robolang.analysis import facts
 from robolang.analysis.checker import check
 from tests.robolang.helpers import checked, parsed
 
@@ -193,9 +193,9 @@ def test_a_value_that_nothing_reads_may_be_misspelt():
 def test_a_program_of_more_lines_than_memory_is_for_gets_none_of_this(monkeypatch):
     text = "END\nDELAY 1"
     assert "RBL221" in [item.code for item in check(parsed(text))]
-    monkeypatch.setattr(flow_check, "MAX_LINES", 2)
+    monkeypatch.setattr(facts, "MAX_LINES", 2)
     assert "RBL221" in [item.code for item in check(parsed(text))]
-    monkeypatch.setattr(flow_check, "MAX_LINES", 1)
+    monkeypatch.setattr(facts, "MAX_LINES", 1)
     assert "RBL221" not in [item.code for item in check(parsed(text))]
 
 

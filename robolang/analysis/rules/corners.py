@@ -1,0 +1,168 @@
+"""Blends that do not take place: a ZONE before a stop, and a LOAD between two moves that would blend."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from robolang.analysis.dataflow import facts_before
+from robolang.analysis.facts import Facts
+from robolang.analysis.lint_rule import Check, LintRule
+from robolang.analysis.moves import MOVES
+from robolang.analysis.state_reads import reads_state
+from robolang.core.diagnostics import Diagnostic, Related
+from robolang.core.source import Span
+from robolang.evaluation.constant_folding import fixed
+from robolang.syntax.ast import (
+    Delay,
+    Hand,
+    Load,
+    LoadNamed,
+    Moving,
+    Out,
+    Print,
+    Pulse,
+    Seam,
+    Setting,
+    Statement,
+    Wait,
+    Word,
+    Zone,
+)
+from runtime.core.faults import Code, Stage
+
+NO_BLEND = LintRule(
+    Code(
+        code="RBL413",
+        name="blend-at-the-end",
+        meaning="A move has a ZONE, or one is set, and no move follows that could be blended into.",
+        remedy="Give it FINE or no ZONE; the arm stops there in any case.",
+        found=Stage.CELL,
+    ),
+    why="The corner that was to be cut is none: behind it the arm stops for something else. Either a move is "
+    "missing, or whoever reads the program is led to expect a motion without a stop.",
+    bad="10 MOVE P1, ZONE 20\n20 HAND ON\n",
+    good="10 MOVE P1\n20 HAND ON\n",
+)
+LOAD_IN_BLEND = LintRule(
+    Code(
+        code="RBL229",
+        name="load-in-blend",
+        meaning="A LOAD stands between two moves that would blend: the arm stops for it.",
+        remedy="Put the LOAD where the arm stands, behind the HAND, or end the move before it with FINE.",
+    ),
+    why="What the arm carries changes while it stands, not on the way. The blend that the program asks for does "
+    "not take place, and the time that it was to save is lost.",
+    bad="10 MOVE P1, ZONE 20\n20 LOAD (0, 0, 60), 0.8\n30 MOVE P2\n",
+    good="10 LOAD (0, 0, 60), 0.8\n20 MOVE P1, ZONE 20\n30 MOVE P2\n",
+    line=2,
+)
+
+_STOPS = (Load, LoadNamed, Hand, Seam, Out, Pulse, Delay, Wait, Print)
+"""Statements before which the arm comes to rest, besides TOOL, PAUSE and the end."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Corner:
+    """The place of the ZONE that is set, of the move whose end may be passed without a stop (None: the arm stands), and
+    of the setting by which it may; None: by a ZONE of its own."""
+
+    zone: Span | None = None
+    move: Span | None = None
+    by: Span | None = None
+
+
+@dataclass(slots=True)
+class _Corners:
+    """What became of the corners: moves that blended on some branch, those that did not, and LOADs within.
+
+    ``zones`` are the ZONEs of moves, by place of the move. ``waiting`` are, by place of a setting, moves that read the
+    state of the arm, so that it comes to rest before them although the move before could blend.
+    """
+
+    zones: dict[Span, Zone]
+    used: set[Span] = field(default_factory=set)
+    lost: dict[Span, Statement | None] = field(default_factory=dict)
+    loads: dict[Span, Span] = field(default_factory=dict)
+    waiting: dict[Span, Moving] = field(default_factory=dict)
+
+    def step(self, at: int, node: Statement, corner: _Corner) -> tuple[_Corner]:
+        """Follow one statement."""
+        if isinstance(node, MOVES):
+            return (self._after_move(node, corner),)
+        if isinstance(node, Setting) and node.word == "ZONE":
+            is_set = node.value is not None and fixed(node.value) != 0.0
+            return (_Corner(node.span if is_set else None, corner.move, corner.by),)
+        if not _stops(node) or corner.move is None:
+            return (corner,)
+        if isinstance(node, Load | LoadNamed):
+            self.loads[node.span] = corner.move
+        elif corner.move in self.zones:
+            self.lost[corner.move] = node
+        return (_Corner(corner.zone),)
+
+    def _after_move(self, node: Moving, corner: _Corner) -> _Corner:
+        if corner.move is not None and not reads_state(node):
+            self.used.add(corner.move if corner.by is None else corner.by)
+        elif corner.by is not None:
+            self.waiting.setdefault(corner.by, node)
+        elif corner.move in self.zones:
+            self.lost[corner.move] = node
+        if not _blends(node, corner.zone is not None):
+            return _Corner(corner.zone)
+        return _Corner(corner.zone, node.span, None if node.span in self.zones else corner.zone)
+
+
+def find(facts: Facts) -> Iterator[Diagnostic]:
+    """Report ZONEs of moves that nothing blends into, and LOADs that keep moves from blending."""
+    moves = [node for node in facts.statements if isinstance(node, MOVES)]
+    corners = _Corners({node.span: option for node in moves for option in node.options if isinstance(option, Zone)})
+    before = None if facts.reached is None else facts_before(facts.flow, _Corner(), corners.step)
+    if before is None:
+        return
+    for corner in before[-1]:  # the program ends below its last line
+        if corner.move is not None and corner.move in corners.zones:
+            corners.lost.setdefault(corner.move, None)
+    yield from _lost(corners)
+    yield from _waiting(corners)
+    for load, span in corners.loads.items():
+        related = (Related(span=span, message="the move that would blend"),)
+        message = "the arm stops for this LOAD, where the move before it would blend into the next"
+        yield LOAD_IN_BLEND.at(load, message, related=related)
+
+
+def _lost(corners: _Corners) -> Iterator[Diagnostic]:
+    """Report ZONEs of moves after which the arm stops wherever the program goes."""
+    for span, stop in corners.lost.items():
+        if span not in corners.used:
+            related = () if stop is None else (Related(span=stop.span, message="the arm comes to rest for this"),)
+            message = "no move follows that this one could blend into: it stops"
+            yield NO_BLEND.at(corners.zones[span].span, message, related=related)
+
+
+def _waiting(corners: _Corners) -> Iterator[Diagnostic]:
+    """Report settings of ZONE by which no move blends, since each next one reads where the arm is."""
+    for setting, move in corners.waiting.items():
+        if setting not in corners.used:
+            yield NO_BLEND.at(
+                setting,
+                "no move blends by this ZONE: the arm stops before each",
+                related=(Related(span=move.span, message="this move reads where the arm is"),),
+                hint="assign HERE to a name before these moves and write them with that name, or remove the ZONE",
+            )
+
+
+def _blends(node: Moving, is_set: bool) -> bool:
+    for option in node.options:
+        if isinstance(option, Zone):
+            return option.value is not None and fixed(option.value) != 0.0
+    return is_set
+
+
+def _stops(node: Statement) -> bool:
+    if isinstance(node, Setting):
+        return node.word == "TOOL"
+    if isinstance(node, Word):
+        return node.word in ("PAUSE", "STOP", "END")
+    return isinstance(node, _STOPS) or reads_state(node)
+
+
+CHECK = Check(find, NO_BLEND, LOAD_IN_BLEND)

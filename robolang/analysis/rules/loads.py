@@ -1,0 +1,78 @@
+"""A HAND that changes what the arm carries, and no LOAD before the next move.
+
+The fact that is followed is what the hand holds, and whether a LOAD has declared it since (``_Hold``).
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from robolang.analysis.dataflow import facts_before
+from robolang.analysis.facts import Facts
+from robolang.analysis.lint_rule import Check, LintRule
+from robolang.analysis.moves import MOVES
+from robolang.core.diagnostics import Diagnostic, Related
+from robolang.core.source import Span
+from robolang.syntax.ast import Hand, HandState, Load, LoadNamed, Moving, Statement
+from runtime.core.faults import Code
+
+LOAD_MISSING = LintRule(
+    Code(
+        code="RBL228",
+        name="load-missing",
+        meaning="The hand has grasped or let go, and the arm moves on without a LOAD.",
+        remedy="Write LOAD with what the arm carries from there on, behind the HAND.",
+    ),
+    why="Gravity and inertia are computed from the last LOAD. With the load of the empty hand the arm sags under "
+    "the part, leaves its path, and stops for a payload that does not fit.",
+    bad="10 LOAD (0, 0, 60), 0.8\n20 MOVE P1\n30 HAND ON\n40 MOVE P2\n",
+    good="10 LOAD (0, 0, 60), 0.8\n20 MOVE P1\n30 HAND ON\n35 LOAD (0, 0, 95), 2.3\n40 MOVE P2\n",
+    line=3,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class _Hold:
+    """Whether the hand is closed, the HAND since which no LOAD has come, if any, and whether one has come at all."""
+
+    closed: bool = False
+    pending: Span | None = None
+    declared: bool = False
+
+
+def find(facts: Facts) -> Iterator[Diagnostic]:
+    """Report every HAND that changes what is held and is followed by a move before a LOAD."""
+    found: dict[Span, Moving] = {}
+
+    def step(at: int, node: Statement, hold: _Hold) -> tuple[_Hold]:
+        if isinstance(node, Hand):
+            return (_after_hand(node, hold),)
+        if isinstance(node, Load | LoadNamed):
+            return (_Hold(hold.closed, declared=True),)
+        if isinstance(node, MOVES) and hold.pending is not None:
+            found.setdefault(hold.pending, node)
+            return (_Hold(hold.closed, declared=True),)
+        return (hold,)
+
+    hands = [node for node in facts.statements if isinstance(node, Hand)]
+    if not hands or facts.reached is None or facts_before(facts.flow, _Hold(), step) is None:
+        return
+    for hand in (node for node in hands if node.span in found):
+        does = "grasps" if hand.state is HandState.ON else "opens"
+        yield LOAD_MISSING.at(
+            hand.span,
+            f"the hand {does} and the arm moves on without a LOAD: the controller goes on "
+            "computing with the load before",
+            related=(Related(span=found[hand.span].span, message="the arm moves here"),),
+        )
+
+
+def _after_hand(node: Hand, hold: _Hold) -> _Hold:
+    closes = node.state is HandState.ON
+    if closes is not hold.closed:
+        return _Hold(closes, node.span)
+    if not hold.declared and hold.pending is None:  # a hand that is open at the start weighs something, too
+        return _Hold(hold.closed, node.span)
+    return hold
+
+
+CHECK = Check(find, LOAD_MISSING)

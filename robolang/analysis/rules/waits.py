@@ -1,0 +1,54 @@
+"""WAITs that may never end, and WAITs for a number."""
+
+from collections.abc import Iterator
+
+from robolang.analysis.facts import Facts
+from robolang.analysis.lint_rule import Check, LintRule
+from robolang.core import limits
+from robolang.core.diagnostics import Diagnostic
+from robolang.evaluation.constant_folding import fixed
+from robolang.syntax.ast import Wait
+from runtime.core.faults import Code
+
+NO_TIMEOUT = LintRule(
+    Code(
+        code="RBL223",
+        name="wait-without-timeout",
+        meaning="A WAIT has no TIMEOUT: where its signal never comes, the program stands there for ever.",
+        remedy="Add TIMEOUT t, and GOTO or ON ERROR for what to do then.",
+    ),
+    why="A sensor fails, a plug comes loose, and the cell stands still without a word. With a TIMEOUT the program "
+    "can say which signal it misses. Where it is meant to wait without end, as for a start button, say so with "
+    "noqa.",
+    bad="10 WAIT IN(1) = 1\n20 MOVE P1\n",
+    good="10 WAIT IN(1) = 1, TIMEOUT 5\n20 MOVE P1\n",
+)
+FOR_A_NUMBER = LintRule(
+    Code(
+        code="RBL233",
+        name="wait-for-a-number",
+        meaning="The condition of a WAIT is a number that is not 0, so it is true at once.",
+        remedy="Wait for a time with DELAY, for a signal with a condition such as IN(1) = 1.",
+    ),
+    why="In other languages WAIT with a number is a pause. Here it waits for a condition, and every number but 0 "
+    "is true: the program goes on at once, before a valve or a gripper has moved.",
+    bad="10 WAIT 2\n20 MOVE P1\n",
+    good="10 DELAY 2\n20 MOVE P1\n",
+)
+
+
+def find(facts: Facts) -> Iterator[Diagnostic]:
+    """Report WAITs without a TIMEOUT and WAITs for a number."""
+    for node in facts.statements:
+        if not isinstance(node, Wait):
+            continue
+        if value := fixed(node.condition):
+            delay = f"DELAY {value:g} waits for {value:g} s" if 0.0 < value <= limits.DELAY.high else ""
+            message = f"WAIT {value:g} waits for nothing: its condition is a number that is not 0"
+            yield FOR_A_NUMBER.at(node.span, message, hint=delay)
+        elif node.timeout is None:
+            message = "this WAIT has no TIMEOUT: if its signal never comes, the program stands here for ever"
+            yield NO_TIMEOUT.at(node.span, message)
+
+
+CHECK = Check(find, NO_TIMEOUT, FOR_A_NUMBER, beside_errors=True)
