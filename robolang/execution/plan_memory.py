@@ -23,9 +23,7 @@ class PlanMemory(MotionPlanner):
 
     def __init__(self, project: Project) -> None:
         robot = project.cell.robot
-        self.kinematics = Kinematics(robot)
-        """The kinematics of the robot, one for all who plan with this."""
-        super().__init__(robot, self.kinematics, project.profile)
+        super().__init__(robot, Kinematics(robot), project.profile)
         self._plans: dict[tuple[object, ...], MovePlan | Fault] = {}
         self._chains: dict[tuple[object, ...], ChainPlan] = {}
 

@@ -116,8 +116,7 @@ class Session:
             profile,
             cell.hand.X_flange_tool,
             clock,
-            plans.kinematics,
-            planner=plans,
+            plans,
         )
         self.record = RunRecord(project=project, controller=self.controller, physics=physics)
         self.world = RobotWorld(project.points, cell, plans.kinematics, lambda: self.controller.time_us)

@@ -70,6 +70,7 @@ table come last."""
 class RubbingPlant(RigidPlant):
     """The ideal arm with the friction of the robot file: viscous, and Coulomb friction by direction."""
 
+    VALUES = (*RigidPlant.VALUES, "_dq_before")
     REST = 0.05
     """Speed over which Coulomb friction changes its sign, rad/s: below the speed of every test."""
 
@@ -300,10 +301,10 @@ class _Bench:
 
     def _play(self, way: Array, position: float) -> None:
         controller, axis = self._controller, self._test.axis
-        for q in way:
-            row = np.array(controller.areas.ina)
-            row[axis] = q
-            controller.areas.ina = row
+        rows = np.tile(controller.areas.ina, (len(way), 1))
+        rows[:, axis] = way
+        controller.play(rows)
+        for _ in rows:
             controller.cycle()
             where = f"J{axis + 1} at {position / DEG:.1f} deg"
             for touch in _contacts(self._plant):  # before the alarms: it may be the cause

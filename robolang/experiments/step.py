@@ -21,7 +21,6 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array, pose
 from runtime.core.units import DEG
 from runtime.dynamics.equations import axis_inertia
-from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.plant.plant import Plant
 from runtime.plant.rigid_plant import RigidPlant
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
@@ -43,17 +42,6 @@ _LOST = 10.0
 """Times the size of the step beyond which a response has left for good."""
 
 PlantName = Literal["rigid", "mujoco"]
-
-
-class HeldSetpoints(FineInterpolator):
-    """Plays every set-point as it is from the cycle in which it is sent: no interpolation, no speed."""
-
-    def push(self, setpoint: Array) -> Array:
-        """Take the set-point (n,) of this cycle; return (3, ticks, n)."""
-        super().push(setpoint)
-        motion = np.zeros((3, self.ticks, len(setpoint)))
-        motion[0] = setpoint
-        return motion
 
 
 class _Substepped(RigidPlant):
@@ -145,12 +133,12 @@ def step(request: StepRequest) -> StepResult:
         profile = replace(profile, servo=replace(profile.servo, friction_compensation=0.0))
     cell = _cell(robot, request)
     X_flange_tool = pose(np.zeros(3) if request.tool is None else request.tool, np.eye(3))
-    fine = HeldSetpoints(profile.ticks_per_cycle, profile.period_s, request.q)
-    controller = Controller(robot, _plant(robot, cell, request), profile, X_flange_tool, fine=fine)
+    controller = Controller(robot, _plant(robot, cell, request), profile, X_flange_tool)
     controller.load(request.declared)
+    controller.jump(controller.areas.ina)
     _run(controller, HOLD_S)
     first = controller.recorder.tick
-    controller.areas.ina = request.q + request.size * np.eye(robot.n)[request.axis]
+    controller.jump(request.q + request.size * np.eye(robot.n)[request.axis])
     _run(controller, request.seconds, lost=max(_LOST * abs(request.size), np.pi))
     _refuse_touch(request, controller)
     return _measure(request, controller, first)

@@ -249,8 +249,8 @@ def _plant(request: WeighRequest, profile: Profile) -> Plant:
 
 def _play(controller: Controller, rows: Array) -> None:
     """Send set-points (N, n), one in each cycle; ``Fault`` with the code of the alarm that ends it."""
-    for row in rows:
-        controller.areas.ina = row
+    controller.play(rows)
+    for _ in rows:
         if not controller.cycle() or controller.alarms:
             alarm = controller.alarms[0]
             at = alarm.tick * controller.profile.tick_s

@@ -180,8 +180,8 @@ class _Arm:
             yield
 
     def _send(self, rows: Array) -> Iterator[None]:
-        for row in rows:
-            self._controller.areas.ina = np.array(row)
+        self._controller.play(rows, checked=False)
+        for _ in rows:
             yield
 
     def _settle(self) -> Generator[None, None, float | None]:

@@ -11,6 +11,7 @@ Readings are in the world frame, or in the weld-line frame (X along the travel, 
 per 8 ms cycle by the controller.
 """
 
+import copy
 import math
 from dataclasses import dataclass
 
@@ -84,6 +85,12 @@ class SeamSensor:
         self._spec = spec
         self._random = np.random.default_rng(spec.seed)
         self._travel = np.array([1.0, 0.0, 0.0])
+
+    def __deepcopy__(self, memo: dict[int, object]) -> "SeamSensor":
+        """Return a sensor that will give the same readings, noise and losses included."""
+        twin = copy.copy(self)
+        twin._random = copy.deepcopy(self._random, memo)
+        return twin
 
     def read(self, way: float, travel: Array) -> Array | None:
         """Return the deviation (6,) seen at a way along the path, m and rad in the world; None when it is lost.

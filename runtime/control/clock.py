@@ -10,6 +10,9 @@ class Clock(Protocol):
     def wait_until(self, t_us: int) -> bool:
         """Wait until simulated time ``t_us`` is due; True when it was already late by more than a cycle."""
 
+    def restart(self) -> None:
+        """Forget where wall time was: simulated time goes on from another instant."""
+
 
 class VirtualClock:
     """Never waits: simulated time is whatever the controller says."""
@@ -17,6 +20,9 @@ class VirtualClock:
     def wait_until(self, t_us: int) -> bool:
         """Return at once."""
         return False
+
+    def restart(self) -> None:
+        """Do nothing: no wall time is kept."""
 
 
 class PacedClock:
@@ -39,6 +45,10 @@ class PacedClock:
             return False
         self._origin -= ahead  # count a late start once, then go on from here
         return True
+
+    def restart(self) -> None:
+        """Begin anew with the next cycle."""
+        self._origin = None
 
 
 def wall_s() -> float:

@@ -2,16 +2,19 @@
 
     300 i = 1 -> 302 read encoders -> 304 D_i -> 306 T_i -> 308 store in ITA -> 310 next i, or from the start
 
-It is a generator and yields, *before* each step, that step's cost in microseconds; the scheduler resumes it once
-the idle time has paid for the step. The next interrupt may come in the middle of a step: what was paid stays paid.
-The angles are read anew for every axis, so the cells of ITA are of different ages (docs/timing.md).
+It names the cost of its next step in microseconds; the scheduler lets it work once the idle time has paid for that.
+The next interrupt may come in the middle of a step: what was paid stays paid. The angles are read anew for every axis,
+so the cells of ITA are of different ages (docs/timing.md). It was a generator, which is shorter but cannot be copied.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
+
+import numpy as np
 
 from runtime.control.memory_areas import Areas, AxisLoad
 from runtime.core.frames import Array
+from runtime.core.state import Stateful
 from runtime.dynamics.equations import axis_gravity, axis_row
 from runtime.dynamics.source import InertiaRows
 from runtime.robot.model.arm_model import ArmModel
@@ -39,37 +42,98 @@ class StepCosts:
         return cls(read=read, inertia=inertia, gravity=gravity, store=total_us - read - inertia - gravity)
 
 
-def dynamics_task(
-    areas: Areas,
-    model: ArmModel,
-    costs: StepCosts,
-    read_angles: Callable[[], Array],
-    now_us: Callable[[], int],
-    load_mode: LoadMode = "add",
-    rows: InertiaRows | None = None,
-) -> Iterator[int]:
-    """Refresh ITA for ever; yields the cost in us of the step that follows.
+class DynamicsTask(Stateful):
+    """Refreshes ITA for ever, step by step; the scheduler pays ``cost_us`` before each ``work``.
 
-    ``read_angles`` returns the detected angles (n,) rad, ``now_us`` the time at which the running step ends. ``rows``
-    is where inertia comes from; None: the unit-acceleration pass of ``model``.
+    ``read_angles`` returns the detected angles (n,) rad. ``rows`` is where inertia comes from; None: the
+    unit-acceleration pass of ``model``.
     """
-    payload_version = -1
-    version = 0
-    while True:
-        version += 1
-        for axis in range(model.n):
-            yield costs.read
-            areas.ang[:] = read_angles()
-            read_us = now_us()
-            yield costs.inertia
-            if payload_version != areas.sda_version:
-                (rows or model).set_payload(areas.sda, load_mode)
-                payload_version = areas.sda_version
-            row = axis_row(model, areas.ang, axis) if rows is None else rows.row(areas.ang, axis)
-            yield costs.gravity
-            T = axis_gravity(model, areas.ang, axis)
-            yield costs.store
-            load = AxisLoad(
-                D=float(row[axis]), T=T, row=row, read_us=read_us, version=version, payload_version=payload_version
+
+    VALUES = ("_step", "_axis", "_version", "_payload_version", "_read_us", "_row", "_T")
+    PARTS = ("_loaded",)
+
+    def __init__(
+        self,
+        areas: Areas,
+        model: ArmModel,
+        costs: StepCosts,
+        read_angles: Callable[[], Array],
+        load_mode: LoadMode = "add",
+        rows: InertiaRows | None = None,
+    ) -> None:
+        self._areas, self._model, self._read_angles, self._load_mode, self._rows = (
+            areas,
+            model,
+            read_angles,
+            load_mode,
+            rows,
+        )
+        self._loaded: ArmModel | InertiaRows = rows or model
+        self._steps = (self._read, self._inertia, self._gravity, self._store)
+        self._costs = (costs.read, costs.inertia, costs.gravity, costs.store)
+        self._step = self._axis = self._read_us = 0
+        self._version = 1
+        self._payload_version = -1  # of no LOAD: the first step takes what is in SDA
+        self._row: Array = np.zeros(model.n)
+        self._T = 0.0
+
+    @property
+    def cost_us(self) -> int:
+        """Cost of the step that comes next, us."""
+        return self._costs[self._step]
+
+    def work(self, now_us: int) -> None:
+        """Carry out the step that has been paid for; it ends at ``now_us``."""
+        self._steps[self._step](now_us)
+        self._step = (self._step + 1) % len(self._steps)
+
+    def fill(self, q: Array, now_us: int) -> None:
+        """Refresh all of ITA at joint angles q (n,) rad at once.
+
+        Called before the brakes open, so that no servo ever works with an empty cell.
+        """
+        areas = self._areas
+        if areas.sda_version:
+            self._loaded.set_payload(areas.sda, self._load_mode)
+        for axis in range(self._model.n):
+            row = self._inertia_row(q, axis)
+            areas.ita[axis] = AxisLoad(
+                D=float(row[axis]),
+                T=axis_gravity(self._model, q, axis),
+                row=row,
+                read_us=now_us,
+                version=0,
+                payload_version=areas.sda_version,
             )
-            areas.publish(axis, load, now_us())
+
+    def _inertia_row(self, q: Array, axis: int) -> Array:
+        return axis_row(self._model, q, axis) if self._rows is None else self._rows.row(q, axis)
+
+    def _read(self, now_us: int) -> None:
+        self._areas.ang[:] = self._read_angles()
+        self._read_us = now_us
+
+    def _inertia(self, now_us: int) -> None:
+        areas = self._areas
+        if self._payload_version != areas.sda_version:
+            self._loaded.set_payload(areas.sda, self._load_mode)
+            self._payload_version = areas.sda_version
+        self._row = self._inertia_row(areas.ang, self._axis)
+
+    def _gravity(self, now_us: int) -> None:
+        self._T = axis_gravity(self._model, self._areas.ang, self._axis)
+
+    def _store(self, now_us: int) -> None:
+        axis, row = self._axis, self._row
+        load = AxisLoad(
+            D=float(row[axis]),
+            T=self._T,
+            row=row,
+            read_us=self._read_us,
+            version=self._version,
+            payload_version=self._payload_version,
+        )
+        self._areas.publish(axis, load, now_us)
+        self._axis = (axis + 1) % self._model.n
+        if self._axis == 0:
+            self._version += 1

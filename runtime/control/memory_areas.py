@@ -21,6 +21,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from runtime.core.frames import Array, frozen
+from runtime.core.state import Stateful
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
 
 EMPTY_ROW = frozen(np.zeros(0))
@@ -44,8 +45,20 @@ class AxisLoad:
     payload_version: int
 
 
-class Areas:
+class Areas(Stateful):
     """SDA, ITA, INA and ANG of one controller with n axes."""
+
+    BUFFERS = ("ang",)
+    VALUES = (
+        "sda",
+        "sda_version",
+        "ita",
+        "ina",
+        "refreshes",
+        "longest_refresh_us",
+        "_first_us",
+        "_last_us",
+    )
 
     def __init__(self, n: int, q: Array) -> None:
         self.sda: Payload = NO_PAYLOAD

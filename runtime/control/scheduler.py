@@ -7,20 +7,42 @@ in the next one. So the cycle keeps its period whatever the background costs, an
 ``n Cd P / (P - Ci)`` on average (docs/timing.md).
 """
 
-from collections.abc import Callable, Iterator
+from typing import Protocol
+
+from runtime.core.state import State, Stateful
 
 
-class IdleProcessor:
+class Task(Protocol):
+    """A background task that never ends, as steps with declared costs."""
+
+    @property
+    def cost_us(self) -> int:
+        """Cost of the step that comes next, us."""
+
+    def work(self, now_us: int) -> None:
+        """Carry out that step; it ends at ``now_us``."""
+
+    def snapshot(self) -> State:
+        """Return the state of the task."""
+
+    def restore(self, state: State) -> None:
+        """Put a state back."""
+
+
+class IdleProcessor(Stateful):
     """Runs one background task of priority 2 in the idle time of the cycles."""
 
-    def __init__(self, start: Callable[["IdleProcessor"], Iterator[int]]) -> None:
+    VALUES = ("now_us", "overruns", "_busy_until_us", "_owed_us")
+    PARTS = ("_task",)
+
+    def __init__(self, task: Task) -> None:
         self.now_us = 0
         """Virtual time up to which the processor has worked."""
         self.overruns = 0
         """Cycles whose foreground had not finished when the next one started."""
         self._busy_until_us = 0
-        self._task = start(self)
-        self._owed_us = next(self._task)
+        self._task = task
+        self._owed_us = task.cost_us
 
     def begin_cycle(self, foreground_us: int) -> None:
         """Take the processor for the foreground, at the interrupt that starts a cycle."""
@@ -30,11 +52,12 @@ class IdleProcessor:
 
     def advance(self, until_us: int) -> None:
         """Let the background run in the idle time from now until ``until_us``."""
-        start = max(self.now_us, self._busy_until_us)
+        start, task = max(self.now_us, self._busy_until_us), self._task
         while start + self._owed_us <= until_us:
             start += self._owed_us
             self.now_us = start
-            self._owed_us = next(self._task)
+            task.work(start)
+            self._owed_us = task.cost_us
         if start < until_us:
             self._owed_us -= until_us - start
         self.now_us = until_us

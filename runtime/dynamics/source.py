@@ -14,6 +14,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from runtime.core.frames import Array, frozen
+from runtime.core.state import Stateful
 from runtime.dynamics.equations import axis_row
 from runtime.dynamics.motor_inertia import inertia_row, link_chain
 from runtime.robot.model.arm_model import ArmModel
@@ -27,11 +28,14 @@ Row = Callable[[Array, int], Array]
 """Of joint angles (n,) rad and an axis (0-based): the row of the mass matrix (n,), kg m2, without rotors."""
 
 
-class InertiaRows:
+class InertiaRows(Stateful):
     """The source of a robot's inertia rows; ``model`` carries the payload for the two sources that are Pinocchio's.
 
     ``tables``, one for each axis or None, or none at all: kg m2 that D has beyond the model, by posture.
     """
+
+    VALUES = ("_chain",)
+    PARTS = ("_model",)
 
     def __init__(
         self, spec: RobotSpec, model: ArmModel, source: InertiaSource, tables: Sequence[JointTable | None] = ()

@@ -13,6 +13,7 @@ import numpy as np
 
 from runtime.core.frames import Array
 from runtime.core.linear import matmul
+from runtime.core.state import Stateful
 
 
 def _quintic(u: Array) -> Array:
@@ -67,8 +68,11 @@ _DIFFERENCES = np.array(
 )
 
 
-class FineInterpolator:
+class FineInterpolator(Stateful):
     """Plays the segments between set-points tick by tick."""
+
+    BUFFERS = ("_points",)
+    VALUES = ("_jumped",)
 
     def __init__(self, ticks: int, period_s: float, q: Array) -> None:
         u = np.arange(ticks) / ticks
@@ -81,17 +85,30 @@ class FineInterpolator:
             ]
         )
         self._points = np.tile(np.asarray(q, dtype=np.float64), (4, 1))
+        self._jumped = False
 
     def push(self, setpoint: Array) -> Array:
         """Take the set-point (n,) of this cycle; return (3, ticks, n): positions, speeds, accelerations."""
         points = self._points
         points[:3] = points[1:]
         points[3] = setpoint
+        if self._jumped:
+            if (points == setpoint).all():
+                motion = np.zeros((3, self.ticks, len(setpoint)))
+                motion[0] = setpoint  # exactly: the weights of a segment add up to 1 only to rounding
+                return motion
+            self._jumped = False
         return matmul(self._weights, points).reshape(3, self.ticks, -1)
 
     def hold(self, q: Array) -> None:
         """Stand at joint angles q (n,): the pipeline holds nothing else any more."""
         self._points[:] = q
+        self._jumped = False
+
+    def jump(self, q: Array) -> None:
+        """Command joint angles q (n,) at once and exactly, without speed, until another set-point comes."""
+        self._points[:] = q
+        self._jumped = True
 
     @staticmethod
     def weights(u: Array) -> Array:
@@ -110,6 +127,10 @@ class FineInterpolator:
         the servo sees of a move, with the segments in which it leaves and enters rest. Used by the planner.
         """
         return self.continue_(np.concatenate([setpoints[:1], setpoints[:1], setpoints]))
+
+    def after(self, setpoints: Array) -> Array:
+        """Return (3, (K + 2) * ticks, n) of set-points (K, n) that follow those in the pipeline; the last is held."""
+        return self.continue_(np.concatenate([self._points[1:], setpoints]))
 
     def peaks(self, setpoints: Array) -> tuple[Array, Array]:
         """Return the largest speed and acceleration (n,) of a whole sequence (N + 1, n), as ``expand`` has them."""

@@ -12,19 +12,23 @@ import numpy as np
 
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
+from runtime.core.state import Stateful
 from runtime.motion.cartesian_planner import EXCEPTION, FOLLOWS, MovePlan
 from runtime.motion.motion_planner import ChainPlan
 from runtime.motion.seam import SeamMove
 
 
-class Interpolator:
+class Interpolator(Stateful):
     """Hands out the set-points of one move at a time, or of moves in a row."""
+
+    VALUES = ("_rows", "_modes", "_commands", "_n", "fault")
 
     def __init__(self) -> None:
         self._rows: Array | None = None
-        self._modes: list[int] = []
-        self._commands: list[int] = []
-        self._seam: SeamMove | None = None
+        self._modes: tuple[int, ...] = ()
+        self._commands: tuple[int, ...] = ()
+        self.seam: SeamMove | None = None
+        """The move under a seam sensor that runs, None: another one or none. Its owner keeps and restores it."""
         self._n = 0
         self.fault: Fault | None = None
         """What the last set-point has to stop the arm for: a seam that cannot be followed."""
@@ -33,8 +37,8 @@ class Interpolator:
         """Begin a move, with ``seam`` point by point; ``RuntimeError`` when another one still runs."""
         if self.busy:
             raise RuntimeError("a move is running")
-        self._rows, self._modes, self._seam, self.fault = plan.q, plan.modes.tolist(), seam, None
-        self._commands = plan.command.tolist() if isinstance(plan, ChainPlan) else [0] * len(plan.q)
+        self._rows, self._modes, self.seam, self.fault = plan.q, tuple(plan.modes.tolist()), seam, None
+        self._commands = tuple(plan.command.tolist()) if isinstance(plan, ChainPlan) else (0,) * len(plan.q)
         if seam is not None:
             self._rows = np.array(plan.q)  # the plan's rows are those without deviation; each is replaced in its turn
             self._rows[0] = seam.here
@@ -44,15 +48,15 @@ class Interpolator:
         """Replace the rows that are left by those of a stop, ``stopping(rows, reached, whether they end at rest)``."""
         if self._rows is not None and self.busy:
             rows, reached, mode, whole = self._rows, self._rows[: self._n + 1], self.mode, True
-            if self._seam is not None:
-                rest, whole = self._seam.rest(self._n + 1)
-                rows, self._seam = np.concatenate([reached, rest]), None
+            if self.seam is not None:
+                rest, whole = self.seam.rest(self._n + 1)
+                rows, self.seam = np.concatenate([reached, rest]), None
             self._rows = np.concatenate([reached, stopping(rows, self._n, whole)])
-            self._modes, self._commands = [mode] * len(self._rows), [self.command] * len(self._rows)
+            self._modes, self._commands = (mode,) * len(self._rows), (self.command,) * len(self._rows)
 
     def drop(self) -> None:
         """Forget the move: no set-point is left to send."""
-        self._rows = self._seam = self.fault = None
+        self._rows = self.seam = self.fault = None
 
     @property
     def command(self) -> int:
@@ -69,8 +73,8 @@ class Interpolator:
         """``wrist_mode`` of the last set-point; the wrist follows the path when none is left."""
         if not self.busy:
             return FOLLOWS
-        if self._seam is not None:
-            return FOLLOWS if self._seam.law is None else EXCEPTION
+        if self.seam is not None:
+            return FOLLOWS if self.seam.law is None else EXCEPTION
         return self._modes[self._n]
 
     def next(self) -> Array:
@@ -78,9 +82,9 @@ class Interpolator:
         if self._rows is None or not self.busy:
             raise RuntimeError("no move is running")
         self._n += 1
-        if self._seam is not None:
-            self._rows[self._n], self.fault = self._seam.next(self._n)
+        if self.seam is not None:
+            self._rows[self._n], self.fault = self.seam.next(self._n)
             if self._n + 1 == len(self._rows):
-                self._seam.finish()
+                self.seam.finish()
         row: Array = self._rows[self._n]
         return row

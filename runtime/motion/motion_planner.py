@@ -120,7 +120,9 @@ class MotionPlanner:
         """Plans moves that have a path."""
         self.joints = JointPlanner(spec, kinematics, profile)
         """Plans those that have none."""
-        self._spec, self._kinematics = spec, kinematics
+        self.kinematics = kinematics
+        """The kinematics of the robot, one for all who plan with this."""
+        self._spec = spec
         self._pace = Pace.of(spec, profile)
 
     def plan(self, q_start: Array, command: Command, X_flange_tool: Array, override: float = 1.0) -> MovePlan:
@@ -152,7 +154,7 @@ class MotionPlanner:
         """
         if not plans:
             raise ValueError("a chain has at least one move")
-        arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=self._pace.fine, X_flange_tool=X_flange_tool)
+        arm = Arm(spec=self._spec, kinematics=self.kinematics, fine=self._pace.fine, X_flange_tool=X_flange_tool)
         q, modes = plans[0].q, plans[0].modes
         offsets, lasts, corners = [0], [], []
         for before, after, zone in zip(plans, plans[1:], zones, strict=False):

@@ -18,6 +18,7 @@ the move was planned without deviation, and what a sensor asks for cannot be pla
 Source: CN103429397A (Kobe Steel), embodiment 3. Called once per 8 ms cycle by the interpolator.
 """
 
+import copy
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -72,6 +73,12 @@ class SeamTracker:
         self._target = np.zeros(6)
         self._rate = np.zeros(6)
         self._lost_in_a_row = 0
+
+    def copy(self) -> "SeamTracker":
+        """Return a tracker that goes on alike and apart: its sensor repeats the readings that this one will get."""
+        twin = copy.copy(self)  # the arrays are replaced, never written, so the twins may share them
+        twin._read = copy.deepcopy(self._read)  # a bound method brings a copy of its sensor, a function is itself
+        return twin
 
     def observe(self, way: float, travel: Array) -> None:
         """Read the sensor for this cycle, ``way`` m into the move that runs; ``Fault`` RBL524 or RBL525.
@@ -193,6 +200,17 @@ class SeamMove:
             return self.row(n), fault
         except Fault:
             return self.here, fault
+
+    @property
+    def tracker(self) -> SeamTracker:
+        """The tracker whose deviation the move follows."""
+        return self._tracker
+
+    def copy(self, tracker: SeamTracker) -> "SeamMove":
+        """Return a move that goes on alike under another tracker."""
+        twin = copy.copy(self)
+        twin._tracker = tracker
+        return twin
 
     def finish(self) -> None:
         """Tell the tracker that the move has ended: the next one begins at its calculated end."""

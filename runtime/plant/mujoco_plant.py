@@ -27,6 +27,7 @@ import numpy as np
 from runtime.cell.cell import CellSpec
 from runtime.core.frames import Array, pose
 from runtime.core.linear import dot, norm
+from runtime.core.state import State
 from runtime.plant.gears import elastic_axes, physics_steps
 from runtime.plant.hand import FINGERS, finger_sign
 from runtime.plant.mjcf import build_mjcf, friction_bias, gear_joint, joint_name, own_pair_name, own_pairs
@@ -187,6 +188,37 @@ class MujocoPlant:
         self._qpos[:] = self._last_qpos
         self._qvel[:] = self._last_qvel
         return False
+
+    def snapshot(self) -> State:
+        """Return what the steps to come depend on, and where the shapes were when contacts were found last.
+
+        MuJoCo's integration state (time, positions, speeds, controls, applied forces, solver warm start) makes the
+        steps repeat bit for bit. Poses and contacts in mjData are those from before the last integration and cannot be
+        had from it: the poses are kept, and the contacts follow from them. Copying mjData was rejected: it takes 490
+        kB and 0.5 ms instead of 5 kB and 0.01 ms.
+        """
+        data = self._data
+        physics = np.empty(mujoco.mj_stateSize(self._model, _INTEGRATION))
+        mujoco.mj_getState(self._model, data, physics, _INTEGRATION)
+        poses = tuple([getattr(data, name).copy() for name in _POSES])
+        last = self._last_qpos.copy(), self._last_qvel.copy()
+        warnings = data.warning.number.copy(), data.warning.lastinfo.copy()
+        values = (self._closed, self._touched, self._ncon, self._valid)
+        return State(owner=type(self), buffers=(physics, poses, last, warnings), values=values)
+
+    def restore(self, state: State) -> None:
+        """Put a state back; the forces in ``contacts`` are those of the next step."""
+        state.check(self)
+        data, (physics, poses, last, warnings) = self._data, state.buffers
+        mujoco.mj_setState(self._model, data, physics, _INTEGRATION)
+        for name, values in zip(_POSES, poses, strict=True):
+            getattr(data, name)[:] = values
+        mujoco.mj_collision(self._model, data)
+        self._last_qpos[:], self._last_qvel[:] = last
+        data.warning.number[:], data.warning.lastinfo[:] = warnings
+        self._closed, self._touched, self._ncon, self._valid = state.values
+        if self._renew is not None:
+            self._renew()
 
     def why_invalid(self) -> str:
         """Return MuJoCo's reason in a few words, empty while the state is valid."""
@@ -363,6 +395,9 @@ class MujocoPlant:
 
 
 _mj_step = mujoco.mj_step
+_INTEGRATION = mujoco.mjtState.mjSTATE_INTEGRATION
+_POSES = ("xpos", "xquat", "xmat", "xipos", "ximat", "geom_xpos", "geom_xmat", "site_xpos", "site_xmat")
+"""Poses in mjData on which contacts, and what ``bodies`` shows, depend."""
 SIDEWAYS = 0.7
 """Cosine of the largest angle between a contact and the direction in which the fingers close, of a grip."""
 MOST_KNOWN = 10_000

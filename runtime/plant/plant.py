@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from runtime.core.frames import Array
+from runtime.core.state import State
 from runtime.plant.touches import Bodies, Pair
 
 
@@ -70,3 +71,9 @@ class Plant(Protocol):
 
     def gripped(self) -> tuple[str, ...]:
         """Return the parts between the fingers that press on them."""
+
+    def snapshot(self) -> State:
+        """Return everything that the steps to come depend on; called between two cycles."""
+
+    def restore(self, state: State) -> None:
+        """Put a state back, also into another plant of the same robot and cell: the same torques move it alike."""

@@ -7,11 +7,14 @@ Gears are rigid too, whatever the robot file says: ``q_link`` is ``q``. It runs 
 within ``REACH`` of the tool point, and the arm then carries that part's true mass; opening it leaves the part there.
 """
 
+from typing import ClassVar
+
 import numpy as np
 
 from runtime.cell.cell import CellSpec
 from runtime.core.frames import Array, inverse
 from runtime.core.linear import matmul, norm
+from runtime.core.state import Stateful
 from runtime.plant.plant import HandState
 from runtime.plant.touches import Pair
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
@@ -22,9 +25,12 @@ REACH = 0.01
 """Largest distance of a part's centre from the tool point at which the hand takes it, m."""
 
 
-class RigidPlant:
+class RigidPlant(Stateful):
     """Plant without physics engine; see ``Plant`` for the meaning of each method."""
 
+    BUFFERS = ("q", "dq")
+    VALUES: ClassVar[tuple[str, ...]] = ("_parts", "_closed", "_holding", "_X_tool_part")
+    PARTS = ("_model",)
     bodies = None
 
     def __init__(self, spec: RobotSpec, cell: CellSpec, tick_s: float = 1e-3) -> None:

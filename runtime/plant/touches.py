@@ -14,6 +14,7 @@ A part is measured from where it was before the touch until it rests again: the 
 corners. A touch that goes on in the next statement begins a record of its own there. Nothing here acts on the motion.
 """
 
+import copy
 import math
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable
@@ -24,6 +25,7 @@ import numpy as np
 from runtime.core.frames import Array, rotation_angle
 from runtime.core.linear import matmul, norm
 from runtime.core.program_line import ProgramLine, named
+from runtime.core.state import State
 from runtime.core.units import DEG, MM
 from runtime.plant.hand import FINGERS
 
@@ -192,6 +194,37 @@ class Touches:
         self._open: dict[str, _Open] = {}  # by the part that is pushed, or by "part>fixed" that it slides along
         self._place: ProgramLine | None = None
         self._statement = 0
+
+    def snapshot(self) -> State:
+        """Return what is held, lost, free and touched now, and all records so far."""
+        twin = copy.copy(self)
+        twin._separate()
+        return State(owner=type(self), values=(twin,))
+
+    def restore(self, state: State) -> None:
+        """Put a state back, also into the touches of another run of the same cell."""
+        state.check(self)
+        twin = copy.copy(state.values[0])
+        twin._separate()
+        bodies, gripped = self._bodies, self._gripped
+        self.__dict__.update(twin.__dict__)
+        self._bodies, self._gripped = bodies, gripped
+
+    def _separate(self) -> None:
+        """Copy everything that changes in place, so that a shallow copy goes its own way."""
+        touches: dict[int, Touch] = {}  # a touch that goes on is one object in records and in what is open
+
+        def own(touch: Touch) -> Touch:
+            return touches.setdefault(id(touch), replace(touch, by=[*touch.by]))
+
+        self.records = [own(touch) for touch in self.records]
+        self._open = {key: replace(going, touch=own(going.touch)) for key, going in self._open.items()}
+        self._held = {part: replace(grip) for part, grip in self._held.items()}
+        self._lost, self._free = set(self._lost), set(self._free)
+        before = self._before
+        self._before = replace(
+            before, p=before.p.copy(), R=before.R.copy(), p_tool=before.p_tool.copy(), R_tool=before.R_tool.copy()
+        )
 
     def hand(self, closed: bool, place: ProgramLine | None) -> None:
         """HAND ON or HAND OFF begins, a statement; OFF lets go what is held."""

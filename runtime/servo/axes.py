@@ -12,6 +12,7 @@ import numpy as np
 from numpy import multiply
 
 from runtime.core.frames import Array
+from runtime.core.state import Stateful
 from runtime.robot.model.arm_model import spec_rotors
 from runtime.robot.model.spec import RobotSpec
 from runtime.servo.motor import Encoders, Motors, current_limit, encoder_resolution
@@ -22,8 +23,12 @@ SMOOTH = 0.01
 """Speed over which the sign of the commanded speed is smoothed, rad/s."""
 
 
-class ServoAxes:
+class ServoAxes(Stateful):
     """All axes of one robot. Buffers ``alpha``, ``beta``, ``tau_cmd`` and ``tau`` (n,) are live, for the recorder."""
+
+    BUFFERS = ("alpha", "tau_cmd", "tau")
+    VALUES = ("q_ref",)
+    PARTS = ("law", "motors")
 
     def __init__(self, spec: RobotSpec, options: ServoOptions, tick_s: float, q: Array, D_fixed: Array) -> None:
         self.options = options

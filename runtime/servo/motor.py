@@ -13,6 +13,7 @@ import numpy as np
 from numpy import add, maximum, minimum, multiply, rint, subtract
 
 from runtime.core.frames import Array
+from runtime.core.state import Stateful
 from runtime.robot.model.spec import RobotSpec
 
 
@@ -30,8 +31,10 @@ class Encoders:
         multiply(out, self.resolution, out)
 
 
-class Motors:
+class Motors(Stateful):
     """Current loops and limits of all axes."""
+
+    BUFFERS = ("i",)
 
     def __init__(self, Ktn: Array, max_current: Array, bandwidth: Array, tick_s: float) -> None:
         self.Ktn = np.asarray(Ktn, dtype=np.float64)

@@ -42,6 +42,7 @@ from numpy import add, copyto, multiply, subtract
 
 from runtime.core.frames import Array
 from runtime.core.linear import matmul
+from runtime.core.state import Stateful
 from runtime.settings.profile import FeedforwardSource
 
 LEAD_S = 0.02
@@ -65,8 +66,14 @@ class Gains:
     source: FeedforwardSource = "command"
 
 
-class ServoLaw:
-    """Eqs (6) to (11) with their difference estimators; one instance for all axes of a robot (or of many)."""
+class ServoLaw(Stateful):
+    """Eqs (6) to (11) with their difference estimators; one instance for all axes of a robot (or of many).
+
+    Its state is that between two cycles: what ``update`` and ``command`` set for the ticks to come is no part of it.
+    """
+
+    BUFFERS = ("beta", "_alpha", "_beta_before")
+    VALUES = ("_lead",)
 
     def __init__(self, gains: Gains, alpha: Array, tick_s: float) -> None:
         self.gains = gains

@@ -12,6 +12,7 @@ import numpy as np
 
 from runtime.core.frames import Array
 from runtime.core.rounding import beside
+from runtime.core.state import Stateful
 from runtime.robot.model.load_rules import LoadMode
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import RobotSpec
@@ -32,13 +33,16 @@ LOST = 3.0
 """Share of the following-error limit at which a controlled stop has failed."""
 
 
-class Supervisor:
+class Supervisor(Stateful):
     """Watches one robot.
 
     ``torque`` (n,) N m are its torque limits, ``resolution`` (n,) rad its encoder steps, ``lag`` (n,) s by how much a
     servo without full velocity feed-forward follows late, ``friction`` the share that the servo compensates, ``model``
     what torques are judged by: that of the robot file by default.
     """
+
+    VALUES = ("_payload", "_since", "_unexpected", "_suspect", "_late", "_warned", "_first_tick", "_cycle")
+    PARTS = ("watch", "observer")
 
     def __init__(
         self,

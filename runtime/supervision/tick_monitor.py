@@ -19,6 +19,7 @@ from numpy import absolute, add, less_equal, logical_and, maximum, multiply, sub
 
 from runtime.core.frames import Array
 from runtime.core.rounding import beside
+from runtime.core.state import Stateful
 from runtime.core.units import DEG
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.supervision import SupervisionLimits
@@ -35,8 +36,11 @@ STANDING_S = 0.024
 _HOLD_S = 0.1
 
 
-class Watch:
+class Watch(Stateful):
     """Judges the ticks of one cycle. Rows are those of the recorder: (tau_cmd, tau_sat, q_fb, dq_fb), each (n,)."""
+
+    BUFFERS = ("speed",)
+    VALUES = ("_saturated", "_standing", "_lost", "_dirty")
 
     def __init__(
         self,

@@ -35,6 +35,7 @@ import pinocchio as pin
 from runtime.core.decompositions import inverse_of, solve
 from runtime.core.frames import Array
 from runtime.core.linear import dot, matmul
+from runtime.core.state import Stateful
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.load_rules import LoadMode
 from runtime.robot.model.payload import Payload
@@ -71,8 +72,22 @@ class LoadModel(ArmModel):
         return np.asarray(matmul(jacobian.T, body, self._to_joint))
 
 
-class Observer:
+class Observer(Stateful):
     """Residual of each cycle and the running estimate of the payload; ``model``: by default that of the robot file."""
+
+    VALUES = (
+        "_declared",
+        "residual",
+        "sigma",
+        "unexplained",
+        "steps",
+        "_q",
+        "_information",
+        "_moment",
+        "_leftover",
+        "_prior",
+    )
+    PARTS = ("_model",)
 
     def __init__(
         self,

@@ -119,7 +119,7 @@ def wrist_run(project: Project, way: str) -> tuple[float, float]:
     """Return the time of a cycle, run and planning together, and of planning alone, s."""
     said = {"held": ("TILT",) if way == "HOLD" else (), "wrist": "keep" if way == "KEEP" else "auto"}
     session = Session(project, alter=lambda effect: replace(effect, **said) if isinstance(effect, MoveTo) else effect)
-    planner, spent = session.controller._planner, 0.0
+    planner, spent = session.controller.requests.planner, 0.0
     plan = planner.plan
 
     def timed(*args):

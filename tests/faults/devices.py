@@ -107,20 +107,20 @@ def break_hand_over(session: Session, what: str, axis: int, at: int) -> None:
     import dataclasses
 
     controller = session.controller
-    send = controller._send
+    send, moving = controller.drives.send, controller.requests.interpolator
 
-    def poisoned():
+    def poisoned(*recorded):
         if controller.recorder.tick >= at:
             areas = controller.areas
-            if what == "plan row" and controller._interpolator.busy:
-                rows = np.array(controller._interpolator._rows)
-                rows[controller._interpolator._n + 1 :, axis] = np.nan
-                controller._interpolator._rows = rows
+            if what == "plan row" and moving.busy:
+                rows = np.array(moving._rows)
+                rows[moving._n + 1 :, axis] = np.nan
+                moving._rows = rows
             elif what == "INA":
                 areas.ina = np.array(areas.ina)
                 areas.ina[axis] = np.nan
             elif what in ("D", "T"):
                 areas.ita[axis] = dataclasses.replace(areas.ita[axis], **{what: np.nan})
-        return send()
+        return send(*recorded)
 
-    controller._send = poisoned
+    controller.drives.send = poisoned

@@ -12,6 +12,7 @@ import numpy as np
 import pinocchio as pin
 
 from runtime.core.frames import Array
+from runtime.core.state import State, Stateful
 from runtime.core.units import GRAVITY
 from runtime.robot.model.load_rules import LoadMode
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
@@ -20,7 +21,7 @@ from runtime.robot.model.spec import Body, RobotSpec
 _NO_MASS = 1e-9
 
 
-class ArmModel:
+class ArmModel(Stateful):
     """Rigid-body model of a robot that carries one payload at a time.
 
     ``rotors`` (n,) kg m2 at the joints, ``first_moments`` (n, 3) kg m in link frames, weighed and not accelerated.
@@ -44,9 +45,21 @@ class ArmModel:
     def set_payload(self, payload: Payload = NO_PAYLOAD, mode: LoadMode = "add") -> None:
         """Carry ``payload`` from now on: added to the last link, or in its place (``replace``)."""
         load = self._X_last_flange.act(pin.Inertia(payload.mass, np.array(payload.cog), np.array(payload.inertia)))
-        total = load if mode == "replace" else self._bare_last + load
-        self._model.inertias[self.n] = total
-        self._weightless.inertias[self.n] = total
+        self._carry(load if mode == "replace" else self._bare_last + load)
+
+    def _carry(self, last: Any) -> None:
+        """Give the last link an inertia, its own and that of the payload."""
+        self._model.inertias[self.n] = last
+        self._weightless.inertias[self.n] = last
+
+    def snapshot(self) -> State:
+        """Return the inertia of the last link with what it carries: adding even no payload may change its last bits."""
+        return State(owner=type(self), values=(self._model.inertias[self.n].copy(),))
+
+    def restore(self, state: State) -> None:
+        """Carry again what was carried then."""
+        state.check(self)
+        self._carry(state.values[0])
 
     def mass_matrix(self, q: Array) -> Array:
         """Return M (n, n), kg m2, symmetric."""

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runtime.control.dynamics_task import StepCosts, dynamics_task
+from runtime.control.dynamics_task import DynamicsTask, StepCosts
 from runtime.control.memory_areas import Areas
 from runtime.control.scheduler import IdleProcessor
 from runtime.robot.files.loader import load_builtin
@@ -27,9 +27,7 @@ class Bench:
         self.refreshes: list[tuple[int, int, int]] = []
         self.readings: list[float] = []
         self.interrupts: list[int] = []
-        self.cpu = IdleProcessor(
-            lambda cpu: dynamics_task(self.areas, self.model, StepCosts.of_axis(Cd_us), self.read, lambda: cpu.now_us)
-        )
+        self.cpu = IdleProcessor(DynamicsTask(self.areas, self.model, StepCosts.of_axis(Cd_us), self.read))
 
     def read(self) -> np.ndarray:
         self.readings.append(float(self.q[0]))
@@ -53,8 +51,11 @@ def monolithic(Ci_us: int, Cd_us: int) -> float:
     """Time between two points, ms, of one program that interpolates and then does every step of Fig 7 for six axes."""
     areas = Areas(6, np.zeros(6))
     model, costs = ArmModel(load_builtin("puma560")), StepCosts.of_axis(Cd_us)
-    task = dynamics_task(areas, model, costs, lambda: areas.ina, lambda: 0)
-    return (Ci_us + sum(next(task) for _ in range(6 * STEPS))) / 1000.0
+    task, total_us = DynamicsTask(areas, model, costs, lambda: areas.ina), Ci_us
+    for _ in range(6 * STEPS):
+        total_us += task.cost_us
+        task.work(0)
+    return total_us / 1000.0
 
 
 @pytest.mark.parametrize(

@@ -162,7 +162,7 @@ def test_an_end_that_is_out_of_reach_for_a_moment_is_not_lost():
     robot.seam(tracker(lambda way, travel: np.zeros(6)))
     move(robot, P2)
     cycles(robot, 100)
-    going = robot._interpolator._seam
+    going = robot.requests.interpolator.seam
     end = going.q_end.copy()
     going._tracker.freeze(np.array([0.0, 0.0, 5.0, 0.0, 0.0, 0.0]))
     with pytest.raises(Fault, match="RBL526"):

@@ -1,0 +1,55 @@
+"""Joint set-points that are given instead of planned: whether an arm may be sent them, one every 8 ms.
+
+They are held to what a plan is held to (``time_scaling``, ``path_ik.check_range``): at every servo tick that fine
+interpolation makes of them, from those that are already sent until the command stands at the last one, each joint is
+within its range and below its speed and acceleration. Called by the controller before anything moves; rad, s.
+"""
+
+import numpy as np
+
+from runtime.core.faults import Fault
+from runtime.core.frames import Array
+from runtime.core.rounding import beside
+from runtime.core.units import DEG
+from runtime.motion.fine_interpolator import FineInterpolator
+from runtime.motion.path_ik import RANGE_TOLERANCE
+from runtime.robot.model.spec import RobotSpec
+
+_SLACK = 1.0 + 1e-6
+"""A planner leaves its moves the same share of rounding (``time_scaling``)."""
+
+
+def as_rows(spec: RobotSpec, rows: Array) -> Array:
+    """Return set-points (K, n) as an array of their own; ``ValueError`` when K is 0 or a number is not finite."""
+    given = np.array(rows, dtype=np.float64)
+    if given.ndim != 2 or given.shape[1] != spec.n or not len(given):
+        raise ValueError(f"set-points of shape {given.shape}; {spec.name} needs (K, {spec.n}) with K at least 1")
+    bad = np.argwhere(~np.isfinite(given))
+    if len(bad):
+        k, axis = bad[0]
+        raise ValueError(f"set-point {k} of J{axis + 1} is {given[k, axis]}")
+    return given
+
+
+def check_motion(spec: RobotSpec, fine: FineInterpolator, rows: Array) -> None:
+    """Refuse set-points (K, n) with ``Fault``: RBL411 out of the range of a joint, RBL404 too fast for one."""
+    q, dq, ddq = fine.after(rows)
+    check_range(spec, q)
+    _check_rate(dq, spec.per_axis("limits", "speed"), "turn at", "deg/s")
+    _check_rate(ddq, spec.per_axis("limits", "acceleration"), "accelerate at", "deg/s2")
+
+
+def check_range(spec: RobotSpec, q: Array) -> None:
+    """Refuse joint angles (K, n) out of the range of a joint; ``Fault`` RBL411."""
+    excess = np.maximum(spec.lower - q, q - spec.upper).max(axis=0)
+    axis = int(np.argmax(excess))
+    if not excess[axis] <= RANGE_TOLERANCE:
+        raise Fault("RBL411", f"J{axis + 1} would leave its range by {excess[axis] / DEG:.4g} deg")
+
+
+def _check_rate(rates: Array, limits: Array, verb: str, unit: str) -> None:
+    most = np.abs(rates).max(axis=0)
+    axis = int(np.argmax(most / limits))
+    if not most[axis] <= limits[axis] * _SLACK:
+        rate, limit = beside(most[axis] / DEG, limits[axis] / DEG, form=".1f")
+        raise Fault("RBL404", f"J{axis + 1} would {verb} {rate} {unit}, more than its {limit} {unit}")
