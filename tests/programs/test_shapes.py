@@ -31,7 +31,7 @@ def test_check_and_run_judge_an_arm_against_itself_by_the_same_shapes(tmp_path, 
     path = program(tmp_path, robot)
     said = robolang("check", "--motion", path, "--times", tmp_path / "times.json", code=code).stdout
     assert ("RBL424" in said) is shapes
-    assert ("not checked: the arm against itself" in said) is not shapes
+    assert ("not checked: " in said) is not shapes
     (times,) = json.loads((tmp_path / "times.json").read_text())
     assert times["self_collision_checked"] is shapes
     result = Session(load_project(path)).run()

@@ -52,7 +52,7 @@ def test_no_joint_angles_meet_a_pose_of_nan():
 
 @pytest.mark.parametrize("key", ["speed", "acceleration", "jerk"])
 def test_a_limit_of_nan_gives_no_profile(key):
-    with pytest.raises(Fault, match="the move would take nan s"):
+    with pytest.raises(Fault, match=" nan s"):
         profile(replace(SpeedLimits(speed=1.0, acceleration=2.0, jerk=9.0), **{key: NAN}), 0.008)
 
 

@@ -78,7 +78,7 @@ def test_one_move_without_a_pulse_and_none_at_all(tmp_path):
     export.move(3, (1, -1, 120), (1, -1, 120))
     result = robolang("replay-pulses", export.write(tmp_path / "b"), "--plot", tmp_path / "p.svg")
     assert rows(result.stdout)[30] == ["MOVE P1", "0", "0.000", "-", "0.0000", "0.0000", "0.0000"]
-    assert result.stdout.splitlines()[-1].startswith("1 move, 0 steps")
+    assert numbers(result.stdout.splitlines()[-1])[:2] == [1, 0]
 
 
 # --- the object ------------------------------------------------------------------------------------------------------
@@ -181,8 +181,8 @@ def test_an_arm_that_is_not_in_position_is_noted_and_one_with_an_alarm_is_exit_c
     swing(4, export, 1.0)
     words = ("replay-pulses", export.write(tmp_path / "out"), "--physics", "--cell", CELL)
     result = robolang(*words, code=3)
-    assert re.search(r"^warning at line 2 \(number 20\), 2\.\d\d\d s: RBL523 not in position: ", result.stdout, re.M)
-    axis = re.search(r"^stopped at line 3 \(number 30\), 2\.\d\d\d s: RBL5\d\d J(\d) ", result.stdout, re.M)[1]
+    assert re.search(r"^warning .*line 2 \(number 20\), 2\.\d\d\d s: RBL523 ", result.stdout, re.M)
+    axis = re.search(r"^stopped .*line 3 \(number 30\), 2\.\d\d\d s: RBL5\d\d J(\d) ", result.stdout, re.M)[1]
     assert rows(result.stdout)[40][-1] == "-"
     found = json.loads(robolang(*words, "--json", "--max-error", "0.1", code=3).stdout)
     assert found["sequence"][3]["real"] is None

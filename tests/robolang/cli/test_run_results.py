@@ -227,4 +227,4 @@ def test_a_file_name_that_is_not_utf_8_does_not_cost_the_report(tmp_path):
     name.write_text("LOAD (0, 0, 60), 0.8\n")
     result = dry(name, "--report", tmp_path / "r.json")
     assert strict(tmp_path / "r.json")["program"] == str(name)
-    assert "p\ufffd.rbl on " in result.stdout
+    assert "p\ufffd.rbl" in result.stdout

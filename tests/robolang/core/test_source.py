@@ -41,7 +41,7 @@ def test_missing(tmp_path, name):
 
 def test_missing_suffix_is_suggested(tmp_path):
     (tmp_path / "pick.rbl").write_text("MOVE P1")
-    assert fault_of(tmp_path / "pick").hint == f"did you mean {tmp_path / 'pick.rbl'}?"
+    assert str(tmp_path / "pick.rbl") in fault_of(tmp_path / "pick").hint
 
 
 def test_a_file_used_as_a_folder_is_missing(tmp_path):

@@ -109,20 +109,20 @@ BOTH = pytest.mark.parametrize("call", [check_writable, lambda path: write_json(
 @BOTH
 def test_a_missing_folder(tmp_path, call):
     said = refused(call, tmp_path / "none" / "r.json")
-    assert "No such file or directory" in said
-    assert f"Make the folder {tmp_path / 'none'} first" in said
+    assert os.strerror(errno.ENOENT) in said
+    assert str(tmp_path / "none") in said.partition(" | ")[2]
 
 
 @BOTH
 def test_a_file_in_the_place_of_the_folder(tmp_path, call):
     (tmp_path / "file").touch()
-    assert "Not a directory" in refused(call, tmp_path / "file" / "r.json")
+    assert os.strerror(errno.ENOTDIR) in refused(call, tmp_path / "file" / "r.json")
 
 
 @BOTH
 def test_a_folder_in_the_place_of_the_file(tmp_path, call):
-    assert "is a folder | Give the name of a file in it" in refused(call, tmp_path)
-    assert "is a folder" in refused(call, Path())
+    for folder in (tmp_path, Path()):
+        assert "folder" in refused(call, folder)
 
 
 @BOTH
@@ -130,14 +130,14 @@ def test_a_pipe_or_a_device_is_never_replaced(tmp_path, call):
     os.mkfifo(tmp_path / "pipe")
     (tmp_path / "null").symlink_to("/dev/null")
     for name in ("pipe", "null"):
-        assert "is not an ordinary file" in refused(call, tmp_path / name)
+        assert "ordinary" in refused(call, tmp_path / name)
     assert stat.S_ISFIFO((tmp_path / "pipe").stat().st_mode)
     assert (tmp_path / "null").is_symlink()
 
 
 @BOTH
 def test_a_name_that_no_file_can_have(tmp_path, call):
-    assert "File name too long" in refused(call, tmp_path / ("a" * 256))
+    assert os.strerror(errno.ENAMETOOLONG) in refused(call, tmp_path / ("a" * 256))
     (tmp_path / "ring").symlink_to("ring")
     refused(call, tmp_path / "ring")
 
@@ -150,8 +150,8 @@ def test_a_read_only_folder_or_file(call):
         (folder / "old.json").chmod(0o444)
         folder.chmod(0o555)
         with ordinary_user():
-            assert "Permission denied" in refused(call, folder / "r.json")
-            assert "is read-only | Give another name" in refused(call, folder / "old.json")
+            assert os.strerror(errno.EACCES) in refused(call, folder / "r.json")
+            assert "read-only" in refused(call, folder / "old.json")
         assert (folder / "old.json").read_text() == "old"
         folder.chmod(0o755)
 

@@ -73,6 +73,6 @@ def test_the_same_signals_give_the_same_bytes(tmp_path, suffix):
 
 @pytest.mark.parametrize("name", ["l.txt", "npz", "l.npz.gz", "l.NPZ"])
 def test_another_suffix_is_refused(tmp_path, name):
-    with pytest.raises(ValueError, match=r"must end in \.npz or \.mcap"):
+    with pytest.raises(ValueError, match=r"\.npz.*\.mcap"):
         write_log(tmp_path / name, signals(1))
     assert list(tmp_path.iterdir()) == []

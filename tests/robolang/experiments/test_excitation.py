@@ -108,7 +108,7 @@ def test_a_table_without_room_is_refused_before_anything_moves(monkeypatch):
     request = Request(robot=SPEC, axes=(1,), table=2)
     test = plan(request, NO_PAYLOAD, 1)
     monkeypatch.setattr("robolang.experiments.excitation.CLEARANCE", 9.0)
-    with pytest.raises(Fault, match="J2 has no room for a table over J3") as caught:
+    with pytest.raises(Fault, match=r"J2.*J3") as caught:
         plan_table(request, NO_PAYLOAD, test)
     assert caught.value.code == "RBL420"
 
@@ -116,7 +116,7 @@ def test_a_table_without_room_is_refused_before_anything_moves(monkeypatch):
 def test_a_torque_that_is_not_there_at_a_posture_of_a_table_is_refused_with_it():
     request = Request(robot=changed(0, torque=35.0), axes=(0,), table=3)
     test = plan(Request(robot=SPEC, axes=(0,)), NO_PAYLOAD, 0)
-    with pytest.raises(Fault, match=r"torque of J1 .*, in the posture J2 1\.3, J3 -?\d+\.\d deg of its table"):
+    with pytest.raises(Fault, match=r"\bJ1 .*J2 1\.3, J3 -?\d+\.\d deg"):
         plan_table(request, NO_PAYLOAD, test)
 
 
@@ -139,7 +139,7 @@ def test_an_axis_without_room_is_refused_before_anything_moves():
 
 def test_a_torque_that_is_not_there_is_refused_with_place_and_joint():
     spec = changed(1, torque=45.0)
-    with pytest.raises(Fault, match=r"J2 at -?\d+\.\d deg: .* torque of J2 to -?\d+\.\d N m") as caught:
+    with pytest.raises(Fault, match=r"J2 at -?\d+\.\d deg: .* J2 .*-?\d+\.\d N m") as caught:
         identify(Request(robot=spec, axes=(1,)), lambda *where: pytest.fail("it moved"))
     assert caught.value.code == "RBL420"
 
@@ -165,7 +165,7 @@ def test_a_plant_that_does_not_follow_stops_the_identification():
 def test_a_contact_stops_the_identification(monkeypatch):
     """The Puma reaches the ground when nothing keeps it off."""
     monkeypatch.setattr("robolang.experiments.excitation.CLEARANCE", -9.0)
-    with pytest.raises(Fault, match=r"J2 at -?\d+\.\d deg: floor touches \w+") as caught:
+    with pytest.raises(Fault, match=r"J2 at -?\d+\.\d deg: floor") as caught:
         identify(Request(robot=SPEC, axes=(1,)))
     assert caught.value.code == "RBL516"
 

@@ -78,7 +78,7 @@ def test_the_estimator_cancels_gravity_and_friction_to_the_encoder():
 
 
 def test_a_pass_that_misses_the_position_is_an_error():
-    with pytest.raises(ValueError, match="from below"):
+    with pytest.raises(ValueError, match="below"):
         passage(np.linspace(1.0, 2.0, 400), np.zeros(400), 0.5, 50, 1e-3)
 
 

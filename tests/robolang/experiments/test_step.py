@@ -198,7 +198,7 @@ def test_axes_that_yield_to_one_another_are_what_the_diagonal_leaves_out():
 
 
 def test_an_axis_or_a_posture_that_the_robot_has_not_is_refused():
-    with pytest.raises(ValueError, match="axes 1 to 6"):
+    with pytest.raises(ValueError, match=r"\b1\b.*\b6\b"):
         step(experiment(6, STRETCHED, 0.1))
     with pytest.raises(ValueError, match=r"J1 at 160\.1 deg"):
         step(experiment(0, STRETCHED, 160.1 * DEG))
@@ -216,7 +216,7 @@ def test_a_step_in_which_the_arm_touches_itself_is_no_response_of_the_servo():
         ideal=False,
         seconds=0.6,
     )
-    with pytest.raises(Fault, match=r"in the step of J3, .* touched link 1") as caught:
+    with pytest.raises(Fault, match=r"\bJ3\b.*\blink 1\b") as caught:
         step(request)
     assert caught.value.code == "RBL516"
     assert step(replace(request, size=-1 * DEG)).stable

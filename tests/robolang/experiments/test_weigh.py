@@ -19,6 +19,7 @@ from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.payload import Payload, declared
 from runtime.settings.profile import Profile
 from tests.campaign import some
+from tests.messages import fields
 from tests.robolang.helpers import checked
 
 PROGRAMS = Path(__file__).parents[3] / "programs"
@@ -135,8 +136,8 @@ def refused(monkeypatch, request):
 def test_a_swing_out_of_the_range_is_refused_before_anything_moves(monkeypatch):
     fault = refused(monkeypatch, WeighRequest(cell=PUMA, amplitude=60.0 * DEG))
     assert fault.code == "RBL411"
-    assert "J5 would swing to -133.9 deg" in fault.message
-    assert "25 deg fits" in fault.hint
+    assert {"J5", "-133.9", "deg"} <= fields(fault.message)
+    assert {"25", "deg"} <= fields(fault.hint)
     plan_exercise(WeighRequest(cell=PUMA, amplitude=25.0 * DEG))
 
 
@@ -144,13 +145,15 @@ def test_a_swing_that_is_too_fast_is_refused_before_anything_moves(monkeypatch):
     slow = tuple(replace(axis, limits=replace(axis.limits, speed=0.5)) for axis in PUMA.robot.axes)
     cell = replace(PUMA, robot=replace(PUMA.robot, axes=slow))
     fault = refused(monkeypatch, WeighRequest(cell=cell, amplitude=20.0 * DEG))
-    assert (fault.code, fault.message[:17]) == ("RBL404", "J4 would swing by")
+    assert fault.code == "RBL404"
+    assert "J4" in fields(fault.message)
     assert (plan_exercise(WeighRequest(cell=cell)).amplitudes[3:] < [20.0 * DEG, 20.0 * DEG, 40.0 * DEG]).all()
 
 
 def test_a_home_without_room_is_refused_before_anything_moves(monkeypatch):
     fault = refused(monkeypatch, WeighRequest(cell=at(PUMA, *(PUMA.robot.lower / DEG))))
-    assert (fault.code, "leaves no axis" in fault.message) == ("RBL411", True)
+    assert fault.code == "RBL411"
+    assert "J5" not in fields(fault.message)  # no one axis is at fault
 
 
 def test_an_arm_that_strikes_something_is_not_weighed():
@@ -217,4 +220,4 @@ def test_an_arm_that_feels_no_weight_is_refused(monkeypatch):
     beside[0, 3] = 0.4
     upright = replace(PUMA.robot, axes=(first, replace(second, placement=beside)), opw=None)
     cell = replace(PUMA, robot=upright, home=PUMA.home[:2])
-    assert "feels the weight" in refused(monkeypatch, WeighRequest(cell=cell)).message
+    assert "weight" in refused(monkeypatch, WeighRequest(cell=cell)).message

@@ -23,6 +23,9 @@ TEXTS = {
 }
 
 
+LOOPLESS = ("no loop", "a motion")
+
+
 @pytest.mark.parametrize("name", TEXTS)
 def test_a_run_and_its_rehearsal_name_what_does_not_end(name, tmp_path, monkeypatch):
     for module in (dry_run, session):
@@ -37,8 +40,8 @@ def test_a_run_and_its_rehearsal_name_what_does_not_end(name, tmp_path, monkeypa
         assert (found.code, found.span.start, found.span.end) == ("RBL509", start, end), found
     assert alarm.message == refused.message
     assert alarm.hint == refused.hint
-    assert ("WAIT a TIMEOUT" in alarm.hint) is name.startswith("wait")
-    assert ("loop an end" in alarm.hint) is (not name.startswith("wait") and name not in ("no loop", "a motion"))
+    assert ("TIMEOUT" in alarm.hint) is name.startswith("wait")
+    assert ("loop" in alarm.hint) is (not name.startswith("wait") and name not in LOOPLESS)
 
 
 def test_the_loop_that_goes_on_is_the_outermost_whose_round_is_no_longer_than_all_before():

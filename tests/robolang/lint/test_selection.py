@@ -5,6 +5,7 @@ import pytest
 from robolang.core.diagnostics import Diagnostic, Severity
 from robolang.core.source import Span
 from robolang.lint.selection import guess, is_syntax_error, selector, words
+from tests.messages import fields
 from tests.robolang.lint.helpers import layer, places, selection
 
 WARNING, ERROR, INFO = Severity.WARNING, Severity.ERROR, Severity.INFO
@@ -47,9 +48,9 @@ def test_words_are_codes_and_names():
 
 
 def test_a_misspelt_selector_is_answered_with_the_nearest():
-    assert guess("point-undefind") == "did you mean point-undefined?"
-    assert guess("RBL30I") == "there are RBL301, RBL302, RBL303, RBL304, RBL305, and more"
-    assert guess("rbl19") == "there are RBL190, RBL191"
+    assert "point-undefined" in guess("point-undefind")
+    assert fields(guess("RBL30I")) == {"RBL301", "RBL302", "RBL303", "RBL304", "RBL305"}
+    assert fields(guess("rbl19")) == {"RBL190", "RBL191"}
     assert guess("RBL999") == ""
     assert guess("zzz") == ""
 

@@ -9,6 +9,7 @@ from robolang.lint.files import programs
 from robolang.lint.selection import Layer
 from robolang.lint.settings import Settings, files_above
 from runtime.core.tomlfile import FileFault
+from tests.messages import fields
 from tests.robolang.lint.helpers import layer
 
 
@@ -121,12 +122,12 @@ def test_messages_name_the_key_and_the_nearest(tmp_path):
     put(tmp_path / "robolang.toml", "[lint]\nselct = []\n")
     with pytest.raises(FileFault) as caught:
         Settings().layer(tmp_path)
-    assert caught.value.message == "'lint.selct' is not a key of this file"
-    assert caught.value.hint == "did you mean 'select'?"
+    assert "lint.selct" in fields(caught.value.message)
+    assert "select" in fields(caught.value.hint)
     put(tmp_path / "robolang.toml", "[lint]\nignore = []\nignore = []\n")
     with pytest.raises(FileFault) as caught:
         Settings().layer(tmp_path)
-    assert caught.value.message == "'ignore' is given twice, first in line 2"
+    assert {"ignore", "2"} <= fields(caught.value.message)
     assert caught.value.excerpt == "ignore = []"
 
 

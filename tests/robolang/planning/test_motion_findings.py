@@ -14,6 +14,7 @@ from robolang.planning.motion_findings import LoadShare, findings, worst_loads
 from robolang.project.project import builtin_cell, load_project
 from runtime.core.units import DEG
 from runtime.plant.mujoco_plant import MujocoPlant
+from tests.messages import fields, numbers
 
 
 def looked_at(folder, text, robot=None):
@@ -41,7 +42,8 @@ def test_a_program_that_is_well_has_none(tmp_path):
 def test_the_first_obstacle_on_the_way_blended_or_not(tmp_path):
     ((line, message, severity),) = found(tmp_path, "MOVE P2\nMOVE P1 + (0, 0, -30)\n", "RBL421")
     assert (line, severity) == (2, Severity.ERROR)
-    assert re.fullmatch(r"at (8|9)\d\.\d % of the way pad_\w+ would be in table", message)
+    assert 80.0 <= numbers(message)[0] < 100.0
+    assert re.search(r"\bpad_\w+\b.*\btable\b", message)
     # the corner over the edge of the table is cut: the blended way goes where neither move does
     over = "MOVE P1 + (0, 0, 40)\nMOVE P1 + (0, 0, 3), ZONE 30\nMOVE P1 + (60, 0, 40)\n"
     assert found(tmp_path, over, "RBL421") == []
@@ -51,8 +53,7 @@ def test_the_arm_in_itself(tmp_path):
     text = "MOVEJ JOINT(2, -25, -190, 70, -58, -45), SPEED 20\nMOVEJ JOINT(2, -25, -199, 70, -58, -45)\n"
     said = found(tmp_path, text, "RBL424")
     assert said
-    where = r"at \d+\.\d % of the way (pad_left|shank_left|palm) would be in link1"
-    assert all(re.fullmatch(where, each) for _, each, _ in said)
+    assert all(re.search(r"\d+\.\d %.*\b(pad_left|shank_left|palm)\b.*\blink1\b", each) for _, each, _ in said)
     assert {severity for *_, severity in said} == {Severity.ERROR}
 
 
@@ -67,7 +68,8 @@ def test_a_zone_without_room(tmp_path):
     text = "MOVE P1 + (0, 0, 60)\nMOVE P1 + (0, 0, 100), ZONE 30\nMOVE P1 + (100, 0, 100)\n"
     ((line, message, severity),) = found(tmp_path, text, "RBL414")
     assert (line, severity) == (2, Severity.WARNING)
-    assert message.startswith("a zone of 30 mm is more than half of the path to this corner, 40.0 mm: the blend begins")
+    assert numbers(message)[:2] == [30, 40.0]
+    assert "mm" in fields(message)
     assert found(tmp_path, text.replace("ZONE 30", "ZONE 20"), "RBL414") == []
 
 
@@ -75,7 +77,7 @@ def test_a_path_near_a_straight_wrist(tmp_path):
     start = "MOVEJ JOINT(0, 60, -190, 0, -1.5, 0)\nMOVE HERE + (20, 0, 0), WRIST KEEP\n"
     ((line, message, severity),) = found(tmp_path, start, "RBL427")
     assert (line, severity) == (2, Severity.WARNING)
-    assert re.search(r"the arm is \d\.\d\d deg from where its wrist is straight, which is singular", message)
+    assert re.search(r"\b\d\.\d\d deg\b.*\bwrist\b", message)
     assert found(tmp_path, "MOVEJ JOINT(0, 60, -190, 0, -1.5, 0)\n", "RBL427") == []  # joints pass there freely
 
 
@@ -83,7 +85,9 @@ def test_a_wrist_that_changes_is_named_unless_the_program_says_so(tmp_path):
     text = "MOVEJ JOINT(0, 60, -190, 20, -8, 0)\nMOVE JOINT(10, 60, -190, 20, 8, 0){}\n"
     ((line, message, _),) = found(tmp_path, text.format(""), "RBL428")
     assert line == 2
-    assert re.match(r"from \d+\.\d % to \d+\.\d % of the path the tool leaves its posture by up to \d+\.\d", message)
+    start, end, turned = numbers(message)[:3]
+    assert 0.0 <= start < end <= 100.0
+    assert turned > 0.0
     assert found(tmp_path, text.format(", WRIST AUTO"), "RBL428") == []
     assert found(tmp_path, "WRIST AUTO\n" + text.format(""), "RBL428") == []
 
@@ -92,11 +96,12 @@ def test_a_move_that_cannot_keep_its_speed(tmp_path):
     text = "MOVEJ JOINT(0, 60, -190, 0, -20, 0)\nMOVE HERE * (0, 0, 0, 0, 0, 150){}\n"
     ((line, message, _),) = found(tmp_path, text.format(", TIME 0.3"), "RBL429")
     assert line == 2
-    assert message == "takes 1.184 s, not the 0.3 s of TIME 0.3: the tool turns by 150.0 deg, at 180 deg/s at most"
+    assert {"s", "1.184", "0.3", "TIME", "150.0", "deg", "180", "deg/s"} <= fields(message)
     assert found(tmp_path, text.format(""), "RBL429") == []
     fast = "MOVEJ JOINT(0, 60, -190, 0, -3, 0)\nMOVE HERE + (0, 100, 0), SPEED 900, WRIST KEEP\n"
     ((_, message, _),) = found(tmp_path, fast, "RBL429")
-    assert re.match(r"reaches .* mm/s at most, not SPEED 900, and takes .*: J\d is at its (speed|acceler)", message)
+    assert {"mm/s", "SPEED", "900", "s"} <= fields(message)
+    assert re.search(r"\bJ\d\b.*\b(speed|acceleration)\b", message)
 
 
 def test_a_time_is_asked_for_under_the_override(tmp_path):
@@ -107,7 +112,8 @@ def test_an_end_in_other_joint_angles_is_named(tmp_path):
     text = "MOVEJ JOINT(0, 60, -190, -30, -30, 0)\nMOVE JOINT(10, 60, -190, 150, 30, 180), WRIST KEEP\n"
     ((line, message, _),) = found(tmp_path, text, "RBL419")
     assert line == 2
-    assert re.fullmatch(r"ends with J\d at -?\d+\.\d deg, not at the taught -?\d+\.\d deg: WRIST KEEP .*", message)
+    assert re.search(r"\bJ\d\b.* -?\d+\.\d deg.* -?\d+\.\d deg", message)
+    assert {"WRIST", "KEEP"} <= fields(message)
 
 
 def test_a_wrist_statement_ends_no_blend_in_the_rehearsal_either(tmp_path):
@@ -127,7 +133,7 @@ def test_a_payload_that_overloads_the_wrist(tmp_path):
     text = "LOAD (600, 0, 60), 2.4\nMOVEJ JOINT(0, 60, -190, 0, 60, 0)\nMOVEJ JOINT(0, 90, -90, 90, 90, 0)\n"
     said = {line: message for line, message, _ in found(tmp_path, text, "RBL425")}
     assert said
-    assert all("N m" in message and "more than its drive allows by estimate" in message for message in said.values())
+    assert all("N m" in message for message in said.values())
     assert found(tmp_path, HEAVY.format(0, 0.01, 0.01, 0.01), "RBL426") == []
     inertia = found(tmp_path, HEAVY.format(0, 0.2, 0.2, 0.2), "RBL426")
     assert [severity for *_, severity in inertia] == [Severity.WARNING]  # one for a statement, the worst axis
@@ -156,7 +162,7 @@ def test_published_ratings_make_it_an_error(tmp_path):
     project = load_project(tmp_path / "p.rbl")
     said = [item for item in findings(project, rehearse(project)) if item.code in ("RBL425", "RBL426")]
     assert {item.severity for item in said} == {Severity.ERROR}
-    assert any("more than it is rated for, 59 N m" in item.message for item in said)
+    assert any("59 N m" in item.message for item in said)
 
 
 @pytest.mark.parametrize("mass", [0.0, 1.0])

@@ -1,6 +1,7 @@
 """Moves behind conditions that the simulated inputs do not meet are planned too, and said with the way to them."""
 
 import json
+import re
 from collections import deque
 from importlib import resources
 
@@ -13,6 +14,7 @@ from robolang.planning import motion_findings, path_coverage
 from robolang.planning.motion_findings import findings
 from robolang.planning.path_coverage import _queue, explore
 from robolang.project.project import load_project
+from tests.messages import heads, numbers
 from tests.robolang.cli.commands import robolang
 
 FAR = "MOVE P1 + (900, 0, 0)"
@@ -43,7 +45,7 @@ def builtin(name):
 def test_a_branch_that_the_inputs_do_not_take_is_planned(found):
     said, explored = found(f"MOVE P2\nIF IN(1) = 1 THEN\n{FAR}\nENDIF\nMOVE P5")
     assert [(code, line) for code, line, _ in said] == [("RBL410", 3)]
-    assert said[0][2].endswith(" (if 'IN(1) = 1' in line 2 is true)")
+    assert "'IN(1) = 1' in line 2 " in said[0][2]
     assert len(explored.rehearsal.moves) == 2
     assert explored.missed == ()
 
@@ -51,13 +53,13 @@ def test_a_branch_that_the_inputs_do_not_take_is_planned(found):
 def test_a_time_out_is_tried(found):
     said, _ = found(f"WAIT IN(2) = 1, TIMEOUT 9, GOTO *LATE\nEND\n*LATE {FAR}")
     assert [(code, line) for code, line, _ in said] == [("RBL410", 3)]
-    assert "if 'IN(2) = 1' in line 1 is not true" in said[0][2]
+    assert "'IN(2) = 1' in line 1 " in said[0][2]
 
 
 def test_a_way_behind_a_way(found):
     said, explored = found(f"IF IN(1) THEN\nIF IN(1) = 2 THEN {FAR}\nENDIF")
     assert [(code, line) for code, line, _ in said] == [("RBL410", 2)]
-    assert said[0][2].endswith("(if 'IN(1)' in line 1 is true and if 'IN(1) = 2' in line 2 is true)")
+    assert re.search(r"'IN\(1\)' in line 1 .*'IN\(1\) = 2' in line 2 ", said[0][2])
     assert len(explored.detours) == 2
 
 
@@ -112,8 +114,9 @@ def test_there_is_an_end_to_detours(found, monkeypatch):
 def test_the_command_says_how_many_ways_there_were(found, tmp_path):
     found(f"MOVE P2\nIF IN(1) = 1 THEN {FAR}\nx = 1\nIF x = 2 THEN MOVE P3")
     said = robolang("check", "--motion", tmp_path / "p.rbl", "--output-format", "concise", code=1).stdout
-    assert "and 1 other way through it, where inputs, time or errors decide\n" in said
-    assert "not planned, since no way led there: the moves in line 4\n" in said
+    counted, missed = [line for line in said.splitlines() if not heads(line)][-2:]
+    assert 1 in numbers(counted)
+    assert numbers(missed) == [4]
 
 
 def test_the_table_is_written_for_other_programs(found, tmp_path):

@@ -6,6 +6,7 @@ from robolang.analysis.cell_symbols import CellSymbols
 from robolang.project.discovery import builtin_cell_file
 from robolang.project.points import Point, load_points
 from runtime.core.tomlfile import FileFault
+from tests.messages import fields
 
 PUMA = builtin_cell_file().arm.limits
 
@@ -126,16 +127,16 @@ def test_another_robot(write):
 def test_another_number_of_axes(write):
     fault = fault_of(write(GOOD), limits=(*PUMA, PUMA[0]))
     assert (fault.code, fault.line) == ("RBL307", 11)
-    assert "6 values; it needs 7" in fault.message
+    assert {"6", "7"} <= fields(fault.message)
 
 
 def test_a_copy_is_offered(write):
     path = write("")
     assert "bak" not in fault_of(path).hint
     path.with_name("pick.points.toml.bak").write_text(GOOD)
-    assert fault_of(path).hint == "pick.points.toml.bak may hold an intact copy"
+    assert "pick.points.toml.bak" in fields(fault_of(path).hint)
 
 
 def test_near_words_are_suggested(write):
-    assert fault_of(write(P1 + 'joints = [1, 2]\nconfiguration = "LEFT"')).hint == "did you mean LEFTY?"
-    assert fault_of(write(P1 + 'joints = [1, 2]\ncoment = "x"')).hint == "did you mean 'comment'?"
+    assert "LEFTY" in fields(fault_of(write(P1 + 'joints = [1, 2]\nconfiguration = "LEFT"')).hint)
+    assert "comment" in fields(fault_of(write(P1 + 'joints = [1, 2]\ncoment = "x"')).hint)

@@ -5,6 +5,7 @@ from robolang.project.project import builtin_cell, load_any_robot, load_project
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault
 from runtime.robot.files.loader import load_builtin
+from tests.messages import fields
 from tests.robolang.cli.commands import BUILTIN, PUMA
 
 CELL = (BUILTIN / "cell.toml").read_text()
@@ -98,11 +99,11 @@ def test_the_profile_is_that_of_the_cell(program):
 def test_a_robot_that_cannot_stand_at_home_does_not_fit_the_cell(program):
     robot = program.parent / "mine.toml"
     robot.write_text(PUMA.read_text().replace("range_deg = [-225, 45]", "range_deg = [-90, 45]"))
-    assert "the range of J3 of puma560" in refused("RBL709", program, robot=str(robot)).message
+    assert {"J3", "puma560"} <= fields(refused("RBL709", program, robot=str(robot)).message)
     start, end = PUMA.read_text().index("[kinematics.opw]"), PUMA.read_text().index("[path]")
     text = PUMA.read_text()[:start] + PUMA.read_text()[end:]
     robot.write_text(text[: text.rindex("[[axes]]")])
-    assert "has 5 axes" in refused("RBL709", program, robot=str(robot)).message
+    assert "5" in fields(refused("RBL709", program, robot=str(robot)).message)
 
 
 @pytest.mark.parametrize(
@@ -134,7 +135,7 @@ def test_a_robot_by_name_or_by_path():
         with pytest.raises(Fault) as caught:
             load_any_robot(name)
         assert caught.value.code == "RBL708"
-        assert "built in: irb2400, manutec_r3, puma560" in caught.value.hint
+        assert {"irb2400", "manutec_r3", "puma560"} <= fields(caught.value.hint)
 
 
 def test_faults_come_before_diagnostics_and_nothing_is_half_read(program):

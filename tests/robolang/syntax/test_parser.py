@@ -29,6 +29,7 @@ from robolang.syntax.ast import (
 from robolang.syntax.grammar import line_parser
 from robolang.syntax.keywords import FUNCTIONS, KEYWORDS, VALUES
 from robolang.syntax.unparse import describe
+from tests.messages import fields
 from tests.robolang.helpers import only, parse_found, parsed, source
 
 
@@ -365,4 +366,4 @@ def test_a_new_instruction_clashes_with_a_variable_in_one_error_that_names_it(mo
     for text in ("MOVE PULSE, SPEED PULSE", "*PULSE PULSE 1, 0.5", "FRAME PULSE", "x = PULSE + PULSE", "CALL f(PULSE)"):
         assert parse_found(text) == []
     assert parse_found("PULSE = 5") == [("RBL111", 1, 7, 1)]
-    assert only("PULSE = 5").hint == "PULSE is a word of the language and cannot be a name"
+    assert "PULSE" in fields(only("PULSE = 5").hint)

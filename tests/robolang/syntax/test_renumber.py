@@ -6,6 +6,7 @@ from robolang.core.source import MAX_BYTES
 from robolang.syntax.parser import MAX_LINE
 from robolang.syntax.renumber import MAX_NUMBER, remove_numbers, renumber
 from runtime.core.faults import Fault
+from tests.messages import fields
 from tests.robolang.helpers import places, source
 
 TEXT = """\
@@ -93,7 +94,7 @@ def test_a_duplicate_shows_the_first_one_too():
 
 def test_a_target_that_is_missing_is_named_as_spelt():
     (item,) = renumber(source("GOTO 1.5")).diagnostics
-    assert item.message == "there is no line number 1.5 to go to"
+    assert "1.5" in fields(item.message)
 
 
 def test_a_number_has_at_most_nine_digits():

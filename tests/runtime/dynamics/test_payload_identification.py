@@ -133,7 +133,7 @@ def test_an_axis_that_shows_nothing_leaves_a_large_uncertainty():
 
 def test_an_arm_that_stands_still_is_refused():
     tau, q = readings(PUMA, BODY, moving=[])
-    with pytest.raises(ValueError, match="does not move enough"):
+    with pytest.raises(ValueError, match="move"):
         identify_payload(PUMA, tau, q, ticks=TICKS, tick_s=TICK_S, known=Knowledge(torque=np.ones(6)))
 
 

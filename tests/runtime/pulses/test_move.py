@@ -16,6 +16,7 @@ from runtime.pulses.machine import Stand
 from runtime.pulses.mechanism import load_builtin
 from runtime.pulses.move import counted, off_line, plan_move
 from tests.bench.pulse_campaign import campaign, machine_and_pulses
+from tests.messages import fields
 
 CYLINDRICAL = load_builtin("cylindrical")
 A, B = np.array([300.0, -150.0, 700.0]) * MM, np.array([300.0, 150.0, 700.0]) * MM
@@ -74,8 +75,8 @@ def test_a_frequency_too_high_names_a_speed_that_fits():
     with pytest.raises(Fault) as caught:
         move(max_hz=6000.0)
     assert caught.value.code == "RBL430"
-    assert re.search(r"r of the cylindrical needs 8[45]00 Hz at \d+\.\d % of the path", caught.value.message)
-    speed = float(re.search(r"SPEED ([\d.]+) would fit", caught.value.hint)[1])
+    assert re.search(r"\br\b.* 8[45]00 Hz .*\d+\.\d %", caught.value.message)
+    speed = float(re.search(r"SPEED ([\d.]+)", caught.value.hint)[1])
     assert 60.0 < speed < 71.0
     found, _ = move(max_hz=6000.0, speed=speed * MM)
     assert max(found.highest_hz(0.01)) <= 6000
@@ -89,7 +90,7 @@ def test_under_an_override_the_speed_and_time_that_fit_are_those_to_write():
             move(override=0.5, max_hz=3000.0, **options)
         return caught.value.hint
 
-    speed = float(re.search(r"SPEED ([\d.]+) would fit", refused())[1])
+    speed = float(re.search(r"SPEED ([\d.]+)", refused())[1])
     assert 60.0 < speed < 71.0
     found, _ = move(override=0.5, max_hz=3000.0, speed=speed * MM)
     assert max(found.highest_hz(0.01)) <= 3000
@@ -103,7 +104,7 @@ def test_time_is_the_whole_of_the_move():
     assert found.count * 0.01 == pytest.approx(5.0, abs=0.011)
     assert found.notes == ()
     found, _ = move(duration=0.5)
-    assert "TIME 0.5 s is too short" in found.notes[0]
+    assert {"TIME", "0.5", "s"} <= fields(found.notes[0])
 
 
 def test_a_joint_that_would_be_too_fast_slows_the_move():
@@ -120,7 +121,7 @@ def test_a_joint_that_would_be_too_fast_slows_the_move():
         0.01,
     )
     assert found.slowed > 2.0
-    assert "limits of theta speed" in found.notes[0]
+    assert "theta" in found.notes[0]
     fastest = np.abs(np.diff(found.q[:, 0])).max() / 0.01
     assert 0.098 < fastest <= 0.1
 
@@ -133,7 +134,7 @@ def test_a_target_beyond_counting_is_refused():
 
 def test_a_move_to_nowhere_has_no_steps():
     found, _ = move(end=A)
-    assert (found.count, found.notes) == (0, ("already there",))
+    assert (found.count, len(found.notes)) == (0, 1)
     assert found.error.shape == (1,)
     assert found.error[0] < 0.5 * 0.005 * MM + 0.5 * 0.0036 * np.pi / 180.0 * 0.34
 

@@ -15,6 +15,7 @@ from runtime.robot.files.sidecar import template
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.arm_model import ArmModel
 from tests.campaign import examples
+from tests.messages import fields
 from tests.runtime.robot.models import ANGLES, DATA, SEVEN, chain, fill, inertial, joint, urdf
 
 
@@ -265,7 +266,7 @@ def test_a_body_that_cannot_be_is_refused_unless_the_sidecar_corrects_it(tmp_pat
     massless = chain(frames, bodies=["", inertial()])
     path.write_text(massless)
     sidecar.unlink()
-    with pytest.raises(FileFault, match=r"RBL606 .*J1 j1 has no mass"):
+    with pytest.raises(FileFault, match=r"RBL606 .*J1 j1 "):
         read_arm(path)
 
 
@@ -301,9 +302,9 @@ def test_without_a_sidecar_every_gap_is_named(tmp_path):
     assert caught.value.code == "RBL608"
     message = caught.value.message
     assert "J6: max_torque_nm" in message
-    assert "every axis: max_acceleration_deg_s2, all of [axes.motor], all of [axes.servo]" in message
+    assert {"max_acceleration_deg_s2", "axes.motor", "axes.servo"} <= fields(message)
     assert len(message) < 300
-    assert "robolang robot import seven.urdf" in caught.value.hint
+    assert "seven.urdf" in fields(caught.value.hint)
 
 
 def test_a_template_is_refused_until_each_gap_is_filled(tmp_path):
@@ -312,7 +313,7 @@ def test_a_template_is_refused_until_each_gap_is_filled(tmp_path):
     text = template(read_model(path))
     sidecar.write_text(text)
     assert read_arm(path).n == 7  # kinematics needs no drives
-    with pytest.raises(FileFault, match=r"RBL608 .*rated_payload_kg; all of \[path\].*every axis: max_acc"):
+    with pytest.raises(FileFault, match=r"RBL608 .*rated_payload_kg.*\[path\].*max_acc"):
         load_file(path)
     sidecar.write_text(fill(text))
     spec = load_file(path)
@@ -351,7 +352,7 @@ def test_a_sidecar_that_cannot_be_used_is_refused(tmp_path, code, old, new):
 def test_a_range_in_the_sidecar_rules(tmp_path):
     path = tmp_path / "seven.urdf"
     path.write_text(SEVEN.read_text().replace("revolute", "continuous", 1))
-    with pytest.raises(FileFault, match="RBL608 no position limits for J1 joint_1"):
+    with pytest.raises(FileFault, match=r"RBL608 .*J1 joint_1"):
         read_arm(path)
     text = fill(template(read_model(path)), range_deg="[-45, 60]")
     (tmp_path / "seven.robot.toml").write_text(text)
@@ -362,7 +363,7 @@ def test_a_file_of_any_name_is_a_file(tmp_path):
     path = tmp_path / "$(x).xml"
     path.write_text(MJCF)
     assert read_arm(path).n == 5
-    with pytest.raises(FileFault, match=r"there is no \$\(x\)\.robot\.toml"):
+    with pytest.raises(FileFault, match=r"\$\(x\)\.robot\.toml"):
         load_file(path)
     assert 'robot = "$(x).xml"' in template(read_model(path))
 

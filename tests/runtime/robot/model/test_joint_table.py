@@ -55,5 +55,5 @@ def test_the_mean_is_over_the_points():
     [((1,), ((0.0, 1.0),), (1.0,)), ((1, 2), ((0.0, 1.0),), (1.0, 2.0)), ((1,), ((0.0,),), (1.0,)), ((), (), (1.0,))],
 )
 def test_sizes_that_do_not_fit_are_refused(joints, grid, values):
-    with pytest.raises(ValueError, match="do not fit"):
+    with pytest.raises(ValueError, match="fit"):
         JointTable(joints=joints, grid=grid, values=values)
