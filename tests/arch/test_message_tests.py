@@ -1,10 +1,11 @@
 """Tests of messages compare codes, places and fields, not prose, so that wording stays free (docs/testing.md).
 
 An assertion or a ``match=`` that holds two words of prose side by side is found here; what is no message is listed with
-what it is.
+what it is. Misuse from Python, ``ValueError`` and the like, is told to programmers and may be matched by its words.
 """
 
 import ast
+import builtins
 import re
 from pathlib import Path
 
@@ -36,8 +37,9 @@ def compared(tree: ast.AST) -> list[tuple[int, str]]:
     """Return the texts with prose that are compared with a message, with their lines."""
     found = []
     for node in ast.walk(tree):
-        if isinstance(node, ast.keyword) and node.arg == "match":
-            sides: list[ast.expr] = [node.value]
+        if isinstance(node, ast.Call) and ast.unparse(node.func) == "pytest.raises":
+            of_python = ast.unparse(node.args[0]) in vars(builtins)
+            sides = [word.value for word in node.keywords if word.arg == "match" and not of_python]
         elif isinstance(node, ast.Compare) and SAID.search(ast.unparse(node)):
             sides = [node.left, *node.comparators]
         elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith((".startswith", ".endswith", "re.search")):
@@ -87,6 +89,7 @@ def test_prose_is_found(text):
         "assert result.stdout.startswith('p.rbl:1:6: error RBL301 ')",
         "with pytest.raises(Fault, match='RBL410'): pass",
         "assert text == 'two words'",
+        "with pytest.raises(ValueError, match='two words'): pass",
     ],
 )
 def test_codes_places_and_fields_are_no_prose(text):
