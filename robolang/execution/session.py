@@ -21,6 +21,7 @@ from robolang.execution.plan_findings import PlanFindings, PlannedMove
 from robolang.execution.plan_memory import PlanMemory
 from robolang.execution.report import build_report
 from robolang.execution.result import RunRecord, RunResult, StatementRun
+from robolang.execution.rig import Rig
 from robolang.execution.world import RobotWorld
 from robolang.interpreter.effects import (
     Drain,
@@ -43,14 +44,12 @@ from robolang.project.project import Project, load_project
 from robolang.syntax.ast import Wait
 from robolang.syntax.unparse import describe
 from runtime.cell.seam_sensor import SeamSensor
-from runtime.control.clock import PacedClock, VirtualClock, wall_s
-from runtime.control.controller import Controller
+from runtime.control.clock import wall_s
 from runtime.core.faults import Fault
 from runtime.core.units import MM
 from runtime.motion.commands import Command
 from runtime.motion.motion_planner import ChainPlan
 from runtime.motion.seam import SeamTracker
-from runtime.plant.plant import Plant
 from runtime.settings.profile import ServoMode
 
 
@@ -101,25 +100,10 @@ class Session:
         self._tracker: SeamTracker | None = None
         self.running = False
         """Whether the program runs or the arm still stops."""
-        cell, profile = project.cell, project.profile
-        known = profile.supervision.friction
-        friction = (1.0 if known is None else known) if physics else 0.0
-        profile = replace(profile, supervision=replace(profile.supervision, friction=friction))
-        if not physics:  # the ideal arm has no friction and no gear springs, so there is nothing to compensate
-            servo = replace(profile.servo, friction_compensation=0.0, spring_compensation=0.0, gravity_lead=0.0)
-            profile = replace(profile, servo=servo)
         plans = plans or PlanMemory(project)
-        clock = PacedClock(profile.period_us) if realtime else VirtualClock()
-        self.controller = Controller(
-            cell.robot,
-            make_plant(project, physics),
-            profile,
-            cell.hand.X_flange_tool,
-            clock,
-            plans,
-        )
+        self.controller = Rig.of(project, physics, realtime=realtime, plans=plans).controller
         self.record = RunRecord(project=project, controller=self.controller, physics=physics)
-        self.world = RobotWorld(project.points, cell, plans.kinematics, lambda: self.controller.time_us)
+        self.world = RobotWorld(project.points, project.cell, plans.kinematics, lambda: self.controller.time_us)
         self._machine = Machine(project.program, self.world, project.points.names)
         self._chain: list[tuple[MoveTo, Command]] = []
         self._plans = PlanFindings(project, plans.kinematics)
@@ -390,18 +374,6 @@ def _without_zone(command: Command, tracked: bool) -> Command:
     return replace(command, zone=0.0) if tracked and command.zone > 0.0 else command
 
 
-def make_plant(project: Project, physics: bool) -> Plant:
-    """Return the plant of a run: MuJoCo, or the ideal arm."""
-    cell, tick_s = project.cell, project.profile.tick_s
-    if physics:
-        from runtime.plant.mujoco_plant import MujocoPlant
-
-        return MujocoPlant(cell.robot, cell, tick_s)
-    from runtime.plant.rigid_plant import RigidPlant
-
-    return RigidPlant(cell.robot, cell, tick_s)
-
-
 def run(
     program: Path | str,
     *,
@@ -430,4 +402,4 @@ def run(
     return Session(project, physics=physics, realtime=realtime, progress=progress, plans=plans).run()
 
 
-__all__ = ["ProgramError", "Progress", "RunResult", "Session", "StatementRun", "make_plant", "run"]
+__all__ = ["ProgramError", "Progress", "RunResult", "Session", "StatementRun", "run"]

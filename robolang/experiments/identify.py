@@ -37,9 +37,9 @@ from typing import Any
 
 import numpy as np
 
-from robolang.experiments.excitation import Grid, PlantName, Request, Test, bench, plan, plan_table, quintic
+from robolang.execution.rig import Rig, plant_of
+from robolang.experiments.excitation import Grid, Request, Test, bench, plan, plan_table, quintic
 from runtime.cell.cell import CellSpec
-from runtime.control.controller import Controller
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.linear import dot
@@ -279,9 +279,10 @@ class _Bench:
             servo = replace(servo, spring_compensation=0.0, gravity_lead=0.0)
         # a model that is wrong is what is looked for here: no collision and no payload can be told from it
         profile = replace(profile, servo=servo, supervision=watched)
-        cell = replace(bench(request), robot=request.real or spec, home=first)
-        self._plant = _plant(request.plant, cell, profile.tick_s)
-        self._controller = Controller(spec, self._plant, profile, np.eye(4))
+        known = replace(bench(request), home=first)
+        real = replace(known, robot=request.real or spec)
+        self._plant = plant_of(real, profile.tick_s, request.plant == "mujoco", RubbingPlant)
+        self._controller = Rig.over(self._plant, known, profile).controller
         self._controller.load(carried)
         self._test, self._tick_s = test, profile.tick_s
 
@@ -346,14 +347,6 @@ def _carried(request: Request) -> Payload:
         return request.payload
     body = hand_body(bench(request).hand, bench(request).hand.stroke)
     return Payload(mass=body.mass, cog=body.cog, inertia=body.inertia)
-
-
-def _plant(name: PlantName, cell: CellSpec, tick_s: float) -> Plant:
-    if name == "mujoco":
-        from runtime.plant.mujoco_plant import MujocoPlant
-
-        return MujocoPlant(cell.robot, cell, tick_s)
-    return RubbingPlant(cell.robot, cell, tick_s)
 
 
 def _contacts(plant: Plant) -> Iterator[tuple[str, str]]:

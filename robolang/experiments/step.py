@@ -10,10 +10,12 @@ and so is more than the arm is rated for.
 """
 
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
 
+from robolang.execution.rig import IdealArm, Rig, plant_of
 from robolang.project.project import builtin_cell
 from runtime.cell.cell import CellSpec
 from runtime.control.controller import Controller
@@ -21,7 +23,6 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array, pose
 from runtime.core.units import DEG
 from runtime.dynamics.equations import axis_inertia
-from runtime.plant.plant import Plant
 from runtime.plant.rigid_plant import RigidPlant
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
@@ -133,7 +134,9 @@ def step(request: StepRequest) -> StepResult:
         profile = replace(profile, servo=replace(profile.servo, friction_compensation=0.0))
     cell = _cell(robot, request)
     X_flange_tool = pose(np.zeros(3) if request.tool is None else request.tool, np.eye(3))
-    controller = Controller(robot, _plant(robot, cell, request), profile, X_flange_tool)
+    plant = plant_of(cell, profile.tick_s, request.plant == "mujoco", _ideal_arm(request))
+    known = replace(cell, hand=replace(cell.hand, X_flange_tool=X_flange_tool))
+    controller = Rig.over(plant, known, profile).controller
     controller.load(request.declared)
     controller.jump(controller.areas.ina)
     _run(controller, HOLD_S)
@@ -165,15 +168,8 @@ def _cell(robot: RobotSpec, request: StepRequest) -> CellSpec:
     return replace(cell, robot=robot, home=request.q, hand=hand, parts=(), obstacles=())
 
 
-def _plant(robot: RobotSpec, cell: CellSpec, request: StepRequest) -> Plant:
-    profile = replace(request.profile, supervision=replace(request.profile.supervision, enabled=False))
-    if request.plant == "mujoco":
-        from runtime.plant.mujoco_plant import MujocoPlant
-
-        return MujocoPlant(robot, cell, profile.tick_s)
-    if request.locked:
-        return _Locked(robot, cell, profile.tick_s, request.axis)
-    return _Substepped(robot, cell, profile.tick_s)
+def _ideal_arm(request: StepRequest) -> IdealArm:
+    return partial(_Locked, axis=request.axis) if request.locked else _Substepped
 
 
 def _run(controller: Controller, seconds: float, lost: float = np.inf) -> None:

@@ -21,6 +21,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from robolang.execution.rig import Rig, fitted, plant_of
 from runtime.cell.cell import CellSpec
 from runtime.control.controller import Controller
 from runtime.core.faults import Fault
@@ -29,7 +30,6 @@ from runtime.core.rounding import beside
 from runtime.core.units import DEG, MM
 from runtime.dynamics.payload_identification import BodyModel, Knowledge, WeighedPayload, identify_payload
 from runtime.motion.fine_interpolator import FineInterpolator
-from runtime.plant.plant import Plant
 from runtime.robot.model.load_rules import MAX_COG_DISTANCE
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import RobotSpec
@@ -199,7 +199,8 @@ def weigh(request: WeighRequest) -> WeighResult:
     exercise = plan_exercise(request)
     profile, rigid = _profile(request), request.plant == "rigid"
     robot, true = request.cell.robot, carried(request)
-    controller = Controller(robot, _plant(request, profile), profile, request.cell.hand.X_flange_tool)
+    plant = plant_of(_loaded(request.cell, true), profile.tick_s, physics=not rigid)
+    controller = Rig.over(plant, request.cell, profile).controller
     start = controller.areas.ina
     _play(controller, np.zeros((round(SETTLE_S / profile.period_s), robot.n)) + start)
     first = controller.recorder.tick
@@ -231,20 +232,12 @@ def _profile(request: WeighRequest) -> Profile:
     watched = replace(profile.supervision, payload_mismatch="off", collision=math.inf)
     if request.plant == "mujoco":
         return replace(profile, supervision=watched)
-    servo = replace(profile.servo, friction_compensation=0.0, spring_compensation=0.0, gravity_lead=0.0)
-    return replace(profile, supervision=replace(watched, friction=0.0), servo=servo)
+    return fitted(replace(profile, supervision=watched), physics=False)
 
 
-def _plant(request: WeighRequest, profile: Profile) -> Plant:
-    true = carried(request)
-    cell = replace(request.cell, hand=replace(request.cell.hand, mass=true.mass, cog=true.cog))
-    if request.plant == "mujoco":
-        from runtime.plant.mujoco_plant import MujocoPlant
-
-        return MujocoPlant(cell.robot, cell, profile.tick_s)
-    from runtime.plant.rigid_plant import RigidPlant
-
-    return RigidPlant(cell.robot, cell, profile.tick_s)
+def _loaded(cell: CellSpec, true: Payload) -> CellSpec:
+    """Return the cell as it is: the hand has the mass and the centre of gravity of all that it carries."""
+    return replace(cell, hand=replace(cell.hand, mass=true.mass, cog=true.cog))
 
 
 def _play(controller: Controller, rows: Array) -> None:

@@ -16,16 +16,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from robolang.execution.dry_run import MAX_RUN_US
+from robolang.execution.rig import Rig, fitted, plant_of
 from robolang.experiments.excitation import quintic
 from runtime.cell.cell import CellSpec
-from runtime.control.controller import Controller
 from runtime.core.faults import Alarm, Fault
 from runtime.core.frames import Array, frozen
 from runtime.core.linear import norm
 from runtime.core.program_line import ProgramLine
 from runtime.core.rounding import beside
 from runtime.core.units import DEG, MM
-from runtime.plant.plant import Plant
 from runtime.pulses.exported import Export, Load, Marker, Move
 from runtime.pulses.replay import distances, joint_values, positions
 from runtime.robot.model.payload import Payload, declared
@@ -125,14 +124,9 @@ class _Arm:
     """The controller over its plant, and the statement that it carries out."""
 
     def __init__(self, export: Export, cell: CellSpec, profile: Profile, physics: bool) -> None:
-        known = profile.supervision.friction
-        friction = (1.0 if known is None else known) if physics else 0.0
-        profile = replace(profile, supervision=replace(profile.supervision, friction=friction))
-        if not physics:  # the ideal arm has no friction and no gear springs, so there is nothing to compensate
-            servo = replace(profile.servo, friction_compensation=0.0, spring_compensation=0.0, gravity_lead=0.0)
-            profile = replace(profile, servo=servo)
+        profile = fitted(profile, physics)
         self._export, self._cell, self._profile = export, cell, profile
-        self._controller = Controller(cell.robot, _plant(cell, profile, physics), profile, cell.hand.X_flange_tool)
+        self._controller = Rig.over(plant_of(cell, profile.tick_s, physics), cell, profile).controller
         self._runs: list[_Run] = []
 
     def run(self) -> Drive:
@@ -227,13 +221,3 @@ def _driven(run: _Run, tool: Array, tick_s: float) -> DrivenMove:
         error_mm=float(distances(tool, move.start, move.end).max(initial=0.0)) / MM,
         end_mm=norm(tool[-1] - move.end) / MM if len(tool) else 0.0,
     )
-
-
-def _plant(cell: CellSpec, profile: Profile, physics: bool) -> Plant:
-    if physics:
-        from runtime.plant.mujoco_plant import MujocoPlant
-
-        return MujocoPlant(cell.robot, cell, profile.tick_s)
-    from runtime.plant.rigid_plant import RigidPlant
-
-    return RigidPlant(cell.robot, cell, profile.tick_s)

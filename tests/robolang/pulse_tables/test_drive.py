@@ -136,7 +136,7 @@ def test_load_and_hand_are_carried_out_in_their_places(tmp_path, monkeypatch):
             done.append((self.time_us, self.statement.number, closed))
             super().hand(closed)
 
-    monkeypatch.setattr("robolang.pulse_tables.drive.Controller", Watched)
+    monkeypatch.setattr("robolang.execution.rig.Controller", Watched)
     export = puma()
     export.load(1)
     export.hand(2, "off", dwell=0.1)
@@ -232,7 +232,7 @@ MISMATCHES = [
 
 @pytest.mark.parametrize(("change", "said"), MISMATCHES, ids=[said for _, said in MISMATCHES])
 def test_tables_of_another_robot_are_refused(tmp_path, monkeypatch, change, said):
-    monkeypatch.setattr("robolang.pulse_tables.drive.Controller", lambda *_: pytest.fail("something moved"))
+    monkeypatch.setattr("robolang.execution.rig.Controller", lambda *_: pytest.fail("something moved"))
     export = puma()
     change(export)
     with pytest.raises(Fault) as caught:
@@ -248,7 +248,7 @@ def test_a_difference_of_rounding_is_none(tmp_path):
 
 
 def test_a_load_that_no_arm_carries_and_a_run_without_end_are_refused_before_anything_moves(tmp_path, monkeypatch):
-    monkeypatch.setattr("robolang.pulse_tables.drive.Controller", lambda *_: pytest.fail("something moved"))
+    monkeypatch.setattr("robolang.execution.rig.Controller", lambda *_: pytest.fail("something moved"))
     export = puma()
     export.load(1, mass=2.6)
     with pytest.raises(Fault) as caught:
