@@ -1,6 +1,6 @@
 # make demo   the main job: install into .venv and run the 1992 program
 # make test   the tests; prints their processor time by folder
-# make gates  style, types, import floors
+# make gates  layout, style, types, import contracts, copied code
 # make campaign   the tests at full size, of which make test runs a sample (minutes)
 # make format  the layout that the gates ask for
 # make bench  the figures of docs/measured.md that are times or ratios of times
@@ -43,6 +43,7 @@ gates: $(READY)
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/pylint --score=n robolang runtime
 
 format: $(READY)
 	$(BIN)/ruff format .
