@@ -5,6 +5,7 @@ before (``Drain``). Time is that of the clock that it is given, so a rehearsal w
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,10 +14,19 @@ from robolang.execution.lowering import Surroundings
 from robolang.project.points import PointStore
 from robolang.values.poses import Frame, Place, Six
 from runtime.cell.cell import CellSpec
-from runtime.cell.signals import Signals
+from runtime.cell.signals import History, Signals
 from runtime.core.frames import Array
 from runtime.core.linear import matmul
 from runtime.robot.kinematics.kinematics import Kinematics
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WorldSnapshot:
+    """A ``RobotWorld`` as it was: where motion ended, the tool in use, the outputs."""
+
+    q_last: Array
+    X_flange_tool: Array
+    signals: History
 
 
 class RobotWorld:
@@ -38,6 +48,17 @@ class RobotWorld:
             q_last=self.q_last,
             X_flange_tool=self.X_flange_tool,
         )
+
+    def snapshot(self) -> WorldSnapshot:
+        """Return the state of the world; its clock is not part of it."""
+        return WorldSnapshot(
+            q_last=np.array(self.q_last), X_flange_tool=self.X_flange_tool, signals=self.signals.snapshot()
+        )
+
+    def restore(self, snapshot: WorldSnapshot) -> None:
+        """Go back, or on, to a snapshot."""
+        self.q_last, self.X_flange_tool = np.array(snapshot.q_last), snapshot.X_flange_tool
+        self.signals.restore(snapshot.signals)
 
     def input(self, number: int) -> float:
         """Return the state of an input; ``Fault`` RBL534."""

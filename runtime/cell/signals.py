@@ -73,12 +73,24 @@ def _numbered(name: str, table: Table) -> InputSpec:
     return read_input(table)
 
 
+History = Mapping[int, tuple[tuple[int, float], ...]]
+"""Of each output that was set: the times, us, from which it has its states."""
+
+
 class Signals:
     """The signals of one run."""
 
     def __init__(self, inputs: Mapping[int, InputSpec]) -> None:
         self._inputs = inputs
         self._history: dict[int, list[tuple[int, float]]] = {}
+
+    def snapshot(self) -> History:
+        """Return what the outputs have been so far and will be by themselves."""
+        return {output: tuple(rows) for output, rows in self._history.items()}
+
+    def restore(self, history: History) -> None:
+        """Go back, or on, to a snapshot."""
+        self._history = {output: list(rows) for output, rows in history.items()}
 
     def set(self, output: int, value: float, now_us: int, off_us: int | None = None) -> None:
         """Set an output from ``now_us`` on, and back to 0 at ``off_us``."""

@@ -1,0 +1,20 @@
+"""Outputs and the inputs that follow them can be taken back, pulses that still run included."""
+
+from runtime.cell.signals import InputSpec, Signals
+
+
+def test_signals_go_back_to_a_snapshot_again_and_again():
+    signals = Signals({1: InputSpec(follows=7, delay_us=1000)})
+    signals.set(7, 1.0, 0, off_us=5000)
+    kept = signals.snapshot()
+    for _ in range(2):
+        signals.set(7, 0.0, 2000)
+        signals.set(8, 1.0, 2000)
+        assert (signals.output(7, 3000), signals.output(8, 3000), signals.input(1, 4000)) == (0.0, 1.0, 0.0)
+        signals.restore(kept)
+        assert (signals.output(7, 3000), signals.output(8, 3000), signals.input(1, 4000)) == (1.0, 0.0, 1.0)
+        assert signals.output(7, 5000) == 0.0
+    other = Signals({})
+    other.restore(kept)
+    other.set(7, 0.0, 1000)
+    assert signals.output(7, 3000) == 1.0
