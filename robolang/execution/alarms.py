@@ -9,6 +9,7 @@ from itertools import groupby
 from robolang.core.diagnostics import Diagnostic, Related, Severity, to_json
 from robolang.core.source import Source, Span
 from robolang.interpreter.effects import Origin
+from robolang.interpreter.events import Failed
 from runtime.core.faults import Alarm
 from runtime.core.program_line import ProgramLine
 
@@ -25,6 +26,13 @@ def as_diagnostic(alarm: Alarm, severity: Severity) -> Diagnostic:
         span=_span(alarm.statement),
         hint=alarm.hint,
         related=calls(alarm.calls),
+    )
+
+
+def failure(fault: Failed) -> Diagnostic:
+    """Return a fault that the program does not catch as a diagnostic at its place."""
+    return Diagnostic(
+        code=fault.code, message=fault.message, span=fault.origin.span, hint=fault.hint, related=calls(fault.calls)
     )
 
 

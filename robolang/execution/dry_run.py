@@ -8,16 +8,18 @@ rehearsal: where the arm would be after it is not known.
 """
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import Span
-from robolang.execution import lowering
-from robolang.execution.alarms import calls
+from robolang.execution import run_bounds
+from robolang.execution.alarms import failure
+from robolang.execution.executor import ENDED, Executor
 from robolang.execution.plan_memory import PlanMemory
+from robolang.execution.target import Requested, Untimed
 from robolang.execution.world import RobotWorld
 from robolang.interpreter.branch_oracle import Decisions
 from robolang.interpreter.effects import (
@@ -25,6 +27,7 @@ from robolang.interpreter.effects import (
     Effect,
     Halt,
     MoveTo,
+    Origin,
     Pass,
     SetHand,
     SetOutput,
@@ -32,9 +35,9 @@ from robolang.interpreter.effects import (
     SetSeam,
     SetTool,
     SetWrist,
+    Show,
 )
-from robolang.interpreter.machine import Machine
-from robolang.interpreter.program_fault import ProgramFault
+from robolang.interpreter.events import Failed
 from robolang.project.project import Project
 from robolang.syntax.ast import Delay, Wait
 from runtime.core.faults import Fault, lookup
@@ -42,14 +45,8 @@ from runtime.core.frames import Array
 from runtime.motion.blend import Corner
 from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.commands import Command
-from runtime.motion.motion_planner import tracked
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
-
-MAX_CHAIN = 200
-"""Most moves that blend into one another without a stop: a program that never stops is carried out nevertheless."""
-MAX_RUN_US = 1_800_000_000
-"""Longest run, us of simulated time: about a kilobyte of log is kept for every tick."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -120,153 +117,141 @@ def rehearse(
     """Plan a checked program from its first statement to its last, or to what cannot be carried out.
 
     ``decisions`` may send conditions another way, ``plans`` may know plans already, ``most_us`` ends it earlier than
-    ``MAX_RUN_US``.
+    ``run_bounds``.
     """
-    return _Rehearsal(
-        project,
-        plans or PlanMemory(project),
-        decisions or Decisions(),
-        MAX_RUN_US if most_us is None else most_us,
-    ).run()
+    plans = plans or PlanMemory(project)
+    most_us = run_bounds.MAX_RUN_US if most_us is None else most_us
+    target = _DryRun(project, plans, most_us)
+    world = RobotWorld(project.points, project.cell, plans.kinematics, lambda: target.time_us)
+    executor = Executor(project, target, world, decisions=decisions, most_us=most_us)
+    while executor.advance().state not in ENDED:
+        pass
+    return Rehearsal(
+        moves=tuple(target.moves),
+        hands=tuple(target.hands),
+        times_us=target.times_us,
+        total_us=target.time_us,
+        refused=target.refused,
+        tried=frozenset(target.tried),
+        runs=dict(target.runs),
+        kinematics=plans.kinematics,
+    )
 
 
-class _Rehearsal:
-    """A rehearsal under way."""
+class _DryRun(Untimed):
+    """A rehearsal under way: a target whose time goes on at once by what the plans say."""
 
-    def __init__(self, project: Project, planner: PlanMemory, decisions: Decisions, most_us: int) -> None:
+    def __init__(self, project: Project, plans: PlanMemory, most_us: int) -> None:
         cell = project.cell
-        self._project, self._period_us, self._planner = project, project.profile.period_us, planner
-        self._most_us = most_us
-        self._now_us = 0
-        self._world = RobotWorld(project.points, cell, planner.kinematics, lambda: self._now_us)
-        self._machine = Machine(project.program, self._world, project.points.names, decisions)
-        self._tracked = False
+        self._period_us, self._plans, self._most_us = project.profile.period_us, plans, most_us
+        self.time_us = 0
+        self.statement: Origin | None = None
+        self._X_flange_tool = cell.hand.X_flange_tool
         self._payload = NO_PAYLOAD
-        self._chain: list[tuple[MoveTo, Command, MovePlan]] = []
-        self._q_next: Array = np.array(cell.home)
-        self._moves: list[RehearsedMove] = []
-        self._hands: list[RehearsedHand] = []
-        self._tried: set[Span] = set()
-        self._runs: Counter[int] = Counter()
-        self._times: dict[int, int] = {}
+        self._q: Array = np.array(cell.home)
+        self.moves: list[RehearsedMove] = []
+        self.hands: list[RehearsedHand] = []
+        self.tried: set[Span] = set()
+        self.runs: Counter[int] = Counter()
+        self.times_us: dict[int, int] = {}
+        self.refused: tuple[Diagnostic, ...] = ()
 
-    def run(self) -> Rehearsal:
-        """Rehearse to the end."""
-        program = self._machine.run()
-        fault: Fault | None = None
-        refused: tuple[Diagnostic, ...] = ()
-        while True:
-            try:
-                effect = next(program) if fault is None else program.throw(fault)
-            except StopIteration:
-                break
-            except ProgramFault as uncaught:
-                refused = (
-                    Diagnostic(
-                        code=uncaught.code,
-                        message=uncaught.message,
-                        span=uncaught.origin.span,
-                        hint=uncaught.hint,
-                        related=calls(uncaught.calls),
-                    ),
-                )
-                break
-            fault = None
-            try:
-                if not self._take(effect):
-                    break
-            except Fault as found:
-                fault = found
-        self._finish_motion()
-        return Rehearsal(
-            moves=tuple(self._moves),
-            hands=tuple(self._hands),
-            times_us=self._times,
-            total_us=self._now_us,
-            refused=refused,
-            tried=frozenset(self._tried),
-            runs=dict(self._runs),
-            kinematics=self._planner.kinematics,
-        )
+    @property
+    def q(self) -> Array:
+        """Joint angles (n,) rad at which motion has ended."""
+        return self._q
 
-    def _take(self, effect: Effect) -> bool:
-        # a WAIT passes time cycle by cycle, but lets motion end once
+    def fail(self, fault: Failed) -> None:
+        """Keep the fault that ends the rehearsal."""
+        self.refused = (failure(fault),)
+
+    def refuse(self, effect: Effect, fault: Fault) -> None:
+        """Do nothing: the program answers."""
+
+    # --- effects -----------------------------------------------------------------------------------------------------
+
+    def begin(self, effect: Effect) -> None:
+        """Count what takes time; a WAIT passes time cycle by cycle, but lets motion end once."""
+        if isinstance(effect, MoveTo):
+            self.tried.add(effect.span)
         if (
             isinstance(effect, MoveTo | SetHand)
             or isinstance(effect.node, Delay)
             or (isinstance(effect, Drain) and isinstance(effect.node, Wait))
         ):
-            self._runs[effect.line] += 1
-        if isinstance(effect, MoveTo):
-            self._move(effect)
-            return True
-        if isinstance(effect, SetWrist):  # each move carries what it says, so nothing has to end for it
-            return True
-        self._finish_motion()
-        if isinstance(effect, SetPayload):
-            self._payload = lowering.payload(effect, self._project.cell)
-        elif isinstance(effect, SetHand):
-            seconds = lowering.dwell_s(effect, self._project.cell)
-            self._hands.append(RehearsedHand(effect=effect, after=len(self._moves), q=self._q_next))
-            self._spend(effect, -(-round(seconds * 1e6) // self._period_us))
-        elif isinstance(effect, Pass):
-            self._spend(effect, max(1, -(-round(effect.seconds * 1e6) // self._period_us)))
-        elif isinstance(effect, SetSeam):
-            self._tracked = effect.sensor is not None
-        elif isinstance(effect, SetTool):
-            self._world.X_flange_tool = lowering.tool(effect.tool, self._project.cell)
-        elif isinstance(effect, SetOutput):
-            self._world.set_output(effect.output, effect.value, effect.seconds)
-        return not (isinstance(effect, Halt) and effect.word == "STOP")
+            self.runs[effect.line] += 1
 
-    def _spend(self, effect: Effect, cycles: int) -> None:
-        spent = cycles * self._period_us
-        self._times[effect.line] = self._times.get(effect.line, 0) + spent
-        self._now_us += spent
-        if self._now_us >= self._most_us:
-            raise self._machine.too_long(effect.origin, self._most_us / 1e6)
+    def rehearse(self, q_start: Array, command: Command) -> MovePlan:
+        """Return the plan of a move."""
+        return self._plans.plan(q_start, command, self._X_flange_tool)
 
-    def _move(self, effect: MoveTo) -> None:
-        self._tried.add(effect.span)
-        self._world.q_last = self._q_next
-        command = lowering.move(effect, self._world.around)
-        if self._tracked:
-            command = tracked(command)
-        plan = self._planner.plan(self._q_next, command, self._world.X_flange_tool)
-        self._q_next = np.array(plan.q[-1])
-        self._chain.append((effect, command, plan))
-        if not command.zone > 0.0 or len(plan.q) == 1 or len(self._chain) >= MAX_CHAIN:
-            self._finish_motion()
-
-    def _finish_motion(self) -> None:
-        """Let the moves that are kept pass: they are blended, and the command needs two cycles more to come to rest."""
-        if not self._chain:
-            return
-        chain, self._chain = self._chain, []
-        joined = self._planner.join(
-            [plan for *_, plan in chain], [command.zone for _, command, _ in chain], self._world.X_flange_tool
-        )
-        begins = self._now_us
+    def move(self, chain: Sequence[Requested]) -> None:
+        """Let moves pass: they are blended, and the command needs some cycles more to come to rest."""
+        joined = self._plans.chain(self._q, [each.command for each in chain], self._X_flange_tool)
+        self._q = np.array(joined.parts[-1].plan.q[-1])
         cycles = np.bincount(joined.command, minlength=len(chain))  # one for each row that is sent, the first as well
         cycles[-1] += REST_CYCLES - 1 if len(joined.q) > 1 else 0
-        each = zip(chain, joined.parts, [*joined.corners, None], cycles.tolist(), strict=True)
-        for (effect, command, plan), part, corner, spent in each:
-            self._spend(effect, spent)
-            self._moves.append(
+        for each, part, corner, spent in zip(
+            chain, joined.parts, [*joined.corners, None], cycles.tolist(), strict=True
+        ):
+            begins = self.time_us
+            self._spend(each.effect, spent)
+            if self.time_us >= self._most_us:
+                return
+            self.moves.append(
                 RehearsedMove(
-                    effect=effect,
-                    plan=plan,
-                    command=command,
+                    effect=each.effect,
+                    plan=part.plan,
+                    command=each.command,
                     begins_us=begins,
-                    ends_us=self._now_us,
+                    ends_us=self.time_us,
                     corner=corner,
                     q=joined.q[part.first : part.last + 1],
                     first=part.first - part.offset,
                     payload=self._payload,
                 )
             )
-            begins = self._now_us
-        self._world.q_last = self._q_next
+
+    def _spend(self, effect: Effect, cycles: int) -> None:
+        self.statement = effect.origin
+        spent = cycles * self._period_us
+        self.times_us[effect.line] = self.times_us.get(effect.line, 0) + spent
+        self.time_us += spent
+
+    def wrist(self, effect: SetWrist) -> None:
+        """Do nothing: each move carries the setting that holds for it."""
+
+    def drain(self, effect: Drain) -> None:
+        """Do nothing: motion has ended."""
+
+    def load(self, effect: SetPayload, payload: Payload) -> None:
+        """Keep the payload for the moves that follow."""
+        self._payload = payload
+
+    def hand(self, effect: SetHand, cycles: int) -> None:
+        """Keep where the hand moves, and let it dwell."""
+        self.hands.append(RehearsedHand(effect=effect, after=len(self.moves), q=self._q))
+        self._spend(effect, cycles)
+
+    def seam(self, effect: SetSeam) -> None:
+        """Do nothing: what a sensor will see is not known."""
+
+    def tool(self, effect: SetTool, X_flange_tool: Array) -> None:
+        """Plan with another tool."""
+        self._X_flange_tool = X_flange_tool
+
+    def output(self, effect: SetOutput) -> None:
+        """Do nothing: its signal has been set."""
+
+    def wait(self, effect: Pass, cycles: int) -> None:
+        """Let cycles pass."""
+        self._spend(effect, cycles)
+
+    def show(self, effect: Show) -> None:
+        """Show nothing."""
+
+    def halt(self, effect: Halt) -> None:
+        """Do nothing: the program ends itself."""
 
 
 REST_CYCLES = 4

@@ -155,7 +155,7 @@ def _seam(run: StatementRun, deviation: Array) -> dict[str, object] | None:
         return None
     far, turned = np.linalg.norm(deviation[:, :3], axis=1), np.abs(deviation[:, 3:]).max(axis=1)
     return {
-        "sensor": run.seam.name,
+        "sensor": run.seam,
         "largest_mm": _largest(far / MM),
         "largest_deg": _largest(turned / DEG),
         "lost_readings": run.lost,

@@ -9,7 +9,6 @@ from runtime.control.controller import Controller
 from runtime.core.frames import Array
 from runtime.motion.cartesian_planner import WristChange
 from runtime.motion.path import Path
-from runtime.motion.seam import SeamTracker
 
 
 @dataclass(slots=True, kw_only=True)
@@ -17,8 +16,8 @@ class StatementRun:
     """What became of one statement: where it stands, its first and last tick, the path it moved on.
 
     ``begun``: whether it was reached; the moves of a row that was stopped before them were not.
-    ``wrist`` is what its plan did with the wrist, ``seam`` the tracker it moved under, ``lost`` the readings that this
-    one lost since; ``lamp`` what the pendant's lamp shows now: ``wrist`` while the wrist goes its own way.
+    ``wrist`` is what its plan did with the wrist, ``seam`` the sensor it moved under, ``lost`` the readings that this
+    one lost meanwhile; ``lamp`` what the pendant's lamp shows now: ``wrist`` while the wrist goes its own way.
     """
 
     origin: Origin
@@ -28,7 +27,7 @@ class StatementRun:
     path: Path | None = None
     planned_s: float | None = None
     wrist: WristChange | None = None
-    seam: SeamTracker | None = None
+    seam: str | None = None
     lost: int = 0
     lamp: str = ""
     begun: bool = True

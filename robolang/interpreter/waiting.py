@@ -30,15 +30,18 @@ def wait(run: RunState, line: Line, node: Wait, at: int) -> Result:
 def begin(run: RunState, due: WaitDue) -> Result:
     """Begin the time of a WAIT, and look at its condition a first time."""
     node = due.node
-    timeout = math.inf if node.timeout is None else limits.TIMEOUT.checked(run.values.number(node.timeout))
     forced = run.decisions.of_wait(node.condition.span, endless=node.timeout is None)
+    if forced is True:  # also where there is no time to read, as in an export
+        run.decisions.took(node.condition.span, True)
+        return None
+    timeout = math.inf if node.timeout is None else limits.TIMEOUT.checked(run.values.number(node.timeout))
     return go_on(run, Waiting(node, run.world.seconds(), timeout, forced))
 
 
 def go_on(run: RunState, waiting: Waiting) -> Result:
     """Return the line to go on at when a WAIT is over, else one more cycle."""
     node, forced = waiting.node, waiting.forced
-    if forced is True or (forced is None and run.values.true(node.condition)):
+    if forced is None and run.values.true(node.condition):
         run.decisions.took(node.condition.span, True)
         return None
     if forced is False or not run.world.seconds() - waiting.began < waiting.timeout - ROUNDING:

@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from robolang.execution.dry_run import MAX_RUN_US
 from robolang.execution.rig import Rig, fitted, plant_of
+from robolang.execution.run_bounds import MAX_RUN_US
 from robolang.experiments.excitation import quintic
 from runtime.cell.cell import CellSpec
 from runtime.core.faults import Alarm, Fault

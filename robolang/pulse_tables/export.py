@@ -7,34 +7,30 @@ Everything is made in memory, then the folder is written whole or not at all (do
 """
 
 import json
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, assert_never
 
 import numpy as np
 
-from robolang.core.diagnostics import Diagnostic
-from robolang.execution import lowering
-from robolang.execution.alarms import calls
-from robolang.execution.lowering import Surroundings
-from robolang.interpreter.effects import Drain, Effect, MoveTo, SetHand, SetPayload, SetSeam, SetTool, SetWrist
-from robolang.interpreter.machine import execute
-from robolang.interpreter.program_fault import ProgramFault
+from robolang.interpreter.effects import MoveTo
 from robolang.project.project import Project
-from robolang.syntax import ast
-from robolang.syntax.ast import Delay, Number, Wait
+from robolang.pulse_tables.table_target import (
+    HandMarker,
+    LoadMarker,
+    Marker,
+    OtherMarker,
+    TableMove,
+    in_tables,
+)
 from robolang.syntax.unparse import describe
-from runtime.core.faults import Fault
-from runtime.core.frames import Array
 from runtime.core.program_line import named
 from runtime.core.units import MM
-from runtime.motion.commands import MoveLinear
 from runtime.pulses import mechanism, panasonic_f174
 from runtime.pulses.channels import Channel, ChannelFile, channels_of, default_channels, motor_pulse, read_channel_file
 from runtime.pulses.emission import Pulses
 from runtime.pulses.machine import Machine, RobotArm
-from runtime.pulses.move import MovePulses, counted, plan_move
+from runtime.pulses.move import MovePulses
 from runtime.pulses.table import as_csv, data_tables, rows_of
 
 MANIFEST = "manifest.json"
@@ -43,14 +39,6 @@ F174_COMMENTS = (
     "each table is started by the step timer at its start_step",
 )
 SCHEMA = 1
-
-
-class NotExportableError(Exception):
-    """A statement that cannot be put into tables; ``diagnostic`` has its place."""
-
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,7 +61,7 @@ class ExportRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportedMove:
-    """A move of the sequence: the statement and its pulses."""
+    """A move of the sequence: the statement, its pulses and its files, None for a channel that stands."""
 
     effect: MoveTo
     pulses: MovePulses
@@ -87,7 +75,7 @@ class Export:
     machine: Machine
     channels: tuple[Channel, ...]
     request: ExportRequest
-    sequence: tuple[ExportedMove | Effect, ...]
+    sequence: tuple[ExportedMove | Marker, ...]
     files: dict[str, str]
 
     @property
@@ -102,31 +90,14 @@ def export(project: Project, request: ExportRequest) -> Export:
     ``Fault`` or ``FileFault`` for channel and mechanism files that cannot be used.
     """
     machine, channels = equipment(project, request)
-    stand, start = machine.home, counted(machine.home.q, channels)
-    first, placed = start, False
-    sequence: list[ExportedMove | Effect] = []
-    files: dict[str, str] = {}
-    for effect in _effects(project):
-        try:
-            if isinstance(effect, MoveTo):
-                command = _command(effect, project, machine, stand.q)
-                if not placed:
-                    machine, placed = machine.placed(command.X_world_tool[:3, 3]), True
-                pulses = plan_move(machine, stand, command, channels, start, request.step_s)
-                stand, start = machine.arrived(stand, command, pulses.q[-1]), pulses.end
-                number = 1 + sum(isinstance(item, ExportedMove) for item in sequence)
-                tables = _tables(effect, pulses, number, machine, channels, request)
-                files.update({name: text for table in tables for name, text in table})
-                names = tuple(table[0][0] if table else None for table in tables)
-                sequence.append(ExportedMove(effect=effect, pulses=pulses, files=names))
-            elif _marked(effect, project):
-                sequence.append(effect)
-        except Fault as fault:
-            found = Diagnostic(code=fault.code, message=fault.message, span=effect.span, hint=fault.hint)
-            raise NotExportableError(found) from None
-    found_export = Export(machine=machine, channels=channels, request=request, sequence=tuple(sequence), files=files)
-    files[MANIFEST] = json.dumps(_manifest(found_export, project, first), indent=1, allow_nan=False) + "\n"
-    return found_export
+    carried_out = in_tables(project, machine, channels, request.step_s)
+    tables = _Tables(carried_out.machine, channels, request)
+    sequence = tuple(tables.of(item) if isinstance(item, TableMove) else item for item in carried_out.sequence)
+    found = Export(
+        machine=carried_out.machine, channels=channels, request=request, sequence=sequence, files=tables.files
+    )
+    manifest = json.dumps(_manifest(found, project, carried_out.first), indent=1, allow_nan=False) + "\n"
+    return replace(found, files={**tables.files, MANIFEST: manifest})
 
 
 def equipment(project: Project, request: ExportRequest) -> tuple[Machine, tuple[Channel, ...]]:
@@ -167,114 +138,40 @@ def _channel_file(name: str | None) -> tuple[ChannelFile | None, str]:
     return read_channel_file(Path(name)), ""
 
 
-def _effects(project: Project) -> Iterator[Effect]:
-    """Yield the effects of a program in which nothing depends on a run; a WAIT is passed, for it becomes a marker."""
-    waiting = {id(line.statement) for line in project.program.lines if isinstance(line.statement, Wait)}
-    passed = tuple(
-        ast.replace(line, statement=Delay(seconds=Number(value=0.0, text="0"), span=line.statement.span))
-        if line.statement is not None and id(line.statement) in waiting
-        else line
-        for line in project.program.lines
-    )
-    texts = {line.source_line: line.statement for line in project.program.lines}
-    try:
-        for effect in execute(ast.replace(project.program, lines=passed), points=project.points.names):
-            original = texts[effect.line]
-            yield replace(effect, node=original) if isinstance(original, Wait) else effect
-    except ProgramFault as fault:
-        code = "RBL431" if fault.code == "RBL532" else fault.code
-        hint = fault.hint if code == fault.code else ""
-        found = Diagnostic(
-            code=code, message=fault.message, span=fault.origin.span, hint=hint, related=calls(fault.calls)
-        )
-        raise NotExportableError(found) from None
+class _Tables:
+    """The files of the moves so far."""
 
+    def __init__(self, machine: Machine, channels: tuple[Channel, ...], request: ExportRequest) -> None:
+        self._machine, self._channels, self._request = machine, channels, request
+        self.files: dict[str, str] = {}
+        self._moves = 0
 
-def _command(effect: MoveTo, project: Project, machine: Machine, q: Array) -> MoveLinear:
-    point = project.points.get(effect.target.point)
-    if effect.way != "line" or not effect.zone_mm <= 0.0:
-        what = "does not stop at its end (ZONE)" if effect.way == "line" else "is not straight"
-        raise Fault("RBL431", f"the move {what}; tables hold straight moves from rest to rest", "write MOVE and FINE")
-    if not isinstance(machine, RobotArm) and point is not None and point.joints is not None:
-        raise Fault(
-            "RBL431",
-            f"{point.name} is taught as joint angles of {project.cell.robot.name}, which the "
-            f"{machine.name} has not: teach its pose",
-        )
-    kinematics = machine.kinematics if isinstance(machine, RobotArm) else _kinematics(project)
-    if not isinstance(machine, RobotArm):
-        if effect.target.last:
-            raise Fault("RBL431", "DEPART goes by the tool's axis, which this machine does not tell: teach a point")
-        q = project.cell.home
-    command = lowering.move(
-        effect,
-        Surroundings(
-            points=project.points,
-            cell=project.cell,
-            kinematics=kinematics,
-            X_flange_tool=project.cell.hand.X_flange_tool,
-            q_last=q,
-        ),
-    )
-    assert isinstance(command, MoveLinear)
-    return command
+    def of(self, move: TableMove) -> ExportedMove:
+        """Add the files of a move."""
+        self._moves += 1
+        names = tuple(self._channel(move, k) for k in range(len(self._channels)))
+        return ExportedMove(effect=move.effect, pulses=move.pulses, files=names)
 
-
-def _kinematics(project: Project) -> Any:
-    from runtime.robot.kinematics.kinematics import Kinematics
-
-    return Kinematics(project.cell.robot)
-
-
-def _marked(effect: Effect, project: Project) -> bool:
-    """Return whether a statement becomes a marker; ``Fault`` where it can be none."""
-    if isinstance(effect, SetSeam) and effect.sensor is not None:
-        raise Fault(
-            "RBL431",
-            "a seam sensor shifts the path as it goes, and a table is fixed before the move",
-            "take the SEAM statements out, or let the controller run this program",
-        )
-    if isinstance(effect, SetPayload):
-        lowering.payload(effect, project.cell)
-    elif isinstance(effect, SetHand):
-        lowering.dwell_s(effect, project.cell)
-    elif isinstance(effect, SetTool):
-        raise Fault("RBL431", "another tool cannot be taken in the middle of an export")
-    return not isinstance(effect, SetSeam | SetWrist | Drain)
-
-
-Named = tuple[str, str]
-
-
-def _tables(
-    effect: MoveTo,
-    move: MovePulses,
-    number: int,
-    machine: Machine,
-    channels: tuple[Channel, ...],
-    request: ExportRequest,
-) -> list[list[Named]]:
-    """Return the files of each channel: the neutral table, then the PLC's; [] for a channel that stands."""
-    found: list[list[Named]] = []
-    for k, (channel, emission) in enumerate(zip(channels, move.emitted, strict=True)):
+    def _channel(self, move: TableMove, k: int) -> str | None:
+        """Add the neutral table of channel k, then the PLC's, and return its name; None where the channel stands."""
+        effect, channel, request = move.effect, self._channels[k], self._request
+        emission, start = move.pulses.emitted[k], int(move.pulses.start[k])
         if not emission.steps.any():
-            found.append([])
-            continue
-        start = int(move.start[k])
-        rows = rows_of(emission.steps, start, move.count, request.step_hz)
+            return None
+        rows = rows_of(emission.steps, start, move.pulses.count, request.step_hz)
         unit, scale = channel.unit
-        stem = f"{number:02d}_line{effect.line}_{channel.joint.name}"
+        stem = f"{self._moves:02d}_line{effect.line}_{channel.joint.name}"
+        where = named(effect.line, effect.number)
         comments = [
-            f"{machine.name}, move {number}, {named(effect.line, effect.number)}: {describe(effect.node)}",
+            f"{self._machine.name}, move {self._moves}, {where}: {describe(effect.node)}",
             f"channel {channel.joint.name} from {start} pulses; one pulse is {channel.pulse / scale:.9g} {unit}; one "
             f"step is {request.step_s * 1e3:g} ms",
         ]
-        texts = [(f"{stem}.csv", as_csv(rows, [*comments, "frequency in Hz, target in pulses from zero"]))]
+        self.files[f"{stem}.csv"] = as_csv(rows, [*comments, "frequency in Hz, target in pulses from zero"])
         if request.f174:
-            plc = panasonic_f174.as_csv(list(data_tables(rows, start)), channel.output, [*comments, *F174_COMMENTS])
-            texts.append((f"{stem}.f174.csv", plc))
-        found.append(texts)
-    return found
+            plc = list(data_tables(rows, start))
+            self.files[f"{stem}.f174.csv"] = panasonic_f174.as_csv(plc, channel.output, [*comments, *F174_COMMENTS])
+        return f"{stem}.csv"
 
 
 # --- the manifest ----------------------------------------------------------------------------------------------------
@@ -298,43 +195,39 @@ def _manifest(found: Export, project: Project, start: Pulses) -> dict[str, Any]:
             }
             for channel, at in zip(found.channels, start, strict=True)
         ],
-        "sequence": [_entry(item, found, project) for item in found.sequence],
+        "sequence": [_entry(item, found) for item in found.sequence],
     }
 
 
-def _entry(item: ExportedMove | Effect, found: Export, project: Project) -> dict[str, Any]:
-    effect: Any = item.effect if isinstance(item, ExportedMove) else item
+def _entry(item: ExportedMove | Marker, found: Export) -> dict[str, Any]:
+    effect = item.effect
     head = {"line": effect.line, "number": effect.number, "text": describe(effect.node)}
-    if isinstance(item, ExportedMove):
-        start, end = ((point / MM).tolist() for point in item.pulses.way.ends)
-        names = [channel.joint.name for channel in found.channels]
-        plc = {
-            name: file.replace(".csv", ".f174.csv")
-            for name, file in zip(names, item.files, strict=True)
-            if file is not None and found.request.f174
-        }
-        return {
-            "kind": "move",
-            **head,
-            "steps": item.pulses.count,
-            "start_mm": start,
-            "end_mm": end,
-            "tables": dict(zip(names, item.files, strict=True)),
-            "f174": plc,
-            "summary": summary(item, found),
-        }
-    if isinstance(item, SetPayload):
-        payload = lowering.payload(item, project.cell)
-        cog = [float(x) for x in np.round(payload.cog / MM, 9)]
-        return {"kind": "marker", **head, "load": {"mass_kg": payload.mass, "cog_mm": cog}}
-    if isinstance(item, SetHand):
-        return {
-            "kind": "marker",
-            **head,
-            "hand": "on" if item.closed else "off",
-            "dwell_s": lowering.dwell_s(item, project.cell),
-        }
-    return {"kind": "marker", **head, "other": type(item.node).__name__.lower()}
+    match item:
+        case ExportedMove():
+            return {"kind": "move", **head, **_of_move(item, found)}
+        case LoadMarker():
+            cog = [float(x) for x in np.round(item.payload.cog / MM, 9)]
+            return {"kind": "marker", **head, "load": {"mass_kg": item.payload.mass, "cog_mm": cog}}
+        case HandMarker():
+            return {"kind": "marker", **head, "hand": "on" if item.effect.closed else "off", "dwell_s": item.dwell_s}
+        case OtherMarker():
+            return {"kind": "marker", **head, "other": type(effect.node).__name__.lower()}
+        case _:
+            assert_never(item)
+
+
+def _of_move(move: ExportedMove, found: Export) -> dict[str, Any]:
+    start, end = ((point / MM).tolist() for point in move.pulses.way.ends)
+    tables = {channel.joint.name: file for channel, file in zip(found.channels, move.files, strict=True)}
+    plc = {name: file.replace(".csv", ".f174.csv") for name, file in tables.items() if file is not None}
+    return {
+        "steps": move.pulses.count,
+        "start_mm": start,
+        "end_mm": end,
+        "tables": tables,
+        "f174": plc if found.request.f174 else {},
+        "summary": summary(move, found),
+    }
 
 
 def summary(move: ExportedMove, found: Export) -> dict[str, Any]:

@@ -154,7 +154,7 @@ def test_the_good_programs_have_none(name):
 
 @pytest.mark.parametrize(("name", "old", "new", "code"), DEFECTS, ids=lambda value: str(value)[:24].replace("\n", "/"))
 def test_a_defect_is_found_at_its_line(tmp_path, monkeypatch, name, old, new, code):
-    monkeypatch.setattr("robolang.execution.dry_run.MAX_RUN_US", 20_000_000)  # two of them never end
+    monkeypatch.setattr("robolang.execution.run_bounds.MAX_RUN_US", 20_000_000)  # two of them never end
     text, path = copied(tmp_path, name)
     assert old in text
     path.write_text(text.replace(old, new, 1), "utf-8")

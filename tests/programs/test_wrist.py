@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from robolang.execution.observer import Observer
 from robolang.execution.session import Session
 from robolang.project.project import load_project
 from runtime.core.units import MM
@@ -130,13 +131,13 @@ def test_a_seam_that_cannot_be_followed_stops_the_arm_on_its_path_at_the_line(tm
 
 def test_a_stop_from_outside_during_a_tracked_move_ends_at_rest_on_the_seam():
     project = load_project(FOLDER / "seam.rbl")
-    session = Session(project, physics=False)
 
-    def stop(statement, time_us):
-        if time_us > 1_500_000:
-            session.request_stop()
+    class Stop(Observer):
+        def cycle_done(self, time_us):
+            if time_us > 1_500_000:
+                session.request_stop()
 
-    session._progress = stop
+    session = Session(project, physics=False, observer=Stop())
     result = session.run()
     assert [alarm["code"] for alarm in result.report["alarms"]] == ["RBL530"]
     log = result.log

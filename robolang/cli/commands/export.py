@@ -71,7 +71,8 @@ def pulses(
         if plot is not None:
             check_writable(plot)
         from robolang.project.project import load_project
-        from robolang.pulse_tables.export import ExportRequest, NotExportableError, export
+        from robolang.pulse_tables.export import ExportRequest, export
+        from robolang.pulse_tables.table_target import NotExportableError
 
         project = load_project(program, cell, robot)
         _refuse(project)

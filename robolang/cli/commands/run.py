@@ -25,7 +25,7 @@ from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
     from robolang.core.diagnostics import Diagnostic
-    from robolang.execution.session import Progress, RunResult, Session, StatementRun
+    from robolang.execution.session import RunResult, Session
     from robolang.project.project import Project
 
 
@@ -76,12 +76,11 @@ def run(
 
             plans = PlanMemory(project)
             warned = refuse(project, warnings=strict or not quiet, plans=plans)
+        from robolang.cli.run_progress import shown
         from robolang.execution.session import Session
 
-        with _progress(quiet) as progress:
-            session = Session(
-                project, physics=not no_physics, realtime=realtime, progress=progress, show=_show, plans=plans
-            )
+        with shown(quiet) as progress:
+            session = Session(project, physics=not no_physics, realtime=realtime, observer=progress, plans=plans)
             with _signals(session) as stopped:  # until the files are written: a signal must not cut them off
                 result = session.run()
                 code = _write(result, report, log)
@@ -97,14 +96,6 @@ def run(
         raise typer.Exit(code or MOTION)
     if strict and (warned or result.warnings):
         raise typer.Exit(DIAGNOSTICS)
-
-
-def _show(text: str) -> None:
-    """Show what the program prints, as it prints it."""
-    from robolang.core.diagnostics import safe
-
-    with reader_may_leave():
-        typer.echo(safe(text))
 
 
 def _check_outputs(program: str, report: Path | None, log: Path | None) -> None:
@@ -205,46 +196,3 @@ def _handled(handle: Callable[[int, object], None]) -> Iterator[None]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-
-
-@contextmanager
-def _progress(quiet: bool) -> Iterator["Progress"]:
-    """Yield the progress function: a live line on a terminal, one line per statement elsewhere."""
-    if quiet:
-        yield lambda statement, time_us: None
-    elif sys.stderr is not None and sys.stderr.isatty():
-        with _live_line() as show:
-            yield show
-    else:
-        yield _line_printer()
-
-
-@contextmanager
-def _live_line() -> Iterator["Progress"]:
-    from rich.text import Text
-
-    from robolang.cli.console import Console
-
-    with Console(stderr=True).status("starting") as status:
-        yield lambda statement, time_us: status.update(
-            Text(_status(statement, time_us), no_wrap=True, overflow="ellipsis")
-        )
-
-
-def _line_printer() -> "Progress":
-    shown: list[tuple[StatementRun, str]] = []
-
-    def show(statement: "StatementRun", time_us: int) -> None:
-        if not shown or shown[-1][0] is not statement or (statement.lamp and statement.lamp != shown[-1][1]):
-            shown[:] = [(statement, statement.lamp)]
-            typer.echo(_status(statement, time_us), err=True)
-
-    return show
-
-
-def _status(statement: "StatementRun", time_us: int) -> str:
-    from runtime.core.program_line import named
-
-    where = named(statement.origin.line, statement.origin.number)
-    lamp = f"[{statement.lamp}]  " if statement.lamp else ""
-    return f"{time_us / 1e6:9.3f} s  {where:<9} {lamp}{statement.text}"

@@ -89,6 +89,7 @@ def watched(program: str, seed: str) -> list[tuple[str, str]]:
     """Return the events of one run of a program, from the first statement to the last."""
     from robolang.evaluation import evaluator
     from robolang.execution.dry_run import motion_check
+    from robolang.execution.observer import Observer
     from robolang.execution.session import Session
     from robolang.project.project import load_project
 
@@ -96,7 +97,12 @@ def watched(program: str, seed: str) -> list[tuple[str, str]]:
     assert project.ok, project.diagnostics
     assert motion_check(project) == ()
     printed: list[str] = []
-    session = Session(project, physics=False, show=printed.append)
+
+    class Printed(Observer):
+        def printed(self, text: str) -> None:
+            printed.append(text)
+
+    session = Session(project, physics=False, observer=Printed())
     plain = evaluator.shown
     if seed:
         violate = SEEDS[seed]

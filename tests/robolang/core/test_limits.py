@@ -9,7 +9,7 @@ from robolang.core import limits
 from robolang.core.diagnostics import Severity
 from robolang.core.limits import SIZE
 from robolang.evaluation.evaluator import MAX_TEXT
-from robolang.execution import dry_run, session
+from robolang.execution import run_bounds
 from robolang.execution.dry_run import rehearse
 from robolang.execution.session import Session
 from robolang.interpreter import run_limits
@@ -83,8 +83,7 @@ def in_a_cell(tmp_path, text):
 @pytest.mark.parametrize(("seconds", "good"), [(0.392, True), (0.4, False)])
 def test_simulated_time(tmp_path, monkeypatch, seconds, good):
     """A run and its rehearsal end at the same cycle; 0.4 s in place of half an hour."""
-    for module in (dry_run, session):
-        monkeypatch.setattr(module, "MAX_RUN_US", 400_000)
+    monkeypatch.setattr(run_bounds, "MAX_RUN_US", 400_000)
     project = in_a_cell(tmp_path, f"DELAY {seconds}\n")
     result = Session(project, physics=False).run()
     assert [alarm["code"] for alarm in result.report["alarms"]] == ([] if good else ["RBL509"])
@@ -92,7 +91,7 @@ def test_simulated_time(tmp_path, monkeypatch, seconds, good):
 
 
 def test_no_handler_outlives_the_simulated_time(tmp_path, monkeypatch):
-    monkeypatch.setattr(dry_run, "MAX_RUN_US", 400_000)
+    monkeypatch.setattr(run_bounds, "MAX_RUN_US", 400_000)
     project = in_a_cell(tmp_path, "ON ERROR GOTO *H\n*TOP DELAY 0.08\nGOTO *TOP\n*H RESUME NEXT\n")
     found = rehearse(project)
     assert [item.code for item in found.refused] == ["RBL509"]

@@ -30,8 +30,7 @@ def pick_and_place(real, rotors=(), first_moments=(), supervised=False):
     cell = project.cell
     robot = robot_of(real)
     plant = MujocoPlant(robot, replace(cell, robot=robot), profile.tick_s)
-    session.controller = Controller(cell.robot, plant, session.controller.profile, cell.hand.X_flange_tool)
-    session.record.controller = session.controller
+    session.record.controller = Controller(cell.robot, plant, session.controller.profile, cell.hand.X_flange_tool)
     return session.run()
 
 

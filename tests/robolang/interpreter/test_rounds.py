@@ -2,7 +2,7 @@
 
 import pytest
 
-from robolang.execution import dry_run, session
+from robolang.execution import run_bounds
 from robolang.execution.dry_run import rehearse
 from robolang.execution.session import Session
 from robolang.interpreter.rounds import Rounds
@@ -28,8 +28,7 @@ LOOPLESS = ("no loop", "a motion")
 
 @pytest.mark.parametrize("name", TEXTS)
 def test_a_run_and_its_rehearsal_name_what_does_not_end(name, tmp_path, monkeypatch):
-    for module in (dry_run, session):
-        monkeypatch.setattr(module, "MAX_RUN_US", 400_000)
+    monkeypatch.setattr(run_bounds, "MAX_RUN_US", 400_000)
     text = TEXTS[name]
     start, end = text.index("«"), text.index("»") - 1
     path = tmp_path / "p.rbl"

@@ -1,0 +1,369 @@
+"""Effects carried out by a controller over its plant, with the record of what became of each statement.
+
+A statement ends when its effect has: a MOVE when the command has come to rest and the arm is in position, a HAND after
+its dwell, a LOAD at once. ``goes_on`` is called between two cycles, so all that it waits for is plain data here.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TypeAlias
+
+import numpy as np
+
+from robolang.core.source import Span
+from robolang.execution.observer import Observer
+from robolang.execution.plan_findings import PlanFindings, PlannedMove
+from robolang.execution.result import RunRecord, StatementRun
+from robolang.execution.target import Requested
+from robolang.interpreter.effects import (
+    Drain,
+    Effect,
+    Halt,
+    Origin,
+    Pass,
+    SetHand,
+    SetOutput,
+    SetPayload,
+    SetSeam,
+    SetTool,
+    SetWrist,
+    Show,
+)
+from robolang.interpreter.events import Failed
+from robolang.syntax.ast import Wait
+from robolang.syntax.unparse import describe
+from runtime.cell.seam_sensor import SeamSensor
+from runtime.control.controller import ControllerSnapshot
+from runtime.core.faults import Alarm, Fault
+from runtime.core.frames import Array
+from runtime.core.units import MM
+from runtime.motion.cartesian_planner import MovePlan
+from runtime.motion.commands import Command
+from runtime.motion.motion_planner import ChainPlan
+from runtime.motion.seam import SeamTracker
+from runtime.robot.kinematics.kinematics import Kinematics
+from runtime.robot.model.payload import Payload
+
+LAMPS = ("", "WRIST", "WRIST HOLD")
+"""What the lamp shows by ``wrist_mode``."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Motion:
+    """Moves that are carried out: numbers ``first`` to ``last`` of the record; readings that were ``lost`` before them.
+
+    ``sent``: whether a cycle has been run; ``waited_us`` for the arm to come into position.
+    """
+
+    first: int
+    last: int
+    lost: int
+    sent: bool = False
+    waited_us: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Wait:
+    """A statement, by its number in the record, that takes so many more cycles; ``grasp``: what the hand then holds is
+    noted."""
+
+    run: int
+    cycles: int
+    grasp: bool = False
+
+
+_Activity: TypeAlias = _Motion | _Wait | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TargetSnapshot:
+    """Controller, plant and record at one moment; nothing changes it."""
+
+    controller: ControllerSnapshot
+    statements: tuple[StatementRun, ...]
+    payloads: tuple[dict[str, object], ...]
+    shown: tuple[tuple[float, str], ...]
+    activity: _Activity
+    warned: frozenset[tuple[str, Span]]
+
+
+class ControllerTarget:
+    """Carries effects out by the controller of a record. ``tracker`` is the seam tracker in force."""
+
+    def __init__(self, record: RunRecord, kinematics: Kinematics, observer: Observer) -> None:
+        self._record, self._observer = record, observer
+        self._project = record.project
+        self._findings = PlanFindings(record.project, kinematics)
+        self._activity: _Activity = None
+        self._warned: frozenset[tuple[str, Span]] = frozenset()
+
+    # --- time --------------------------------------------------------------------------------------------------------
+
+    @property
+    def statement(self) -> Origin | None:
+        """Statement that is carried out."""
+        found = self._record.controller.statement
+        assert found is None or isinstance(found, Origin)  # nothing else is given to the controller
+        return found
+
+    @statement.setter
+    def statement(self, origin: Origin | None) -> None:
+        self._record.controller.statement = origin
+
+    @property
+    def time_us(self) -> int:
+        """Simulated time, us."""
+        return self._record.controller.time_us
+
+    @property
+    def alarms(self) -> Sequence[Alarm]:
+        """Latched alarms, the one that stops the arm first."""
+        return self._record.controller.alarms
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether the brakes hold the arm."""
+        return self._record.controller.halted
+
+    @property
+    def q(self) -> Array:
+        """Commanded joint angles (n,) rad."""
+        return np.array(self._record.controller.areas.ina)
+
+    def goes_on(self) -> bool:
+        """Return whether the statement needs another cycle."""
+        activity = self._activity
+        if isinstance(activity, _Motion):
+            return self._moves_on(activity)
+        if activity is None or activity.cycles == 0:
+            if activity is not None and activity.grasp:
+                holding = self._record.controller.plant.hand().holding
+                self._record.statements[activity.run].notes.append(
+                    f"holds '{holding}'" if holding else "closed on nothing"
+                )
+            return False
+        self._activity = replace(activity, cycles=activity.cycles - 1)
+        return True
+
+    def _moves_on(self, motion: _Motion) -> bool:
+        controller, profile = self._record.controller, self._project.profile
+        runs = self._record.statements[motion.first : motion.last + 1]
+        if motion.sent:
+            run = self._reach(runs)
+            run.lamp = LAMPS[controller.wrist_mode]
+            run.lost = 0 if run.seam is None else self._lost - motion.lost
+        if controller.moving or not motion.sent:  # where the arm is already it takes a cycle, so that no loop is idle
+            self._activity = replace(motion, sent=True)
+            return True
+        if controller.position_error <= profile.in_position:
+            return False
+        if motion.waited_us >= profile.settle_timeout_us:
+            error, waited_s = np.degrees(controller.position_error), motion.waited_us / 1e6
+            controller.warn("RBL523", f"not in position: {error:.3f} deg left after {waited_s:g} s")
+            return False
+        self._activity = replace(motion, waited_us=motion.waited_us + profile.period_us)
+        return True
+
+    def _reach(self, runs: list[StatementRun]) -> StatementRun:
+        """Return the move of a chain whose set-point is sent next; it begins when the one before it ends."""
+        tick, at = self._record.controller.recorder.tick, self._record.controller.chain_index
+        runs[0].begun = tick > runs[0].first_tick
+        if not runs[at].begun and runs[0].begun:
+            for before, run in pairwise(runs[: at + 1]):
+                if not run.begun:
+                    before.end_tick = run.first_tick = tick
+                    run.begun = True
+            self._observer.run_began(runs[at], self.time_us)
+        return runs[at]
+
+    def cycle(self) -> bool:
+        """Run one cycle of the controller; False when the brakes hold the arm."""
+        going = self._record.controller.cycle()
+        motion = self._activity
+        if isinstance(motion, _Motion) and self.alarms:
+            self._reach(self._record.statements[motion.first : motion.last + 1])
+        return going
+
+    def finish(self) -> None:
+        """End the statements of the activity at this tick."""
+        activity, self._activity = self._activity, None
+        tick, statements = self._record.controller.recorder.tick, self._record.statements
+        if isinstance(activity, _Motion):
+            for run in statements[activity.first : activity.last + 1]:
+                run.end_tick = run.end_tick or tick
+        elif activity is not None:
+            statements[activity.run].end_tick = tick
+
+    def brake(self, *, at_once: bool) -> None:
+        """Let a controlled stop go on for a cycle, or end it here."""
+        if at_once:
+            self._record.controller.halt()
+        self._record.controller.cycle()
+
+    def hold(self) -> bool:
+        """Let the moves that run come to their end; returns whether the command rests."""
+        return not self._record.controller.moving
+
+    def go_on(self) -> None:
+        """Do nothing: the next effect follows."""
+
+    def stop(self) -> None:
+        """Raise RBL530."""
+        self._record.controller.alarm("RBL530", "the run was stopped from outside")
+
+    def fail(self, fault: Failed) -> None:
+        """Raise the alarm of a fault that the program does not catch."""
+        self._record.controller.alarm(
+            fault.code, fault.message, hint=fault.hint, statement=fault.origin, calls=fault.calls
+        )
+
+    def refuse(self, effect: Effect, fault: Fault) -> None:
+        """Do nothing: the program answers."""
+
+    # --- effects -----------------------------------------------------------------------------------------------------
+
+    def begin(self, effect: Effect) -> None:
+        """Accept every effect."""
+
+    def rehearse(self, q_start: Array, command: Command) -> MovePlan:
+        """Return the plan of a move without starting it; ``Fault`` RBL4xx."""
+        return self._record.controller.rehearse(q_start, command)
+
+    def move(self, chain: Sequence[Requested]) -> None:
+        """Plan moves from the commanded position and start them; ``ChainFault`` RBL4xx."""
+        controller = self._record.controller
+        self.statement = chain[0].effect.origin
+        plan = controller.move_chain([each.command for each in chain], [each.effect.origin for each in chain])
+        runs = [self._record_run(each.effect) for each in chain]
+        seam = None if self._tracker is None else self._tracker.name
+        for run, part in zip(runs, plan.parts, strict=True):
+            run.path, run.notes = part.path, [*run.notes, *part.notes]
+            run.planned_s = part.planned_s
+            run.wrist, run.seam, run.begun = part.wrist, seam, False
+        self._warn(chain, plan)
+        last = len(self._record.statements) - 1
+        self._activity = _Motion(first=last + 1 - len(runs), last=last, lost=self._lost)
+        self._observer.run_began(runs[0], self.time_us)
+
+    @property
+    def _tracker(self) -> SeamTracker | None:
+        return self._record.controller.tracker
+
+    @property
+    def _lost(self) -> int:
+        return 0 if self._tracker is None else self._tracker.lost
+
+    def _warn(self, chain: Sequence[Requested], plan: ChainPlan) -> None:
+        """Warn where the motion is not the one that the program states, once for a code and a statement."""
+        plans = [part.plan for part in plan.parts]
+        rows = zip(chain, plans, (*plan.corners, None), (*plans[1:], None), strict=True)
+        for each, own, corner, after in rows:
+            move = PlannedMove(effect=each.effect, command=each.command, plan=own, corner=corner, after=after)
+            for found in self._findings.of(move):
+                if (found.code, each.effect.span) not in self._warned:
+                    self._warned |= {(found.code, each.effect.span)}
+                    self._record.controller.warn(found.code, found.message, found.hint, each.effect.origin)
+
+    def _record_run(self, effect: Effect) -> StatementRun:
+        tick = self._record.controller.recorder.tick
+        run = StatementRun(origin=effect.origin, text=describe(effect.node), first_tick=tick)
+        self._record.statements.append(run)
+        return run
+
+    def _start(self, effect: Effect, cycles: int = 0, *, grasp: bool = False) -> StatementRun:
+        """Begin a statement that takes so many cycles, or go on with a WAIT: each of its cycles is an effect."""
+        self.statement = effect.origin
+        statements, tick = self._record.statements, self._record.controller.recorder.tick
+        goes_on = bool(statements) and isinstance(effect.node, Wait) and statements[-1].end_tick == tick
+        if not (goes_on and statements[-1].origin.span == effect.span):
+            self._record_run(effect)
+        self._activity = _Wait(run=len(statements) - 1, cycles=cycles, grasp=grasp)
+        self._observer.run_began(statements[-1], self.time_us)
+        return statements[-1]
+
+    def wrist(self, effect: SetWrist) -> None:
+        """Note WRIST in the record."""
+        self._start(effect)
+
+    def drain(self, effect: Drain) -> None:
+        """Do nothing: motion has ended."""
+
+    def load(self, effect: SetPayload, payload: Payload) -> None:
+        """Store the payload in SDA, and in the record."""
+        self._start(effect)
+        self._record.controller.load(payload)
+        self._record.payloads.append(
+            {
+                "time_s": self.time_us / 1_000_000,
+                "line": effect.line,
+                "number": effect.number,
+                "mass_kg": payload.mass,
+                "cog_mm": [float(x) for x in np.round(payload.cog / MM, 9)],
+            }
+        )
+
+    def hand(self, effect: SetHand, cycles: int) -> None:
+        """Switch the tool drive circuit."""
+        self._start(effect, cycles, grasp=effect.closed)
+        self._record.controller.hand(effect.closed)
+
+    def seam(self, effect: SetSeam) -> None:
+        """Give the controller a tracker of a sensor of the cell, or none."""
+        self._start(effect)
+        tracker = None
+        if effect.sensor is not None:
+            spec = {name.upper(): each for name, each in self._project.cell.sensors.items()}[effect.sensor]
+            read = SeamSensor(spec).read
+            tracker = SeamTracker(effect.sensor, spec.limits, self._project.profile.period_s, read)
+        self._record.controller.seam(tracker)
+
+    def tool(self, effect: SetTool, X_flange_tool: Array) -> None:
+        """Use another tool."""
+        self._start(effect)
+        self._record.controller.use_tool(X_flange_tool)
+
+    def output(self, effect: SetOutput) -> None:
+        """Note OUT in the record."""
+        self._start(effect)
+
+    def wait(self, effect: Pass, cycles: int) -> None:
+        """Let cycles pass."""
+        self._start(effect, cycles)
+
+    def show(self, effect: Show) -> None:
+        """Keep what PRINT shows."""
+        self._start(effect)
+        self._record.shown.append((self.time_us / 1_000_000, effect.text))
+        self._observer.printed(effect.text)
+
+    def halt(self, effect: Halt) -> None:
+        """Note STOP or PAUSE in the record."""
+        stops = effect.word == "STOP"
+        self._start(effect).notes.append("the program stops here" if stops else "nobody is there to wait for: goes on")
+
+    # --- snapshots ---------------------------------------------------------------------------------------------------
+
+    def snapshot(self) -> TargetSnapshot:
+        """Return controller, plant and record as a value."""
+        record = self._record
+        return TargetSnapshot(
+            controller=record.controller.snapshot(),
+            statements=tuple(map(_copied, record.statements)),
+            payloads=tuple(record.payloads),
+            shown=tuple(record.shown),
+            activity=self._activity,
+            warned=self._warned,
+        )
+
+    def restore(self, snapshot: TargetSnapshot) -> None:
+        """Put a snapshot back."""
+        record = self._record
+        record.controller.restore(snapshot.controller)
+        record.statements[:] = map(_copied, snapshot.statements)
+        record.payloads[:], record.shown[:] = snapshot.payloads, snapshot.shown
+        self._activity, self._warned = snapshot.activity, snapshot.warned
+
+
+def _copied(run: StatementRun) -> StatementRun:
+    return replace(run, notes=list(run.notes))

@@ -1,0 +1,435 @@
+"""The one place where the effects of a program are carried out, on any target, without ever blocking.
+
+``advance`` runs a program for some interpolation cycles and returns; between two calls it can be paused, stopped, fed
+with a statement, and taken back to a snapshot. What is the same for the controller, a dry run and pulse tables is here:
+the world that a program reads, moves that are kept since they blend into the next one, when motion has to end, the
+longest run, the end at STOP, and requests that are refused: these go back to the program (ON ERROR).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import Enum, auto
+from typing import Any, TypeAlias, assert_never
+
+from robolang.execution import lowering, run_bounds
+from robolang.execution.observer import Observer
+from robolang.execution.target import Requested, Target
+from robolang.execution.world import RobotWorld, WorldSnapshot
+from robolang.interpreter.branch_oracle import Decisions
+from robolang.interpreter.effects import (
+    Drain,
+    Effect,
+    Halt,
+    MoveTo,
+    Origin,
+    Pass,
+    SetHand,
+    SetOutput,
+    SetPayload,
+    SetSeam,
+    SetTool,
+    SetWrist,
+    Show,
+)
+from robolang.interpreter.events import Done, Event, Failed, FedEnded, LineBegun
+from robolang.interpreter.machine import Machine
+from robolang.interpreter.snapshot import MachineSnapshot
+from robolang.project.project import Project
+from robolang.syntax.ast import Line, Wait
+from runtime.core.faults import Fault
+from runtime.motion.motion_planner import tracked
+
+Alter: TypeAlias = Callable[[Effect], Effect | None]
+"""Changes an effect before it is carried out, None: leaves it out (``compare``)."""
+
+
+class State(Enum):
+    """What a program does between two calls of ``advance``."""
+
+    RUNNING = "running"
+    PAUSED = "paused"
+    WAITING = "waiting"
+    STOPPED = "stopped"
+    DONE = "done"
+    ALARM = "alarm"
+
+
+ENDED = frozenset({State.STOPPED, State.DONE, State.ALARM})
+"""States from which ``advance`` does not go on."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Status:
+    """Where a program stands: ``statement`` that is carried out, simulated time, and the ``fault`` that nothing caught:
+    the one that ended the program, or the one of the statement that was fed last."""
+
+    state: State
+    statement: Origin | None
+    time_us: int
+    fault: Failed | None = None
+
+
+class _Phase(Enum):
+    READY = auto()  # the program goes on
+    BUSY = auto()  # an effect has been started
+    STOPPING = auto()  # an alarm: the arm comes to rest
+    OVER = auto()
+
+
+_End: TypeAlias = Done | Failed | FedEnded
+
+
+@dataclass(slots=True, kw_only=True)
+class _Progress:
+    """All of an executor that changes, besides machine, world and target.
+
+    ``request``: the effect that the program has yielded last; ``doing``: the effects that have been started; ``chain``:
+    moves that are kept, since the next one may blend into them; ``due``: what comes when these have ended.
+    """
+
+    phase: _Phase = _Phase.READY
+    request: Effect | None = None
+    doing: tuple[Effect, ...] = ()
+    chain: tuple[Requested, ...] = ()
+    due: Effect | _End | None = None
+    tracked: bool = False
+    pausing: bool = False
+    resting: bool = False
+    resumed: bool = False
+    fault: Failed | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExecutorSnapshot:
+    """The whole of a program that is carried out: a value, to be put back any number of times."""
+
+    machine: MachineSnapshot
+    world: WorldSnapshot
+    target: Any
+    progress: Any
+
+
+class Executor:
+    """Carries a program out on a target."""
+
+    def __init__(
+        self,
+        project: Project,
+        target: Target,
+        world: RobotWorld,
+        *,
+        decisions: Decisions | None = None,
+        alter: Alter | None = None,
+        observer: Observer | None = None,
+        most_us: int | None = None,
+    ) -> None:
+        """``decisions`` may force the branches of conditions; ``most_us`` ends the run earlier than usual."""
+        self._project, self._target, self.world = project, target, world
+        self._alter = alter or (lambda effect: effect)
+        self._observer = observer or Observer()
+        self._most_us = run_bounds.MAX_RUN_US if most_us is None else most_us
+        self._machine = Machine(project.program, world, project.points.names, decisions)
+        self._now = _Progress()
+        self._stop_requested = self._halt_requested = False
+
+    # --- from outside ------------------------------------------------------------------------------------------------
+
+    def advance(self, cycles: int = 1) -> Status:
+        """Run at most so many interpolation cycles; fewer when the program is paused or ends."""
+        for _ in range(cycles):
+            if not self._ready():
+                break
+            self._cycle()
+        return self.status
+
+    @property
+    def status(self) -> Status:
+        """Where the program stands now."""
+        target, now = self._target, self._now
+        return Status(state=self._state, statement=target.statement, time_us=target.time_us, fault=now.fault)
+
+    @property
+    def _state(self) -> State:
+        now = self._now
+        if now.phase is _Phase.OVER:
+            failed = bool(self._target.alarms) or now.fault is not None
+            return State.STOPPED if self._stop_requested else State.ALARM if failed else State.DONE
+        if now.resting:
+            return State.PAUSED
+        waits = now.phase is _Phase.BUSY and any(isinstance(each.node, Wait) for each in now.doing)
+        return State.WAITING if waits else State.RUNNING
+
+    def pause(self) -> None:
+        """Let the arm come to rest on its path, and the program stand; simulated time stands still from then on."""
+        self._now.pausing = self._now.phase in (_Phase.READY, _Phase.BUSY)
+        self._now.resumed = False
+
+    def resume(self) -> None:
+        """Go on after ``pause``, on the path where the arm stands."""
+        self._now.resumed = self._now.pausing
+
+    def stop(self) -> None:
+        """Stop the arm on its path and end the program (category 1), from the next cycle on.
+
+        Safe to call from a signal handler.
+        """
+        self._stop_requested = True
+
+    def halt(self) -> None:
+        """Stop at once and end the program (category 0); safe to call from a signal handler."""
+        self._stop_requested = self._halt_requested = True
+
+    def feed(self, line: Line) -> None:
+        """Carry out one more statement where the program stands; when it is over, the program is paused there.
+
+        ``Fault`` for a statement that cannot stand alone, ``RuntimeError`` during a motion and after an alarm.
+        """
+        now = self._now
+        over = now.phase is _Phase.OVER
+        if now.due is not None or not (now.phase is _Phase.READY or over):
+            raise RuntimeError("a statement is being carried out")
+        if over and self._state is not State.DONE:
+            raise RuntimeError("the program has been ended by an alarm or a stop")
+        self._machine.feed(line)
+        now.phase, now.fault = _Phase.READY, None
+        now.pausing = now.resting = now.resumed = False
+
+    def snapshot(self) -> ExecutorSnapshot:
+        """Return the whole state: machine, world, target with its record, and what is kept here."""
+        return ExecutorSnapshot(
+            machine=self._machine.snapshot(),
+            world=self.world.snapshot(),
+            target=self._target.snapshot(),
+            progress=(replace(self._now), self._stop_requested, self._halt_requested),
+        )
+
+    def restore(self, snapshot: ExecutorSnapshot) -> None:
+        """Go back, or on, to a snapshot; from there the same bytes follow."""
+        self._machine.restore(snapshot.machine)
+        self.world.restore(snapshot.world)
+        self._target.restore(snapshot.target)
+        now, self._stop_requested, self._halt_requested = snapshot.progress
+        self._now = replace(now)
+
+    # --- cycles ------------------------------------------------------------------------------------------------------
+
+    def _ready(self) -> bool:
+        """Carry out what takes no time; return whether there is a cycle to run."""
+        target, now = self._target, self._now
+        while True:
+            if now.pausing and not self._interrupted():
+                return not now.resting
+            match now.phase:
+                case _Phase.READY:
+                    self._go_on()
+                case _Phase.BUSY:
+                    if target.goes_on() and not self._stop_requested:
+                        return True
+                    self._end_effects()
+                case _Phase.STOPPING:
+                    if not target.at_rest:
+                        return True
+                    self._finish()
+                    now.phase = _Phase.OVER
+                case _Phase.OVER:
+                    return False
+                case _:
+                    assert_never(now.phase)
+
+    def _interrupted(self) -> bool:
+        """Pause or go on; return whether the program goes on, else the arm comes to rest or rests (``resting``)."""
+        now = self._now
+        if now.phase not in (_Phase.READY, _Phase.BUSY) or self._stop_requested:
+            now.pausing = now.resting = False
+            if now.phase is _Phase.READY:
+                self._end_effects()
+            return True
+        if now.due is not None and now.phase is _Phase.READY:  # in the middle of a statement
+            return True
+        now.resting = self._target.hold()
+        if now.resting and now.resumed:
+            self._target.go_on()
+            now.pausing = now.resting = now.resumed = False
+        return not now.pausing
+
+    def _cycle(self) -> None:
+        target, now = self._target, self._now
+        if now.phase is _Phase.STOPPING:
+            target.brake(at_once=self._halt_requested)
+        elif not target.cycle() or target.alarms:
+            self._end_effects()
+        elif target.time_us >= self._most_us:
+            now.fault = self._too_long()
+            target.fail(now.fault)
+        self._observer.cycle_done(target.time_us)
+
+    def _end_effects(self) -> None:
+        """End the effects whose cycles are over, or that an alarm or a stop has ended."""
+        now, target = self._now, self._target
+        if self._stop_requested and not target.alarms:
+            target.stop()
+            now.phase = _Phase.STOPPING  # also where no cycle runs: the arm rests
+        if target.alarms:
+            self._observer.alarm(target.alarms[0])
+            now.phase = _Phase.STOPPING
+        elif target.time_us >= self._most_us:
+            self._fail(self._too_long())
+        elif now.phase is _Phase.BUSY:
+            self._finish()
+            now.phase = _Phase.READY
+
+    def _finish(self) -> None:
+        now = self._now
+        self._target.finish()
+        if any(isinstance(each, MoveTo) for each in now.doing):
+            self.world.q_last = self._target.q
+        for each in now.doing:
+            self._observer.effect_done(each)
+        now.doing = ()
+
+    def _too_long(self) -> Failed:
+        statement = self._target.statement
+        assert statement is not None  # something has been started
+        fault = self._machine.too_long(statement, self._most_us / 1e6)
+        return _failed(fault, fault.origin)
+
+    def _fail(self, fault: Failed) -> None:
+        """End with a fault that the program does not catch."""
+        self._now.fault, self._now.phase = fault, _Phase.STOPPING
+        self._target.fail(fault)
+        for alarm in self._target.alarms[:1]:
+            self._observer.alarm(alarm)
+
+    # --- the program -------------------------------------------------------------------------------------------------
+
+    def _go_on(self) -> None:
+        """Take what the program requests next, or what was due after the motion that has ended."""
+        now = self._now
+        try:
+            if now.due is not None:
+                self._arrive(now.due)
+            else:
+                self._take(self._machine.step())
+        except Fault as fault:
+            self._refuse(fault)
+
+    def _take(self, event: Event) -> None:
+        now = self._now
+        match event:
+            case LineBegun():
+                self._observer.statement_began(event)
+            case Done() | Failed() | FedEnded():
+                self._after_motion(event)
+            case _:
+                now.request = effect = self._alter(event)
+                if effect is not None:
+                    self._target.begin(effect)
+                    if isinstance(
+                        effect, MoveTo | SetWrist
+                    ):  # each move carries the setting of WRIST that holds for it
+                        self._carry_out(effect)
+                    else:
+                        self._after_motion(effect)
+
+    def _after_motion(self, due: Effect | _End) -> None:
+        """Let the moves that are kept run first, if there are any."""
+        self._now.due = due
+        if self._now.chain:
+            self._start_chain()
+        else:
+            self._arrive(due)
+
+    def _arrive(self, due: Effect | _End) -> None:
+        now = self._now
+        now.due = None
+        match due:
+            case Done():
+                now.phase = _Phase.OVER
+            case FedEnded():
+                now.pausing = True
+            case Failed():
+                if due.fed:
+                    now.fault, now.pausing = due, True
+                else:
+                    self._target.statement = due.origin
+                    self._fail(due)
+            case _:
+                self._carry_out(due)
+
+    def _refuse(self, fault: Fault) -> None:
+        """Give a request that cannot be carried out back to the program, which may catch the fault (ON ERROR)."""
+        now = self._now
+        due, now.due, now.doing = now.due, None, ()
+        now.phase = _Phase.READY
+        if now.request is None or isinstance(due, Done | Failed | FedEnded):
+            self._fail(_failed(fault, self._target.statement))
+        else:
+            self._target.refuse(now.request, fault)
+            self._machine.refuse(fault)
+
+    # --- effects -----------------------------------------------------------------------------------------------------
+
+    def _carry_out(self, effect: Effect) -> None:
+        """Start an effect on the target, in SI."""
+        target, cell, now = self._target, self._project.cell, self._now
+        now.phase, now.doing = _Phase.BUSY, (effect,)
+        match effect:
+            case MoveTo():
+                self._move(effect)
+            case SetWrist():
+                target.wrist(effect)
+            case Drain():
+                target.drain(effect)
+                now.phase, now.doing = _Phase.READY, ()
+            case SetPayload():
+                target.load(effect, lowering.payload(effect, cell))
+            case SetHand():
+                target.hand(effect, self._cycles(lowering.dwell_s(effect, cell)))
+            case SetSeam():
+                target.seam(effect)
+                now.tracked = effect.sensor is not None
+            case SetTool():
+                self.world.X_flange_tool = lowering.tool(effect.tool, cell)
+                target.tool(effect, self.world.X_flange_tool)
+            case SetOutput():
+                self.world.set_output(effect.output, effect.value, effect.seconds)
+                target.output(effect)
+            case Pass():
+                target.wait(effect, max(1, self._cycles(effect.seconds)))
+            case Show():
+                target.show(effect)
+            case Halt():
+                target.halt(effect)
+            case _:
+                assert_never(effect)
+
+    def _cycles(self, seconds: float) -> int:
+        return -(-round(seconds * 1e6) // self._project.profile.period_us)
+
+    def _move(self, effect: MoveTo) -> None:
+        """Start a move, or keep it where the next one may blend into it; it begins where the one before ends."""
+        now, world = self._now, self.world
+        command = lowering.move(effect, world.around)
+        if now.tracked:
+            command = tracked(command)
+        blends = command.zone > 0.0
+        if blends or now.chain:  # planned here, where the program can answer a refusal, and not when the chain runs
+            plan = self._target.rehearse(world.q_last, command)
+            world.q_last = plan.q[-1]
+            blends = blends and len(plan.q) > 1 and len(now.chain) + 1 < run_bounds.MAX_CHAIN
+        now.chain = (*now.chain, Requested(effect=effect, command=command))
+        if blends:
+            now.phase, now.doing = _Phase.READY, ()
+        else:
+            self._start_chain()
+
+    def _start_chain(self) -> None:
+        now = self._now
+        chain, now.chain = now.chain, ()
+        now.phase, now.doing = _Phase.BUSY, tuple(each.effect for each in chain)
+        self._target.move(chain)
+
+
+def _failed(fault: Fault, origin: Origin | None) -> Failed:
+    assert origin is not None  # something has been started
+    return Failed(code=fault.code, message=fault.message, hint=fault.hint, origin=origin)

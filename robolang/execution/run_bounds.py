@@ -1,0 +1,6 @@
+"""Bounds of a run, rehearsed or real: so that a program that never ends or never stops is carried out nevertheless."""
+
+MAX_CHAIN = 200
+"""Most moves that blend into one another without a stop."""
+MAX_RUN_US = 1_800_000_000
+"""Longest run, us of simulated time: about a kilobyte of log is kept for every tick."""
