@@ -1,0 +1,197 @@
+"""The executor: it advances by cycles, pauses on the path, is fed, and goes back to snapshots, bit for bit."""
+
+import random
+
+import numpy as np
+import pytest
+
+from robolang.core.source import Source
+from robolang.execution.executor import ENDED, State
+from robolang.execution.observer import Observer
+from robolang.execution.session import Session
+from robolang.project.project import load_project
+from robolang.syntax.parser import parse
+from tests.campaign import size
+from tests.programs.runs import ROOT
+
+PROGRAMS = sorted(ROOT.rglob("*.rbl"))
+
+
+def project_of(tmp_path, text):
+    (tmp_path / "p.rbl").write_text(text)
+    return load_project(tmp_path / "p.rbl")
+
+
+def fed(text):
+    """A statement as a prompt has it."""
+    (line,) = parse(Source("prompt", text)).program.statements
+    return line
+
+
+def log_of(session):
+    """The log so far, as bytes."""
+    signals = session.controller.recorder.signals(session.controller.tool_poses)
+    return {name: values.tobytes() for name, values in signals.items()}
+
+
+def ended(session):
+    """The log and the report of a session that is carried out to its end."""
+    while session.executor.advance(100).state not in ENDED:
+        pass
+    return log_of(session), session.result(0.0).report
+
+
+STOPS = size(200, 4)
+"""Random stops: the figure of the campaign, and of a sample."""
+
+
+@pytest.mark.parametrize("number", range(STOPS))
+def test_from_a_snapshot_on_the_same_bytes_follow(number):
+    """Stop at a random cycle, keep it, go on for 50 cycles, go back and go on again."""
+    chance = random.Random(number)
+    path = chance.choice(PROGRAMS)
+    session = Session(load_project(path))
+    stopped = session.executor.advance(chance.randrange(1, 600))
+    kept = session.executor.snapshot()
+    went = session.executor.advance(50)
+    first = log_of(session)
+    session.executor.advance(chance.randrange(40))
+    session.executor.restore(kept)
+    assert session.executor.status == stopped
+    assert session.executor.advance(50) == went
+    assert log_of(session) == first
+
+
+@pytest.mark.parametrize(
+    "path", [path for path in PROGRAMS if path.stem in ("tend", "sort", "seam")], ids=lambda path: path.stem
+)
+def test_a_run_that_goes_back_again_and_again_ends_as_one_that_does_not(path):
+    """Steps back by restoring: log and report of the whole run are those of an uninterrupted one."""
+    whole = ended(Session(load_project(path), physics=False))
+    session = Session(load_project(path), physics=False)
+    kept = []
+    for _ in range(8):
+        kept.append(session.executor.snapshot())
+        session.executor.advance(97)
+    for snapshot in (kept[6], kept[1], kept[5], kept[0], kept[3]):
+        session.executor.restore(snapshot)
+        session.executor.advance(30)
+    assert ended(session) == whole
+    session.executor.restore(kept[2])
+    assert ended(session) == whole
+
+
+def test_a_run_step_by_step_is_the_run():
+    path = ROOT / "shop/palletise.rbl"
+    result = Session(load_project(path), physics=False).run()
+    session = Session(load_project(path), physics=False)
+    while session.executor.advance().state not in ENDED:
+        pass
+    log = session.result(0.0).log
+    assert all(np.array_equal(log[name], values) for name, values in result.log.items())
+    assert session.executor.status.state is State.DONE
+
+
+class Everything(Observer):
+    """Keeps what it sees."""
+
+    def __init__(self):
+        self.seen = []
+
+    def statement_began(self, statement):
+        self.seen.append(f"{statement.line} {type(statement.node).__name__}")
+
+    def run_began(self, run, time_us):
+        self.seen.append(f"began {run.text}")
+
+    def effect_done(self, effect):
+        self.seen.append(f"done {type(effect).__name__}")
+
+    def cycle_done(self, time_us):
+        if self.seen[-1] != "cycles":
+            self.seen.append("cycles")
+
+    def alarm(self, alarm):
+        self.seen.append(alarm.code)
+
+    def printed(self, text):
+        self.seen.append(f"printed {text}")
+
+
+def test_an_observer_sees_every_statement_and_what_becomes_of_it(tmp_path):
+    observer = Everything()
+    project = project_of(tmp_path, "X = 2\nPRINT X\nZONE 30\nMOVE P1\nMOVE P2\nDELAY 0.1\nX = 1 / (X - 2)\n")
+    assert not Session(project, physics=False, observer=observer).run().ok
+    assert observer.seen == [
+        "1 Assign",
+        "2 Print",
+        "began PRINT X",
+        "printed 2",
+        "done Show",
+        "3 Setting",
+        "4 Move",
+        "5 Move",
+        "6 Delay",
+        "began MOVE P1",
+        "cycles",
+        "began MOVE P2",
+        "cycles",
+        "done MoveTo",
+        "done MoveTo",
+        "began DELAY 0.1",
+        "cycles",
+        "done Pass",
+        "7 Assign",
+        "RBL501",
+        "cycles",
+    ]
+
+
+def test_a_stop_ends_the_program_and_says_so():
+    session = Session(load_project(PROGRAMS[0]), physics=False)
+    session.executor.advance(100)
+    session.executor.stop()
+    while session.executor.advance().state not in ENDED:
+        pass
+    assert session.executor.status.state is State.STOPPED
+    assert [alarm.code for alarm in session.result(0.0).alarms] == ["RBL530"]
+    with pytest.raises(RuntimeError):
+        session.executor.feed(fed("PRINT 1"))
+
+
+def test_a_wait_is_a_state_of_its_own(tmp_path):
+    session = Session(project_of(tmp_path, "DELAY 0.1\nWAIT TIMER > 0.2\n"), physics=False)
+    assert session.executor.advance(5).state is State.RUNNING
+    status = session.executor.advance(15)
+    assert (status.state, status.statement.line, status.time_us) == (State.WAITING, 2, 160_000)
+    assert session.executor.advance(100).state is State.DONE
+
+
+def test_statements_are_fed_where_the_program_stands(tmp_path):
+    seen = Everything()
+    session = Session(project_of(tmp_path, "X = 1\nDELAY 0.1\nPRINT X\n"), physics=False, observer=seen)
+    executor = session.executor
+    executor.pause()
+    assert executor.advance().state is State.PAUSED
+    executor.feed(fed("MOVE P1"))
+    with pytest.raises(RuntimeError):
+        executor.advance(1)
+        executor.feed(fed("PRINT 1"))
+    while executor.advance().state is State.RUNNING:
+        pass
+    assert executor.status.state is State.PAUSED
+    went = executor.status.time_us
+    assert executor.advance(10).time_us == went > 100_000
+    executor.feed(fed("X = 1 / 0"))
+    assert executor.advance(10).fault.code == "RBL501"
+    executor.feed(fed("PRINT TIMER"))
+    assert executor.advance(10).fault is None
+    executor.resume()
+    assert executor.advance(100).state is State.DONE
+    executor.feed(fed("PRINT X + 1"))
+    executor.advance(10)
+    assert [text for text in seen.seen if text.startswith("printed")] == [
+        f"printed {went / 1e6:g}",
+        "printed 1",
+        "printed 2",
+    ]
