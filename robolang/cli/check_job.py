@@ -175,7 +175,7 @@ def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
 
     selection = _selection(checked.source.path, job, settings)
     try:
-        plan = planned(checked.analysis, job.max_cycle_s)
+        plan = planned(checked.analysis, job.max_cycle_s, settings.bounds(Path(checked.source.path).parent))
     except Fault as fault:
         return replace(outcome, checked=replace(checked, faults=(*checked.faults, *fault.all)))
     known = {(item.code, item.span) for item in checked.diagnostics}

@@ -10,10 +10,11 @@ from dataclasses import asdict, dataclass
 
 from robolang.analysis.analysis import Analysis
 from robolang.cli import lines
+from robolang.core.bounds import Bounds
 from robolang.core.diagnostics import Diagnostic, safe
 from robolang.execution.dry_run import Rehearsal
 from robolang.planning.line_times import LineTime, line_times
-from robolang.planning.motion_findings import findings, worst_loads
+from robolang.planning.motion_findings import DEFAULTS, findings, worst_loads
 from robolang.planning.path_coverage import Exploration, explore
 from robolang.project.project import Project, load_project
 from runtime.core.tomlfile import FileFault
@@ -47,8 +48,8 @@ class Planned:
     times: dict[str, object] | None = None
 
 
-def planned(program: Analysis, max_cycle_s: float | None) -> Planned:
-    """Return what planning the motion of a program shows; ``Fault`` for files beside it.
+def planned(program: Analysis | str, max_cycle_s: float | None, bounds: Bounds = DEFAULTS) -> Planned:
+    """Return what planning the motion of a program, or of the file of one, shows; ``Fault`` for files beside it.
 
     What the cell makes an error of the text (a load, a tool or an input that it does not have) is among them.
     """
@@ -56,7 +57,7 @@ def planned(program: Analysis, max_cycle_s: float | None) -> Planned:
     if not project.ok:
         return Planned(diagnostics=project.diagnostics, warnings=project.cell.warnings)
     explored = explore(project)
-    found = findings(project, explored.rehearsal, max_cycle_s, explored.detours)
+    found = findings(project, explored.rehearsal, max_cycle_s, explored.detours, bounds)
     rows = line_times(project, explored.rehearsal)
     return Planned(
         diagnostics=found,

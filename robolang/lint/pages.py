@@ -6,6 +6,7 @@ Everything on a page comes from the registries; nothing is written twice.
 import sys
 from pathlib import Path
 
+from robolang.core.bounds import Bound, of_rule
 from robolang.lint.registry import rule, rules
 from robolang.lint.rule import Rule
 from runtime.core.faults import lookup
@@ -33,6 +34,8 @@ def page(code: str) -> str:
     if known is not None:
         parts += _story(known)
     parts += ["## What to do", entry.remedy]
+    if bounds := of_rule(code):
+        parts += [f"Or set another bound in robolang.toml:\n\n```toml\n{_bounds(bounds)}\n```"]
     if known is not None and known.fix:
         parts += ["## Fix", f"{known.fix} The fix is safe: `robolang check --fix` applies it."]
     return "\n\n".join(parts) + "\n"
@@ -75,6 +78,15 @@ def _story(known: Rule) -> list[str]:
         "Instead:",
         f"```{'toml' if known.points else 'rbl'}\n{known.instead}\n```",
     ]
+
+
+def _bounds(bounds: tuple[Bound, ...]) -> str:
+    width = max(len(f"{bound.key} = {bound.default:g}") for bound in bounds)
+    lines = [f"[lint.{bounds[0].rule}]"]
+    for bound in bounds:
+        key = f"{bound.key} = {bound.default:g}"
+        lines.append(f"{key:<{width}}  # {bound.low:g} to {bound.high:g} {bound.unit}: {bound.meaning}")
+    return "\n".join(lines)
 
 
 def _row(known: Rule) -> str:

@@ -10,26 +10,38 @@ not merged. A ``pyproject.toml`` that does not speak of robolang is passed over.
     extend-select = ["point-undefined"]
     ignore = ["RBL116"]
 
+    [lint.near-joint-limit]            # bounds of a rule (``robolang.core.bounds``), for check --motion
+    margin_deg = 5
+
 An unknown key, or one given twice, is a ``FileFault`` RBL707 at its place, an unknown rule RBL710.
 """
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from robolang.lint.selection import Layer, guess, selector
 from runtime.core.tomlfile import TWICE, FileFault, Source, Table, load_table, read_source
+
+if TYPE_CHECKING:
+    from robolang.core.bounds import Bound, Bounds
 
 FILE, PYPROJECT = "robolang.toml", "pyproject.toml"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Configuration:
-    """What a file says: of rules, and which paths below ``folder`` are passed over where a folder is searched."""
+    """What a file says: of rules, and which paths below ``folder`` are passed over where a folder is searched.
+
+    ``bounds`` are the tables ``[lint.NAME]`` as they were read, checked.
+    """
 
     folder: Path
     layer: Layer = field(default_factory=Layer)
+    bounds: "Mapping[Bound, float]" = field(default_factory=dict)
     exclude: tuple[str, ...] = ()
 
 
@@ -42,6 +54,12 @@ class Settings:
     def layer(self, folder: Path) -> Layer:
         """Return what the nearest file says of rules in a folder; ``FileFault`` RBL600, RBL601, RBL61x, RBL7xx."""
         return self._nearest(Path(os.path.abspath(folder))).layer  # noqa: PTH100 - as the user sees it, not resolved
+
+    def bounds(self, folder: Path) -> "Bounds":
+        """Return the bounds of rules in a folder, the defaults where nothing sets them; ``FileFault`` as ``layer``."""
+        from robolang.core.bounds import Bounds
+
+        return Bounds(self._nearest(Path(os.path.abspath(folder))).bounds)  # noqa: PTH100
 
     def excludes(self, path: str) -> bool:
         """Return whether the nearest file above a file or folder excludes it; ``FileFault`` as ``layer``."""
@@ -83,17 +101,32 @@ def _read(folder: Path) -> Configuration | None:
 
 
 def _configuration(folder: Path, table: Table) -> Configuration:
-    layer, exclude = _layer(table.table("lint", required=False)), _texts(table, "exclude")
+    lint = table.table("lint", required=False)
+    layer, bounds, exclude = _layer(lint), _bounds(lint), _texts(table, "exclude")
+    _done(lint)
     _done(table)
-    return Configuration(folder=folder, layer=layer, exclude=exclude)
+    return Configuration(folder=folder, layer=layer, bounds=bounds, exclude=exclude)
 
 
 def _layer(table: Table) -> Layer:
     select = _selectors(table, "select") if "select" in table else None
-    layer = Layer(select=select, extend=_selectors(table, "extend-select"), ignore=_selectors(table, "ignore"))
-    table.ask("select")
-    _done(table)
-    return layer
+    return Layer(select=select, extend=_selectors(table, "extend-select"), ignore=_selectors(table, "ignore"))
+
+
+def _bounds(table: Table) -> "dict[Bound, float]":
+    """Read the tables of rules that have bounds."""
+    if not any(table.is_table(key) for key in table.names()):
+        return {}
+    from robolang.core.bounds import BOUNDS  # here, since few files set one and every check comes by
+
+    found = {}
+    for rule in dict.fromkeys(bound.rule for bound in BOUNDS):
+        group = table.table(rule, required=False)
+        for bound in (bound for bound in BOUNDS if bound.rule == rule):
+            if bound.key in group:
+                found[bound] = group.number(bound.key, low=bound.low, high=bound.high)
+        _done(group)
+    return found
 
 
 def _texts(table: Table, key: str) -> tuple[str, ...]:

@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from robolang.core.bounds import ELBOW, RANGE_MARGIN, SHOULDER, WRIST, Bounds
 from robolang.core.diagnostics import Diagnostic, Severity
 from robolang.core.source import Span
 from robolang.execution.dry_run import Rehearsal, RehearsedMove
@@ -33,12 +34,7 @@ from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.kinematics.singularity import singularities
 from runtime.robot.kinematics.wrist_load import ratings, wrist_load
 
-NEAR = 0.5 * DEG
-"""A joint nearer than this to the end of its range is named, rad."""
-NEAR_SINGULAR = 2.0 * DEG
-"""A wrist or elbow nearer than this to a singular posture is named, rad."""
-NEAR_SHOULDER = 20.0 * MM
-"""The same for the wrist centre over axis 1, m."""
+DEFAULTS = Bounds()
 OVERLOAD, NOTHING = 1e-3, 1e-6
 """A payload that is over its limit by less than this share and so many N m or kg m2 is within it."""
 
@@ -46,14 +42,18 @@ Found = Iterator[Diagnostic]
 
 
 def findings(
-    project: Project, rehearsal: Rehearsal, max_cycle_s: float | None = None, detours: Sequence[Detour] = ()
+    project: Project,
+    rehearsal: Rehearsal,
+    max_cycle_s: float | None = None,
+    detours: Sequence[Detour] = (),
+    bounds: Bounds = DEFAULTS,
 ) -> tuple[Diagnostic, ...]:
     """Return what is wrong with the motion of a program, one finding of a code for a statement.
 
     Of ``detours`` it is what the rehearsal has not shown: errors of planning and what the moves show, with the way to
     it. What stops a detour otherwise, such as a WAIT that times out, is what its program wants.
     """
-    moves = _Moves(project, rehearsal.kinematics)
+    moves = _Moves(project, rehearsal.kinematics, bounds)
     found: dict[tuple[str, Span], Diagnostic] = {}
     for item in (*rehearsal.refused, *moves.findings(rehearsal)):
         found.setdefault((item.code, item.span), item)
@@ -92,7 +92,8 @@ def _at(code: str, move: RehearsedMove, message: str, severity: Severity = Sever
 class _Moves:
     """Checks of the moves of rehearsals; what was looked at before is not looked at again."""
 
-    def __init__(self, project: Project, kinematics: Kinematics) -> None:
+    def __init__(self, project: Project, kinematics: Kinematics, bounds: Bounds) -> None:
+        self._bounds = bounds
         self._spec, self._period_s = project.cell.robot, project.profile.period_s
         self._kinematics = kinematics
         self._cell = CellTouches(project, kinematics)
@@ -147,7 +148,7 @@ class _Moves:
         """Report the joint that comes nearest to the end of its range."""
         spec = self._spec
         margin, axis, row = range_margin(move, spec.lower, spec.upper)
-        if not margin >= NEAR:
+        if not margin >= self._bounds[RANGE_MARGIN] * DEG:
             ends = f"{spec.lower[axis] / DEG:g} to {spec.upper[axis] / DEG:g} deg"
             at = float(move.q[row, axis]) / DEG
             yield _at(
@@ -163,19 +164,20 @@ class _Moves:
             return
         follows = move.plan.modes == FOLLOWS
         near = singularities(self._kinematics.opw, move.plan.q)
-        for name, values, least, unit, size in (
-            ("wrist is straight", near.wrist, NEAR_SINGULAR, "deg", DEG),
-            ("elbow is stretched or folded", near.elbow, NEAR_SINGULAR, "deg", DEG),
-            ("wrist centre is over axis 1", near.shoulder, NEAR_SHOULDER, "mm", MM),
+        for name, values, bound, size in (
+            ("wrist is straight", near.wrist, WRIST, DEG),
+            ("elbow is stretched or folded", near.elbow, ELBOW, DEG),
+            ("wrist centre is over axis 1", near.shoulder, SHOULDER, MM),
         ):
             row = int(np.argmin(np.where(follows, values, np.inf)))
-            if not values[row] >= least:
-                away, keep = beside(float(values[row]) / size, least / size, form=".2f")
+            least = self._bounds[bound]
+            if not values[row] >= least * size:
+                away, keep = beside(float(values[row]) / size, least, form=".2f")
                 yield _at(
                     "RBL427",
                     move,
                     f"at {100.0 * float(move.plan.s[row]):.1f} % of the way the arm is {away} "
-                    f"{unit} from where its {name}, which is singular; keep {keep} {unit} away",
+                    f"{bound.unit} from where its {name}, which is singular; keep {keep} {bound.unit} away",
                 )
                 return
 

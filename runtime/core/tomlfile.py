@@ -317,6 +317,10 @@ class Table:
         """Return whether a key is there and holds a list."""
         return isinstance(self._data.get(key), list)
 
+    def is_table(self, key: str) -> bool:
+        """Return whether a key is there and holds a table."""
+        return isinstance(self._data.get(key), dict)
+
     def raw_list(self, key: str) -> list[Any]:
         """Return an optional list as it stands (empty when missing)."""
         self._asked.add(key)

@@ -63,6 +63,7 @@ def _print(entry: "Code") -> None:
 
 def _print_page(code: str, console: "Console") -> None:
     """Print what the page of a rule adds, for a code that has one."""
+    from robolang.core.bounds import of_rule, shown
     from robolang.lint.registry import rule
 
     known = rule(code)
@@ -73,6 +74,10 @@ def _print_page(code: str, console: "Console") -> None:
         console.print(f"\n{heading}:\n")
         for line in program.splitlines():
             console.print(f"    {line}", soft_wrap=True)
+    if bounds := of_rule(code):
+        console.print(f"\nBounds, in [lint.{known.entry.name}] of robolang.toml:\n")
+        for bound in bounds:
+            console.print(f"    {shown(bound)}")
     if known.fix:
         console.print(f"\nrobolang check --fix: {known.fix}")
 

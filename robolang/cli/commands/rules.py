@@ -48,6 +48,7 @@ def _print(entries: "list[Code]") -> None:
     from rich.table import Table
 
     from robolang.cli.console import Console
+    from robolang.core.bounds import of_rule
     from robolang.lint.registry import rule
 
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
@@ -57,5 +58,6 @@ def _print(entries: "list[Code]") -> None:
     for entry in entries:
         known = rule(entry.code)
         severity, fix = ("", "") if known is None else (known.severity.value, "yes" if known.fix else "")
-        table.add_row(entry.code, entry.name, severity, fix, entry.meaning)
+        bounds = ", ".join(f"{bound.key} = {bound.default:g}" for bound in of_rule(entry.code))
+        table.add_row(entry.code, entry.name, severity, fix, entry.meaning + (f" Bounds: {bounds}." if bounds else ""))
     Console().print(table)

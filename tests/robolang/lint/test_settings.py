@@ -5,11 +5,14 @@ from pathlib import Path
 
 import pytest
 
+from robolang.core.bounds import BOUNDS, ELBOW, RANGE_MARGIN, SHOULDER, WRIST, Bounds
 from robolang.lint.files import programs
 from robolang.lint.selection import Layer
 from robolang.lint.settings import Settings, files_above
 from runtime.core.tomlfile import FileFault
 from tests.messages import fields
+from tests.robolang.cli.commands import robolang
+from tests.robolang.cli.test_check_report import heads
 from tests.robolang.lint.helpers import layer
 
 
@@ -178,3 +181,46 @@ def test_the_commands_of_the_documentation_find_nothing_at_the_root_of_this_repo
     monkeypatch.chdir(Path(__file__).parents[3])
     names = programs(["."], excludes=Settings().excludes)
     assert names and all(name.startswith("programs/") for name in names)
+
+
+# --- bounds of rules -------------------------------------------------------------------------------------------------
+
+
+def test_a_bound_of_a_rule_is_read_and_the_others_keep_their_defaults(tmp_path):
+    put(tmp_path / "robolang.toml", "[lint.near-joint-limit]\nmargin_deg = 5\n[lint.near-singularity]\nelbow_deg = 3\n")
+    found = Settings().bounds(tmp_path / "deep")
+    assert (found[RANGE_MARGIN], found[ELBOW], found[WRIST], found[SHOULDER]) == (5.0, 3.0, 2.0, 20.0)
+    assert found != Bounds()
+    assert Settings().bounds(tmp_path.parent) == Bounds()
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("[lint.near-joint-limit]\nmargin_deg = 91\n", ("RBL605", 2, 1)),
+        ("[lint.near-joint-limit]\nmargin_deg = nan\n", ("RBL604", 2, 1)),
+        ("[lint.near-joint-limit]\nmargin_deg = '5'\n", ("RBL613", 2, 1)),
+        ("[lint.near-joint-limit]\nmargin = 5\n", ("RBL707", 2, 1)),
+        ("[lint.near-joint-limits]\nmargin_deg = 5\n", ("RBL707", 1, 1)),
+        ("[lint]\nnear-joint-limit = 5\n", ("RBL707", 2, 1)),
+    ],
+)
+def test_a_bound_that_cannot_be_is_refused_at_its_place(tmp_path, text, place):
+    put(tmp_path / "robolang.toml", text)
+    assert fails(tmp_path) == place
+
+
+def test_a_bound_decides_what_check_finds(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    put(tmp_path / "p.rbl", "MOVEJ JOINT(0, 60, -190, 0, 60, 260)\n")  # J6 ends at 266
+    assert heads(robolang("check", "--motion").stdout) == []
+    put(tmp_path / "robolang.toml", "[lint.near-joint-limit]\nmargin_deg = 10\n")
+    assert heads(robolang("check", "--motion").stdout) == ["p.rbl:1:1: warning RBL422"]
+
+
+def test_bounds_are_shown(tmp_path):
+    for bound in BOUNDS:
+        explained = " ".join(robolang("explain", bound.code).stdout.split())
+        assert f"[lint.{bound.rule}]" in explained
+        assert f"{bound.key} = {bound.default:g} {bound.unit}" in explained
+        assert bound.key in robolang("rules").stdout
