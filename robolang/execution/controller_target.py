@@ -202,11 +202,12 @@ class ControllerTarget:
         self._record.controller.cycle()
 
     def hold(self) -> bool:
-        """Let the moves that run come to their end; returns whether the command rests."""
-        return not self._record.controller.moving
+        """Bring the move that runs to rest on its path; returns whether the command rests."""
+        return self._record.controller.hold()
 
     def go_on(self) -> None:
-        """Do nothing: the next effect follows."""
+        """Resume the move where it rests."""
+        self._record.controller.go_on()
 
     def stop(self) -> None:
         """Raise RBL530."""

@@ -229,6 +229,18 @@ class Controller:
 
     # stops ----------------------------------------------------------------------------------------------------------
 
+    def hold(self) -> bool:
+        """Bring the motion to rest on its path, so that ``go_on`` can resume it; returns whether the command rests.
+
+        Call it before every cycle until it does. A move under a seam sensor comes to its end first.
+        """
+        self.requests.hold()
+        return not self.moving
+
+    def go_on(self) -> None:
+        """Resume the motion that ``hold`` has brought to rest; the rest of the path is that of the plan."""
+        self.requests.go_on()
+
     def halt(self) -> None:
         """Stop at once (category 0): the brakes hold the arm from this tick on."""
         self.stops.halt()

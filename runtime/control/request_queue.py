@@ -21,7 +21,7 @@ from runtime.motion.given_rows import as_rows, check_motion, check_range
 from runtime.motion.interpolator import Interpolator
 from runtime.motion.motion_planner import ChainPlan, MotionPlanner, tracked_row
 from runtime.motion.seam import SeamMove, SeamTracker
-from runtime.motion.stop import stopping_rows
+from runtime.motion.stop import pause_course, resume_course, stopping_rows
 from runtime.robot.model.spec import RobotSpec
 
 
@@ -61,6 +61,7 @@ class RequestQueue(Stateful):
         self.tracker: SeamTracker | None = None
         """Tracker that moves follow; None without SEAM ON."""
         self._spec, self._areas, self._fine = spec, areas, fine
+        self._limits = spec.per_axis("limits", "speed"), spec.per_axis("limits", "acceleration")
         self._waiting: list[tuple[MovePlan, MoveLinear]] = []  # under the tracker a move begins where the last one led
         self._before = 0  # moves of a row before those that the interpolator has
         self._statements: tuple[ProgramLine, ...] = ()
@@ -175,9 +176,16 @@ class RequestQueue(Stateful):
 
     def stop(self) -> None:
         """Replace what is left by a stop on its path, within the limits of the joints."""
-        limits = self._spec.per_axis("limits", "speed"), self._spec.per_axis("limits", "acceleration")
         self._waiting = []
-        self.interpolator.stop(lambda rows, at, whole: stopping_rows(rows, at, self._fine, *limits, whole))
+        self.interpolator.stop(lambda rows, at, whole: stopping_rows(rows, at, self._fine, *self._limits, whole))
+
+    def hold(self) -> None:
+        """Bring the motion to rest on its path, to be resumed by ``go_on``; under a seam sensor at its end."""
+        self.interpolator.hold(lambda rows, at: pause_course(rows, at, self._fine, *self._limits))
+
+    def go_on(self) -> None:
+        """Resume the motion that ``hold`` has brought to rest."""
+        self.interpolator.go_on(lambda rows, at: resume_course(rows, at, self._fine, *self._limits))
 
     def wait_no_more(self) -> None:
         """Forget the moves that wait; the one that runs goes on."""

@@ -7,6 +7,7 @@ controller.
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,12 +17,23 @@ from runtime.core.state import Stateful
 from runtime.motion.cartesian_planner import EXCEPTION, FOLLOWS, MovePlan
 from runtime.motion.motion_planner import ChainPlan
 from runtime.motion.seam import SeamMove
+from runtime.motion.stop import on_curve
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Held:
+    """Rows of a move that is paused, with their modes and commands; it rests ``at`` a place between them."""
+
+    rows: Array
+    modes: tuple[int, ...]
+    commands: tuple[int, ...]
+    at: float
 
 
 class Interpolator(Stateful):
     """Hands out the set-points of one move at a time, or of moves in a row."""
 
-    VALUES = ("_rows", "_modes", "_commands", "_n", "fault")
+    VALUES = ("_rows", "_modes", "_commands", "_n", "_held", "fault")
 
     def __init__(self) -> None:
         self._rows: Array | None = None
@@ -30,12 +42,13 @@ class Interpolator(Stateful):
         self.seam: SeamMove | None = None
         """The move under a seam sensor that runs, None: another one or none. Its owner keeps and restores it."""
         self._n = 0
+        self._held: _Held | None = None
         self.fault: Fault | None = None
         """What the last set-point has to stop the arm for: a seam that cannot be followed."""
 
     def start(self, plan: MovePlan | ChainPlan, seam: SeamMove | None = None) -> None:
         """Begin a move, with ``seam`` point by point; ``RuntimeError`` when another one still runs."""
-        if self.busy:
+        if self.busy or self._held is not None:
             raise RuntimeError("a move is running")
         self._rows, self._modes, self.seam, self.fault = plan.q, tuple(plan.modes.tolist()), seam, None
         self._commands = tuple(plan.command.tolist()) if isinstance(plan, ChainPlan) else (0,) * len(plan.q)
@@ -46,6 +59,7 @@ class Interpolator(Stateful):
 
     def stop(self, stopping: Callable[[Array, int, bool], Array]) -> None:
         """Replace the rows that are left by those of a stop, ``stopping(rows, reached, whether they end at rest)``."""
+        self._held = None
         if self._rows is not None and self.busy:
             rows, reached, mode, whole = self._rows, self._rows[: self._n + 1], self.mode, True
             if self.seam is not None:
@@ -54,9 +68,36 @@ class Interpolator(Stateful):
             self._rows = np.concatenate([reached, stopping(rows, self._n, whole)])
             self._modes, self._commands = (mode,) * len(self._rows), (self.command,) * len(self._rows)
 
+    def hold(self, pausing: Callable[[Array, int], Array]) -> None:
+        """Replace the rows that are left by the places ``pausing(rows, reached)`` on them, and keep them for ``go_on``.
+
+        A move under a seam sensor is left to end: its sensor would go on to see the seam.
+        """
+        if self._rows is None or not self.busy or self._held is not None or self.seam is not None:
+            return
+        rows, at = self._rows, self._n
+        course = pausing(rows, at)
+        if course[-1] < len(rows) - 1:
+            self._held = _Held(rows=rows, modes=self._modes, commands=self._commands, at=float(course[-1]))
+            self._play(self._held, course, rows[: at + 1], list(range(at + 1)))
+
+    def go_on(self, resuming: Callable[[Array, float], Array]) -> None:
+        """Go on where ``hold`` has come to rest, at the places ``resuming(rows, rest)``."""
+        held, self._held = self._held, None
+        if held is not None and self._rows is not None:
+            self._play(held, resuming(held.rows, held.at), self._rows[-1:], [int(np.ceil(held.at))])
+
+    def _play(self, held: "_Held", course: Array, reached: Array, passed: list[int]) -> None:
+        """Hand out what is at these places of held rows, after those that have been reached, numbers ``passed``."""
+        towards = [*passed, *np.ceil(course).astype(int).tolist()]  # between two rows it is on its way to the later one
+        self._rows = np.concatenate([reached, on_curve(held.rows, course)])
+        self._modes = tuple([held.modes[k] for k in towards])
+        self._commands = tuple([held.commands[k] for k in towards])
+        self._n = len(reached) - 1
+
     def drop(self) -> None:
         """Forget the move: no set-point is left to send."""
-        self._rows = self.seam = self.fault = None
+        self._rows = self.seam = self.fault = self._held = None
 
     @property
     def command(self) -> int:

@@ -31,7 +31,50 @@ def stopping_rows(
     ``speed`` rad/s and ``acceleration`` rad/s2 (n,) are the joints' limits. No row left gives no set-point.
     ``ends_at_rest`` False: the rows break off in motion, so the best stop that they allow is taken.
     """
-    limits = speed, acceleration
+    course = _stop(rows, at, fine, (speed, acceleration), ends_at_rest)
+    return rows[at + 1 :] if course is None else _curve(rows, course)
+
+
+def pause_course(rows: Array, at: int, fine: FineInterpolator, speed: Array, acceleration: Array) -> Array:
+    """Return the places (K,) on ``rows`` that follow row ``at`` and end at rest there: whole and half row numbers.
+
+    As ``stopping_rows``; where no stop fits before their end, the rows that are left.
+    """
+    course = _stop(rows, at, fine, (speed, acceleration), True)
+    return np.arange(at + 1.0, len(rows)) if course is None else course
+
+
+def resume_course(rows: Array, start: float, fine: FineInterpolator, speed: Array, acceleration: Array) -> Array:
+    """Return the places (K,) on ``rows`` that follow the rest at ``start``, a place where ``pause_course`` has ended.
+
+    The rate rises from 0 to 1 as it fell. It takes an even or an odd number of cycles, so that the rows from there on
+    are reached at whole numbers: the motion then goes on as if it had not been interrupted.
+    """
+    end = len(rows) - 1.0
+    whole = start == np.floor(start)
+    cycles = _SHORTEST + _SHORTEST % 2 if whole else _SHORTEST | 1
+    while True:
+        rise = start + np.arange(1, cycles + 1) - _progress(cycles)
+        course = np.concatenate([rise, np.arange(rise[-1] + 1.0, end + 1.0)])
+        course = np.append(course[course < end], end)  # where the curve ends first, it has come to rest by itself
+        played = _curve(rows, np.append(np.full(4, start), course[: cycles + 4]))
+        if _excess(fine, played, (speed, acceleration)).max() <= _SLACK or cycles > _LONGEST:
+            return course
+        cycles += 2 * max(1, cycles // 16)
+
+
+def on_curve(rows: Array, course: Array) -> Array:
+    """Return the set-points (K, n) at places (K,) of rows: the very rows at whole numbers."""
+    found = _curve(rows, course)
+    whole = course == np.floor(course)
+    found[whole] = rows[course[whole].astype(int)]
+    return found
+
+
+def _stop(
+    rows: Array, at: int, fine: FineInterpolator, limits: tuple[Array, Array], ends_at_rest: bool
+) -> Array | None:
+    """Return the places (K,) of the shortest stop after row ``at`` that fits, None: the rows are left to end."""
     left = len(rows) - 1 - at
     sent = rows[np.maximum(np.arange(at - 3, at + 1), 0)]
     touched = len(sent) * fine.ticks
@@ -39,17 +82,15 @@ def stopping_rows(
     rough = _excess(fine, np.concatenate([sent, rows[at + 1 : at + 1 + len(sent)]]), limits)[:touched].max(initial=0.0)
     cycles, best = _SHORTEST, None
     while cycles / 2.0 <= left and cycles <= _LONGEST:
-        candidate = _curve(rows, at + _progress(cycles))
-        ratio = _excess(fine, np.concatenate([sent, candidate]), limits)
+        course = at + _progress(cycles)
+        ratio = _excess(fine, np.concatenate([sent, _curve(rows, course)]), limits)
         worst = np.maximum(ratio[:touched].max() / np.maximum(1.0, 1.1 * rough), ratio[touched:].max(initial=0.0))
         if worst <= _SLACK:
-            return candidate
+            return course
         if best is None or badness(worst) < badness(best[0]):
-            best = worst, candidate
+            best = worst, course
         cycles += max(1, cycles // 8)
-    if best is not None and not ends_at_rest:
-        return best[1]
-    return rows[at + 1 :]
+    return None if best is None or ends_at_rest else best[1]
 
 
 def _excess(fine: FineInterpolator, played: Array, limits: tuple[Array, Array]) -> Array:

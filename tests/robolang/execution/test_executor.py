@@ -195,3 +195,85 @@ def test_statements_are_fed_where_the_program_stands(tmp_path):
         "printed 1",
         "printed 2",
     ]
+
+
+def commanded(session):
+    """The commanded tool points (ticks, 3), m."""
+    q = session.controller.recorder.signals(session.controller.tool_poses)["q_cmd"]
+    return session.controller.tool_poses(q)[:, :3, 3]
+
+
+def paused_at(project, cycle, physics=False):
+    """A session whose arm rests after a pause at a cycle."""
+    session = Session(project, physics=physics)
+    session.executor.advance(cycle)
+    session.executor.pause()
+    while session.executor.advance().state is not State.PAUSED:
+        pass
+    return session
+
+
+MOVES = "SPEED 400\nMOVE P1\nMOVEC P1 + (60, 60, 0), P1 + (0, 120, 0)\nMOVE P2, ZONE 40\nMOVE P1\n"
+
+
+@pytest.mark.parametrize("cycle", range(7, size(1200, 400), size(31, 93)))
+def test_a_pause_rests_on_the_path_and_the_move_goes_on_where_it_rests(tmp_path, cycle):
+    project = project_of(tmp_path, MOVES)
+    whole = Session(project, physics=False)
+    assert whole.run().ok
+    session = paused_at(project, cycle)
+    resting = session.executor.status
+    assert session.executor.advance(10) == resting
+    kept = session.executor.snapshot()
+    session.executor.resume()
+    (log, report), points = ended(session), commanded(session)
+    assert report["ok"], report["alarms"]
+    path = commanded(whole)
+    far = np.array([np.sqrt(((path - point) ** 2).sum(axis=1).min()) for point in points[::7]])
+    step = np.sqrt((np.diff(path, axis=0) ** 2).sum(axis=1)).max()
+    assert far.max() <= step / 2 + 1e-5  # no farther from a tick of the plan than its neighbours are
+    for run, other in zip(session.record.statements, whole.record.statements, strict=True):
+        assert run.text == other.text
+        if run.path is not None and "ZONE" not in run.text and run is not session.record.statements[-1]:
+            off = run.path.deviation(points[run.first_tick : run.end_tick]).max()
+            assert off <= other.path.deviation(path[other.first_tick : other.end_tick]).max() + 2e-6
+    np.testing.assert_array_equal(session.controller.areas.ina, whole.controller.areas.ina)
+    limits = session.controller.spec.per_axis("limits", "acceleration")
+    dq = session.controller.recorder.signals(session.controller.tool_poses)["dq_cmd"]
+    assert (np.abs(np.diff(dq, axis=0)) / 1e-3 <= limits * 1.05).all()
+    session.executor.restore(kept)
+    session.executor.resume()
+    assert ended(session) == (log, report)
+
+
+def test_a_pause_holds_dwells_and_waits(tmp_path):
+    project = project_of(tmp_path, "DELAY 0.4\nWAIT TIMER > 0.6, TIMEOUT 1\nPRINT TIMER\n")
+    whole = ended(Session(project, physics=False))
+    for cycle in (20, 60):
+        session = paused_at(project, cycle)
+        assert session.executor.status.time_us == cycle * 8000
+        session.executor.resume()
+        assert ended(session) == whole
+
+
+@pytest.mark.parametrize("resumed", [False, True])
+def test_a_pause_can_be_resumed_or_stopped_before_the_arm_rests(tmp_path, resumed):
+    session = Session(project_of(tmp_path, MOVES), physics=False)
+    session.executor.advance(40)
+    session.executor.pause()
+    assert session.executor.advance(2).state is State.RUNNING
+    if resumed:
+        session.executor.resume()
+        assert ended(session)[1]["ok"]
+    else:
+        session.executor.stop()
+        assert [alarm["code"] for alarm in ended(session)[1]["alarms"]] == ["RBL530"]
+
+
+def test_a_pause_rests_with_physics_too_and_under_a_seam_sensor_at_the_end_of_the_move():
+    session = paused_at(load_project(ROOT / "shop/palletise.rbl"), 200, physics=True)
+    session.executor.resume()
+    assert ended(session)[1]["ok"]
+    session = paused_at(load_project(ROOT / "wrist/seam.rbl"), 150)
+    session.executor.resume()
+    assert ended(session)[1]["ok"]

@@ -194,7 +194,7 @@ CONSTANT = {
     "Areas": "",
     "FineInterpolator": "ticks _weights",
     "Interpolator": "",
-    "RequestQueue": "planner _spec _areas _fine",
+    "RequestQueue": "planner _spec _areas _fine _limits",
     "StopLogic": "_requests _drives _period_us",
     "DriveTrain": "_spec _profile _task _held_inertia",
     "ServoAxes": "options coupled held_inertia encoders beta _Ktn _forward _backward _viscous",
