@@ -21,7 +21,7 @@ from runtime.core.tomlfile import FileFault, Source, read_source
 from runtime.core.units import DEG
 from runtime.robot.files import robot_file
 from runtime.robot.files.arm_file import ROBOT_ENDINGS, ArmFile, read_arm_file
-from runtime.settings.profile import Layer, Settings, check_axes, compensation_file, settle
+from runtime.settings.layers import Layer, Settings, check_axes, compensation_file, settle
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

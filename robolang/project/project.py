@@ -24,10 +24,8 @@ from runtime.dynamics.compensation import load_compensation
 from runtime.robot.files import importer, loader, robot_file
 from runtime.robot.files.arm_file import ROBOT_ENDINGS
 from runtime.robot.model.spec import RobotSpec
-from runtime.settings.profile import (
+from runtime.settings.layers import (
     Layer,
-    Profile,
-    ServoMode,
     Settings,
     check_axes,
     compensation_file,
@@ -35,6 +33,7 @@ from runtime.settings.profile import (
     read_options,
     settle,
 )
+from runtime.settings.profile import Profile, ServoMode
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -23,7 +23,7 @@ from runtime.core.units import DEG, MM
 from runtime.robot.files import importer, robot_file
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.spec import RobotSpec
-from runtime.settings.profile import Layer
+from runtime.settings.layers import Layer
 
 T = TypeVar("T")
 U = TypeVar("U")

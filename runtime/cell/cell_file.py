@@ -19,7 +19,7 @@ from runtime.core.tomlfile import FileFault, Source, Table, inside, load_table, 
 from runtime.core.units import DEG
 from runtime.robot.files import robot_file
 from runtime.robot.files.arm_file import ROBOT_ENDINGS, ArmFile, read_arm_file
-from runtime.settings.profile import Layer, read_layer
+from runtime.settings.layers import Layer, read_layer
 
 SCHEMA = 1
 REACH_MM = 20_000.0

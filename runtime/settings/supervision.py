@@ -1,15 +1,21 @@
 """Limits of supervision; docs/supervision.md has the reasons.
 
-``runtime.settings.profile`` reads them from ``[controller.supervision]``: degrees and milliseconds there, rad and s
+``runtime.settings.layers`` reads them from ``[controller.supervision]``: degrees and milliseconds there, rad and s
 here. Shares are of the robot file's own limits, so one set of numbers serves every robot.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
-from runtime.core.units import DEG
+from runtime.core.tomlfile import Table
+from runtime.settings.setting import choice, custom, flag, number, whole
 
 Reaction = Literal["stop", "warn", "off"]
+
+
+def _share(table: Table, name: str) -> float:
+    return table.number(name, low=0.0, high=2.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,17 +34,17 @@ class SupervisionLimits:
     rest of the model is, as a share of the joint's torque limit.
     """
 
-    enabled: bool = True
-    following_error: float = 1.0 * DEG
-    following_lag: float = 0.02
-    saturation_s: float = 0.1
-    speed_margin: float = 0.2
-    position_margin: float = 1.0 * DEG
-    collision: float = 0.2
-    stale_s: float = 0.4
-    overruns: int = 5
-    payload_mismatch: Reaction = "stop"
-    payload_tolerance: float = 0.175
-    friction: float | None = None
-    friction_uncertainty: float = 0.03
-    torque_uncertainty: float = 0.002
+    enabled: bool = flag("enabled", True)
+    following_error: float = number("following_error_deg", 1.0, "deg", positive=True, high=180.0)
+    following_lag: float = number("following_lag_ms", 20.0, "ms", low=0.0, high=1000.0)
+    saturation_s: float = number("saturation_ms", 100.0, "ms", low=0.0, high=60_000.0)
+    speed_margin: float = number("speed_margin", 0.2, low=0.0, high=10.0)
+    position_margin: float = number("position_margin_deg", 1.0, "deg", low=0.0, high=90.0)
+    collision: float = number("collision", 0.2, si=lambda share: share or math.inf, low=0.0, high=10.0)
+    stale_s: float = number("stale_dynamics_ms", 400.0, "ms", positive=True, high=60_000.0)
+    overruns: int = whole("overruns", 5, low=1, high=1_000_000)
+    payload_mismatch: Reaction = choice("payload_mismatch", "stop", "warn", "off")
+    payload_tolerance: float = number("payload_tolerance", 0.175, low=0.01, high=10.0)
+    friction: float | None = custom("friction", None, "", _share, lambda share: share)
+    friction_uncertainty: float = number("friction_uncertainty", 0.03, low=0.0, high=1.0)
+    torque_uncertainty: float = number("torque_uncertainty", 0.002, low=1e-4, high=1.0)

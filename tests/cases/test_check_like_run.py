@@ -11,7 +11,7 @@ from robolang.project.project import load_project
 from runtime.cell.cell_file import read_cell_file
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault
-from runtime.settings.profile import load_profile_file
+from runtime.settings.layers import load_profile_file
 from tests.robolang.cli.commands import robolang
 
 CASES = Path(__file__).parent

@@ -12,7 +12,7 @@ from robolang.cli.values import OptionValueError
 
 if TYPE_CHECKING:
     from runtime.robot.model.spec import RobotSpec
-    from runtime.settings.profile import Settings
+    from runtime.settings.layers import Settings
 
 app = typer.Typer(no_args_is_help=True, help="The settings in force.")
 
@@ -65,17 +65,17 @@ def show(
 
 def _rows(robot: "RobotSpec", settings: "Settings") -> list[dict[str, Any]]:
     from runtime.servo.axes import bandwidths
-    from runtime.settings.profile import KEYS, UNITS
+    from runtime.settings.layers import settings as declared
 
     in_force = dict(zip(("position", "velocity"), bandwidths(robot, settings.profile.servo), strict=True))
     rows = []
-    for key in KEYS:
+    for key, item in declared().items():
         given = settings[key]
         value, origin = given.value, given.origin
         if key.endswith("_bandwidth_rad_s"):
             value = in_force[key.removeprefix("servo.").partition("_")[0]].tolist()
             origin = f"robot {robot.name}" if origin == "default" else origin
-        rows.append({"key": key, "value": value, "unit": UNITS[key], "from": origin})
+        rows.append({"key": key, "value": value, "unit": item.unit, "from": origin})
     return rows
 
 

@@ -2,7 +2,8 @@ import pytest
 
 from runtime.core.tomlfile import FileFault, Source, load_table
 from runtime.core.units import DEG
-from runtime.settings.profile import Profile, parse_profile
+from runtime.settings.layers import parse_profile
+from runtime.settings.profile import Profile
 from tests.messages import fields
 
 

@@ -11,7 +11,7 @@ from runtime.core.units import DEG
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import Payload
-from runtime.settings.profile import parse_profile
+from runtime.settings.layers import parse_profile
 from runtime.settings.supervision import SupervisionLimits
 from runtime.supervision.tick_monitor import Watch
 from runtime.supervision.torque_observer import LoadModel, Observer
