@@ -10,11 +10,15 @@ Expressions are printed with a stack and not by recursion: parentheses in one an
 each. Used for progress, logs and pulse tables (``describe``), and by the formatter.
 """
 
-from typing import TypeAlias, assert_never
+from collections.abc import Callable
+from enum import Enum
+from typing import TypeAlias
 
 from robolang.syntax import ast
 from robolang.syntax.ast import Expression, Option, Statement
-from robolang.syntax.keywords import FUNCTIONS, VALUES
+from robolang.syntax.declaration import Field, Piece, pieces
+from robolang.syntax.statements import declaration
+from robolang.values.functions import FUNCTIONS
 
 _OR, _AND, _NOT, _COMPARE, _SUM, _PRODUCT, _SIGNED, _POWER, _EXPONENT, _OPERAND = range(10)
 _SIGNS = {
@@ -31,27 +35,10 @@ _SIGNS = {
 }
 _OPERAND_OF = {_OR: _AND, _AND: _NOT, _COMPARE: _SUM, _SUM: _PRODUCT, _PRODUCT: _SIGNED, _POWER: _OPERAND}
 """The lowest level of an operand of a chain, by the level of the chain."""
-_WORDS = FUNCTIONS | VALUES
 _QUOTE = '"'
 
 _Piece: TypeAlias = str | tuple[Expression, int]
 """Text, or an expression with the lowest level that its place can hold."""
-
-_Payload: TypeAlias = ast.Load | ast.LoadNamed | ast.Hand | ast.Wrist | ast.Seam | ast.Setting
-_Data: TypeAlias = ast.Assign | ast.Dim | ast.Const | ast.Out | ast.Pulse | ast.Delay | ast.Wait | ast.Print
-_Control: TypeAlias = (
-    ast.If
-    | ast.Block
-    | ast.Head
-    | ast.Case
-    | ast.For
-    | ast.Next
-    | ast.Jump
-    | ast.Sub
-    | ast.CallSub
-    | ast.Word
-    | ast.OnError
-)
 
 
 def print_program(program: ast.Program) -> str:
@@ -73,142 +60,58 @@ def print_code(line: ast.Line) -> str:
     return " ".join([*label, *statement])
 
 
-def describe(statement: Statement) -> str:
-    """Return a statement as canonical text, such as ``MOVE P1, SPEED 200``."""
-    match statement:
-        case ast.Move() | ast.MoveJ() | ast.MoveC() | ast.Approach() | ast.Depart():
-            return ", ".join([_moving(statement), *map(_option, statement.options)])
-        case ast.Load() | ast.LoadNamed() | ast.Hand() | ast.Wrist() | ast.Seam() | ast.Setting():
-            return _payload(statement)
-        case ast.Unparsed():
-            return statement.text
-        case ast.Assign() | ast.Dim() | ast.Const() | ast.Out() | ast.Pulse() | ast.Delay() | ast.Wait() | ast.Print():
-            return _data(statement)
-        case _:
-            return _control(statement)
+def describe(statement: Statement | Option) -> str:
+    """Return a statement, or an option, as canonical text, such as ``MOVE P1, SPEED 200``.
+
+    The text is the first form of its declaration whose operands all have a value.
+    """
+    if isinstance(statement, ast.Unparsed):
+        return statement.text
+    forms = map(pieces, declaration(statement).forms)
+    return _filled(next(form for form in forms if _is_whole(form, statement)), statement)
 
 
-def _moving(node: ast.Moving) -> str:
-    match node:
-        case ast.Move():
-            return f"MOVE {print_expression(node.target)}"
-        case ast.MoveJ():
-            return f"MOVEJ {print_expression(node.target)}"
-        case ast.MoveC():
-            return f"MOVEC {_comma(node.via, node.target)}"
-        case ast.Approach():
-            return f"APPROACH {_comma(node.target, node.distance)}"
-        case ast.Depart():
-            return f"DEPART {print_expression(node.distance)}"
-        case _:
-            assert_never(node)
+def _is_whole(form: tuple[Piece, ...], node: ast.Node) -> bool:
+    """Return whether all operands of a form outside of brackets have a value."""
+    return all(not isinstance(piece, Field) or _has(node, piece) for piece in form)
 
 
-def _option(option: Option) -> str:
-    match option:
-        case ast.Speed():
-            return f"SPEED {print_expression(option.value)}"
-        case ast.Accel():
-            return f"ACCEL {print_expression(option.value)}"
-        case ast.Time():
-            return f"TIME {print_expression(option.value)}"
-        case ast.Zone():
-            return "FINE" if option.value is None else f"ZONE {print_expression(option.value)}"
-        case ast.Wrist():
-            return _wrist(option)
-        case _:
-            assert_never(option)
+def _has(node: ast.Node, piece: Field) -> bool:
+    value = getattr(node, piece.name)
+    return value is not None and (value != () or piece.name == "options")
 
 
-def _payload(node: _Payload) -> str:
-    match node:
-        case ast.Load():
-            return f"LOAD {_comma(node.cog, node.mass, node.inertia)}"
-        case ast.LoadNamed():
-            return f"LOAD {node.name.text}"
-        case ast.Hand():
-            return f"HAND {node.state.value}{_optional(', ', node.dwell)}"
-        case ast.Wrist():
-            return _wrist(node)
-        case ast.Seam():
-            return "SEAM OFF" if node.sensor is None else f"SEAM ON, {node.sensor.text}"
-        case ast.Setting():
-            return f"{node.word} {print_expression(node.value)}"
-        case _:
-            assert_never(node)
+def _filled(form: tuple[Piece, ...], node: ast.Node) -> str:
+    """Return a form with the operands of a statement in their places."""
+    text = ""
+    for piece in form:
+        if isinstance(piece, str):
+            text += piece
+        elif isinstance(piece, Field):
+            text += _operand(node, piece.name)
+        elif _is_whole(piece, node) or (piece[0] == "(" and getattr(node, "parentheses", False)):
+            text += _filled(piece, node)
+    return text
 
 
-def _data(node: _Data) -> str:
-    match node:
-        case ast.Assign():
-            return f"{print_expression(node.target)} = {print_expression(node.value)}"
-        case ast.Dim():
-            return f"DIM {node.name.text}({print_expression(node.size)})"
-        case ast.Const():
-            return f"CONST {node.name.text} = {print_expression(node.value)}"
-        case ast.Out():
-            return f"OUT({print_expression(node.index)}) = {print_expression(node.value)}"
-        case ast.Pulse():
-            return f"PULSE {_comma(node.index, node.seconds)}"
-        case ast.Delay():
-            return f"DELAY {print_expression(node.seconds)}"
-        case ast.Wait():
-            goto = "" if node.target is None else f", GOTO {_target(node.target)}"
-            return f"WAIT {print_expression(node.condition)}{_optional(', TIMEOUT ', node.timeout)}{goto}"
-        case ast.Print():
-            return f"PRINT {'; '.join(map(print_expression, node.items))}".rstrip()
-        case _:
-            assert_never(node)
+def _operand(node: ast.Node, name: str) -> str:
+    value = getattr(node, name)
+    if name == "options":
+        return "".join(f", {describe(option)}" for option in value)
+    if isinstance(value, tuple):
+        separator = next(each.separator for each in declaration(node).operands if each.name == name)
+        return separator.join(map(_part, value))
+    return _part(value)
 
 
-def _control(node: _Control) -> str:
-    match node:
-        case ast.If():
-            otherwise = "" if node.otherwise is None else f" ELSE {describe(node.otherwise)}"
-            return f"IF {print_expression(node.condition)} THEN {describe(node.then)}{otherwise}"
-        case ast.Block() | ast.Word():
-            return node.word
-        case ast.Head():
-            then = " THEN" if node.word in ("IF", "ELSEIF") else ""
-            return f"{node.word} {print_expression(node.value)}{then}"
-        case ast.Case():
-            return f"CASE {_comma(*node.values)}"
-        case ast.For():
-            limits = f"{print_expression(node.first)} TO {print_expression(node.last)}"
-            return f"FOR {node.variable.text} = {limits}{_optional(' STEP ', node.step)}"
-        case ast.Next():
-            return f"NEXT{_optional(' ', node.variable)}"
-        case ast.Jump():
-            return f"{node.word} {_target(node.target)}"
-        case ast.Sub():
-            return f"SUB {node.name.text}{_bracketed(node.parameters, node.parentheses)}"
-        case ast.CallSub():
-            return f"CALL {node.name.text}{_bracketed(node.arguments, node.parentheses)}"
-        case ast.OnError():
-            return f"ON ERROR GOTO {_target(node.target)}"
-        case _:
-            assert_never(node)
-
-
-def _wrist(wrist: ast.Wrist) -> str:
-    held = f" {', '.join(component.value for component in wrist.held)}" if wrist.held else ""
-    return f"WRIST {wrist.mode.value}{held}"
-
-
-def _target(target: ast.Target) -> str:
-    return str(target.number) if target.label is None else f"*{target.label.text}"
-
-
-def _optional(before: str, value: Expression | None) -> str:
-    return "" if value is None else f"{before}{print_expression(value)}"
-
-
-def _comma(*values: Expression | None) -> str:
-    return ", ".join(print_expression(value) for value in values if value is not None)
-
-
-def _bracketed(values: tuple[Expression, ...], written: int) -> str:
-    return f"({_comma(*values)})" if values or written else ""
+def _part(value: Expression | Statement | ast.Target | Enum) -> str:
+    if isinstance(value, Enum):
+        return str(value.value)
+    if isinstance(value, ast.Target):
+        return str(value.number) if value.label is None else f"*{value.label.text}"
+    if isinstance(value, ast.Operand):
+        return print_expression(value)
+    return describe(value)
 
 
 # --- expressions -----------------------------------------------------------------------------------------------------
@@ -250,26 +153,34 @@ def _level(node: Expression) -> int:
 
 def _pieces(node: Expression, lowest: int) -> list[_Piece]:
     """Return what an expression consists of, in the order of the text."""
-    match node:
-        case ast.Number() | ast.Name():
-            return [node.text]
-        case ast.Text():
-            return [f'"{node.value.replace(_QUOTE, 2 * _QUOTE)}"']
-        case ast.Not():
-            return ["NOT ", (node.operand, _NOT)]
-        case ast.Negate():
-            return ["-", (node.operand, _EXPONENT if lowest == _EXPONENT else _SIGNED)]
-        case ast.Chain():
-            return _chain(node)
-        case ast.Call():
-            word = node.name.key if node.name.key in _WORDS else node.name.text
-            return [word, *_list(node.arguments)] if node.arguments else [word]
-        case ast.Component6():
-            return [(node.base, _OPERAND), f".{node.name.key}"]
-        case ast.Vector():
-            return _list(node.items)
-        case _:
-            assert_never(node)
+    if isinstance(node, ast.Negate):
+        return ["-", (node.operand, _EXPONENT if lowest == _EXPONENT else _SIGNED)]
+    return _PIECES[type(node)](node)
+
+
+def _literal(node: ast.Number | ast.Name) -> list[_Piece]:
+    return [node.text]
+
+
+def _text(node: ast.Text) -> list[_Piece]:
+    return [f'"{node.value.replace(_QUOTE, 2 * _QUOTE)}"']
+
+
+def _not(node: ast.Not) -> list[_Piece]:
+    return ["NOT ", (node.operand, _NOT)]
+
+
+def _call(node: ast.Call) -> list[_Piece]:
+    word = node.name.key if node.name.key in FUNCTIONS else node.name.text
+    return [word, *_list(node.arguments)] if node.arguments else [word]
+
+
+def _component(node: ast.Component6) -> list[_Piece]:
+    return [(node.base, _OPERAND), f".{node.name.key}"]
+
+
+def _vector(node: ast.Vector) -> list[_Piece]:
+    return _list(node.items)
 
 
 def _chain(node: ast.Chain) -> list[_Piece]:
@@ -286,3 +197,15 @@ def _list(items: tuple[Expression, ...]) -> list[_Piece]:
     for index, item in enumerate(items):
         pieces += [", ", (item, _OR)] if index else [(item, _OR)]
     return [*pieces, ")"]
+
+
+_PIECES: dict[type, Callable[..., list[_Piece]]] = {
+    ast.Number: _literal,
+    ast.Name: _literal,
+    ast.Text: _text,
+    ast.Not: _not,
+    ast.Chain: _chain,
+    ast.Call: _call,
+    ast.Component6: _component,
+    ast.Vector: _vector,
+}
