@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import NoReturn
 
 import robolang.core.codes  # noqa: F401 - the codes raised here must be registered
+from runtime.core.bounded_files import RefusedError, read_bounded
 from runtime.core.tomlfile import FileFault
 
 MAX_BYTES = 1_000_000
@@ -98,26 +99,25 @@ def decode_program(name: str, raw: bytes) -> Source:
 def read_bytes(name: str) -> bytes:
     """Return the bytes of a program file, at most ``MAX_BYTES``; ``FileFault`` RBL701, RBL702, RBL106."""
     try:
-        handle = os.open(name, os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC)
-    except FileNotFoundError:
+        return read_bounded(name, MAX_BYTES)
+    except RefusedError as refused:
+        _refuse(name, refused)
+
+
+def _refuse(name: str, refused: RefusedError) -> NoReturn:
+    """Raise the ``FileFault`` of a file that is not read."""
+    error = refused.error
+    if refused.mode is not None:
+        _fail("RBL702", f"{name} is {_kind(refused.mode)}, not a file", path=name)
+    if error is None:
+        _fail("RBL106", f"{name} has {refused.size} bytes, more than {MAX_BYTES}", path=name)
+    if refused.opened:
+        _fail("RBL702", f"cannot read {name}: {refused.reason}", path=name)
+    if isinstance(error, FileNotFoundError):
         _fail("RBL701", f"there is no file {name}", _neighbour(name), path=name)
-    except (OSError, ValueError) as error:
-        missing = isinstance(error, ValueError) or error.errno in (errno.ENOTDIR, errno.ENAMETOOLONG)
-        reason = error.strerror if isinstance(error, OSError) else "the name contains a NUL character"
-        _fail("RBL701" if missing else "RBL702", f"cannot open {name}: {reason}", path=name)
-    try:
-        info = os.fstat(handle)
-        if not stat.S_ISREG(info.st_mode):
-            _fail("RBL702", f"{name} is {_kind(info.st_mode)}, not a file", path=name)
-        with os.fdopen(handle, "rb", closefd=False) as stream:
-            raw = b"" if info.st_size > MAX_BYTES else stream.read(MAX_BYTES + 1)
-        if info.st_size > MAX_BYTES or len(raw) > MAX_BYTES:
-            _fail("RBL106", f"{name} has {max(info.st_size, len(raw))} bytes, more than {MAX_BYTES}", path=name)
-        return raw
-    except OSError as error:
-        _fail("RBL702", f"cannot read {name}: {error.strerror}", path=name)
-    finally:
-        os.close(handle)
+    missing = isinstance(error, ValueError) or error.errno in (errno.ENOTDIR, errno.ENAMETOOLONG)
+    reason = "the name contains a NUL character" if isinstance(error, ValueError) else refused.reason
+    _fail("RBL701" if missing else "RBL702", f"cannot open {name}: {reason}", path=name)
 
 
 def _decode(name: str, raw: bytes) -> str:

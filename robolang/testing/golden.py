@@ -8,7 +8,6 @@ the run. numpy's own reader allocates what a header asks for. Written and read b
 
 import os
 import re
-import stat
 import struct
 import zipfile
 import zlib
@@ -22,6 +21,7 @@ import numpy as np
 
 import robolang.core.codes  # noqa: F401 - RBL711 must be registered
 from robolang.core.storage import write_atomic
+from runtime.core.bounded_files import RefusedError, regular_file
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.rounding import beside
@@ -99,18 +99,12 @@ def read_golden(path: Path, axes: int, most_cycles: int) -> GoldenLog:
 def _opened(path: Path) -> Iterator[IO[bytes]]:
     """Yield a regular file, open for reading; never waits for the writer of a pipe."""
     try:
-        handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC)
-    except (OSError, ValueError) as error:  # ValueError: a NUL character in the name
-        raise Fault(
-            "RBL600", f"cannot open the golden log {path}: {getattr(error, 'strerror', None) or error}", _REMEDY
-        ) from None
-    try:
-        if not stat.S_ISREG(os.fstat(handle).st_mode):
-            raise Fault("RBL600", f"the golden log {path} is not a regular file", _REMEDY)
-        with os.fdopen(handle, "rb", closefd=False) as stream:
+        with regular_file(path) as stream:
             yield stream
-    finally:
-        os.close(handle)
+    except RefusedError as refused:
+        if refused.mode is not None:
+            raise Fault("RBL600", f"the golden log {path} is not a regular file", _REMEDY) from None
+        raise Fault("RBL600", f"cannot open the golden log {path}: {refused.reason}", _REMEDY) from None
 
 
 def _read(path: Path, stream: IO[bytes], axes: int, most_cycles: int) -> GoldenLog:

@@ -7,9 +7,7 @@ Reading is bounded: only regular files up to 1 MB are opened. Imports the standa
 
 import difflib
 import math
-import os
 import re
-import stat
 import tomllib
 from collections.abc import Callable, Sequence
 from collections.abc import Set as AbstractSet
@@ -18,6 +16,7 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any, NoReturn, TypeVar
 
 import runtime.core.file_codes  # noqa: F401 - registers what is raised here
+from runtime.core.bounded_files import RefusedError, read_bounded
 from runtime.core.faults import Fault
 from runtime.core.rounding import beside
 from runtime.core.toml_places import clash, lines_of, locate
@@ -68,21 +67,13 @@ def read_source(path: Path, code: str = "RBL600") -> Source:
     """Read a small regular UTF-8 file; ``FileFault`` with ``code`` otherwise (never blocks on a FIFO)."""
     where = Source(str(path), "")
     try:
-        handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
-    except (OSError, ValueError) as error:  # ValueError: a NUL character in the name
-        where.fail(code, f"cannot open {path}: {getattr(error, 'strerror', None) or error}")
-    try:
-        info = os.fstat(handle)
-        if not stat.S_ISREG(info.st_mode):
+        raw = read_bounded(path, MAX_BYTES)
+    except RefusedError as refused:
+        if refused.error is not None:
+            where.fail(code, f"cannot {'read' if refused.opened else 'open'} {path}: {refused.reason}")
+        if refused.mode is not None:
             where.fail(code, f"{path} is not a regular file")
-        if info.st_size > MAX_BYTES:
-            where.fail(code, f"{path} has {info.st_size} bytes, more than {MAX_BYTES}")
-        with os.fdopen(handle, "rb", closefd=False) as stream:
-            raw = stream.read(MAX_BYTES + 1)
-    except OSError as error:
-        where.fail(code, f"cannot read {path}: {error.strerror}")
-    finally:
-        os.close(handle)
+        where.fail(code, f"{path} has {refused.size} bytes, more than {MAX_BYTES}")
     try:
         return Source(str(path), raw.decode("utf-8-sig"))
     except UnicodeDecodeError as error:

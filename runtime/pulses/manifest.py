@@ -9,9 +9,7 @@ the manifest has no lines worth naming.
 import errno
 import json
 import math
-import os
 import re
-import stat
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,6 +17,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
+from runtime.core.bounded_files import RefusedError, read_bounded
 from runtime.core.frames import Array, frozen
 from runtime.core.linear import matmul
 from runtime.core.tomlfile import MAX_ABS, FileFault
@@ -46,30 +45,15 @@ def reason(error: Exception) -> str:
 def read_text(path: Path, most: int) -> str:
     """Return the text of a small regular UTF-8 file, never of one that a link leads to; ``FileFault`` RBL630."""
     try:
-        # no link: it could lead out of the folder; without waiting: a pipe would never open
-        handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC | os.O_NOFOLLOW)
-    except (OSError, ValueError) as error:
-        link = isinstance(error, OSError) and error.errno in (errno.ELOOP, errno.EMLINK)
-        fail(
-            path,
-            "RBL630",
-            f"{path} is a link" if link else f"cannot open {path}: {reason(error)}",
-            "put the file itself into the folder" if link else "",
-        )
-    try:
-        info = os.fstat(handle)
-        if not stat.S_ISREG(info.st_mode):
+        raw = read_bounded(path, most, links=False)  # a link could lead out of the folder
+    except RefusedError as refused:
+        if isinstance(refused.error, OSError) and refused.error.errno in (errno.ELOOP, errno.EMLINK):
+            fail(path, "RBL630", f"{path} is a link", "put the file itself into the folder")
+        if refused.error is not None:
+            fail(path, "RBL630", f"cannot {'read' if refused.opened else 'open'} {path}: {refused.reason}")
+        if refused.mode is not None:
             fail(path, "RBL630", f"{path} is not a regular file")
-        if info.st_size > most:
-            fail(path, "RBL630", f"{path} has {info.st_size} bytes, more than {most}")
-        with os.fdopen(handle, "rb", closefd=False) as stream:
-            raw = stream.read(most + 1)
-    except OSError as error:
-        fail(path, "RBL630", f"cannot read {path}: {reason(error)}")
-    finally:
-        os.close(handle)
-    if len(raw) > most:  # it has grown in the meantime
-        fail(path, "RBL630", f"{path} has more than {most} bytes")
+        fail(path, "RBL630", f"{path} has {refused.size} bytes, more than {most}")
     try:
         return raw.decode("utf-8")
     except UnicodeDecodeError as error:

@@ -1,0 +1,59 @@
+"""Reading files that anybody may have put there: regular ones of a bounded size, without waiting.
+
+A pipe would never open and a device never end, so a file is opened without blocking and its kind is looked up before it
+is read. What a refusal is called depends on the reader: it turns ``RefusedError`` into its own code and message.
+"""
+
+import os
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import IO
+
+
+class RefusedError(Exception):
+    """A file that is not read. One of three is given: ``error`` where it cannot be opened or read, ``mode`` where it is
+    not regular, ``size`` where it is too large."""
+
+    def __init__(self, *, error: OSError | ValueError | None = None, mode: int | None = None, size: int = 0) -> None:
+        super().__init__(str(error or mode or size))
+        self.error, self.mode, self.size = error, mode, size
+        self.opened = False
+
+    @property
+    def reason(self) -> str:
+        """What the system says, without the path that an ``OSError`` names too."""
+        return str(getattr(self.error, "strerror", None) or self.error)
+
+
+@contextmanager
+def regular_file(path: str | os.PathLike[str], *, links: bool = True) -> Iterator[IO[bytes]]:
+    """Yield a regular file, open for reading; ``RefusedError``. ``links`` False: a link is refused, too (ELOOP)."""
+    flags = os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC | (0 if links else os.O_NOFOLLOW)
+    try:
+        handle = os.open(path, flags)
+    except (OSError, ValueError) as error:  # ValueError: a NUL character in the name
+        raise RefusedError(error=error) from None
+    try:
+        mode = os.fstat(handle).st_mode
+        if not stat.S_ISREG(mode):
+            raise RefusedError(mode=mode)
+        with os.fdopen(handle, "rb", closefd=False) as stream:
+            yield stream
+    finally:
+        os.close(handle)
+
+
+def read_bounded(path: str | os.PathLike[str], most: int, *, links: bool = True) -> bytes:
+    """Return the bytes of a regular file of at most ``most``; ``RefusedError``, ``opened`` where reading it failed."""
+    with regular_file(path, links=links) as stream:
+        try:
+            size = os.fstat(stream.fileno()).st_size
+            raw = b"" if size > most else stream.read(most + 1)
+        except OSError as error:
+            refused = RefusedError(error=error)
+            refused.opened = True
+            raise refused from None
+    if max(size, len(raw)) > most:  # it may have grown in the meantime
+        raise RefusedError(size=max(size, len(raw)))
+    return raw
