@@ -54,6 +54,6 @@ def read_bounded(path: str | os.PathLike[str], most: int, *, links: bool = True)
             refused = RefusedError(error=error)
             refused.opened = True
             raise refused from None
-    if max(size, len(raw)) > most:  # it may have grown in the meantime
+    if not max(size, len(raw)) <= most:  # it may have grown in the meantime
         raise RefusedError(size=max(size, len(raw)))
     return raw
