@@ -10,16 +10,14 @@ import unicodedata
 from collections.abc import Iterable
 
 from robolang.syntax import other_languages
+from robolang.syntax.statements import STATEMENTS, forms
 from robolang.values import functions
 
-_INSTRUCTIONS = """
-    MOVE MOVEJ MOVEC APPROACH DEPART LOAD HAND WRIST SEAM SPEED SPEEDJ ACCEL OVERRIDE ZONE TOOL FRAME OUT WAIT DELAY
-    PULSE DIM CONST IF ELSEIF ELSE ENDIF FOR NEXT WHILE WEND SELECT CASE ENDSELECT GOTO GOSUB RETURN SUB ENDSUB CALL
-    END STOP PAUSE RESUME PRINT
-"""
-INSTRUCTIONS = frozenset(_INSTRUCTIONS.split())
+_OF_WORDS = frozenset(word for each in STATEMENTS for operand in each.operands for word in operand.words)
+INSTRUCTIONS = frozenset(each.keyword for each in STATEMENTS if each.keyword) - _OF_WORDS
+"""First words of statements; ON of ON ERROR is a word of HAND as well, and not one of them."""
 OPTIONS = ("SPEED", "ACCEL", "TIME", "ZONE", "FINE", "WRIST")
-MOTIONS = frozenset({"MOVE", "MOVEJ", "MOVEC", "APPROACH", "DEPART"})
+MOTIONS = frozenset(each.keyword for each in STATEMENTS if each.options)
 COMPONENTS = ("TILT", "ADVANCE", "ROTATION")
 COMPONENTS6 = ("X", "Y", "Z", "RX", "RY", "RZ")
 """Components of a pose, as in P1.X."""
@@ -31,44 +29,6 @@ KEYWORDS = INSTRUCTIONS | frozenset(INNER_WORDS)
 FUNCTIONS = frozenset(name for name, function in functions.FUNCTIONS.items() if function.parameters)
 VALUES = frozenset(functions.FUNCTIONS) - FUNCTIONS
 """Functions without parameters: words that are a value by themselves."""
-_FORMS = {
-    "MOVE": "MOVE point [, SPEED mm/s] [, ACCEL %] [, TIME s] [, ZONE mm] [, WRIST mode]",
-    "MOVEJ": "MOVEJ point [, SPEED %] [, ACCEL %] [, TIME s] [, ZONE mm]",
-    "MOVEC": "MOVEC via, point [, SPEED mm/s] [, ACCEL %] [, TIME s] [, ZONE mm]",
-    "APPROACH": "APPROACH point, mm [, SPEED mm/s] [, ZONE mm]",
-    "DEPART": "DEPART mm [, SPEED mm/s] [, ZONE mm]",
-    "LOAD": "LOAD (x, y, z), mass [, (ixx, iyy, izz, ixy, ixz, iyz)] or LOAD name",
-    "HAND": "HAND ON [, s] or HAND OFF [, s]",
-    "WRIST": "WRIST KEEP, WRIST AUTO or WRIST HOLD component [, component]",
-    "SEAM": "SEAM ON, sensor or SEAM OFF",
-    "OUT": "OUT(n) = value",
-    "WAIT": "WAIT condition [, TIMEOUT s [, GOTO target]]",
-    "DELAY": "DELAY s",
-    "PULSE": "PULSE n, s",
-    "DIM": "DIM a(n)",
-    "CONST": "CONST k = value",
-    "IF": "IF condition THEN statement [ELSE statement], or IF condition with ENDIF below",
-    "FOR": "FOR v = a TO b [STEP s]",
-    "SELECT": "SELECT value",
-    "GOTO": "GOTO line or GOTO *LABEL",
-    "GOSUB": "GOSUB line or GOSUB *LABEL",
-    "SUB": "SUB name [(a, b)]",
-    "CALL": "CALL name [(value, value)]",
-    "ELSEIF": "ELSEIF condition",
-    "WHILE": "WHILE condition",
-    "CASE": "CASE value [, value] or CASE ELSE",
-    "NEXT": "NEXT [variable]",
-    "PRINT": "PRINT [value; value]",
-    "SPEED": "SPEED mm/s",
-    "SPEEDJ": "SPEEDJ %",
-    "ACCEL": "ACCEL %",
-    "OVERRIDE": "OVERRIDE %",
-    "ZONE": "ZONE mm",
-    "TOOL": "TOOL name, TOOL pose or TOOL FLANGE",
-    "FRAME": "FRAME name, FRAME pose or FRAME WORLD",
-    "RESUME": "RESUME or RESUME NEXT",
-    "ON": "ON ERROR GOTO *LABEL or ON ERROR STOP",
-}
 NEW = frozenset({"XOR"})
 """Keywords that came after edition 1: they are read as keywords where the grammar has one, and are names elsewhere, so
 that older points, cells and programs keep their names (docs/decisions/0029)."""
@@ -141,5 +101,5 @@ def instruction_hint(word: str) -> str:
 
 def form_of(word: str) -> str:
     """Return how the statement that starts with an instruction is written, or ``""``."""
-    form = _FORMS.get(word.upper())
+    form = forms(word.upper())
     return f"the form is {form}" if form else ""
