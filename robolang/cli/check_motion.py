@@ -100,7 +100,7 @@ def _table(project: Project, rehearsal: Rehearsal, rows: Sequence[LineTime]) -> 
     where = lines.headings([asdict(row) for row in rows])
     table = [
         f"{safe(project.source.path)} on {project.cell.robot.name}, planned without physics",
-        f"{_where(where)}  {'statement':<{_STATEMENT}} {'times':>5} {'time, s':>8} {'way, mm':>8} {'fastest':>11} "
+        f"{_where(where)}  {'statement':<{_STATEMENT}} {'times':>5} {'time, s':>8} {'path, mm':>8} {'fastest':>11} "
         f"{'to range':>9} {'wrist':>9}",
         *(_row(row, where) for row in rows),
         f"{_where([''] * len(where))}  {'total':<{_STATEMENT}} {'':>5} {rehearsal.total_us / 1e6:8.3f}",
@@ -118,10 +118,10 @@ def _ways(project: Project, explored: Exploration) -> str:
     text = ""
     if explored.detours:
         ways = len(explored.detours)
-        text += f"and {ways} other way{'s' * (ways > 1)} through it, where inputs, time or errors decide\n"
+        text += f"and {ways} other branch{'es' * (ways > 1)}, where inputs, time or errors decide\n"
     if explored.missed:
         missed = ", ".join(map(str, _missed(project, explored)))
-        text += f"not planned, since no way led there: the moves in line {missed}\n"
+        text += f"not planned, since no branch reached them: the moves in line {missed}\n"
     return text
 
 

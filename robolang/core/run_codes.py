@@ -95,13 +95,13 @@ register(
         code="RBL219",
         name="sub-inside-block",
         meaning="A SUB stands inside a block.",
-        remedy="Put it behind the main program.",
+        remedy="Put it after the main program.",
     ),
     Code(
         code="RBL220",
         name="value-count",
         meaning="Parentheses hold another number of values than is needed there.",
-        remedy="A place has three values, a way and a turn or an inertia six.",
+        remedy="A position has three values, an offset with rotation or an inertia six.",
     ),
     Code(
         code="RBL224",
@@ -284,7 +284,7 @@ register(
         code="RBL503",
         name="wait-timed-out",
         meaning="A WAIT had not come true when its TIMEOUT ended.",
-        remedy="Look at the input, give more time, or say with GOTO or ON ERROR where to go on.",
+        remedy="Check the input, give more time, or state with GOTO or ON ERROR where to go on.",
     ),
     Code(
         code="RBL504",

@@ -216,7 +216,7 @@ def _taught(point: Point, around: Surroundings) -> Array:
 
 def _shifted(X: Array, shift: Shift, cell: CellSpec) -> Array:
     if not all(map(math.isfinite, shift.by)):
-        raise Fault("RBL502", "a way is not finite")
+        raise Fault("RBL502", "an offset is not finite")
     if shift.kind == "tool":
         return np.asarray(matmul(X, pose_si(shift.by)))
     found = np.array(X)

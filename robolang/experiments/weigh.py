@@ -257,7 +257,7 @@ def _explained(found: WeighedPayload, torque: Array) -> None:
         raise Fault(
             "RBL516",
             f"up to {found.peak[axis]:.1f} N m of J{axis + 1} in the exercise belong to no payload",
-            "clear the space about home; then look at the drive, brake and friction of the axis",
+            "clear the space about home; then check the drive, brake and friction of the axis",
         )
 
 

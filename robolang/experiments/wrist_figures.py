@@ -190,7 +190,7 @@ FIGURES = (
         variant="Hermite",
         trials=(_E2_C3, _E2_HERMITE),
         sentence="The wrist leaves the path before an axis leaves +-180 deg. Solid: straight to the end angles. "
-        "Dashed: from the speed it has to rest, with the range looked at 10 cycles ahead.",
+        "Dashed: from the speed it has to rest, with the range checked 10 cycles ahead.",
     ),
     Figure(
         number=10,

@@ -240,7 +240,8 @@ class Scopes:
         if texts > 0 and sum(each.texts for each in self.stack) + texts > MAX_TEXTS:
             raise Fault(
                 "RBL506",
-                f"all texts together would have more than {MAX_TEXTS} characters; a way behind a pose counts as {WAY}",
+                f"all texts together would have more than {MAX_TEXTS} characters; an offset after a pose counts as "
+                f"{WAY}",
             )
         scope.cells += cells
         scope.texts += texts

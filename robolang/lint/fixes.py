@@ -97,7 +97,7 @@ def _number(diagnostic: Diagnostic, source: Source) -> Fix | None:
     if glued is None or not first or glued[2].upper() not in _STARTS:
         return None
     edit = Edit(span=Span(span.start + len(glued[1]), span.start + len(glued[1])), text=" ")
-    return Fix(title="put a space behind the line number", edits=(edit,))
+    return Fix(title="put a space after the line number", edits=(edit,))
 
 
 def _repeated(diagnostic: Diagnostic, source: Source) -> Fix | None:

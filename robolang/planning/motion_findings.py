@@ -128,7 +128,7 @@ class _Moves:
         """Report the first of its links that the arm would be in."""
         for row, q in enumerate(move.q):
             if (pair := self._cell.shapes.folded(q)) is not None:
-                message = f"at {move.share(row):.1f} % of the way {pair[0]} would be in {pair[1]}"
+                message = f"at {move.share(row):.1f} % of the path {pair[0]} would be in {pair[1]}"
                 yield _at("RBL424", move, message, Severity.ERROR)
                 return
 
@@ -154,7 +154,7 @@ class _Moves:
             yield _at(
                 "RBL422",
                 move,
-                f"at {move.share(row):.1f} % of the way J{axis + 1} is at {at:.2f} deg, "
+                f"at {move.share(row):.1f} % of the path J{axis + 1} is at {at:.2f} deg, "
                 f"{margin / DEG:.2f} deg from an end of its range {ends}",
             )
 
@@ -176,7 +176,7 @@ class _Moves:
                 yield _at(
                     "RBL427",
                     move,
-                    f"at {100.0 * float(move.plan.s[row]):.1f} % of the way the arm is {away} "
+                    f"at {100.0 * float(move.plan.s[row]):.1f} % of the path the arm is {away} "
                     f"{bound.unit} from where its {name}, which is singular; keep {keep} {bound.unit} away",
                 )
                 return
@@ -231,7 +231,7 @@ def _loads(project: Project, kinematics: Kinematics, moves: Sequence[RehearsedMo
             yield _at(
                 code,
                 share.move,
-                f"at {share.move.share(share.row):.1f} % of the way the {share.what} of the "
+                f"at {share.move.share(share.row):.1f} % of the path the {share.what} of the "
                 f"payload of {share.move.payload.mass:g} kg about J{share.axis + 1} is {value} "
                 f"{share.unit}, {share.value - share.limit:.3g} more than "
                 f"{'it is rated for' if share.given else 'its drive allows by estimate'}, {limit} "

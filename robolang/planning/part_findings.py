@@ -120,13 +120,13 @@ class CellTouches:
         struck, met = self._swept[key]
         if struck is not None:
             by, what = struck.by, struck.what.removeprefix("obstacle:")
-            message = f"at {move.share(struck.row):.1f} % of the way {by} would be in {what}"
+            message = f"at {move.share(struck.row):.1f} % of the path {by} would be in {what}"
             yield _at("RBL421", move.effect.span, message, Severity.ERROR)
         if met is None or struck is not None:  # where it is stopped by an obstacle, parts are the lesser thing
             return scene
         carried = "the carried " if met.by.startswith(_PART) else ""
         what = f"{carried}{shape_text(met.by)} would touch {shape_text(met.what)}"
-        yield _at("RBL440", move.effect.span, f"at {move.share(met.row):.1f} % of the way {what}")
+        yield _at("RBL440", move.effect.span, f"at {move.share(met.row):.1f} % of the path {what}")
         return scene.without({name.removeprefix(_PART) for name in (met.by, met.what) if name.startswith(_PART)})
 
     def _sweep(self, q: Array, scene: Scene) -> tuple[Meeting | None, Meeting | None]:

@@ -85,7 +85,7 @@ def _mixed_line_ends(source: Source) -> list[Diagnostic]:
     other = next((end for end in _LINE_END.finditer(source.text) if end[0] != first[0]), None)
     if other is None:
         return []
-    message = "this line ends in another way than the first one"
+    message = "this line has another line end than the first line"
     return [Diagnostic(code="RBL110", severity=Severity.INFO, message=message, span=Span(other.start(), other.start()))]
 
 

@@ -229,7 +229,7 @@ register(
         code="RBL510",
         name="non-finite-state",
         meaning="A position, speed or torque became NaN or infinite: the simulation is no longer valid.",
-        remedy="The last finite state is in the log. Look at masses, contacts and gains near that moment.",
+        remedy="The last finite state is in the log. Check masses, contacts and gains near that moment.",
         category=0,
     ),
     Code(
@@ -255,7 +255,7 @@ register(
         code="RBL514",
         name="position-excursion",
         meaning="An axis is outside its range by more than the margin.",
-        remedy="Something moved the arm beyond its command: look at the payload, the drive and the encoder.",
+        remedy="Something moved the arm beyond its command: check the payload, the drive and the encoder.",
     ),
     Code(
         code="RBL515",
@@ -271,7 +271,7 @@ register(
         name="collision",
         meaning="An axis needs another torque than the model of the arm explains, and no payload explains it: the arm "
         "touches something, or a drive does not give its torque.",
-        remedy="Look for an obstacle in the way, then at the drive and the brake of the axis.",
+        remedy="Look for an obstacle, then check the drive and the brake of the axis.",
     ),
     Code(
         code="RBL517",

@@ -158,8 +158,8 @@ class WristSolver:
         if lost.any():
             raise Fault(
                 "RBL412",
-                f"at {100 * s[int(np.argmax(lost))]:.1f} % of the {self._line.path.name} the wrist on its way to its "
-                f"end angles takes the tool point out of reach of the main axes",
+                f"at {100 * s[int(np.argmax(lost))]:.1f} % of the {self._line.path.name} the wrist, moving to its end "
+                f"angles, takes the tool point out of reach of the main axes",
             )
         jumps = np.abs(np.diff(q, axis=0))
         step, axis = np.unravel_index(int(np.argmax(jumps)), jumps.shape)

@@ -178,7 +178,7 @@ class SeamMove:
         self.q_end = np.array(q_end)
         """Joint angles (n,) of the end as it is seen now, rad."""
         self.law: WristLaw | None = None
-        """Way of the wrist once it has left the path."""
+        """Joint curve of the wrist once it has left the path."""
         self._side: Side | None = None
 
     def next(self, n: int) -> tuple[Array, Fault | None]:

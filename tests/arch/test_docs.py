@@ -1,6 +1,6 @@
 """What the documentation says of names, files, commands, keys and output is true of the code beside it.
 
-``python -m tests.arch.test_docs`` writes docs/codes.md anew.
+``python -m tests.arch.test_docs`` writes docs/codes.md and docs/decisions/README.md anew.
 """
 
 import importlib
@@ -32,7 +32,10 @@ from tests.robolang.helpers import cell_with
 
 ROOT = Path(__file__).parents[2]
 CODES = ROOT / "docs" / "codes.md"
-PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
+PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
+RECORDS = sorted((ROOT / "docs" / "decisions").glob("[0-9]*.md"))
+DECISIONS = ROOT / "docs" / "decisions" / "README.md"
+STATUS = re.compile(r"Status: (accepted|superseded by \d{4}), (\d{4}-\d{2}-\d{2})((?:; amended by .*)?)")
 CODE = [path for folder in ("robolang", "runtime", "tests") for path in sorted((ROOT / folder).rglob("*.py"))]
 PREAMBLE = """\
 # Codes
@@ -44,6 +47,18 @@ configuration, 9xx internal. A code keeps its number and its meaning; what a mes
 This page is generated: `python -m tests.arch.test_docs`.
 
 | code | name | meaning | what to do |
+|---|---|---|---|
+"""
+DECISIONS_PREAMBLE = """\
+# Decisions
+
+Why the project is as it is. A record has at most 40 lines: what made a choice necessary, what was chosen and what was
+rejected, and what follows. It is written with the change that it explains. A later record does not delete an earlier
+one: the earlier one says by which record it is amended or superseded.
+
+This page is generated: `python -m tests.arch.test_docs`.
+
+| record | decision | status | date |
 |---|---|---|---|
 """
 
@@ -90,6 +105,15 @@ def codes_page() -> str:
     load_everything()
     rows = [f"| {code.code} | {code.name} | {code.meaning} | {code.remedy} |" for code in all_codes()]
     return PREAMBLE + "\n".join(rows) + "\n"
+
+
+def decisions_page() -> str:
+    rows = []
+    for path in RECORDS:
+        title, _, status = path.read_text("utf-8").splitlines()[:3]
+        state, date, amended = STATUS.fullmatch(status).groups()
+        rows.append(f"| [{path.name[:4]}]({path.name}) | {title[7:]} | {state}{amended} | {date} |")
+    return DECISIONS_PREAMBLE + "\n".join(rows) + "\n"
 
 
 def resolve(dotted: str) -> object:
@@ -164,6 +188,12 @@ def test_files_and_tests_exist(page):
     assert missing == []
 
 
+def test_folders_to_contribute_to_exist():
+    folders = re.findall(r"`((?:robolang|runtime|tests|docs)/[\w/]*)`", (ROOT / "CONTRIBUTING.md").read_text("utf-8"))
+    assert len(folders) > 15
+    assert [folder for folder in folders if not (ROOT / folder).is_dir()] == []
+
+
 def test_pages_and_tests_cited_in_the_code_exist():
     missing = []
     for path in CODE:
@@ -177,13 +207,13 @@ def test_pages_and_tests_cited_in_the_code_exist():
     assert missing == []
 
 
-def test_decisions_are_numbered_and_short():
-    records = sorted((ROOT / "docs" / "decisions").glob("*.md"))
-    numbers = [path.name[:4] for path in records]
+def test_decisions_are_numbered_dated_and_short():
+    numbers = [path.name[:4] for path in RECORDS]
     assert numbers == sorted(set(numbers))  # each once; a number that was given out and not used is a gap
-    for path in records:
+    for path in RECORDS:
         lines = path.read_text("utf-8").splitlines()
         assert lines[0].startswith(f"# {path.name[:4]} "), path.name
+        assert STATUS.fullmatch(lines[2]), f"{path.name}:3: write 'Status: accepted, YYYY-MM-DD'"
         assert [line for line in lines if line.startswith("## ")] == ["## Context", "## Decision", "## Consequences"]
         assert len(lines) <= 40, path.name
 
@@ -193,6 +223,20 @@ def test_decisions_are_numbered_and_short():
 
 def test_the_table_of_codes_is_current():
     assert CODES.read_text("utf-8") == codes_page(), "run: python -m tests.arch.test_docs"
+
+
+def test_the_list_of_decisions_is_current():
+    assert DECISIONS.read_text("utf-8") == decisions_page(), "run: python -m tests.arch.test_docs"
+
+
+def test_every_term_of_the_glossary_says_where_it_is_defined():
+    rows = re.findall(r"^\| (.+?) \| (.+?) \| (.+) \|$", (ROOT / "docs/glossary.md").read_text("utf-8"), re.MULTILINE)
+    terms = [term.lower() for term, _, _ in rows[1:]]
+    assert len(terms) > 50
+    assert terms == sorted(set(terms))
+    for term, meaning, where in rows[1:]:
+        assert len(meaning) > 15, term
+        assert LINK.findall(where) or DOTTED.findall(where), term  # that they exist is tested for every page
 
 
 def test_codes_in_prose_are_registered():
@@ -373,3 +417,4 @@ def make_targets() -> set[str]:
 
 if __name__ == "__main__":
     CODES.write_text(codes_page(), "utf-8")
+    DECISIONS.write_text(decisions_page(), "utf-8")

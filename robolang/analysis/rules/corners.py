@@ -37,7 +37,7 @@ NO_BLEND = LintRule(
         remedy="Give it FINE or no ZONE; the arm stops there in any case.",
         found=Stage.CELL,
     ),
-    why="The corner that was to be cut is none: behind it the arm stops for something else. Either a move is "
+    why="There is no corner to cut: the arm stops there for another statement. Either a move is "
     "missing, or whoever reads the program is led to expect a motion without a stop.",
     bad="10 MOVE P1, ZONE 20\n20 HAND ON\n",
     good="10 MOVE P1\n20 HAND ON\n",
@@ -47,10 +47,10 @@ LOAD_IN_BLEND = LintRule(
         code="RBL229",
         name="load-in-blend",
         meaning="A LOAD stands between two moves that would blend: the arm stops for it.",
-        remedy="Put the LOAD where the arm stands, behind the HAND, or end the move before it with FINE.",
+        remedy="Put the LOAD where the arm stands still, after the HAND, or end the move before it with FINE.",
     ),
-    why="What the arm carries changes while it stands, not on the way. The blend that the program asks for does "
-    "not take place, and the time that it was to save is lost.",
+    why="What the arm carries changes while the arm stands still, not during a move. The blend that the program asks "
+    "for does not take place, and the time that it was to save is lost.",
     bad="10 MOVE P1, ZONE 20\n20 LOAD (0, 0, 60), 0.8\n30 MOVE P2\n",
     good="10 LOAD (0, 0, 60), 0.8\n20 MOVE P1, ZONE 20\n30 MOVE P2\n",
     line=2,

@@ -20,7 +20,7 @@ LOAD_MISSING = LintRule(
         code="RBL228",
         name="load-missing",
         meaning="The hand has grasped or let go, and the arm moves on without a LOAD.",
-        remedy="Write LOAD with what the arm carries from there on, behind the HAND.",
+        remedy="Write a LOAD with what the arm now carries after the HAND.",
     ),
     why="Gravity and inertia are computed from the last LOAD. With the load of the empty hand the arm sags under "
     "the part, leaves its path, and stops for a payload that does not fit.",

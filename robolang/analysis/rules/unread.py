@@ -19,7 +19,7 @@ UNREAD = LintRule(
         remedy="Correct the name, use the value, or remove it.",
     ),
     why="Mostly the name is misspelt, here or where it should be read. The program runs, and counts something that "
-    "nobody looks at.",
+    "nobody reads.",
     bad="10 COUNT = 0\n20 TOTAL = 3\n30 COUNT = COUNT + 1\n40 PRINT TOTAL\n",
     good="10 COUNT = 0\n20 TOTAL = 3\n30 COUNT = COUNT + 1\n40 PRINT TOTAL; COUNT\n",
 )

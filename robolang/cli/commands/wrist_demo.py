@@ -156,7 +156,7 @@ def _print(robot: str, shown: list["Shown"], out: Path | None) -> None:
     console.print("* from the switch on; of the whole move where there is none", style="italic")
     _print_components(console, shown)
     worst = max((float(run.off_path.max()) for _, runs in shown for run in runs), key=badness)
-    console.print(f"tool point at most {worst * 1e3:.0e} mm off its way at any control point")
+    console.print(f"tool point at most {worst * 1e3:.0e} mm off its path at any control point")
     if out is not None:
         console.print(safe(f"all plots: {out / 'index.html'}"), soft_wrap=True)
 

@@ -7,7 +7,7 @@ RULES = (
     Rule(
         code="RBL401",
         why="The controller computes gravity and inertia from LOAD. With a mass that no body has, its torques push the "
-        "arm the wrong way.",
+        "arm in the wrong direction.",
         bad="10 LOAD (0, 0, 60), -0.8\n",
         good="10 LOAD (0, 0, 60), 0.8\n",
     ),

@@ -9,13 +9,13 @@ from robolang.lint.rule import Rule
 RULES = (
     Rule(
         code="RBL410",
-        why="The arm is not that long. On a robot the move starts and stops somewhere on the way; here nothing starts.",
+        why="The arm is not that long. On a robot the move starts and stops within its path; here nothing starts.",
         bad="10 MOVE P1 + (900, 0, 0)\n",
         good="10 MOVE P1 + (90, 0, 0)\n",
     ),
     Rule(
         code="RBL411",
-        why="The place can be reached, but a joint would have to turn further than it can, at the end or on the way.",
+        why="The place can be reached, but a joint would have to turn further than it can, at the end or on its path.",
         bad="10 MOVEJ JOINT(0, 60, -190, 0, 95, 0)\n20 MOVE HERE * (0, 0, 0, 0, -15, 0), WRIST KEEP\n",
         good="10 MOVEJ JOINT(0, 60, -190, 0, 95, 0)\n20 MOVE HERE * (0, 0, 0, 0, 15, 0), WRIST KEEP\n",
         line=2,
@@ -31,7 +31,7 @@ RULES = (
     Rule(
         code="RBL414",
         severity=Severity.WARNING,
-        why="Two blends cannot share a piece of way. The zone is made smaller without a word, and the corner is taken "
+        why="Two blends cannot share a piece of path. The zone is made smaller without a word, and the corner is taken "
         "closer and slower than the program says.",
         bad="10 MOVE P5 + (0, 0, 40), ZONE 30\n20 MOVE P5 + (100, 0, 40)\n",
         good="10 MOVE P5 + (0, 0, 40), ZONE 15\n20 MOVE P5 + (100, 0, 40)\n",
@@ -53,7 +53,7 @@ RULES = (
     ),
     Rule(
         code="RBL421",
-        why="The joints and the path are possible, and a table is in the way. In the cell that is a broken hand.",
+        why="The joints and the path are possible, and a table obstructs it. In the cell that is a broken hand.",
         bad="10 MOVE P1 + (0, 0, -30)\n",
         good="10 MOVE P1 + (0, 0, 30)\n",
     ),
@@ -75,7 +75,7 @@ RULES = (
     Rule(
         code="RBL424",
         why="Ranges of single joints do not keep a folded arm out of itself. The shapes are coarse; where this is "
-        "found, a hand, a hose or a cable is in the way for certain, and a run with physics is stopped by the contact. "
+        "found, a hand, a hose or a cable touches the arm for certain, and the contact stops a run with physics. "
         "An arm whose file gives no link_radius_mm has no shapes: it is not checked, and the table says so.",
         bad="10 MOVEJ JOINT(-60, 210, 25, -70, 65, -75)\n",
         good="10 MOVEJ JOINT(-60, 180, 25, -70, 65, -75)\n",

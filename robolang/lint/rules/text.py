@@ -109,7 +109,7 @@ RULES = (
     ),
     Rule(
         code="RBL115",
-        why="A number with a unit, a separator or a second point can be read in several ways, and an arm would follow "
+        why="A number with a unit, a separator or a second point has several meanings, and an arm would follow "
         "one of them.",
         bad="10 MOVE P1, SPEED 1_000\n",
         good="10 MOVE P1, SPEED 1000\n",
@@ -152,13 +152,13 @@ RULES = (
         bad="10 MOVE P1 ' noqa: RBL301\n",
         good="10 MOVE P1\n",
         fix="The codes that are not found are removed, and the whole noqa when none is left. In a program with errors "
-        "of syntax, or beside a points file that cannot be read, none is removed: not everything was looked at. "
+        "of syntax, or beside a points file that cannot be read, none is removed: not everything was checked. "
         "Codes that need the cell or the motion are left alone.",
     ),
     Rule(
         code="RBL191",
         severity=Severity.WARNING,
-        why="A misspelt code suppresses nothing, while the line looks as if somebody had looked at its finding and "
+        why="A misspelt code suppresses nothing, while the line looks as if somebody had read its finding and "
         "accepted it.",
         bad="10 MOVE P1 ' noqa: RBL30\n",
         good="10 MOVE P1\n",

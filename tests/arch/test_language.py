@@ -1,0 +1,89 @@
+"""Words that are not used in messages, help and pages: they have several meanings, or none that is plain.
+
+Texts of the product (strings of the code that are no docstrings) and the pages of docs/ are free of them. In docstrings
+and comments they are counted: the number of a package may only become less.
+"""
+
+import ast
+import io
+import re
+import tokenize
+from collections import Counter
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+WORDS = {
+    "way (branch, path, joint curve, offset, stroke)": r"\bways?\b",
+    "behind (after)": r"\bbehind\b",
+    "look at (check, read)": r"\blook(?:s|ed|ing)? at\b",
+    "none of that": r"\bnone of that\b",
+    "told (given, set)": r"\btold\b",
+    "what is said, asked, wanted, tried": r"\bwhat (?:is|was) (?:said|asked|wanted|tried)\b",
+    "of X it is what": r"\b[Oo]f an? \w+ it is\b",
+}
+"""What to write instead, in parentheses, and what finds the word."""
+MEANT = re.compile(
+    r"turns-the-long-way|half way|wrist's way of|or behind it|behind (?:these gears|a gear)|`[^`]*`|\*\w+\*"
+)
+"""Where a word has its plain meaning: places in space, names of the code, and a word that is itself the subject."""
+LEFT = {"robolang": 120, "runtime": 120}
+"""How often they are left in docstrings and comments; lower the number when you have reworded some."""
+PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
+
+
+def found(text: str) -> Counter[str]:
+    plain = MEANT.sub("", text)
+    return Counter({word: len(hits) for word, pattern in WORDS.items() if (hits := re.findall(pattern, plain))})
+
+
+@cache
+def code(package: str) -> tuple[tuple[str, str], ...]:
+    return tuple(
+        (path.relative_to(ROOT).as_posix(), path.read_text("utf-8")) for path in sorted((ROOT / package).rglob("*.py"))
+    )
+
+
+def notes(tree: ast.AST) -> set[int]:
+    """Return the ids of the strings that stand as statements: docstrings of modules, classes, functions and names."""
+    return {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+
+
+def texts(source: str) -> str:
+    """Return the strings of a module that a user can see: all but docstrings."""
+    tree = ast.parse(source)
+    skipped = notes(tree)
+    strings = (node for node in ast.walk(tree) if isinstance(node, ast.Constant) and id(node) not in skipped)
+    return "\n".join(node.value for node in strings if isinstance(node.value, str) and " " in node.value)
+
+
+def prose(source: str) -> str:
+    """Return the docstrings and comments of a module."""
+    tree = ast.parse(source)
+    skipped = notes(tree)
+    docs = [node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and id(node) in skipped]
+    tokens = tokenize.generate_tokens(io.StringIO(source).readline)
+    return "\n".join([*map(str, docs), *(token.string for token in tokens if token.type == tokenize.COMMENT)])
+
+
+@pytest.mark.parametrize("package", LEFT)
+def test_messages_and_help_are_plain(package):
+    assert {name: dict(words) for name, source in code(package) if (words := found(texts(source)))} == {}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_pages_are_plain(page):
+    assert found(re.sub(r"^```.*?^```", "", page.read_text("utf-8"), flags=re.MULTILINE | re.DOTALL)) == {}
+
+
+@pytest.mark.parametrize("package", LEFT)
+def test_docstrings_become_plainer(package):
+    words = sum((found(prose(source)) for _, source in code(package)), Counter())
+    assert words.total() <= LEFT[package], words
+
+
+def test_words_are_found_and_plain_meanings_are_not():
+    assert found("the way behind it, looked at as told: none of that").total() == 5
+    assert found("in front of the waist (r >= 0) or behind it, half way, RBL435 turns-the-long-way") == {}
