@@ -26,7 +26,7 @@ from runtime.motion.commands import Component
 from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.path import LinePath
 from runtime.motion.path_ik import Arm, LineSolver, WristSolver
-from runtime.motion.seam import SeamLimits, SeamMove, SeamTracker, superposed
+from runtime.motion.seam import CalculatedMove, SeamLimits, SeamMove, SeamTracker, superposed
 from runtime.motion.wrist.hold import (
     COMPONENTS,
     PathAhead,
@@ -335,7 +335,8 @@ def _tracked(line: LineSolver, q_end: Array, s: Array, trial: Trial) -> tuple[Ar
         return np.asarray(seam * (way / line.path.length))
 
     tracker = SeamTracker("demo", SeamLimits(filter_s=0.0), trial.period_s, read)
-    move = SeamMove(line, s, line.q_start, q_end, None, tracker, trial.options, trial.period_s)
+    calculated = CalculatedMove(line=line, s=s, period_s=trial.period_s, q_end=q_end, switch=None)
+    move = SeamMove(calculated, line.q_start, tracker, trial.options)
     rows = [line.q_start]
     for n in range(1, len(s)):
         q, fault = move.next(n)

@@ -15,10 +15,11 @@ less. m is the largest number for which, in all of these cycles,
     room           m is at most half the cycles of either move, so that two blends never meet
 
 Without the rule for the tool two slow moves in line would pass the corner at the sum of their speeds, since their
-braking distance is far less than the zone. Jerk is not looked at: that of the tool point may be the sum of that of both
+braking distance is far less than the zone. Jerk is not checked: that of the tool point may be the sum of that of both
 moves. m shrinks to 0, where the arm stops at the corner, rather than fail.
-It is looked for by halving. Whether m holds is not strictly monotonic in m, so every candidate is verified as a whole,
-and of those that held the largest is taken; a larger one may have been missed. About ten looks of 0.2 ms.
+m is searched by halving. Whether m holds is not strictly monotonic in m, so every candidate is verified as a whole,
+and of those that held the largest is taken; a larger one may have been missed. About ten candidates of 0.2 ms each.
+Called by ``MotionPlanner.join`` for every corner of a chain; m, rad, s.
 """
 
 from collections.abc import Callable
@@ -32,14 +33,18 @@ from runtime.motion.path_ik import RANGE_TOLERANCE, Arm
 from runtime.motion.time_scaling import Pace
 
 _SLACK = 1.0 + 1e-9
+"""Rounding of the joints' limits: single moves are planned to the limit itself."""
+
 _TOOL_SLACK = 1.0 + 1e-6
+"""And of the tool's: differences of poses lose more digits than joint angles do."""
+
 _NOTHING = 1e-12
 """Differences of positions below this are rounding, m and rad."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Corner:
-    """What became of a corner: its ``radius`` as asked for, m, and ``cycles`` in which both moves run (0: it stops).
+    """A corner as planned: its ``radius``, m, as programmed, and ``cycles`` in which both moves run (0: it stops).
 
     ``reach`` m: how far from the corner the tool leaves or joins the paths, at most; ``deviation`` m: by how much it
     misses the corner.
@@ -61,7 +66,7 @@ class _Tool:
 
     @classmethod
     def of(cls, X: Array) -> "_Tool":
-        """Return what poses (N, 4, 4) of one cycle after the other, N at least 3, show."""
+        """Return the largest values over poses (N, 4, 4), one a cycle, N at least 3."""
         steps = np.diff(X[:, :3, 3], axis=0)
         return cls(
             speed=_longest(steps),
@@ -75,9 +80,9 @@ class _Tool:
         return all(value <= limit * _TOOL_SLACK + _NOTHING for value, limit in pairs)
 
     @classmethod
-    def most(cls, *those: "_Tool") -> "_Tool":
+    def most(cls, *tools: "_Tool") -> "_Tool":
         """Return the largest value of each kind."""
-        rows = np.array([(each.speed, each.turning, each.acceleration) for each in those])
+        rows = np.array([(each.speed, each.turning, each.acceleration) for each in tools])
         speed, turning, acceleration = rows.max(axis=0).tolist()
         return cls(speed=speed, turning=turning, acceleration=acceleration)
 
@@ -85,17 +90,33 @@ class _Tool:
 def overlapped(a: Array, b: Array, m: int) -> Array:
     """Return rows a (N_A + 1, n) and b (N_B + 1, n), which begin where a ends, with m cycles run at the same time."""
     end = len(a) - 1
+    # rows 0 and m of the overlap are taken from a and b themselves, not from the sum: no rounding on either side
     return np.concatenate([a[: end - m + 1], a[end - m + 1 : end] + (b[1:m] - b[0]), b[max(m, 1) :]])
 
 
-def blend(
-    a: Array, b: Array, halves: tuple[int, int], zone: float, arm: Arm, pace: Pace, acceleration: float, turning: float
-) -> tuple[Array, Corner]:
-    """Return rows a (N_A + 1, n) of a motion joined with b (N_B + 1, n), which begin where a ends, and the corner.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BlendLimits:
+    """What a blend may do: the joints' limits of ``pace``, and what the tool may in any case.
 
-    ``halves``: cycles of the second half of a's last move and of the first half of b; ``zone`` m; rad. Limits of the
-    joints are those of ``pace``; ``acceleration`` m/s2 of the tool point and ``turning`` rad/s of the tool are what
-    they may have in any case.
+    ``acceleration`` m/s2 of the tool point, ``turning`` rad/s of the tool.
+    """
+
+    pace: Pace
+    acceleration: float
+    turning: float
+
+    def of_tool(self) -> _Tool:
+        """Return the limits of the tool per cycle; its speed is bounded by the moves alone."""
+        period_s = self.pace.period_s
+        return _Tool(speed=0.0, turning=self.turning * period_s, acceleration=self.acceleration * period_s**2)
+
+
+def blend(
+    a: Array, b: Array, halves: tuple[int, int], zone: float, arm: Arm, limits: BlendLimits
+) -> tuple[Array, Corner]:
+    """Return rows a (N_A + 1, n) rad of a motion joined with b (N_B + 1, n), which begin where a ends, and the corner.
+
+    ``halves``: cycles of the second half of a's last move and of the first half of b; ``zone`` m, its radius.
     """
     if not (zone > 0.0 and min(halves) > 0):
         return overlapped(a, b, 0), Corner(radius=zone)
@@ -108,14 +129,15 @@ def blend(
     allowed = _Tool.most(
         _Tool.of(np.concatenate([before, before[-1:]])),
         _Tool.of(np.concatenate([after[:1], after])),
-        _Tool(speed=0.0, turning=turning * pace.period_s, acceleration=acceleration * pace.period_s**2),
+        limits.of_tool(),
     )
 
     def holds(m: int) -> bool:
         rows = _around(a, b, m)
-        if not _joints_hold(rows, arm, pace):
+        if not _joints_hold(rows, arm, limits.pace):
             return False
         X = _poses(arm, rows)
+        # the two rows on either side lie on the paths of a and b: they count for the speed, not for the zone
         return bool((_distances(X[2:-2], corner) <= zone).all()) and _Tool.of(X).within(allowed)
 
     m = _largest(room, holds)
@@ -144,7 +166,10 @@ def _largest(most: int, holds: Callable[[int], bool]) -> int:
 
 
 def _around(a: Array, b: Array, m: int) -> Array:
-    """Return the rows of a blend with two of a before it and two of b behind it, at rest where there are no more."""
+    """Return the rows of a blend with two of a before it and two of b after it, at rest where there are no more.
+
+    A segment of the fine interpolation depends on four set-points, so two neighbours on either side are affected.
+    """
     end = len(a) - 1
     before = a[np.maximum(np.arange(end - m - 2, end - m + 1), 0)]
     after = b[np.minimum(np.arange(m, m + 3), len(b) - 1)]
@@ -152,6 +177,7 @@ def _around(a: Array, b: Array, m: int) -> Array:
 
 
 def _joints_hold(rows: Array, arm: Arm, pace: Pace) -> bool:
+    """Return whether rows (N, n) keep range, speed and acceleration of every joint at every servo tick."""
     lowest, highest, speed, acceleration = pace.fine.extremes(rows)
     inside = (lowest >= arm.spec.lower - RANGE_TOLERANCE) & (highest <= arm.spec.upper + RANGE_TOLERANCE)
     slow = (speed <= pace.speed * _SLACK) & (acceleration <= pace.acceleration * _SLACK)
@@ -159,7 +185,7 @@ def _joints_hold(rows: Array, arm: Arm, pace: Pace) -> bool:
 
 
 def _inside(X: Array, corner: Array, zone: float) -> int:
-    """Return how many of the poses (N + 1, 4, 4) after the first are in the zone, one after the other."""
+    """Return how many of the poses (N + 1, 4, 4) after the first are in the zone without leaving it."""
     out = ~(_distances(X, corner) <= zone)
     return int(np.argmax(out)) - 1 if out.any() else len(X) - 1
 
@@ -177,7 +203,7 @@ def _longest(vectors: Array) -> float:
 
 
 def _passed(points: Array, corner: Array) -> float:
-    """Return the least distance of the corner from the way through points (N, 3)."""
+    """Return the least distance, m, of the corner from the polyline through points (N, 3)."""
     steps, off = np.diff(points, axis=0), corner - points[:-1]
     squares = np.maximum((steps**2).sum(axis=1), _NOTHING**2)
     share = np.clip((steps * off).sum(axis=1) / squares, 0.0, 1.0)

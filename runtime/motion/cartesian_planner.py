@@ -3,8 +3,8 @@
 The path, a line or an arc, is sampled where the interpolator will send it, every 8 ms, and solved for the joints: in
 the arm configuration it starts in, with the wrist leaving the posture of the path where it has to (``wrist_planner``).
 It is refused when a sample is out of reach (RBL410), outside a joint's range (RBL411) or cannot be passed (RBL412), and
-slowed as a whole until every joint keeps its limits (``pacing``). What was checked is what runs: the interpolator hands
-out these very rows (docs/decisions/0002).
+slowed as a whole until every joint keeps its limits (``time_scaling``). What was checked is what runs: the interpolator
+hands out these very rows (docs/decisions/0002).
 
 On an arc of radius r the tool point is accelerated towards the centre as well, by v^2 / r. Its speed is held to
 
@@ -12,10 +12,10 @@ On an arc of radius r the tool point is accelerated towards the centre as well, 
 
 and what v^2 / r leaves of the path's acceleration limit a is for gaining and losing speed: sqrt(a^2 - (v^2 / r)^2).
 
-An *override* o in (0, 1] is a share of every speed: of the tool point, of its turning, of the joints, whether it was
-asked for or is a limit; TIME t becomes t / o. Accelerations stay. A command has one of its own, the planner may be
-given another one for all moves, and the product counts. The way of the wrist is chosen as for o = 1, so a program that
-is tried at a low speed takes the same way through space as later.
+An *override* o in (0, 1] is a share of every speed: of the tool point, of its turning, of the joints, programmed or a
+limit; TIME t becomes t / o. Accelerations stay. A command has one of its own, the planner may be
+given another one for all moves, and the product counts. How the move goes through the wrist is chosen as for o = 1, so
+a program that is tested at a low speed passes through the same points as later.
 """
 
 import math
@@ -34,7 +34,7 @@ from runtime.motion.commands import Component, MoveArc, MoveLinear, PathMove
 from runtime.motion.half_turn import in_order
 from runtime.motion.path import ArcPath, LinePath, Path
 from runtime.motion.path_ik import Arm, LineSolver, WristSolver
-from runtime.motion.seam import SeamMove, SeamTracker
+from runtime.motion.seam import CalculatedMove, SeamMove, SeamTracker
 from runtime.motion.time_scaling import Pace, Slowdown
 from runtime.motion.velocity_profile import MAX_DURATION, SpeedLimits, bound, check_requests, profile
 from runtime.motion.wrist.switch import CONDITIONS, SAME_ANGLES, Condition, PathTiming
@@ -47,25 +47,27 @@ from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import Profile
 
 FOLLOWS, EXCEPTION, HELD = 0, 1, 2
-"""``wrist_mode``: the wrist follows the path, goes to its end angles, does so with posture components held."""
+"""``wrist_mode``: the wrist follows the path; goes to its end angles; does so with posture components held."""
 
 MOST_SAMPLES = 2000
-"""As many samples of a move are looked at when its way through the wrist is chosen."""
+"""A move through the wrist is chosen on at most so many samples: at 8 ms, moves of 16 s and less on all of theirs."""
 
 NOTHING_TO_DO = 1e-9
-"""A path shorter than this, m and rad, is none."""
+"""A move of less, m and rad, ends where it starts: it gets no rows."""
 
 ACROSS = 0.8
-"""Largest share of the path's acceleration that an arc may take to turn the speed; 0.6 of it are then left along."""
+"""Largest share of the path's acceleration that an arc may take to turn the speed; sqrt(1 - 0.8^2) = 0.6 are then left
+to gain and to lose it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WristChange:
     """Where a move leaves the posture of its path to change the wrist, and what it costs.
 
-    ``condition`` that was met on ``axis`` (0-based; None: no single one); ``row`` from which the wrist goes its own way
-    and ``share`` of the path there; ``remedy`` beyond the document's rule, or ""; ``deviation`` rad: the largest angle
-    between the tool and its planned posture. ``components``: of each that was to be held by how much it changes, rad.
+    ``condition`` that was met on ``axis`` (0-based; None: no single one); ``row`` and ``share`` of the path at which
+    the wrist leaves it, ``row_end`` and ``share_end`` at which it is back; ``remedy`` beyond the document's rule, or
+    ""; ``deviation`` rad: the largest angle between the tool and its planned posture. ``components``: by how much each
+    of those to be held changes, rad.
     """
 
     condition: Condition
@@ -84,9 +86,9 @@ class WristChange:
 class MovePlan:
     """A planned move: joint set-points ``q`` (N + 1, n) rad, from the start to the end, 8 ms apart.
 
-    ``path`` of the tool point, None where the joints go their own way; ``s`` (N + 1,) path parameter of each row.
-    ``slowdown`` None when the move runs as asked, ``wrist`` None when the tool keeps the posture of the path, ``notes``
-    for people, ``acceleration`` the share of the robot's that was asked for, ``override`` the share of all speeds.
+    ``path`` of the tool point, None for a joint move; ``s`` (N + 1,) path parameter of each row. ``slowdown`` None when
+    the move runs as programmed, ``wrist`` None when the tool keeps the posture of the path, ``notes`` for the report,
+    ``acceleration`` the programmed share of the robot's, ``override`` the share of all speeds.
     """
 
     path: Path | None
@@ -108,10 +110,10 @@ class MovePlan:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LineWay:
+class PathCurve:
     """The curve of a move along a path in joint space; ``limits`` of its path parameter, None: already there.
 
-    ``line`` keeps the posture of the path, ``choice`` is how the move really goes.
+    ``line`` keeps the posture of the path, ``choice`` is the curve that the move takes.
     """
 
     path: Path
@@ -126,7 +128,7 @@ class LineWay:
 
     @contextmanager
     def explaining(self) -> Iterator[None]:
-        """Add to a refusal of a way through the wrist the reason why the wrist has to go at all."""
+        """Add to a refusal of a curve through the wrist the reason why the wrist has to change at all."""
         try:
             yield
         except Fault as fault:
@@ -150,19 +152,19 @@ class CartesianPlanner:
         ``X_flange_tool`` (4, 4) is the tool whose point moves, ``override`` in (0, 1] a share of every speed
         beside the command's own.
         """
-        way = self.way(q_start, command, X_flange_tool)
-        if way.limits is None:
-            return MovePlan(path=way.path, s=np.ones(1), q=frozen([q_start]), slowdown=None, notes=("already there",))
+        curve = self.curve(q_start, command, X_flange_tool)
+        if curve.limits is None:
+            return MovePlan(path=curve.path, s=np.ones(1), q=frozen([q_start]), slowdown=None, notes=("already there",))
         override *= command.override
         pace = self._pace.overridden(override)
         duration = None if command.duration is None else command.duration / override
-        with way.explaining():
-            s, q, slowdown = pace.within_limits(way.choice.solver, way.limits.overridden(override), duration)
-        wrist = _wrist_change(way.choice, way.line, s, q, command.held)
+        with curve.explaining():
+            s, q, slowdown = pace.within_limits(curve.choice.solver, curve.limits.overridden(override), duration)
+        wrist = _wrist_change(curve.choice, curve.line, s, q, command.held)
         notes = pace.slow_note(slowdown, len(s) - 1) + pace.time_note(duration, len(s) - 1)
         notes += _wrist_notes(wrist) + _kept_notes(command, q)
         return MovePlan(
-            path=way.path,
+            path=curve.path,
             s=frozen(s),
             q=frozen(q),
             slowdown=slowdown,
@@ -172,15 +174,16 @@ class CartesianPlanner:
             override=override,
         )
 
-    def way(self, q_start: Array, command: PathMove, X_flange_tool: Array) -> LineWay:
+    def curve(self, q_start: Array, command: PathMove, X_flange_tool: Array) -> PathCurve:
         """Return the curve of a move, at any path parameter, and its limits; arguments and faults of ``plan``."""
         X_start = matmul(self._kinematics.forward(q_start), X_flange_tool)
+        # a taught end may differ in turns alone: then there is something to do although the tool is there already
         turn = 0.0 if command.q_end is None else float(np.abs(command.q_end - q_start).max())
         arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=self._pace.fine, X_flange_tool=X_flange_tool)
         lines = [LineSolver(arm, path, q_start) for path in self._paths(X_start, command)]
         line, path = lines[0], lines[0].path
         if all(extent < NOTHING_TO_DO for extent in (path.length, path.angle, turn)):
-            return LineWay(path=path, line=line, limits=None, choice=Candidate(solver=line))
+            return PathCurve(path=path, line=line, limits=None, choice=Candidate(solver=line))
         limits = speed_limits(path, command, self._spec.path, self._profile, turn)
         if len(lines) > 1:
             lines = in_order(lines, profile(limits, self._profile.period_s, command.duration), command.q_end)
@@ -191,7 +194,7 @@ class CartesianPlanner:
             except Fault as fault:
                 refused.append(fault)
             else:
-                return LineWay(path=line.path, line=line, limits=limits, choice=choice)
+                return PathCurve(path=line.path, line=line, limits=limits, choice=choice)
         raise refused[0]
 
     def _paths(self, X_start: Array, command: PathMove) -> tuple[Path, ...]:
@@ -218,18 +221,17 @@ class CartesianPlanner:
         options, wrist = self._profile.wrist, plan.wrist
         if self._keeps_posture(command):
             options = options.only()
-        elif wrist is None or wrist.remedy:  # the plan knows better than C1, C2 and C4 when the wrist has to go
+        elif wrist is None or wrist.remedy:
+            # the plan knows better than C1, C2 and C4 when the wrist has to leave; range and speed it cannot know
             options = options.only(range_condition=options.range_condition, guard=options.guard)
-        return SeamMove(
-            LineSolver(arm, plan.path, q_from),
-            plan.s,
-            q_here,
-            plan.q[-1],
-            None if wrist is None else wrist.row,
-            tracker,
-            options,
-            self._profile.period_s,
+        calculated = CalculatedMove(
+            line=LineSolver(arm, plan.path, q_from),
+            s=plan.s,
+            period_s=self._profile.period_s,
+            q_end=plan.q[-1],
+            switch=None if wrist is None else wrist.row,
         )
+        return SeamMove(calculated, q_here, tracker, options)
 
     def _choose(self, line: LineSolver, limits: SpeedLimits, command: PathMove) -> Candidate:
         """Return how the move goes through the wrist, judged on its samples at the programmed speed."""
@@ -266,7 +268,7 @@ def _wrist_change(
         return None
     row = int(np.searchsorted(s, choice.switch, side="right")) - 1
     trigger, solver = choice.trigger, choice.solver
-    assert isinstance(solver, WristSolver)  # what has a switch has a way from it
+    assert isinstance(solver, WristSolver)  # a candidate with a switch has a law from there on
     return WristChange(
         condition="end" if trigger is None else trigger.condition,
         axis=None if trigger is None else trigger.axis,
@@ -282,6 +284,7 @@ def _wrist_change(
 
 
 def _wrist_notes(wrist: WristChange | None) -> tuple[str, ...]:
+    """Return the note of a move that leaves its posture: from where to where, why, and by how much the tool turns."""
     if wrist is None:
         return ()
     axis = "" if wrist.axis is None else f" of J{wrist.axis + 1}"
@@ -296,7 +299,7 @@ def _wrist_notes(wrist: WristChange | None) -> tuple[str, ...]:
 
 
 def _kept_notes(command: PathMove, q: Array) -> tuple[str, ...]:
-    """Return what a move that keeps its wrist leaves undone: the taught angles at which it does not end."""
+    """Return the note of a move that does not end at its taught angles, since it keeps its wrist."""
     if command.q_end is None:
         return ()
     axis = int(np.argmax(np.abs(q[-1] - command.q_end)))
@@ -309,17 +312,20 @@ def _kept_notes(command: PathMove, q: Array) -> tuple[str, ...]:
 
 
 def arc_limits(speed: float, acceleration: float, jerk: float, radius: float) -> tuple[float, float]:
-    """Return the speed m/s on an arc of ``radius`` m and the acceleration m/s2 that it leaves along the arc."""
+    """Return the speed m/s on an arc of ``radius`` m and the acceleration m/s2 that it leaves along the arc.
+
+    ``speed`` m/s, ``acceleration`` m/s2 and ``jerk`` m/s3 are the limits of the path.
+    """
     speed = min(speed, math.sqrt(ACROSS * acceleration * radius), math.cbrt(jerk * radius**2))
     return speed, math.sqrt(acceleration**2 - (speed**2 / radius) ** 2)
 
 
 def speed_limits(
-    path: Path, command: PathMove, robot: PathLimits, profile: Profile, wrist_way: float = 0.0
+    path: Path, command: PathMove, robot: PathLimits, profile: Profile, wrist_turn: float = 0.0
 ) -> SpeedLimits:
-    """Return the bounds of the path parameter for a command; ``Fault`` RBL404 when it asks for the impossible.
+    """Return the bounds of the path parameter for a command; ``Fault`` RBL404 for a SPEED, ACCEL or TIME out of range.
 
-    ``wrist_way`` rad is how far the wrist has to turn, for a move whose tool stays where it is.
+    ``wrist_turn`` rad is how far the wrist has to turn, for a move whose tool stays where it is.
     """
     speed = command.speed if command.speed is not None else robot.default_speed
     if command.duration is not None:
@@ -335,5 +341,6 @@ def speed_limits(
         speed, acceleration = arc_limits(speed, acceleration, jerk, path.radius)
     position = (path.length, speed, acceleration, jerk)
     turning = (robot.rotation_speed, robot.rotation_acceleration * share, robot.rotation_jerk * share)
-    angle = wrist_way if path.length < NOTHING_TO_DO and path.angle < NOTHING_TO_DO else path.angle
+    # where only the wrist turns, it gets the limits of the tool's turning; the joints' own are checked afterwards
+    angle = wrist_turn if path.length < NOTHING_TO_DO and path.angle < NOTHING_TO_DO else path.angle
     return bound([position, (angle, *turning)], profile.speed_shape)

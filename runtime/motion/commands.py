@@ -1,11 +1,12 @@
 """Motion requests as the controller takes them: SI, frozen, complete.
 
-Three kinds: straight (``MoveLinear``), on an arc (``MoveArc``), all joints together (``MoveJoint``). Of every kind:
+Three kinds: straight (``MoveLinear``), on an arc (``MoveArc``), all joints together (``MoveJoint``). All have:
 ``duration`` s from start to stop (None: as fast as speed and limits allow); ``zone`` m, the radius about its end within
 which it may go over into the next move of a chain (``runtime.motion.blend``), 0: it stops there; ``q_end`` (n,) rad,
-the taught joint angles of the end, turns and all, None where only its pose is taught, with the words of
-``configuration`` and the ``turns`` of the joints as far as they are. What the robot cannot do is refused by the planner
-(RBL4xx); a zone or an override that is none, and a joint move to nowhere, are misuse and raise ``ValueError``.
+the taught joint angles of the end, turns and all; None where only its pose is taught, then with the words of
+``configuration`` and the ``turns`` of the joints that the point names. What the robot cannot do is refused by the
+planner (RBL4xx); a zone or an override out of range, and a joint move without an end, are misuse and raise
+``ValueError``.
 """
 
 import math
@@ -23,7 +24,7 @@ Wrist = Literal["auto", "keep"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Motion:
-    """What every move may be told. ``acceleration`` is a share of the robot's in (0, 1]; ``speed`` None: its default.
+    """The options of every move. ``acceleration`` is a share of the robot's in (0, 1]; ``speed`` None: its default.
 
     ``override`` in (0, 1] is a share of every speed, those of the limits included
     (``runtime.motion.cartesian_planner``).
@@ -39,6 +40,8 @@ class Motion:
     override: float = 1.0
 
     def __post_init__(self) -> None:
+        # SPEED, ACCEL and TIME come from programs and are refused with their place (``check_requests``); these two are
+        # set by our own code, so a bad one is a mistake there
         if not (0.0 < self.override <= 1.0):
             raise ValueError(f"an override of {self.override} is not a share in (0, 1]")
         if not (0.0 <= self.zone < math.inf):
@@ -61,8 +64,8 @@ class PathMotion(Motion):
 class MoveLinear(PathMotion):
     """Move the tool point straight to ``X_world_tool`` (4, 4), orientation about one axis (JPH06190750A Fig 6).
 
-    ``tracked``: a seam sensor will shift the path as it goes, so once the wrist has left its posture it does not return
-    to it before the end.
+    ``tracked``: a seam sensor will shift the path while it runs, so once the wrist has left its posture it does not
+    return to it before the end.
     """
 
     X_world_tool: Array
@@ -73,8 +76,8 @@ class MoveLinear(PathMotion):
 class MoveArc(PathMotion):
     """Move the tool point on a circle over the place of ``X_via`` (4, 4) to ``X_world_tool`` (4, 4).
 
-    The orientation turns about one axis from that of the start to that of the end, in proportion to the way along the
-    arc; *that of the via point is not used*. ``held`` components are counted from the tangent.
+    The orientation turns about one axis from that of the start to that of the end, in proportion to the length along
+    the arc; *that of the via point is not used*. ``held`` components are counted from the tangent.
     """
 
     X_via: Array
@@ -83,10 +86,10 @@ class MoveArc(PathMotion):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MoveJoint(Motion):
-    """Turn all joints together to ``q_end`` (n,) rad, each in proportion to its way; the tool goes where that takes it.
+    """Turn all joints together to ``q_end`` (n,) rad, each in proportion to its turn; the tool follows no given path.
 
     Where ``q_end`` is None, to the solution of ``X_world_tool`` (4, 4) that fits ``configuration`` and ``turns``, keeps
-    the rest of the arm's configuration where that can be, and is reached first. ``speed`` and ``acceleration`` are
+    the rest of the arm's configuration where possible, and is reached first. ``speed`` and ``acceleration`` are
     shares of the joints' limits in (0, 1] (``speed`` None: 1).
     """
 
@@ -105,5 +108,5 @@ Command: TypeAlias = MoveLinear | MoveArc | MoveJoint
 
 
 def in_configuration(branch: Branch, words: tuple[str, ...]) -> bool:
-    """Return whether a branch is what the words of a taught point ask for; no words ask for nothing."""
+    """Return whether a branch has all the configuration words of a taught point, such as LEFTY; it may have none."""
     return set(words) <= set(str(branch).split())

@@ -6,7 +6,7 @@ every set-point and is continuous to the acceleration. A segment needs the set-p
 one cycle after its end arrived (docs/timing.md); one more segment leaves rest and one enters it. A tick plays the
 value of its own start, so commands and readings of a tick belong to the same instant. Everything is linear in
 the four set-points around the segment, so one constant matrix holds positions, speeds and accelerations of all
-ticks.
+ticks (docs/decisions/0009). rad; called once a cycle by the controller, and over whole moves by the planners.
 """
 
 import numpy as np
@@ -18,6 +18,7 @@ from runtime.core.state import Stateful
 
 def _quintic(u: Array) -> Array:
     """Return rows that map (q0, v0, a0, q1, v1, a1), in units of the segment, to the position at u in [0, 1]."""
+    # the six Hermite polynomials of degree 5: each is 1 in one of its six conditions at u = 0 and 1, and 0 in the rest
     u2, u3, u4, u5 = u**2, u**3, u**4, u**5
     return np.stack(
         [
@@ -33,6 +34,7 @@ def _quintic(u: Array) -> Array:
 
 
 def _quintic_speed(u: Array) -> Array:
+    """Return the derivatives d/du of the rows of ``_quintic``."""
     u2, u3, u4 = u**2, u**3, u**4
     return np.stack(
         [
@@ -48,6 +50,7 @@ def _quintic_speed(u: Array) -> Array:
 
 
 def _quintic_acceleration(u: Array) -> Array:
+    """Return the second derivatives of the rows of ``_quintic``."""
     u2, u3 = u**2, u**3
     return np.stack(
         [
@@ -69,12 +72,13 @@ _DIFFERENCES = np.array(
 
 
 class FineInterpolator(Stateful):
-    """Plays the segments between set-points tick by tick."""
+    """Plays the segments between set-points tick by tick, ``ticks`` in a cycle of ``period_s``, from rest at q (n,)."""
 
     BUFFERS = ("_points",)
     VALUES = ("_jumped",)
 
     def __init__(self, ticks: int, period_s: float, q: Array) -> None:
+        # u = 0 is included and u = 1 is not: a tick plays the value of its own start, the end belongs to the next cycle
         u = np.arange(ticks) / ticks
         self.ticks = ticks
         self._weights = np.concatenate(
@@ -101,7 +105,7 @@ class FineInterpolator(Stateful):
         return matmul(self._weights, points).reshape(3, self.ticks, -1)
 
     def hold(self, q: Array) -> None:
-        """Stand at joint angles q (n,): the pipeline holds nothing else any more."""
+        """Stand still at joint angles q (n,): the set-points in the pipeline are dropped."""
         self._points[:] = q
         self._jumped = False
 
@@ -118,6 +122,7 @@ class FineInterpolator(Stateful):
     @property
     def settled(self) -> bool:
         """Whether the output stands still at the last set-point."""
+        # equal to the bit: at rest the same row is pushed again, nothing is computed anew
         return bool((self._points[1:] == self._points[0]).all())
 
     def expand(self, setpoints: Array) -> Array:
@@ -134,6 +139,7 @@ class FineInterpolator(Stateful):
 
     def peaks(self, setpoints: Array) -> tuple[Array, Array]:
         """Return the largest speed and acceleration (n,) of a whole sequence (N + 1, n), as ``expand`` has them."""
+        # not by ``expand``: positions are not needed here, and this is called in every round of ``within_limits``
         padded = np.concatenate([setpoints[:1], setpoints[:1], setpoints, setpoints[-1:], setpoints[-1:]])
         windows = np.lib.stride_tricks.sliding_window_view(padded, 4, axis=0)  # (segments, n, 4)
         ticks = self.ticks
@@ -141,7 +147,7 @@ class FineInterpolator(Stateful):
         return moving[..., :ticks].max(axis=(0, 2)), moving[..., ticks:].max(axis=(0, 2))
 
     def extremes(self, setpoints: Array) -> tuple[Array, Array, Array, Array]:
-        """Return lowest and highest position, largest speed and acceleration, each (n,), inside a motion that goes on.
+        """Return lowest and highest position, largest speed and acceleration, each (n,), within a continued motion.
 
         Measured at the ticks from the second of the set-points (N, n), N at least 4, to the last but one.
         """
@@ -154,7 +160,7 @@ class FineInterpolator(Stateful):
     def continue_(self, setpoints: Array) -> Array:
         """Return (3, (N - 1) * ticks, n) for set-points (N, n) of which the first three are already in the pipeline.
 
-        The last one is held until the command stands there. As ``expand``, but from a motion that goes on.
+        The last one is held until the command stands there. As ``expand``, but continuing a motion.
         """
         padded = np.concatenate([setpoints, setpoints[-1:], setpoints[-1:]])
         segments = len(padded) - 3

@@ -1,6 +1,7 @@
-"""Which direction a move takes whose tool makes an exact half turn: both are equally short.
+"""The direction of a move whose tool makes an exact half turn: both directions are equally short.
 
-Two rotations take the tool there, about one axis to either side (``frames.principal_axes``). Taken is, in this order,
+Two rotations take the tool there, about one axis to either side (``frames.principal_axes``). The choice is, in this
+order,
 
     1  the one that keeps every joint within its range, without the wrist leaving the posture of the path, and that ends
        in the taught joint angles where there are some
@@ -25,7 +26,10 @@ from runtime.robot.kinematics.kinematics import SAME_ROOM
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Trial:
-    """A direction as tried: its end q (n,) rad, NaN where there is none; ``fits`` counts what of rule 1 it keeps."""
+    """A direction with its end q (n,) rad, NaN where there is none; ``fits`` is how much of rule 1 it keeps.
+
+    0: the path leaves a range or the reach; 1: it can be executed; 2: it also ends at the taught angles.
+    """
 
     line: LineSolver
     end: Array
@@ -33,11 +37,12 @@ class _Trial:
 
 
 def in_order(lines: Sequence[LineSolver], s: Array, q_end: Array | None) -> list[LineSolver]:
-    """Return the solvers of one move, a path for each direction, in the order in which they are to be tried.
+    """Return the solvers of one move, a path for each direction, best first.
 
     s (N + 1,): path parameter of the samples; q_end (n,) rad: the taught end, None where a pose is taught.
     """
     trials = [_tried(line, s, q_end) for line in lines]
+    # the first is the positive turn (rule 3); another one has to be better, not only as good
     best = trials[0]
     for trial in trials[1:]:
         if _is_better(trial, best):
@@ -62,5 +67,6 @@ def _is_better(trial: _Trial, best: _Trial) -> bool:
     differ = ~(np.abs(trial.end - best.end) <= SAME_ROOM)
     if not differ.any():
         return False
+    # the joint nearest to an end of its range decides; alike within SAME_ROOM, so that rounding does not
     room = [np.minimum(each.end - spec.lower, spec.upper - each.end)[differ].min() for each in (trial, best)]
     return bool(room[0] > room[1] + SAME_ROOM)

@@ -3,7 +3,7 @@
 Step 210 of cycle n writes what the 8 ms interrupt of cycle n + 1 sends (step 218), so the servo gets a set-point one
 cycle after it was computed. The rows come from the plan, where steps 204 to 210 were carried out and checked for
 the whole move at once; under a seam sensor each is computed in its own cycle (``seam``). Called once per cycle by the
-controller.
+controller. Joint angles rad.
 """
 
 from collections.abc import Callable
@@ -44,7 +44,7 @@ class Interpolator(Stateful):
         self._n = 0
         self._held: _Held | None = None
         self.fault: Fault | None = None
-        """What the last set-point has to stop the arm for: a seam that cannot be followed."""
+        """Why the last set-point has to stop the arm: the seam cannot be followed (RBL524 to 526)."""
 
     def start(self, plan: MovePlan | ChainPlan, seam: SeamMove | None = None) -> None:
         """Begin a move, with ``seam`` point by point; ``RuntimeError`` when another one still runs."""
@@ -53,7 +53,8 @@ class Interpolator(Stateful):
         self._rows, self._modes, self.seam, self.fault = plan.q, tuple(plan.modes.tolist()), seam, None
         self._commands = tuple(plan.command.tolist()) if isinstance(plan, ChainPlan) else (0,) * len(plan.q)
         if seam is not None:
-            self._rows = np.array(plan.q)  # the plan's rows are those without deviation; each is replaced in its turn
+            # a copy: the rows of the plan are those without deviation, and each is replaced in its cycle
+            self._rows = np.array(plan.q)
             self._rows[0] = seam.here
         self._n = 0
 
@@ -61,8 +62,10 @@ class Interpolator(Stateful):
         """Replace the rows that are left by those of a stop, ``stopping(rows, reached, whether they end at rest)``."""
         self._held = None
         if self._rows is not None and self.busy:
+            # the rows of a stop lie between those of the plan, so all are logged with the mode of the row reached
             rows, reached, mode, whole = self._rows, self._rows[: self._n + 1], self.mode, True
             if self.seam is not None:
+                # the readings to come are not known, so the stop runs on the deviation as it settles now
                 rest, whole = self.seam.rest(self._n + 1)
                 rows, self.seam = np.concatenate([reached, rest]), None
             self._rows = np.concatenate([reached, stopping(rows, self._n, whole)])
@@ -101,7 +104,7 @@ class Interpolator(Stateful):
 
     @property
     def command(self) -> int:
-        """Number of the move, in a row of moves, that the last set-point belongs to; of a stop, where it began."""
+        """Number of the move of a chain that the last set-point belongs to; of a stop, that in which it began."""
         return self._commands[self._n] if self._commands else 0
 
     @property

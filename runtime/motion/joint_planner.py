@@ -1,23 +1,24 @@
-"""Planning a joint move: all joints start and end together, each in proportion to its own way.
+"""Planning a joint move: all joints start and end together, each in proportion to its own turn.
 
     q(s) = q_start + s (q_end - q_start),   s in [0, 1]
 
-With d_i the way of joint i, and v_i, a_i what the move may use of its limits, s is bound by the joint that needs most:
+With d_i the turn of joint i, and v_i, a_i what the move may use of its limits, s is bound by the joint that needs most:
 
     ds/dt <= min v_i / d_i,    d2s/dt2 <= min a_i / d_i,    d3s/dt3 <= min a_i / (RISE_S d_i)
 
 Robot files have no jerk limit of joints: an acceleration builds up in ``RISE_S``, as on the paths of the built-in
 robots (30 m/s3 to 3 m/s2). Fine interpolation makes the acceleration at the servo ticks a little larger than that of s
 (3 % with a jerk limit, more on the corners of a trapezoid). So that this does not cost speed, the accelerations of s
-are eased by it first; what is then still too fast is slowed as every move (``pacing``).
+are eased by it first; what is then still too fast is slowed as every move (``time_scaling``).
 
 Where only a pose is given, its solutions are those of all configurations, each joint turned into its range. Of those
-that fit what the point is taught with, only those count in which the arm keeps the configuration that it is in, where
-there are any; of these the one is taken to which the slowest joint gets soonest (docs/decisions/0030). Refused: no
+that fit what the point is taught with, those in which the arm keeps the configuration that it is in come first; of
+these the one is taken that the slowest joint reaches soonest (docs/decisions/0030). Refused: no
 solution (RBL410), none in the ranges (RBL411), none as taught (RBL412). Called by ``runtime.motion.motion_planner``;
 rad, s.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NoReturn
 
@@ -33,7 +34,7 @@ from runtime.motion.path_ik import RANGE_TOLERANCE, Arm, check_range
 from runtime.motion.taught_end import as_taught, turned
 from runtime.motion.time_scaling import Pace
 from runtime.motion.velocity_profile import MAX_DURATION, SpeedLimits, bound, check_requests, profile
-from runtime.robot.kinematics.kinematics import LIMIT_ROUNDING, Kinematics
+from runtime.robot.kinematics.kinematics import LIMIT_ROUNDING, Kinematics, Solution
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import Profile
 
@@ -41,14 +42,16 @@ RISE_S = 0.1
 """Time in which the acceleration of a joint builds up, s."""
 
 SAME_TIME_S = 1e-9
-"""Solutions whose times differ by less, s, are as soon there: rounding must not decide which one is taken."""
+"""Solutions whose times differ by less, s, are equally soon: rounding must not decide between them."""
 
 _EASINGS = 3
+"""Rounds of easing at most; the accelerations of one joint scale with those of s, so the first is nearly exact."""
 _MARGIN = 1.0 + 1e-6
+"""Rounding that does not call for another round."""
 
 
-class JointWay:
-    """The straight way in joint space from q_start (n,) to q_end (n,) rad."""
+class JointLine:
+    """The straight line in joint space from q_start (n,) to q_end (n,) rad."""
 
     def __init__(self, arm: Arm, q_start: Array, q_end: Array) -> None:
         self._arm, self._q_start, self._q_end = arm, q_start, q_end
@@ -56,12 +59,12 @@ class JointWay:
     def joints(self, s: Array) -> Array:
         """Return q (N + 1, n) at s (N + 1,) from 0 to 1; ``Fault`` RBL411."""
         q = self._q_start + s[:, None] * (self._q_end - self._q_start)
-        q[0], q[-1] = self._q_start, self._q_end
+        q[0], q[-1] = self._q_start, self._q_end  # to the last bit: the next move starts from here
         check_range(self._arm, s, q)
         return q
 
     def refuse_singular(self, s: Array, q: Array, axis: int) -> NoReturn:
-        """Raise ``Fault``: a joint move has no singularity, so this is a move that no profile fits."""
+        """Raise ``Fault`` RBL404: a joint move has no singularity, so no profile fits this move."""
         raise Fault("RBL404", f"no speed profile of the joint move keeps the limits of J{axis + 1}")
 
 
@@ -80,14 +83,14 @@ class JointPlanner:
         """
         share = _share(command)
         q_end = self.end(q_start, command, X_flange_tool)
-        way = np.abs(q_end - q_start)
-        if way.max() < NOTHING_TO_DO:
+        turns = np.abs(q_end - q_start)
+        if turns.max() < NOTHING_TO_DO:
             return MovePlan(path=None, s=np.ones(1), q=frozen([q_start]), slowdown=None, notes=("already there",))
         override *= command.override
         pace = self._pace.overridden(override)
         duration = None if command.duration is None else command.duration / override
         arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=pace.fine, X_flange_tool=X_flange_tool)
-        curve, limits = JointWay(arm, q_start, q_end), self._limits(way, share, command.acceleration)
+        curve, limits = JointLine(arm, q_start, q_end), self._limits(turns, share, command.acceleration)
         limits = self._eased(curve, limits.overridden(override), duration)
         s, q, slowdown = pace.within_limits(curve, limits, duration)
         notes = pace.time_note(duration, len(s) - 1)
@@ -109,30 +112,24 @@ class JointPlanner:
             return q_end
         assert command.X_world_tool is not None  # a command has at least one of the two
         found = self._solutions(matmul(command.X_world_tool, inverse(X_flange_tool)), q_start, command)
+        # a change of configuration sweeps the whole arm through the cell: only where nothing else is in the ranges
         kept = [q for q in found if not changed(self._kinematics, q_start, q, command)]
         times = [float((np.abs(q - q_start) / self._pace.speed).max()) for q in kept or found]
         soonest = min(times) + SAME_TIME_S
         return next(q for q, time in zip(kept or found, times, strict=True) if time <= soonest)
 
     def _solutions(self, X_world_flange: Array, q_start: Array, command: MoveJoint) -> list[Array]:
+        """Return the solutions (n,) as the point is taught, in the ranges; ``Fault`` RBL410, 411 or 412 for none."""
         kinematics = self._kinematics
-        assert command.X_world_tool is not None
-        point = f"the point ({', '.join(f'{each:.1f}' for each in command.X_world_tool[:3, 3] / MM)}) mm"
         solutions = kinematics.solutions(X_world_flange, q_start)
         if not solutions:
-            raise Fault("RBL410", f"{point} is out of reach of {self._spec.name}")
+            raise Fault("RBL410", f"{_point(command)} is out of reach of {self._spec.name}")
         found = [turned(kinematics, each.q, command.turns[: kinematics.n], q_start) for each in solutions]
         fitting = [q for q in found if as_taught(kinematics, q, command)]
         if not fitting:
-            words = " ".join(command.configuration)
-            there = ", ".join(str(each.branch) for each in solutions)
-            raise Fault(
-                "RBL412",
-                f"{point} cannot be reached {words}, only {there}",
-                "Teach the point in a configuration that it can be reached in.",
-            )
+            raise _in_no_configuration(command, solutions)
         inside = [q for q in fitting if kinematics.limit_margin(q) >= -LIMIT_ROUNDING]
-        if not inside:
+        if not inside:  # the refusal names the solution that leaves its range by least
             self._check_end(max(fitting, key=lambda q: float(kinematics.limit_margin(q))))
         return inside
 
@@ -148,12 +145,13 @@ class JointPlanner:
                 f"J{axis + 1} would pass its limit of {limit / DEG:g} deg by {beyond:.4g} deg, at the end of the move",
             )
 
-    def _limits(self, way: Array, speed: float, acceleration: float) -> SpeedLimits:
+    def _limits(self, turns: Array, speed: float, acceleration: float) -> SpeedLimits:
+        """Return the bounds of s for joints that turn by ``turns`` (n,) rad, at shares of their limits."""
         most = self._pace.acceleration * acceleration
-        each = np.stack([way, self._pace.speed * speed, most, most / RISE_S], axis=1)
+        each = np.stack([turns, self._pace.speed * speed, most, most / RISE_S], axis=1)
         return bound([(d, v, a, j) for d, v, a, j in each.tolist()], self._profile.speed_shape)
 
-    def _eased(self, curve: JointWay, limits: SpeedLimits, duration: float | None) -> SpeedLimits:
+    def _eased(self, curve: JointLine, limits: SpeedLimits, duration: float | None) -> SpeedLimits:
         """Return limits with which fine interpolation does not pass the joints' accelerations."""
         for _ in range(_EASINGS):
             _, ddq = self._pace.fine.peaks(curve.joints(profile(limits, self._pace.period_s, duration)))
@@ -164,8 +162,24 @@ class JointPlanner:
         return limits
 
 
+def _point(command: MoveJoint) -> str:
+    """Return the place of a taught pose as messages name it."""
+    assert command.X_world_tool is not None  # needed only where joint angles are not taught
+    return f"the point ({', '.join(f'{each:.1f}' for each in command.X_world_tool[:3, 3] / MM)}) mm"
+
+
+def _in_no_configuration(command: MoveJoint, solutions: Sequence[Solution]) -> Fault:
+    words = " ".join(command.configuration)
+    there = ", ".join(str(each.branch) for each in solutions)
+    return Fault(
+        "RBL412",
+        f"{_point(command)} cannot be reached {words}, only {there}",
+        "Teach the point in a configuration that it can be reached in.",
+    )
+
+
 def changed(kinematics: Kinematics, q_start: Array, q_end: Array, command: MoveJoint) -> tuple[tuple[str, str], ...]:
-    """Return what of its configuration an arm changes from q_start (n,) to q_end (n,) rad that is not asked for.
+    """Return what an arm changes of its configuration from q_start (n,) to q_end (n,) rad without being taught to.
 
     Names before and after, such as RIGHTY and LEFTY. A point may name a part of the configuration only.
     """
@@ -176,7 +190,7 @@ def changed(kinematics: Kinematics, q_start: Array, q_end: Array, command: MoveJ
 
 
 def _share(command: MoveJoint) -> float:
-    """Return the share of the joints' speeds that a move asks for; ``Fault`` RBL404 for what is none."""
+    """Return the programmed share of the joints' speeds, 1 with TIME; ``Fault`` RBL404 outside (0, 1]."""
     speed = 1.0 if command.speed is None else command.speed
     check_requests(
         ("SPEED in %", speed * 100.0, 100.0),

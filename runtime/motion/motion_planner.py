@@ -1,12 +1,12 @@
-"""Moves in a row: each planned where the one before ends, neighbours blended within the zone of the corner.
+"""Chains of moves: each planned where the one before ends, neighbours blended within the zone of the corner.
 
-``MotionPlanner`` is the planner of every kind of move, alone (``plan``) or in a row (``chain``). A row is planned move
-by move as if each stopped, so what is refused does not depend on zones; then neighbours are blended from the first
-corner to the last (``blend``), and what comes out is one sequence of rows. Where no zone is asked for, the rows are
-those of the plans to the last bit. Where two moves have different overrides, the smaller one holds while both run.
+``MotionPlanner`` is the planner of every kind of move, alone (``plan``) or in a chain (``chain``). A chain is planned
+move by move as if each stopped, so what is refused does not depend on zones; then neighbours are blended from the first
+corner to the last (``blend``) into one sequence of rows. Without zones the rows are those of the plans to the last bit.
+Where two moves have different overrides, the smaller one holds while both run.
 
-A row in the middle of a blend belongs to both moves; for the log and the lamp it is counted to the first of them up to
-the middle, then to the second.
+A row in the middle of a blend belongs to both moves; in the log and for the lamp it counts as the first of them up to
+the middle, then as the second.
 
 Called by the controller before anything moves, and by the rehearsal of a program.
 """
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, frozen
-from runtime.motion.blend import Corner, blend
+from runtime.motion.blend import BlendLimits, Corner, blend
 from runtime.motion.cartesian_planner import CartesianPlanner, MovePlan, WristChange
 from runtime.motion.commands import Command, MoveJoint, MoveLinear
 from runtime.motion.joint_planner import JointPlanner
@@ -32,7 +32,7 @@ from runtime.settings.profile import Profile
 
 
 class ChainFault(Fault):
-    """A refusal of the move number ``index`` (from 0) of a row."""
+    """The refusal of move number ``index`` (from 0) of a chain."""
 
     def __init__(self, fault: Fault, index: int) -> None:
         super().__init__(fault.code, fault.message, fault.hint)
@@ -47,7 +47,7 @@ def tracked(command: Command) -> MoveLinear:
 
 
 def tracked_row(commands: Sequence[Command]) -> list[MoveLinear]:
-    """Return moves in a row as ``tracked`` has each; ``ChainFault`` RBL412 names the first that is not straight."""
+    """Return the moves of a chain as ``tracked`` does each; ``ChainFault`` RBL412 at the first that is not straight."""
     moves = []
     for index, command in enumerate(commands):
         try:
@@ -73,7 +73,7 @@ class Part:
 
     @property
     def path(self) -> Path | None:
-        """Path of the tool point, None where the joints go their own way."""
+        """Path of the tool point; None for a joint move."""
         return self.plan.path
 
     @property
@@ -94,7 +94,7 @@ class Part:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChainPlan:
-    """Joint set-points ``q`` (N + 1, n) rad of moves in a row, 8 ms apart.
+    """Joint set-points ``q`` (N + 1, n) rad of a chain of moves, 8 ms apart.
 
     ``modes`` (N + 1,) is ``wrist_mode`` of every set-point and ``command`` (N + 1,) the number of the move that it
     belongs to, the last one at the last; ``corners`` lie between the ``parts``.
@@ -113,7 +113,7 @@ class ChainPlan:
 
 
 class MotionPlanner:
-    """Plans any move of one robot under one controller profile, alone or in a row."""
+    """Plans any move of one robot under one controller profile, alone or in a chain."""
 
     def __init__(self, spec: RobotSpec, kinematics: Kinematics, profile: Profile) -> None:
         self.lines = CartesianPlanner(spec, kinematics, profile)
@@ -138,7 +138,7 @@ class MotionPlanner:
     def chain(
         self, q_start: Array, commands: Sequence[Command], X_flange_tool: Array, override: float = 1.0
     ) -> ChainPlan:
-        """Return the plan of moves in a row from q_start (n,) rad; ``ChainFault`` names the first that is refused."""
+        """Return the plan of a chain of moves from q_start (n,) rad; ``ChainFault`` names the first that is refused."""
         plans: list[MovePlan] = []
         for index, command in enumerate(commands):
             try:
@@ -158,12 +158,16 @@ class MotionPlanner:
         q, modes = plans[0].q, plans[0].modes
         offsets, lasts, corners = [0], [], []
         for before, after, zone in zip(plans, plans[1:], zones, strict=False):
+            # half of each move at most, so that the blends at its two ends never meet
             halves = (len(before.q) - 1) // 2, (len(after.q) - 1) // 2
             end = len(q) - 1
-            acceleration = self._spec.path.acceleration * max(before.acceleration, after.acceleration)
             override = min(before.override, after.override)
-            turning = self._spec.path.rotation_speed * override
-            q, corner = blend(q, after.q, halves, zone, arm, self._pace.overridden(override), acceleration, turning)
+            limits = BlendLimits(
+                pace=self._pace.overridden(override),
+                acceleration=self._spec.path.acceleration * max(before.acceleration, after.acceleration),
+                turning=self._spec.path.rotation_speed * override,
+            )
+            q, corner = blend(q, after.q, halves, zone, arm, limits)
             middle = end - corner.cycles + corner.cycles // 2
             offsets.append(end - corner.cycles)
             lasts.append(middle)
@@ -176,7 +180,7 @@ class MotionPlanner:
         )
         command = np.repeat(np.arange(len(parts), dtype=np.int32), [part.last - part.first for part in parts])
         command = np.concatenate([command[:1], command]) if len(command) else np.zeros(1, dtype=np.int32)
-        command[-1] = len(parts) - 1  # also where the last moves have nothing to do
+        command[-1] = len(parts) - 1  # also where the last moves end where they start
         return ChainPlan(
             q=q if len(plans) == 1 else frozen(q), modes=modes, command=command, parts=parts, corners=tuple(corners)
         )

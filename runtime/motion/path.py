@@ -5,8 +5,8 @@ r"""The path of the tool point: a line or an arc; orientation by one of two laws
     arc    p(s) = p_start + r sin(a) t - 2 r sin^2(a/2) u,   a = s phi
 
     axis   R(s) = Rot(k, s Theta) R_start          about the rotation principal axis: JPH06190750A Fig 6, 200 to 208
-    rpy    R(s) = Rz Ry Rx of (rx, ry, rz)(s)      the three angles of a taught pose, each linear over its shorter way:
-                                                   CN103429397A, S1; on lines only
+    rpy    R(s) = Rz Ry Rx of (rx, ry, rz)(s)      the three angles of a taught pose, each linear in its shorter
+                                                   direction: CN103429397A, S1; on lines only
 
 ``axis`` turns about one fixed axis at a constant rate, whatever frame the angles are counted in; ``rpy`` depends on the
 frame and may swing far where RY is near 90 deg. Both end exactly as taught. At an exact half turn two directions are
@@ -17,9 +17,11 @@ circle there. The form above does not subtract the large coordinates of a far ce
 
     n = (p_via - p_start) x (p_end - p_start) / |..|,    t = n x u
 
-makes the way from the start over the via point to the end a positive turn about it, so phi in (0, 2 pi) needs no case
+makes the arc from the start over the via point to the end a positive turn about it, so phi in (0, 2 pi) needs no case
 for arcs over half a turn. The orientation of the via point is not used. Three points define no circle where two of them
-are one or all are on a line: refused (RBL416) when their triangle is flatter than ``FLATTEST``.
+coincide or all are on a line: refused (RBL416) when their triangle is flatter than ``FLATTEST``.
+
+Made by the planner for each move; poses T base <- tool, m and rad.
 """
 
 import itertools
@@ -60,7 +62,8 @@ FULL_CIRCLE = (
 class LinePath:
     """A straight move between two poses of the same frame pair; ``length`` m, ``angle`` rad about ``axis`` (3,).
 
-    ``rpy`` (2, 3) rad holds the angles at the start and the way of each, for the posture law of that name, else None.
+    ``rpy`` (2, 3) rad holds the angles at the start and the change of each, for the posture law of that name, else
+    None.
     """
 
     X_start: Array
@@ -89,7 +92,7 @@ class LinePath:
         axis, angle = rotations[0]
         start, end = rpy_from_rotation(X_start[:3, :3]), rpy_from_rotation(X_end[:3, :3])
         turns = [np.array(turn) for turn in itertools.product(*map(_shortest_turns, (end - start).tolist()))]
-        # no turning rate is above the sum of the three over the path
+        # ``angle`` bounds the turning: the rate of a posture by three angles is at most the sum of their rates
         return tuple(
             cls(
                 X_start=ends[0],
@@ -104,12 +107,12 @@ class LinePath:
 
     @property
     def name(self) -> str:
-        """What people call it."""
+        """The path as messages name it."""
         return "straight path"
 
     @property
     def move(self) -> str:
-        """What people call a move on it."""
+        """A move on it as messages name it."""
         return "straight move"
 
     def poses(self, s: Array) -> Array:
@@ -129,7 +132,7 @@ class LinePath:
         """Return the distance (N,) m of points (N, 3) from the straight segment."""
         start, end = self.X_start[:3, 3], self.X_end[:3, 3]
         along = np.zeros(len(points))
-        if self.length > 0.0:
+        if self.length > 0.0:  # a move that only turns has a segment of one point
             along = np.clip(matmul(points - start, end - start) / self.length**2, 0.0, 1.0)
         return np.asarray(np.linalg.norm(points - (start + along[:, None] * (end - start)), axis=1))
 
@@ -194,12 +197,12 @@ class ArcPath:
 
     @property
     def name(self) -> str:
-        """What people call it."""
+        """The path as messages name it."""
         return "arc"
 
     @property
     def move(self) -> str:
-        """What people call a move on it."""
+        """A move on it as messages name it."""
         return "move on an arc"
 
     def poses(self, s: Array) -> Array:
@@ -208,6 +211,7 @@ class ArcPath:
 
     def points(self, s: Array) -> Array:
         """Return the places (N, 3) m of the tool point at path parameters s (N,)."""
+        # 1 - cos a as 2 sin^2 (a / 2): the difference would lose the digits of a small angle on a large radius
         a = (s * self.sweep)[:, None]
         off = np.sin(a) * self.along - 2.0 * np.sin(0.5 * a) ** 2 * self.outward
         return np.asarray(self.X_start[:3, 3] + self.radius * off)
@@ -223,6 +227,7 @@ class ArcPath:
         x, y = matmul(off, self.outward), matmul(off, self.along)
         on_circle = np.hypot(np.hypot(x, y) - self.radius, matmul(off, np.cross(self.outward, self.along)))
         to_ends = [np.linalg.norm(points - X[:3, 3], axis=1) for X in (self.X_start, self.X_end)]
+        # nearest to the circle only where the direction from the centre lies within the sweep, else to an end
         beside = np.mod(np.arctan2(y, x), 2.0 * math.pi) <= self.sweep
         return np.asarray(np.where(beside, on_circle, np.minimum(*to_ends)))
 
@@ -235,6 +240,7 @@ def _shortest_turns(turn: float) -> tuple[float, ...]:
     shortest = turn - 2.0 * math.pi * round(turn / (2.0 * math.pi))
     if not is_half_turn(shortest):
         return (shortest,)
+    # both directions, the positive one first (docs/decisions/0030)
     positive = shortest % (2.0 * math.pi)
     return positive, positive - 2.0 * math.pi
 
@@ -243,6 +249,7 @@ def _check_points(start: Array, via: Array, end: Array) -> None:
     """Refuse points through which there is no circle; ``Fault`` RBL416."""
     sides = {"start and via point": via - start, "via point and end": end - via, "start and end": end - start}
     lengths = {name: norm(side) for name, side in sides.items()}
+    # a side of no length is named by its points; otherwise the height of the triangle says whether all are on one line
     for name, length in lengths.items():
         if not length >= FLATTEST:
             apart, least = beside(length / MM, FLATTEST / MM, form=".4f")

@@ -1,10 +1,11 @@
-"""Joint angles along a path: in the posture of the path, or with the wrist going its own way from a switch on.
+"""Joint angles along a path: in the posture of the path, or with the wrist following a law of its own from a switch on.
 
 ``LineSolver`` keeps the arm configuration of the start and meets every pose of the path. ``WristSolver`` does the same
 up to a switch; from there the wrist follows a ``WristLaw`` and the main axes put the tool point on the path
-(docs/wrist.md). Both are functions of the path parameter, so a slower move is the same curve with more samples.
-``joints`` refuses what cannot be executed, with the place on the path: out of reach (RBL410), out of a joint's range
-(RBL411), through a singularity or into another configuration (RBL412). Called by the planner, before anything moves.
+(S7 to S9 of CN103429397A; docs/wrist.md). Both are functions of the path parameter, so a slower move is the same curve
+with more samples. ``joints`` refuses what cannot be executed, with the place on the path: out of reach (RBL410), out of
+a joint's range (RBL411), through a singularity or into another configuration (RBL412). Called by the planner, before
+anything moves.
 """
 
 import math
@@ -30,10 +31,10 @@ RANGE_TOLERANCE = 1e-9
 """How far past its range a joint may be commanded, rad: rounding, nothing more."""
 
 MOST_SLOWDOWN = 20.0
-"""A move that would have to be slowed more than this runs too close to a singularity to be meant."""
+"""A move that would have to be slowed more runs too close to a singularity: refused rather than crawled through."""
 
 JUMP = math.pi / 4.0
-"""No joint turns further from one sample to the next, rad: it has changed its configuration."""
+"""A joint that turns further from one sample to the next, rad, has changed its configuration."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,13 +55,14 @@ class LineSolver:
         self._X_tool_flange = inverse(arm.X_flange_tool)
         self.branch: Branch = arm.kinematics.branch_of(q_start)
         self._known = -1 if to_end else 0
+        # the answers for the last samples: a planner needs them again, and solving them is most of its time
         self._solved: tuple[Array, Array] | None = None
         self._posed: tuple[Array, Array] | None = None
 
     def rows(self, s: Array) -> Array:
         """Return q (N + 1, n) at path parameters s, continuous with the known end; NaN where there is no solution.
 
-        The last answer is kept: a planner asks for the same samples again for every way that leaves this path.
+        The last answer is kept: a planner needs the same samples again for every candidate that leaves this path.
         """
         if self._solved is None or self._solved[0] is not s:
             self._solved = s, self._solve(s)
@@ -77,6 +79,7 @@ class LineSolver:
         if self._known:  # an arm without branches follows its solution, so it has to begin where that is known
             poses = poses[::-1]
         q = self.arm.kinematics.inverse_branch(poses, self.branch, self.q_start)
+        # whole turns are counted along the path, from the known end: a joint may pass half a turn on its path
         q = np.unwrap(q, axis=0) + 0.0
         q += 2.0 * math.pi * np.round((self.q_start - q[0]) / (2.0 * math.pi))
         return q[::-1] if self._known else q
@@ -86,11 +89,12 @@ class LineSolver:
         q = self.rows(s)
         self._check_reach(s, q)
         self._check_continuity(s, q)
-        q[0] = self.q_start
+        q[0] = self.q_start  # where the arm is, to the last bit, not where the inverse kinematics puts it
         check_range(self.arm, s, q)
         return q
 
     def _check_reach(self, s: Array, q: Array) -> None:
+        """Refuse a path with samples out of reach; ``Fault`` RBL410 names the first."""
         bad = ~np.isfinite(q).all(axis=1)
         if not bad.any():
             return
@@ -103,9 +107,11 @@ class LineSolver:
         )
 
     def _check_continuity(self, s: Array, q: Array) -> None:
+        """Refuse a path on which a joint jumps: through a singularity, or at its start; ``Fault`` RBL412."""
         jumps = np.abs(np.diff(q, axis=0))
         if not np.abs(q[0] - self.q_start).max() <= 1e-3:  # the start is itself at a singularity
             self.refuse_singular(s[:1], q, int(np.argmax(np.abs(q[0] - self.q_start))))
+        # a move of a few samples is too fast, not discontinuous: the limits of the joints judge it
         if len(jumps) > 4 and not jumps.max() <= JUMP:
             step, axis = np.unravel_index(int(np.argmax(jumps)), jumps.shape)
             self.refuse_singular(s[step : step + 1], q, int(axis))
@@ -141,9 +147,10 @@ class WristSolver:
 
     def rows(self, s: Array) -> Array:
         """Return q (N + 1, n) at path parameters s; NaN where there is no solution."""
+        # three parts: the path up to the switch, the law of the wrist, and the path again from a return on
         first, last = np.searchsorted(s, [self.law.s_switch, self.law.s_return], side="right")
-        way = s[first:last]
-        parts = [self._frozen.solve(self._line.path.points(way), self.law.angles(way), self._q_switch, self._side)]
+        inner = s[first:last]
+        parts = [self._frozen.solve(self._line.path.points(inner), self.law.angles(inner), self._q_switch, self._side)]
         if first:
             parts.insert(0, self._line.rows(s)[:first])
             parts[0][0] = self._line.q_start
@@ -161,6 +168,7 @@ class WristSolver:
                 f"at {100 * s[int(np.argmax(lost))]:.1f} % of the {self._line.path.name} the wrist, moving to its end "
                 f"angles, takes the tool point out of reach of the main axes",
             )
+        # H2: the side of the frozen arm is kept, so a jump or a wrong end means that the main axes changed theirs
         jumps = np.abs(np.diff(q, axis=0))
         step, axis = np.unravel_index(int(np.argmax(jumps)), jumps.shape)
         if len(jumps) > 4 and not jumps[step, axis] <= JUMP:
@@ -191,17 +199,20 @@ class WristSolver:
 
 
 def _steepest(s: Array, q: Array, axis: int) -> float:
-    """Return where on the path an axis moves most between two samples."""
+    """Return the path parameter at which an axis (0-based) moves most between two samples of q (N + 1, n)."""
     if len(s) == len(q) and len(s) > 1:
         return float(s[int(np.argmax(np.abs(np.diff(q[:, axis]))))])
     return float(s[0])
 
 
 def check_range(arm: Arm, s: Array, q: Array) -> None:
-    """Refuse a path that leaves a joint's range at any servo tick: between set-points the command may pass them."""
+    """Refuse a path that leaves a joint's range at any servo tick, where the command may pass the set-points; RBL411.
+
+    s (N + 1,): path parameter of the rows q (N + 1, n).
+    """
     spec = arm.spec
-    # no segment leaves its set-points by more than a step of its neighbours
-    # (tests/runtime/motion/test_fine_interpolator.py)
+    # cheap first: no segment leaves its set-points by more than a step of its neighbours
+    # (tests/runtime/motion/test_fine_interpolator.py), so most moves need no expansion to ticks
     between = np.abs(np.diff(q, axis=0)).max(axis=0, initial=0.0)
     if (q.min(axis=0) - between >= spec.lower).all() and (q.max(axis=0) + between <= spec.upper).all():
         return

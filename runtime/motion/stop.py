@@ -1,4 +1,4 @@
-r"""A controlled stop on the path: the rows of a running plan, played ever slower until they stand still.
+r"""A controlled stop on the path: the rows of a running plan, played at a falling rate until they stand still.
 
 The rows of a plan are joint angles 8 ms apart, ``q(u)`` with u the row number; the running move plays u = t / P. A stop
 keeps the curve and changes the time on it: ``du/dt`` falls from 1 to 0 over K cycles as
@@ -9,6 +9,8 @@ which starts and ends without a step of acceleration. Between rows q(u) is the q
 plays anyway, so the tool stays on the commanded path. Along it ``dq = q' rate``, ``ddq = q'' rate^2 + q'
 d(rate)/dt``. The smallest K is taken for which joint speeds and accelerations at the servo ticks stay within the
 robot's limits. A move that ends before any such stop would is left to end: it comes to rest by itself.
+
+Called once by the interpolator when a stop is requested or an alarm is raised; rad, s.
 """
 
 import numpy as np
@@ -21,6 +23,9 @@ _SHORTEST = 3
 _LONGEST = 250
 """Cycles of a stop: from 24 ms to 2 s at 8 ms."""
 _SLACK = 1.0 + 1e-9
+"""A limit is kept when it is passed by no more than rounding."""
+_ROUGHER = 1.1
+"""Excess allowed over that of what was already sent, at the ticks that it still reaches."""
 
 
 def stopping_rows(
@@ -78,18 +83,19 @@ def _stop(
     left = len(rows) - 1 - at
     sent = rows[np.maximum(np.arange(at - 3, at + 1), 0)]
     touched = len(sent) * fine.ticks
-    # what has been sent cannot be taken back: where it is rough, the ticks that it reaches may be as rough as they are
+    # what has been sent cannot be taken back. Under a seam sensor it may itself pass a limit (``seam.SPEED_SLACK``);
+    # without this allowance no stop at all would be accepted there, and the arm would go on to the end of its move
     rough = _excess(fine, np.concatenate([sent, rows[at + 1 : at + 1 + len(sent)]]), limits)[:touched].max(initial=0.0)
     cycles, best = _SHORTEST, None
     while cycles / 2.0 <= left and cycles <= _LONGEST:
         course = at + _progress(cycles)
         ratio = _excess(fine, np.concatenate([sent, _curve(rows, course)]), limits)
-        worst = np.maximum(ratio[:touched].max() / np.maximum(1.0, 1.1 * rough), ratio[touched:].max(initial=0.0))
+        worst = np.maximum(ratio[:touched].max() / np.maximum(1.0, _ROUGHER * rough), ratio[touched:].max(initial=0.0))
         if worst <= _SLACK:
             return course
         if best is None or badness(worst) < badness(best[0]):
             best = worst, course
-        cycles += max(1, cycles // 8)
+        cycles += max(1, cycles // 8)  # by an eighth: some 40 candidates cover 3 to 250 cycles
     return None if best is None or ends_at_rest else best[1]
 
 
@@ -100,7 +106,7 @@ def _excess(fine: FineInterpolator, played: Array, limits: tuple[Array, Array]) 
 
 
 def _progress(cycles: int) -> Array:
-    """Return the rows passed after each of ``cycles`` cycles, the integral of the rate; it ends at cycles / 2."""
+    """Return the rows passed after each of K = ``cycles`` cycles (K,): the integral of the rate, K / 2 at last."""
     x = np.arange(1, cycles + 1) / cycles
     return np.asarray(cycles * (x - (2.5 * x**4 - 3.0 * x**5 + x**6)))
 

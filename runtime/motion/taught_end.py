@@ -1,7 +1,7 @@
 """The joint angles at which a move may end: those that are taught, or those that its point leaves open.
 
 A point is taught as joint angles, which are then the end, turns and all, or as a pose. A pose has several solutions:
-configuration words and turns narrow them down, and what is left is tried nearest first. Called by the planners of all
+configuration words and turns narrow them down, and the rest is yielded nearest first. Called by the planners of all
 moves before anything moves; angles rad.
 """
 
@@ -37,12 +37,14 @@ def ends(line: LineSolver, q: Array, command: PathMove) -> Iterator[Array]:
     others = _others(line, command)
     fitting = [end for end in others if as_taught(line.arm.kinematics, end, command)]
     yield from fitting
-    unreachable = not kept and not others  # then the path itself is refused, with the place where it is lost
-    if not (fits or fitting or unreachable):
-        words = " ".join(command.configuration) or f"with turns {list(command.turns)}"
-        raise Fault(
-            "RBL412", f"the end is taught {words}, the move starts {line.branch}: no {line.path.move} reaches it"
-        )
+    # an end that is out of reach altogether is left to the path, whose refusal names the place where it is lost
+    if (kept or others) and not (fits or fitting):
+        raise _reached_by_none(line, command)
+
+
+def _reached_by_none(line: LineSolver, command: PathMove) -> Fault:
+    words = " ".join(command.configuration) or f"with turns {list(command.turns)}"
+    return Fault("RBL412", f"the end is taught {words}, the move starts {line.branch}: no {line.path.move} reaches it")
 
 
 def _check_configuration(line: LineSolver, q_end: Array) -> None:
@@ -82,6 +84,7 @@ def turned(kinematics: Kinematics, q: Array, turns: tuple[int, ...], near: Array
 
     180 and -180 deg are the same angle with the same number of turns: the one nearer to ``near`` (n,) is taken.
     """
+    # joints without taught turns count from 0 here and are put back at the end
     middle = 2.0 * np.pi * np.array([*turns, *[0] * (len(q) - len(turns))])
     within = Kinematics.nearest_turns(q, middle)
     half = is_half_turn(within - middle)

@@ -23,9 +23,13 @@ from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import Profile
 
 _MARGIN = 1.0 + 1e-6
+"""Share by which a profile is slowed beyond what was measured, so that rounding does not ask for another round."""
+
 _ROUNDS = 12
+"""Profiles at most. The factor is exact while the same limit rules at the same place of the curve."""
+
 _WELL_USED = 0.99
-"""A slowed move is slow enough; when it also uses this much of the ruling limit it is not too slow either."""
+"""A slowed move that keeps its limits is slow enough; with this share of the ruling limit it is not too slow either."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,8 +53,10 @@ class Curve(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pace:
-    """What bounds the timing: ``fine`` measures, ``speed`` rad/s and ``acceleration`` rad/s2 (n,) are the limits, at a
-    share ``override`` of all speeds."""
+    """The limits of timing: ``speed`` rad/s and ``acceleration`` rad/s2 (n,), as ``fine`` measures them.
+
+    ``speed`` is already at the share ``override`` of all speeds.
+    """
 
     fine: FineInterpolator
     speed: Array
@@ -77,6 +83,7 @@ class Pace:
     def excess(self, q: Array) -> tuple[float, int, str]:
         """Return (time factor needed, axis, quantity) of the worst violation at the servo ticks; <= 1 is none."""
         dq, ddq = self.fine.peaks(q)
+        # the same curve in k times the time: speeds fall by k, accelerations by k^2
         ratios = np.stack([dq / self.speed, np.sqrt(ddq / self.acceleration)])
         kind, axis = np.unravel_index(int(np.argmax(ratios)), ratios.shape)
         return float(ratios[kind, axis]), int(axis), ("speed", "acceleration")[kind]
@@ -86,12 +93,11 @@ class Pace:
     ) -> tuple[Array, Array, Slowdown | None]:
         """Return s (N + 1,), q (N + 1, n) and what slowed them, of the fastest profile that holds the limits.
 
-        ``duration`` s is asked for where it is longer. ``Fault`` of the curve, or RBL404 for a move of too long a time.
+        ``duration`` s counts where it is longer. ``Fault`` of the curve, or RBL404 for a move of too long a time.
         """
-        period_s = self.period_s
-        s = profile(limits, period_s, duration)
-        asked = len(s) - 1
-        fastest = len(profile(limits, period_s)) - 1 if duration is not None else asked
+        s = profile(limits, self.period_s, duration)
+        programmed = len(s) - 1
+        fastest = len(profile(limits, self.period_s)) - 1 if duration is not None else programmed
         too_fast, found, worst = 0, None, (0, "")  # most cycles that were too few; the plan that holds
         for _ in range(_ROUNDS):
             q = curve.joints(s)
@@ -99,30 +105,39 @@ class Pace:
             cycles = len(s) - 1
             if ratio <= 1.0:
                 found = s, q
-                if cycles == asked or ratio > _WELL_USED:
+                if cycles == programmed or ratio > _WELL_USED:
                     break
             else:
                 too_fast, worst = cycles, (axis, quantity)
-                if not cycles * ratio <= MOST_SLOWDOWN * asked:
+                if not cycles * ratio <= MOST_SLOWDOWN * programmed:
                     curve.refuse_singular(s, q, axis)
-            wanted = max(cycles * ratio * _MARGIN, too_fast + 1)
-            if found is not None and wanted >= len(found[0]) - 1:
+            # a plan that was slowed too far is made faster again, but never with cycles known to be too few
+            needed = max(cycles * ratio * _MARGIN, too_fast + 1)
+            if found is not None and needed >= len(found[0]) - 1:
                 break
-            s = profile(limits.slowed(wanted / fastest), period_s, duration)
-            while len(s) - 1 <= too_fast:  # a slower profile may round to the same cycles
-                wanted += 1.0
-                s = profile(limits.slowed(wanted / fastest), period_s, duration)
+            s = self._slower(limits, duration, fastest, needed, too_fast)
         if found is None:
             curve.refuse_singular(s, curve.joints(s), worst[0])
-        factor = (len(found[0]) - 1) / asked
-        return *found, Slowdown(factor=factor, axis=worst[0], quantity=worst[1]) if factor > 1.0 else None
+        return *found, _slowdown((len(found[0]) - 1) / programmed, *worst)
+
+    def _slower(self, limits: SpeedLimits, duration: float | None, fastest: int, needed: float, too_fast: int) -> Array:
+        """Return s of a profile of ``needed`` cycles or little more, in any case more than ``too_fast``.
+
+        ``fastest``: the cycles that the limits take without slowing.
+        """
+        s = profile(limits.slowed(needed / fastest), self.period_s, duration)
+        while len(s) - 1 <= too_fast:  # a slower profile may round to the same cycles
+            needed += 1.0
+            s = profile(limits.slowed(needed / fastest), self.period_s, duration)
+        return s
 
     def slow_note(self, slowdown: Slowdown | None, cycles: int) -> tuple[str, ...]:
-        """Return what to say of a move that was slowed to so many cycles."""
+        """Return the note of a move that was slowed to so many cycles."""
         if slowdown is None:
             return ()
         limit = (self.speed if slowdown.quantity == "speed" else self.acceleration)[slowdown.axis] / DEG
         unit = "deg/s" if slowdown.quantity == "speed" else "deg/s2"
+        # an override lowers the speeds and no acceleration (``cartesian_planner``)
         under = f" under OVERRIDE {100.0 * self.override:g}" if self.override < 1.0 and unit == "deg/s" else ""
         return (
             f"slowed {slowdown.factor:.2f} times to {cycles * self.period_s:.3f} s: J{slowdown.axis + 1} "
@@ -130,8 +145,12 @@ class Pace:
         )
 
     def time_note(self, duration: float | None, cycles: int) -> tuple[str, ...]:
-        """Return what to say of a move that takes longer than the time asked for."""
+        """Return the note of a move that takes longer than its TIME, ``duration`` s, by more than one cycle."""
         seconds = cycles * self.period_s
         if duration is None or seconds <= duration + self.period_s:
             return ()
         return (f"TIME {duration:g} s is too short, the move takes {seconds:.3f} s",)
+
+
+def _slowdown(factor: float, axis: int, quantity: str) -> Slowdown | None:
+    return Slowdown(factor=factor, axis=axis, quantity=quantity) if factor > 1.0 else None

@@ -2,8 +2,8 @@
 
 The path parameter s runs from 0 to 1. Limits of the tool point (m/s, m/s2, m/s3) over the length and limits of
 its turning over the angle both bound ds/dt; the smaller one rules. Ruckig finds the time-optimal profile, and its
-``minimum_duration`` stretches it to a whole number of 8 ms cycles (or to TIME), so that the last set-point stands
-exactly at the end.
+``minimum_duration`` stretches it to a whole number of 8 ms cycles (or to TIME), so that the last set-point is exactly
+the end. Called by the planners of all moves before anything moves; s without unit, time s.
 """
 
 import math
@@ -20,7 +20,6 @@ from runtime.settings.profile import SpeedShape
 
 MAX_DURATION = 600.0
 """Longest move that is planned, s: its set-points are held in memory as a whole."""
-
 
 EASINGS = (0.0, 1e-12, 1e-9)
 """Shares by which the jerk is lowered, one after another, until Ruckig finds a profile.
@@ -54,7 +53,7 @@ def bound(extents: list[tuple[float, float, float, float]], shape: SpeedShape) -
 
     An extent of zero bounds nothing; at least one must be above zero (``ValueError``).
     """
-    moving = [limits for limits in extents if not limits[0] <= 0.0]
+    moving = [limits for limits in extents if not limits[0] <= 0.0]  # NaN counts as moving, and is refused later
     if not moving:
         raise ValueError("a path without extent has no speed")
     shares = [[value / extent for value in most] for extent, *most in moving]
@@ -65,22 +64,24 @@ def bound(extents: list[tuple[float, float, float, float]], shape: SpeedShape) -
 def profile(limits: SpeedLimits, period_s: float, duration: float | None = None) -> Array:
     """Return s (N + 1,) at whole cycles, from exactly 0 to exactly 1, rest to rest.
 
-    ``duration`` s asks for a longer time; the move never gets faster than the limits. ``Fault`` RBL404 when it would
+    ``duration`` s may only lengthen the move, which never gets faster than the limits. ``Fault`` RBL404 when it would
     take more than ``MAX_DURATION``.
     """
-    wanted = max(_shortest(limits), duration or 0.0, key=badness)
-    if wanted <= MAX_DURATION:
-        wanted = max(_trajectory(limits, None).duration, wanted, key=badness)
-    check_duration(wanted)
-    cycles = max(1, math.ceil(wanted / period_s - 1e-9))
+    # the bound first: a move of hours is refused without a profile
+    seconds = max(_shortest(limits), duration or 0.0, key=badness)
+    if seconds <= MAX_DURATION:
+        seconds = max(_trajectory(limits, None).duration, seconds, key=badness)
+    check_duration(seconds)
+    # 1e-9 of a cycle is rounding: a move of exactly 100 cycles must not become one of 101
+    cycles = max(1, math.ceil(seconds / period_s - 1e-9))
     trajectory = _trajectory(limits, cycles * period_s)
     s = np.array([trajectory.at_time(k * period_s)[0][0] for k in range(cycles + 1)])
-    s[0], s[-1] = 0.0, 1.0
+    s[0], s[-1] = 0.0, 1.0  # Ruckig ends within rounding of 1; the end is to be the taught one to the last bit
     return np.asarray(np.clip(s, 0.0, 1.0))
 
 
 def check_duration(seconds: float) -> None:
-    """Refuse a move that would take too long; ``Fault`` RBL404."""
+    """Refuse a move of more than ``MAX_DURATION``, or of no definite time; ``Fault`` RBL404."""
     if not seconds <= MAX_DURATION:
         takes, most = beside(seconds, MAX_DURATION, form=".4g")
         raise Fault("RBL404", f"the move would take {takes} s and may take at most {most} s")
@@ -100,12 +101,17 @@ def shortest_s(limits: SpeedLimits) -> float:
 
 
 def _shortest(limits: SpeedLimits) -> float:
-    """Return a time that no profile within the limits can beat, s."""
+    """Return a time that no profile within the limits can beat, s.
+
+    Over a distance of 1 each limit alone takes: 1 / v at constant speed, 2 sqrt(1 / a) with half the distance each to
+    gain and to lose speed, and (32 / j)^(1/3) with four phases of constant jerk.
+    """
     times = 1.0 / limits.speed, 2.0 * math.sqrt(1.0 / limits.acceleration), math.cbrt(32.0 / limits.jerk)
     return max(times, key=badness)
 
 
 def _trajectory(limits: SpeedLimits, duration: float | None) -> "ruckig.Trajectory":
+    """Return Ruckig's profile with the limits' jerk, or with the little less with which it finds one; RBL404."""
     for easing in EASINGS:
         trajectory = _calculated(limits, limits.jerk * (1.0 - easing), duration)
         if trajectory is not None:
@@ -115,12 +121,13 @@ def _trajectory(limits: SpeedLimits, duration: float | None) -> "ruckig.Trajecto
 
 
 def _calculated(limits: SpeedLimits, jerk: float, duration: float | None) -> "ruckig.Trajectory | None":
-    """Return Ruckig's profile, None where it has found none."""
+    """Return Ruckig's profile from rest to rest over 1, None where it finds none."""
     request = ruckig.InputParameter(1)
     request.current_position, request.target_position = [0.0], [1.0]
     request.max_velocity = [limits.speed]
     request.max_acceleration = [limits.acceleration]
     request.max_jerk = [jerk]
+    # a minimum duration stretches the phases of the profile, so a longer move keeps its shape and its limits
     if duration is not None:
         request.minimum_duration = duration
     trajectory = ruckig.Trajectory(1)

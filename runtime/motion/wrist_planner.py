@@ -1,6 +1,6 @@
 """Choosing how a move along a path goes through the wrist: the document's switch, then remedies, then a refusal.
 
-The whole move is tried before it starts, on the 8 ms samples and at every servo tick. So what CN103429397A leaves to
+The whole move is solved before it starts, on the 8 ms samples and at every servo tick. So what CN103429397A leaves to
 chance shows while the arm stands still: no solution of the main axes (H1), another arm configuration at the end (H2), a
 wrist (H3) or main axis (H4) beyond its speed, a range passed. Tried in this order (``wrist_remedies``):
 
@@ -19,6 +19,7 @@ wrist (H3) or main axis (H4) beyond its speed, a range passed. Tried in this ord
 from dataclasses import replace
 
 from runtime.core.faults import Fault
+from runtime.core.frames import Array
 from runtime.core.rounding import beside
 from runtime.core.units import DEG, badness
 from runtime.motion.commands import MoveLinear, PathMove
@@ -37,23 +38,11 @@ def choose(sampled: SampledPath, command: PathMove, options: WristOptions) -> Ca
 
     ``Fault`` RBL412 (or 410, 411) where it can go to none of them.
     """
-    taught = command.q_end is not None or bool(command.configuration or command.turns)
-    most_deviation = options.most_deviation if taught else options.untaught_deviation
-    tracked = isinstance(command, MoveLinear) and command.tracked
     usable: list[Candidate] = []
     refusals: list[Fault] = []
     for q_end in ends(sampled.line, sampled.q, command):
-        request = WristRequest(
-            sampled=sampled,
-            q_end=q_end,
-            options=options,
-            trigger=trigger_of(sampled, q_end, options),
-            held=() if tracked else command.held,
-            most_deviation=most_deviation,
-            tracked=tracked,
-        )
         try:
-            found = crossing(request)
+            found = crossing(_request(sampled, q_end, command, options))
         except Fault as fault:
             refusals.append(fault)
             continue
@@ -66,6 +55,25 @@ def choose(sampled: SampledPath, command: PathMove, options: WristOptions) -> Ca
     if refusals:
         raise refusals[0]
     return Candidate(solver=sampled.line)  # no end to go to: solving the path says where it leaves the reach
+
+
+def _request(sampled: SampledPath, q_end: Array, command: PathMove, options: WristOptions) -> WristRequest:
+    """Return what a move to joint angles q_end (n,) has to keep.
+
+    Where only a pose is taught, the end may be any of its solutions, and the tool may turn by less on the way there: a
+    posture is not thrown away for a solution that nobody has taught (docs/decisions/0018).
+    """
+    taught = command.q_end is not None or bool(command.configuration or command.turns)
+    tracked = isinstance(command, MoveLinear) and command.tracked
+    return WristRequest(
+        sampled=sampled,
+        q_end=q_end,
+        options=options,
+        trigger=trigger_of(sampled, q_end, options),
+        held=() if tracked else command.held,
+        most_deviation=options.most_deviation if taught else options.untaught_deviation,
+        tracked=tracked,
+    )
 
 
 def crossing(request: WristRequest) -> Candidate:
@@ -83,6 +91,7 @@ def crossing(request: WristRequest) -> Candidate:
                 if _settles(candidate, request):
                     return candidate
                 usable.append(candidate)
+        # candidates that have to be slowed are compared only when all of a stage are known
         if usable:
             return _best(usable, request.options)
     raise _refusal(request, refusals)
@@ -109,7 +118,7 @@ def judged(candidate: Candidate, request: WristRequest) -> Candidate:
 
 
 def _settles(candidate: Candidate, request: WristRequest) -> bool:
-    """Return whether nothing after a candidate is tried: a path kept fast enough, or the switch as the document has it.
+    """Return whether a candidate ends the search: a path kept fast enough, or the switch as the document has it.
 
     With held components the document's switch is compared with others, since it disregards the posture. Of the detours
     the first that can be executed is taken: the larger ones after it turn the tool further.
@@ -145,6 +154,7 @@ def _too_far(deviation: float, most_deviation: float) -> Fault:
 
 def _refusal(request: WristRequest, refusals: list[Fault]) -> Fault:
     """Return the refusal of a move for which no candidate did: why the wrist has to change, and what the first met."""
+    # the first refusal is that of the document's switch, which the profile decides; the others are only counted
     sampled, trigger = request.sampled, request.trigger
     if trigger is not None and not request.arrives:
         return explained(refusals[0], sampled.line.path, trigger, len(refusals) - 1, _advice(sampled))
@@ -180,11 +190,12 @@ def _advice(sampled: SampledPath) -> str:
 
 def explained(fault: Fault, path: Path, trigger: Trigger, others: int = 0, hint: str = "") -> Fault:
     """Return the refusal of a candidate with the reason why the wrist has to change at all."""
+    # RBL411 stays: a joint that leaves its range has another remedy than a wrist that cannot change
     axis = "" if trigger.axis is None else f" of J{trigger.axis + 1}"
-    tried = f", nor from {others} other switches" if others else ""
+    others_too = f", nor from {others} other switches" if others else ""
     return Fault(
         fault.code if fault.code == "RBL411" else "RBL412",
         f"the wrist has to change on this {path.move} ({trigger.condition}, {CONDITIONS[trigger.condition]}{axis}, "
-        f"at {100 * trigger.share:.1f} % of the path) and cannot from there{tried}: {fault.message}",
+        f"at {100 * trigger.share:.1f} % of the path) and cannot from there{others_too}: {fault.message}",
         hint or fault.hint,
     )

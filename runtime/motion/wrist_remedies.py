@@ -1,4 +1,4 @@
-"""The joint curves tried for a move through the wrist, in the order in which they are tried.
+"""The joint curves that a move through the wrist may take, in the order in which they are tried.
 
 A remedy is a function of the request that yields candidates; ``stages`` names them in their order. The first two are
 the method of CN103429397A (Kobe Steel); what the document leaves to chance (hazards H1 to H4, docs/wrist.md) the others
@@ -21,19 +21,22 @@ from runtime.robot.kinematics.frozen_wrist import WRIST_AXES
 from runtime.settings.profile import WristOptions
 
 EARLIER = (0.9, 0.75, 0.6, 0.45, 0.3, 0.15, 0.0)
-"""Switches tried before that of the document: shares of the path up to it."""
+"""Switches before that of the document: shares of the path up to it."""
 
 LATER = (0.25, 0.5, 0.75)
 """And after it: shares of the path from it to the end."""
 
 SOFTER = (1.0, 0.25)
-"""Widths of the soft start tried beside that of the profile."""
+"""Widths of the soft start beside that of the profile."""
 
 HELD_EARLIER = (0.75, 0.45, 0.15)
 """Those of ``EARLIER`` from which a posture is held as well: choosing it costs more than all the rest."""
 
 HELD_WINDOWS = (0.15, 0.4)
-"""Shares of the rest of the path over which the choice of a held posture is averaged."""
+"""Shares of the rest of the path over which the choice of a held posture is averaged.
+
+The narrow one holds the components better, the wide one needs less acceleration of the wrist.
+"""
 
 WINDOWS = (0.1, 0.2, 0.35, 0.5)
 """Half widths of the part of the path in which the wrist goes from one configuration to the other."""
@@ -122,6 +125,7 @@ def softer_starts(request: WristRequest, holding: HeldPosture) -> Iterator[Candi
 def other_switches(request: WristRequest, holding: HeldPosture) -> Iterator[Candidate]:
     """Earlier and later switches: H1 is met where the wrist turns elsewhere, H3 and H4 where it has more time."""
     sampled, here = request.sampled, request.sampled.s[request.switch]
+    # from near to far on either side: the nearer to the document's switch, the longer the tool keeps its posture
     places = [(share * here, "earlier switch", share in HELD_EARLIER) for share in EARLIER]
     places += [(here + share * (1.0 - here), "later switch", False) for share in LATER]
     seen = {request.switch}
@@ -149,6 +153,7 @@ def back_to_the_posture(request: WristRequest, holding: HeldPosture) -> Iterator
     sampled, s = request.sampled, request.sampled.s
     back = LineSolver(sampled.line.arm, sampled.line.path, request.q_end, to_end=True)
     q_back = back.rows(s)
+    # NaN in either one makes the sum NaN: both solutions have to exist where the wrist leaves and where it returns
     both = np.isfinite((sampled.q + q_back)[:, -WRIST_AXES:].sum(axis=1))
     if not both.any():
         return
@@ -167,6 +172,7 @@ def back_to_the_posture(request: WristRequest, holding: HeldPosture) -> Iterator
 def detours(request: WristRequest, holding: HeldPosture) -> Iterator[Candidate]:
     """Detours of J4 and J5 from the start on, for H1: with the wrist turned away the main axes may have a solution."""
     sampled = request.sampled
+    # slope 0: the move starts from rest there, and the slope of the path belongs to a posture that is being left
     cubic = replace(law_from(sampled.q, sampled.s, 0, request.wrist_end, "hermite"), slope=np.zeros(WRIST_AXES))
     for j4, j5 in DETOURS:
         law = replace(cubic, detour=np.radians([j4, j5, 0.0]))
@@ -224,6 +230,7 @@ def _nearest(sampled: SampledPath, q_back: Array, half: float) -> float:
     """
     s, limits = sampled.s, sampled.line.arm.spec.per_axis("limits", "speed")[-WRIST_AXES:]
     leaves, joins = sampled.q[:, -WRIST_AXES:] / limits, q_back[:, -WRIST_AXES:] / limits
+    # all windows at once; a share of the path may have few samples where the move is fast, so places are looked up
     firsts = np.searchsorted(s, np.maximum(s - half, 0.0), side="right") - 1
     lasts = np.minimum(np.searchsorted(s, np.minimum(s + half, 1.0)), len(s) - 1)
     turns = np.abs(joins[lasts] - leaves[firsts]).max(axis=1)

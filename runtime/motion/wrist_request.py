@@ -1,4 +1,4 @@
-"""What is asked of the wrist of one move, and what may be done about it: the values that the wrist planner works on.
+"""The task of the wrist in one move, and the curves that may do it: the values that the wrist planner works on.
 
 ``SampledPath`` is the path on the samples on which it is judged, ``WristRequest`` the end that it has to reach from
 there and what the profile allows, ``Candidate`` one joint curve that may do it, with its figures or the reason for
@@ -114,7 +114,7 @@ class Candidate:
 
 
 def trigger_of(sampled: SampledPath, q_end: Array, options: WristOptions) -> Trigger | None:
-    """Return the first exception condition that a path meets on the way to joint angles q_end (n,), S61."""
+    """Return the first exception condition that a path to joint angles q_end (n,) meets, S61; None for none."""
     limits = WristLimits.of(sampled.line.arm.spec, options)
     return first_trigger(sampled.q, q_end, sampled.timing, limits, options)
 
@@ -124,6 +124,7 @@ def posture_deviation(line: LineSolver, s: Array, q: Array, held: tuple[Componen
 
     s (N + 1,): path parameter of the rows q (N + 1, n).
     """
+    # without a direction of travel there is no weld-line frame: the whole angle bounds every component
     R = matmul(line.arm.kinematics.forward(q), line.arm.X_flange_tool)[:, :3, :3]
     planned = line.planned(s)[:, :3, :3]
     if not held or line.path.length < SHORTEST_TRAVEL:

@@ -145,7 +145,7 @@ class RobotArm:
 
     def way(self, stand: Stand, command: MoveLinear) -> ArmWay:
         """Return the curve that a run of this move would take; ``Fault`` RBL404, 410, 411, 412."""
-        way = self._planner.way(stand.q, command, self._X_flange_tool)
+        way = self._planner.curve(stand.q, command, self._X_flange_tool)
         return ArmWay(way=way, ends=(way.path.X_start[:3, 3], way.path.X_end[:3, 3]))
 
     def arrived(self, stand: Stand, command: MoveLinear, q: Array) -> Stand:

@@ -53,6 +53,7 @@ _STEEP = 1e-6
 
 def weld_line_frame(travel: Array) -> Array:
     """Return R_base_line (3, 3), eqs (101) to (103), of a direction of travel (3,)."""
+    # on a vertical seam gravity gives no direction across it; the document leaves that open, the base's Y is ours
     X = travel / norm(travel)
     Y = np.cross(X, [0.0, 0.0, -1.0])
     Y = np.array([0.0, 1.0, 0.0]) if norm(Y) < _STEEP else Y / norm(Y)
@@ -82,6 +83,7 @@ def posture_components(R_base_line: Array, R_base_tool: Array) -> Array:
 def component_deviation(path: Path, s: Array, R_planned: Array, R_base_tool: Array) -> Array:
     """Return the distance, rad (N, 3), in tilt, advance and rotation between the path's postures and those taken."""
     frames = frames_along(path, s)
+    # wrapped: components are angles, and one of 179 deg is 2 deg from one of -179
     off = posture_components(frames, R_base_tool) - posture_components(frames, R_planned)
     return np.abs(off - 2.0 * np.pi * np.round(off / (2.0 * np.pi)))
 
@@ -143,6 +145,7 @@ class Suppression:
 
     def _solved(self, place: Array, candidates: Array, q_before: Array, side: Side | None) -> Array:
         if side is not None:
+            # one call for all 125 where the arm has a closed form; Newton steps follow one solution each
             return self._frozen.solve(np.broadcast_to(place, (len(candidates), 3)), candidates, q_before, side)
         return np.concatenate([self._frozen.solve(place[None], one[None], q_before, side) for one in candidates])
 
@@ -168,6 +171,7 @@ class WristTable:
 
     def angles(self, s: Array) -> Array:
         """Return the wrist angles (N, 3) rad at s (N,), from the switch on."""
+        # a cubic with the central slopes of np.gradient: the speed is continuous, and no system has to be solved
         last = len(self.values) - 1
         at = np.clip((s - self.s_switch) / (1.0 - self.s_switch), 0.0, 1.0) * last
         k = np.minimum(at.astype(int), last - 1)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runtime.motion.blend import _largest, blend, overlapped
+from runtime.motion.blend import BlendLimits, _largest, blend, overlapped
 from runtime.motion.commands import MoveJoint
 from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.path_ik import Arm
@@ -61,7 +61,7 @@ def test_the_largest_overlap_is_found_and_what_is_taken_has_been_tried(most):
 def test_without_a_zone_or_without_room_nothing_overlaps():
     a, b = rows(0.3, 0.3)
     for most, zone in ((10, 0.0), (0, 0.1), (10, 1e-12)):
-        joined, corner = blend(a, b, (most, 10), zone, ARM, PACE, 5.0, 3.0)
+        joined, corner = blend(a, b, (most, 10), zone, ARM, BlendLimits(pace=PACE, acceleration=5.0, turning=3.0))
         np.testing.assert_array_equal(joined, np.concatenate([a, b[1:]]))
         assert (corner.cycles, corner.reach, corner.deviation, corner.radius) == (0, 0.0, 0.0, zone)
 
@@ -71,7 +71,8 @@ def test_each_rule_makes_a_blend_shorter():
     half = len(b) // 2
 
     def cycles(half: int = half, zone: float = 1.0, pace: Pace = PACE, acceleration: float = 100.0) -> int:
-        return blend(a, b, (len(a) // 2, half), zone, ARM, pace, acceleration, 100.0)[1].cycles
+        limits = BlendLimits(pace=pace, acceleration=acceleration, turning=100.0)
+        return blend(a, b, (len(a) // 2, half), zone, ARM, limits)[1].cycles
 
     free = cycles()
     assert free > 15
@@ -86,8 +87,8 @@ def test_straight_back_both_moves_accelerate_the_same_way_and_the_joint_limits_w
     there, back = (ROBOT.planner.plan(a, MoveJoint(q_end=b), TOOL).q for a, b in ((q, end), (end, q)))
     halves = len(there) // 2, len(back) // 2
     tight, loose = (
-        blend(there, back, halves, 1.0, ARM, replace(PACE, acceleration=factor * PACE.acceleration), 100.0, 100.0)
-        for factor in (1.0, 2.0)
+        blend(there, back, halves, 1.0, ARM, BlendLimits(pace=pace, acceleration=100.0, turning=100.0))
+        for pace in (PACE, replace(PACE, acceleration=2.0 * PACE.acceleration))
     )
     assert 0 < tight[1].cycles < loose[1].cycles
     assert limits_broken(ROBOT, tight[0]) == []

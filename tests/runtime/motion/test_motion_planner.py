@@ -240,7 +240,7 @@ def test_an_override_scales_every_speed_and_takes_the_same_way(override):
         asked = (
             robot.speed[0] / 1.5
             if isinstance(command, MoveJoint)
-            else robot.planner.lines.way(q, command, TOOL).limits.speed
+            else robot.planner.lines.curve(q, command, TOOL).limits.speed
         )
         assert 0.95 < np.diff(part.s).max() / robot.profile.period_s / (override * asked) <= 1.0 + 1e-6
         assert len(part.q) > len(whole.q)

@@ -11,7 +11,7 @@ from runtime.core.frames import inverse, pose, rotation_from_rpy
 from runtime.core.units import DEG, MM
 from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.path_ik import Arm, LineSolver
-from runtime.motion.seam import SeamLimits, SeamMove, SeamTracker, superposed
+from runtime.motion.seam import CalculatedMove, SeamLimits, SeamMove, SeamTracker, superposed
 from runtime.settings.profile import WristOptions
 from tests.runtime.motion.wrist_moves import C1_ANY, C3, E1, E2, KINEMATICS, NOTHING, SPEC, TOOL, path_of
 
@@ -38,7 +38,8 @@ def tracked(move, options: WristOptions, read=None, limits=UNFILTERED, switch=No
     s = np.linspace(0.0, 1.0, 501)
     tracker = SeamTracker("torch", limits, DT, read or ramp(path.length))
     line = LineSolver(arm, path, start)
-    return SeamMove(line, s, start, end, switch, tracker, options, DT), tracker, path.poses(s)
+    calculated = CalculatedMove(line=line, s=s, period_s=DT, q_end=end, switch=switch)
+    return SeamMove(calculated, start, tracker, options), tracker, path.poses(s)
 
 
 def run(move: SeamMove, tracker: SeamTracker, samples: int) -> tuple[np.ndarray, np.ndarray]:
