@@ -1,5 +1,6 @@
 # make demo   the main job: install into .venv and run the 1992 program
 # make test   the tests; prints their processor time by folder
+# make test-ideal   the tests that need no MuJoCo
 # make gates  layout, style, types, import contracts, copied code
 # make campaign   the tests at full size, of which make test runs a sample (minutes)
 # make format  the layout that the gates ask for
@@ -34,6 +35,9 @@ help:
 
 test: $(READY)
 	$(BIN)/python -m pytest -n 2
+
+test-ideal: $(READY)
+	$(BIN)/python -m pytest -n 2 -m "not physics"
 
 campaign: $(READY)
 	CAMPAIGN=1 $(BIN)/python -m pytest -n 2

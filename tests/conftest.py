@@ -8,6 +8,7 @@ import os
 import pytest
 from hypothesis import HealthCheck, settings
 
+from runtime.plant.mujoco_plant import MujocoPlant
 from tests.processor_time import Meter
 
 # A machine that is slow or busy makes no test fail: no deadline, and no check of how long it takes to make examples.
@@ -42,5 +43,11 @@ def pytest_xdist_make_scheduler(config, log):
     return Shared(config, log)
 
 
+def unmarked(*_, **__):
+    raise AssertionError("a test that runs MuJoCo needs the marker physics")
+
+
 def pytest_configure(config):
+    if config.option.markexpr == "not physics":
+        MujocoPlant.__init__ = unmarked
     config.pluginmanager.register(Meter(config))

@@ -269,6 +269,7 @@ def test_every_signal_is_in_the_table_with_its_shape():
     assert dict(rows) == {key: shape.replace("(N, )", "(N,)") for key, shape in shapes.items()}
 
 
+@pytest.mark.physics
 def test_every_key_of_the_report_is_explained(run_result):
     explained = set(re.findall(r"`(\w+)", (ROOT / "docs/signals.md").read_text("utf-8")))
     keys = "code name severity message hint file line column end_line end_column related number axis time_s category"
@@ -318,6 +319,7 @@ def test_programs_in_the_pages_have_no_errors():
         assert not has_errors(found), (name(page), [item.message for item in found])
 
 
+@pytest.mark.physics
 def test_the_python_of_the_readme_runs(monkeypatch):
     monkeypatch.chdir(ROOT)
     (block,) = fenced(ROOT / "README.md", "python")
@@ -327,6 +329,7 @@ def test_the_python_of_the_readme_runs(monkeypatch):
     assert "s simulated" in printed.getvalue()
 
 
+@pytest.mark.physics
 def test_the_transcript_of_the_readme_is_what_a_run_gives(run_result):
     """Times exactly; errors roughly, since another processor may round otherwise."""
     transcript = next(text for text in fenced(ROOT / "README.md", "text") if "pick_and_place" in text)
@@ -345,6 +348,7 @@ def test_the_transcript_of_the_readme_is_what_a_run_gives(run_result):
             assert value == pytest.approx(statement[key], rel=0.05, abs=tolerance), (text, key)
 
 
+@pytest.mark.physics
 def test_the_transcript_has_the_headings_and_notes_of_a_run(run_result):
     """Line by line what is printed today, numbers apart: a column that is new or gone shows."""
     transcript = next(text for text in fenced(ROOT / "README.md", "text") if "pick_and_place" in text)

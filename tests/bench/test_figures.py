@@ -74,6 +74,7 @@ def at_the_root(monkeypatch):
     monkeypatch.chdir(ROOT)
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("command", BENCHES)
 def test_a_command_prints_every_row_of_the_page_that_names_it_and_breaks_no_promise(command):
     rows = [row for bench in BENCHES[command] for row in bench(True)]

@@ -11,6 +11,7 @@ from tests.robolang.cli.commands import dry, places, robolang
 HERE = Path(__file__).parent
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize(
     ("case", "two_movecs"),
     [

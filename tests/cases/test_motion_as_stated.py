@@ -17,6 +17,7 @@ def codes_at(program: Path) -> list[tuple[int, str]]:
     return [(line, code) for line, _, code in places(robolang("check", "--motion", program).stdout)]
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize(
     ("case", "found"),
     [

@@ -8,6 +8,8 @@ from typer.testing import CliRunner
 from robolang.cli.main import app
 from robolang.execution.session import run
 
+pytestmark = pytest.mark.physics
+
 LIGHT = Path(__file__).parent / "attack_13_light_part_lost_silently" / "p.rbl"
 
 

@@ -48,6 +48,7 @@ def test_reports_32_an_arc_over_a_point_in_line():
     assert places(result.stderr) == [(5, 1, "RBL416")]
 
 
+@pytest.mark.physics
 def test_reports_35_tiny_moves(tmp_path):
     robolang("check", "--motion", HERE / "reports_35_tiny_moves" / "p.rbl", "--times", tmp_path / "t.json")
     (times,) = json.loads((tmp_path / "t.json").read_text())

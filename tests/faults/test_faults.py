@@ -22,6 +22,8 @@ from tests.faults.campaign import (
     verdict,
 )
 
+pytestmark = pytest.mark.physics
+
 
 @pytest.fixture(scope="module")
 def project():

@@ -11,6 +11,8 @@ from robolang.project.project import load_project
 from runtime.core.frames import inverse, rotation_angle
 from tests.programs.runs import run
 
+pytestmark = pytest.mark.physics
+
 PROGRAMS = sorted((Path(__file__).parents[2] / "programs").glob("*.rbl"))
 
 

@@ -24,6 +24,8 @@ from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.servo.motor import torque_limit
 from tests.programs.runs import run
 
+pytestmark = pytest.mark.physics
+
 ROOT = Path(__file__).parents[2]
 PROGRAM = ROOT / "programs" / "pick_and_place.rbl"
 HAND, HAND_AND_PART = 0.8, 2.3

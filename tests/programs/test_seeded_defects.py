@@ -11,6 +11,8 @@ from robolang.execution.dry_run import rehearse
 from robolang.planning.motion_findings import findings
 from robolang.project.project import load_project
 
+pytestmark = pytest.mark.physics
+
 ROOT = Path(__file__).parents[2] / "programs"
 PALLET, TEND, DISPENSE, RECOVER, INSPECT, SORT, PICK = (
     "shop/palletise",

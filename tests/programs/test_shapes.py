@@ -11,6 +11,8 @@ from runtime.plant.mjcf import own_pairs
 from runtime.plant.mujoco_plant import MujocoPlant
 from tests.robolang.cli.commands import BUILTIN, PUMA, robolang
 
+pytestmark = pytest.mark.physics
+
 FOLDED = "10 MOVEJ JOINT(-60, 210, 25, -70, 65, -75), SPEED 30\n"
 SHAPED = PUMA.read_text()
 BARE = re.sub("^link_radius_mm.*\n", "", SHAPED, flags=re.M)

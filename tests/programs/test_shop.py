@@ -8,6 +8,8 @@ import pytest
 from robolang.execution.dry_run import rehearse
 from tests.programs.runs import ROOT, run
 
+pytestmark = pytest.mark.physics
+
 SHOP = sorted(path.stem for path in (ROOT / "shop").glob("*.rbl"))
 ALL = sorted(str(path.relative_to(ROOT)) for path in ROOT.rglob("*.rbl"))
 

@@ -30,6 +30,7 @@ def done(request):
     return request.param, *run(request.param)
 
 
+@pytest.mark.physics
 def test_the_move_ends_as_taught_on_its_line_with_the_scheduled_servo(done):
     name, session, result = done
     assert result.ok and session.project.diagnostics == ()
@@ -43,6 +44,7 @@ def test_the_move_ends_as_taught_on_its_line_with_the_scheduled_servo(done):
     assert session.record.statements[-1].path.deviation(places).max() < 1e-9
 
 
+@pytest.mark.physics
 def test_the_event_of_the_wrist_is_in_the_report_and_the_log(done):
     name, _, result = done
     event, mode, t = result.report["statements"][-1]["wrist"], result.log["wrist_mode"], result.log["t"]
@@ -90,6 +92,7 @@ def test_hold_is_mode_2_and_is_said(tmp_path):
     assert (2 in modes) == (moves[-1]["wrist"]["held"] == ["TILT"])
 
 
+@pytest.mark.physics
 def test_the_seam_is_followed_and_the_end_is_where_the_sensor_saw_it():
     session, result = run("seam")
     assert result.ok

@@ -166,6 +166,7 @@ def test_checking_a_file_parses_it_once(tmp_path, texts_parsed):
     assert texts_parsed == [text]
 
 
+@pytest.mark.physics
 def test_planning_takes_over_the_analysis(tmp_path, texts_parsed):
     path = tmp_path / "pick.rbl"
     path.write_text("10 MOVE P1\n")

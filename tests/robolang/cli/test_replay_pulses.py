@@ -152,6 +152,7 @@ def test_the_end_of_a_line_counts_and_the_worst_move_is_named(tmp_path):
 # --- the real arm ----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.physics
 def test_the_real_arm_is_driven_and_stands_in_the_table(tmp_path):
     export = puma()
     export.load(1)
@@ -171,6 +172,7 @@ def test_the_real_arm_is_driven_and_stands_in_the_table(tmp_path):
     assert (found["physics"]["alarms"], found["physics"]["warnings"]) == ([], [])
 
 
+@pytest.mark.physics
 def test_an_arm_that_is_not_in_position_is_noted_and_one_with_an_alarm_is_exit_code_3(tmp_path):
     export = puma()
     export.load(1, mass=2.5, cog=(200, 0, 200))

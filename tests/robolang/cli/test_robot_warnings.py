@@ -18,6 +18,7 @@ def shop(tmp_path):
     return tmp_path
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize(
     ("command", "code"),
     [

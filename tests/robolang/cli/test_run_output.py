@@ -38,6 +38,7 @@ def test_progress_goes_to_stderr_and_the_table_to_stdout(program):
     assert [line for line in result.stdout.splitlines() if line.startswith("  line 1 (number 10): ")]
 
 
+@pytest.mark.physics
 def test_quiet_prints_nothing(program):
     for words in ([], ["--report", "r.json", "--log", "l.npz"]):
         result = robolang("run", "p.rbl", "--quiet", *words)

@@ -109,6 +109,7 @@ def test_the_documented_signals_are_those_of_the_recorder():
     assert set(Recorder(6, 8, 1000).signals(lambda q: np.zeros((len(q), 4, 4)))) == SIGNALS
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_the_report_is_strict_json_with_exactly_the_documented_keys(results, name):
     report = strict(results[name][0] / "r.json")
@@ -124,6 +125,7 @@ def test_the_report_is_strict_json_with_exactly_the_documented_keys(results, nam
     assert report["sim_time_s"] == pytest.approx(report["cycles"] * 0.008)
 
 
+@pytest.mark.physics
 def test_the_report_of_a_move_says_what_was_measured(results):
     report = strict(results["move"][0] / "r.json")
     load, move = report["statements"]
@@ -137,6 +139,7 @@ def test_the_report_of_a_move_says_what_was_measured(results):
     assert report["cycles"] == len(np.load(results["move"][0] / "l.npz")["t"]) // 8 > 80
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("name", ["load", "empty", "comment"])
 def test_a_program_without_motion_takes_no_cycle(results, name):
     report = strict(results[name][0] / "r.json")
@@ -144,6 +147,7 @@ def test_a_program_without_motion_takes_no_cycle(results, name):
     assert [row["mass_kg"] for row in report["payload_history"]] == ([0.8, 2.3] if name == "load" else [])
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_the_npz_has_every_signal_with_the_ticks_first(results, name):
     log = np.load(results[name][0] / "l.npz")
@@ -159,6 +163,7 @@ def test_the_npz_has_every_signal_with_the_ticks_first(results, name):
     assert np.array_equal(log["t"], np.arange(ticks) * 1000 * 1e-6)
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_stock_readers_find_the_same_numbers_in_the_mcap(results, name):
     log = np.load(results[name][0] / "l.npz")
@@ -176,6 +181,7 @@ def test_stock_readers_find_the_same_numbers_in_the_mcap(results, name):
     assert [message.publish_time for _, _, message, _ in messages] == [k * 1_000_000 for k in range(len(messages))]
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_two_runs_give_the_same_bytes(results, name):
     for file in ("l.npz", "l.mcap"):
@@ -188,6 +194,7 @@ def test_two_runs_give_the_same_bytes(results, name):
     assert reports[0] == reports[1]
 
 
+@pytest.mark.physics
 def test_no_time_of_day_is_in_a_log(results):
     """The two runs above are a second apart at most; what a file could carry of the clock is looked at itself."""
     folder = results["move"][0]

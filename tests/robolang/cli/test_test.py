@@ -27,6 +27,7 @@ def copied(tmp_path, expect, text=None):
     return tmp_path / "job.rbl"
 
 
+@pytest.mark.physics
 def test_the_programs_do_what_they_are_expected_to():
     chosen = [ROOT / "programs"] if WHOLE else [PICK, ROOT / "programs/shop/recover.rbl"]
     result = robolang("test", *chosen)

@@ -13,6 +13,7 @@ from tests.robolang.helpers import checked
 BODY = "1.5,30,-20,113.7"
 
 
+@pytest.mark.physics
 def test_it_prints_the_estimate_the_truth_and_a_load_that_parses():
     result = robolang("weigh", "--payload", BODY)
     rows = dict(re.findall(r"^  (mass, kg|cog [xyz], mm) +(.*)$", result.stdout, re.M))

@@ -45,6 +45,7 @@ STOPS = size(200, 4)
 """Random stops: the figure of the campaign, and of a sample."""
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("number", range(STOPS))
 def test_from_a_snapshot_on_the_same_bytes_follow(number):
     """Stop at a random cycle, keep it, go on for 50 cycles, go back and go on again."""
@@ -270,6 +271,7 @@ def test_a_pause_can_be_resumed_or_stopped_before_the_arm_rests(tmp_path, resume
         assert [alarm["code"] for alarm in ended(session)[1]["alarms"]] == ["RBL530"]
 
 
+@pytest.mark.physics
 def test_a_pause_rests_with_physics_too_and_under_a_seam_sensor_at_the_end_of_the_move():
     session = paused_at(load_project(ROOT / "shop/palletise.rbl"), 200, physics=True)
     session.executor.resume()

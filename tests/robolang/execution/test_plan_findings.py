@@ -15,6 +15,8 @@ from robolang.project.project import builtin_cell, load_project
 from runtime.robot.kinematics.kinematics import Kinematics
 from tests.messages import fields, numbers
 
+pytestmark = pytest.mark.physics
+
 OTHERWISE = {"RBL414", "RBL419", "RBL428", "RBL429", "RBL434", "RBL435"}
 START = "LOAD (0, 0, 60), 0.8\nMOVEJ JOINT(0, 60, -190, 0, -60, {})\n"
 ROOT = Path(__file__).parents[3]

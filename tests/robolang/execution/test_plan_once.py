@@ -27,6 +27,7 @@ def counted(monkeypatch, kind, name):
     return calls
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("physics", [False, True])
 def test_a_run_plans_each_move_once_with_one_kinematics(monkeypatch, physics):
     plannings, kinematics = counted(monkeypatch, MotionPlanner, "plan"), counted(monkeypatch, Kinematics, "__init__")
@@ -51,6 +52,7 @@ def test_a_run_that_begins_elsewhere_plans_what_the_check_has_not(monkeypatch):
     assert plannings
 
 
+@pytest.mark.physics
 def test_a_check_of_the_motion_has_one_kinematics(monkeypatch):
     kinematics = counted(monkeypatch, Kinematics, "__init__")
     assert planned(str(PALLETISE), None).times["complete"]

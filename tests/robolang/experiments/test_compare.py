@@ -40,12 +40,14 @@ def rows(request, tmp_path_factory):
     return {row["variant"]: row for row in compare(Request(program=program), CHOSEN)}
 
 
+@pytest.mark.physics
 def test_path_error_is_five_times_smaller_than_with_mid_gains_and_no_load(rows):
     good, bad = rows["scheduled"], rows["conventional"]
     assert bad["tool_rms_mm"] > 5.0 * good["tool_rms_mm"]
     assert bad["path_deviation_mm"] > 5.0 * good["path_deviation_mm"]
 
 
+@pytest.mark.physics
 def test_what_the_spring_lead_alone_does_is_not_counted_as_the_work_of_gains_and_load(rows):
     """The same with the lead in both: still 5 times on rigid gears, 3.5 on the Manutec, where dry friction remains."""
     good, bad = rows["scheduled"], rows["fixed-mid-load-omitted"]
@@ -53,10 +55,12 @@ def test_what_the_spring_lead_alone_does_is_not_counted_as_the_work_of_gains_and
     assert bad["path_deviation_mm"] > 4.5 * good["path_deviation_mm"]
 
 
+@pytest.mark.physics
 def test_whole_rows_follow_better_than_the_diagonal(rows):
     assert rows["scheduled"]["tool_rms_mm"] < 0.75 * rows["diagonal"]["tool_rms_mm"]
 
 
+@pytest.mark.physics
 def test_an_omitted_load_leaves_a_droop_and_never_settles(rows):
     assert rows["load-omitted"]["droop_deg"] > 3.5 * rows["scheduled"]["droop_deg"]
     assert rows["load-omitted"]["tool_rms_mm"] > 3.5 * rows["scheduled"]["tool_rms_mm"]
@@ -105,6 +109,7 @@ def variants(*names):
     return tuple(variant for variant in VARIANTS if variant.name in names)
 
 
+@pytest.mark.physics
 def test_a_load_declared_by_name_is_made_wrong_too(tmp_path):
     """LOAD by its name and LOAD by numbers are one payload, so they are made wrong alike."""
     text = "LOAD {}\nMOVE P2\n"
@@ -141,6 +146,7 @@ def test_a_variant_that_changes_nothing_says_so_and_has_no_figures(tmp_path, tex
     assert row["tool_rms_mm"] is row["moves"] is None
 
 
+@pytest.mark.physics
 def test_a_part_of_a_variant_that_changes_nothing_is_named(tmp_path):
     program = tmp_path / "p.rbl"
     program.write_text("MOVE P2\n")

@@ -17,6 +17,8 @@ from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
 from tests.robolang.experiments.identified import ROOT, SPEC
 
+pytestmark = pytest.mark.physics
+
 
 @pytest.mark.parametrize("robot", ["puma560", "manutec_r3", "irb2400"])
 def test_test_motions_keep_every_limit(robot):

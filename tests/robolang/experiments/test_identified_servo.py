@@ -16,6 +16,8 @@ from runtime.robot.kinematics.kinematics import Kinematics
 from tests.campaign import size
 from tests.robolang.experiments.identified import ROOT, SPEC, experiment
 
+pytestmark = pytest.mark.physics
+
 
 @cache
 def pick_and_place(real, rotors=(), first_moments=(), supervised=False):

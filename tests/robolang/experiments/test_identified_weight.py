@@ -10,6 +10,8 @@ from runtime.robot.model.arm_model import ArmModel
 from tests.campaign import some
 from tests.robolang.experiments.identified import SEEDS, SPEC, experiment
 
+pytestmark = pytest.mark.physics
+
 
 def gravity_errors(request, moments):
     """RMS error of the gravity torque over 500 random postures, N m: model only, with first moments, all axes."""

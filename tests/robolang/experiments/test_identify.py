@@ -34,6 +34,7 @@ def test_rigid_arm_with_friction_is_recovered():
     assert (off(results) < 1e-3).all()
 
 
+@pytest.mark.physics
 @pytest.mark.slow
 def test_mujoco_is_recovered():
     """MuJoCo takes viscous friction at the end of a step: h N^2 B / (2 D') too much, 0.07 to 0.21 % on J1 to J3."""
@@ -41,6 +42,7 @@ def test_mujoco_is_recovered():
     assert (off(results) < 3e-3).all()
 
 
+@pytest.mark.physics
 @pytest.mark.slow
 @pytest.mark.parametrize(("robot", "most"), [("irb2400", 1e-3), ("manutec_r3", 8e-3)])
 def test_other_robots_are_recovered(robot, most):
@@ -85,6 +87,7 @@ def test_a_pass_that_misses_the_position_is_an_error():
 # --- spread: one number per axis -------------------------------------------------------------------------------------
 
 
+@pytest.mark.physics
 def test_the_compensation_is_the_same_at_all_positions():
     """D_ii does not depend on the axis' own angle."""
     for of_plant in (RIGID, MUJOCO):
@@ -92,6 +95,7 @@ def test_the_compensation_is_the_same_at_all_positions():
         assert all(found.spread < 5e-4 * found.true for found in results)
 
 
+@pytest.mark.physics
 def test_the_spread_of_a_wrong_model_stays_small():
     """The held axes give way more when the servo's rows are wrong; that is all that the positions differ by."""
     _, results = experiment(seed=SEEDS[-1])
@@ -116,6 +120,7 @@ def rms_errors(request, results):
     return [np.sqrt((((model + extra) / true - 1.0) ** 2).mean(axis=0)) for extra in (rotor, Jc)]
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_error_of_the_inertia_is_several_times_smaller(seed):
     """Figures of the specification: 13.9, 8.0, 7.4 % -> 4.0, 2.1, 0.2 %, that is 3.5, 3.8 and 37 times."""
@@ -128,6 +133,7 @@ def test_the_error_of_the_inertia_is_several_times_smaller(seed):
     assert (without > [0.05, 0.03, 0.03]).all()
 
 
+@pytest.mark.physics
 def test_a_constant_is_nearly_as_good_as_it_can_be():
     """The identified constant against the best one for these 500 postures, by weighted least squares."""
     for seed in SEEDS:
@@ -179,6 +185,7 @@ def test_a_table_follows_what_a_constant_cannot(seed):
     assert (errors[:, 2] < np.array([0.008, 0.003])[[*TABLE_AXES]]).all(), errors
 
 
+@pytest.mark.physics
 def test_a_table_on_mujoco_finds_what_the_plant_has_at_each_posture():
     request, (found,) = experiment(seed=4, axes=(1,), positions=1, table=3)
     table = found.table

@@ -204,6 +204,7 @@ def test_an_axis_or_a_posture_that_the_robot_has_not_is_refused():
         step(experiment(0, STRETCHED, 160.1 * DEG))
 
 
+@pytest.mark.physics
 def test_a_step_in_which_the_arm_touches_itself_is_no_response_of_the_servo():
     """The hand is stopped by link 1, 11 deg short of where the step ends."""
     robot = load_builtin("manutec_r3")

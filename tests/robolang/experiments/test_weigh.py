@@ -68,6 +68,7 @@ ACCURACY = [
 ]
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize(("cell", "home", "added"), some(ACCURACY, 4, 6))
 def test_accuracy_with_friction_and_encoders(cell, home, added):
     """The goal is 2 % and 5 mm; what is reached, docs/weighing.md, leaves a factor of four and more."""
@@ -81,6 +82,7 @@ def test_accuracy_with_friction_and_encoders(cell, home, added):
     assert found.cog_sd.max() < 1.5e-3
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize(
     ("cell", "added"),
     some([(PUMA, body(1.5, 40.0, -30.0, 60.0)), (MANUTEC, body(11.0, 0.0, 0.0, 157.0))], 0),
@@ -156,6 +158,7 @@ def test_a_home_without_room_is_refused_before_anything_moves(monkeypatch):
     assert "J5" not in fields(fault.message)  # no one axis is at fault
 
 
+@pytest.mark.physics
 def test_an_arm_that_strikes_something_is_not_weighed():
     """The tool stands at z = 840 mm; a box reaches up to 790 mm, which the fingers meet when the arm swings down."""
     X = np.eye(4)

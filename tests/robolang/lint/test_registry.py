@@ -30,6 +30,7 @@ OF_THE_RUN = {
 }
 """Codes of values, which a run may compute; checking finds those of numbers alone."""
 RULES = list(rules().values())
+EXAMPLES = [pytest.param(item, marks=pytest.mark.physics) if item.motion else item for item in RULES]
 WITH_FIX = [item for item in RULES if item.fix]
 
 
@@ -81,7 +82,7 @@ def test_what_a_run_or_the_motion_finds_is_no_unused_suppression():
     assert lookup("RBL301").is_certain
 
 
-@pytest.mark.parametrize("item", RULES, ids=name)
+@pytest.mark.parametrize("item", EXAMPLES, ids=name)
 def test_an_example_yields_its_code_at_its_line_and_nowhere_else(item, tmp_path):
     if item.code == "RBL104":
         (tmp_path / "pick.rbl").write_bytes(item.bad.encode("utf-8", "surrogateescape"))
@@ -99,7 +100,7 @@ def test_an_example_yields_its_code_at_its_line_and_nowhere_else(item, tmp_path)
     assert {severity for code, _, severity in found if code == item.code} == {item.severity}
 
 
-@pytest.mark.parametrize("item", RULES, ids=name)
+@pytest.mark.parametrize("item", EXAMPLES, ids=name)
 def test_the_corrected_example_has_no_finding(item, tmp_path):
     if item.points:
         assert points_fault(item.good, item, tmp_path) is None

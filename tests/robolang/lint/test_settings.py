@@ -210,6 +210,7 @@ def test_a_bound_that_cannot_be_is_refused_at_its_place(tmp_path, text, place):
     assert fails(tmp_path) == place
 
 
+@pytest.mark.physics
 def test_a_bound_decides_what_check_finds(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     put(tmp_path / "p.rbl", "MOVEJ JOINT(0, 60, -190, 0, 60, 260)\n")  # J6 ends at 266

@@ -16,6 +16,8 @@ from runtime.core.units import DEG
 from runtime.plant.mujoco_plant import MujocoPlant
 from tests.messages import fields, numbers
 
+pytestmark = pytest.mark.physics
+
 
 def looked_at(folder, text, robot=None):
     (folder / "p.rbl").write_text(text)

@@ -13,6 +13,8 @@ from robolang.planning.path_coverage import explore
 from tests.runtime.plant.cells import BESIDE, GRIP, LEDGE, LET_GO, OWN, job
 from tests.runtime.plant.test_touches_of_mujoco import ALLOWED
 
+pytestmark = pytest.mark.physics
+
 CODES = ("RBL421", "RBL440", "RBL441")
 
 

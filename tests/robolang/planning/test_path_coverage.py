@@ -17,6 +17,8 @@ from robolang.project.project import load_project
 from tests.messages import heads, numbers
 from tests.robolang.cli.commands import robolang
 
+pytestmark = pytest.mark.physics
+
 FAR = "MOVE P1 + (900, 0, 0)"
 
 

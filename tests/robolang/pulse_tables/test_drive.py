@@ -71,6 +71,7 @@ def sagitta_mm(by_deg):
     return math.hypot(x, y) * (1.0 - math.cos(by_deg / 2.0 * DEG))
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("physics", [True, False], ids=["mujoco", "rigid"])
 def test_the_arm_follows_the_tables(tmp_path, physics):
     """The tool point is off the chord by the height of the arc, as the tables are, and comes to its end."""
@@ -91,6 +92,7 @@ def test_the_arm_follows_the_tables(tmp_path, physics):
     assert result.seconds > 0.3 + 2 * STEPS * STEP_S
 
 
+@pytest.mark.physics
 def test_a_straight_line_is_driven_straight(tmp_path):
     """Tables of the inverse kinematics along 80 mm: what is left is the arm's own error, not that of an arc."""
     export = puma()
@@ -124,6 +126,7 @@ def test_set_points_are_the_tables_every_eight_milliseconds(tmp_path):
     assert rows[:, 1] == pytest.approx([HOME[1]] * 3)
 
 
+@pytest.mark.physics
 def test_load_and_hand_are_carried_out_in_their_places(tmp_path, monkeypatch):
     done = []
 
@@ -156,6 +159,7 @@ def test_load_and_hand_are_carried_out_in_their_places(tmp_path, monkeypatch):
     assert closed_at / 1e6 == pytest.approx(0.104 + RAMP_S + result.moves[0].seconds, abs=0.1)
 
 
+@pytest.mark.physics
 def test_an_arm_with_the_wrong_load_does_not_come_into_position(tmp_path):
     export = puma()
     export.load(1, mass=2.5, cog=(200, 0, 200))
@@ -168,6 +172,7 @@ def test_an_arm_with_the_wrong_load_does_not_come_into_position(tmp_path):
     assert move.end_mm > 0.3
 
 
+@pytest.mark.physics
 def test_an_alarm_ends_the_drive_at_its_move(tmp_path):
     """3 deg in a hundredth of a second: 300 deg/s at once, more than any axis of the arm can do."""
     export = puma()
@@ -262,6 +267,7 @@ def test_a_load_that_no_arm_carries_and_a_run_without_end_are_refused_before_any
     assert caught.value.code == "RBL509"
 
 
+@pytest.mark.physics
 def test_another_home_of_the_cell_does_not_matter(tmp_path):
     """The arm stands where the tables start, not at the home of the cell."""
     export = puma()

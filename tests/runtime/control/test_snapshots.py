@@ -23,6 +23,7 @@ def uninterrupted(plant: str) -> tuple[int, dict[str, bytes], tuple[object, ...]
     return script.robot.recorder.cycle, log_of(script.robot), outcome(script.robot)
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("plant", PLANTS)
 def test_a_run_that_is_taken_back_again_and_again_is_the_run_that_never_was(plant):
     cycles, log, rest = uninterrupted(plant)
@@ -46,6 +47,7 @@ def test_a_run_that_is_taken_back_again_and_again_is_the_run_that_never_was(plan
     assert len(seen) > len(STEPS) / 3
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("plant", PLANTS)
 def test_a_new_controller_takes_a_run_over_with_its_log(plant):
     cycles, log, rest = uninterrupted(plant)
@@ -81,6 +83,7 @@ def test_two_futures_of_one_snapshot_do_not_mix_in_the_log():
     assert log_of(script.robot) == log
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("plant", PLANTS)
 def test_a_snapshot_outlives_what_happens_after_it(plant):
     """No array and no container of a snapshot is one that a running controller writes."""
@@ -112,6 +115,7 @@ def flat(value: object) -> object:
     return value if isinstance(value, int | float | str | bool | frozenset | set | None) else type(value).__name__
 
 
+@pytest.mark.physics
 def test_an_invalid_plant_can_be_taken_back():
     robot = controller("mujoco")
     for _ in range(5):
@@ -134,6 +138,7 @@ def futures(robot: Controller, cycles: int) -> dict[str, bytes]:
     return log_of(robot)
 
 
+@pytest.mark.physics
 def test_a_held_part_is_held_after_going_back():
     """The contacts in mjData are not part of MuJoCo's state; what the hand holds is read from them."""
     script = Script(controller("mujoco"))
@@ -147,6 +152,7 @@ def test_a_held_part_is_held_after_going_back():
     assert new.plant.bodies.p.tobytes() == script.robot.plant.bodies.p.tobytes()
 
 
+@pytest.mark.physics
 def test_a_snapshot_of_another_rig_is_refused_and_changes_nothing():
     robot = controller("rigid")
     other = Script(controller("mujoco"))
@@ -159,6 +165,7 @@ def test_a_snapshot_of_another_rig_is_refused_and_changes_nothing():
     assert flat(robot.snapshot()) == before
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("plant", PLANTS)
 def test_a_snapshot_is_small_and_does_not_grow_with_the_log(plant):
     script, sizes = Script(controller(plant)), []

@@ -10,6 +10,8 @@ from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from tests.runtime.plant.elastic import CELL, SPEC, empty, frictionless, only, true_arm, undamped, with_motors
 
+pytestmark = pytest.mark.physics
+
 ELASTIC = [0, 1, 2]
 
 

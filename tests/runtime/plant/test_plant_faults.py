@@ -12,6 +12,8 @@ from runtime.core.tomlfile import Source
 from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.model.arm_model import ArmModel
 
+pytestmark = pytest.mark.physics
+
 CELL = parse_cell(Source("cell.toml", cell_text()))
 SPEC = CELL.robot
 GRAVITY = ArmModel(SPEC).gravity(np.array(CELL.home))

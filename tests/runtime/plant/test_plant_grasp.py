@@ -19,6 +19,8 @@ from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import Payload
 
+pytestmark = pytest.mark.physics
+
 CELL = parse_cell(Source("cell.toml", cell_text()))
 SPEC = CELL.robot
 ROTORS = spec_rotors(SPEC)

@@ -17,6 +17,8 @@ from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import Body
 
+pytestmark = pytest.mark.physics
+
 CELL = parse_cell(Source("cell.toml", cell_text()))
 SPEC = CELL.robot
 LOAD = Body(

@@ -16,6 +16,8 @@ from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import RobotSpec
 
+pytestmark = pytest.mark.physics
+
 CELL = parse_cell(Source("cell.toml", cell_text()))
 SPEC = CELL.robot
 ROTORS = spec_rotors(SPEC)

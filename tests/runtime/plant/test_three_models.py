@@ -19,6 +19,8 @@ from runtime.robot.model.spec import Body, RobotSpec
 from tests.campaign import size
 from tests.runtime.dynamics import lagrangian
 
+pytestmark = pytest.mark.physics
+
 ROBOTS = ["puma560", "manutec_r3"]
 LOADS = {"puma560": (2.3, (0.01, -0.02, 0.095)), "manutec_r3": (13.5, (0.02, -0.03, 0.14))}
 POSTURES = size(25, 6)

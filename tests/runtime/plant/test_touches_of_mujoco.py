@@ -13,6 +13,8 @@ from robolang.execution.session import Session
 from tests.messages import fields
 from tests.runtime.plant.cells import BESIDE, GRIP, LEDGE, LET_GO, OWN, job
 
+pytestmark = pytest.mark.physics
+
 
 def ran(folder, text, *parts, **cell):
     """Run a program; its report, and the displacement of the centre of each part in mm."""

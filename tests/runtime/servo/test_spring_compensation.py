@@ -19,6 +19,8 @@ from runtime.servo.axes import gains
 from runtime.settings.profile import Profile, ServoOptions
 from tests.runtime.plant.elastic import CELL, SPEC, empty
 
+pytestmark = pytest.mark.physics
+
 STRETCHED = (0, 85, 5, 0, 0, 0)
 MOVES = {
     # name: home deg (None: the cell's), joints turned rad, seconds

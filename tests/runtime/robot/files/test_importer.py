@@ -67,6 +67,7 @@ def test_an_urdf_is_the_arm_that_pinocchio_reads(tmp_path):
         same(spec, q, pinocchio_says(SEVEN.read_text(), q, "flange"))
 
 
+@pytest.mark.physics
 def test_an_mjcf_is_the_arm_that_mujoco_reads(tmp_path):
     (tmp_path / "angles.robot.toml").write_text('flange = "tip"\n')
     copy = tmp_path / "angles.xml"

@@ -1,0 +1,35 @@
+"""What runs MuJoCo has the marker ``physics``, so that ``make test-ideal`` leaves it out.
+
+There, the plant of MuJoCo refuses to be made (``tests/conftest.py``). Here, a module that makes the plant has the
+marker.
+"""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+TESTS = Path(__file__).parents[1]
+MODULES = [path for path in sorted(TESTS.rglob("test_*.py")) if path != Path(__file__)]
+
+
+def names_the_plant(tree: ast.AST) -> bool:
+    """Return whether a module imports mujoco or calls the plant; only its name in a message or a path is no use."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import) and any(alias.name == "mujoco" for alias in node.names):
+            return True
+        if isinstance(node, ast.Call) and ast.unparse(node.func).endswith("MujocoPlant"):
+            return True
+    return False
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: path.relative_to(TESTS).as_posix())
+def test_what_makes_the_plant_of_mujoco_has_the_marker(path):
+    text = path.read_text("utf-8")
+    assert "mark.physics" in text or not names_the_plant(ast.parse(text))
+
+
+def test_the_plant_is_found():
+    assert names_the_plant(ast.parse("import mujoco"))
+    assert names_the_plant(ast.parse("plant = mujoco_plant.MujocoPlant(spec, cell, 1e-3)"))
+    assert not names_the_plant(ast.parse("heavy = ('numpy', 'mujoco')\nname = 'MujocoPlant'"))
