@@ -1,7 +1,7 @@
 """The file of an arm, by its ending: a robot file in TOML, or a model file (URDF, MJCF) with its sidecar.
 
-Either says without numerics what the arm may do: its axes, their ranges, what it may carry. ``importer`` makes a robot
-of it. Nothing outside of the folder of a file is opened.
+Either gives axes, ranges and rated payload without numerics; ``importer`` makes a robot of it. Nothing outside of the
+folder of a file is opened.
 """
 
 from dataclasses import dataclass
@@ -17,8 +17,9 @@ from runtime.robot.model.drives import Limits, PathLimits
 
 MODEL_ENDINGS = (".urdf", ".xml")
 ROBOT_ENDINGS = (".toml", *MODEL_ENDINGS)
-"""How the name of a robot file ends."""
+"""Endings of the names of robot files."""
 _TAGS = ("robot", "mujoco")
+"""Root elements of URDF and MJCF; they decide which of the two a file is, since both may end in .xml."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,7 +47,7 @@ class ModelFile:
 
     @property
     def warnings(self) -> tuple[FileFault, ...]:
-        """What is unlikely about its sidecar, as far as that shows without numerics."""
+        """Doubts about the ranges, speeds and gears of its sidecar (RBL627, RBL629)."""
         return doubt_axes(self.sidecar.axes)
 
 
@@ -59,7 +60,7 @@ def is_model(name: str) -> bool:
 
 
 def read_arm_file(path: Path) -> ArmFile:
-    """Return what the file of an arm says; ``FileFault`` RBL6xx, RBL608 for a model file without a complete sidecar."""
+    """Return the content of the file of an arm; ``FileFault`` RBL6xx, RBL608 for a model without a complete sidecar."""
     source = read_source(path)
     if not is_model(path.name):
         return robot_file.parse(source)
@@ -72,7 +73,7 @@ def read_arm_file(path: Path) -> ArmFile:
             f"no drives, path limits and rated payload: there is no {beside}",
             f"'robolang robot import {path.name}' writes {beside}; fill in what it marks MISSING",
         )
-    key = "name" if root.tag == "robot" else "model"
+    key = "name" if root.tag == "robot" else "model"  # the attribute with the name in URDF and in MJCF
     return ModelFile(source=source, name=root.text(key, "robot"), sidecar=read_sidecar(sidecar, path.name))
 
 
@@ -86,6 +87,7 @@ def model_root(source: Source) -> Element:
 
 def sidecar_source(model: Path) -> Source | None:
     """Return the text of the sidecar of a model file, None where there is none; ``FileFault`` RBL600."""
+    # a symbolic link that leads nowhere does not exist; it is read, and refused, rather than taken for no sidecar
     beside = sidecar_path(model)
     return read_source(beside) if beside.is_symlink() or beside.exists() else None
 

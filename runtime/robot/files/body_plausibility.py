@@ -8,7 +8,7 @@ Reach is the sum of the distances from joint to joint and to the flange.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -32,33 +32,49 @@ STRONGEST = 50.0
 
 
 def doubt_bodies(labels: Sequence[str], bodies: Sequence[Body | None], offsets: Array, place: Place) -> list[FileFault]:
-    """Return what is unlikely about lengths (RBL628) and bodies (RBL629).
+    """Return the doubts about lengths (RBL628) and bodies (RBL629).
 
     ``bodies`` in their axis frames, None for one that is corrected; ``offsets`` (n + 1, 3) m from each joint to the
     next, from the base first and to the flange last.
     """
     lengths = np.linalg.norm(offsets, axis=1)
-    reach, doubts = float(lengths[1:].sum()), []
+    size = float(np.maximum(lengths.sum(), SMALLEST))
+    known = {axis: body for axis, body in enumerate(bodies) if body is not None and body.mass > 0.0}
+    return [
+        *_doubt_reach(lengths[1:], place),
+        *_doubt_each(labels, known, size, place),
+        *_doubt_mass(known, size, place),
+    ]
+
+
+def _doubt_reach(lengths: Array, place: Place) -> Iterator[FileFault]:
+    """Yield the doubt about a reach, the sum of ``lengths`` (n,) m from the first joint on."""
+    reach = float(lengths.sum())
     if not SHORTEST <= reach <= LONGEST:
         looks = "it looks like mm" if reach > LONGEST else "its joints are all in one place"
         message = f"the arm is {reach / MM:.4g} mm from its first joint to the flange: {looks}"
-        doubts.append(place("length", int(np.argmax(lengths[1:])))("RBL628", message, "lengths are in m"))
-    size = float(np.maximum(lengths.sum(), SMALLEST))
-    known = [(axis, body) for axis, body in enumerate(bodies) if body is not None and body.mass > 0.0]
+        yield place("length", int(np.argmax(lengths)))("RBL628", message, "lengths are in m")
+
+
+def _doubt_each(labels: Sequence[str], bodies: Mapping[int, Body], size: float, place: Place) -> Iterator[FileFault]:
+    """Yield one doubt a rule, at the first of the axes (0-based) whose body breaks it."""
     for code, unlikely, tail, hint in _BODY_RULES:
-        axes = [axis for axis, body in known if unlikely(body, size)]
+        axes = [axis for axis, body in bodies.items() if unlikely(body, size)]
         if axes:
-            listed = ", ".join(f"{labels[axis]} {_body(bodies[axis], code)}" for axis in axes)
-            doubts.append(place("body", axes[0])(code, f"{tail}: {listed}", hint))
-    mass = sum(body.mass for _, body in known)
+            listed = ", ".join(f"{labels[axis]} {_figures(bodies[axis], code)}" for axis in axes)
+            yield place("body", axes[0])(code, f"{tail}: {listed}", hint)
+
+
+def _doubt_mass(bodies: Mapping[int, Body], size: float, place: Place) -> Iterator[FileFault]:
+    """Yield the doubt about the mass of a whole arm of ``size`` m, at its heaviest axis."""
+    mass = sum(body.mass for body in bodies.values())
     if not mass <= HEAVIEST * size**3:
         message = f"masses look like grams: {mass:g} kg in all, and the arm is {size / MM:.4g} mm long"
-        doubts.append(place("body", int(max(known, key=lambda each: each[1].mass)[0]))("RBL629", message, _KG))
-    return doubts
+        yield place("body", max(bodies, key=lambda axis: bodies[axis].mass))("RBL629", message, _KG)
 
 
 def doubt_torques(labels: Sequence[str], torques: Sequence[float], weight: float, place: Place) -> list[FileFault]:
-    """Return what is unlikely about torques, N m, NaN where none is known (RBL629); ``weight``: ``weight_moment``."""
+    """Return the doubts about torques, N m, NaN where none is known (RBL629); ``weight`` N m: ``weight_moment``."""
     strong = [axis for axis, torque in enumerate(torques) if torque > STRONGEST * weight > 0.0]
     if not strong:
         return []
@@ -68,25 +84,30 @@ def doubt_torques(labels: Sequence[str], torques: Sequence[float], weight: float
 
 
 def offsets(placements: Sequence[Array], X_last_flange: Array) -> Array:
-    """Return the way from each joint to the next (n + 1, 3) m, from the base first and to the flange last."""
+    """Return the offset of each joint from the one before (n + 1, 3) m, from the base first and to the flange last."""
     return np.array([X[:3, 3] for X in (*placements, X_last_flange)])
 
 
 def weight_moment(bodies: Sequence[Body], offsets: Array) -> float:
-    """Return the largest moment that the weight of an arm could have about one of its joints, N m."""
+    """Return the largest moment that the weight of an arm could have about one of its joints, N m.
+
+    All of its mass at the end of the stretched arm: too large by far, which is what a bound for units may be.
+    """
     return float(sum(body.mass for body in bodies)) * GRAVITY * float(np.linalg.norm(offsets, axis=1).sum())
 
 
 def _far(body: Body, size: float) -> bool:
+    """Return whether the centre of gravity of a body is further from its joint than the arm of ``size`` m is long."""
     return not norm(body.cog) <= size
 
 
 def _spread(body: Body, size: float) -> bool:
+    """Return whether the largest radius of gyration of a body exceeds the size of the arm, m."""
     return not math.sqrt(float(np.maximum(0.0, np.linalg.eigvalsh(body.inertia)[2])) / body.mass) <= size
 
 
 def _dense(body: Body, size: float) -> bool:
-    """A ball has the least inertia of all bodies of its mass and density."""
+    """Return whether a body is smaller than a ball of ``DENSEST``: a ball has the least inertia of all its mass."""
     radius = (0.75 * body.mass / (math.pi * DENSEST)) ** (1.0 / 3.0)
     return not float(np.trace(body.inertia)) >= 3.0 * 0.4 * body.mass * radius**2
 
@@ -99,8 +120,8 @@ _BODY_RULES = (
 )
 
 
-def _body(body: Body | None, code: str) -> str:
-    assert body is not None
+def _figures(body: Body, code: str) -> str:
+    """Return the figures of a body that a rule of this code judges."""
     if code == "RBL628":
         return f"{norm(body.cog) / MM:.4g} mm"
     return f"{body.mass:g} kg with {float(np.linalg.eigvalsh(body.inertia)[2]):.3g} kg m2"

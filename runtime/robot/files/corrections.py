@@ -11,6 +11,9 @@ may therefore state a correction of three kinds, none larger than it must be (do
   a grain of dust: at most 1e-12 kg m2 about every axis, which rounding hides in every sum it enters.
 """
 
+import math
+from dataclasses import replace
+
 import numpy as np
 
 from runtime.core.frames import Array, frozen
@@ -35,18 +38,26 @@ def correct(row: CorrectionRow, axes: list[AxisSpec], index: int) -> Correction:
     axis = axes[index]
     correction = Correction(axis=index, inertia_shift=shift, added_mass=mass, added_inertia=moments, reason=row.reason)
     _check_need(row.table, axis.body, correction)
+    # the first link takes its shift from the base, which does not move and has no inertia that counts
     before = axes[index - 1].body if index else axis.body
     own, other = shift_between_links(axis, before, shift)
-    axes[index] = _with_body(axis, _body(own.mass + mass, own.cog, own.inertia + moments * np.eye(3)))
-    if index:  # the base takes what the first link gives, without a trace: it does not move
-        axes[index - 1] = _with_body(axes[index - 1], _body(other.mass, other.cog, other.inertia))
+    axes[index] = replace(axis, body=_body(own.mass + mass, own.cog, own.inertia + moments * np.eye(3)))
+    if index:
+        axes[index - 1] = replace(axes[index - 1], body=_body(other.mass, other.cog, other.inertia))
     return correction
 
 
 def _check_need(table: Table, published: Body, correction: Correction) -> None:
-    """Refuse what is more than the published body needs."""
-    shift, mass, moments = correction.inertia_shift, correction.added_mass, correction.added_inertia
+    """Refuse a correction that is more than the published body needs; ``FileFault`` RBL606."""
     name = f"J{correction.axis + 1}"
+    _check_shift(table, published, correction.inertia_shift, name)
+    _check_mass(table, published, correction.added_mass, name)
+    _check_moments(table, published, correction, name)
+    if correction.inertia_shift == 0.0 and correction.added_mass == 0.0 and correction.added_inertia == 0.0:
+        table.fail("RBL606", f"{name} needs no correction, or not this one", "remove [axes.correction]")
+
+
+def _check_shift(table: Table, published: Body, shift: float, name: str) -> None:
     needed = smallest_shift(published.inertia) or 0.0
     if not shift <= needed + SLACK:
         table.fail(
@@ -55,6 +66,9 @@ def _check_need(table: Table, published: Body, correction: Correction) -> None:
             f"write inertia_shift_kg_m2 = {needed:.12g}",
             key="inertia_shift_kg_m2",
         )
+
+
+def _check_mass(table: Table, published: Body, mass: float, name: str) -> None:
     if mass > 0.0 and published.mass > 0.0:
         table.fail("RBL606", f"{name} has a mass already", "write added_mass_kg = 0", key="added_mass_kg")
     if mass > TOKEN_MASS:
@@ -65,7 +79,12 @@ def _check_need(table: Table, published: Body, correction: Correction) -> None:
             "if the mass is known, write it as mass_kg with its source",
             key="added_mass_kg",
         )
-    if moments > 0.0 and not flat(shifted(published.inertia, shift)):
+
+
+def _check_moments(table: Table, published: Body, correction: Correction, name: str) -> None:
+    # judged after the shift, which may already give a rod the moments that it lacks
+    moments = correction.added_inertia
+    if moments > 0.0 and not flat(shifted(published.inertia, correction.inertia_shift)):
         table.fail(
             "RBL606",
             f"{name} has moments about every axis already",
@@ -80,8 +99,15 @@ def _check_need(table: Table, published: Body, correction: Correction) -> None:
             "if the inertia is known, write it as inertia_kg_m2 with its source",
             key="added_inertia_kg_m2",
         )
-    if shift == 0.0 and mass == 0.0 and moments == 0.0:
-        table.fail("RBL606", f"{name} needs no correction, or not this one", "remove [axes.correction]")
+
+
+def inertia_text(defect: float) -> str:
+    """Return what is wrong with an inertia of which ``defect`` kg m2 are missing (``inertia_defect``)."""
+    if not math.isfinite(defect):
+        return "is not finite"
+    return (
+        f"is not physically possible: the largest principal moment exceeds the sum of the other two by {defect:g} kg m2"
+    )
 
 
 def flat(inertia: Array) -> bool:
@@ -91,17 +117,6 @@ def flat(inertia: Array) -> bool:
 
 def _body(mass: float, cog: Array, inertia: Array) -> Body:
     return Body(mass=mass, cog=cog, inertia=frozen(inertia))
-
-
-def _with_body(axis: AxisSpec, body: Body) -> AxisSpec:
-    return AxisSpec(
-        name=axis.name,
-        placement=axis.placement,
-        body=body,
-        motor=axis.motor,
-        limits=axis.limits,
-        bandwidths=axis.bandwidths,
-    )
 
 
 def shifted(inertia: Array, shift: float) -> Array:
@@ -116,6 +131,7 @@ def smallest_shift(inertia: Array) -> float | None:
     ``2 max - trace``, and max grows by at most s while the trace grows by 2 s, and of ``-min``. So bisection finds it.
     """
 
+    # 1e-3 of the slack: the number is rounded afterwards, and must still mend the body
     def mended(shift: float) -> bool:
         return inertia_defect(shifted(inertia, shift)) <= 1e-3 * SLACK
 
@@ -124,20 +140,20 @@ def smallest_shift(inertia: Array) -> float | None:
         return 0.0
     if not mended(high):
         return None
-    for _ in range(60):
+    for _ in range(60):  # to the last bit of a double
         middle = 0.5 * (low + high)
         low, high = (low, middle) if mended(middle) else (middle, high)
-    return round(high, 10)  # a number that people copy; the slack covers the rest
+    return round(high, 10)  # a number to be copied by hand; the slack covers the rounding
 
 
 def check_bodies(tables: list[Table], axes: list[AxisSpec]) -> None:
-    """Refuse a robot with a body that no body can be, naming the correction that mends it (RBL606)."""
+    """Refuse a robot with an impossible body, naming the correction that mends it; ``FileFault`` RBL606."""
     for index, (table, axis) in enumerate(zip(tables, axes, strict=True)):
         defect = inertia_defect(axis.body.inertia)
         if not defect <= SLACK:
             table.fail(
                 "RBL606",
-                f"the inertia of J{index + 1} is not a body's: {defect:g} kg m2 are missing",
+                f"the inertia of J{index + 1} {inertia_text(defect)}",
                 _inertia_hint(axis.body.inertia),
                 key="inertia_kg_m2",
             )

@@ -1,4 +1,4 @@
-"""What a sidecar still lacks, in a line that people can read: keys that the same axes lack are named together.
+"""The keys that a sidecar still lacks, in one short line: keys that the same axes lack are named together.
 
 A template of seven axes lacks about a hundred values; listed axis by axis they were a line of 2,400 characters.
 """
@@ -12,6 +12,7 @@ def listed(lacking: Mapping[str, Sequence[int]], n: int, tables: Mapping[str, Se
     ``lacking`` has the axes (0-based, of ``n``) by key, ``tables`` the keys of each table by its name: where the same
     axes lack all of them, the table is named instead.
     """
+    # grouped by the axes: most keys are lacked by all of them, a few by one
     by_axes: dict[tuple[int, ...], list[str]] = {}
     for key, axes in lacking.items():
         if axes:
@@ -23,13 +24,14 @@ def whole(keys: Sequence[str], tables: Mapping[str, Sequence[str]]) -> list[str]
     """Return keys with those of each table that is missing as a whole in one entry."""
     left = list(keys)
     for name, inside in tables.items():
-        if inside and set(inside) <= set(left):
+        if inside and set(inside) <= set(left):  # at the place of its first key, so that the order of the file stays
             left[left.index(inside[0])] = f"all of [{name}]"
             left = [key for key in left if key not in inside]
     return left
 
 
 def _axes(axes: Sequence[int], n: int) -> str:
+    """Return axes (0-based, rising) as ``J1 to J3, J6``, all ``n`` of them as ``every axis``."""
     if len(axes) == n:
         return "every axis"
     runs: list[list[int]] = []

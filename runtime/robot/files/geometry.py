@@ -51,8 +51,11 @@ def geometry_of(file: RobotFile) -> Geometry:
 
 
 def _dh(rows: list[DhRow]) -> Geometry:
+    """Return the frames of Denavit-Hartenberg rows, m and deg."""
     placements, bodies = [], []
     placement = np.eye(4)
+    # a row is a turn about the joint and then a fixed pose: the fixed pose of one row and the offset of the next are
+    # the placement of the next joint
     for row in rows:
         X_joint_dh = dh_transform(row.d_m, row.a_m, row.alpha_deg * DEG)
         placements.append(matmul(placement, _turn(row.theta_offset_deg * DEG)))
@@ -62,6 +65,7 @@ def _dh(rows: list[DhRow]) -> Geometry:
 
 
 def _lines(rows: list[LineRow], flange: FlangeRow) -> Geometry:
+    """Return the frames of joint lines in the base frame at the zero pose."""
     placements, bodies = [], []
     X_base_before = np.eye(4)
     for row in rows:
@@ -79,6 +83,7 @@ def _lines(rows: list[LineRow], flange: FlangeRow) -> Geometry:
 
 
 def _frame_about(z: Array) -> Array:
+    """Return the rotation (3, 3) of a frame with a unit vector as its z, as the module says."""
     x = np.eye(3)[int(np.argmin(np.abs(z)))]
     x = x - matmul(x, z) * z
     x = x / norm(x)
@@ -105,5 +110,5 @@ def _turn(angle: float) -> Array:
 
 
 def _cos_sin(angle: float) -> tuple[float, float]:
-    # cos(pi/2) is 6e-17: rounded away, so that right angles are exact in every model built from it
+    # cos(pi/2) is 6e-17 in floating point: rounded away, so that right angles are exact in every model built from it
     return round(math.cos(angle), 15) + 0.0, round(math.sin(angle), 15) + 0.0

@@ -22,16 +22,17 @@ import numpy as np
 from runtime.core.frames import Array, frozen, inverse, pose, rotation_about, skew
 from runtime.core.linear import matmul
 from runtime.core.tomlfile import FileFault
-from runtime.robot.files.corrections import flat
+from runtime.robot.files.corrections import flat, inertia_text
 from runtime.robot.files.xmlfile import Element
 from runtime.robot.model.drives import joint_label
 from runtime.robot.model.spec import Body, OpwParameters, inertia_defect
 
 FEWEST_AXES, MOST_AXES = 2, 7
 INERTIA_SLACK = 1e-9
-"""Rounding of printed inertias that is let pass, kg m2."""
+"""Rounding of printed inertias that is accepted, kg m2."""
 
 _NO_DIRECTION = 1e-200
+"""Below this the axis is z or -z to the last bit, and the square of its length would underflow."""
 
 FLANGE_NAMES = ("flange", "tool0")
 """Names that decide which of several last frames is the flange."""
@@ -39,9 +40,9 @@ FLANGE_NAMES = ("flange", "tool0")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Hinge:
-    """A revolute joint: unit ``axis`` (3,) and ``anchor`` (3,) m in its node's frame; what the file says of it.
+    """A revolute joint: unit ``axis`` (3,) and ``anchor`` (3,) m in its node's frame; its values in the file.
 
-    None is what the file leaves out. ``lower`` and ``upper`` rad, ``speed`` rad/s, ``effort`` N m, ``damping``
+    None for a value that the file leaves out. ``lower`` and ``upper`` rad, ``speed`` rad/s, ``effort`` N m, ``damping``
     N m s/rad, ``friction`` N m, ``armature`` kg m2, all at the joint. ``in_degrees``: the file has degrees.
     """
 
@@ -61,7 +62,7 @@ class Hinge:
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Node:
-    """A frame of the file with its body (None: it has no mass), its hinge (None: fixed) and what hangs on it.
+    """A frame of the file with its body (None: it has no mass), its hinge (None: fixed) and the nodes after it.
 
     ``X_parent_node`` (4, 4) holds at joint angle zero. ``marker``: a frame that only names a place.
     """
@@ -79,8 +80,8 @@ class Node:
 class ImportedAxis:
     """One axis: ``placement`` (4, 4) as in ``AxisSpec``, ``body`` in the axis frame, ``hinge`` as the file has it.
 
-    ``impossible`` says at its place why no body can be like that; None for one that can. ``link`` is the element that
-    turns with the joint.
+    ``impossible``: the fault, at its place, of a body that cannot exist; None for one that can. ``link`` is the element
+    that turns with the joint.
     """
 
     name: str
@@ -115,7 +116,7 @@ class ImportedArm:
 
     @property
     def title(self) -> str:
-        """What to call it to people."""
+        """The arm as messages and tables name it."""
         return f"{self.name} ({PurePath(self.path).name})"
 
 
@@ -145,16 +146,16 @@ def combined(bodies: list[Body]) -> Body:
     inertia = np.zeros((3, 3))
     for body in bodies:
         r = skew(body.cog - cog)
-        inertia += body.inertia - body.mass * matmul(r, r)
+        inertia += body.inertia - body.mass * matmul(r, r)  # skew(r)^2 = r r' - |r|^2 E
     return Body(mass=mass, cog=frozen(cog), inertia=frozen(inertia))
 
 
 def impossible_inertia(element: Element, inertia: Array, what: str) -> FileFault | None:
-    """Return why a matrix is no body's inertia (RBL606), at its element; None when it is one."""
+    """Return the fault of a matrix that no body can have as its inertia (RBL606), at its element; None for others."""
     defect = inertia_defect(inertia)
     if defect <= INERTIA_SLACK:
         return None
-    return element.fault("RBL606", f"the inertia of {what} is not a body's: {defect:g} kg m2 are missing")
+    return element.fault("RBL606", f"the inertia of {what} {inertia_text(defect)}")
 
 
 def serial_chain(root: Node, path: str, name: str, flange: str | None) -> ImportedArm:
@@ -163,28 +164,15 @@ def serial_chain(root: Node, path: str, name: str, flange: str | None) -> Import
     ``flange`` names the frame to use as flange; None takes the only last frame, or one of ``FLANGE_NAMES``.
     """
     axes: list[ImportedAxis] = []
-    seen: set[str] = set()
-    node, X_axis_node = root, np.eye(4)
-    while True:
-        cluster = list(_fixed(node, X_axis_node))
-        if node.hinge is not None:
-            axes[-1] = _with_body(axes[-1], cluster, len(axes) - 1)
-        turning = [
-            (matmul(X, child.X_parent_node), child) for X, member in cluster for child in member.children if child.hinge
-        ]
-        if not turning:
-            break
-        if len(turning) > 1:
-            names = " and ".join(repr(child.hinge.name) for _, child in turning[:2] if child.hinge)
-            turning[1][1].element.fail("RBL611", f"joints {names} both start at one link: the arm has a branch")
-        X, node = turning[0]
-        assert node.hinge is not None
-        if node.hinge.name in seen:
-            node.hinge.element.fail("RBL610", f"two joints are named {node.hinge.name!r}")
-        seen.add(node.hinge.name)
-        X_node_axis = pose(node.hinge.anchor, rotation_z_to(node.hinge.axis))
-        axes.append(_axis(node, node.hinge, matmul(X, X_node_axis)))
-        X_axis_node = inverse(X_node_axis)
+    cluster = list(_fixed(root, np.eye(4)))
+    while (turning := _turning(cluster)) is not None:
+        X, node, hinge = turning
+        if hinge.name in {axis.name for axis in axes}:
+            hinge.element.fail("RBL610", f"two joints are named {hinge.name!r}")
+        # everything after the hinge is counted in the frame of its axis, z along the hinge
+        X_node_axis = pose(hinge.anchor, rotation_z_to(hinge.axis))
+        cluster = list(_fixed(node, inverse(X_node_axis)))
+        axes.append(_with_body(_axis(node, hinge, matmul(X, X_node_axis)), cluster, len(axes)))
     if not FEWEST_AXES <= len(axes) <= MOST_AXES:
         root.element.fail(
             "RBL605", f"an arm has {FEWEST_AXES} to {MOST_AXES} revolute joints in a row, not {len(axes)}"
@@ -201,6 +189,23 @@ def serial_chain(root: Node, path: str, name: str, flange: str | None) -> Import
     )
 
 
+def _turning(cluster: list[tuple[Array, Node]]) -> tuple[Array, Node, Hinge] | None:
+    """Return the one node that turns on a link, its pose in the link's frame and its hinge; None at the last link.
+
+    ``FileFault`` RBL611 at the second one where there are several.
+    """
+    turning = [
+        (matmul(X, child.X_parent_node), child, child.hinge)
+        for X, member in cluster
+        for child in member.children
+        if child.hinge
+    ]
+    if len(turning) > 1:
+        names = " and ".join(repr(hinge.name) for _, _, hinge in turning[:2])
+        turning[1][1].element.fail("RBL611", f"joints {names} both start at one link: the arm has a branch")
+    return turning[0] if turning else None
+
+
 def _limits(axes: list[ImportedAxis], side: str) -> Array:
     values = [getattr(axis.hinge, side) for axis in axes]
     return frozen([np.nan if value is None else value for value in values])
@@ -214,10 +219,11 @@ def _axis(node: Node, hinge: Hinge, placement: Array) -> ImportedAxis:
 
 def _with_body(axis: ImportedAxis, cluster: list[tuple[Array, Node]], index: int) -> ImportedAxis:
     body = combined([moved(node.body, X) for X, node in cluster if node.body is not None])
+    # of all that turns with the hinge, about its common centre of gravity
     what = f"the link of {joint_label(index, axis.name)}"
     impossible = impossible_inertia(axis.hinge.element, body.inertia, what)
     for _, node in cluster:
-        if node.body is not None:  # a wrong part stays wrong when a large one beside it hides it
+        if node.body is not None:  # an impossible part would pass unseen beside a large one
             impossible = impossible or impossible_inertia(node.element, node.body.inertia, repr(node.name))
     if not body.mass > 0.0:
         impossible = axis.hinge.element.fault("RBL606", f"{what} has no mass")
@@ -228,6 +234,7 @@ def _with_body(axis: ImportedAxis, cluster: list[tuple[Array, Node]], index: int
 
 def _fixed(node: Node, X: Array) -> Iterator[tuple[Array, Node]]:
     """Yield a node and all that is fixed to it, each with its pose in the frame that X refers to."""
+    # a list instead of recursion: depth is bounded by the reader, Python's stack by something else
     todo = [(X, node)]
     while todo:
         X_here, here = todo.pop()
@@ -236,23 +243,28 @@ def _fixed(node: Node, X: Array) -> Iterator[tuple[Array, Node]]:
         todo += [(matmul(X_here, child.X_parent_node), child) for child in rigid]
 
 
-def _flange(cluster: list[tuple[Array, Node]], wanted: str | None, root: Node) -> tuple[str, Array]:
-    """Return name and pose of the flange among the frames of the last link."""
-    named = {node.name: X for X, node in cluster if node.name}
-    if wanted is not None:
-        if wanted not in named:
-            root.element.fail("RBL610", f"the flange {wanted!r} is not a frame of the last link: {', '.join(named)}")
-        return wanted, named[wanted]
-    parents = {id(child): node for _, node in cluster for child in node.children}
-    inner = {id(parents[id(node)]) for _, node in cluster if id(node) in parents and not node.marker}
-    ends = [(node.name, X) for X, node in cluster if id(node) not in inner and not node.marker]
+def _flange(cluster: list[tuple[Array, Node]], name: str | None, root: Node) -> tuple[str, Array]:
+    """Return name and pose of the flange among the frames of the last link; ``FileFault`` RBL610 or RBL621."""
+    frames = {node.name: X for X, node in cluster if node.name}
+    if name is not None:
+        if name not in frames:
+            root.element.fail("RBL610", f"the flange {name!r} is not a frame of the last link: {', '.join(frames)}")
+        return name, frames[name]
+    ends = _ends(cluster)
     if len(ends) == 1:
         return ends[0]
-    for name in FLANGE_NAMES:
-        if name in named:
-            return name, named[name]
+    for usual in FLANGE_NAMES:
+        if usual in frames:
+            return usual, frames[usual]
     root.element.fail(
         "RBL621",
         f"the last link ends in several frames: {', '.join(name for name, _ in ends)}",
         "name it: flange = '...' in the sidecar, or 'robolang robot import --flange'",
     )
+
+
+def _ends(cluster: list[tuple[Array, Node]]) -> list[tuple[str, Array]]:
+    """Return the frames of a link, by name, on which no other frame hangs; markers neither count nor carry."""
+    parents = {id(child): node for _, node in cluster for child in node.children}
+    inner = {id(parents[id(node)]) for _, node in cluster if id(node) in parents and not node.marker}
+    return [(node.name, X) for X, node in cluster if id(node) not in inner and not node.marker]

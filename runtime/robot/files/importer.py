@@ -3,7 +3,7 @@
 ``read_arm`` gives the geometry, bodies and ranges of a model file, which is all that kinematics needs; ``load_file``
 the whole robot of any robot file, for which the sidecar of a model file must give the drives. The text is checked here
 in full (``xmlfile``, ``urdf``, ``mjcf_import``, ``imported``); neither Pinocchio nor MuJoCo reads it: both get the
-``RobotSpec``. Which of the two languages it is says the root element, not the file's name.
+``RobotSpec``. The root element decides which of the two languages it is, not the file's name.
 """
 
 import math
@@ -32,7 +32,7 @@ from runtime.robot.model.drives import joint_label
 from runtime.robot.model.spec import RobotSpec
 
 UNIT_SLACK = 1e-3
-"""Rounding of the length of an axis."""
+"""Rounding of the length of a unit vector that is printed with three digits or more."""
 
 
 def load_file(path: Path) -> RobotSpec:
@@ -48,6 +48,7 @@ def build(file: ArmFile) -> RobotSpec:
     """Return the robot of a file that has been read; ``FileFault`` RBL6xx where its arm cannot be."""
     if isinstance(file, RobotFile):
         return loader.build(file)
+    # read once more as an overlay: a chain is built with the ranges and the flange that the sidecar states
     overlay = read_overlay(file.sidecar.table.source)
     arm = parse_model(file.source, overlay)
     _check(arm, overlay)
@@ -63,7 +64,7 @@ def read_arm(path: Path) -> ImportedArm:
 
 
 def read_model(path: Path, overlay: Overlay = NO_OVERLAY) -> ImportedArm:
-    """Return what a model file alone says; ranges it leaves out are NaN, and bodies are not judged."""
+    """Return the arm of a model file alone; ranges that it leaves out are NaN, and bodies are not judged."""
     return _with_limits_doubted(parse_model(read_source(path), overlay), overlay)
 
 
@@ -117,10 +118,11 @@ def _offsets(arm: ImportedArm) -> Array:
 
 
 def _with_limits_doubted(arm: ImportedArm, overlay: Overlay) -> ImportedArm:
-    """Return the arm with what is unlikely about its ranges, and about speeds and torques that no sidecar states."""
+    """Return the arm with the doubts about its ranges, and about speeds and torques that no sidecar states."""
 
     def place(what: What, axis: int) -> Callable[[str, str, str], FileFault]:
         name, joint = arm.axes[axis].name, arm.axes[axis].hinge.element
+        # a range of the sidecar has replaced that of the model: the warning belongs to the file that states it
         if what == "range" and name in overlay.tables:
             table = overlay.tables[name]
             return lambda code, message, hint: table.fault(code, message, hint, key="range_deg")
@@ -149,7 +151,7 @@ def _with_sidecar(path: Path) -> tuple[ImportedArm, Source | None]:
 
 
 def _check(arm: ImportedArm, overlay: Overlay) -> None:
-    """Refuse bodies that cannot be and have no correction (RBL606), and joints without a range (RBL608)."""
+    """Refuse impossible bodies without a correction (RBL606), and joints without a range (RBL608)."""
     for axis in arm.axes:
         if axis.impossible is not None and axis.name not in overlay.corrected:
             raise axis.impossible

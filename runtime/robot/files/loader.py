@@ -1,8 +1,8 @@
 """From a robot file to a ``RobotSpec`` in SI: joint frames, bodies that are possible, a closed form that fits.
 
-``robot_file`` reads the file; here is what needs vectors. Published body data that no body can have (zero mass, a
-broken triangle inequality) are refused unless the file states a ``correction``; the smallest one that works is named
-in the message (``corrections``).
+``robot_file`` reads the file; the steps that need vectors are here. Published body data that no body can have (zero
+mass, a broken triangle inequality) are refused unless the file states a ``correction``; the smallest one that works is
+named in the message (``corrections``). Read at start, no rate.
 """
 
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ from runtime.robot.files.body_plausibility import doubt_bodies, doubt_torques, o
 from runtime.robot.files.corrections import check_bodies, correct
 from runtime.robot.files.geometry import Geometry, geometry_of
 from runtime.robot.files.plausibility import in_tables
-from runtime.robot.files.robot_file import AxisFile, OpwRow, RobotFile
+from runtime.robot.files.robot_file import AxisDrive, AxisFile, OpwRow, RobotFile
 from runtime.robot.model.drives import joint_label
 from runtime.robot.model.spec import AxisSpec, Body, Correction, OpwParameters, RobotSpec
 
@@ -71,11 +71,17 @@ def _doubts(
     corrections: Sequence[Correction],
     geometry: Geometry,
 ) -> tuple[FileFault, ...]:
-    """Return what is unlikely about a robot file; a corrected body is not judged."""
+    """Return the doubts about a robot file (``plausibility``); a corrected body is not judged.
+
+    A body that the source got wrong and that was mended on purpose says nothing about the units of the file.
+    """
     corrected = {item.axis for item in corrections}
     labels = [joint_label(k, axis.name) for k, axis in enumerate(axes)]
     bodies = [None if k in corrected else body for k, body in enumerate(published)]
-    lengths, place = offsets(geometry.placements, geometry.X_last_flange), in_tables([axis.table for axis in file.axes])
+    lengths, place = (
+        offsets(geometry.placements, geometry.X_last_flange),
+        in_tables([axis.drive.table for axis in file.axes]),
+    )
     weight = weight_moment([axis.body for axis in axes], lengths)
     return (
         *doubt_bodies(labels, bodies, lengths, place),
@@ -85,18 +91,7 @@ def _doubts(
 
 
 def _opw(row: OpwRow) -> OpwParameters:
-    a1, a2, b, c1, c2, c3, c4 = row.lengths_m
-    return OpwParameters(
-        a1=a1,
-        a2=a2,
-        b=b,
-        c1=c1,
-        c2=c2,
-        c3=c3,
-        c4=c4,
-        signs=frozen(row.signs),
-        offsets=frozen(np.array(row.offsets_deg) * DEG),
-    )
+    return OpwParameters.of(row.lengths_m, np.array(row.offsets_deg) * DEG, np.array(row.signs))
 
 
 def _chain(
@@ -109,23 +104,29 @@ def _chain(
     for index, (file, placement, X_joint_body) in enumerate(
         zip(files, geometry.placements, geometry.X_joint_body, strict=True)
     ):
-        axis = AxisSpec(
-            name=file.name,
-            placement=frozen(placement),
-            body=_body(file, X_joint_body),
-            motor=file.motor,
-            limits=file.limits,
-            bandwidths=file.bandwidths,
-        )
+        axis = axis_spec(file.drive, placement, _body(file, X_joint_body))
         axes.append(axis)
         published.append(axis.body)
-        if file.correction is not None:
-            corrections.append(correct(file.correction, axes, index))
-    check_bodies([file.table for file in files], axes)
+        if file.drive.correction is not None:
+            corrections.append(correct(file.drive.correction, axes, index))
+    check_bodies([file.drive.table for file in files], axes)
     return tuple(axes), tuple(published), tuple(corrections)
 
 
+def axis_spec(drive: AxisDrive, placement: Array, body: Body) -> AxisSpec:
+    """Return an axis with the drive of its file; ``placement`` (4, 4) in the frame of the axis before it."""
+    return AxisSpec(
+        name=drive.name,
+        placement=frozen(placement),
+        body=body,
+        motor=drive.motor,
+        limits=drive.limits,
+        bandwidths=drive.bandwidths,
+    )
+
+
 def _body(file: AxisFile, X_joint_body: Array) -> Body:
+    # the file states the body in another frame than that of the joint, see ``geometry``
     R = X_joint_body[:3, :3]
     inertia = matmul(R, inertia_matrix(file.inertia_kg_m2), R.T)
     cog = matmul(R, np.array(file.cog_m)) + X_joint_body[:3, 3]

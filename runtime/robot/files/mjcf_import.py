@@ -43,6 +43,7 @@ _TOP = frozenset(
 )
 _IN_BODY = frozenset(["body", "joint", "freejoint", "inertial", "geom", "site", "camera", "light", "include"])
 _ORIENTATIONS = ("quat", "euler", "axisangle", "xyaxes", "zaxis")
+# settings that change geometry or bodies, with the default under which they change nothing
 _UNREAD_COMPILER = {
     "coordinate": "local",
     "inertiafromgeom": "auto",
@@ -53,6 +54,7 @@ _UNREAD_COMPILER = {
 }
 _UNREAD_JOINT = {"ref": 0.0, "springref": 0.0, "stiffness": 0.0}
 _GRAVITY_SLACK = 0.05
+"""Gravity differs by this much from place to place, m/s2: 9.78 at the equator, 9.83 at the poles."""
 
 Defaults = dict[tuple[str, str], dict[str, str]]
 
@@ -72,6 +74,7 @@ def read_mjcf(model: Element, file_name: str) -> tuple[str, Node]:
     for child in model.children:
         if child.tag not in _TOP:
             child.fail("RBL621", f"<{child.tag}> is not read")
+    # includes first, wherever they stand: they may hold any part of the model
     for element in model.walk():
         _refuse_include(element, file_name)
     for equality in model.all("equality"):
@@ -93,12 +96,14 @@ def read_mjcf(model: Element, file_name: str) -> tuple[str, Node]:
 def _refuse_include(element: Element, file_name: str) -> None:
     if element.tag != "include":
         return
+    # RBL603 of its own for the loop: "give the file that holds the arm" would be no help there
     if element.text("file").removeprefix("./") == file_name:
         element.fail("RBL603", f"{file_name} includes itself")
     element.fail("RBL621", "an include is not followed", "give the file that holds the arm itself")
 
 
 def _check_options(model: Element) -> None:
+    """Refuse settings that would change the dynamics and are not read; ``FileFault`` RBL621."""
     for compiler in model.all("compiler"):
         for key, usual in _UNREAD_COMPILER.items():
             if compiler.text(key, usual) != usual:
@@ -110,6 +115,7 @@ def _check_options(model: Element) -> None:
 
 
 def _context(model: Element) -> _Context:
+    """Return what compiler and defaults set for the whole file; a later compiler section overrides an earlier one."""
     settings: dict[str, str] = {}
     for compiler in model.all("compiler"):
         settings |= compiler.attributes
@@ -131,6 +137,7 @@ def _context(model: Element) -> _Context:
 def _read_defaults(element: Element, name: str, inherited: dict[str, dict[str, str]], into: Defaults) -> None:
     """Enter class ``name`` and those inside it: each takes over what its parent sets."""
     own = {kind: dict(values) for kind, values in inherited.items()}
+    # the other kinds (site, camera, actuator ...) set nothing that is read
     for kind in ("joint", "geom"):
         for setting in element.all(kind):
             own[kind] = own.get(kind, {}) | setting.attributes
@@ -153,6 +160,7 @@ def _with_defaults(element: Element, context: _Context, childclass: str) -> Elem
 
 def _fill(node: Node, body: Element, context: _Context, childclass: str, names: set[str], *, moving: bool) -> None:
     """Hang on ``node`` what a body holds. ``moving``: a joint lies between it and the world, so its mass counts."""
+    # a body fixed to the world is the base: it never moves, and files often give it no inertial
     node.body = _body(body, context, childclass, node.name) if moving else None
     for child in body.children:
         if child.tag not in _IN_BODY:
@@ -168,12 +176,13 @@ def _fill(node: Node, body: Element, context: _Context, childclass: str, names: 
 def _add_body(parent: Node, body: Element, context: _Context, childclass: str, names: set[str], moving: bool) -> None:
     if body.number("gravcomp", 0.0) != 0.0 or body.text("mocap", "false") != "false":
         body.fail("RBL621", "gravcomp and mocap are not read")
+    # a class of the body holds for its own joints and for all bodies inside it, unless an element names another
     childclass = body.text("childclass", childclass)
     X_parent_body = _pose(body, context)
     joints = [child for child in body.children if child.tag in ("joint", "freejoint")]
     name = body.text("name", "")
     for index, joint in enumerate(joints):  # several joints of a body turn one inside the other, in this order
-        last = index == len(joints) - 1
+        last = index == len(joints) - 1  # the nodes between have no mass and no name of their own
         hinge = _hinge(_with_defaults(joint, context, childclass), context, names)
         node = Node(name=name if last else "", element=body, X_parent_node=X_parent_body, hinge=hinge)
         parent.children.append(node)
@@ -185,6 +194,7 @@ def _add_body(parent: Node, body: Element, context: _Context, childclass: str, n
 
 
 def _hinge(joint: Element, context: _Context, names: set[str]) -> Hinge:
+    """Return what a joint says of itself and enter its name in ``names``; ``FileFault`` for one that is no hinge."""
     name = joint.text("name", "") or f"joint{len(names) + 1}"
     if joint.tag == "freejoint" or joint.text("type", "hinge") != "hinge":
         joint.fail("RBL621", f"joint {name!r} is not a hinge")
@@ -195,9 +205,7 @@ def _hinge(joint: Element, context: _Context, names: set[str]) -> Hinge:
         if joint.number(key, usual) != usual:
             joint.fail("RBL621", f"'{key}' of joint {name!r} is not read")
     lower, upper = _range(joint, context, name)
-    effort = joint.numbers("actuatorfrcrange", 2) if "actuatorfrcrange" in joint.attributes else None
-    if effort is not None and not effort[0] < effort[1]:
-        joint.fail("RBL607", f"actuatorfrcrange of joint {name!r} goes from {effort[0]:g} to {effort[1]:g}")
+    effort = _effort(joint, name)
     return Hinge(
         name=name,
         element=joint,
@@ -206,12 +214,24 @@ def _hinge(joint: Element, context: _Context, names: set[str]) -> Hinge:
         lower=lower,
         upper=upper,
         speed=None,
-        effort=None if effort is None else min(abs(effort[0]), abs(effort[1])) or None,
+        effort=effort,
         damping=joint.number("damping", 0.0, low=0.0),
         friction=joint.number("frictionloss", 0.0, low=0.0),
         armature=joint.number("armature", 0.0, low=0.0),
         in_degrees=context.angle != 1.0,
     )
+
+
+def _effort(joint: Element, name: str) -> float | None:
+    """Return the torque, N m, that a joint has in both directions, None where the file gives none; RBL607."""
+    if "actuatorfrcrange" not in joint.attributes:
+        return None
+    low, high = joint.numbers("actuatorfrcrange", 2)
+    if not low < high:
+        joint.fail(
+            "RBL607", f"actuatorfrcrange of joint {name!r} is [{low:g}, {high:g}]: the first must be the smaller one"
+        )
+    return min(abs(low), abs(high)) or None
 
 
 def _range(joint: Element, context: _Context, name: str) -> tuple[float | None, float | None]:
@@ -222,13 +242,18 @@ def _range(joint: Element, context: _Context, name: str) -> tuple[float | None, 
         return None, None
     lower, upper = joint.numbers("range", 2)
     if not lower < upper:
-        joint.fail("RBL607", f"joint {name!r} goes from {lower:g} to {upper:g}")
+        joint.fail(
+            "RBL607", f"the range of joint {name!r} is [{lower:g}, {upper:g}]: the first must be the smaller one"
+        )
     if limited == "auto" and not context.autolimits:
         joint.fail("RBL608", f'joint {name!r} has a range and autolimits is off: it needs limited="true"')
     return lower * context.angle, upper * context.angle
 
 
 def _body(body: Element, context: _Context, childclass: str, name: str) -> Body | None:
+    """Return the body in its own frame, None where it has no mass; ``FileFault`` RBL610 or RBL621."""
+    # without <inertial> MuJoCo would infer mass and inertia from the shapes and their density; only shapes whose mass
+    # is stated as 0 say that the body has none
     inertial = body.one("inertial")
     if inertial is None:
         for geom in (_with_defaults(g, context, childclass) for g in body.all("geom")):
@@ -245,6 +270,7 @@ def _body(body: Element, context: _Context, childclass: str, name: str) -> Body 
         if any(key in inertial.attributes for key in (*_ORIENTATIONS, "diaginertia")):
             inertial.fail("RBL610", "fullinertia goes with neither an orientation nor diaginertia")
         xx, yy, zz, xy, xz, yz = inertial.numbers("fullinertia", 6)
+        # order of MuJoCo's fullinertia: xx, yy, zz, xy, xz, yz
         I_own = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     else:
         I_own = np.diag(inertial.numbers("diaginertia", 3))
@@ -257,6 +283,7 @@ def _pose(element: Element, context: _Context) -> Array:
 
 
 def _rotation(element: Element, context: _Context) -> Array:
+    """Return the rotation (3, 3) of an element by the one orientation that it gives; ``FileFault`` RBL610 for two."""
     given = [key for key in _ORIENTATIONS if key in element.attributes]
     if len(given) > 1:
         element.fail("RBL610", f"<{element.tag}> has two orientations, {given[0]} and {given[1]}")
@@ -268,7 +295,7 @@ def _rotation(element: Element, context: _Context) -> Array:
 
 
 def _quat(element: Element, context: _Context) -> Array:
-    q = np.array(element.numbers("quat", 4))
+    q = np.array(element.numbers("quat", 4))  # w first, of any length: MuJoCo normalises it as well
     length = norm(q)
     if not length > 1e-9:
         element.fail("RBL605", "a quaternion of no length")
@@ -283,7 +310,7 @@ def _quat(element: Element, context: _Context) -> Array:
 
 
 def _euler(element: Element, context: _Context) -> Array:
-    """Small letters turn about the moving axes, capitals about the fixed ones."""
+    """Return the rotation of three angles: small letters turn about the moving axes, capitals about the fixed ones."""
     R = np.eye(3)
     for letter, angle in zip(context.eulerseq, element.numbers("euler", 3), strict=True):
         turn = rotation_about(np.eye(3)["xyz".index(letter.lower())], angle * context.angle)
@@ -299,6 +326,7 @@ def _axisangle(element: Element, context: _Context) -> Array:
 def _xyaxes(element: Element, context: _Context) -> Array:
     values = np.array(element.numbers("xyaxes", 6))
     x = _direction(element, values[:3])
+    # y made square to x, since six printed digits seldom are
     y = _direction(element, values[3:] - matmul(values[3:], x) * x)
     return np.stack([x, y, np.cross(x, y)], axis=-1)
 
@@ -315,6 +343,7 @@ def _direction(element: Element, v: Array) -> Array:
 
 
 def _check_actuators(model: Element, names: set[str]) -> None:
+    """Refuse an actuator of a joint that is not there (RBL610); actuators are not read otherwise: drives are ours."""
     for section in model.all("actuator"):
         for actuator in section.children:
             joint = actuator.attributes.get("joint")

@@ -1,14 +1,14 @@
 """Values of a robot file that are possible and unlikely: as a rule they are in another unit than the file's.
 
-What cannot be is refused where it is read (RBL605, RBL606). What no known arm has is doubted: the arm is loaded, and
-every doubt is a warning at its place, one for all axes that share it. Here are limits and gears, which need no
-numerics, in ``body_plausibility`` lengths, bodies and torques. The bounds (docs/robots-import.md):
+Impossible values are refused where they are read (RBL605, RBL606). Values that no known arm has are doubted: the arm is
+loaded, and every doubt is a warning at its place, one for all axes that share it. Here are limits and gears, which need
+no numerics, in ``body_plausibility`` lengths, bodies and torques. The bounds (docs/robots-import.md):
 
     RBL627   a joint range of more than ``MOST_TURNS`` to a side, or within ``LEAST_ANGLE``; a speed above ``FASTEST``
              or below ``LEAST_ANGLE`` a second: degrees for radians, radians for degrees, a conversion made twice
     RBL629   a gear ratio below 1
 
-Units other by a factor below about ten (lb, inches) cannot be told from a light or a small arm. Read at start, no rate.
+Units that differ by less than a factor of about ten (lb, inches) look like a light or a small arm. Read at start.
 """
 
 import math
@@ -28,12 +28,12 @@ FASTEST = 30.0
 """Fastest joint, rad/s (1719 deg/s)."""
 What = Literal["range", "speed", "torque", "body", "length", "gear"]
 Place = Callable[[What, int], Callable[[str, str, str], FileFault]]
-"""``place(what, axis)(code, message, hint)`` is a fault where a value of an axis (0-based) stands."""
+"""``place(what, axis)(code, message, hint)`` is a fault at the place of a value of an axis (0-based)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Turning:
-    """How far and fast a joint turns, rad and rad/s; NaN where its file says nothing.
+    """Range and speed of a joint, rad and rad/s; NaN where its file gives none.
 
     ``in_degrees``: the file has degrees and deg/s, else radians and rad/s.
     """
@@ -60,7 +60,7 @@ class Turning:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _TurningRule:
-    """What is unlikely, and what it looks like with its remedy, in a file of radians and in one of degrees."""
+    """A condition, and its explanation and remedy in a file of radians and in one of degrees."""
 
     what: What
     unlikely: Callable[[Turning], bool]
@@ -101,7 +101,8 @@ _TURNING_RULES = (
 
 
 def doubt_turning(joints: Sequence[Turning], place: Place) -> list[FileFault]:
-    """Return what is unlikely about ranges and speeds (RBL627)."""
+    """Return the doubts about ranges and speeds (RBL627)."""
+    # every comparison is false for NaN: a value that the file does not give is not doubted
     doubts = []
     for rule in _TURNING_RULES:
         for in_degrees, (tail, hint) in ((False, rule.radians), (True, rule.degrees)):
@@ -118,7 +119,7 @@ class Driven(Protocol):
 
     @property
     def name(self) -> str:
-        """What its file calls it."""
+        """Its name in the file."""
 
     @property
     def limits(self) -> Limits:
@@ -130,11 +131,11 @@ class Driven(Protocol):
 
     @property
     def table(self) -> Table:
-        """Where it stands."""
+        """Its place."""
 
 
 def doubt_axes(axes: Sequence[Driven]) -> tuple[FileFault, ...]:
-    """Return what is unlikely about ranges, speeds (RBL627) and gears (RBL629) that stand in TOML tables."""
+    """Return the doubts about ranges, speeds (RBL627) and gears (RBL629) of axes in TOML tables."""
     labels = [joint_label(k, axis.name) for k, axis in enumerate(axes)]
     joints = [
         Turning(label=label, lower=axis.limits.lower, upper=axis.limits.upper, speed=axis.limits.speed, in_degrees=True)
@@ -161,7 +162,7 @@ _KEYS: dict[What, tuple[str, ...]] = {
 
 
 def in_tables(tables: Sequence[Table]) -> Place:
-    """Return where the values of axes stand that have a TOML table each."""
+    """Return the places of the values of axes that have a TOML table each."""
 
     def place(what: What, axis: int) -> Callable[[str, str, str], FileFault]:
         table = tables[axis]

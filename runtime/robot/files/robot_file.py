@@ -1,9 +1,9 @@
 """The robot file as it is written: every key known, every limit present, every value of its kind and in its range.
 
-This is the reading of a file ``NAME.toml``, in the units of its keys, without numerics: ``robolang check`` and a run
-read the same ``RobotFile``. What needs vectors is judged from it by ``loader``: whether bodies are possible, whether
+A file ``NAME.toml`` is read in the units of its keys, without numerics: ``robolang check`` and a run read the same
+``RobotFile``. What needs vectors is judged by ``loader`` afterwards: whether bodies are possible, whether
 the closed form describes the same arm. Nothing is guessed: a missing limit is an error that names the axis and the
-key, and so is a key nobody reads. The geometry comes as Denavit-Hartenberg rows or as joint lines in space
+key, and so is a key that nothing reads. The geometry comes as Denavit-Hartenberg rows or as joint lines in space
 (``geometry`` has the meaning of both).
 """
 
@@ -20,6 +20,7 @@ from runtime.robot.model.drives import Bandwidths, Limits, Motor, PathLimits
 
 SCHEMA = 1
 MOST_AXES = 7
+"""One redundant axis; kinematics is for 2 to 7 axes."""
 SHORTEST_DIRECTION = 1e-6
 """A direction shorter than this has lost its digits."""
 
@@ -63,7 +64,7 @@ class OpwRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CorrectionRow:
-    """A change to published body data, kg m2 and kg, with its reason; ``table`` to refuse it at its place."""
+    """A change to published body data, kg m2 and kg, with its reason; ``table`` is its place."""
 
     inertia_shift: float
     added_mass: float
@@ -73,14 +74,10 @@ class CorrectionRow:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AxisFile:
-    """One ``[[axes]]``: ``cog_m`` (3,) and ``inertia`` (3 or 6,) kg m2 in the frame of the row, ``table`` its place."""
+class AxisDrive:
+    """The drive of one ``[[axes]]``, in a robot file or in a sidecar; ``table`` is its place."""
 
     name: str
-    row: DhRow | LineRow
-    mass_kg: float
-    cog_m: tuple[float, ...]
-    inertia_kg_m2: tuple[float, ...]
     motor: Motor
     limits: Limits
     bandwidths: Bandwidths
@@ -89,8 +86,19 @@ class AxisFile:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class AxisFile:
+    """One ``[[axes]]``: ``cog_m`` (3,) and ``inertia_kg_m2`` (3 or 6,) in the frame of the row."""
+
+    row: DhRow | LineRow
+    mass_kg: float
+    cog_m: tuple[float, ...]
+    inertia_kg_m2: tuple[float, ...]
+    drive: AxisDrive
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RobotFile:
-    """A robot file; ``flange`` stands in the form of lines only. ``table`` is the whole file, for places.
+    """A robot file; ``flange`` is given in the form of lines only. ``table`` is the whole file, for places.
 
     ``link_radii`` m are those of the capsules that stand for the links; empty: the file gives none.
     """
@@ -110,12 +118,12 @@ class RobotFile:
     @property
     def limits(self) -> tuple[Limits, ...]:
         """Limits of every axis."""
-        return tuple(axis.limits for axis in self.axes)
+        return tuple(axis.drive.limits for axis in self.axes)
 
     @property
     def warnings(self) -> tuple[FileFault, ...]:
-        """What is unlikely about it, as far as that shows without numerics."""
-        return doubt_axes(self.axes)
+        """Doubts about ranges, speeds and gears (RBL627, RBL629); those about bodies need numerics."""
+        return doubt_axes([axis.drive for axis in self.axes])
 
 
 def library() -> list[str]:
@@ -134,11 +142,12 @@ def builtin(name: str) -> RobotFile:
 
 
 def parse(source: Source) -> RobotFile:
-    """Return what the text of a robot file says; ``FileFault`` (RBL6xx) at the line that is wrong."""
+    """Return the content of a robot file; ``FileFault`` (RBL6xx) at the line that is wrong."""
     table = load_table(source)
     table.integer("schema", low=SCHEMA, high=SCHEMA)
     name, title = table.text("name"), table.text("title")
     kinematics = table.table("kinematics")
+    # the form first: it decides which keys an axis has
     form = cast(Literal["dh", "lines"], kinematics.text("form", choices=("dh", "lines")))
     opw = _opw(kinematics.table("opw")) if "opw" in kinematics else None
     kinematics.done()
@@ -187,25 +196,10 @@ def correction(table: Table) -> CorrectionRow | None:
     return found
 
 
-def _axis(table: Table, form: Literal["dh", "lines"], names: set[str]) -> AxisFile:
-    row = _dh(table) if form == "dh" else _line(table)
-    name = table.text("name")
-    if name in names:
-        table.fail("RBL610", f"two axes are named '{name}'", key="name")
-    names.add(name)
-    mass = table.number("mass_kg", low=0.0, high=10000.0)
-    cog = table.numbers("cog_m", 3, low=-10.0, high=10.0)
-    inertia = table.numbers("inertia_kg_m2", None, low=-1e5, high=1e5)
-    if len(inertia) not in (3, 6):
-        table.fail(
-            "RBL613", f"'{table.name('inertia_kg_m2')}' needs xx, yy, zz or xx, yy, zz, xy, xz, yz", key="inertia_kg_m2"
-        )
-    found = AxisFile(
-        name=name,
-        row=row,
-        mass_kg=mass,
-        cog_m=cog,
-        inertia_kg_m2=inertia,
+def axis_drive(table: Table) -> AxisDrive:
+    """Read the drive of an axis, the last that is read of its table; ``FileFault`` RBL60x, also for unknown keys."""
+    found = AxisDrive(
+        name=table.text("name"),
         motor=drives.motor(table.table("motor")),
         limits=drives.limits(table),
         bandwidths=drives.bandwidths(table.table("servo")),
@@ -214,6 +208,23 @@ def _axis(table: Table, form: Literal["dh", "lines"], names: set[str]) -> AxisFi
     )
     table.done()
     return found
+
+
+def _axis(table: Table, form: Literal["dh", "lines"], names: set[str]) -> AxisFile:
+    row = _dh(table) if form == "dh" else _line(table)
+    name = table.text("name")
+    if name in names:
+        table.fail("RBL610", f"two axes are named '{name}'", key="name")
+    names.add(name)
+    # bounds that hold for arms of any size, of a few kg to some tonnes; narrower ones are doubts (docs/decisions/0031)
+    mass = table.number("mass_kg", low=0.0, high=10000.0)
+    cog = table.numbers("cog_m", 3, low=-10.0, high=10.0)
+    inertia = table.numbers("inertia_kg_m2", None, low=-1e5, high=1e5)
+    if len(inertia) not in (3, 6):
+        table.fail(
+            "RBL613", f"'{table.name('inertia_kg_m2')}' needs xx, yy, zz or xx, yy, zz, xy, xz, yz", key="inertia_kg_m2"
+        )
+    return AxisFile(row=row, mass_kg=mass, cog_m=cog, inertia_kg_m2=inertia, drive=axis_drive(table))
 
 
 def _dh(table: Table) -> DhRow:
@@ -252,7 +263,7 @@ def _flange(table: Table) -> FlangeRow:
 def _opw(table: Table) -> OpwRow:
     lengths = tuple(table.number(f"{key}_m", low=-10.0, high=10.0) for key in _LENGTHS)
     offsets = table.numbers("offsets_deg", 6, low=-360.0, high=360.0)
-    signs = table.numbers("signs", 6, low=-1.0, high=1.0)
+    signs = table.numbers("signs", 6, low=-1.0, high=1.0)  # in [-1, 1] for the usual message, then exactly at an end
     if not all(abs(sign) == 1.0 for sign in signs):
         table.fail("RBL605", "'signs' must be 1 or -1", key="signs")
     table.done()

@@ -1,8 +1,8 @@
-"""An arm of a model file with what its sidecar says, and the template of a sidecar.
+"""An arm of a model file with the drives of its sidecar, and the template of a sidecar.
 
-``sidecar_file`` reads the sidecar. A template writes what the model file gives and a line marked MISSING, commented
-out, for everything else: such a file is refused until a person has filled it in (RBL608, every gap listed), because
-drive data are never guessed.
+``sidecar_file`` reads the sidecar. A template has the values of the model file and a line marked MISSING, commented
+out, for every other one: such a file is refused until a person has filled it in (RBL608, every gap listed), because
+drive data are never guessed (docs/decisions/0016).
 """
 
 from pathlib import Path
@@ -12,6 +12,7 @@ from runtime.core.units import DEG
 from runtime.robot.files import corrections as rules
 from runtime.robot.files.body_plausibility import doubt_torques, offsets, weight_moment
 from runtime.robot.files.imported import ImportedArm, ImportedAxis
+from runtime.robot.files.loader import axis_spec
 from runtime.robot.files.plausibility import doubt_axes, in_tables
 from runtime.robot.files.sidecar_file import (
     GROUPS,
@@ -64,23 +65,16 @@ def _check_names(file: SidecarFile, arm: ImportedArm) -> None:
         file.table.fail("RBL610", f"{Path(arm.path).name} has {arm.n} axes, this file {len(file.axes)}", key="axes")
     for axis, imported in zip(file.axes, arm.axes, strict=True):
         if axis.name != imported.name:
-            axis.table.fail("RBL610", f"'{axis.name}' stands where the chain has joint '{imported.name}'", key="name")
+            axis.table.fail(
+                "RBL610", f"this axis is '{axis.name}', and joint '{imported.name}' comes here in the chain", key="name"
+            )
 
 
 def _axes(arm: ImportedArm, file: SidecarFile) -> tuple[tuple[AxisSpec, ...], tuple[Correction, ...]]:
     built: list[AxisSpec] = []
     corrections: list[Correction] = []
     for index, (axis, imported) in enumerate(zip(file.axes, arm.axes, strict=True)):
-        built.append(
-            AxisSpec(
-                name=imported.name,
-                placement=imported.placement,
-                body=imported.body,
-                motor=axis.motor,
-                limits=axis.limits,
-                bandwidths=axis.bandwidths,
-            )
-        )
+        built.append(axis_spec(axis, imported.placement, imported.body))
         if axis.correction is not None:
             corrections.append(rules.correct(axis.correction, built, index))
     rules.check_bodies([axis.table for axis in file.axes], built)
@@ -88,7 +82,7 @@ def _axes(arm: ImportedArm, file: SidecarFile) -> tuple[tuple[AxisSpec, ...], tu
 
 
 def missing_in_template(arm: ImportedArm) -> str:
-    """Return in words what the template of an arm leaves to fill in for its axes."""
+    """Return in words the keys that the template of an arm leaves to be filled in for its axes."""
     inner = [f"{group}.{key}" for group, keys in GROUPS.items() for key in keys]
     return lacking([{*inner, *(key for key in LIMIT_KEYS if key not in _given_limits(axis))} for axis in arm.axes])
 
@@ -137,7 +131,7 @@ def _limit_lines(axis: ImportedAxis) -> list[str]:
 
 
 def _given_limits(axis: ImportedAxis) -> dict[str, str]:
-    """Return what the model file gives of the limits, by key, as the sidecar writes it."""
+    """Return the limits that the model file gives, by key, as the sidecar writes them."""
     hinge = axis.hinge
     values: dict[str, str] = {}
     widest = max(abs(hinge.lower or 0.0), abs(hinge.upper or 0.0))
@@ -151,7 +145,7 @@ def _given_limits(axis: ImportedAxis) -> dict[str, str]:
 
 
 def _degrees(angle: float) -> str:
-    # as it was typed: 185 deg written with 14 digits of rad must not become 185.000000000028
+    # as it was typed: 185 deg that a file has with 14 digits of rad must not become 185.000000000028
     degrees = angle / DEG
     near = round(degrees, 6)
     return repr(near + 0.0 if abs(degrees - near) <= TYPED else float(f"{degrees:.15g}"))
@@ -159,19 +153,21 @@ def _degrees(angle: float) -> str:
 
 def _motor_notes(axis: ImportedAxis) -> list[str]:
     hinge = axis.hinge
-    said = {
+    # at the joint and with N unknown: a file gives these three, and none of them can be turned into a motor's
+    values = {
         "armature (N^2 times the rotor inertia)": (hinge.armature, "kg m2"),
         "damping (N^2 times the viscous friction)": (hinge.damping, "N m s/rad"),
         "friction (N times the Coulomb friction)": (hinge.friction, "N m"),
     }
     return [
         f"# The model file gives, at the joint: {what} {value!r} {unit}."
-        for what, (value, unit) in said.items()
+        for what, (value, unit) in values.items()
         if value
     ]
 
 
 def _correction_lines(axis: ImportedAxis) -> list[str]:
+    # the smallest correction that makes the body possible, commented out: to accept it is a person's decision
     assert axis.impossible is not None
     shift = rules.smallest_shift(axis.body.inertia) or 0.0
     shifted = rules.shifted(axis.body.inertia, shift)

@@ -1,19 +1,19 @@
 """The sidecar ``arm.robot.toml`` of an ``arm.urdf`` or ``arm.xml``: drives and limits, which such files do not hold.
 
 Its keys are those of a robot file in TOML (docs/robots-import.md), without geometry and bodies, with one ``[[axes]]``
-for each joint in the order of the chain. What it says of ranges, speeds and torques rules over the model file. Imports
+for each joint in the order of the chain. Its ranges, speeds and torques replace those of the model file. Imports
 no numerics: ``robolang check`` reads it, and a run reads the same.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from runtime.core.tomlfile import Source, Table, load_table
 from runtime.robot.files.gaps import listed, whole
-from runtime.robot.files.robot_file import CorrectionRow, correction, rated_payload
+from runtime.robot.files.robot_file import AxisDrive, axis_drive, rated_payload
 from runtime.robot.model import drives
-from runtime.robot.model.drives import Bandwidths, Limits, Motor, PathLimits
+from runtime.robot.model.drives import PathLimits
 
 SCHEMA = 1
 ENDING = ".robot.toml"
@@ -52,7 +52,7 @@ GROUPS = {"motor": MOTOR_KEYS, "servo": SERVO_KEYS}
 
 
 def sidecar_path(model: Path) -> Path:
-    """Return where the sidecar of a model file stands: ``arm.urdf`` has ``arm.robot.toml``."""
+    """Return the path of the sidecar of a model file: ``arm.urdf`` has ``arm.robot.toml``."""
     return model.with_name(f"{model.stem}{ENDING}")
 
 
@@ -73,7 +73,10 @@ NO_OVERLAY = Overlay(flange=None, ranges={}, tables={}, corrected=frozenset())
 
 
 def read_overlay(source: Source) -> Overlay:
-    """Return what a sidecar, filled in or not, says of the geometry; ``FileFault`` RBL6xx."""
+    """Return the geometry that a sidecar states, filled in or not; ``FileFault`` RBL6xx.
+
+    Kinematics needs ranges before the drives are known: 'robolang kin' works with a template that is not filled in.
+    """
     table = load_table(source)
     ranges: dict[str, tuple[float, float]] = {}
     tables: dict[str, Table] = {}
@@ -89,20 +92,8 @@ def read_overlay(source: Source) -> Overlay:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AxisDrive:
-    """One ``[[axes]]`` of a sidecar; ``table`` for places."""
-
-    name: str
-    motor: Motor
-    limits: Limits
-    bandwidths: Bandwidths
-    correction: CorrectionRow | None
-    table: Table
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class SidecarFile:
-    """A sidecar that is filled in; empty texts and None where it says nothing. ``table`` is the whole file."""
+    """A sidecar that is filled in; texts that it does not have are empty. ``table`` is the whole file."""
 
     title: str
     sources: tuple[str, ...]
@@ -115,12 +106,13 @@ class SidecarFile:
 
 
 def read_sidecar(source: Source, model: str) -> SidecarFile:
-    """Return the sidecar of the file named ``model``; ``FileFault`` RBL6xx, RBL608 lists all that is missing."""
+    """Return the sidecar of the file named ``model``; ``FileFault`` RBL6xx, RBL608 lists all missing keys."""
     table = load_table(source)
     table.integer("schema", low=SCHEMA, high=SCHEMA)
     if (named := table.text("robot")) != model:
         table.fail("RBL610", f"this sidecar is for '{named}', not for '{model}'", key="robot")
     axes = table.tables("axes")
+    # before anything is read: a template lacks some hundred values, and one error a key would show the first alone
     _check_complete(table, axes)
     found = SidecarFile(
         title=table.text("title", ""),
@@ -128,52 +120,47 @@ def read_sidecar(source: Source, model: str) -> SidecarFile:
         notes=drives.texts(table, "notes"),
         rated_payload=rated_payload(table),
         link_radii=drives.link_radii(axes),
-        axes=tuple(_axis(axis) for axis in axes),
+        axes=tuple(axis_drive(axis) for axis in axes),
         path=drives.path_limits(table.table("path")),
         table=table,
     )
-    table.text("flange", "")
-    table.done()
-    return found
-
-
-def _axis(table: Table) -> AxisDrive:
-    found = AxisDrive(
-        name=table.text("name"),
-        motor=drives.motor(table.table("motor")),
-        limits=drives.limits(table),
-        bandwidths=drives.bandwidths(table.table("servo")),
-        correction=correction(table),
-        table=table,
-    )
+    table.text("flange", "")  # read by ``read_overlay``; asked for here so that it is a known key
     table.done()
     return found
 
 
 def _check_complete(table: Table, axes: list[Table]) -> None:
-    """Name every key that a person has still to fill in, in one message."""
-    path = table.table("path") if "path" in table else None
-    own = [PAYLOAD_KEY] if PAYLOAD_KEY not in table else []
-    own += [f"path.{key}" for key in PATH_KEYS if path is None or key not in path]
-    missing: list[set[str]] = []
-    for axis in axes:
-        here = {key for key in LIMIT_KEYS if key not in axis}
-        for group, keys in GROUPS.items():
-            inner = axis.table(group) if group in axis else None
-            here |= {f"{group}.{key}" for key in keys if inner is None or key not in inner}
-        missing.append(here)
-    if own or any(missing):
-        where = table if own else next(axis for axis, here in zip(axes, missing, strict=True) if here)
+    """Refuse a sidecar with keys still to be filled in: one ``FileFault`` RBL608 that names all of them."""
+    own = [] if PAYLOAD_KEY in table else [PAYLOAD_KEY]
+    own += _lacking_in(table, "path", PATH_KEYS)
+    missing = [_lacking_of(axis) for axis in axes]
+    # at the first table that lacks something; the message names the keys of all
+    incomplete = [table] if own else [axis for axis, here in zip(axes, missing, strict=True) if here]
+    if incomplete:
         gaps = [*whole(own, {"path": [f"path.{key}" for key in PATH_KEYS]}), lacking(missing)]
-        where.fail(
+        incomplete[0].fail(
             "RBL608",
             f"missing in this file: {'; '.join(gap for gap in gaps if gap)}",
             "fill in the lines marked MISSING",
         )
 
 
+def _lacking_of(axis: Table) -> set[str]:
+    """Return the keys that one axis lacks, those of inner tables with the name of the table."""
+    lacking = {key for key in LIMIT_KEYS if key not in axis}
+    for group, keys in GROUPS.items():
+        lacking.update(_lacking_in(axis, group, keys))
+    return lacking
+
+
+def _lacking_in(table: Table, name: str, keys: Iterable[str]) -> list[str]:
+    """Return as ``name.key`` which keys an inner table lacks; all of them where the table itself is missing."""
+    inner = table.table(name) if name in table else None
+    return [f"{name}.{key}" for key in keys if inner is None or key not in inner]
+
+
 def lacking(missing: Sequence[Collection[str]]) -> str:
-    """Return in words what each axis has not of the keys of a sidecar."""
+    """Return in words which keys of a sidecar each axis lacks."""
     inner = {f"axes.{group}": [f"{group}.{key}" for key in keys] for group, keys in GROUPS.items()}
     keys = [*LIMIT_KEYS, *(key for keys in inner.values() for key in keys)]
     return listed({key: [k for k, here in enumerate(missing) if key in here] for key in keys}, len(missing), inner)

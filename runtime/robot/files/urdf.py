@@ -25,6 +25,7 @@ _TURNING = ("revolute", "continuous")
 def read_urdf(robot: Element) -> tuple[str, Node]:
     """Return the robot's name and the root of its tree; ``FileFault`` at the element that is wrong."""
     for child in robot.children:
+        # a closed list: what is not known may matter to the motion, and nothing is guessed (docs/decisions/0016)
         if child.tag not in ("link", "joint", *_IGNORED):
             child.fail("RBL621", f"<{child.tag}> is not read")
     links = _by_name(robot.all("link"))
@@ -38,6 +39,7 @@ def read_urdf(robot: Element) -> tuple[str, Node]:
     for name, joint in joints.items():
         start, hung = (_end(joint, end, nodes) for end in ("parent", "child"))
         if hung in placed:
+            # refused before it is joined: the tree would hold the link twice, and its mass with it
             joint.fail("RBL611", f"link {hung!r} hangs on two joints, {placed[hung]!r} and {name!r}: a loop")
         placed[hung] = name
         _join(joint, nodes[start], nodes[hung])
@@ -45,6 +47,7 @@ def read_urdf(robot: Element) -> tuple[str, Node]:
 
 
 def _by_name(elements: list[Element]) -> dict[str, Element]:
+    """Return elements by their names, in file order; ``FileFault`` RBL610 at the second of one name."""
     found: dict[str, Element] = {}
     for element in elements:
         name = element.text("name")
@@ -55,6 +58,7 @@ def _by_name(elements: list[Element]) -> dict[str, Element]:
 
 
 def _end(joint: Element, end: str, nodes: dict[str, Node]) -> str:
+    """Return the link at an end of a joint, ``parent`` or ``child``; ``FileFault`` RBL608 or RBL610 for none."""
     element = joint.one(end)
     if element is None:
         joint.fail("RBL608", f"joint {joint.text('name')!r} has no <{end}>")
@@ -65,11 +69,16 @@ def _end(joint: Element, end: str, nodes: dict[str, Node]) -> str:
 
 
 def _root(robot: Element, nodes: dict[str, Node], placed: dict[str, str]) -> Node:
+    """Return the one link that hangs on no joint and carries all others; ``FileFault`` RBL611 for loops and islands.
+
+    ``placed``: the joint on which each link hangs, by link.
+    """
     roots = [node for name, node in nodes.items() if name not in placed]
     if not roots:
         robot.fail("RBL611", "every link hangs on another: the joints form a loop")
     if len(roots) > 1:
         roots[1].element.fail("RBL611", f"links {roots[0].name!r} and {roots[1].name!r} are not joined")
+    # one root does not mean one tree: links in a loop of their own have a parent each, and none of them is the root
     reached, todo = set(), [roots[0]]
     while todo:
         node = todo.pop()
@@ -82,6 +91,7 @@ def _root(robot: Element, nodes: dict[str, Node], placed: dict[str, str]) -> Nod
 
 
 def _join(joint: Element, parent: Node, child: Node) -> None:
+    """Hang one link on another by a joint; ``FileFault`` RBL621 for a kind that is not read."""
     kind = joint.text("type")
     child.X_parent_node = _origin(joint)
     parent.children.append(child)
@@ -95,34 +105,48 @@ def _join(joint: Element, parent: Node, child: Node) -> None:
 
 
 def _hinge(joint: Element, ranged: bool) -> Hinge:
-    limit, dynamics, axis = joint.one("limit"), joint.one("dynamics"), joint.one("axis")
-
-    def given(key: str) -> float | None:
-        return limit.number(key) if limit is not None and key in limit.attributes else None
-
-    # lower and upper are 0 when they are left out (the specification), which is no range: they must be written
-    lower, upper = (given("lower"), given("upper")) if ranged else (None, None)
-    name = joint.text("name")
-    if limit is not None and lower is not None and upper is not None and not lower < upper:
-        limit.fail("RBL607", f"joint {name!r} goes from {lower:g} to {upper:g} rad")
-    for key in ("velocity", "effort"):
-        value = given(key)
-        if limit is not None and value is not None and not value >= 0.0:
-            limit.fail("RBL605", f"'{key}' of joint {name!r} is {value:g} and must be 0 or more")
+    """Return what a turning joint says of itself; ``ranged`` False: it has no end stops."""
+    name, limit, dynamics, axis = joint.text("name"), joint.one("limit"), joint.one("dynamics"), joint.one("axis")
+    lower, upper = _range(limit, name) if limit is not None and ranged else (None, None)
+    speed, effort = _most(limit, "velocity", name), _most(limit, "effort", name)
     return Hinge(
         name=name,
         element=joint,
+        # x is the specification's default for an axis that is left out
         axis=unit(axis, "xyz") if axis is not None else frozen([1.0, 0.0, 0.0]),
         anchor=frozen(np.zeros(3)),
         lower=lower,
         upper=upper,
-        speed=given("velocity") or None,  # 0 is how many files say that they do not know
-        effort=given("effort") or None,
+        speed=speed,
+        effort=effort,
         damping=dynamics.number("damping", 0.0, low=0.0) if dynamics is not None else 0.0,
         friction=dynamics.number("friction", 0.0, low=0.0) if dynamics is not None else 0.0,
         armature=0.0,
         in_degrees=False,
     )
+
+
+def _range(limit: Element, name: str) -> tuple[float | None, float | None]:
+    """Return the ends of a joint's range, rad, None for what is left out; ``FileFault`` RBL607 for a range of none.
+
+    The specification has 0 for an end that is left out, which gives no range: both must be written to count.
+    """
+    lower, upper = _given(limit, "lower"), _given(limit, "upper")
+    if lower is not None and upper is not None and not lower < upper:
+        limit.fail("RBL607", f"the range of joint {name!r} is {lower:g} to {upper:g} rad: lower must be below upper")
+    return lower, upper
+
+
+def _most(limit: Element | None, key: str, name: str) -> float | None:
+    """Return the largest speed or torque of a joint, None where the file gives none or 0; ``FileFault`` RBL605."""
+    value = None if limit is None else _given(limit, key)
+    if limit is not None and value is not None and not value >= 0.0:
+        limit.fail("RBL605", f"'{key}' of joint {name!r} is {value:g} and must be 0 or more")
+    return value or None  # 0 stands in many files for a value that is not known: <limit> requires both attributes
+
+
+def _given(limit: Element, key: str) -> float | None:
+    return limit.number(key) if key in limit.attributes else None
 
 
 def unit(element: Element, key: str) -> Array:
@@ -135,6 +159,7 @@ def unit(element: Element, key: str) -> Array:
 
 
 def _origin(element: Element) -> Array:
+    """Return the pose (4, 4) of the ``<origin>`` of an element, the unit pose where it has none."""
     origin = element.one("origin")
     if origin is None:
         return np.eye(4)
@@ -142,6 +167,7 @@ def _origin(element: Element) -> Array:
 
 
 def _body(link: Element) -> Body | None:
+    """Return the body of a link in the link's frame, None for a link without ``<inertial>``; ``FileFault`` RBL608."""
     inertial = link.one("inertial")
     if inertial is None:
         return None
@@ -151,6 +177,7 @@ def _body(link: Element) -> Body | None:
     xx, yy, zz, xy, xz, yz = (inertia.number(key) for key in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz"))
     X = _origin(inertial)
     R = X[:3, :3]
+    # the products stand in the file as entries of the matrix, not as the negative integrals of some textbooks
     I_own = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     kg = mass.number("value", low=0.0, high=HEAVIEST_LINK)
     return Body(mass=kg, cog=frozen(X[:3, 3]), inertia=frozen(matmul(R, I_own, R.T)))

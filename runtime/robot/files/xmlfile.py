@@ -1,4 +1,4 @@
-"""Robot files in XML, read without trust: the way in for URDF and MJCF, before any library sees them.
+"""Robot files in XML, read without trust: URDF and MJCF pass here before any library sees them.
 
 The text is parsed by expat with a handler for every start tag, so that each element keeps its line and column and
 every error is a ``FileFault`` at its place. Refused while reading: a document type (RBL601: with it go entities,
@@ -22,6 +22,7 @@ from runtime.core.tomlfile import MAX_ABS, FileFault, Source
 _LINE_END = re.compile(r"\r\n?|\n")  # XML 2.11: a CR alone ends a line, too
 MAX_DEPTH = 100
 MAX_ELEMENTS = 50_000
+"""Far more than an arm with its shapes has, and little enough to be held in memory."""
 HEAVIEST_LINK = 10_000.0
 """Heaviest link, kg."""
 FARTHEST = 10.0
@@ -143,8 +144,8 @@ def parse_numbers(element: Element, key: str, text: str, count: int) -> tuple[fl
     """Return ``count`` finite numbers of ``text``; ``FileFault`` at the element."""
     parts = _parts(text)
     if len(parts) != count:
-        wanted = "one number" if count == 1 else f"{count} numbers"
-        element.fail("RBL613", f"'{key}' of <{element.tag}> must be {wanted}, not {_shown(text)}")
+        form = "one number" if count == 1 else f"{count} numbers"
+        element.fail("RBL613", f"'{key}' of <{element.tag}> must be {form}, not {_shown(text)}")
     values = []
     for part in parts:
         value = number_in(part)
@@ -172,7 +173,7 @@ def parse_xml(source: Source) -> Element:
 
 
 def _parse(source: Source) -> Element:
-    parser = expat.ParserCreate("utf-8")  # what the declaration says of the encoding is not followed: it was read
+    parser = expat.ParserCreate("utf-8")  # whatever encoding the file declares: its text is decoded already
     stack: list[Element] = []
     roots: list[Element] = []
     count = 0
@@ -186,6 +187,7 @@ def _parse(source: Source) -> Element:
     def start(tag: str, attributes: dict[str, str]) -> None:
         nonlocal count
         count += 1
+        # counted while reading, so that a hostile file is refused before its tree exists
         if len(stack) >= MAX_DEPTH:
             refuse("RBL612", f"elements are nested more than {MAX_DEPTH} deep")
         if count > MAX_ELEMENTS:
@@ -230,7 +232,7 @@ def _check(element: Element) -> None:
 def _check_finite(element: Element, key: str, text: str) -> None:
     values = [number_in(part) for part in _parts(text)]
     if None in values:
-        return  # a text; whoever wants a number there refuses it
+        return  # a text; a reader that needs a number there refuses it
     for value in values:
         if value is not None and not math.isfinite(value):
             element.fail("RBL604", f"'{key}' of <{element.tag}> is {_shown(text)}, not a finite number")
@@ -238,6 +240,8 @@ def _check_finite(element: Element, key: str, text: str) -> None:
 
 def check_path(element: Element, key: str, text: str) -> None:
     """Refuse a file name that leads out of the folder of the robot file (RBL602), on any system."""
+    # schemes that name a folder by a package; what is left must be a relative path on every system, on which the file
+    # may be opened later
     name = re.sub(r"^(package|model)://", "", text)
     absolute = any(kind(name).is_absolute() or kind(name).anchor for kind in (PurePosixPath, PureWindowsPath))
     if absolute or "://" in name or ".." in re.split(r"[/\\]", name) or "\0" in name:

@@ -9,11 +9,12 @@ The parameters follow from the lines alone. Model frame: z along J1 (upwards in 
 along J2 or against it, origin the foot of the base origin on J1. In the plane across y: J2 at (a1, c1), J3 at distance
 c2 from it, the wrist centre at (a2, c3) from J3 with c3 >= 0 along J4, and b is its y. The two directions of y are the
 same arm seen from its two sides; the one with a1 > 0 is taken, for a1 = 0 the one with x forward in the base frame.
-Signs and offsets are read from the directions at zero. What is left over before and behind the model are constant
+Signs and offsets are read from the directions at zero. What remains before and after the model are constant
 poses, a turn about its axis being counted as an offset of J1 or J6.
 
-Nothing is taken on trust: parameters count only when ``opw.mismatch`` over the chain of axes stays below 1e-9. An arm
+The result is verified: parameters count only when ``opw.mismatch`` over the chain of axes stays below 1e-9. An arm
 whose file rounds its numbers (1.5708 for a right angle) therefore has no closed form, and is solved by Newton's method.
+Called once an arm is loaded.
 """
 
 import math
@@ -32,19 +33,23 @@ from runtime.robot.model.spec import OpwParameters
 ACCEPTED = 1e-9
 """Largest mismatch of a closed form with the chain of axes, m at a radius of 1 m."""
 
-_LOOSE = 1e-6  # lines that miss each other by less are tried; the mismatch decides
+_LOOSE = 1e-6
+"""Lines that miss each other by less, m or as a cosine, may meet; the mismatch decides."""
 _SAME = 1e-12
+"""Rounding of a projection, m: a length of less is zero and has no sign."""
+_WELL_POSED = 1e6
+"""Condition number below which lines have one meeting point; parallel lines have infinitely many."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Probe:
-    """An arm with parameters on trial, for ``opw.mismatch``."""
+    """The chain of an arm with the parameters found for it, as ``opw.mismatch`` compares them."""
 
     axes: Sequence[Placed]
     X_last_flange: Array
     opw: OpwParameters
-    name: str = "trial"
-    title: str = "trial"
+    name: str = "arm"
+    title: str = "arm"
     n: int = 6
     lower: Array
     upper: Array
@@ -68,8 +73,13 @@ def find_opw(axes: Sequence[Placed], X_last_flange: Array) -> OpwParameters | No
 
 
 def _parameters(frames: Array, X_base_flange: Array) -> OpwParameters | None:
+    """Return parameters from the frames (6, 4, 4) of the axes and the flange at zero; None where the lines do not fit.
+
+    t1 to t6 are the model's angles at joint angle zero, so they become the offsets.
+    """
     p, z = frames[:, :3, 3], frames[:, :3, 2]
     wrist = _meeting_point(p[3:], z[3:])
+    # the cosines of the four right angles; J2 and J3 must be parallel
     square = np.array([matmul(z[0], z[1]), matmul(z[2], z[3]), matmul(z[3], z[4]), matmul(z[4], z[5])])
     if wrist is None or not np.abs(square).max() < _LOOSE or not norm(np.cross(z[1], z[2])) < _LOOSE:
         return None
@@ -80,6 +90,7 @@ def _parameters(frames: Array, X_base_flange: Array) -> OpwParameters | None:
     to_opw = X_base_opw[:3, :3].T
     p_wrist = matmul(to_opw, wrist - X_base_opw[:3, 3])
     fore = np.array([p_wrist[0] - x3, 0.0, p_wrist[2] - z3])
+    # c3 >= 0 fixes the sign of J4, c4 >= 0 that of J6, and t4 within a quarter turn that of J5
     e4, e5, e6 = (matmul(to_opw, z[i]) for i in (3, 4, 5))
     signs[3] = -1.0 if matmul(fore, e4) < -_SAME else 1.0
     e4 = signs[3] * e4
@@ -113,9 +124,10 @@ def _parameters(frames: Array, X_base_flange: Array) -> OpwParameters | None:
 def _model_frame(p: Array, z: Array) -> tuple[Array, Array]:
     """Return X_base_opw and the signs (6,) with those of J1 to J3 set."""
     signs = np.ones(6)
-    signs[0] = -1.0 if z[0][2] < -0.5 else 1.0
+    signs[0] = -1.0 if z[0][2] < -0.5 else 1.0  # a waist that turns about the downward axis of the base
     up = signs[0] * z[0]
     origin = p[0] - matmul(p[0], up) * up  # the foot of the base origin on J1
+    # y made exactly square to J1: the file's J2 may miss a right angle by rounding
     y = z[1] - matmul(z[1], up) * up
     y /= norm(y)
     a1 = dot(p[1] - origin, np.cross(y, up))
@@ -134,9 +146,10 @@ def _across(X_base_opw: Array, point: Array) -> tuple[float, float]:
 
 def _meeting_point(p: Array, z: Array) -> Array | None:
     """Return the point (3,) nearest to lines p (k, 3) along z (k, 3); None when they do not meet."""
+    # least squares: each line measures a point by its distance, whose projector is E - z z'
     across = np.eye(3) - z[:, :, None] * z[:, None, :]
     normal = across.sum(axis=0)
-    if not np.linalg.cond(normal) < 1e6:
+    if not np.linalg.cond(normal) < _WELL_POSED:
         return None
     point = solve(normal, matmul(across, p[..., None]).sum(axis=0)[:, 0])
     miss = np.linalg.norm(matmul(across, (point - p)[..., None])[..., 0], axis=-1)
@@ -144,35 +157,20 @@ def _meeting_point(p: Array, z: Array) -> Array | None:
 
 
 def _with_ends(params: OpwParameters, X_base_opw: Array, X_base_flange: Array) -> OpwParameters:
-    """Return the parameters with what is left before and behind the model, as offsets of J1 and J6 where it can be."""
+    """Return the parameters with the constant poses before and after the model, as offsets of J1 and J6 if possible."""
     X_base_end = matmul(X_base_opw, opw.forward(params, np.zeros(6)))
     t1, before = _split(X_base_opw)
-    t6, behind = _split(matmul(inverse(X_base_end), X_base_flange))
+    t6, after = _split(matmul(inverse(X_base_end), X_base_flange))
     offsets = np.array(params.offsets)
     offsets[0] += t1
     offsets[5] += t6
-    # b = 2e-17 for 0 would take the arm for one with a shoulder offset: rounded, and the mismatch judges
-    a1, a2, b, c1, c2, c3, c4 = (
-        round(length, 13) + 0.0
-        for length in (params.a1, params.a2, params.b, params.c1, params.c2, params.c3, params.c4)
-    )
-    plain = OpwParameters(a1=a1, a2=a2, b=b, c1=c1, c2=c2, c3=c3, c4=c4, offsets=frozen(offsets), signs=params.signs)
-    if before is None and behind is None:
+    # b = 2e-17 for 0 would make it an arm with a shoulder offset, whose front and back have another meaning: rounded to
+    # 0.1 pm, and the mismatch judges the result
+    plain = OpwParameters.of([round(length, 13) + 0.0 for length in params.lengths], offsets, params.signs)
+    if before is None and after is None:
         return plain
     unmoved = frozen(np.eye(4))
-    return PlacedOpw(
-        a1=a1,
-        a2=a2,
-        b=b,
-        c1=c1,
-        c2=c2,
-        c3=c3,
-        c4=c4,
-        offsets=plain.offsets,
-        signs=plain.signs,
-        X_base_opw=unmoved if before is None else before,
-        X_opw_flange=unmoved if behind is None else behind,
-    )
+    return PlacedOpw.between(plain, unmoved if before is None else before, unmoved if after is None else after)
 
 
 def _split(X: Array) -> tuple[float, Array | None]:

@@ -1,6 +1,6 @@
 """Kinematics of a robot: where the flange is, which joint angles put it there, how it moves with the joints.
 
-``Kinematics`` is the one noun that planner, session, cell and command line use. Forward kinematics and the Jacobian
+``Kinematics`` is what planner, session, cell and command line use. Forward kinematics and the Jacobian
 come from the chain of axes of the arm (the same data that Pinocchio and MuJoCo are built from). Inverse kinematics is
 the closed form (``opw``) where the arm has one: given in its robot file, where it must match the chain to 1e-9 m, or
 found from the joint lines (``closed_form``). Other arms of 2 to 7 axes are solved by damped Newton steps (``newton``);
@@ -36,17 +36,17 @@ LIMIT_ROUNDING = 1e-9
 """A joint this far outside its range, rad, is not turned by a whole turn to bring it in."""
 
 REDUNDANT_ABOVE = 6
-"""With more axes an arm meets a pose in infinitely many ways."""
+"""With more axes an arm meets a pose with infinitely many joint angles."""
 
 SAME_ANGLES = 1e-9
 """Two branches whose joints differ by less, rad, are one solution (they merge at a singularity)."""
 
 SAME_ROOM = 0.01 * DEG
-"""Two angles whose distances from the ends of the range differ by less, rad, are as far from them: taught angles have
+"""Two angles whose distances from the ends of the range differ by less, rad, count as equally far: taught angles have
 three decimals, and rounding must not decide which of the two a robot takes."""
 
 MOST_NUMERIC, MOST_REDUNDANT = 16, 8
-"""As many solutions of Newton's method are listed, at most, of arms of up to 6 axes, which have no more, and of 7."""
+"""Most solutions of Newton's method that are listed: of arms of up to 6 axes, which have 16 at most, and of 7."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,7 +86,7 @@ class Kinematics:
     def forward(self, q: ArrayLike) -> Array:
         """Return X_base_flange (..., 4, 4) of joint angles (..., n) rad."""
         X = np.eye(4)
-        for X in self._axis_frames(np.asarray(q, dtype=np.float64)):  # noqa: B007 - the last one is wanted
+        for X in self._axis_frames(np.asarray(q, dtype=np.float64)):  # noqa: B007 - only the last frame is needed
             pass
         return np.asarray(matmul(X.reshape(-1, 4), self.spec.X_last_flange).reshape(X.shape))
 
@@ -123,6 +123,7 @@ class Kinematics:
         params = self._opw
         if params is None:
             return self._numeric_solutions(self._start(near), X_base_flange)
+        # into the ranges before merging: branches that merge may lie whole turns apart
         found: list[Solution] = []
         rows = self._into_range(opw.inverse(params, X_base_flange, near), near)
         for branch, q in zip(BRANCHES, rows, strict=True):
@@ -183,14 +184,16 @@ class Kinematics:
         rows = self.newton.search(np.asarray(X_base_flange), near, self._lower, self._upper)
         turned = (self._into_range(q, near) for q in rows)
         found = [Solution(q=frozen(q), branch=NUMERIC, limit_margin=float(self.limit_margin(q))) for q in turned]
-        found.sort(key=lambda solution: solution.limit_margin < 0.0)  # in range first, otherwise as they were found
+        found.sort(key=lambda solution: solution.limit_margin < 0.0)  # in range first; the sort keeps the order else
         return found[: MOST_REDUNDANT if self.n > REDUNDANT_ABOVE else MOST_NUMERIC]
 
     def _into_range(self, q: Array, near: ArrayLike | None) -> Array:
+        """Return q (..., n) rad turned by whole turns as the module says: inside the range, near the reference."""
         reference = self._middle if near is None else np.asarray(near, dtype=np.float64)
-        wanted = self.freer_half_turn(self.nearest_turns(q, reference), reference)
-        fewest, most = self._fewest_and_most(wanted)
-        inside = wanted + TURN * np.clip(0.0, fewest, most)
+        nearest = self.freer_half_turn(self.nearest_turns(q, reference), reference)
+        fewest, most = self._fewest_and_most(nearest)
+        # the fewest whole turns that bring it inside; where fewest > most no turn does
+        inside = nearest + TURN * np.clip(0.0, fewest, most)
         return np.where(fewest <= most, inside, self.nearest_turns(q, self._middle))
 
     def _fewest_and_most(self, q: Array) -> tuple[Array, Array]:
@@ -205,6 +208,7 @@ class Kinematics:
             X = matmul(X.reshape(-1, 4), axis.placement).reshape(X.shape)  # one product for all postures
             c, s = np.cos(q[..., i])[..., None], np.sin(q[..., i])[..., None]
             x, y = X[..., :, 0], X[..., :, 1]
+            # a rotation about z mixes the first two columns only: cheaper than a product with a matrix
             turned = np.empty((*q.shape[:-1], 4, 4))
             turned[..., 0], turned[..., 1], turned[..., 2:] = c * x + s * y, c * y - s * x, X[..., :, 2:]
             X = turned
@@ -212,5 +216,6 @@ class Kinematics:
 
 
 def _twist(X_base_axis: Array, p_flange: Array) -> Array:
+    """Return one column (..., 6) of the Jacobian: the flange's motion for 1 rad/s of an axis."""
     z, p = X_base_axis[..., :3, 2], X_base_axis[..., :3, 3]
     return np.concatenate([np.cross(z, p_flange - p), z], axis=-1)

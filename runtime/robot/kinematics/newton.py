@@ -1,4 +1,4 @@
-"""Inverse kinematics of arms without a closed form: damped Newton steps on Pinocchio.
+"""Inverse kinematics of arms without a closed form: damped Newton steps on the Jacobian of Pinocchio.
 
 The error of a pose is ``e = [p - p(q); log(R R(q)')]`` in the base frame, m and rad (one rad counts as 1 m). With the
 Jacobian J of the flange, in the same frame, a step solves the damped least squares of Levenberg and Marquardt,
@@ -12,7 +12,8 @@ Robotics 27(5), 2011); a step that makes the error larger is taken back and damp
 preferred one. Arms with fewer than 6 axes meet a pose only if it lies in what they can reach: the least squares then
 end in an error that is not zero, and the answer is NaN, as it is for any pose out of reach.
 
-Beside a singularity convergence is linear, and a pose at its very edge may be given up (NaN) though it can be met.
+Near a singularity convergence is linear, and a pose at its very edge may be given up (NaN) though it can be met.
+Called by ``Kinematics``: for each sample of a path, and for searches; m and rad, base frame.
 """
 
 import math
@@ -29,17 +30,21 @@ TOLERANCE = 1e-10
 """A pose is met when position (m) and orientation (rad) are within this of it."""
 
 DAMPING = 1e-2
+"""mu over |e|^2: small against J J', whose entries are about 1, as soon as the error is."""
 LARGEST_STEP = 0.5
 """No joint turns further in one step, rad: beyond, the linear model says nothing."""
 
 STEPS = 100
+"""Most steps of one solve; those that were taken back and damped more count."""
 SEEDS, MOST_SEEDS = 40, 400
 """Fewest and most starts of a search; between them it ends when it is likely to be complete."""
 SAME = 1e-6
 """Solutions of a search whose joints differ by less, rad and whole turns apart, are one: near a singularity their
 digits are fewer."""
 _WORST_DAMPING = 1e8
+"""Damping that no longer helps: the error is at a minimum that is not zero, the pose out of reach."""
 _DETERMINED = 6
+"""Axes with which a pose has a finite number of solutions."""
 
 
 class NewtonSolver:
@@ -63,6 +68,7 @@ class NewtonSolver:
         poses = X_base_flange.reshape(-1, 4, 4)
         own = np.ndim(q_start) > 1
         starts = np.broadcast_to(q_start, (*X_base_flange.shape[:-2], self.n)).reshape(-1, self.n)
+        # a pose that is not met leaves NaN, and the next one starts from the last that was
         rows = np.empty((len(poses), self.n))
         q = np.array(starts[0]) if len(poses) else np.zeros(self.n)
         for index, X in enumerate(poses):
@@ -79,6 +85,7 @@ class NewtonSolver:
         for _ in range(STEPS):
             if norm(e[:3]) < TOLERANCE and norm(e[3:]) < TOLERANCE:
                 return q
+            # damped so much and still not better: no neighbour of q is
             if not worse < _WORST_DAMPING:
                 break
             trial = q + self._step(q, e, DAMPING * size * worse)
@@ -98,6 +105,7 @@ class NewtonSolver:
         yet (I. J. Good, The population frequencies of species, Biometrika 40, 1953), or while those of 6 axes are odd
         in number, which they are nowhere but at a singularity. The starts are the same in every call.
         """
+        # whole turns apart is the same start, so the points of a wide range lie within half a turn of its middle
         middle, half = 0.5 * (lower + upper), np.minimum(0.5 * (upper - lower), math.pi)
         random = np.random.default_rng(1992)
         found: list[Array] = []
@@ -138,15 +146,17 @@ class NewtonSolver:
     def _step(self, q: Array, e: Array, mu: float) -> Array:
         J = self._jacobian(q)
         damped = mu * self._eye
+        # 1e-15 keeps the matrix invertible when the error, and with it the damping, is zero at a singularity
         if self.n < _DETERMINED:
             dq = solve(matmul(J.T, J) + damped + 1e-15 * self._eye, matmul(J.T, e))
         else:
             dq = matmul(J.T, solve(matmul(J, J.T) + damped + 1e-15 * self._eye, e))
+        # shortened as a whole: its direction is that of the least squares
         largest = float(np.abs(dq).max())
         return np.asarray(dq if largest <= LARGEST_STEP else dq * (LARGEST_STEP / largest))
 
     def _jacobian(self, q: Array) -> Array:
-        """Return the Jacobian (6, n) of the flange origin, base frame."""
+        """Return the Jacobian (6, n) of the flange origin, base frame: rows 0-2 linear, 3-5 angular."""
         J = pin.computeJointJacobians(self._model, self._data, q)  # of the point at the base origin, base frame
         p = (self._data.oMi[self.n] * self._flange).translation
         moved = np.array(J)

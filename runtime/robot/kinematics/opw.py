@@ -9,10 +9,10 @@ Forward: the flange is the end of one product of elementary motions, from the ba
 
     Tz(c1) Rz(t1) T(a1, b, 0) Ry(t2) Tz(c2) Ry(t3) T(a2, 0, c3) Rz(t4) Ry(t5) Rz(t6) Tz(c4)
 
-with a constant pose before it and one behind it where an arm's own base and flange frames are others (``PlacedOpw``).
+with a constant pose before it and one after it where an arm's own base and flange frames differ (``PlacedOpw``).
 
 Inverse, arm. The wrist centre ``w = p - c4 R ez`` does not depend on J4 to J6. Seen in the frame of the waist it is
-at (r, b) of the ground plane, so with rho = hypot(wx, wy) and sh = +1 or -1 (in front of the waist or behind it)
+at (r, b) of the ground plane, so with rho = hypot(wx, wy) and sh = +1 or -1 (in front of the waist or in its back)
 
     r = sh sqrt((rho - |b|)(rho + |b|)),    t1 = atan2(wy, wx) - atan2(b, r)
 
@@ -32,9 +32,9 @@ Branches. Three choices of two name the eight solutions. Each is a property of t
 of its joints, except that the wrist's is the sign that people read from the display.
 
 * RIGHTY: r >= 0, the wrist centre is in front of the waist (on the +x side of the frame that turns with t1);
-  LEFTY: behind it. Most industrial arms have b = 0: there this is front and back. The Puma 560 has b < 0 (an arm
-  that reaches forward stands right of the waist), so RIGHTY looks like a person's right arm, as its makers had it.
-  An arm with b > 0 is RIGHTY too when it reaches forward.
+  LEFTY: r < 0, in its back. Most industrial arms have b = 0: there this is front and back. The Puma 560 has b < 0
+  (an arm that reaches forward is right of the waist), so RIGHTY looks like a person's right arm, as its makers named
+  it. An arm with b > 0 is RIGHTY too when it reaches forward.
 * ABOVE: sh sin(g) >= 0, for an arm that reaches outwards the elbow is on the upper side of the line from shoulder
   to wrist centre; BELOW: on the lower side. The elbow is the corner of the triangle; a2 belongs to the forearm.
 * NOFLIP: sin(J5) >= 0, with J5 in the robot's own direction and counted from the straight wrist; FLIP: < 0. From
@@ -56,7 +56,7 @@ pose is still met exactly. Beyond reach (rho < |b|, or d outside [|c2 - k|, c2 +
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import Enum
 from typing import Protocol
 
@@ -74,11 +74,12 @@ a singularity is at the singularity. Small enough that a pose is met to 1e-12 m 
 
 BORDER = 1e-4
 """A posture this near to the border of two branches has both names: m from axis 1, sines of elbow and wrist (0.1 mm,
-0.006 deg). Taught angles have three decimals, and rounding must not decide in which of the two the arm stands."""
+0.006 deg). Taught angles have three decimals, and rounding must not decide in which of the two the arm is."""
 
 TURN = 2.0 * math.pi
 
 _Z = np.array([0.0, 0.0, 1.0])
+# all zeros, where a file is checked by eye, and three postures with every joint away from zero and right angles
 _PROBES = np.array(
     [
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -112,7 +113,7 @@ class Wrist(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Branch:
-    """One of the eight ways in which an arm meets a pose; as text ``LEFTY ABOVE NOFLIP``."""
+    """One of the eight solutions of a pose, by name; as text ``LEFTY ABOVE NOFLIP``."""
 
     arm: Arm
     elbow: Elbow
@@ -152,10 +153,16 @@ _SIGNS = np.array([(b.arm.value, b.elbow.value, b.wrist.value) for b in BRANCHES
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlacedOpw(OpwParameters):
-    """The parameters of an arm whose frames are not the model's: constant poses (4, 4) before and behind it."""
+    """The parameters of an arm whose frames are not the model's: constant poses (4, 4) before and after it."""
 
     X_base_opw: Array
     X_opw_flange: Array
+
+    @classmethod
+    def between(cls, params: OpwParameters, X_base_opw: Array, X_opw_flange: Array) -> "PlacedOpw":
+        """Return parameters with constant poses (4, 4) before and after the model."""
+        own = {field.name: getattr(params, field.name) for field in fields(OpwParameters)}
+        return cls(**own, X_base_opw=X_base_opw, X_opw_flange=X_opw_flange)
 
 
 class Placed(Protocol):
@@ -166,7 +173,7 @@ class Placed(Protocol):
 
 
 class Geometry(Protocol):
-    """What kinematics needs of an arm: ``RobotSpec`` has it, and so has an imported arm without drives."""
+    """The geometry that kinematics needs: of a ``RobotSpec``, or of an imported arm without drives."""
 
     @property
     def name(self) -> str: ...  # noqa: D102
@@ -237,6 +244,7 @@ def changes(params: OpwParameters, q_from: ArrayLike, q_to: ArrayLike) -> tuple[
 
     A posture on a border has both names and differs from neither.
     """
+    # both postures have to be clear of the border: one on it has the other one's name as well
     before, after = branch_of(params, q_from), branch_of(params, q_to)
     clear = [min(abs(a), abs(b)) > BORDER for a, b in zip(_sides(params, q_from), _sides(params, q_to), strict=True)]
     pairs = ((before.arm, after.arm), (before.elbow, after.elbow), (before.wrist, after.wrist))
@@ -282,7 +290,9 @@ def _solve(params: OpwParameters, X: Array, signs: Array, near: Array | None) ->
         X = matmul(inverse_pose(params.X_base_opw), X, inverse_pose(params.X_opw_flange))
     R, p = X[..., :3, :3], X[..., :3, 3]
     with np.errstate(invalid="ignore"):
-        t1, t2, t3 = arm_angles(params, p - params.c4 * R[..., :, 2], signs[0], signs[1], t1_free=reference[..., 0])
+        t1, t2, t3 = arm_angles(
+            params, p - params.c4 * R[..., :, 2], signs[0], signs[1], Forearm.to_wrist(params), reference[..., 0]
+        )
         W = _wrist_rotation(R, t1, t2 + t3)
         t4, t5, t6 = _wrist_angles(W, params.signs[4] * signs[2], reference[..., 3])
         theta = np.stack(np.broadcast_arrays(t1, t2, t3, t4, t5, t6), axis=-1)
@@ -290,33 +300,45 @@ def _solve(params: OpwParameters, X: Array, signs: Array, near: Array | None) ->
         return wrapped(params.signs * (theta - params.offsets))
 
 
+@dataclass(frozen=True, slots=True)
+class Forearm:
+    """The lengths (...,), m, that say where the end of a forearm is seen from the elbow: a2 and c3 in the plane of the
+    arm, b across it."""
+
+    a2: Array
+    b: Array
+    c3: Array
+
+    @staticmethod
+    def to_wrist(params: OpwParameters) -> "Forearm":
+        """Return the forearm that ends in the wrist centre."""
+        return Forearm(*np.array([params.a2, params.b, params.c3]))
+
+
 def arm_angles(
     params: OpwParameters,
     p_end: Array,
     arm: Array | int,
     elbow: Array | int,
-    *,
+    forearm: Forearm,
     t1_free: Array | float = 0.0,
-    a2: Array | None = None,
-    b: Array | None = None,
-    c3: Array | None = None,
 ) -> tuple[Array, Array, Array]:
-    """Return t1, t2, t3 (...,) that put the end of the forearm at p_end (..., 3); NaN out of reach.
+    """Return t1, t2, t3 (...,) that put the end of the forearm at p_end (..., 3) m; NaN out of reach.
 
-    The end is the wrist centre, or another point of a forearm of lengths ``a2``, ``b`` and ``c3`` (...,), m: the tool
-    point where the wrist is held (``frozen_wrist``). ``arm`` and ``elbow`` are the signs of the branch.
+    The end is the wrist centre, or the tool point of a forearm whose wrist is held (``frozen_wrist``). ``arm`` and
+    ``elbow`` are the signs of the branch; ``t1_free`` rad is t1 where the end lies on axis 1.
     """
-    own = np.array([params.a2, params.b, params.c3])
-    a2, b, c3 = (mine if given is None else given for mine, given in zip(own, (a2, b, c3), strict=True))
+    a2, b, c3 = forearm.a2, forearm.b, forearm.c3
     x, y, z = np.moveaxis(p_end, -1, 0)
     rho = np.hypot(x, y)
     r = arm * _leg(rho, np.abs(b))
     t1 = np.arctan2(y, x) - np.arctan2(b, r)
+    # the end on axis 1 and no shoulder offset: any t1 meets it, and the reference decides
     t1 = np.where((rho < ROUNDING) & (np.abs(b) < ROUNDING), t1_free, t1)
     u, v = r - params.a1, z - params.c1
     d = np.hypot(u, v)
     k = np.hypot(a2, c3)
-    # 'above' bends the elbow towards +t behind the waist and in front of it in opposite senses: hence arm * elbow
+    # 'above' bends the elbow in opposite senses in front of the waist and in its back: hence arm * elbow
     g = arm * elbow * 2.0 * np.arctan2(_leg(params.c2 + k, d), _leg(d, np.abs(params.c2 - k)))
     t2 = np.arctan2(u, v) - np.arctan2(k * np.sin(g), params.c2 + k * np.cos(g))
     return t1, t2, g - np.arctan2(a2, c3)
@@ -324,6 +346,7 @@ def arm_angles(
 
 def _leg(hypotenuse: ArrayLike, other: ArrayLike) -> Array:
     """Return sqrt(h^2 - o^2) of lengths in m, zero where o is longer by rounding only, NaN where it is longer."""
+    # (h - o)(h + o) instead of h^2 - o^2: the difference of squares loses its digits at the border, where h = o
     gap = np.subtract(hypotenuse, other)
     return np.asarray(np.sqrt(np.where(gap >= -ROUNDING, np.maximum(gap, 0.0), np.nan) * np.add(hypotenuse, other)))
 
@@ -338,6 +361,7 @@ def _wrist_rotation(R: Array, t1: Array, t23: Array) -> tuple[Array, Array, Arra
 
 def _wrist_angles(W: tuple[Array, Array, Array], bend: Array, t4_free: Array) -> tuple[Array, Array, Array]:
     """Return t4, t5, t6 of W = Rz(t4) Ry(t5) Rz(t6) with the sign of t5 given; t4 = t4_free where t5 = 0."""
+    # t5 and t6 from W turned back by t4: next to the singularity an error of t4 is made good by t6 (see the module)
     x, y, z = W
     t4 = np.arctan2(bend * y[..., 2], bend * x[..., 2])
     t4 = np.where(np.hypot(x[..., 2], y[..., 2]) < ROUNDING, t4_free, t4)

@@ -6,7 +6,8 @@ With the angles of the closed form, theta = sign q + offset, k = hypot(a2, c3) a
     elbow      g from 0 or half a turn: the arm is stretched or folded
     shoulder   |a1 + c2 sin t2 + k sin(t2 + g)|: how far the wrist centre is from the plane in which it meets axis 1
 
-The range of validity is that of the closed form: six axes, a spherical wrist.
+The range of validity is that of the closed form: six axes, a spherical wrist. Called by the findings
+on motion and the table of cycle times.
 """
 
 import math
@@ -30,6 +31,7 @@ class Singularities:
 
 def singularities(params: OpwParameters, q: ArrayLike) -> Singularities:
     """Return how far joint angles q (..., 6) rad are from the singular postures."""
+    # the angles g and r of ``opw``, without its branches: distances need no sides
     theta = params.signs * np.asarray(q, dtype=np.float64) + params.offsets
     k = math.hypot(params.a2, params.c3)
     g = theta[..., 2] + math.atan2(params.a2, params.c3)

@@ -1,4 +1,4 @@
-"""What a payload asks of the wrist: static moment and inertia about each of its axes, against what they may carry.
+"""The load that a payload puts on the wrist: moment and inertia about each of its axes, against their ratings.
 
 Vendors rate an arm by more than a mass: a light payload far from the flange overloads the wrist. With the linear and
 angular columns (v_i, z_i) of the Jacobian at the flange, and the centre of gravity at r from it,
@@ -24,7 +24,7 @@ from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import AxisSpec, RobotSpec
 
 MOMENT_SHARE = 0.5
-"""Share of the torque limit of an axis that holding a payload may take, where the robot file says nothing."""
+"""Share of the torque limit of an axis that holding a payload may take, where the robot file states no rating."""
 WRIST_AXES = 3
 """The last axes, which a payload loads by where its centre of gravity is."""
 
@@ -39,12 +39,13 @@ class WristLoad:
 
 
 def wrist_load(kinematics: Kinematics, q: Array, payload: Payload) -> WristLoad:
-    """Return what a payload asks of the wrist at joint angles q (..., n) rad."""
+    """Return the load of a payload on the wrist at joint angles q (..., n) rad."""
     first = max(0, kinematics.n - WRIST_AXES)
     J = kinematics.jacobian(q)[..., first:]
     R = kinematics.forward(q)[..., :3, :3]
     v, z = np.moveaxis(J[..., :3, :], -2, -1), np.moveaxis(J[..., 3:, :], -2, -1)
     r = matmul(R, payload.cog)[..., None, :]
+    # one Jacobian serves both: the flange's, carried over to the centre of gravity
     w = v + np.cross(z, r)
     own = matmul(R, payload.inertia, np.swapaxes(R, -1, -2))
     inertia = payload.mass * np.sum(w * w, axis=-1) + np.einsum("...ki,...ij,...kj->...k", z, own, z)
@@ -62,6 +63,7 @@ def rated_inertia(axis: AxisSpec) -> float:
     given = axis.limits.rated_inertia
     if given is not None:
         return given
+    # 0 where the rotor alone takes all of it: such an axis is rated for no inertia rather than for a negative one
     free = (1.0 - MOMENT_SHARE) * axis.limits.torque / axis.limits.acceleration
     return max(0.0, free - axis.motor.reflected_inertia)
 

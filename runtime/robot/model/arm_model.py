@@ -19,6 +19,7 @@ from runtime.robot.model.payload import NO_PAYLOAD, Payload
 from runtime.robot.model.spec import Body, RobotSpec
 
 _NO_MASS = 1e-9
+"""Mass of the bodies that stand for first moments, kg: next to nothing of its own, and the moment is mass times cog."""
 
 
 class ArmModel(Stateful):
@@ -33,6 +34,7 @@ class ArmModel(Stateful):
         self._model = _build(spec)
         if rotors is not None:
             self._model.armature = rotors
+        # a second model without gravity: a column of M is then one inverse dynamics, not the difference of two
         self._weightless = self._model.copy()
         self._weightless.gravity = pin.Motion.Zero()
         self._data = self._model.createData()
@@ -63,7 +65,7 @@ class ArmModel(Stateful):
 
     def mass_matrix(self, q: Array) -> Array:
         """Return M (n, n), kg m2, symmetric."""
-        M = pin.crba(self._model, self._data, q)
+        M = pin.crba(self._model, self._data, q)  # fills the upper triangle only
         upper = np.triu(M)
         return np.asarray(upper + np.triu(M, 1).T)
 
@@ -86,6 +88,7 @@ class ArmModel(Stateful):
         return tau if self._moments is None else tau + self._beyond(q)
 
     def _beyond(self, q: Array) -> Array:
+        """Return the torques (n,) N m of the identified first moments, which are weighed and not accelerated."""
         model, data = self._moments
         return np.asarray(pin.computeGeneralizedGravity(model, data, q))
 

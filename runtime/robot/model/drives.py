@@ -1,4 +1,4 @@
-"""Drives and limits of an arm: motor, range, speed and loop bandwidths of every axis, and what the tool point may do.
+"""Drives and limits of an arm: motor, range, speed and loop bandwidths of every axis, and the limits of the tool point.
 
 Robot files and the sidecars of model files state them with the same keys (docs/robots.md); both are read here, in mm
 and deg, and kept in SI. Imports no numerics: ``robolang check`` reads the ranges of a robot with it.
@@ -75,7 +75,7 @@ class Motor:
     def joint_coulomb_friction(self) -> tuple[float, float]:
         """|N| Tc at the joint, N m, (joint turning forward, joint turning backward)."""
         forward, backward = self.coulomb_friction
-        if self.gear_ratio < 0.0:
+        if self.gear_ratio < 0.0:  # the joint turns forward while the motor turns backward
             forward, backward = backward, forward
         return abs(self.gear_ratio) * forward, abs(self.gear_ratio) * backward
 
@@ -99,7 +99,7 @@ class Limits:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bandwidths:
-    """What the loop gains of an axis derive from: Kp = ``position`` 1/s, Kv = K Ktn = ``velocity`` 1/s."""
+    """The bandwidths that give the loop gains of an axis: Kp = ``position`` 1/s, Kv = K Ktn = ``velocity`` 1/s."""
 
     position: float
     velocity: float
@@ -140,7 +140,9 @@ def motor(table: Table) -> Motor:
     ratio = table.number("gear_ratio", low=-10000.0, high=10000.0)
     if not abs(ratio) >= 1e-3:
         table.fail("RBL605", f"'{table.name('gear_ratio')}' is {ratio:g} and must not be zero", key="gear_ratio")
+    # two numbers, since gears differ by direction; both positive, so that a sign cannot be read in two senses
     forward, backward = table.numbers("coulomb_friction_nm", 2, low=0.0)
+    # one of the two makes the gear elastic and the other is then required: an undamped spring is not guessed
     elastic = "joint_stiffness_nm_rad" in table or "joint_damping_nm_s_rad" in table
     motor = Motor(
         gear_ratio=ratio,
@@ -150,6 +152,7 @@ def motor(table: Table) -> Motor:
         viscous_friction=table.number("viscous_friction_nm_s", low=0.0),
         coulomb_friction=(forward, backward),
         encoder_counts=table.integer("encoder_counts", low=4, high=2**30),
+        # Hz in the file, as data sheets have it
         current_bandwidth=table.number("current_bandwidth_hz", positive=True) * 2.0 * math.pi,
         stiffness=table.number("joint_stiffness_nm_rad", positive=True, high=STIFFEST) if elastic else math.inf,
         damping=table.number("joint_damping_nm_s_rad", low=0.0) if elastic else 0.0,
@@ -196,7 +199,11 @@ def joint_range(table: Table) -> tuple[float, float]:
     """Read ``range_deg`` of an axis, rad; ``FileFault`` RBL60x."""
     lower, upper = table.numbers("range_deg", 2, low=-WIDEST / DEG, high=WIDEST / DEG)
     if not lower < upper:
-        table.fail("RBL607", f"'{table.name('range_deg')}' goes from {lower:g} to {upper:g}", key="range_deg")
+        table.fail(
+            "RBL607",
+            f"'{table.name('range_deg')}' is [{lower:g}, {upper:g}]: the first must be smaller",
+            key="range_deg",
+        )
     return lower * DEG, upper * DEG
 
 
@@ -207,6 +214,7 @@ def link_radii(tables: Sequence[Table]) -> tuple[float, ...]:
     """
     radii = [_optional(table, "link_radius_mm") for table in tables]
     given = [radius * MM for radius in radii if radius is not None]
+    # some links only would leave gaps that a check of the arm against itself does not see
     if given and len(given) < len(radii):
         table = tables[radii.index(None)]
         table.fail(
@@ -219,7 +227,7 @@ def link_radii(tables: Sequence[Table]) -> tuple[float, ...]:
 
 def _optional(table: Table, key: str) -> float | None:
     """Return a number above 0, None where the file has none."""
-    table.ask(key)
+    table.ask(key)  # known also where it is missing, so that a misspelt key is compared with it
     return table.number(key, positive=True) if key in table else None
 
 
@@ -242,9 +250,9 @@ def texts(table: Table, key: str) -> tuple[str, ...]:
 
 
 def beyond_range(q_deg: Sequence[float | None], limits: Sequence[Limits]) -> str:
-    """Return which joint stands furthest outside of its range at angles (n,) deg, and by how much; empty for none.
+    """Return which joint is furthest outside of its range at angles (n,) deg, and by how much; empty for none.
 
-    An angle that is None is not known; neither are ``limits`` that are not there.
+    An angle of None is not known. With fewer ``limits`` than angles, or fewer angles, only the pairs are compared.
     """
     worst, found = RANGE_ROUNDING, ""
     for index, (angle, axis) in enumerate(zip(q_deg, limits, strict=False)):
@@ -261,5 +269,5 @@ def beyond_range(q_deg: Sequence[float | None], limits: Sequence[Limits]) -> str
 
 
 def joint_label(index: int, name: str) -> str:
-    """Return ``J2 shoulder_lift``: the number people use, from 1, and the name in the file."""
+    """Return ``J2 shoulder_lift``: the number of an axis (0-based ``index``) from 1, and its name in the file."""
     return f"J{index + 1} {name}"

@@ -1,4 +1,8 @@
-"""A quantity that depends on a few joints, kept on a grid of their angles: straight between, held flat outside."""
+"""A quantity that depends on a few joints, on a grid of their angles: multilinear between, constant outside.
+
+Used for rotor inertias that an identification found to depend on the posture (docs/identification.md). Imports no
+numerics, since the settings of a controller hold it.
+"""
 
 from bisect import bisect_right
 from dataclasses import dataclass
@@ -30,6 +34,8 @@ class JointTable:
 
     def at(self, q: Angles) -> float:
         """Return the value at joint angles q (n,) rad, multilinear; an angle off the grid counts as its end."""
+        # joint by joint, the slowest of the row-major values first: each step leaves one value for every grid point of
+        # the joints to come
         values = self.values
         for joint, angles in zip(self.joints, self.grid, strict=True):
             angle, size = float(q[joint]), len(values) // len(angles)

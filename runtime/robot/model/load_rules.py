@@ -20,14 +20,16 @@ LoadMode = Literal["add", "replace"]
 """Whether a payload is added to the last link, or takes its place (the literal reading of the document)."""
 
 MAX_COG_DISTANCE = 2.0
-"""Farthest centre of gravity from the flange that is believed, m."""
+"""Farthest centre of gravity from the flange that is accepted, m; beyond it a value was meant in mm or cm."""
 
 ROUNDING = 1e-6
+"""Share of the largest moment: typed figures of six digits may break the triangle inequality by that much."""
 _SMALLEST_MOMENT = 1e-9
 """Rounding below this is none, kg m2."""
 _SWEEPS = 20
+"""Jacobi's method converges quadratically: a 3x3 matrix needs four or five sweeps."""
 _GRAMS = 50.0
-"""A mass from here on that a robot cannot carry may have been meant in g, kg."""
+"""A mass of this or more, kg, that a robot cannot carry may have been meant in g."""
 
 
 def load_fault(mass: float, cog: Sequence[float], inertia: Sequence[float] | None, rated: float) -> Fault | None:
@@ -111,6 +113,7 @@ def _turn(M: list[list[float]], i: int, j: int) -> None:
     beside = M[i][j]
     if beside == 0.0:
         return
+    # the smaller of the two angles that make the element zero: then the method converges
     ratio = (M[j][j] - M[i][i]) / (2.0 * beside)
     t = math.copysign(1.0, ratio) / (abs(ratio) + math.hypot(ratio, 1.0))
     c = 1.0 / math.hypot(t, 1.0)

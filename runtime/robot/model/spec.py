@@ -10,11 +10,12 @@ Robot files give standard Denavit-Hartenberg rows (``form = "dh"``) or joint lin
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from runtime.core.frames import Array
+from runtime.core.frames import Array, frozen
 from runtime.core.tomlfile import FileFault
 from runtime.robot.model.drives import Bandwidths, Limits, Motor, PathLimits
 from runtime.robot.model.load_rules import moments_defect
@@ -58,10 +59,26 @@ class OpwParameters:
     offsets: Array
     signs: Array
 
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """The lengths a1, a2, b, c1, c2, c3, c4, m."""
+        return self.a1, self.a2, self.b, self.c1, self.c2, self.c3, self.c4
+
+    @staticmethod
+    def of(lengths: Sequence[float], offsets: Array, signs: Array) -> "OpwParameters":
+        """Return the parameters with ``lengths`` (7,) m in the order of the property, offsets and signs (6,)."""
+        a1, a2, b, c1, c2, c3, c4 = lengths
+        return OpwParameters(
+            a1=a1, a2=a2, b=b, c1=c1, c2=c2, c3=c3, c4=c4, offsets=frozen(offsets), signs=frozen(signs)
+        )
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Correction:
-    """A change made to published body data so that it is a possible body, and why (see ``corrections``)."""
+    """A change to the published body of ``axis`` (0-based) that makes it a possible one, and why (``corrections``).
+
+    ``inertia_shift`` and ``added_inertia`` kg m2, ``added_mass`` kg.
+    """
 
     axis: int
     inertia_shift: float
@@ -115,7 +132,7 @@ class RobotSpec:
 
 def dh_transform(d: float, a: float, alpha: float) -> Array:
     """Return ``Tz(d) Tx(a) Rx(alpha)``, the fixed part of a standard DH row (m, rad)."""
-    # cos(pi/2) is 6e-17: rounded away, so that right angles are exact in every model built from it
+    # cos(pi/2) is 6e-17 in floating point: rounded away, so that right angles are exact in every model built from it
     c, s = (round(f(alpha), 15) + 0.0 for f in (math.cos, math.sin))
     return np.array([[1.0, 0.0, 0.0, a], [0.0, c, -s, 0.0], [0.0, s, c, d], [0.0, 0.0, 0.0, 1.0]])
 
@@ -133,7 +150,7 @@ def shift_between_links(axis_spec: AxisSpec, before: Body, shift: float) -> tupl
 
     The tensor ``shift * (E - z z')`` is symmetric about the joint axis z, so it may belong to either side of the
     joint: the two angular velocities differ only along z, where it is zero. The equations of motion are therefore
-    unchanged to the last bit of exact arithmetic. Returns (body of the axis, body before it).
+    unchanged in exact arithmetic. Returns (body of the axis, body before it).
     """
     z = np.array([0.0, 0.0, 1.0])
     own = axis_spec.body.inertia + shift * (np.eye(3) - np.outer(z, z))
