@@ -18,6 +18,7 @@ import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
+from typing import Any
 
 import robolang.core.codes  # noqa: F401 - every code a diagnostic may carry
 from robolang.core.source import Source, Span
@@ -130,7 +131,7 @@ def render_fault(fault: FileFault, severity: Severity = Severity.ERROR) -> str:
     return "\n".join(lines)
 
 
-def to_json(diagnostic: Diagnostic, source: Source) -> dict[str, object]:
+def to_json(diagnostic: Diagnostic, source: Source) -> dict[str, Any]:
     """Return the diagnostic as an object of plain JSON types; the end place is exclusive."""
     return {
         "code": diagnostic.code,
@@ -143,7 +144,7 @@ def to_json(diagnostic: Diagnostic, source: Source) -> dict[str, object]:
     }
 
 
-def fault_to_json(fault: FileFault) -> dict[str, object]:
+def fault_to_json(fault: FileFault) -> dict[str, Any]:
     """Return a fault of a file with the keys of ``to_json``."""
     return {
         "code": fault.code,

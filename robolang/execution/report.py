@@ -21,7 +21,7 @@ from runtime.plant.touches import shape_text
 from runtime.servo.motor import torque_limit
 
 
-def build_report(record: RunRecord, log: dict[str, Array], wall_s: float) -> dict[str, object]:
+def build_report(record: RunRecord, log: dict[str, Array], wall_s: float) -> dict[str, Any]:
     """Return the report of a finished run (docs/signals.md explains every key)."""
     controller = record.controller
     sim_s = controller.time_us / 1_000_000
@@ -166,7 +166,7 @@ def _largest(values: Array) -> float | None:
     return float(values.max()) if len(values) else None
 
 
-def _dynamics(record: RunRecord) -> dict[str, object]:
+def _dynamics(record: RunRecord) -> dict[str, Any]:
     areas, profile = record.controller.areas, record.project.profile
     return {
         "interpolation_cost_ms": profile.interpolation_cost_us * 1e-3,

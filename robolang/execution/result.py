@@ -1,6 +1,7 @@
 """What a run leaves behind: its statements, payloads and controller while it goes on, its result when it ends."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 from robolang.core.diagnostics import Diagnostic
 from robolang.interpreter.effects import Origin
@@ -45,7 +46,7 @@ class RunResult:
     ok: bool
     alarms: tuple[Diagnostic, ...]
     warnings: tuple[Diagnostic, ...]
-    report: dict[str, object]
+    report: dict[str, Any]
     log: dict[str, Array]
 
 

@@ -55,7 +55,9 @@ def faults(tree: ast.AST) -> list[str]:
         elif isinstance(node, ast.Call):
             found += [f"{node.lineno}: {word.arg}" for word in node.keywords if short(word)]
             if isinstance(node.func, ast.Attribute) and node.func.attr in ("alarm", "setitimer"):
-                found += [f"{node.lineno}: alarm" for each in node.args[:1] if too_short(each) and each.value != 0]
+                found += [
+                    f"{node.lineno}: alarm" for each in node.args[:1] if too_short(each) and ast.unparse(each) != "0"
+                ]
         elif isinstance(node, ast.FunctionDef):
             at_the_end = zip(reversed(node.args.args), reversed(node.args.defaults), strict=False)
             by_name = zip(node.args.kwonlyargs, node.args.kw_defaults, strict=True)

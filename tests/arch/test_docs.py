@@ -13,6 +13,7 @@ import tomllib
 from contextlib import redirect_stdout
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -408,7 +409,7 @@ def commands(command: object) -> list:
 
 def parse_command(words: list[str]) -> None:
     """Let the command line parse its arguments without doing anything; raises a usage error for wrong ones."""
-    command = get_command(app)
+    command: Any = get_command(app)
     while words and words[0] in getattr(command, "commands", {}):
         command, words = command.commands[words[0]], words[1:]
     assert not hasattr(command, "commands"), words

@@ -149,7 +149,7 @@ def measures(node):
 
 def blind_extremes(path, tree):
     for node in ast.walk(tree):
-        if called(node) in ("max", "min") and isinstance(node.func, ast.Name):
+        if isinstance(node, ast.Call) and called(node) in ("max", "min") and isinstance(node.func, ast.Name):
             guarded = any(item.arg == "key" and "badness" in ast.unparse(item.value) for item in node.keywords)
             if (
                 measures(node)

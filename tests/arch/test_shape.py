@@ -20,7 +20,9 @@ COMPLEX = 10
 MANY = 6
 """More arguments than this are hard to call rightly; ``self`` and ``cls`` do not count."""
 LONG = 500
-MOST_COMPLEX_PCT, MOST_MANY_PCT, MOST_LONG, LEAST_COMMENTS = 3.5, 1.2, 1, 0.9
+MOST_COMPLEX_PCT, MOST_MANY_PCT, MOST_LONG, LEAST_COMMENTS = 2.8, 1.05, 0, 1.05
+
+"""Today's values, which may only be tightened; the aims are 2 %, 0.5 %, no file, 3 lines of 100."""
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 

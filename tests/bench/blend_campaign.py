@@ -104,7 +104,8 @@ def campaign(robot, chains, seed=5, moves=5):
     planner = MotionPlanner(spec, kinematics, Profile())
     rng, count, saved = np.random.default_rng(seed), Counter(), []
     for _ in range(chains):
-        saved.append(examine(spec, kinematics, planner, *random_chain(rng, planner, spec, kinematics, moves), count))
+        start, commands = random_chain(rng, planner, spec, kinematics, moves)
+        saved.append(examine(spec, kinematics, planner, start, commands, count))
     return count, float(np.mean(saved))
 
 

@@ -96,7 +96,7 @@ def planning(paths: list[Path], rounds: int) -> Row:
     found = {path.relative_to(PROGRAMS).as_posix(): ratio(path, rounds) for path in paths}
     times = [ratio for _, ratio in found.values()]
     return Row(
-        figure="planning all ways of a program and looking at its motion, against the time of the robot, "
+        figure="planning all branches of a program and checking its motion, against the time of the robot, "
         "in one process",
         form="{:.0f} to {:.0f} times, median {:.0f}",
         values=(min(times), max(times), statistics.median(times)),
@@ -115,7 +115,7 @@ def rows(smallest: bool) -> Iterator[Row]:
         values=(1e3 * cold(few, processes).wall,),
     )
     yield Row(
-        figure="10,000 lines checked, the ways through them followed, CPU time",
+        figure="10,000 lines checked, the branches through them followed, CPU time",
         form="{:.2f} s",
         values=(cold(many, processes).processor,),
     )

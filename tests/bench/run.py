@@ -150,7 +150,7 @@ def wrist(rounds: int) -> Iterator[Row]:
     )
     on_path, on_its_way = tracked_microseconds(rounds)
     yield Row(
-        figure="set-point on a seam, wrist on its way against on the path",
+        figure="set-point on a seam, wrist on its joint curve against on the path",
         form="{:.2f} ({:.0f} us on the path)",
         values=(on_its_way / on_path, on_path),
     )

@@ -3,6 +3,7 @@
 import json
 import re
 import sys
+from functools import partial
 from itertools import groupby
 from pathlib import Path
 from types import SimpleNamespace
@@ -112,6 +113,10 @@ def test_the_page_is_read_as_it_is_meant():
     assert page_rows(page) == [("one", {"make x"}), ("two", {"make y"}), ("three", {"make y"}), ("four", set())]
 
 
+def printed(row, smallest):
+    return iter([row])
+
+
 @pytest.mark.parametrize("value", [float("nan"), float("inf")])
 def test_a_figure_that_is_no_number_ends_a_bench_with_an_error(value, monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["bench"])
@@ -121,7 +126,7 @@ def test_a_figure_that_is_no_number_ends_a_bench_with_an_error(value, monkeypatc
         (Row(figure="f", form="{:.1f} s", values=(1.0,), good=False), 1),
     ):
         with pytest.raises(SystemExit) as ended:
-            figures.run(lambda smallest, row=row: iter([row]))
+            figures.run(partial(printed, row))
         assert ended.value.code == code
     assert "NOT AS PROMISED" in capsys.readouterr().out
 

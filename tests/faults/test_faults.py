@@ -4,6 +4,7 @@ The whole of it is ``make fault-campaign`` and ``make supervision-campaign``.
 """
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 import pytest
@@ -99,7 +100,8 @@ def test_driving_into_the_table_stops_at_the_line_of_the_move(speed):
     text = f"10 LOAD (0, 0, 60), 0.8\n20 MOVE A\n30 MOVE B, SPEED {speed}\n40 MOVE A\n"
     session = Session(project_of(text, points))
     result = session.run()
-    touched = {name for touch in session.controller.plant.contacts() for name in touch.names}
+    plant: Any = session.controller.plant
+    touched = {name for touch in plant.contacts() for name in touch.names}
     assert "obstacle:table" in touched
     alarm = result.report["alarms"][0]
     assert (alarm["code"], alarm["number"], alarm["category"]) == ("RBL516", 30, 1)

@@ -65,6 +65,6 @@ def test_a_seeded_disagreement_is_found(tmp_path, monkeypatch, fault):
     elif fault == "range":
         monkeypatch.setattr(expression_check, "beyond_range", lambda q_deg, limits: "")
     else:
-        read = engine.read_beside
+        read = vars(engine)["read_beside"]
         monkeypatch.setattr(engine, "read_beside", lambda *given: replace(read(*given), faults=()))
     assert next(differing(tmp_path), None) is not None

@@ -61,7 +61,7 @@ def test_a_limit_of_nan_gives_no_profile(key):
 def test_a_bound_of_nan_is_a_bound(row, column):
     extents = [[1.0, 1.0, 1.0, 1.0], [0.5, 1.0, 1.0, 1.0]]
     extents[row][column] = NAN
-    found = bound([tuple(each) for each in extents], "jerk")
+    found = bound([(a, b, c, d) for a, b, c, d in extents], "jerk")
     assert any(math.isnan(value) for value in (found.speed, found.acceleration, found.jerk))
 
 

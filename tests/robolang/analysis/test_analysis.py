@@ -15,10 +15,11 @@ from robolang.core.diagnostics import MAX_DIAGNOSTICS, Edit
 from robolang.core.source import Source, Span
 from robolang.lint.engine import check_points, check_source
 from robolang.project.project import load_project
-from robolang.syntax import parser, reparse
+from robolang.syntax import parser
 from robolang.syntax.formatter import format_source
 from robolang.syntax.parser import parse
 from robolang.syntax.renumber import renumber
+from robolang.syntax.tree import NOWHERE
 from robolang.syntax.unparse import print_program
 from tests.campaign import examples
 from tests.robolang.generator import jumping_programs, programs, texts
@@ -188,4 +189,4 @@ def test_a_place_at_offset_zero_moves_and_no_place_does_not():
     analysis = Analysis(source=Source("pick.rbl", "MOVE P1\n"))
     updated = analysis.updated(Edit(span=Span(0, 0), text="\n"))
     (line,) = updated.program.lines
-    assert (line.span, line.number_span) == (Span(1, 8), reparse.NOWHERE)
+    assert (line.span, line.number_span) == (Span(1, 8), NOWHERE)

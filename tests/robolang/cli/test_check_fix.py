@@ -117,7 +117,7 @@ def test_a_file_that_cannot_be_written_is_exit_code_4(folder, monkeypatch):
 
 @pytest.mark.parametrize("gone", [False, True], ids=["changed", "gone"])
 def test_a_file_that_changed_meanwhile_is_left_alone(gone, folder, monkeypatch):
-    real = check_job.fix_all
+    real = vars(check_job)["fix_all"]
 
     def fix_all(source, find):
         (folder / "bad.rbl").unlink() if gone else (folder / "bad.rbl").write_text("MOVE P2\n")
@@ -186,7 +186,7 @@ def watched(monkeypatch, *changes):
             raise KeyboardInterrupt
         change()
 
-    real = check_job.watch
+    real = vars(check_job)["watch"]
     monkeypatch.setattr(check_job, "watch", lambda paths, check: real(paths, check, sleep=sleep))
 
 

@@ -93,7 +93,7 @@ def test_a_fault_that_cannot_be_shown_is_an_internal_error(error, capsys, monkey
 @pytest.mark.parametrize("error", [Fault("RBL510", "x"), ValueError("x")])
 def test_where_nothing_can_be_shown_the_exit_code_is_left(error, monkeypatch):
     monkeypatch.delenv("ROBOLANG_DEBUG", raising=False)
-    monkeypatch.setattr(errors.typer, "echo", lambda *_, **__: 1 / 0)
+    monkeypatch.setattr(typer, "echo", lambda *_, **__: 1 / 0)
     assert left_with(error) == 70
 
 

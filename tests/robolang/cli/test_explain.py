@@ -2,7 +2,7 @@ import re
 
 import pytest
 
-import robolang.project.project
+import robolang.project.project as _registers_its_codes  # noqa: F401
 from runtime.core.faults import all_codes, lookup
 from tests.messages import fields
 from tests.robolang.cli.commands import ROOT, flat, robolang, shell

@@ -4,6 +4,7 @@ import json
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -14,6 +15,7 @@ from robolang.experiments import wrist_figures as demo
 from runtime.core.faults import Fault
 from runtime.core.units import DEG
 from runtime.robot.files.loader import load_builtin
+from runtime.robot.kinematics.kinematics import Kinematics
 from tests.messages import fields
 from tests.robolang.cli.commands import ROOT, flat, robolang
 from tests.steps import HANG_S
@@ -117,7 +119,7 @@ def test_the_wrist_follows_the_end_of_the_seam(figures):
     trial = demo.FIGURES[5].trials[1]
     assert trial.seam == pytest.approx((0.0, 5e-3, -3e-3, 0.0, 0.0, 2.0 * DEG))
     found = demo.run(IRB, trial)
-    tool = (demo.Kinematics(IRB).forward(found.q[[0, -1]]) @ demo.X_FLANGE_TOOL)[:, :3, 3] * 1e3
+    tool = (Kinematics(IRB).forward(found.q[[0, -1]]) @ demo.X_FLANGE_TOOL)[:, :3, 3] * 1e3
     assert tool[0] == pytest.approx([1257.19, 385.01, 891.22], abs=0.01)
     assert tool[1] == pytest.approx([1200.90, 521.38 + 5.0, 1124.52 - 3.0], abs=0.01)
 
@@ -257,7 +259,7 @@ def test_a_robot_that_does_not_get_there_is_refused(tmp_path):
     (tmp_path / "short.toml").write_text(text.replace("range_deg = [-120, 120]", "range_deg = [-60, 60]"))
     said = flat(robolang("wrist-demo", "--robot", tmp_path / "short.toml", code=2).stderr)
     assert {"RBL703", "--robot", "J5", "irb2400", "65", "deg", "E1"} <= fields(said)
-    seven = demo.replace(IRB, axes=(*IRB.axes, IRB.axes[0]))
+    seven = replace(IRB, axes=(*IRB.axes, IRB.axes[0]))
     assert fields(demo.unusable(seven)) == {"irb2400", "7", "6"}
     assert demo.unusable(IRB) == ""
 
@@ -265,7 +267,7 @@ def test_a_robot_that_does_not_get_there_is_refused(tmp_path):
 def test_a_figure_that_another_robot_cannot_make_is_named():
     said = robolang("wrist-demo", "11", "--robot", "manutec_r3", code=3).stderr
     assert said.startswith("error RBL526 figure 11: at ")
-    slow = demo.replace(demo.FIGURES[5].trials[1], seam=(0.0, 0.5, 0.0, 0.0, 0.0, 0.0))
+    slow = replace(demo.FIGURES[5].trials[1], seam=(0.0, 0.5, 0.0, 0.0, 0.0, 0.0))
     with pytest.raises(Fault, match="RBL524"):
         demo.run(IRB, slow)
 

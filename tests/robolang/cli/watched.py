@@ -103,7 +103,8 @@ def watched(program: str, seed: str) -> list[tuple[str, str]]:
             printed.append(text)
 
     session = Session(project, physics=False, observer=Printed())
-    plain = evaluator.shown
+    shown_by = vars(evaluator)
+    plain = shown_by["shown"]
     if seed:
         violate = SEEDS[seed]
 
@@ -111,12 +112,12 @@ def watched(program: str, seed: str) -> list[tuple[str, str]]:
             violate()
             return plain(value)
 
-        evaluator.shown = shown
+        shown_by["shown"] = shown
     watch = Watch()
     watch.on = True
     result = session.run()
     watch.on = False
-    evaluator.shown = plain
+    shown_by["shown"] = plain
     assert result.ok, result.report["alarms"]
     assert printed
     return watch.seen

@@ -21,7 +21,7 @@ def _retrieve(uri: str) -> Resource:
 def validator(name: str):
     """The judge of a format by its name in the catalogue of schemas, such as ``GitHub Workflow``."""
     schema = _read(_INDEX["by_name"][name])
-    return validator_for(schema)(schema, registry=Registry(retrieve=_retrieve))
+    return validator_for(schema)(schema, registry=Registry(retrieve=_retrieve))  # type: ignore[call-arg]  # made by attrs from a field of another name
 
 
 def problems(judge, document) -> list[str]:

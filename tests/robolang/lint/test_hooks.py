@@ -43,7 +43,7 @@ def parse(words):
     """Let the command line parse what a hook or a step calls; a usage error for an option that is none."""
     program, name, *rest = words
     assert program == "robolang"
-    get_command(app).commands[name].make_context("robolang", rest)
+    vars(get_command(app))["commands"][name].make_context("robolang", rest)
 
 
 def steps():

@@ -10,9 +10,8 @@ from robolang.lint.files import programs
 from robolang.lint.selection import Layer
 from robolang.lint.settings import Settings, files_above
 from runtime.core.tomlfile import FileFault
-from tests.messages import fields
+from tests.messages import fields, heads
 from tests.robolang.cli.commands import robolang
-from tests.robolang.cli.test_check_report import heads
 from tests.robolang.lint.helpers import layer
 
 

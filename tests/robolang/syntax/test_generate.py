@@ -8,6 +8,7 @@ from typing import get_args
 
 import pytest
 
+from robolang.core.source import Span
 from robolang.syntax import ast
 from robolang.syntax.generate import NODES, nodes
 from robolang.syntax.statements import OPTIONS, STATEMENTS, declaration
@@ -39,7 +40,7 @@ def name(text, **more):
 
 
 def test_nodes_are_equal_when_they_mean_the_same():
-    there = ast.Span(3, 5)
+    there = Span(3, 5)
     assert name("p1", span=there, parentheses=2) == name("P1")
     assert hash(name("p1", span=there)) == hash(name("P1"))
     assert ast.Number(value=1.0, text="1") == ast.Number(value=1.0, text="1.0")
@@ -52,7 +53,7 @@ def test_nodes_are_equal_when_they_mean_the_same():
 
 
 def test_a_copy_has_what_was_changed_and_all_else():
-    there = ast.Span(3, 5)
+    there = Span(3, 5)
     node = ast.Pulse(index=name("a"), seconds=name("b"), span=there)
     changed = ast.replace(node, seconds=name("c"))
     assert changed == ast.Pulse(index=name("a"), seconds=name("c"))

@@ -182,7 +182,8 @@ def off(y_mm: float = 2.0) -> SeamTracker:
 
 
 def lines_of(robot: Controller, *steps, **options) -> list[Command]:
-    X, commands = robot.tool_poses(np.array(robot.areas.ina)), []
+    X = robot.tool_poses(np.array(robot.areas.ina))
+    commands: list[Command] = []
     for step in steps:
         X = pose(X[:3, 3] + np.array(step), X[:3, :3])
         commands.append(MoveLinear(X_world_tool=X, speed=0.1, **options))

@@ -1,5 +1,7 @@
 """The paced clock, on a wall clock that the test turns."""
 
+import time
+
 import pytest
 
 from runtime.control import clock
@@ -15,8 +17,8 @@ def wall(monkeypatch):
             self.now += seconds
 
     fake = Wall()
-    monkeypatch.setattr(clock.time, "monotonic", lambda: fake.now)
-    monkeypatch.setattr(clock.time, "sleep", fake.sleep)
+    monkeypatch.setattr(time, "monotonic", lambda: fake.now)
+    monkeypatch.setattr(time, "sleep", fake.sleep)
     return fake
 
 

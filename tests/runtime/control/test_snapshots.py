@@ -2,6 +2,7 @@
 
 import dataclasses
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -99,11 +100,12 @@ def test_a_snapshot_outlives_what_happens_after_it(plant):
         assert flat(kept) == before
 
 
-def flat(value: object) -> object:
+def flat(value: Any) -> object:
     """Return a state as plain values that compare by content; rows of the log and random numbers left out."""
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        state: Any = value
         if type(value).__name__ == "_Block":
-            return value.tick
+            return state.tick
         fields = [field.name for field in dataclasses.fields(value)]
         return type(value).__name__, [flat(getattr(value, name)) for name in fields]
     if isinstance(value, np.ndarray):
@@ -123,7 +125,8 @@ def test_an_invalid_plant_can_be_taken_back():
     kept = robot.snapshot()
     log = futures(robot, 20)
     robot.restore(kept)
-    robot.plant._qvel[2] = np.nan
+    plant: Any = robot.plant
+    plant._qvel[2] = np.nan
     assert not robot.cycle()
     assert robot.alarms[0].code == "RBL510"
     robot.restore(kept)
@@ -228,7 +231,7 @@ BY_HAND = {"RequestQueue": {"tracker"}, "Interpolator": {"seam"}}
 """Attributes that the queue copies itself."""
 
 
-def parts_of(owner: object) -> list[object]:
+def parts_of(owner: Any) -> list[Any]:
     """Return an object and all its parts, and theirs."""
     if type(owner).__name__ in APART or owner is None:
         return []

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, pose, rotation_about
@@ -122,7 +123,7 @@ def limits_broken(robot: Bench, q: Array, override: float = 1.0) -> list[str]:
     return [name for name, good in checks.items() if not good]
 
 
-def off_path(robot: Bench, chain: ChainPlan, part: Part, index: int) -> tuple[Array, Array]:
+def off_path(robot: Bench, chain: ChainPlan, part: Part, index: int) -> tuple[NDArray[np.intp], Array]:
     """Return rows of a part whose tool point is off its own path, and these points (K, 3)."""
     rows = np.flatnonzero(chain.command == index)
     points = robot.tool(chain.q[rows])[:, :3, 3]

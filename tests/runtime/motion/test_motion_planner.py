@@ -28,7 +28,8 @@ CHAINS, MOVES = size(34, 8), 5
 
 def by(robot: Bench, *steps, zone: float = 0.0, **options) -> list[Command]:
     """Lines one after the other from home, each ``steps`` (3,) m further."""
-    X, commands = robot.tool(robot.home()), []
+    X = robot.tool(robot.home())
+    commands: list[Command] = []
     for step in steps:
         X = pose(X[:3, 3] + np.array(step), X[:3, :3])
         commands.append(MoveLinear(X_world_tool=X, zone=zone, **options))

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -109,7 +110,8 @@ def test_the_plan_may_switch_where_no_condition_does():
     run(going, tracker, 101)
     assert going.law is None
     going.next(101)
-    assert going.law.s_switch == pytest.approx(0.2)
+    law: Any = going.law  # assigned by the line above
+    assert law.s_switch == pytest.approx(0.2)
 
 
 def test_superposed_adds_in_the_world_frame():

@@ -209,8 +209,8 @@ def test_a_refusal_names_condition_axis_place_what_was_tried_and_what_would_help
         try:
             X = KINEMATICS.forward(end) @ TOOL
             bench.planner.plan(start, MoveLinear(X_world_tool=X, q_end=end, speed=speed), TOOL)
-        except Fault as fault:
-            refused.append(fault)
+        except Fault as caught:
+            refused.append(caught)
     assert any(len(re.findall(r"\d %", fault.message)) > 1 for fault in refused)
     for fault in refused:
         assert fault.code in ("RBL411", "RBL412")

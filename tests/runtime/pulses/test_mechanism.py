@@ -42,7 +42,7 @@ def test_a_scara_keeps_its_elbow_and_turns_its_tool_by_the_rest():
     for elbow in (80.0, -80.0):
         q0 = np.array([-60.0 if elbow > 0.0 else 60.0, elbow, 0.0, 10.0]) * DEG
         q0[2] = 0.7
-        command = to(*end, R=rotation_about(Z, 0.5))
+        command = to(end[0], end[1], end[2], rotation_about(Z, 0.5))
         q = way_of(SCARA, q0, command, R=np.eye(3)).joints(np.linspace(0.0, 1.0, 50))
         assert np.sign(q[:, 1]).tolist() == [np.sign(elbow)] * 50
         turned = q[:, [0, 1, 3]].sum(axis=1)
@@ -57,7 +57,7 @@ def test_a_scara_keeps_its_elbow_and_turns_its_tool_by_the_rest():
 def test_a_half_turn_keeps_the_range_of_theta4_and_its_sign_is_not_that_of_rounding(theta4, end, rounding):
     q = np.array([-60.0 * DEG, 80.0 * DEG, 0.7, theta4 * DEG])
     here = SCARA.points(q[None])[0] / MM
-    way = way_of(SCARA, q, to(*here, R=rotation_about(Z, np.pi + rounding)), R=np.eye(3))
+    way = way_of(SCARA, q, to(here[0], here[1], here[2], rotation_about(Z, np.pi + rounding)), R=np.eye(3))
     assert way.joints(np.linspace(0.0, 1.0, 50))[-1, 3] / DEG == pytest.approx(end, abs=1e-6)
 
 

@@ -80,5 +80,9 @@ def chain(frames, last=None, bodies=None, limit='lower="-3" upper="3" velocity="
         parts.append(joint(f"j{i}", f"l{i - 1}", f"l{i}", xyz, rpy, axis, limit=limit))
         parts.append(f'<link name="l{i}">{bodies[i - 1]}</link>')
     if last is not None:
-        parts += [joint("mount", f"l{len(frames)}", "flange", *last, kind="fixed", limit=""), '<link name="flange"/>']
+        xyz, rpy = last
+        parts += [
+            joint("mount", f"l{len(frames)}", "flange", xyz, rpy, kind="fixed", limit=""),
+            '<link name="flange"/>',
+        ]
     return urdf(*parts)

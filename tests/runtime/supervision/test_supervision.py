@@ -155,7 +155,7 @@ def turning(speed: float, axis: int = 3) -> tuple[np.ndarray, np.ndarray, np.nda
 def judged(cycles, one: Watch | None = None):
     """Judge cycles one after another; return the first finding."""
     one = one or watch()
-    found = (one.cycle(*each, 8 * k) for k, each in enumerate(cycles))
+    found = (one.cycle(rows, q, dq, 8 * k) for k, (rows, q, dq) in enumerate(cycles))
     return next((item for item in found if item is not None), None)
 
 

@@ -138,7 +138,7 @@ def test_every_branch_meets_the_pose_and_is_the_one_it_is_named(params):
     q = q[clear_of_borders(params, q)]
     X = opw.forward(params, q)
     found = opw.inverse(params, X)
-    exists = ~np.isnan(found).any(axis=-1)
+    exists = np.asarray(~np.isnan(found).any(axis=-1))
     assert (np.isnan(found).all(axis=-1) == ~exists).all()
     assert exists.any(axis=-1).all()
     assert missed_by(params, found, X) < 1e-12
