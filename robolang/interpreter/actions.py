@@ -1,4 +1,4 @@
-"""Statements that act: each asks one thing of the robot or its cell, and becomes one effect.
+"""Statements that act: each requests one thing of the robot or its cell, and becomes one effect.
 
 Moves, payload, hand, wrist, seam, tool and outputs, and the settings that hold for the moves which follow: SPEED,
 SPEEDJ, ACCEL, OVERRIDE, ZONE and FRAME have no effect of their own, every move carries what they have set. An option of
@@ -71,6 +71,16 @@ class Settings:
     wrist: Wrist | None = None
 
 
+_OPTIONS: dict[type, tuple[str, limits.Limit]] = {
+    Speed: ("speed_mm_s", limits.SPEED),
+    Accel: ("accel_pct", limits.ACCEL),
+    Time: ("time_s", limits.TIME),
+    Zone: ("zone_mm", limits.ZONE),
+}
+"""What each option of a move gives, and its range; of a MOVEJ, SPEED is ``_JOINT_SPEED``."""
+_JOINT_SPEED = ("speed_pct", limits.SPEED_PCT)
+
+
 class Actions:
     """Turns the statements that act into effects, and keeps what the settings have set."""
 
@@ -79,7 +89,7 @@ class Actions:
         self.settings = Settings()
 
     def effect(self, line: Line, node: Action) -> Effect | None:
-        """Return what a statement asks for, None for a setting; ``Fault`` where it has no value or is out of range."""
+        """Return what a statement requests, None for a setting; ``Fault`` where it has no value or is out of range."""
         return _EFFECT[type(node)](self, line, node)
 
     # --- motion ------------------------------------------------------------------------------------------------------
@@ -99,6 +109,7 @@ class Actions:
 
     def _target(self, node: Moving) -> Place:
         if isinstance(node, Depart):
+            # where the motion before ends is not known yet: moves may still be under way when this is evaluated
             return Place(last=True).shifted(_back(self._distance(node.distance)))
         place = self._values.place(node.target)
         return place.shifted(_back(self._distance(node.distance))) if isinstance(node, Approach) else place
@@ -108,32 +119,24 @@ class Actions:
 
     def _options(self, node: Moving) -> tuple[dict[str, Any], Wrist | None]:
         """Return the values of a move: its options', else those that were set."""
-        joint, found, wrist = isinstance(node, MoveJ), self.settings, self.settings.wrist
-        speed: float | None = None
-        accel, zone, time = found.accel_pct, found.zone_mm, None
-        for option in node.options:
+        joint, settings, wrist = isinstance(node, MoveJ), self.settings, self.settings.wrist
+        values: dict[str, Any] = {"accel_pct": settings.accel_pct, "zone_mm": settings.zone_mm}
+        for option in node.options:  # in the order of the text: of two that are out of range the first is reported
             if isinstance(option, Wrist):
                 wrist = option
-            elif isinstance(option, Speed):
-                speed = (limits.SPEED_PCT if joint else limits.SPEED).checked(self._values.number(option.value))
-            elif isinstance(option, Accel):
-                accel = limits.ACCEL.checked(self._values.number(option.value))
-            elif isinstance(option, Time):
-                time = limits.TIME.checked(self._values.number(option.value))
-            elif isinstance(option, Zone):
-                zone = 0.0 if option.value is None else limits.ZONE.checked(self._values.number(option.value))
-        if time is None and speed is None:
-            speed = found.speed_pct if joint else found.speed_mm_s
-        return {
-            "speed_pct" if joint else "speed_mm_s": speed,
-            "accel_pct": accel,
-            "time_s": time,
-            "zone_mm": zone,
-        }, wrist
+                continue
+            name, limit = _JOINT_SPEED if joint and isinstance(option, Speed) else _OPTIONS[type(option)]
+            # FINE is the one option without a value
+            values[name] = 0.0 if option.value is None else limit.checked(self._values.number(option.value))
+        if "time_s" not in values:  # a duration replaces the speed that was set, not one in the move itself
+            name = "speed_pct" if joint else "speed_mm_s"
+            values.setdefault(name, getattr(settings, name))
+        return values, wrist
 
     # --- payload, hand, wrist, seam ----------------------------------------------------------------------------------
 
     def _load(self, line: Line, node: Load) -> Effect:
+        # the ranges are those of the payload model, which the lowering applies; here the tree gives the counts alone
         cog, inertia = self._vector(node.cog), () if node.inertia is None else self._vector(node.inertia)
         if len(cog) != 3 or len(inertia) not in (0, 6):
             raise Fault("RBL403", "LOAD takes three coordinates of the centre of gravity, and six of an inertia")
@@ -179,7 +182,7 @@ class Actions:
     def _frame(self, node: Expression) -> Frame:
         """Return the frame that an expression names: a name of the cell, "" for ``WORLD``, else a pose in the world."""
         if self._is_of_cell(node):
-            return "" if node.key == WORLD else node.key
+            return "" if node.key == WORLD else node.key  # whether the cell has it is known to the lowering
         return self._in_the_world(node)
 
     def _tool(self, node: Expression) -> Frame:
@@ -192,6 +195,7 @@ class Actions:
 
     def _in_the_world(self, node: Expression, *, of_flange: bool = False) -> Six:
         """Return the numbers of a pose, whatever frame is active; of a flange's those that it was made of."""
+        # a FRAME is given in the world, so that two of them in a row do not add up
         frame, self._values.frame = self._values.frame, ""
         try:
             place = self._values.place(node)
@@ -243,7 +247,7 @@ ACTIONS = tuple(_EFFECT)
 
 
 def _back(distance: float) -> Shift:
-    """Return the way back along the tool's approach axis, mm."""
+    """Return the offset against the tool's approach axis, mm."""
     return Shift(kind="tool", by=(0.0, 0.0, -distance, 0.0, 0.0, 0.0))
 
 

@@ -42,6 +42,7 @@ class Array:
 
     def copy(self) -> "Array":
         """Return an array of the same elements; from now on neither owns a block."""
+        # the old one gives up its blocks as well: the copy must not see what is written to the original
         other = Array(0, 0.0)
         other._blocks, other._size = self._blocks.copy(), self._size
         self._own.clear()

@@ -2,7 +2,7 @@
 
 A dry run follows one path through a program, that of the simulated inputs. ``Decisions`` lets a caller of the
 interpreter see which branch each condition took, and force the other one when the condition is met the first time
-(``robolang.planning.branch_forcing`` has the conditions that can go either way).
+(``robolang.planning.branch_forcing`` has the conditions whose branch depends on inputs, time or errors).
 """
 
 from collections.abc import Mapping
@@ -12,28 +12,29 @@ from robolang.core.source import Span
 
 
 class Decisions:
-    """The ways that conditions took in one run, by the place of the condition, and those that are to be forced.
+    """The branches that conditions took in one run, by the place of the condition, and those that are to be forced.
 
-    ``forced``: a condition takes this way the first time. ``patient`` False: a WAIT without a TIMEOUT comes true at
-    once, where the way that was forced has left behind what it waits for.
+    ``forced``: a condition takes this branch the first time. ``patient`` False: a WAIT without a TIMEOUT comes true at
+    once, since on a forced branch its input may never change.
     """
 
     def __init__(self, forced: Mapping[Span, bool] | None = None, *, patient: bool = True) -> None:
         self._forced = dict(forced or {})
         self._patient = patient
         self.taken: dict[Span, set[bool]] = {}
-        """Ways that each condition took."""
+        """Branches that each condition took."""
 
     def of(self, place: Span, value: bool) -> bool:
-        """Return the way that a condition takes, which has a value."""
+        """Return the branch that a condition of this value takes."""
+        # forced once: a loop whose condition were forced each time would not end
         return self.took(place, self._forced.pop(place, value))
 
     def of_wait(self, place: Span, *, endless: bool) -> bool | None:
-        """Return the way that a WAIT is to take, True: it comes true, None: as the inputs say."""
+        """Return the branch that a WAIT is to take: True, it comes true; None, the inputs decide."""
         return self._forced.pop(place, True if endless and not self._patient else None)
 
     def took(self, place: Span, value: bool) -> bool:
-        """Note the way that a condition took, and return it."""
+        """Record the branch that a condition took, and return it."""
         self.taken.setdefault(place, set()).add(value)
         return value
 

@@ -29,12 +29,12 @@ def head(run: RunState, line: Line, node: Head, at: int) -> Result:
         return ask(run, Asking(at))
     if run.is_true(node.value):
         return None
-    run.rounds.leave(at)
+    run.rounds.leave(at)  # reached again, the loop has its rounds anew
     return run.structure.end[at] + 1
 
 
 def ask(run: RunState, asking: Asking) -> Result:
-    """Look at the condition of an IF or ELSEIF, and while none is true at those after it."""
+    """Evaluate the condition of an IF or ELSEIF, and those after it until one is true."""
     at = asking.at
     node = run.lines[at].statement
     while isinstance(node, Head) and not run.is_true(node.value):
@@ -49,13 +49,13 @@ def ask(run: RunState, asking: Asking) -> Result:
 
 
 def _next_case(run: RunState, at: int, chosen: Value) -> Result:
-    """Look at the CASE after a line of a SELECT, and at those after it while none has the value that was chosen."""
+    """Compare the CASE after a line of a SELECT, and those after it until one has the value of the SELECT."""
     while at != run.structure.end[at]:
         at = run.structure.after[at]
         node = run.lines[at].statement
         if not isinstance(node, Case):
             break
-        run.cursor.part = at, node
+        run.cursor.part = at, node  # a fault in a CASE is located there; RESUME takes the SELECT again
         if reads_state(node):
             run.cursor.position = Comparing(at, chosen)
             return Drain(**origin(run.lines[at], node))
@@ -65,7 +65,7 @@ def _next_case(run: RunState, at: int, chosen: Value) -> Result:
 
 
 def compare(run: RunState, comparing: Comparing) -> Result:
-    """Look at a CASE for which motion has ended, then at those after it."""
+    """Compare a CASE for which motion has ended, then those after it."""
     at, chosen = comparing.at, comparing.chosen
     node = run.lines[at].statement
     assert isinstance(node, Case)
@@ -132,6 +132,7 @@ def end_for(run: RunState, line: Line, node: Next, at: int) -> Result:
     if not isinstance(value, float):
         raise Fault("RBL531", f"{loop.variable} counts a loop and is no number any more")
     loop.rounds -= 1
+    # the variable is added to as the program has left it: assigning it inside of the loop skips values, not rounds
     run.scopes.assign(loop.variable, value + loop.step)
     run.looped(at, to)
     return to + 1
@@ -143,7 +144,7 @@ def end_for(run: RunState, line: Line, node: Next, at: int) -> Result:
 def jump(run: RunState, line: Line, node: Jump, at: int) -> Result:
     """Go to a line, to return from there after a GOSUB."""
     to, calls = run.line_of(node.target), node.word == "GOSUB"
-    if calls:
+    if calls:  # counted before the jump, so that the fault is located at the GOSUB
         _check_depth(sum(len(scope.returns) for scope in run.scopes.stack))
         run.scopes.here.returns.append(at + 1)
     return run.looped(at, to, calls=calls)
@@ -167,7 +168,7 @@ def call_sub(run: RunState, line: Line, node: CallSub, at: int) -> Result:
         raise Fault("RBL533", f"there is no SUB {node.name.text} of {len(node.arguments)} parameters")
     _check_depth(len(run.scopes.stack) - 1)
     values = [run.values.value(argument) for argument in node.arguments]
-    run.looped(at, to, calls=True)
+    run.looped(at, to, calls=True)  # recursion takes no time either
     given = zip((parameter.key for parameter in sub.parameters), values, strict=True)
     run.scopes.enter(at + 1, dict(given))
     return to + 1
@@ -219,6 +220,7 @@ def _resume(run: RunState, at: int, *, after: bool) -> int:
 
 def _after(run: RunState, failed: int) -> int:
     """Return the line after a statement that failed; for the head of a block the one after the block."""
+    # the branches of a head that failed were not chosen: to enter one of them would be a guess
     is_head = isinstance(run.lines[failed].statement, Head | For)
     return (run.structure.end[failed] if is_head else failed) + 1
 

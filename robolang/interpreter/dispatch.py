@@ -54,7 +54,7 @@ _TAKES_TIME = (*get_args(Moving), Hand)
 def act(run: RunState, line: Line, node: Action, at: int) -> Result:
     """Ask the robot for something."""
     if isinstance(node, _TAKES_TIME):
-        run.cursor.position = MOVED
+        run.cursor.position = MOVED  # time is taken when the move is done, so that a refused one takes none
     return run.actions.effect(line, node)
 
 
@@ -64,6 +64,7 @@ def choose(run: RunState, line: Line, node: If, at: int) -> Result:
     chosen = node.then if run.is_true(node.condition) else node.otherwise
     if chosen is None:
         return None
+    # the branch drains by itself: the condition may have read nothing, and the other branch may read nothing
     run.cursor.part = at, chosen
     if reads_state(chosen):
         run.cursor.position = Drained(chosen)

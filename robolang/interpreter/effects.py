@@ -1,4 +1,4 @@
-"""The closed vocabulary of what a program asks of the robot.
+"""The closed vocabulary of what a program requests of the robot.
 
 The interpreter yields these and nothing else; the session is the one place that carries them out. Values are in the
 units of the text (mm, deg, kg, s, %); ``lowering`` turns them into SI. Each knows the statement it comes from, so
@@ -28,13 +28,13 @@ class Origin(ProgramLine):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OfStatement(Origin):
-    """What every effect has: the statement, or the branch of an IF on one line, that asks for it."""
+    """What every effect has: the statement, or the branch of an IF on one line, that requests it."""
 
     node: Statement
 
     @property
     def origin(self) -> Origin:
-        """Where it comes from, without what it asks for."""
+        """Where it comes from, without what is requested."""
         return Origin(line=self.line, number=self.number, span=self.span)
 
 

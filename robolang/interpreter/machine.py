@@ -1,8 +1,8 @@
 """The interpreter: a program that can be stepped, fed, kept and taken back.
 
-``Machine.step`` carries a program to its next event: a statement begins, an effect is asked for, a fault was not
+``Machine.step`` carries a program to its next event: a statement begins, an effect is requested, a fault was not
 caught, the program is over. Nothing is computed ahead: the state of the machine is that of the event it has yielded,
-until the next step is asked for. A statement that reads where the robot is, an input or the time asks for ``Drain``
+until the next step. A statement that reads where the robot is, an input or the time requests ``Drain``
 first, so that what it reads is of this place in the program.
 
 Errors. A ``Fault`` of an expression, or one that the executor reports with ``refuse`` since an effect could not be
@@ -107,12 +107,13 @@ class Machine:
         """Begin the first statement from a line on."""
         run, cursor = self._run, self._run.cursor
         lines = run.lines
+        # lines of labels and comments alone are passed here: they are no events, and are not counted
         while at < len(lines) and lines[at].statement is None:
             at += 1
         cursor.at = at
         if at >= len(lines):
             run.cursor = Cursor(at=len(lines), ended=DONE)
-            run.suspended = ()
+            run.suspended = ()  # END inside of what was fed ends the program, so nothing is taken up again
             return DONE
         node, _, _, begun = self._ready_of(at)
         cursor.position, cursor.part = BEGUN, (at, node)
@@ -121,6 +122,7 @@ class Machine:
     def _ready_of(self, at: int) -> _Ready:
         if at == FED:
             return _ready(self._run.line(at))
+        # one entry a line, made when it is first reached: most lines of a loop run often, some lines never
         ready = self._ready[at]
         if ready is None:
             ready = self._ready[at] = _ready(self._run.lines[at])
@@ -144,7 +146,7 @@ class Machine:
             handler = run.caught(fault, run.suspended[-1].depth if run.suspended else 0)
             if handler is not None:
                 return handler
-        except Fault as endless:
+        except Fault as endless:  # RBL508: the handler and the statement that fails go round in circles
             fault = endless
         located = run.located(fault)
         failed = Failed(
@@ -188,6 +190,7 @@ class Machine:
         _ready(line)  # refuses a statement with an error before anything is changed
         scopes = run.scopes
         run.suspended += (Suspended(run.cursor, len(scopes.stack), len(scopes.here.returns)),)
+        # the old cursor is never written again: snapshots share it with the entry above
         run.cursor = Cursor(at=FED, fed=line, part=(FED, node))
 
     def _go_on_fed(self, to: int, *, jumps: bool) -> Event:
@@ -198,7 +201,6 @@ class Machine:
             return _ready(run.line(FED))[-1]
         if cursor.at == FED and jumps:
             if run.suspended[-1].is_awaited(run.scopes.stack):
-                cursor.fed = None
                 return self._begin(to)
             run.suspended = run.suspended[:-1]  # a jump: nothing comes back to the place that was suspended
             if to != AFTER_FED:

@@ -78,7 +78,7 @@ class Waiting:
 class Given:
     """The last effect of the statement has been given; the program goes on at line ``to``, None: the next one.
 
-    ``takes_time``: the effect has taken time once the next step is asked for; a refused one has not.
+    ``takes_time``: the effect has taken time at the next step; a refused one has not.
     """
 
     to: int | None = None
@@ -99,7 +99,7 @@ class Cursor:
     further step; ``fed``: the line of the statement that was fed, while that is ``at``.
     """
 
-    at: int = 0
+    at: int = 0  # not the line of an ELSEIF or CASE: RESUME takes the head of the block again
     position: Position = DUE
     part: tuple[int, Node | None] = (0, None)
     refused: Fault | None = None
@@ -121,6 +121,7 @@ class Suspended:
 
     def is_awaited(self, stack: Sequence[Scope]) -> bool:
         """Return whether a CALL or GOSUB that was fed has not returned yet."""
+        # by the return address: a jump, an error or RETURN may have left the call, and then nothing comes back
         called = len(stack) > self.depth and stack[self.depth].back == AFTER_FED
         gone = len(stack) >= self.depth and stack[self.depth - 1].returns[self.returns :][:1] == [AFTER_FED]
         return called or gone

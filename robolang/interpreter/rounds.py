@@ -51,6 +51,7 @@ class Rounds:
         loop = self._loops.get(head)
         if loop is None:
             self._loops[head] = loop = _Loop(end=at, first=steps, latest=steps)
+        # a GOTO back from further down makes the loop longer: its lines are all that it has come through
         loop.end, loop.latest, loop.rounds = max(loop.end, at), steps, loop.rounds + 1
 
     def endless(self, places: Sequence[int], steps: int) -> tuple[int, int] | None:
@@ -64,6 +65,7 @@ class Rounds:
             going = [
                 (loop.end - head, head, loop.rounds)
                 for head, loop in self._loops.items()
+                # a round that is already longer than all before it hangs in a loop inside
                 if head <= place <= loop.end and steps - loop.latest <= loop.latest - loop.first
             ]
             if going:

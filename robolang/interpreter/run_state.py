@@ -62,7 +62,7 @@ class RunState:
         """Return where a jump leads; ``Fault`` RBL508 when the program goes round and round without taking time."""
         if to > at:
             return to
-        if not calls:
+        if not calls:  # a call goes back in the text but is no loop: it returns
             self.rounds.turn(to, at, self.steps)
         if self.rounds.idle(to) > run_limits.MAX_IDLE:
             line = self.lines[to]
@@ -85,6 +85,7 @@ class RunState:
         the statement that fails make a loop without an end.
         """
         at = self.cursor.at
+        # what is fed has no line that RESUME could go back to
         if fault.code in run_limits.UNCAUGHT or at == FED:
             return None
         handler = self.scopes.catch(at, outermost)

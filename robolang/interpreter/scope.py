@@ -4,13 +4,13 @@ The main program has one scope, every CALL one of its own with the parameters in
 the running SUB, then in that of the main program, then among the taught points; an assignment goes to the running
 scope, so a SUB cannot change what its caller has.
 
-ON ERROR belongs to the scope that says it. Of an error the innermost scope decides that has said it: the CALLs inside
-of that scope are given up, and the GOSUBs that it has begun since, so what a handler leaves behind does not pile up.
-RESUME goes back to where that scope was: the statement that failed, its GOSUBs open again, or the CALL in which it
-failed.
+ON ERROR belongs to the scope in which it is executed. An error goes to the innermost scope that has a handler: the
+CALLs inside of that scope are given up, and the GOSUBs that it has begun since, so that a handler without RESUME leaves
+nothing that accumulates. RESUME goes back to where that scope was: the statement that failed, its GOSUBs open again, or
+the CALL in which it failed.
 
 Memory is counted where it is given out, and comes back when a SUB ends: names and elements of arrays (``MAX_CELLS``,
-RBL507), and what texts and the ways behind poses hold beyond that (``MAX_TEXTS``, RBL506).
+RBL507), and what texts and the offsets after poses hold beyond that (``MAX_TEXTS``, RBL506).
 """
 
 from collections.abc import Mapping, Sequence
@@ -26,7 +26,7 @@ MAX_CELLS = 1_000_000
 MAX_TEXTS = 10_000_000
 """Most characters of all texts that names and arrays hold."""
 WAY = 32
-"""As many characters a way behind a pose counts."""
+"""Characters that an offset after a pose counts as."""
 
 
 @dataclass(slots=True)
@@ -55,12 +55,12 @@ class Failure:
 class Scope:
     """Names of the main program or of one CALL; ``back``: the line to go on at after it.
 
-    ``handler``: line of its ON ERROR, ``STOPS``, or None where it has said nothing; ``gosubs``: how many of ``returns``
+    ``handler``: line of its ON ERROR, ``STOPS``, or None without one; ``gosubs``: how many of ``returns``
     stay when the handler is reached; ``failure``: what the handler deals with, None when it does not run. ``cells`` and
     ``texts`` are what the scope has of ``MAX_CELLS`` and ``MAX_TEXTS``.
     """
 
-    back: int = -1
+    back: int = -1  # the main program has no CALL to go back to
     values: dict[str, Value] = field(default_factory=dict)
     arrays: dict[str, Array] = field(default_factory=dict)
     constants: set[str] = field(default_factory=set)
@@ -128,6 +128,7 @@ class Scopes:
 
     def on_error(self, handler: int) -> None:
         """Let a line of the running scope deal with errors, or ``STOPS``; a handler that runs is at its end."""
+        # the GOSUBs open now stay open in the handler; only those begun later are given up
         here = self.here
         here.handler, here.gosubs, here.failure = handler, len(here.returns), None
 
@@ -152,6 +153,7 @@ class Scopes:
             return None
         inner = self.stack[index + 1 :]
         del self.stack[index + 1 :]
+        # seen from the handler's scope, the CALL has failed: RESUME makes the call again, and not its last statement
         scope.failure = Failure(line=inner[0].back - 1 if inner else line, returns=tuple(scope.returns))
         del scope.returns[scope.gosubs :]
         return scope.handler
@@ -169,7 +171,7 @@ class Scopes:
 
     def value(self, key: str) -> Value | None:
         """Return the value of a name, None when it has none."""
-        for scope in (self.stack[-1], self.stack[0]):
+        for scope in (self.stack[-1], self.stack[0]):  # not those between: a SUB does not depend on who calls it
             if key in scope.values:
                 return scope.values[key]
         return Place(point=key) if key in self._points else None

@@ -53,10 +53,12 @@ def take(run: RunState) -> MachineSnapshot:
 
 def put_back(run: RunState, snapshot: MachineSnapshot) -> None:
     """Bring a run into the state of a snapshot; ``ValueError`` when it is one of another program."""
+    # equal is enough: an editor parses a text anew, and positions hold nodes, which compare by meaning
     if snapshot.program is not run.program and snapshot.program != run.program:
         raise ValueError("the snapshot belongs to another program")
     run.cursor = snapshot.cursor.copy()
     run.suspended = snapshot.suspended
+    # scopes and decisions in place, since the evaluator and the caller hold the objects; the rest is replaced
     run.scopes.restore(snapshot.scopes)
     run.rounds = snapshot.rounds.copy()
     run.actions.settings = snapshot.settings

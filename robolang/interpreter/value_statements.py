@@ -16,10 +16,11 @@ from runtime.core.faults import Fault
 
 def assign(run: RunState, line: Line, node: Assign, at: int) -> Result:
     """Give a name or an element a value."""
-    run.cursor.part = at, node.value
+    run.cursor.part = at, node.value  # a fault of the value is located there, one of the target at the statement
     value = run.values.value(node.value)
     run.cursor.part = at, node
     if isinstance(node.target, Call):
+        # the index after the value: where both have a fault, that of the value is reported
         index = run.values.whole(node.target.arguments[0], "the number of an element")
         run.scopes.put(node.target.name.key, index, value)
     else:

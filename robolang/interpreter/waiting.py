@@ -17,7 +17,7 @@ ROUNDING = 1e-9
 def delay(run: RunState, line: Line, node: Delay, at: int) -> Result:
     """Let a time pass."""
     seconds = limits.DELAY.checked(run.values.number(node.seconds))
-    run.rounds.take_time()
+    run.rounds.take_time()  # DELAY 0 as well: it passes one cycle
     return Pass(**origin(line, node), seconds=seconds)
 
 
@@ -28,7 +28,7 @@ def wait(run: RunState, line: Line, node: Wait, at: int) -> Result:
 
 
 def begin(run: RunState, due: WaitDue) -> Result:
-    """Begin the time of a WAIT, and look at its condition a first time."""
+    """Begin the time of a WAIT, and evaluate its condition a first time."""
     node = due.node
     forced = run.decisions.of_wait(node.condition.span, endless=node.timeout is None)
     if forced is True:  # also where there is no time to read, as in an export
@@ -44,6 +44,7 @@ def go_on(run: RunState, waiting: Waiting) -> Result:
     if forced is None and run.values.true(node.condition):
         run.decisions.took(node.condition.span, True)
         return None
+    # closed against NaN: a time that is no number ends the WAIT instead of keeping it for ever
     if forced is False or not run.world.seconds() - waiting.began < waiting.timeout - ROUNDING:
         return _time_out(run, waiting)
     run.rounds.take_time()

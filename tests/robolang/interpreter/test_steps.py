@@ -240,6 +240,14 @@ def test_handlers_of_the_program_do_not_catch_what_is_fed():
     assert " ".join(events(over)) == "3 5 501 6 4 Done"
 
 
+def test_a_call_that_was_fed_and_is_left_by_resume_keeps_no_handler_from_its_errors():
+    text = "ON ERROR GOTO *H\nx = 1 / 0\nx = 2 / 0\nPRINT 3\nEND\n*H PRINT ERR\nRESUME NEXT\n*G RESUME NEXT"
+    over = machine(text)
+    assert [brief(over.step()) for _ in range(3)] == [1, 2, 6]
+    over.feed(parsed("GOSUB *G").lines[0])
+    assert " ".join(events(over)) == "1 8 3 6 501 7 4 3 5 Done"
+
+
 def test_statements_are_fed_within_one_another():
     over = waiting()
     over.feed(parsed("CALL s(1)").lines[0])
