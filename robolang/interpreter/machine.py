@@ -13,14 +13,14 @@ alarm of the robot never comes here: it ends the run.
 Bounds are counts, not wall clock: ``run_limits``, ``scope`` for memory, ``evaluator`` for one text.
 """
 
-from collections.abc import Callable, Collection, Generator
+from collections.abc import Callable, Collection
 from typing import TypeAlias
 
-from robolang.evaluation.evaluator import Nowhere, World
+from robolang.evaluation.evaluator import World
 from robolang.interpreter import dispatch, run_limits, snapshot
 from robolang.interpreter.branch_oracle import Decisions
-from robolang.interpreter.effects import Drain, Effect, Origin, origin
-from robolang.interpreter.events import DONE, FED_ENDED, Done, Event, Failed, FedEnded, LineBegun
+from robolang.interpreter.effects import Drain, Origin, origin
+from robolang.interpreter.events import DONE, FED_ENDED, Event, Failed, LineBegun
 from robolang.interpreter.positions import AFTER_FED, BEGUN, DUE, FED, GIVEN, Cursor, Drained, Suspended, Waiting
 from robolang.interpreter.program_fault import ProgramFault
 from robolang.interpreter.run_state import Result, RunState
@@ -34,25 +34,12 @@ _Ready: TypeAlias = tuple[Statement, Callable[..., Result], bool, LineBegun]
 """What is known of a statement before it runs: node, function, whether motion ends first, event of its beginning."""
 
 
-def execute(
-    program: Program,
-    world: World | None = None,
-    points: Collection[str] = (),
-    decisions: Decisions | None = None,
-) -> Generator[Effect, None, None]:
-    """Yield the effects of a checked program in order; ``points`` are the names of the taught ones.
-
-    ``decisions`` records the branch that each condition takes, and may change it. What a WRIST statement or a setting
-    says holds for the moves that follow, and each of them carries it.
-
-    Raises ``ValueError`` at a statement with an error: such a program must not be run. ``ProgramFault`` where a
-    statement has no value, and where a ``Fault`` was thrown in, when no ON ERROR catches it.
-    """
-    return Machine(program, world or Nowhere(), points, decisions).run()
-
-
 class Machine:
-    """A program that runs. ``world`` is what it reads of the robot; it is no part of the state."""
+    """A checked program that runs.
+
+    ``world`` is what it reads of the robot; it is no part of the state. ``points`` are the names of the taught ones.
+    ``decisions`` records the branch that each condition takes, and may change it.
+    """
 
     def __init__(
         self, program: Program, world: World, points: Collection[str], decisions: Decisions | None = None
@@ -276,23 +263,6 @@ class Machine:
         else:
             hint = "Split the program, or shorten its DELAYs; the log and the report end here."
         return ProgramFault(Fault("RBL509", message, hint), running)
-
-    # --- as a generator ----------------------------------------------------------------------------------------------
-
-    def run(self) -> Generator[Effect, None, None]:
-        """Yield the effects to the end of the program; a ``Fault`` thrown in refuses the effect."""
-        while True:
-            event = self.step()
-            if isinstance(event, LineBegun | FedEnded):
-                continue
-            if isinstance(event, Done):
-                return
-            if isinstance(event, Failed):
-                raise ProgramFault(Fault(event.code, event.message, event.hint), event.origin, event.calls)
-            try:
-                yield event
-            except Fault as fault:
-                self.refuse(fault)
 
 
 def _ready(line: Line) -> _Ready:

@@ -1,4 +1,4 @@
-"""A fault that no ON ERROR caught, as an exception: for callers that run a program to its end."""
+"""A fault that no ON ERROR catches, with the statement that it comes from."""
 
 from robolang.interpreter.effects import Origin
 from runtime.core.faults import Fault

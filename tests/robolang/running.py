@@ -4,7 +4,8 @@ import pytest
 
 from robolang.evaluation.evaluator import Nowhere
 from robolang.interpreter.effects import Pass, Show
-from robolang.interpreter.machine import execute
+from robolang.interpreter.events import Done, Failed, FedEnded, LineBegun
+from robolang.interpreter.machine import Machine
 from robolang.interpreter.program_fault import ProgramFault
 from runtime.core.faults import Fault
 from tests.robolang.helpers import parsed
@@ -31,6 +32,24 @@ class World(Nowhere):
 
     def components(self, place, frame):
         return place.pose or (10.0, 20.0, 30.0, 0.0, 0.0, 0.0)
+
+
+def execute(program, world=None, points=(), decisions=None):
+    """Yield the effects of a program to its end; a ``Fault`` that is thrown in refuses the effect."""
+    return effects_of(Machine(program, world or Nowhere(), points, decisions))
+
+
+def effects_of(machine):
+    """Yield the effects of a machine to its end, then raise what no ON ERROR caught."""
+    while not isinstance(event := machine.step(), Done):
+        if isinstance(event, Failed):
+            raise ProgramFault(Fault(event.code, event.message, event.hint), event.origin, event.calls)
+        if isinstance(event, LineBegun | FedEnded):
+            continue
+        try:
+            yield event
+        except Fault as fault:
+            machine.refuse(fault)
 
 
 def ran(text, world=None):

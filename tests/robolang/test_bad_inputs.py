@@ -11,13 +11,13 @@ from robolang.analysis.checker import check
 from robolang.core.source import Source, decode_program
 from robolang.evaluation import evaluator
 from robolang.interpreter import effects, machine
-from robolang.interpreter.machine import execute
 from robolang.interpreter.program_fault import ProgramFault
 from robolang.syntax.keywords import FUNCTIONS, VALUES
 from robolang.syntax.parser import parse
 from runtime.core.faults import Fault
 from tests.campaign import size
 from tests.robolang.helpers import cell_with, places
+from tests.robolang.running import execute
 from tests.steps import assert_linear
 
 POINTS = ("P1", "P2")

@@ -6,9 +6,9 @@ from robolang.analysis.checker import check
 from robolang.analysis.symbols import seems_to_define
 from robolang.core.deduplicate import MAX_NOTES
 from robolang.core.diagnostics import Severity
-from robolang.interpreter.machine import execute
 from robolang.syntax.parser import parse
 from tests.robolang.helpers import cell_with, places, source
+from tests.robolang.running import execute
 
 
 def found(text, points=("P1",)):

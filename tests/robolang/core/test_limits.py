@@ -13,14 +13,13 @@ from robolang.execution import run_bounds
 from robolang.execution.dry_run import rehearse
 from robolang.execution.session import Session
 from robolang.interpreter import run_limits
-from robolang.interpreter.machine import execute
 from robolang.interpreter.run_limits import MAX_CALLS, MAX_ROUNDS
 from robolang.interpreter.scope import MAX_CELLS, MAX_TEXTS
 from robolang.project.project import load_project
 from robolang.syntax.parser import parse
 from runtime.core.faults import Fault
 from tests.robolang.helpers import source
-from tests.robolang.running import fault, ran
+from tests.robolang.running import execute, fault, ran
 
 MAX_ELEMENTS = int(SIZE.high) + 1
 

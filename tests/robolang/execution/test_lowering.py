@@ -7,13 +7,13 @@ from robolang.evaluation.evaluator import Nowhere
 from robolang.execution import lowering
 from robolang.execution.lowering import Surroundings
 from robolang.interpreter.effects import MoveTo, SetPayload
-from robolang.interpreter.machine import execute
 from robolang.project.project import builtin_cell, load_project
 from robolang.values.poses import Place
 from runtime.core.faults import Fault
 from runtime.motion.commands import MoveArc, MoveJoint, MoveLinear
 from runtime.robot.kinematics.kinematics import Kinematics
 from tests.robolang.helpers import parsed
+from tests.robolang.running import execute
 
 
 @pytest.fixture(scope="module")

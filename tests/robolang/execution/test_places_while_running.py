@@ -10,10 +10,9 @@ from pathlib import Path
 import pytest
 
 from robolang.core.source import Source
-from robolang.interpreter.machine import execute
 from robolang.interpreter.program_fault import ProgramFault
 from robolang.syntax.parser import parse
-from tests.robolang.running import POINTS, World
+from tests.robolang.running import POINTS, World, execute
 
 STATEMENTS = (
     "Y = «1 / Z»",

@@ -5,7 +5,6 @@ import pytest
 from robolang.core.source import Span
 from robolang.interpreter import run_limits
 from robolang.interpreter.effects import Drain, MoveTo, Origin, Pass, SetHand, SetPayload, SetSeam, SetWrist
-from robolang.interpreter.machine import execute
 from robolang.interpreter.program_fault import ProgramFault
 from robolang.interpreter.run_limits import MAX_CALLS
 from robolang.syntax.parser import parse
@@ -13,7 +12,7 @@ from robolang.syntax.unparse import describe
 from robolang.values.poses import Place, Shift
 from runtime.core.program_line import named
 from tests.robolang.helpers import parsed, source
-from tests.robolang.running import POINTS, World, fault, ran, shows
+from tests.robolang.running import POINTS, World, execute, fault, ran, shows
 
 LISTING = Path(__file__).parents[3] / "programs" / "pick_and_place.rbl"
 

@@ -5,12 +5,11 @@ import pytest
 from robolang.core.source import Span
 from robolang.interpreter import run_limits
 from robolang.interpreter.effects import MoveTo, Show
-from robolang.interpreter.machine import execute
 from robolang.interpreter.program_fault import ProgramFault
 from robolang.interpreter.run_limits import MAX_CALLS
 from runtime.core.faults import Fault
 from tests.robolang.helpers import parsed
-from tests.robolang.running import POINTS, World, fault, shows
+from tests.robolang.running import POINTS, World, execute, fault, shows
 
 
 @pytest.mark.parametrize(

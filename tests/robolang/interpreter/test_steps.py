@@ -15,7 +15,7 @@ from runtime.core.faults import Fault
 from tests.campaign import examples
 from tests.robolang.helpers import parsed, source
 from tests.robolang.interpreter.stepping import Clocked, Driver, programs, refusals
-from tests.robolang.running import POINTS, ran
+from tests.robolang.running import POINTS, effects_of, ran
 
 LONGEST = 80
 
@@ -87,7 +87,7 @@ def test_a_failure_names_what_ran_and_the_calls_that_led_there():
 def test_a_generator_and_the_steps_of_a_machine_agree(program, refused):
     driver, other = Driver(program, refused), Driver(program, refused)
     stepped = driver.steps(300)
-    effects, program, fault = [], other.machine.run(), None
+    effects, program, fault = [], effects_of(other.machine), None
     try:
         while len(effects) < sum(isinstance(event, Effect) for event in stepped):
             effects.append(next(program) if fault is None else program.throw(fault))

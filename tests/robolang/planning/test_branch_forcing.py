@@ -5,9 +5,9 @@ import pytest
 from robolang.evaluation.evaluator import Nowhere
 from robolang.interpreter.branch_oracle import Decisions
 from robolang.interpreter.effects import Show
-from robolang.interpreter.machine import execute
 from robolang.planning.branch_forcing import open_conditions
 from tests.robolang.helpers import parsed, source
+from tests.robolang.running import execute
 from tests.steps import assert_linear
 
 

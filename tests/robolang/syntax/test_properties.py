@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from robolang.analysis.checker import check
 from robolang.core.diagnostics import has_errors, render, to_json
 from robolang.core.source import read_program
-from robolang.interpreter.machine import execute
 from robolang.syntax import ast, unparse
 from robolang.syntax.ast import Unparsed
 from robolang.syntax.blocks import targets
@@ -26,6 +25,7 @@ from tests.campaign import examples
 from tests.robolang import generator
 from tests.robolang.generator import jumping_programs, programs, texts, written_badly
 from tests.robolang.helpers import cell_with, source
+from tests.robolang.running import execute
 from tests.steps import assert_linear
 
 
