@@ -217,7 +217,7 @@ def _entry(item: ExportedMove | Marker, found: Export) -> dict[str, Any]:
 
 
 def _of_move(move: ExportedMove, found: Export) -> dict[str, Any]:
-    start, end = ((point / MM).tolist() for point in move.pulses.way.ends)
+    start, end = ((point / MM).tolist() for point in move.pulses.curve.ends)
     tables = {channel.joint.name: file for channel, file in zip(found.channels, move.files, strict=True)}
     plc = {name: file.replace(".csv", ".f174.csv") for name, file in tables.items() if file is not None}
     return {
@@ -237,8 +237,8 @@ def summary(move: ExportedMove, found: Export) -> dict[str, Any]:
     return {
         "steps": pulses.count,
         "seconds": round(pulses.count * step_s, 9),
-        "length_mm": pulses.way.length / MM,
-        "speed_mm_s": 0.0 if steps is None else steps.speed * pulses.way.length / MM,
+        "length_mm": pulses.curve.length / MM,
+        "speed_mm_s": 0.0 if steps is None else steps.speed * pulses.curve.length / MM,
         "slowed": pulses.slowed,
         "error_mm": float(pulses.error.max()) / MM,
         "notes": list(pulses.notes),

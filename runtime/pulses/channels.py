@@ -1,4 +1,4 @@
-"""Pulse channels: which joint each positions, by how much a pulse moves it, and between which frequencies it runs.
+"""Pulse channels: the joint that each positions, the turn or stroke of one pulse, and the frequencies of the channel.
 
 ::
 
@@ -11,7 +11,7 @@
     max_hz = 100000                  # optional
     output = "pulse-direction"       # or "cw-ccw", "pulse-direction-inverted": how a PLC puts out the direction
 
-Positions are counted from where the joint is zero.
+Positions are counted from joint value zero. Read once by the export (docs/pulses.md).
 """
 
 import math
@@ -26,10 +26,11 @@ from runtime.pulses.machine import Joint
 
 SCHEMA = 1
 MIN_HZ, MAX_HZ = 191.0, 100_000.0
-"""Frequencies of a channel that says nothing: those of the PLC of the specification's section 8.4."""
+"""Default frequencies of a channel, Hz: those of the PLC whose tables ``panasonic_f174`` writes."""
 PULSES_PER_TURN = 2000
-"""Pulses of one turn of a motor, where nothing is said: a stepper of 1.8 deg in tenths of a step."""
+"""Default pulses of one turn of a motor: a stepper of 1.8 deg in tenths of a step."""
 MOST_HZ = 1e7
+"""No pulse output is faster, Hz."""
 
 Output = Literal["pulse-direction", "pulse-direction-inverted", "cw-ccw"]
 
@@ -46,7 +47,7 @@ class Channel:
 
     @property
     def unit(self) -> tuple[str, float]:
-        """Name and size in SI of the unit that people count this joint in."""
+        """Name of the unit of this joint in files and tables, and its size in SI."""
         return ("deg", DEG) if self.joint.rotary else ("mm", MM)
 
 
@@ -82,10 +83,11 @@ def default_channels(joints: tuple[Joint, ...], pulses: tuple[float, ...], min_h
 def channels_of(
     file: ChannelFile, joints: tuple[Joint, ...], pulses: tuple[float, ...], name: str, min_hz: float | None
 ) -> tuple[Channel, ...]:
-    """Return the channels of machine ``name`` in the order of its ``joints``; ``FileFault`` at what does not fit.
+    """Return the channels of machine ``name`` in the order of its ``joints``; ``FileFault`` RBL608 or RBL610.
 
-    ``min_hz`` given on the command line goes over those of the file.
+    A ``min_hz`` from the command line replaces those of the file.
     """
+    # by name, since a file may have the channels in the order of the wiring
     known = {joint.name: (joint, pulse) for joint, pulse in zip(joints, pulses, strict=True)}
     found: dict[str, Channel] = {}
     for row in file.rows:
@@ -113,8 +115,9 @@ def _channel(row: Table, joint: Joint, pulse: float, min_hz: float | None) -> Ch
         max_hz=row.number("max_hz", MAX_HZ, low=1.0, high=MOST_HZ),
         output=row.text("output", "pulse-direction", choices=get_args(Output)),  # type: ignore[arg-type]
     )
-    row.ask("min_hz")
+    row.ask("min_hz")  # a known key also where the command line replaces it
     row.done()
+    # S06 gives carried pulses back in steps of 2 dP_min: without one in the range of the channel it never could
     if not channel.max_hz >= 2.0 * channel.min_hz:
         most, least = beside(channel.max_hz, 2.0 * channel.min_hz)
         row.fail(

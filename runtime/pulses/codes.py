@@ -12,8 +12,8 @@ register(
     Code(
         code="RBL431",
         name="not-exportable",
-        meaning="A statement cannot be put into pulse tables as it stands: it depends on a sensor, or asks of the "
-        "mechanism what it has no joint for.",
+        meaning="A statement cannot be put into pulse tables: it depends on a sensor, or needs a joint that the "
+        "mechanism does not have.",
         remedy="Change the statement as the message says, or export for another machine.",
     ),
     Code(
@@ -31,8 +31,8 @@ register(
     Code(
         code="RBL630",
         name="pulse-export-unreadable",
-        meaning="A folder of pulse tables, or a file in it, is missing, is not what such a folder holds or has a key "
-        "that is missing or of the wrong type.",
+        meaning="A folder of pulse tables, or a file in it, is missing or not of its form, or one of its keys is "
+        "missing or of the wrong type.",
         remedy="Name a folder that robolang export has written, or write it anew.",
     ),
     Code(
@@ -44,8 +44,8 @@ register(
     Code(
         code="RBL632",
         name="pulse-table-out-of-step",
-        meaning="The channels of a move would not stay together: a row is not one time step long, a table does not go "
-        "on where the channel stood, or it has another number of steps than the move.",
+        meaning="The channels of a move would not stay together: a row is not one time step long, a table does not "
+        "begin at the position of its channel, or it has another number of steps than the move.",
         remedy="Write the folder anew with robolang export; the tables of a folder belong together.",
     ),
     Code(

@@ -1,4 +1,4 @@
-"""Pulses that a channel can emit: no step below its lowest frequency, and not one pulse lost (document 004, 4.5).
+"""Pulses that a channel can emit: no step below its lowest frequency, and no pulse lost (document 004, 4.5).
 
 A channel cannot run below F_min, so a step of fewer than dP_min = ceil(F_min dT) pulses cannot be emitted as it is.
 
@@ -10,14 +10,15 @@ until a step of 2 dP_min or more can give it back:
     |d| >= dP_min, c against d  e = d - c                   c = 0
     otherwise                   e = d
 
-``hold``, ours: where a joint creeps for a whole move there is no such step, and c grows without bound. There the
-channel stands still until more than half of dP_min is due, and emits what is due, dP_min at least: it is never more
-than half of that off, and never turns round for what it emitted too much.
+``hold``, not in the document: where a joint creeps for a whole move there is no such step, and c grows without bound.
+There the channel stands still until more than half of dP_min is due, and emits what is due, dP_min at least: its error
+is at most half of that, and it never reverses for pulses emitted too many.
 ``emit`` takes the document's rule while it keeps within ``MOST_CARRIED`` dP_min and leaves no more at the end than one
 step can bear, else the second (docs/decisions/0021).
 
 ``settle`` makes the sum exact: what is carried after the last point is taken from the last step that can bear it, else
-from several, else a step is left out and others raised, else one or two steps are appended.
+from several, else a step is left out and others raised, else one or two steps are appended. Called once a move and
+channel; pulses are whole numbers, so all sums here are exact.
 """
 
 import math
@@ -31,15 +32,15 @@ Pulses = NDArray[np.int64]
 Rule = Literal["none", "compensate", "hold"]
 
 MOST_CARRIED = 2
-"""Pulses carried by the document's rule that are put up with, in terms of dP_min."""
+"""Most pulses that the document's rule may carry, in terms of dP_min (docs/decisions/0021)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Emission:
-    """What a channel emits for a move: ``steps`` (N',) pulses, N' >= N where steps were appended.
+    """The pulses of a channel for a move: ``steps`` (N',), N' >= N where steps were appended.
 
-    ``raised`` counts the steps that were changed for want of frequency, ``debt`` is the most pulses emitted too many or
-    too few after any step, ``settled`` what was left for the end; ``rule`` says how.
+    ``raised`` counts the steps that were changed since their frequency was too low, ``debt`` is the largest error after
+    any step, pulses, ``settled`` the error left for the end; ``rule`` is the one that was used.
     """
 
     steps: Pulses
@@ -57,7 +58,7 @@ def least_step(min_hz: float, step_s: float) -> int:
 def emit(wanted: Pulses, least: int, most: int) -> Emission:
     """Return the emission of ``wanted`` steps (N,) pulses, each 0 or from ``least`` to ``most``; the sum is the same.
 
-    ``ValueError`` where that cannot be done because a step wants more than ``most``.
+    ``ValueError`` where a step of ``wanted`` exceeds ``most``.
     """
     if len(wanted) and int(np.abs(wanted).max()) > most:
         raise ValueError(f"a step of {int(np.abs(wanted).max())} pulses is over {most}")
@@ -67,6 +68,7 @@ def emit(wanted: Pulses, least: int, most: int) -> Emission:
     steps, raised, left = compensate(wanted, least)
     rule: Rule = "compensate"
     worst = _debt(steps, wanted)
+    # one step has to bear what is left: spread over several, the end of the move would be off its line for longer
     borne = left == 0 or _bearer(steps, left, least, most) is not None
     if worst > MOST_CARRIED * least or int(np.abs(steps).max()) > most or not borne:
         steps, raised, left = hold(wanted, least, most)
@@ -81,6 +83,7 @@ def compensate(wanted: Pulses, least: int) -> tuple[Pulses, int, int]:
     for d in wanted.tolist():
         size, sign = abs(d), 1 if d > 0 else -1
         e = d
+        # the four lines of the table above, in their order
         if 0 < size < least:
             e = sign * least
             raised += 1
@@ -99,6 +102,7 @@ def hold(wanted: Pulses, least: int, most: int) -> tuple[Pulses, int, int]:
     for d in wanted.tolist():
         due += d
         size, sign = abs(due), 1 if due > 0 else -1
+        # at half of dP_min standing still and one step of it are equally wrong; only more than half is worth a step
         e = sign * min(max(size, least), most) if 2 * size > least else 0
         due -= e
         emitted.append(e)
@@ -110,6 +114,7 @@ def settle(steps: Pulses, missing: int, least: int, most: int) -> Pulses:
     """Return steps whose sum is larger by ``missing`` pulses, none of them between 0 and ``least``."""
     found = _spread(steps, missing, least, most)
     if found is None:
+        # without a step of the other direction the sum has the missing pulses, or more; the others bear the difference
         against = np.flatnonzero(steps * missing < 0)
         if len(against):
             last = int(against[-1])
@@ -118,6 +123,7 @@ def settle(steps: Pulses, missing: int, least: int, most: int) -> Pulses:
             found = _spread(without, missing + int(steps[last]), least, most)
     if found is not None:
         return found
+    # nothing can bear it, so the move gets longer by a step, or by two where the rest is below dP_min: there and back
     sign = 1 if missing > 0 else -1
     more = _pieces(missing, least, most) if abs(missing) >= least else [missing + sign * least, -sign * least]
     return np.append(steps, more)
@@ -145,6 +151,7 @@ def _bearer(steps: Pulses, carried: int, least: int, most: int) -> int | None:
 
 def _shared(steps: Pulses, missing: int, least: int, most: int) -> int:
     """Give ``missing`` to several steps from the last on, in place; return what is left of it."""
+    # from the end: the error is made good as late, and so as near to the taught end, as it can be
     for k in reversed(np.flatnonzero(steps).tolist()):
         if missing == 0:
             break
@@ -164,7 +171,7 @@ def _pieces(pulses: int, least: int, most: int) -> list[int]:
 
 
 def _debt(steps: Pulses, wanted: Pulses) -> int:
-    """Return the largest distance of what was emitted from what was wanted, after any step."""
+    """Return the largest difference between pulses emitted and wanted, after any step."""
     off = np.cumsum(steps)
     off[: len(wanted)] -= np.cumsum(wanted)
     off[len(wanted) :] -= int(wanted.sum())

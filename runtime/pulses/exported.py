@@ -1,4 +1,4 @@
-"""What an export is: all that a folder of pulse tables holds, once it has been read.
+"""An export: the content of a folder of pulse tables, once it has been read.
 
 A mechanism whose joints are moved by one pulse channel each, and a sequence of straight moves with markers between
 them. A move has a table for each channel that does not stand still; all of them start together, and each runs by
@@ -8,8 +8,7 @@ itself, row by row:
     joint     = pulses x pulse equivalent
 
 ``runtime.pulses.folder`` makes an ``Export`` of a folder and lets nothing through that cannot be played,
-``runtime.pulses.replay`` plays it, ``robolang.pulse_tables.drive`` drives an arm with it. Here are also the codes of
-all that can be wrong with one.
+``runtime.pulses.replay`` plays it, ``robolang.pulse_tables.drive`` drives an arm with it.
 """
 
 from dataclasses import dataclass, field
@@ -28,7 +27,7 @@ KINDS: tuple[Kind, ...] = ("arm", "cartesian", "cylindrical", "scara")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mechanism:
-    """What the channels move: ``axes`` name the joints of all kinds but an arm, whose joints are J1, J2, ...
+    """The mechanism that the channels move; ``axes`` are its joints, J1, J2, ... of an arm.
 
     ``placements`` (4, 4) of each axis of an arm in the frame before it, then ``X_last_flange`` and ``X_flange_tool``
     (4, 4), m. ``constant`` (3,) m: the coordinates that no joint moves. ``lengths``: l1 and l2 of a scara, m.
@@ -51,7 +50,7 @@ class Mechanism:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Channel:
-    """A pulse channel: ``per_pulse`` in ``unit``, lowest and highest frequency Hz, where it stands at first, pulses."""
+    """A pulse channel: ``per_pulse`` in ``unit``, lowest and highest frequency Hz, position at the start, pulses."""
 
     name: str
     unit: Unit
@@ -83,7 +82,7 @@ class Table:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Load:
-    """What a LOAD declared: mass kg, centre of gravity (3,) m in the flange frame."""
+    """The payload of a LOAD: mass kg, centre of gravity (3,) m in the flange frame."""
 
     mass: float
     cog: Array

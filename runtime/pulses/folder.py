@@ -1,11 +1,12 @@
 """The folder of an export: its manifest and its tables, made into an ``Export`` or refused.
 
 A folder holds ``manifest.json`` and one CSV file for each channel and move. This reader knows nothing of the exporter:
-it takes the files as they are. Everything is checked on reading: what comes out of ``read_export`` can be played. The
-tables of a folder belong together: each goes on where its channel stood after the move before, and lasts as long as
-the move. Reading is bounded: only files of the folder itself (``runtime.pulses.manifest``), each of them one table, at
-most ``MAX_STEPS`` steps. Every error is a ``FileFault`` RBL630 to RBL633: a row of a table is named by its line
-(``runtime.pulses.rows``), a value of the manifest by its key.
+it takes the files as they are, so that a mistake of the exporter cannot hide in code that both share. Everything is
+checked on reading: what ``read_export`` returns can be played. The tables of a folder belong together: each continues
+from the position of its channel after the move before, and lasts as long as the move. Reading is bounded: only files of
+the folder itself (``runtime.pulses.manifest``), each of them one table, at most ``MAX_STEPS`` steps. Every error is a
+``FileFault`` RBL630 to RBL633: a row of a table is named by its line (``runtime.pulses.rows``), a value of the manifest
+by its key.
 """
 
 import os
@@ -28,6 +29,7 @@ MAX_STEPS = 1_000_000
 HIGHEST_RATE = 10_000
 """Most time steps in a second."""
 LONGEST_DWELL_S = 600.0
+"""As long as the longest move of the controller."""
 MAX_PULSES = 10**15
 """No position is further from zero, pulses: every whole number up to there is a float."""
 
@@ -59,6 +61,7 @@ def _schema(manifest: Object) -> None:
     value = manifest.value("schema")
     if isinstance(value, bool) or not isinstance(value, int):
         manifest.fail("schema", f"must be the number {SCHEMA}, not {type_name(value)}")
+    # before any other key: a folder of another version would be refused for a key that it is right to lack
     if value != SCHEMA:
         age = "a newer" if value > SCHEMA else "an older"
         hint = "update robolang" if value > SCHEMA else "write the folder anew with robolang export"
@@ -67,6 +70,7 @@ def _schema(manifest: Object) -> None:
 
 def _step(manifest: Object) -> float:
     step_s = manifest.number("step_s", 1.0 / HIGHEST_RATE, 1.0)
+    # then every frequency |dP| / dT is a whole number of Hz (``table``)
     if not abs(round(1.0 / step_s) * step_s - 1.0) <= 1e-9:
         manifest.fail("step_s", f"is {step_s:g} s and must be a whole part of a second")
     return step_s
@@ -96,6 +100,7 @@ def _mechanism(table: Object) -> Mechanism:
             X_flange_tool=table.pose("X_flange_tool"),
         )
     axes = _axes(table, kind)
+    # x and y of the others follow from their angles; a coordinate that nothing moves must be stated
     moved = set(axes) if kind == "cartesian" else {"x", "y", *axes}
     constant = [0.0 if axis in moved else table.number(f"{axis}_mm") * MM for axis in "xyz"]
     lengths = (table.number("l1_mm") * MM, table.number("l2_mm") * MM) if kind == "scara" else (0.0, 0.0)
@@ -103,6 +108,7 @@ def _mechanism(table: Object) -> Mechanism:
 
 
 def _axes(table: Object, kind: Kind) -> tuple[str, ...]:
+    """Return the axes of a mechanism in their order; ``FileFault`` RBL630 for others than its kind has."""
     first, more = _AXES[kind]
     axes = table.entries("axes")
     for axis in axes:
@@ -149,19 +155,11 @@ def _channel(table: Object, unit: Unit) -> Channel:
 def _sequence(
     manifest: Object, folder: Path, channels: tuple[Channel, ...], step_s: float
 ) -> tuple[Marker | Move, ...]:
-    tables = manifest.children("sequence")
-    left = MAX_STEPS
-    files: set[str] = set()
-    stands = tuple(channel.start_pulses for channel in channels)
-    sequence: list[Marker | Move] = []
-    for table in tables:
-        if table.text("kind", ("marker", "move")) == "marker":
-            sequence.append(_marker(table))
-            continue
-        move, stands = _move(table, folder, channels, step_s, stands, files, left)
-        left -= move.steps
-        sequence.append(move)
-    return tuple(sequence)
+    moves = _Moves(folder, channels, step_s)
+    return tuple(
+        _marker(table) if table.text("kind", ("marker", "move")) == "marker" else moves.read(table)
+        for table in manifest.children("sequence")
+    )
 
 
 def _place(table: Object) -> tuple[int, int | None, str]:
@@ -172,6 +170,7 @@ def _place(table: Object) -> tuple[int, int | None, str]:
 
 def _marker(table: Object) -> Marker:
     line, number, text = _place(table)
+    # one statement is one marker; a folder with two in one was not written by an exporter of this schema
     if sum(key in table for key in ("load", "hand", "other")) != 1:
         table.fail("load", "or 'hand' or 'other': a marker has one of the three")
     if "other" in table:  # what the PLC does by itself: an input that it waits for, an output
@@ -185,49 +184,57 @@ def _marker(table: Object) -> Marker:
     return Marker(line=line, number=number, text=text, hand=hand, dwell_s=table.number("dwell_s", 0.0, LONGEST_DWELL_S))
 
 
-def _move(
-    entry: Object,
-    folder: Path,
-    channels: tuple[Channel, ...],
-    step_s: float,
-    stands: tuple[int, ...],
-    files: set[str],
-    most: int,
-) -> tuple[Move, tuple[int, ...]]:
-    """Return a move and where its channels stand after it; ``files`` have been read, ``most`` steps are left."""
-    line, number, text = _place(entry)
-    steps = entry.whole("steps", 0, MAX_STEPS)
-    if steps > most:
-        entry.fail("steps", f"is {steps}: all moves together have more than {MAX_STEPS}")
-    start, end = (frozen(np.array(entry.numbers(key, 3)) * MM) for key in ("start_mm", "end_mm"))
-    names = entry.child("tables")
-    known = [channel.name for channel in channels]
-    for key in names.keys():  # noqa: SIM118 - not a dict
-        if key not in known:
-            names.fail(key, f"is not a channel; known: {', '.join(known)}")
-    found: list[Table | None] = []
-    last: list[int] = []
-    here = [_file(names, channel, files) for channel in known]
-    for channel, file, at in zip(channels, here, stands, strict=True):
-        table, ends_at = (None, at) if file is None else Rows(folder / file, channel, step_s).read(at, steps)
-        found.append(table)
-        last.append(ends_at)
-    move = Move(
-        line=line,
-        number=number,
-        text=text,
-        steps=steps,
-        start=start,
-        end=end,
-        tables=tuple(found),
-        first=frozen(stands),
-        last=frozen(last),
-    )
-    return move, tuple(last)
+class _Moves:
+    """Reads the moves of a sequence one after the other: keeps where the channels are and what has been read."""
+
+    def __init__(self, folder: Path, channels: tuple[Channel, ...], step_s: float) -> None:
+        self._folder, self._channels, self._step_s = folder, channels, step_s
+        self._positions = [channel.start_pulses for channel in channels]
+        self._files: set[str] = set()
+        self._steps_left = MAX_STEPS
+
+    def read(self, entry: Object) -> Move:
+        """Return the next move; ``FileFault`` RBL630 to RBL632."""
+        line, number, text = _place(entry)
+        steps = entry.whole("steps", 0, MAX_STEPS)
+        if steps > self._steps_left:
+            entry.fail("steps", f"is {steps}: all moves together have more than {MAX_STEPS}")
+        self._steps_left -= steps
+        start, end = (frozen(np.array(entry.numbers(key, 3)) * MM) for key in ("start_mm", "end_mm"))
+        first = frozen(self._positions)
+        tables = self._tables(entry.child("tables"), steps)
+        return Move(
+            line=line,
+            number=number,
+            text=text,
+            steps=steps,
+            start=start,
+            end=end,
+            tables=tables,
+            first=first,
+            last=frozen(self._positions),
+        )
+
+    def _tables(self, names: Object, steps: int) -> tuple[Table | None, ...]:
+        """Return the tables of a move by channel, None for one that stands still; the positions go on to its end."""
+        known = [channel.name for channel in self._channels]
+        for key in names.keys():  # noqa: SIM118 - not a dict
+            if key not in known:
+                names.fail(key, f"is not a channel; known: {', '.join(known)}")
+        # all names before any file: a wrong name is an error of the manifest, and no file need be opened to see it
+        files = [_file(names, channel, self._files) for channel in known]
+        tables: list[Table | None] = []
+        for k, (channel, file) in enumerate(zip(self._channels, files, strict=True)):
+            table = None
+            if file is not None:
+                rows = Rows(self._folder / file, channel, self._step_s)
+                table, self._positions[k] = rows.read(self._positions[k], steps)
+            tables.append(table)
+        return tuple(tables)
 
 
 def _file(names: Object, channel: str, files: set[str]) -> str | None:
-    """Return the name of a table's file, a plain one that no other table has; None where the channel stands still."""
+    """Return the file of a table, a plain name that no other table has; None where the channel stands still."""
     if names.value(channel) is None:
         return None
     file = names.text(channel)

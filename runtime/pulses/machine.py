@@ -1,8 +1,8 @@
-"""A machine whose joints are positioned by pulses: what its tool does, and which joint values put it on a line.
+"""A machine whose joints are positioned by pulses: where its tool is, and which joint values put it on a line.
 
 The method needs forward and inverse kinematics and nothing else, so every mechanism is a ``Machine``: the robots of the
-library (``RobotArm``) and mechanisms given by a few lengths (``mechanism``). A machine is immutable; where it stands is
-handed to it. Joint values are rad or m, points m.
+library (``RobotArm``) and mechanisms given by a few lengths (``mechanism``). A machine is immutable; its present joint
+values are passed to it. Joint values are rad or m, points m.
 """
 
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ import numpy as np
 
 from runtime.core.frames import Array, frozen
 from runtime.core.linear import matmul
-from runtime.motion.cartesian_planner import CartesianPlanner
+from runtime.motion.cartesian_planner import CartesianPlanner, PathCurve
 from runtime.motion.commands import MoveLinear
 from runtime.motion.velocity_profile import SpeedLimits
 from runtime.robot.kinematics.kinematics import Kinematics
@@ -34,13 +34,13 @@ class Joint:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stand:
-    """Where a machine stands: joint values q (M,), and the rotation R (3, 3) of its tool (None: not known yet)."""
+    """Where a machine is: joint values q (M,), and the rotation R (3, 3) of its tool (None: not known yet)."""
 
     q: Array
     R: Array | None = None
 
 
-class Way(Protocol):
+class LineCurve(Protocol):
     """The curve of one straight move. ``limits`` of its path parameter, None where the tool is already there."""
 
     @property
@@ -49,7 +49,7 @@ class Way(Protocol):
 
     @property
     def length(self) -> float:
-        """Way of the tool point, m."""
+        """Length of the path of the tool point, m."""
 
     @property
     def ends(self) -> tuple[Array, Array]:
@@ -64,7 +64,7 @@ class Machine(Protocol):
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """Its name in messages and tables."""
 
     @property
     def joints(self) -> tuple[Joint, ...]:
@@ -72,16 +72,16 @@ class Machine(Protocol):
 
     @property
     def home(self) -> Stand:
-        """Where a program finds it."""
+        """Where it is when a program starts."""
 
     def placed(self, point: Array) -> "Machine":
         """Return the machine with coordinates that have no joint as they are at a program's first point (3,) m."""
 
-    def way(self, stand: Stand, command: MoveLinear) -> Way:
+    def curve(self, stand: Stand, command: MoveLinear) -> LineCurve:
         """Return the curve of a move from ``stand``; ``Fault`` where there is none."""
 
     def arrived(self, stand: Stand, command: MoveLinear, q: Array) -> Stand:
-        """Return where the machine stands when a move of ``way`` has ended at q (M,)."""
+        """Return where the machine is when a move along its ``curve`` has ended at q (M,)."""
 
     def points(self, q: Array) -> Array:
         """Return the tool points (K, 3) m at joint values q (K, M)."""
@@ -91,26 +91,25 @@ class Machine(Protocol):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ArmWay:
-    """The way of a robot arm, as the planner of a run chooses it: with its wrist changes."""
+class ArmCurve:
+    """The curve of a robot arm, as the planner of a run chooses it: with its wrist changes."""
 
-    way: Any
+    planned: PathCurve
     ends: tuple[Array, Array]
 
     @property
     def limits(self) -> SpeedLimits | None:
         """Bounds of ds/dt."""
-        limits: SpeedLimits | None = self.way.limits
-        return limits
+        return self.planned.limits
 
     @property
     def length(self) -> float:
-        """Way of the tool point, m."""
-        return float(self.way.path.length)
+        """Length of the path of the tool point, m."""
+        return self.planned.path.length
 
     def joints(self, s: Array) -> Array:
         """Return q (N, n) rad at path parameters s (N,)."""
-        return np.asarray(self.way.joints(s))
+        return self.planned.joints(s)
 
 
 class RobotArm:
@@ -119,6 +118,7 @@ class RobotArm:
     def __init__(self, spec: RobotSpec, profile: Profile, X_flange_tool: Array, home: Array) -> None:
         self._spec, self._X_flange_tool = spec, X_flange_tool
         self._kinematics = Kinematics(spec)
+        # the planner of a run, so that tables and a run take the same curve, wrist changes and refusals included
         self._planner = CartesianPlanner(spec, self._kinematics, profile)
         self.name = spec.name
         self.home = Stand(q=frozen(home))
@@ -140,13 +140,13 @@ class RobotArm:
         return self._kinematics
 
     def placed(self, point: Array) -> "RobotArm":
-        """Return the arm: it has joints for everything."""
+        """Return the arm itself: it has joints for every coordinate."""
         return self
 
-    def way(self, stand: Stand, command: MoveLinear) -> ArmWay:
+    def curve(self, stand: Stand, command: MoveLinear) -> ArmCurve:
         """Return the curve that a run of this move would take; ``Fault`` RBL404, 410, 411, 412."""
-        way = self._planner.curve(stand.q, command, self._X_flange_tool)
-        return ArmWay(way=way, ends=(way.path.X_start[:3, 3], way.path.X_end[:3, 3]))
+        planned = self._planner.curve(stand.q, command, self._X_flange_tool)
+        return ArmCurve(planned=planned, ends=(planned.path.X_start[:3, 3], planned.path.X_end[:3, 3]))
 
     def arrived(self, stand: Stand, command: MoveLinear, q: Array) -> Stand:
         """Return the stand at q (n,)."""

@@ -1,9 +1,9 @@
 """A file read without trust, and the strict JSON of a manifest with typed getters that name the key at fault.
 
 Reading is bounded: regular files of the folder itself, up to a number of bytes (``MAX_MANIFEST_BYTES`` of a manifest),
-no links, no pipes. JSON is taken strictly: no NaN, no Infinity, no number beyond any float, no key twice. Every error
-is a ``FileFault`` RBL630: of the text at its line and column; of a value by its key, as in ``channels.2.min_hz``, since
-the manifest has no lines worth naming.
+no links, no pipes. A folder may come from anywhere, so it is read as one from a stranger. JSON is taken strictly: no
+NaN, no Infinity, no number beyond any float, no key twice. Every error is a ``FileFault`` RBL630: of the text at its
+line and column; of a value by its key, as in ``channels.2.min_hz``, since the manifest has no lines worth naming.
 """
 
 import errno
@@ -12,6 +12,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -24,21 +25,33 @@ from runtime.core.tomlfile import MAX_ABS, FileFault
 
 MAX_MANIFEST_BYTES = 16_000_000
 POSE_TOLERANCE = 1e-6
-"""A rotation of the manifest is one to within this."""
+"""A matrix of the manifest is a rotation when R R' is the unit matrix within this."""
 
 
 # --- a file ----------------------------------------------------------------------------------------------------------
 
 
-def fail(
-    path: Path, code: str, message: str, hint: str = "", line: int = 1, column: int = 1, excerpt: str = ""
-) -> NoReturn:
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A place in a text: 1-based line and column, and the text of the line."""
+
+    line: int = 1
+    column: int = 1
+    excerpt: str = ""
+
+
+START = Place()
+"""Where errors are reported that concern a file as a whole, or a value of it by its key."""
+
+
+def fail(path: Path, code: str, message: str, hint: str = "", place: Place = START) -> NoReturn:
     """Raise ``FileFault`` at a place of a file."""
-    raise FileFault(code, message, hint, path=str(path), line=line, column=column, excerpt=excerpt) from None
+    at = {"line": place.line, "column": place.column}
+    raise FileFault(code, message, hint, path=str(path), excerpt=place.excerpt, **at) from None
 
 
 def reason(error: Exception) -> str:
-    """Return why a file cannot be used, without the path that an ``OSError`` names too."""
+    """Return the reason for which a file cannot be used, without the path that an ``OSError`` adds."""
     return str(getattr(error, "strerror", None) or error)
 
 
@@ -58,14 +71,14 @@ def read_text(path: Path, most: int) -> str:
         return raw.decode("utf-8")
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
-        fail(path, "RBL630", f"{path} is not UTF-8 text (byte {error.start})", line=line)
+        fail(path, "RBL630", f"{path} is not UTF-8 text (byte {error.start})", place=Place(line))
 
 
 # --- words of a message ----------------------------------------------------------------------------------------------
 
 
 def type_name(value: object) -> str:
-    """Return what a JSON value is, as in 'a number'."""
+    """Return the kind of a JSON value as messages name it, such as 'a number'."""
     names = {bool: "a boolean", str: "a text", int: "a number", float: "a number", list: "a list", dict: "an object"}
     return names.get(type(value), "null")
 
@@ -76,7 +89,7 @@ def quoted(text: str) -> str:
 
 
 def digits(value: int) -> str:
-    """Return an integer for a message; it may have more digits than Python is willing to print."""
+    """Return an integer for a message; Python refuses to print one of more than 4300 digits."""
     return str(value) if abs(value) < 10**20 else f"a whole number of {value.bit_length()} bits"
 
 
@@ -93,6 +106,7 @@ def read_json(path: Path) -> dict[str, Any]:
     except json.JSONDecodeError as error:
         _fail_in(path, text, error.pos, f"{path.name} is not JSON: {error.msg}")
     except _ConstantError as error:
+        # json gives no position of a constant: the first one outside of texts is it
         at = next((match.start() for match in _TOKENS.finditer(text) if match[1]), 0)
         _fail_in(path, text, at, f"{path.name} is not strict JSON: {error} is not a number")
     except RecursionError:
@@ -120,6 +134,7 @@ def _finite(text: str) -> float:
 
 
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    # json keeps the last of two keys silently, and two readers may then see two different files
     found = dict(pairs)
     if len(found) < len(pairs):
         twice, _ = Counter(key for key, _ in pairs).most_common(1)[0]
@@ -128,15 +143,10 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _fail_in(path: Path, text: str, at: int, message: str) -> NoReturn:
+    """Raise ``FileFault`` RBL630 at a character (0-based) of the text."""
     start = text.rfind("\n", 0, at) + 1
-    fail(
-        path,
-        "RBL630",
-        message,
-        line=text.count("\n", 0, at) + 1,
-        column=at - start + 1,
-        excerpt=text[start:].partition("\n")[0].removesuffix("\r"),
-    )
+    excerpt = text[start:].partition("\n")[0].removesuffix("\r")
+    fail(path, "RBL630", message, place=Place(text.count("\n", 0, at) + 1, at - start + 1, excerpt))
 
 
 # --- typed getters ---------------------------------------------------------------------------------------------------
@@ -160,13 +170,13 @@ class Object:
         fail(self._path, code, f"'{self.name(key)}' {message}", hint)
 
     def value(self, key: str) -> Any:
-        """Return whatever a key holds."""
+        """Return the value of a key, of any kind; ``FileFault`` RBL630 when it is missing."""
         if key not in self._data:
             self.fail(key, "is missing")
         return self._data[key]
 
     def keys(self) -> list[str]:
-        """Return the keys that are there."""
+        """Return the keys of the object."""
         return list(self._data)
 
     def number(self, key: str, low: float = -MAX_ABS, high: float = MAX_ABS) -> float:
@@ -176,7 +186,7 @@ class Object:
     def _checked(self, key: str, value: object, low: float, high: float) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float):
             self.fail(key, f"must be a number, not {type_name(value)}")
-        if not low <= value <= high:  # before float(): an integer may be beyond any float
+        if not low <= value <= high:  # before float(), which raises for an integer beyond any float
             shown = f"{value:g}" if isinstance(value, float) else digits(value)
             self.fail(key, f"is {shown} and must be between {low:g} and {high:g}")
         return float(value)
@@ -241,6 +251,7 @@ class Object:
             self.fail(key, "must be a pose of 4 rows of 4 numbers")
         X = np.array([self._numbers(f"{key}.{row}", each, 4, -MAX_ABS, MAX_ABS) for row, each in enumerate(value, 1)])
         R = X[:3, :3]
+        # orthogonal and right-handed: a mirrored frame has det -1 and would pass the first test
         off = np.maximum(np.abs(matmul(R, R.T) - np.eye(3)).max(), np.abs(X[3] - (0.0, 0.0, 0.0, 1.0)).max())
         if not (off <= POSE_TOLERANCE and np.linalg.det(R) > 0.0):
             self.fail(key, "is not a pose: three rows of a rotation with a position in m, then 0, 0, 0, 1")

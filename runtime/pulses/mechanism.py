@@ -4,9 +4,9 @@
     cylindrical  theta, r and perhaps z:                x = r cos theta, y = r sin theta
     scara        theta1, theta2, perhaps z and theta4:  x = l1 cos t1 + l2 cos(t1 + t2), y with sines
 
-A coordinate without a joint is constant: z is where the program's first point has it. A tool that no joint turns keeps
+A coordinate without a joint is constant: z is that of the program's first point. A tool that no joint turns keeps
 its posture; theta4 turns it about z by what the two others leave of it. Inverse kinematics follows the branch it is in
-(sign of theta2; theta by the shorter way), so a line through the axis of a cylindrical arm, or past the reach of a
+(sign of theta2; theta by the smaller turn), so a line through the axis of a cylindrical arm, or past the reach of a
 SCARA, is refused. Moves that the mechanism cannot make as taught are ``Fault`` RBL431, never approximated.
 
 ::
@@ -27,6 +27,7 @@ SCARA, is refused. Moves that the mechanism cannot make as taught are ``Fault`` 
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
@@ -59,8 +60,9 @@ NEEDED: dict[str, tuple[str, ...]] = {
 }
 SCHEMA = 1
 SAME = 1e-6
-"""A difference that is none, m and rad: taught values have fewer digits."""
+"""A difference of less is rounding, m and rad: taught values have fewer digits."""
 RANGE_TOLERANCE = 1e-9
+"""How far past its range a joint may be commanded, rad or m: rounding, nothing more."""
 JUMP = 0.5
 """No joint turns further from one step to the next, rad: it passes a singularity."""
 
@@ -69,8 +71,8 @@ JUMP = 0.5
 class Mechanism:
     """A mechanism: joints in the order of ``kind``, ``lengths`` l1 and l2 of a SCARA, m, limits of the tool point.
 
-    ``pulse`` (M,) rad or m is what one pulse moves each joint by, where nobody says otherwise. ``fixed`` are the
-    coordinates that have no joint, m, as far as they are known.
+    ``pulse`` (M,) rad or m: the default of what one pulse moves each joint by. ``fixed`` are the coordinates that have
+    no joint, m, as far as they are known.
     """
 
     name: str
@@ -90,7 +92,7 @@ class Mechanism:
         return frozenset(joint.name for joint in self.joints)
 
     def placed(self, point: Array) -> "Mechanism":
-        """Return the mechanism with the coordinates it has no joint for as they are at ``point`` (3,) m."""
+        """Return the mechanism with the coordinates that have no joint as they are at ``point`` (3,) m."""
         axes = "xyz" if self.kind == "cartesian" else "z"
         free = [axis for axis in axes if axis not in self.has]
         return replace(self, fixed=tuple((axis, float(point["xyz".index(axis)])) for axis in free))
@@ -111,15 +113,16 @@ class Mechanism:
             y = l1 * np.sin(value["theta1"]) + l2 * np.sin(both)
         return np.stack([x, y, value.get("z", zero)], axis=-1)
 
-    def way(self, stand: Stand, command: MoveLinear) -> "MechanismWay":
+    def curve(self, stand: Stand, command: MoveLinear) -> "MechanismCurve":
         """Return the curve of a move; ``Fault`` RBL404 or RBL431."""
+        # from where the pulses have put the joints, not from the taught start: the line begins where the tool is
         start, end = self.points(stand.q), command.X_world_tool[:3, 3]
         for axis, at in self.fixed:
             k = "xyz".index(axis)
             if not abs(end[k] - at) <= SAME:
                 raise Fault(
                     "RBL431",
-                    f"the {self.name} has no joint for {axis} and stands at {at / MM:g} mm; the "
+                    f"the {self.name} has no joint for {axis} and stays at {at / MM:g} mm; the "
                     f"point is at {end[k] / MM:g} mm",
                 )
         turns = self._turns(stand, command)
@@ -131,22 +134,23 @@ class Mechanism:
         )
         length = norm(end - start)
         extents = [(length, speed, self.acceleration * command.acceleration, np.inf)]
-        if turn:  # as fast as the joint that turns it; what its limits leave of that is found on the steps
+        if turn:  # as fast as the joint that turns it; ``move`` slows it where the other joints need longer
             joint = self.joints[-1]
             extents.append((abs(turn), min(joint.speed, _FAST), min(joint.acceleration, _FAST), np.inf))
-        moves = not (length <= SAME * MM and abs(turn) <= SAME * MM)
+        moves = not (length <= SAME * MM and abs(turn) <= SAME * MM)  # a nanometre: less than any pulse
         limits = bound(extents, "trapezoid") if moves else None
-        ways = [
-            MechanismWay(mechanism=self, q_start=stand.q, ends=(start, end), turn=each, limits=limits) for each in turns
+        curves = [
+            MechanismCurve(mechanism=self, q_start=stand.q, ends=(start, end), turn=each, limits=limits)
+            for each in turns
         ]
-        return ways[0] if len(ways) == 1 else _freer(ways[0], ways[1])
+        return curves[0] if len(curves) == 1 else _freer(curves[0], curves[1])
 
     def _turns(self, stand: Stand, command: MoveLinear) -> tuple[float, ...]:
-        """Return by how much the tool turns about z on a move, rad, of a half turn both directions.
+        """Return by how much the tool turns about z on a move, rad; both directions of a half turn.
 
-        ``Fault`` RBL431 when it must turn otherwise.
+        ``Fault`` RBL431 when it must turn about another axis, or has no joint that turns it.
         """
-        if stand.R is None:
+        if stand.R is None:  # the first point: any posture of the tool is the one that it has there
             return (0.0,)
         rotations = principal_axes(stand.R, command.X_world_tool[:3, :3])
         axis, angle = rotations[0]
@@ -181,12 +185,13 @@ class Mechanism:
         elif self.kind == "scara":
             l1, l2 = self.lengths
             cosine = (x * x + y * y - l1 * l1 - l2 * l2) / (2.0 * l1 * l2)
+            # law of cosines; beyond reach NaN, not clipped: a point out of reach is refused, never approximated
             inside = np.where(np.abs(cosine) <= 1.0, cosine, np.nan)
             t2 = np.copysign(np.arccos(inside), start["theta2"])
             t1 = np.arctan2(y, x) - np.arctan2(l2 * np.sin(t2), l1 + l2 * np.cos(t2))
             found["theta2"] = t2
             found["theta1"] = _unwrapped(t1, start["theta1"])
-            if "theta4" in self.has:
+            if "theta4" in self.has:  # the yaw of the tool is the sum of the three angles about z
                 yaw = start["theta1"] + start["theta2"] + start["theta4"] + turn
                 found["theta4"] = yaw - found["theta1"] - t2
         return np.stack([found[joint.name] for joint in self.joints], axis=1)
@@ -204,12 +209,13 @@ class Mechanism:
 
 
 _FAST = 1e3
-_TRIED = np.linspace(0.0, 1.0, 101)
+"""Stands for the speed and acceleration of a joint without stated limits, rad/s and rad/s2."""
+_SAMPLES = np.linspace(0.0, 1.0, 101)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MechanismWay:
-    """A straight move of a mechanism between ``ends``; ``turn`` rad of the tool about z on the way."""
+class MechanismCurve:
+    """A straight move of a mechanism between ``ends`` (3,) m, in which the tool turns by ``turn`` rad about z."""
 
     mechanism: Mechanism
     q_start: Array
@@ -219,7 +225,7 @@ class MechanismWay:
 
     @property
     def length(self) -> float:
-        """Way of the tool point, m."""
+        """Length of the path of the tool point, m."""
         return norm(self.ends[1] - self.ends[0])
 
     def joints(self, s: Array) -> Array:
@@ -251,6 +257,7 @@ class MechanismWay:
         return q
 
     def _check_jumps(self, s: Array, q: Array) -> None:
+        """Refuse a line on which a rotary joint jumps; ``Fault`` RBL412. Sliding joints are continuous on a line."""
         turning = [k for k, joint in enumerate(self.mechanism.joints) if joint.rotary]
         if not turning or len(q) < 2:
             return
@@ -265,25 +272,27 @@ class MechanismWay:
             )
 
 
-def _freer(first: MechanismWay, second: MechanismWay) -> MechanismWay:
-    """Return which direction of a half turn to take: in range, or else ending farther from the ends of the range.
+def _freer(first: MechanismCurve, second: MechanismCurve) -> MechanismCurve:
+    """Return the direction of a half turn that is in range, or else ends farther from the ends of the range.
 
-    As ``runtime.motion.half_turn`` has it for arms. The joint that turns the tool is the last one.
+    The rule of ``runtime.motion.half_turn`` for arms. The joint that turns the tool is the last one.
     """
     room = [_room_at_end(first), _room_at_end(second)]
     return second if room[1] > room[0] + SAME_ROOM else first
 
 
-def _room_at_end(way: MechanismWay) -> float:
-    joint = way.mechanism.joints[-1]
+def _room_at_end(curve: MechanismCurve) -> float:
+    """Return the distance of the last joint from the ends of its range at the end of a move, rad; -inf: refused."""
+    joint = curve.mechanism.joints[-1]
     try:
-        end = float(way.joints(_TRIED)[-1, -1])
+        end = float(curve.joints(_SAMPLES)[-1, -1])
     except Fault:
         return -np.inf
     return min(end - joint.lower, joint.upper - end)
 
 
 def _unwrapped(angle: Array, start: float) -> Array:
+    """Return angles (N,) rad without jumps of whole turns, the first of them nearest to ``start``."""
     found = np.unwrap(angle)
     return np.asarray(found + 2.0 * np.pi * np.round((start - found[0]) / (2.0 * np.pi)))
 
@@ -313,33 +322,14 @@ def _folder() -> Any:
 
 
 def parse(source: Source) -> Mechanism:
-    """Read the text of a mechanism file."""
+    """Return the mechanism of a file; ``FileFault`` RBL60x, RBL610 or RBL613."""
     table = load_table(source)
     if table.integer("schema", low=0, high=10**6) != SCHEMA:
         table.fail("RBL605", f"'schema' must be {SCHEMA}", key="schema")
     name, kind = table.text("name"), table.text("kind", choices=tuple(ORDER))
     path, rows = table.table("path"), table.tables("joints")
     joints = tuple(_joint(row) for row in rows)
-    names = [joint.name for joint in joints]
-    order = ORDER[kind]
-    for needed in NEEDED[kind]:
-        if needed not in names:
-            table.fail("RBL608", f"a {kind} mechanism must have the joint '{needed}'", key="joints")
-    for row, joint in zip(rows, joints, strict=True):
-        if joint.name not in order:
-            row.fail("RBL610", f"'{joint.name}' is not a joint of a {kind} mechanism: {', '.join(order)}", key="name")
-        if joint.rotary != joint.name.startswith("theta"):
-            row.fail(
-                "RBL613",
-                f"'{joint.name}' {'slides' if joint.rotary else 'turns'}: give its values in "
-                f"{'mm' if joint.rotary else 'deg'}",
-                key="name",
-            )
-    places = [order.index(each) for each in names]
-    if places != sorted(set(places)):
-        table.fail(
-            "RBL610", f"joints of a {kind} mechanism stand in this order, each once: {', '.join(order)}", key="joints"
-        )
+    _check_joints(table, rows, joints, kind)
     lengths = [table.number(f"{key}_mm", positive=True) * MM if kind == "scara" else 0.0 for key in ("l1", "l2")]
     max_speed = path.number("max_speed_mm_s", positive=True) * MM
     found = Mechanism(
@@ -353,17 +343,43 @@ def parse(source: Source) -> Mechanism:
         acceleration=path.number("acceleration_mm_s2", positive=True) * MM,
         lengths=(lengths[0], lengths[1]),
     )
-    for each in (path, *rows, table):
+    for each in (path, *rows, table):  # inner tables first: a misspelt key of a joint is reported at the joint
         each.done()
     return found
 
 
+def _check_joints(table: Table, rows: Sequence[Table], joints: Sequence[Joint], kind: str) -> None:
+    """Refuse joints that a mechanism of this kind lacks, does not have, or has in another order; RBL608, 610, 613."""
+    names, order = [joint.name for joint in joints], ORDER[kind]
+    for needed in NEEDED[kind]:
+        if needed not in names:
+            table.fail("RBL608", f"a {kind} mechanism must have the joint '{needed}'", key="joints")
+    for row, joint in zip(rows, joints, strict=True):
+        _check_joint(row, joint, kind)
+    # in one order for all files: channels, tables and manifests name joints by their position too
+    places = [order.index(each) for each in names]
+    if places != sorted(set(places)):
+        message = f"the joints of a {kind} mechanism must be in this order, each once: {', '.join(order)}"
+        table.fail("RBL610", message, key="joints")
+
+
+def _check_joint(row: Table, joint: Joint, kind: str) -> None:
+    if joint.name not in ORDER[kind]:
+        known = ", ".join(ORDER[kind])
+        row.fail("RBL610", f"'{joint.name}' is not a joint of a {kind} mechanism: {known}", key="name")
+    if joint.rotary != joint.name.startswith("theta"):
+        does, unit = ("slides", "mm") if joint.rotary else ("turns", "deg")
+        row.fail("RBL613", f"'{joint.name}' {does}: give its values in {unit}", key="name")
+
+
 def _joint(row: Table) -> Joint:
+    """Return the joint of a ``[[joints]]``; the unit of its range decides whether it turns."""
     rotary = "range_deg" in row
     unit, scale = ("deg", DEG) if rotary else ("mm", MM)
     lower, upper = row.numbers(f"range_{unit}", 2)
     if not lower < upper:
         row.fail("RBL607", f"'range_{unit}' must be [lower, upper]", key=f"range_{unit}")
+    # optional: of many mechanisms only the speed of the tool is known
     speed, acceleration = (
         row.number(key, positive=True) * scale if key in row else np.inf
         for key in (f"speed_{unit}_s", f"acceleration_{unit}_s2")

@@ -9,8 +9,8 @@ Double words: control code, then frequency and target of each row, then 0. Digit
     0  output     counting up 0 CW, 2 and 4 pulse and direction (forward off, forward on); counting down 1, 3, 5
 
 A later frequency out of range stops the output and a target against the direction counts without end, so neither is
-written: each table counts one way, and what is out of range is ``Fault`` RBL433. An FP0R takes the two digits on the
-right only, and has no range to choose.
+written: each table counts in one direction, and a frequency out of range is ``Fault`` RBL433. An FP0R takes the two
+digits on the right only, and has no range to choose. Called by the export.
 """
 
 from collections.abc import Sequence
@@ -21,6 +21,7 @@ from runtime.pulses.channels import Output
 from runtime.pulses.table import DataTable
 
 RANGES = ((2, 191, 100_000), (1, 48, 100_000), (0, 2, 9_800))
+"""Digit, lowest and highest frequency, whole Hz (1.5 rounded up); the first that holds a table is written."""
 QUARTER_DUTY_HZ = 50_000
 LARGEST = 2**31 - 1
 HEADER = "table,start_step,word,value,meaning"
@@ -30,6 +31,7 @@ _UP: dict[str, int] = {"cw-ccw": 0, "pulse-direction": 2, "pulse-direction-inver
 def control_code(table: DataTable, output: Output) -> str:
     """Return the control code of a table, as FPWIN writes it: ``16#1212``; ``Fault`` RBL433."""
     frequencies = [row.frequency for row in table.rows]
+    # one code for a whole table: all of its frequencies have to be in one range
     lowest, highest = min(frequencies), max(frequencies)
     for code, low, high in RANGES:
         if low <= lowest and highest <= high:
@@ -47,7 +49,7 @@ def as_csv(tables: Sequence[DataTable], output: Output, comments: Sequence[str])
         words = [(control_code(table, output), "control code")]
         for index, row in enumerate(table.rows, start=1):
             if abs(row.target) > LARGEST:
-                raise Fault("RBL433", f"target {row.target} does not go into a double word")
+                raise Fault("RBL433", f"target {row.target} does not fit a double word")
             words += [(str(row.frequency), f"frequency {index} Hz"), (str(row.target), f"target {index} pulses")]
         words.append(("0", "end"))
         lines += [f"{number},{table.first},{2 * k},{value},{meaning}" for k, (value, meaning) in enumerate(words)]

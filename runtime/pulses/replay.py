@@ -1,13 +1,14 @@
-"""An export played as a PLC plays it, and how far the tool point is from the straight lines that were meant.
+"""An export played as a PLC plays it, and the distance of the tool point from the straight lines of its moves.
 
-Frequency times time is integrated row by row, the joints go through forward kinematics of this module's own, and the
-path error is measured at the row ends and between them:
+Frequency times time is integrated row by row, the joints go through forward kinematics of this module's own, so that
+the check shares no code with the exporter, and the path error is measured at the row ends and between them:
 
     pulses(t) = pulses(row start) +- frequency (t - row start)        until the row's target is reached
     joint     = pulses x pulse equivalent
     tool      = prod_i( placement_i Rz(q_i) ) X_last_flange X_flange_tool          of an arm; of others, their equations
 
-Nothing is checked here: what ``runtime.pulses.folder.read_export`` returns can be played.
+Nothing is checked here: what ``runtime.pulses.folder.read_export`` returns can be played. Called by
+'robolang replay-pulses'.
 """
 
 from dataclasses import dataclass
@@ -60,8 +61,9 @@ class MoveReplay:
 def positions(move: Move, t: Array) -> Array:
     """Return the positions (K, M) of all channels, pulses, at times t (K,) s from the start of the move.
 
-    Before the start and beyond the end they stand.
+    Before the start and after the end they stand still.
     """
+    # a constant frequency within a row makes the position linear there, so interpolation is exact at any time
     columns = [
         np.full(np.shape(t), at) if table is None else np.interp(t, table.ends, table.pulses)
         for at, table in zip(move.first, move.tables, strict=True)
@@ -103,6 +105,7 @@ def _arm_points(mechanism: Mechanism, q: Array) -> Array:
     """Take the tool point from the last frame to the world, joint by joint: q (K, n) rad -> (K, 3) m."""
     tool = matmul(mechanism.X_last_flange, mechanism.X_flange_tool)[:3, 3]
     points = np.tile(tool, (len(q), 1))
+    # from the tool inwards: one vector a joint to turn instead of a matrix to multiply
     for placement, angle in reversed(list(zip(mechanism.placements, q.T, strict=True))):
         c, s = np.cos(angle), np.sin(angle)
         x, y, z = points.T
@@ -113,16 +116,17 @@ def _arm_points(mechanism: Mechanism, q: Array) -> Array:
 
 def distances(points: Array, start: Array, end: Array) -> Array:
     """Return the distance (K,) of points (K, 3) from the straight segment between two points (3,), all in m."""
-    way = end - start
-    length = norm(way)
-    along = np.zeros(len(points)) if length < 1e-12 else np.clip(matmul(points - start, way) / length**2, 0.0, 1.0)
-    return np.asarray(np.linalg.norm(points - start - along[:, None] * way, axis=1))
+    segment = end - start
+    length = norm(segment)
+    # a move that only turns the tool has a segment of one point
+    along = np.zeros(len(points)) if length < 1e-12 else np.clip(matmul(points - start, segment) / length**2, 0.0, 1.0)
+    return np.asarray(np.linalg.norm(points - start - along[:, None] * segment, axis=1))
 
 
 def replay(export: Export, samples_per_step: int = 4) -> list[MoveReplay]:
     """Return every move played by its tables, ``samples_per_step`` times in each time step (at least 2)."""
     if samples_per_step < 2:
-        raise ValueError(f"{samples_per_step} samples in a step see nothing between the rows")
+        raise ValueError(f"{samples_per_step} samples in a step: at least 2 are needed to see between the rows")
     return [_replay(export, move, samples_per_step) for move in export.moves]
 
 
@@ -131,6 +135,7 @@ def _replay(export: Export, move: Move, samples: int) -> MoveReplay:
     pulses = positions(move, times)
     points = tool_points(export, pulses)
     error = distances(points, move.start, move.end) / MM
+    # row ends are every ``samples``-th time, since every row lasts whole steps
     between = np.arange(len(times)) % samples != 0
     return MoveReplay(
         move=move,
@@ -140,6 +145,7 @@ def _replay(export: Export, move: Move, samples: int) -> MoveReplay:
         frequency=frozen(frequencies(move)),
         points=frozen(points),
         error_mm=frozen(error),
+        # a chord between two row ends may be off the line although both of them are on it: measured apart
         rows_mm=float(error[~between].max()),
         between_mm=float(error[between].max(initial=0.0)),
         end_mm=norm(points[-1] - move.end) / MM,

@@ -1,8 +1,8 @@
 """The rows of a pulse table: a CSV file, each row checked against the position that the rows before it have reached.
 
     control,frequency_hz,target_pulses,steps
-    up|down,f,P,1       pulses at f Hz until the channel stands at P: one time step, abs(P - before) / f = step_s
-    wait,0,P,n          no pulses for n steps; the channel stands at P
+    up|down,f,P,1       pulses at f Hz until the channel is at P: one time step, abs(P - before) / f = step_s
+    wait,0,P,n          no pulses for n steps; the channel stays at P
     end,0,P,0           the last row
 
 Numbers are whole, of at most 15 digits. Lines that begin with # are comments. An error is a ``FileFault`` at its line
@@ -12,25 +12,36 @@ out of step; RBL630 for a file that cannot be read or has more than ``MAX_TABLE_
 
 import math
 import re
+from collections.abc import Iterator
 from pathlib import Path
-from typing import NoReturn
+from typing import NamedTuple, NoReturn
 
 import numpy as np
 
 from runtime.core.frames import frozen
 from runtime.core.rounding import beside
 from runtime.pulses.exported import Channel, Table
-from runtime.pulses.manifest import fail, quoted, read_text
+from runtime.pulses.manifest import Place, fail, quoted, read_text
 
 HEADER = "control,frequency_hz,target_pulses,steps"
 MAX_TABLE_BYTES = 64_000_000
 ROW_TOLERANCE_S = 1e-9
 """A row lasts one time step to within this, s."""
 
+# at most 15 digits: every such number is a float exactly, and no literal takes long to parse
 _WHOLE = r"0|[1-9][0-9]{0,14}"
 _ROW = re.compile(rf"(up|down|wait|end),({_WHOLE}),({_WHOLE}|-[1-9][0-9]{{0,14}}),({_WHOLE})")
 _CONTROLS = ("up", "down", "wait", "end")
 _FREQUENCY, _TARGET, _STEPS = 1, 2, 3
+
+
+class _Row(NamedTuple):
+    """A row as it stands: control, frequency Hz, absolute target in pulses, number of steps."""
+
+    control: str
+    hz: int
+    target: int
+    steps: int
 
 
 class Rows:
@@ -44,33 +55,46 @@ class Rows:
         self._line = 0
 
     def read(self, stands: int, steps: int) -> tuple[Table, int]:
-        """Return the rows that begin at ``stands`` pulses and last ``steps`` steps, and the position at their end."""
-        numbered = [(k, line) for k, line in enumerate(self._lines, start=1) if not line.startswith("#")]
-        self._line = numbered[0][0] if numbered else len(self._lines)
-        if not numbered or numbered[0][1] != HEADER:
-            self._fail("RBL631", f"the header must be {HEADER}")
-        frequency: list[int] = []
-        counts: list[int] = []
-        pulses = [stands]
-        control, total = "", 0
-        for self._line, line in numbered[1:]:
-            if control == "end":
+        """Return the rows that begin at ``stands`` pulses and last ``steps`` steps, and the position at their end.
+
+        ``FileFault`` RBL631 or RBL632 at the first row that cannot be played.
+        """
+        rows: list[_Row] = []
+        ended, at = False, stands
+        for line in self._body():
+            if ended:
                 self._fail("RBL631", "a row after the end", column=1)
-            control, hz, target, count = self._fields(line)
-            self._check(control, hz, target, count, pulses[-1], first=not counts)
-            if control != "end":
-                frequency.append(hz if control != "down" else -hz)
-                counts.append(count)
-                pulses.append(target)
-                total += count
-        if control != "end":
+            row = self._fields(line)
+            self._check(row, at, first=not rows)
+            ended = row.control == "end"
+            if not ended:
+                rows.append(row)
+                at = row.target
+        if not ended:
             self._fail("RBL631", "the table has no end", column=len(self._lines[self._line - 1]) + 1)
+        total = sum(row.steps for row in rows)
         if total != steps:
             self._fail("RBL632", f"{self._channel.name} ends after {total} steps, the move after {steps}")
-        return self._table(frequency, counts, pulses), pulses[-1]
+        return self._table(rows, stands), at
 
-    def _table(self, frequency: list[int], counts: list[int], pulses: list[int]) -> Table:
-        hz, steps = np.array(frequency, dtype=np.float64), np.array(counts, dtype=np.float64)
+    def _body(self) -> Iterator[str]:
+        """Yield the lines after the header, without comments; ``FileFault`` RBL631 for another header.
+
+        ``_line`` is the number of the last one that was yielded.
+        """
+        numbered = ((k, line) for k, line in enumerate(self._lines, start=1) if not line.startswith("#"))
+        self._line, header = next(numbered, (len(self._lines), ""))
+        if header != HEADER:
+            self._fail("RBL631", f"the header must be {HEADER}")
+        for self._line, line in numbered:
+            yield line
+
+    def _table(self, rows: list[_Row], start: int) -> Table:
+        """Return rows as they are played from ``start`` pulses on."""
+        hz = np.array([row.hz if row.control != "down" else -row.hz for row in rows], dtype=np.float64)
+        steps = np.array([row.steps for row in rows], dtype=np.float64)
+        pulses = [start, *(row.target for row in rows)]
+        # a wait lasts its steps; any other row lasts as long as its pulses take, which is one step within rounding
         change = np.abs(np.diff(np.array(pulses, dtype=np.float64)))
         lasts = np.where(hz == 0.0, steps * self._step_s, change / np.where(hz == 0.0, 1.0, np.abs(hz)))
         return Table(
@@ -81,15 +105,16 @@ class Rows:
             pulses=frozen(pulses),
         )
 
-    def _fields(self, line: str) -> tuple[str, int, int, int]:
+    def _fields(self, line: str) -> _Row:
+        # one pattern for the good row, since a table may have a million; what is wrong is found in a second pass
         found = _ROW.fullmatch(line)
         if found is None:
             self._explain(line)
         control, hz, target, count = found.groups()
-        return control, int(hz), int(target), int(count)
+        return _Row(control, int(hz), int(target), int(count))
 
     def _explain(self, line: str) -> NoReturn:
-        """Say why a line is no row."""
+        """Raise ``FileFault`` RBL631 at the first value for which a line is no row."""
         parts = line.split(",")
         if len(parts) != 4:
             self._fail("RBL631", f"a row has 4 values ({HEADER}), this one {len(parts) if line else 0}", column=1)
@@ -98,28 +123,30 @@ class Rows:
         names = HEADER.split(",")
         for place, sign in ((_FREQUENCY, ""), (_TARGET, "-?"), (_STEPS, "")):
             if not re.fullmatch(rf"0|{sign}[1-9][0-9]{{0,14}}", parts[place]):
-                wanted = f"a whole number{'' if sign else ' from 0'} of at most 15 digits"
-                self._fail("RBL631", f"{names[place]} is {quoted(parts[place])}, not {wanted}", place)
+                form = f"a whole number{'' if sign else ' from 0'} of at most 15 digits"
+                self._fail("RBL631", f"{names[place]} is {quoted(parts[place])}, not {form}", place)
         raise AssertionError(line)  # pragma: no cover - one of the four is what the pattern refuses
 
-    def _check(self, control: str, hz: int, target: int, count: int, at: int, *, first: bool) -> None:
+    def _check(self, row: _Row, at: int, *, first: bool) -> None:
+        """Refuse a row that a channel at ``at`` pulses cannot play; ``FileFault`` RBL631 or RBL632."""
+        control, hz, target, count = row
         if control in ("up", "down"):
-            self._check_pulses(control, hz, target, count, at, first=first)
+            self._check_pulses(row, at, first=first)
             return
         if hz:
             self._fail("RBL631", f"'{control}' has no pulses, and frequency {hz} Hz", _FREQUENCY)
+        # at the first row the fault is in how tables fit together, later in the row itself: two codes, two remedies
         if target != at and first:
-            self._fail(
-                "RBL632", f"{self._channel.name} stands at {at} pulses, and the table begins at {target}", _TARGET
-            )
+            self._fail("RBL632", f"{self._channel.name} is at {at} pulses, and the table begins at {target}", _TARGET)
         if target != at:
-            self._fail("RBL631", f"'{control}' stands still at {at} pulses and cannot reach {target}", _TARGET)
+            self._fail("RBL631", f"'{control}' stays at {at} pulses and cannot reach {target}", _TARGET)
         if (count < 1) == (control == "wait"):
             self._fail("RBL631", f"'{control}' with {count} steps", _STEPS)
 
-    def _check_pulses(self, control: str, hz: int, target: int, count: int, at: int, *, first: bool) -> None:
+    def _check_pulses(self, row: _Row, at: int, *, first: bool) -> None:
+        control, hz, target, count = row
         channel, change = self._channel, target - at
-        where = f"{at} pulses" + (f", where {channel.name} stands," if first else "")
+        where = f"{at} pulses" + (f", where {channel.name} is," if first else "")
         if count != 1:
             self._fail("RBL631", f"'{control}' lasts 1 step, not {count}", _STEPS)
         if (change <= 0) if control == "up" else (change >= 0):
@@ -140,4 +167,4 @@ class Rows:
         line = self._lines[self._line - 1]
         if column is None:
             column = 1 + sum(len(part) + 1 for part in line.split(",")[:place])
-        fail(self._path, code, message, line=self._line, column=column, excerpt=line)
+        fail(self._path, code, message, place=Place(self._line, column, line))

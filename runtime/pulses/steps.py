@@ -1,4 +1,4 @@
-"""Equal-time linear interpolation: how far along the line a move is after each step (document 004, 4.2 and 4.3).
+"""Equal-time linear interpolation: the distance along the line after each step (document 004, 4.2 and 4.3).
 
     T = S / V,  N0 = round(T / dT),  Na = round(T0 / dT),  N = N0 + Na                                    S02
     S_i = a/2 (i dT)^2                              0 <= i <= Na            a = V / T0                    S03
@@ -7,7 +7,7 @@
 
 T and T0 are seldom whole numbers of steps. With the rounded V' = S / (N0 dT), T0' = Na dT, a' = V' / T0' the branches
 meet: S_0 = 0, S_N = S, and no second difference is above a' dT^2. A move too short for its ramps (N0 < Na) becomes a
-triangle: V' = S / (Na dT). Distances may be in any unit; rounding is half up.
+triangle: V' = S / (Na dT). Distances may be in any unit; rounding is half up. Called by ``move`` for each profile.
 """
 
 import math
@@ -40,6 +40,7 @@ class EqualTimeSteps:
             raise ValueError("distance, speed and step time must be above 0")
         if not distance / speed + ramp_s <= MOST_STEPS * step_s:
             raise ValueError(f"the move would take more than {MOST_STEPS} steps")
+        # N0 is rounded once and the speed follows from it; rounding the speed instead would leave a part of a step over
         na = _half_up(ramp_s / step_s)
         return cls(distance=distance, n0=max(_half_up(distance / speed / step_s), na, 1), na=na, step_s=step_s)
 
@@ -71,7 +72,7 @@ class EqualTimeSteps:
         along = half * ramp**2 + self.speed * (i * self.step_s - ramp)
         back = self.distance - half * ((self.n - i) * self.step_s) ** 2
         found = np.where(i <= self.na, there, np.where(i <= self.n0, along, back))
-        found[-1] = self.distance
+        found[-1] = self.distance  # the end to the last bit, not the last partial sum
         return found
 
 

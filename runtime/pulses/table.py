@@ -1,8 +1,8 @@
-"""Positioning tables: what a channel emits, as the rows that a PLC runs (document 004, 4.6 and 4.7).
+"""Positioning tables: the pulses of a channel as the rows that a PLC runs (document 004, 4.6 and 4.7).
 
 A row is a frequency and an absolute target; the channel runs at that frequency until it is there and takes the next
 row. With 1/dT a whole number every frequency |dP|/dT is whole and every row lasts exactly dT, which keeps channels in
-step. A table counts in one direction and cannot stand still, so it ends where a channel turns round or waits; the step
+step. A table counts in one direction and cannot stand still, so it ends where a channel reverses or waits; the step
 timer waits and starts the next one.
 
 Neutral form, one file for each channel and move, ``#`` for comments:
@@ -26,7 +26,7 @@ HEADER = "control,frequency_hz,target_pulses,steps"
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A row: what to do, at which frequency in Hz, to which absolute position in pulses, for how many steps."""
+    """A row: its control, frequency in Hz, absolute target in pulses, and number of steps."""
 
     control: Control
     frequency: int
@@ -36,7 +36,7 @@ class Row:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DataTable:
-    """What a PLC can run at one go: rows in one direction from step ``first`` of the move on, from ``start`` pulses."""
+    """One table of a PLC: rows in one direction, from step ``first`` of the move and from ``start`` pulses on."""
 
     first: int
     start: int
@@ -55,12 +55,12 @@ def rows_of(steps: Pulses, start: int, count: int, step_hz: int) -> tuple[Row, .
     """
     rows, position = [], start
     values = steps.tolist()
-    values += [0] * (count - len(values))
+    values += [0] * (count - len(values))  # channels end together: one that is done waits for the longest
     for still, group in groupby(values, key=lambda d: d == 0):
         if still:
             rows.append(Row("wait", 0, position, len(list(group))))
             continue
-        for d in group:
+        for d in group:  # a row a step even where the frequency repeats: rows of all channels change together
             position += d
             rows.append(Row("up" if d > 0 else "down", abs(d) * step_hz, position, 1))
     return (*rows, Row("end", 0, position, 0))
@@ -68,6 +68,7 @@ def rows_of(steps: Pulses, start: int, count: int, step_hz: int) -> tuple[Row, .
 
 def data_tables(rows: Sequence[Row], start: int) -> Iterator[DataTable]:
     """Yield the tables of a channel's rows: one for each stretch in one direction without a wait."""
+    # split where the PLC would stop or count without end: at a wait and at a change of direction (F174)
     first, position = 0, start
     for control, group in groupby(rows, key=lambda row: row.control):
         run = tuple(group)

@@ -29,7 +29,7 @@ OPEN = {
     "robolang/testing/golden.py: size < _END.size": WHOLE,
     "robolang/interpreter/control_flow.py: rounds > run_limits.MAX_ROUNDS": "the language has no NaN",
     "runtime/cell/signals.py: round(seconds * 1000000.0) <= changes[-1][0]": WHOLE,
-    "runtime/pulses/folder.py: steps > most": WHOLE,
+    "runtime/pulses/folder.py: steps > self._steps_left": WHOLE,
     "runtime/robot/files/corrections.py: mass > 0.0": FILE,
     "runtime/robot/files/corrections.py: mass > TOKEN_MASS": FILE,
     "runtime/robot/files/corrections.py: moments > 0.0": FILE,

@@ -127,10 +127,10 @@ def examine(machine, channels, stand, command, step_hz, count):
     debts = np.array([each.debt for each in move.emitted])
     bound = SLACK * float((levers(machine, move.q) * pulses * (0.5 + debts)).sum()) + 1e-12
     count.broken["bound"] += int(not move.error.max() <= bound)
-    start_point, end_point = move.way.ends
-    if move.way.length > 1e-6:
-        along = (move.points - start_point) @ (end_point - start_point) / move.way.length
-        hardest = move.steps.acceleration * move.way.length / step_hz**2
+    start_point, end_point = move.curve.ends
+    if move.curve.length > 1e-6:
+        along = (move.points - start_point) @ (end_point - start_point) / move.curve.length
+        hardest = move.steps.acceleration * move.curve.length / step_hz**2
         count.broken["smooth"] += int(not np.abs(np.diff(along, 2)).max(initial=0.0) <= hardest + 4.0 * bound)
     count.appended += move.count - move.steps.n
     count.worst_mm = max(count.worst_mm, float(move.error.max()) / MM, key=badness)

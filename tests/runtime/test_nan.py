@@ -78,7 +78,7 @@ def test_a_machine_goes_to_no_point_of_nan():
         X = pose((0.4, 0.1, 0.7))
         X[place] = NAN
         with pytest.raises(Fault):
-            machine.way(Stand(q=machine.home.q), MoveLinear(X_world_tool=X)).joints(np.linspace(0.0, 1.0, 5))
+            machine.curve(Stand(q=machine.home.q), MoveLinear(X_world_tool=X)).joints(np.linspace(0.0, 1.0, 5))
 
 
 @pytest.mark.parametrize("key", ["rows_mm", "between_mm", "end_mm"])

@@ -23,7 +23,7 @@ def to(x, y, z=700.0, R=None, **options):
 
 
 def way_of(machine, q, command, R=None):
-    return machine.placed(command.X_world_tool[:3, 3]).way(Stand(q=np.array(q), R=R), command)
+    return machine.placed(command.X_world_tool[:3, 3]).curve(Stand(q=np.array(q), R=R), command)
 
 
 @pytest.mark.parametrize("name", library())
@@ -32,7 +32,7 @@ def test_forward_kinematics_undoes_the_inverse_along_a_line(name):
     start = machine.points(machine.home.q[None])[0]
     end = start + np.array([0.05, 0.12, 0.0])
     s = np.linspace(0.0, 1.0, 101)
-    q = machine.way(machine.home, MoveLinear(X_world_tool=pose(end))).joints(s)
+    q = machine.curve(machine.home, MoveLinear(X_world_tool=pose(end))).joints(s)
     np.testing.assert_allclose(machine.points(q), start + s[:, None] * (end - start), atol=1e-9)
     assert np.abs(np.diff(q, axis=0)).max() < 0.02
 
@@ -93,7 +93,7 @@ def test_a_plane_is_kept():
     machine = load_builtin("xy").placed(np.array([0.3, 0.1, 0.7]))
     assert machine.described()["z_mm"] == pytest.approx(700.0)
     with pytest.raises(Fault, match=r"z .*700 mm.*650 mm"):
-        machine.way(machine.home, to(300, 100, 650))
+        machine.curve(machine.home, to(300, 100, 650))
 
 
 def test_a_move_to_where_the_tool_is_has_no_limits():

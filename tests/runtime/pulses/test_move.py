@@ -28,7 +28,7 @@ def move(name="cylindrical", start=A, end=B, step_s=0.01, min_hz=1.0, max_hz=100
     machine = machine.placed(end)
     q = machine.home.q
     if np.abs(machine.points(q[None])[0] - start).max() > 1e-9:
-        q = machine.way(machine.home, MoveLinear(X_world_tool=pose(start))).joints(np.linspace(0.0, 1.0, 100))[-1]
+        q = machine.curve(machine.home, MoveLinear(X_world_tool=pose(start))).joints(np.linspace(0.0, 1.0, 100))[-1]
     channels = default_channels(machine.joints, pulse or pulses, min_hz)
     channels = tuple(replace(channel, max_hz=max_hz) for channel in channels)
     stand = Stand(q=q)
