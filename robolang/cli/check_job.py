@@ -6,64 +6,81 @@ fixed. With ``--fix`` a program from stdin goes to stdout, corrected, and its re
 
 import json
 import os
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 
-import typer
-
+from robolang.cli.check_options import FixOptions, ReportOptions
 from robolang.cli.errors import DIAGNOSTICS, reader_may_leave, say, say_all, say_warnings
+from robolang.cli.output import echo
 from robolang.cli.rewrite import Loaded, load, store, unified
 from robolang.core.diagnostics import Diagnostic, Severity, has_errors, in_order, safe
 from robolang.core.source import Source
 from robolang.lint.apply import fix_all
 from robolang.lint.engine import Checked, check_points, check_source
 from robolang.lint.files import STANDARD_INPUT, programs
-from robolang.lint.reporters import render
+from robolang.lint.reporters import FOR_PEOPLE, render
 from robolang.lint.selection import Layer, Selection
 from robolang.lint.settings import Settings
 from robolang.lint.suppress import add_later
 from robolang.lint.watch import watch
 from robolang.project.discovery import CellFiles
 from runtime.core.faults import Fault, lookup
+from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault
 
 _ROOTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Job:
+class Job(Record):
     """The options of ``robolang check``, checked."""
 
     paths: tuple[str, ...]
     layer: Layer
-    form: str
-    output: Path | None
+    fixes: FixOptions
+    report: ReportOptions
     stdin_name: str
-    fix: bool
-    diff: bool
-    statistics: bool
-    strict: bool
-    exit_zero: bool
+    allow_empty: bool = False
     motion: bool = False
     max_cycle_s: float | None = None
     times: Path | None = None
 
+    @property
+    def output(self) -> Path | None:
+        """The file that the report is written to."""
+        return None if self.report.output_file is None else Path(self.report.output_file)
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Outcome:
+
+class _Outcome(Record):
     """A program as it was read, what was found after its fixes and in its points, how often each code was fixed.
 
-    ``warnings`` are about the files of its robot.
+    ``warnings`` are about the files of its robot, ``table`` and ``times`` are the times of its lines; ``read`` is
+    False for a program that could not be read.
     """
 
     checked: Checked
     before: Loaded
+    read: bool = True
     points: Checked | None = None
-    fixed: dict[str, int] = field(default_factory=dict)
+    fixed: Mapping[str, int] = MappingProxyType({})
     table: str = ""
     times: dict[str, object] | None = None
     warnings: tuple[FileFault, ...] = ()
+
+    @property
+    def results(self) -> tuple[Checked, ...]:
+        """What was found file by file: in the program, then in its points."""
+        return (self.checked,) if self.points is None else (self.checked, self.points)
+
+    @property
+    def doubts(self) -> tuple[FileFault, ...]:
+        """What is unlikely about the cell and the files of the robot."""
+        return (*self.checked.warnings, *self.warnings)
+
+    def failing(self, *faults: Fault) -> "_Outcome":
+        """Return the outcome with faults more."""
+        return self.replaced(checked=replace(self.checked, faults=(*self.checked.faults, *faults)))
 
 
 def watched(job: Job) -> int:
@@ -74,7 +91,7 @@ def watched(job: Job) -> int:
             code = run_once(job)
         except Fault as fault:
             code = say_all(fault)
-        typer.echo("watching; Ctrl-C ends", err=True)
+        echo("watching; Ctrl-C ends", err=True)
         return code
 
     return watch(job.paths, again)
@@ -82,34 +99,56 @@ def watched(job: Job) -> int:
 
 def run_once(job: Job) -> int:
     """Check everything once, print the report and return the exit code; ``Fault`` for a wrong configuration."""
-    for path in (job.output, job.times):
-        if path is not None:
-            from robolang.core.storage import check_writable
-
-            check_writable(path)
+    _check_outputs(job)
     settings = Settings()
     names = programs(job.paths, excludes=settings.excludes)
-    if not names:
-        typer.echo(f"no programs (*.rbl) in {safe(', '.join(job.paths))}", err=True)
-    files = CellFiles()
-    outcomes = [_examined(name, job, settings, files) for name in names]
-    if job.fix and not job.diff:
-        outcomes = [_written(outcome) for outcome in outcomes]
-    outcomes = [replace(outcome, points=_points(outcome, job, settings)) for outcome in outcomes]
-    if job.motion:
-        from robolang.cli.check_motion import told
-
-        with told(len(outcomes)) as tell:
-            for number, outcome in enumerate(outcomes):
-                tell(number, outcome.checked.source.path)
-                outcomes[number] = _planned(outcome, job, settings)
+    if not names and not job.allow_empty:
+        raise Fault("RBL713", f"there is no program (*.rbl) in {safe(', '.join(job.paths))}")
+    outcomes = _once(_examined_all(names, job, settings))
     if job.times is not None:
         _write_times(job.times, outcomes)
-    outcomes = _once(outcomes)
     _print(job, outcomes)
-    say_warnings(warning for outcome in outcomes for warning in (*outcome.checked.warnings, *outcome.warnings))
+    if any(map(os.path.isdir, job.paths)):  # the count says that a folder held what the user thinks it holds
+        count = sum(outcome.read for outcome in outcomes)
+        echo(f"{count} program{'' if count == 1 else 's'} checked", err=True)
+    say_warnings(doubt for outcome in outcomes for doubt in outcome.doubts)
     worst = max([0, *(say(fault) for outcome in outcomes for fault in outcome.checked.faults)])
     return max(worst, _judged(job, outcomes))
+
+
+def _check_outputs(job: Job) -> None:
+    """Try the files that are written before anything is checked; ``Fault`` RBL706."""
+    outputs = [path for path in (job.output, job.times) if path is not None]
+    if outputs:
+        from robolang.core.storage import check_writable
+
+        for path in outputs:
+            check_writable(path)
+
+
+def _examined_all(names: Sequence[str], job: Job, settings: Settings) -> list[_Outcome]:
+    """Check all programs and write their fixes.
+
+    Points and motion come last: they depend on the text that the fixes leave.
+    """
+    files = CellFiles()
+    outcomes = [_examined(name, job, settings, files) for name in names]
+    if job.fixes.fix and not job.fixes.diff:
+        outcomes = [_written(outcome) for outcome in outcomes]
+    outcomes = [outcome.replaced(points=_points(outcome, job, settings)) for outcome in outcomes]
+    return _planned_all(outcomes, job, settings) if job.motion else outcomes
+
+
+def _planned_all(outcomes: Sequence[_Outcome], job: Job, settings: Settings) -> list[_Outcome]:
+    """Add what the motion of each program shows, with progress on a terminal."""
+    from robolang.cli.check_motion import told
+
+    found = []
+    with told(len(outcomes)) as tell:
+        for number, outcome in enumerate(outcomes):
+            tell(number, outcome.checked.source.path)
+            found.append(_planned(outcome, job, settings))
+    return found
 
 
 def _once(outcomes: Sequence[_Outcome]) -> list[_Outcome]:
@@ -120,7 +159,7 @@ def _once(outcomes: Sequence[_Outcome]) -> list[_Outcome]:
         new = {(fault.code, str(fault)): fault for fault in outcome.checked.faults}
         kept = tuple(fault for key, fault in new.items() if key not in seen)
         seen.update(new)
-        found.append(replace(outcome, checked=replace(outcome.checked, faults=kept)))
+        found.append(outcome.replaced(checked=replace(outcome.checked, faults=kept)))
     return found
 
 
@@ -130,13 +169,12 @@ def _examined(name: str, job: Job, settings: Settings, files: CellFiles) -> _Out
     try:
         loaded = load(name, shown)
     except Fault as fault:
-        nothing = Source(shown, "")
-        return _Outcome(
-            checked=Checked(source=nothing, faults=(fault,)), before=Loaded(name=name, mark=b"", source=nothing)
-        )
+        before = Loaded(name=name, mark=b"", source=Source(shown, ""))
+        return _Outcome(checked=Checked(source=before.source, faults=(fault,)), before=before, read=False)
     selection = _selection(shown, job, settings)
     checked = check_source(loaded.source, selection, files)
-    if not (job.fix or job.diff) or not any(item.fix is not None and item.fix.safe for item in checked.diagnostics):
+    fixable = any(item.fix is not None and item.fix.safe for item in checked.diagnostics)
+    if not (fixable and (job.fixes.fix or job.fixes.diff)):
         return _Outcome(checked=checked, before=loaded)
     seen = {loaded.source.text: checked}
 
@@ -163,11 +201,7 @@ def _selection(program: str, job: Job, settings: Settings) -> Selection:
 
 
 def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
-    """Add what the motion of a program shows, and the table of what its lines take.
-
-    With an error there is no motion, but what the cell makes an error is added; and an error that is not reported,
-    since it is ignored or has a ``noqa``, is reported all the same: nothing was planned, and that is no pass.
-    """
+    """Add what the motion of a program shows, and the table of what its lines take."""
     checked = outcome.checked
     if checked.analysis is None or checked.faults or outcome.before.name == STANDARD_INPUT:
         return outcome
@@ -177,14 +211,15 @@ def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
     try:
         plan = planned(checked.analysis, job.max_cycle_s, settings.bounds(Path(checked.source.path).parent))
     except Fault as fault:
-        return replace(outcome, checked=replace(checked, faults=(*checked.faults, *fault.all)))
+        return outcome.failing(*fault.all)
     known = {(item.code, item.span) for item in checked.diagnostics}
     later = [item for item in plan.diagnostics if (item.code, item.span) not in known]
     diagnostics = in_order(filter(selection.keeps, add_later(checked.source, checked.diagnostics, later)))
     if plan.times is None and not has_errors(diagnostics):
+        # Nothing was planned for an error that is ignored or has a noqa. It is reported all the same: exit code 0
+        # would say that the motion is right.
         diagnostics = in_order((*diagnostics, *(item for item in later if item.severity is Severity.ERROR)))
-    return replace(
-        outcome,
+    return outcome.replaced(
         checked=replace(checked, diagnostics=diagnostics),
         table=plan.table,
         times=plan.times,
@@ -207,42 +242,40 @@ def _written(outcome: _Outcome) -> _Outcome:
         if outcome.fixed or before.name == STANDARD_INPUT:
             store(before, after.text)
     except Fault as fault:
-        checked = replace(outcome.checked, faults=(*outcome.checked.faults, fault))
-        return replace(outcome, checked=checked, fixed={})
+        return outcome.failing(fault).replaced(fixed={})
     if outcome.fixed:
         said = ", ".join(f"{count} x {code} {lookup(code).name}" for code, count in outcome.fixed.items())
-        typer.echo(f"{safe(after.path)}: fixed {said}", err=True)
+        echo(f"{safe(after.path)}: fixed {said}", err=True)
     return outcome
 
 
 def _print(job: Job, outcomes: Sequence[_Outcome]) -> None:
     """Print the report, or with ``--diff`` the changes."""
-    results = list(_results(outcomes))
-    if job.diff:
-        text = "".join(line for outcome in outcomes for line in _change(outcome))
-    elif job.statistics:
-        from robolang.lint.reporters import statistics
-
-        text = statistics.render(results, as_json=job.form == "json")
-    else:
-        text = render(job.form, results, _root())
-        if job.form in ("full", "concise"):
-            text += "".join(f"\n{outcome.table}" for outcome in outcomes if outcome.table)
+    text = _report(job, outcomes)
     if job.output is not None:
         from robolang.core.storage import write_atomic
 
         write_atomic(job.output, lambda stream: stream.write(text.encode("utf-8", "backslashreplace")))
         return
+    # a corrected program from the standard input goes to the standard output, so its report cannot
+    corrected = job.fixes.fix and not job.fixes.diff and STANDARD_INPUT in job.paths
     with reader_may_leave():
-        typer.echo(text, nl=False, err=job.fix and not job.diff and STANDARD_INPUT in job.paths)
+        echo(text, nl=False, err=corrected)
 
 
-def _results(outcomes: Sequence[_Outcome]) -> Iterator[Checked]:
-    """Yield what was found file by file, a program's points behind it."""
-    for outcome in outcomes:
-        yield outcome.checked
-        if outcome.points is not None:
-            yield outcome.points
+def _report(job: Job, outcomes: Sequence[_Outcome]) -> str:
+    """Return the text of the report."""
+    if job.fixes.diff:
+        return "".join(line for outcome in outcomes for line in _change(outcome))
+    results, form = [result for outcome in outcomes for result in outcome.results], job.report.output_format
+    if job.report.statistics:
+        from robolang.lint.reporters import statistics
+
+        return statistics.render(results, as_json=form == "json")
+    text = render(form, results, _root())
+    if form in FOR_PEOPLE:
+        text += "".join(f"\n{outcome.table}" for outcome in outcomes if outcome.table)
+    return text
 
 
 def _change(outcome: _Outcome) -> Iterator[str]:
@@ -261,14 +294,13 @@ def _root() -> Path:
 
 
 def _judged(job: Job, outcomes: Sequence[_Outcome]) -> int:
-    """Return the exit code for what was found."""
-    if job.exit_zero:
+    """Return the exit code of the findings."""
+    if job.report.exit_zero:
         return 0
-    if job.diff:
+    if job.fixes.diff:
         return DIAGNOSTICS if any(outcome.fixed for outcome in outcomes) else 0
-    found = [item for result in _results(outcomes) for item in result.diagnostics]
-    warned = job.strict and (
-        any(item.severity is Severity.WARNING for item in found)
-        or any(outcome.checked.warnings or outcome.warnings for outcome in outcomes)
+    found = [item for outcome in outcomes for result in outcome.results for item in result.diagnostics]
+    warned = job.report.strict and (
+        any(item.severity is Severity.WARNING for item in found) or any(outcome.doubts for outcome in outcomes)
     )
     return DIAGNOSTICS if warned or has_errors(found) else 0

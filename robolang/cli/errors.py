@@ -12,8 +12,8 @@ import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 
-import typer
-
+from robolang.cli.output import echo
+from robolang.cli.usage import OptionValueError
 from robolang.core.diagnostics import Severity, render_fault, safe
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault
@@ -39,9 +39,9 @@ def exit_code(code: str) -> int:
 def say(fault: Fault) -> int:
     """Print a fault to stderr, with its place when it has one, and return its exit code."""
     if isinstance(fault, FileFault):
-        typer.echo(render_fault(fault), err=True)
+        echo(render_fault(fault), err=True)
     else:
-        typer.echo(f"error {fault.code} {safe(fault.message)}\n  help: {safe(fault.hint)}", err=True)
+        echo(f"error {fault.code} {safe(fault.message)}\n  help: {safe(fault.hint)}", err=True)
     return exit_code(fault.code)
 
 
@@ -51,7 +51,7 @@ def say_warnings(warnings: Iterable[FileFault], said: set[str] | None = None) ->
     for text in (render_fault(warning, Severity.WARNING) for warning in warnings):
         if text not in printed:
             printed.add(text)
-            typer.echo(text, err=True)
+            echo(text, err=True)
 
 
 def say_all(fault: Fault) -> int:
@@ -77,15 +77,15 @@ def reported() -> Iterator[None]:
     try:
         with _left_with_exit_code():
             yield
-    except (typer.Exit, typer.Abort, typer.BadParameter):
+    except OptionValueError:
         raise
     except KeyboardInterrupt:
-        raise typer.Exit(INTERRUPTED) from None
+        raise SystemExit(INTERRUPTED) from None
     except Exception as error:
         fault = internal(error)
         with suppress(Exception):
             say(fault)
-        raise typer.Exit(INTERNAL) from None
+        raise SystemExit(INTERNAL) from None
 
 
 @contextmanager
@@ -93,22 +93,22 @@ def _left_with_exit_code() -> Iterator[None]:
     try:
         yield
     except Fault as fault:
-        raise typer.Exit(say_all(fault)) from None
+        raise SystemExit(say_all(fault)) from None
     except KeyboardInterrupt:
-        raise typer.Exit(INTERRUPTED) from None
+        raise SystemExit(INTERRUPTED) from None
     except BrokenPipeError:
         _drop_output()
-        raise typer.Exit(0) from None  # a command whose exit code says more goes on with reader_may_leave
-    except (typer.Exit, typer.Abort, typer.BadParameter):
+        raise SystemExit(0) from None  # a command whose exit code says more goes on with reader_may_leave
+    except OptionValueError:
         raise
     except OSError as error:
         if error.errno not in _FULL:
-            raise typer.Exit(say(internal(error))) from None
+            raise SystemExit(say(internal(error))) from None
         _drop_output()
         message = f"cannot write the standard output: {error.strerror}"
-        raise typer.Exit(say(Fault("RBL706", message))) from None
+        raise SystemExit(say(Fault("RBL706", message))) from None
     except Exception as error:
-        raise typer.Exit(say(internal(error))) from None
+        raise SystemExit(say(internal(error))) from None
 
 
 def escape_what_a_terminal_lacks() -> None:

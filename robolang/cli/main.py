@@ -3,10 +3,12 @@
 Nothing heavy is imported: numpy, pinocchio and mujoco come in inside the commands that need them.
 """
 
+from collections.abc import Callable
 from typing import Annotated
 
 import typer
 
+from robolang.cli.command import CodedGroup, command
 from robolang.cli.commands import (
     check,
     compare,
@@ -28,7 +30,6 @@ from robolang.cli.commands import (
     wrist_demo,
 )
 from robolang.cli.errors import escape_what_a_terminal_lacks
-from robolang.cli.usage import CodedGroup
 
 app = typer.Typer(
     name="robolang",
@@ -38,20 +39,24 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="A robot controller in a package: run a program in an industrial robot language on a true controller.",
 )
-app.command("run")(run.run)
-app.command("compare")(compare.compare)
-app.command("step")(step.step)
-app.command("inertia")(inertia.inertia)
-app.command("identify")(identify.identify)
-app.command("weigh")(weigh.weigh)
-app.command("wrist-demo")(wrist_demo.wrist_demo)
-app.command("replay-pulses")(replay_pulses.replay_pulses)
-app.command("test")(test.test)
-app.command("check")(check.check)
-app.command("fmt")(fmt.fmt)
-app.command("renumber")(renumber.renumber)
-app.command("rules")(rules.rules)
-app.command("explain")(explain.explain)
+_COMMANDS: dict[str, Callable[..., None]] = {
+    "run": run.run,
+    "compare": compare.compare,
+    "step": step.step,
+    "inertia": inertia.inertia,
+    "identify": identify.identify,
+    "weigh": weigh.weigh,
+    "wrist-demo": wrist_demo.wrist_demo,
+    "replay-pulses": replay_pulses.replay_pulses,
+    "test": test.test,
+    "check": check.check,
+    "fmt": fmt.fmt,
+    "renumber": renumber.renumber,
+    "rules": rules.rules,
+    "explain": explain.explain,
+}
+for name, function in _COMMANDS.items():
+    app.command(name)(command(function))
 app.add_typer(config.app, name="config")
 app.add_typer(export.app, name="export")
 app.add_typer(kin.app, name="kin")
@@ -64,7 +69,7 @@ def options(
 ) -> None:
     """Take the options that stand before a command."""
     if version:  # pragma: no cover - ``__main__`` answers before this module is imported
-        raise typer.Exit
+        raise SystemExit
 
 
 def run_app() -> None:

@@ -2,9 +2,8 @@
 
 from typing import TYPE_CHECKING
 
-import typer
-
 from robolang.cli.errors import DIAGNOSTICS, exit_code, say_warnings
+from robolang.cli.output import echo
 
 if TYPE_CHECKING:
     from robolang.execution.plan_memory import PlanMemory
@@ -23,15 +22,15 @@ def refuse(project: "Project", *, warnings: bool = True, plans: "PlanMemory | No
         say_warnings(project.cell.warnings)
     for item in project.diagnostics:
         if warnings or item.severity is Severity.ERROR:
-            typer.echo(render(item, project.source), err=True)
+            echo(render(item, project.source), err=True)
     if not project.ok:
-        raise typer.Exit(DIAGNOSTICS)
+        raise SystemExit(DIAGNOSTICS)
     from robolang.execution.dry_run import motion_check
 
     refused = motion_check(project, plans)
     for item in refused:
-        typer.echo(render(item, project.source), err=True)
+        echo(render(item, project.source), err=True)
     if refused:
-        raise typer.Exit(exit_code(refused[0].code))
+        raise SystemExit(exit_code(refused[0].code))
     unlikely = bool(project.cell.warnings)
     return unlikely or any(item.severity is Severity.WARNING for item in project.diagnostics)

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import typer
-
+from robolang.cli.output import echo
 from robolang.core.diagnostics import has_errors, render, safe
 
 if TYPE_CHECKING:
@@ -71,7 +70,7 @@ def store(loaded: Loaded, text: str, out: str | None = None) -> None:
 
     raw, name = loaded.mark + text.encode("utf-8"), loaded.name if out is None else out
     if name == STDIO:
-        typer.echo(raw, nl=False)
+        echo(raw, nl=False)
         return
     if name == loaded.name and not _still(loaded):
         raise Fault("RBL706", f"{name} has changed since it was read", "Run the command again.")
@@ -94,13 +93,13 @@ def broken(loaded: Loaded, diagnostics: "Iterable[Diagnostic]") -> bool:
     if not has_errors(found):
         return False
     for item in found:
-        typer.echo(render(item, loaded.source), err=True)
+        echo(render(item, loaded.source), err=True)
     return True
 
 
 def show(loaded: Loaded, text: str) -> None:
     """Print what would change as a unified diff, in the bytes of the file."""
-    typer.echo("".join(unified(loaded.source.path, loaded.source.text, text)).encode("utf-8"), nl=False)
+    echo("".join(unified(loaded.source.path, loaded.source.text, text)).encode("utf-8"), nl=False)
 
 
 # --- a unified diff --------------------------------------------------------------------------------------------------

@@ -7,9 +7,8 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-import typer
-
 from robolang.cli.errors import reader_may_leave
+from robolang.cli.output import echo
 from robolang.core.diagnostics import safe
 from robolang.execution.observer import Observer
 from robolang.execution.result import StatementRun
@@ -43,7 +42,7 @@ class RunProgress(Observer):
     def printed(self, text: str) -> None:
         """Show what the program prints, as it prints it."""
         with reader_may_leave():
-            typer.echo(safe(text))
+            echo(safe(text))
 
 
 @contextmanager
@@ -76,7 +75,7 @@ def _line_printer() -> Tell:
     def tell(statement: StatementRun, time_us: int) -> None:
         if not shown or shown[-1][0] is not statement or (statement.lamp and statement.lamp != shown[-1][1]):
             shown[:] = [(statement, statement.lamp)]
-            typer.echo(_status(statement, time_us), err=True)
+            echo(_status(statement, time_us), err=True)
 
     return tell
 

@@ -8,13 +8,14 @@ Imports the standard library and typer only, so that ``robolang --help`` stays q
 import math
 from typing import TYPE_CHECKING, NoReturn
 
-import typer
-
-from robolang.cli.usage import OptionValueError as OptionValueError
+from robolang.cli.output import echo
+from robolang.cli.usage import OptionValueError
 from runtime.core.numerals import number_in, why_none
 from runtime.core.rounding import beside
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from runtime.core.frames import Array
     from runtime.robot.model.payload import Payload
     from runtime.robot.model.spec import RobotSpec
@@ -59,12 +60,18 @@ def payload(text: str, option: str, spec: "RobotSpec", *, heavier: bool = True) 
         raise OptionValueError(option, fault.message) from None
 
 
+def check_plot(path: "Path | None") -> None:
+    """Refuse a plot that is neither a picture nor a page; ``OptionValueError``."""
+    if path is not None and path.suffix not in (".svg", ".html"):
+        raise OptionValueError("--plot", f"'{path}' must end in .svg or .html")
+
+
 def note_overload(carried: "Payload", option: str, spec: "RobotSpec") -> None:
     """Say that a payload is over the rated one; it is taken all the same, for this is the bench."""
     mass, rated = carried.mass, spec.rated_payload
     if not mass <= rated:
         shown, most = beside(mass, rated)
-        typer.echo(f"note: {option} {shown} kg is over the rated {most} kg of {spec.name}", err=True)
+        echo(f"note: {option} {shown} kg is over the rated {most} kg of {spec.name}", err=True)
 
 
 def _number(text: str, option: str, name: str, position: int) -> float:

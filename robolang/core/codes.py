@@ -265,6 +265,12 @@ register(
         remedy="Name a folder with NAME.test.toml files, or allow it with --allow-empty.",
     ),
     Code(
+        code="RBL713",
+        name="no-programs",
+        meaning="robolang check was given folders without a program (*.rbl), so nothing was checked.",
+        remedy="Name a folder with programs, or allow it with --allow-empty.",
+    ),
+    Code(
         code="RBL900",
         name="internal-error",
         meaning="robolang itself failed; the program is not the cause.",

@@ -2,59 +2,77 @@
 
 import json
 import os
-from collections.abc import Callable
-from typing import Annotated, Any
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
-from robolang.cli import servo_options as o
+from robolang.cli.controller_settings import settings_of
 from robolang.cli.errors import MOTION, reader_may_leave, reported
+from robolang.cli.options import CellOptions, JsonOptions, Option, PhysicsOptions, Program, SettingsOptions
+from robolang.cli.output import echo
 from robolang.cli.refuse import refuse
-from robolang.cli.values import OptionValueError
+from robolang.cli.usage import OptionValueError
+
+if TYPE_CHECKING:
+    from robolang.experiments.compare import Variant
+
+
+class _CompareOptions(PhysicsOptions):
+    """What is compared, and how many runs there are at a time."""
+
+    only: Annotated[str | None, Option("--only", metavar="NAME,...", help="These variants only.")] = None
+    jobs: Annotated[
+        int | None,
+        Option("--jobs", metavar="N", low=1, high=64, help="Runs at a time; default: 2, or the number of processors."),
+    ] = None
 
 
 def compare(
-    program: Annotated[str, typer.Argument(metavar="PROG", help="Program file (.rbl).")],
-    cell: Annotated[str | None, typer.Option(help="Cell file (.toml); default: the one beside the program.")] = None,
-    robot: Annotated[str | None, typer.Option(help="Built-in robot or robot file, in place of the cell's.")] = None,
-    only: Annotated[str | None, typer.Option("--only", metavar="NAME,...", help="These variants only.")] = None,
-    no_physics: Annotated[bool, typer.Option("--no-physics", help="Ideal arm instead of MuJoCo.")] = False,
-    profile: o.ProfileFile = None,
-    feedforward: o.Feedforward = None,
-    load_mode: o.LoadMode = None,
-    servo_period: o.ServoPeriod = None,
-    settings: o.Set = None,
-    jobs: Annotated[int | None, typer.Option("--jobs", min=1, max=64, help="Runs at a time.")] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    program: Program,
+    files: CellOptions,
+    controller: SettingsOptions,
+    choice: _CompareOptions,
+    output: JsonOptions,
 ) -> None:
     """Compare scheduled gains with fixed ones, right LOADs with wrong ones."""
-    options = o.controller_options(
-        feedforward=feedforward, load_mode=load_mode, servo_period=servo_period, settings=settings
-    )
+    settings = settings_of(controller)
     with reported():
         from robolang.experiments.compare import VARIANTS, Request
         from robolang.experiments.compare import compare as run_all
 
-        names = [item.name for item in VARIANTS] if only is None else only.split(",")
-        unknown = sorted(set(names) - {item.name for item in VARIANTS})
-        if unknown:
-            known = ", ".join(item.name for item in VARIANTS)
-            raise OptionValueError("--only", f"'{unknown[0]}' is not a variant; known: {known}")
-        variants = tuple(item for item in VARIANTS if item.name in names)
+        variants = _variants(choice.only, VARIANTS)
         request = Request(
-            program=program, cell=cell, robot=robot, profile=profile, options=options, physics=not no_physics
+            program=program,
+            cell=files.cell,
+            robot=files.robot,
+            profile=controller.profile,
+            options=settings,
+            physics=not choice.no_physics,
         )
         refuse(request.project(variants[0]))
         for variant in variants[1:]:
             request.project(variant)  # a bound of stability that only this variant breaks is found before the first run
-        rows = run_all(request, variants, jobs or min(2, os.cpu_count() or 1), _progress(len(variants)))
+        jobs = choice.jobs or min(2, os.cpu_count() or 1)
+        rows = run_all(request, variants, jobs, _progress(len(variants)))
         with reader_may_leave():
-            if as_json:
-                typer.echo(json.dumps({"program": program, "physics": not no_physics, "variants": rows}, indent=2))
+            if output.as_json:
+                found = {"program": program, "physics": request.physics, "variants": rows}
+                echo(json.dumps(found, indent=2))
             else:
                 _print(program, rows)
     if not all(row["ok"] for row in rows):
-        raise typer.Exit(MOTION)
+        raise SystemExit(MOTION)
+
+
+def _variants(only: str | None, known: "tuple[Variant, ...]") -> "tuple[Variant, ...]":
+    """Return the variants that ``--only`` names, all without it, in the order of the table."""
+    if only is None:
+        return known
+    names = only.split(",")
+    unknown = sorted(set(names) - {item.name for item in known})
+    if unknown:
+        listed = ", ".join(item.name for item in known)
+        raise OptionValueError("--only", f"'{unknown[0]}' is not a variant; known: {listed}")
+    return tuple(item for item in known if item.name in names)
 
 
 def _progress(count: int) -> Callable[[str], None]:
@@ -62,7 +80,7 @@ def _progress(count: int) -> Callable[[str], None]:
 
     def done(title: str) -> None:
         finished.append(title)
-        typer.echo(f"{len(finished)}/{count} {title}", err=True)
+        echo(f"{len(finished)}/{count} {title}", err=True)
 
     return done
 
@@ -97,13 +115,17 @@ def _print(program: str, rows: list[dict[str, Any]]) -> None:
         table.add_row(title, *("-" if row[key] is None else form.format(row[key]) for _, key, form in _COLUMNS))
     console.print(table)
     _print_axes(console, rows)
-    for row in rows:
-        if row["note"]:
-            console.print(safe(f"{row['title']}: {row['note']}"), soft_wrap=True)
-        for alarm in row["alarms"]:
-            place = f"{alarm['file']}:{alarm['line']}:{alarm['column']}"
-            text = f"{row['title']}: stopped at {place}, {alarm['time_s']:.3f} s: {alarm['code']} {alarm['message']}"
-            console.print(safe(text), soft_wrap=True)
+    for line in (line for row in rows for line in _remarks(row)):
+        console.print(safe(line), soft_wrap=True)
+
+
+def _remarks(row: dict[str, Any]) -> Iterator[str]:
+    """Yield the note of a variant, and where it stopped."""
+    if row["note"]:
+        yield f"{row['title']}: {row['note']}"
+    for alarm in row["alarms"]:
+        place = f"{alarm['file']}:{alarm['line']}:{alarm['column']}"
+        yield f"{row['title']}: stopped at {place}, {alarm['time_s']:.3f} s: {alarm['code']} {alarm['message']}"
 
 
 def _print_axes(console: Any, rows: list[dict[str, Any]]) -> None:

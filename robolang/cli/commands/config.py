@@ -2,13 +2,16 @@
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
-from robolang.cli import servo_options as o
+from robolang.cli.command import command
+from robolang.cli.controller_settings import settings_of
 from robolang.cli.errors import reported, say_warnings
-from robolang.cli.values import OptionValueError
+from robolang.cli.options import CellOptions, ControllerOptions, JsonOptions, OptionalProgram
+from robolang.cli.output import echo
+from robolang.cli.usage import OptionValueError
 
 if TYPE_CHECKING:
     from runtime.robot.model.spec import RobotSpec
@@ -23,42 +26,22 @@ def config() -> None:
 
 
 @app.command()
-def show(
-    program: Annotated[str | None, typer.Argument(metavar="[PROG]", help="Program, for the cell beside it.")] = None,
-    cell: Annotated[str | None, typer.Option(help="Cell file (.toml).")] = None,
-    robot: Annotated[str | None, typer.Option(help="Built-in robot or robot file, in place of the cell's.")] = None,
-    profile: o.ProfileFile = None,
-    servo: o.Servo = None,
-    fixed_at: o.FixedAt = None,
-    coupling: o.Coupling = None,
-    feedforward: o.Feedforward = None,
-    load_mode: o.LoadMode = None,
-    servo_period: o.ServoPeriod = None,
-    settings: o.Set = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-) -> None:
+@command
+def show(program: OptionalProgram, files: CellOptions, controller: ControllerOptions, output: JsonOptions) -> None:
     """Show every controller setting in force and where it came from."""
-    options = o.controller_options(
-        servo=servo,
-        fixed_at=fixed_at,
-        coupling=coupling,
-        feedforward=feedforward,
-        load_mode=load_mode,
-        servo_period=servo_period,
-        settings=settings,
-    )
+    settings = settings_of(controller)
     if program is not None and not Path(program).exists():
         raise OptionValueError("PROG", f"there is no file '{program}'")
     with reported():
         from robolang.project.project import load_cell_and_settings
 
         found, in_force = load_cell_and_settings(
-            None if program is None else Path(program), cell, robot, profile, options
+            None if program is None else Path(program), files.cell, files.robot, controller.profile, settings
         )
         say_warnings(found.robot.warnings)
         rows = _rows(found.robot, in_force)
-        if as_json:
-            typer.echo(json.dumps({"robot": found.robot.name, "settings": rows}, indent=2))
+        if output.as_json:
+            echo(json.dumps({"robot": found.robot.name, "settings": rows}, indent=2))
         else:
             _print(found.robot.name, rows)
 

@@ -3,22 +3,19 @@
 import difflib
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from robolang.cli.errors import reported
-from robolang.cli.values import OptionValueError
+from robolang.cli.options import Argument
+from robolang.cli.usage import OptionValueError
 
 if TYPE_CHECKING:
     from robolang.cli.console import Console
     from runtime.core.faults import Code
 
 
-def explain(
-    code: Annotated[
-        str | None,
-        typer.Argument(metavar="CODE", help="A code such as RBL412, or its name; without one, all are listed."),
-    ] = None,
-) -> None:
+_Code = Annotated[str | None, Argument("CODE", "A code such as RBL412, or its name; without one, all are listed.")]
+
+
+def explain(code: _Code) -> None:
     """Explain a code of a diagnostic, a fault or an alarm."""
     import robolang.lint.registry  # noqa: F401 - every code there is
     from runtime.core.faults import all_codes

@@ -10,23 +10,28 @@ Exit codes: 0; 1 the program has errors; 2 a file or an option; 3 a move that ca
 import json
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import typer
 
 from robolang.cli import lines
+from robolang.cli.command import command
 from robolang.cli.errors import DIAGNOSTICS, exit_code, reported, say_warnings
-from robolang.cli.values import OptionValueError
+from robolang.cli.options import CellOptions, Group, Option, PlotOptions, Program
+from robolang.cli.output import echo
+from robolang.cli.usage import OptionValueError
+from robolang.cli.values import check_plot
 from runtime.core.rounding import beside
 from runtime.core.units import badness
 
 if TYPE_CHECKING:
     from robolang.project.project import Project
-    from robolang.pulse_tables.export import Export
+    from robolang.pulse_tables.export import Export, ExportRequest
     from runtime.pulses.channels import Channel
 
 app = typer.Typer(no_args_is_help=True, help="Turn a program into what other controllers run.")
 SHORTEST_MS, LONGEST_MS = 1.0, 1000.0
+LOWEST_HZ, HIGHEST_HZ = 1.0, 1e5
 
 
 @app.callback()
@@ -34,62 +39,75 @@ def formats() -> None:
     """Turn a program into what other controllers run."""
 
 
-@app.command("pulses")
-def pulses(
-    program: Annotated[str, typer.Argument(metavar="PROG", help="Program file (.rbl).")],
-    out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder to write: new, empty, or an export.")],
+class _TableOptions(Group):
+    """The machine and the form of the tables."""
+
+    PANEL: ClassVar[str] = "Pulse tables"
     channels: Annotated[
         str | None,
-        typer.Option("--channels", metavar="F.toml|NAME", help="Channel file, or xy, cylindrical, scara."),
-    ] = None,
-    step: Annotated[str, typer.Option("--step", metavar="TIME", help="Length of a step, such as 10ms.")] = "10ms",
+        Option("--channels", metavar="F.toml|NAME", help="Channel file, or xy, cylindrical, scara; default: the arm."),
+    ] = None
+    step: Annotated[str, Option("--step", metavar="TIME", help="Length of a step, such as 10ms.")] = "10ms"
     fmin: Annotated[
-        float | None, typer.Option("--fmin", metavar="HZ", help="Lowest pulse frequency of every channel; default 191.")
-    ] = None,
-    plc: Annotated[
-        str, typer.Option("--plc", metavar="f174|none", help="Form of a PLC beside the neutral one.")
-    ] = "f174",
-    cell: Annotated[str | None, typer.Option(help="Cell file (.toml); default: the one beside the program.")] = None,
-    robot: Annotated[str | None, typer.Option(help="Built-in robot or robot file, in place of the cell's.")] = None,
-    plot: Annotated[
-        Path | None, typer.Option("--plot", metavar="FILE", help="Draw frequencies and path error: .svg or .html.")
-    ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-) -> None:
+        float | None,
+        Option("--fmin", metavar="HZ", help="Lowest pulse frequency of every channel, Hz; default: 191."),
+    ] = None
+    plc: Annotated[str, Option("--plc", help="Form of a PLC beside the neutral one.", choices=("f174", "none"))] = (
+        "f174"
+    )
+
+
+class _OutputOptions(PlotOptions):
+    out: Annotated[Path, Option("--out", "-o", metavar="DIR", help="Folder to write: new, empty, or an export.")]
+
+
+@app.command("pulses")
+@command
+def pulses(program: Program, files: CellOptions, tables: _TableOptions, output: _OutputOptions) -> None:
     """Export a program as pulse tables: equal-time steps for the channels of a PLC."""
-    step_hz = _step_hz(step)
-    if plc not in ("f174", "none"):
-        raise OptionValueError("--plc", f"'{plc}' is not one of f174, none")
-    if fmin is not None and not 1.0 <= fmin <= 1e5:  # NaN is refused too
-        raise OptionValueError("--fmin", f"{beside(fmin, 1.0, 1e5)[0]} is not between 1 and 100000 Hz")
-    if plot is not None and plot.suffix not in (".svg", ".html"):
-        raise OptionValueError("--plot", f"'{plot}' must end in .svg or .html")
+    request = _request(tables)
+    check_plot(output.plot)
     with reported():
         from robolang.core.storage import check_folder, check_writable, write_folder
 
-        check_folder(out, written_here)
-        if plot is not None:
-            check_writable(plot)
+        check_folder(output.out, written_here)
+        if output.plot is not None:
+            check_writable(output.plot)
         from robolang.project.project import load_project
-        from robolang.pulse_tables.export import ExportRequest, export
-        from robolang.pulse_tables.table_target import NotExportableError
 
-        project = load_project(program, cell, robot)
+        project = load_project(program, files.cell, files.robot)
         _refuse(project)
-        try:
-            found = export(project, ExportRequest(channels=channels, step_hz=step_hz, min_hz=fmin, f174=plc == "f174"))
-        except NotExportableError as error:
-            from robolang.core.diagnostics import render
-
-            typer.echo(render(error.diagnostic, project.source), err=True)
-            raise typer.Exit(exit_code(error.diagnostic.code)) from None
-        write_folder(out, {name: text.encode("utf-8") for name, text in found.files.items()}, written_here)
-        if as_json:
-            typer.echo(json.dumps(_plain(found, out)))
+        found = _exported(project, request)
+        write_folder(output.out, {name: text.encode("utf-8") for name, text in found.files.items()}, written_here)
+        if output.as_json:
+            echo(json.dumps(_plain(found, output.out)))
         else:
-            _print(found, out)
-        if plot is not None:
-            _plot(out, plot)
+            _print(found, output.out)
+        if output.plot is not None:
+            _plot(output.out, output.plot)
+
+
+def _request(tables: _TableOptions) -> "ExportRequest":
+    from robolang.pulse_tables.export import ExportRequest
+
+    step_hz, fmin = _step_hz(tables.step), tables.fmin
+    if fmin is not None and not LOWEST_HZ <= fmin <= HIGHEST_HZ:  # NaN is refused too
+        shown = beside(fmin, LOWEST_HZ, HIGHEST_HZ)[0]
+        raise OptionValueError("--fmin", f"{shown} is not between {LOWEST_HZ:g} and {HIGHEST_HZ:.0f} Hz")
+    return ExportRequest(channels=tables.channels, step_hz=step_hz, min_hz=fmin, f174=tables.plc == "f174")
+
+
+def _exported(project: "Project", request: "ExportRequest") -> "Export":
+    """Return the tables; leave, with the place of the move, when one cannot be exported."""
+    from robolang.core.diagnostics import render
+    from robolang.pulse_tables.export import export
+    from robolang.pulse_tables.table_target import NotExportableError
+
+    try:
+        return export(project, request)
+    except NotExportableError as error:
+        echo(render(error.diagnostic, project.source), err=True)
+        raise SystemExit(exit_code(error.diagnostic.code)) from None
 
 
 def written_here(name: str) -> bool:
@@ -121,9 +139,9 @@ def _refuse(project: "Project") -> None:
 
     say_warnings(project.cell.warnings)
     for item in project.diagnostics:
-        typer.echo(render(item, project.source), err=True)
+        echo(render(item, project.source), err=True)
     if not project.ok:
-        raise typer.Exit(DIAGNOSTICS)
+        raise SystemExit(DIAGNOSTICS)
 
 
 def _plain(found: "Export", out: Path) -> dict[str, Any]:

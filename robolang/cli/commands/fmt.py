@@ -10,26 +10,24 @@ written. Imports no numpy, pinocchio or mujoco.
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from robolang.cli.errors import STORAGE, reader_may_leave, reported, say
+from robolang.cli.options import Argument, RewriteOptions
+from robolang.cli.output import echo
 from robolang.cli.rewrite import BROKEN, CHANGES, STDIO, broken, load, show, store
-from robolang.cli.values import OptionValueError
+from robolang.cli.usage import OptionValueError
 
 if TYPE_CHECKING:
     from runtime.core.faults import Fault
 
 
-def fmt(
-    paths: Annotated[
-        list[str] | None,
-        typer.Argument(metavar="[PATH...]", help="Programs, folders of them (*.rbl), or -; default: this folder."),
-    ] = None,
-    check: Annotated[bool, typer.Option("--check", help="Write nothing; exit code 1 if one would change.")] = False,
-    diff: Annotated[bool, typer.Option("--diff", help="Write nothing; print what would change.")] = False,
-) -> None:
+_Paths = Annotated[
+    list[str] | None, Argument("[PATH...]", "Programs, folders of them (*.rbl), or -; default: this folder.")
+]
+
+
+def fmt(paths: _Paths, output: RewriteOptions) -> None:
     """Format programs: keywords in capitals, blocks indented, comments aligned."""
-    run, names = _Run(check=check, diff=diff), paths or ["."]
+    run, names = _Run(check=output.check, diff=output.diff), paths or ["."]
     with reported():
         if names == [STDIO]:
             run.one(STDIO)
@@ -42,9 +40,9 @@ def fmt(
             for name in programs(names, excludes=Settings().excludes):
                 run.one(name)
             with reader_may_leave():
-                typer.echo(run.summary(), err=diff)
+                echo(run.summary(), err=output.diff)
     if run.exit_code:
-        raise typer.Exit(run.exit_code)
+        raise SystemExit(run.exit_code)
 
 
 @dataclass(slots=True, kw_only=True)
@@ -88,7 +86,7 @@ class _Run:
             if self.diff:
                 show(loaded, found.text)
             elif self.check and found.changed:
-                typer.echo(safe(f"would reformat {loaded.source.path}"))
+                echo(safe(f"would reformat {loaded.source.path}"))
         if not self.check and not self.diff and (found.changed or name == STDIO):
             store(loaded, found.text)
         self.changed += found.changed

@@ -11,14 +11,14 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, cast
-
-import typer
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, cast
 
 from robolang.cli import values
-from robolang.cli.commands.weigh import weigh
+from robolang.cli.commands.weigh import weigh_subject
 from robolang.cli.errors import reported, say_warnings
-from robolang.cli.values import OptionValueError
+from robolang.cli.options import Argument, JsonOptions, Option, PlantOptions
+from robolang.cli.output import echo
+from robolang.cli.usage import OptionValueError
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -30,74 +30,61 @@ if TYPE_CHECKING:
     from runtime.settings.profile import Profile
 
 ENDING = ".compensation.toml"
-POSITIONS = 5
 
 
-def identify(
-    subject: Annotated[
-        str, typer.Argument(metavar="PROG_OR_ROBOT", help="Program, for its cell; built-in robot or robot file.")
-    ],
-    axis: Annotated[str, typer.Option("--axis", metavar="all|1,2,...", help="Axes to identify, from 1.")] = "all",
-    positions: Annotated[int, typer.Option("--positions", min=1, max=50, help="Places of each axis.")] = POSITIONS,
-    plant: Annotated[str, typer.Option("--plant", help="'mujoco' or 'rigid' ideal arm with friction.")] = "mujoco",
+_Subject = Annotated[str, Argument("PROG_OR_ROBOT", "Program file (.rbl), for its cell; built-in robot or robot file.")]
+
+
+class _ExperimentOptions(PlantOptions):
+    """What is identified, and with what on the flange."""
+
+    PANEL: ClassVar[str] = "Experiment"
+    axis: Annotated[str, Option("--axis", metavar="all|1,2,...", help="Axes to identify, from 1.")] = "all"
+    positions: Annotated[
+        int, Option("--positions", metavar="N", low=1, high=50, help="Number of positions of each axis.")
+    ] = 5
     error: Annotated[
-        int | None, typer.Option("--error", metavar="SEED", min=0, help="Real bodies 5 to 20 % heavier than the model.")
-    ] = None,
+        int | None,
+        Option("--error", metavar="SEED", low=0, help="Bodies of the plant are 5 to 20 % heavier than the model."),
+    ] = None
     carrying: Annotated[
         str | None,
-        typer.Option("--carrying", metavar="M,X,Y,Z", help="Carried and declared: kg, mm; default: the cell's hand."),
-    ] = None,
-    payload: Annotated[
-        bool, typer.Option("--payload", help="Identify what is carried, as 'robolang weigh' does.")
-    ] = False,
+        Option("--carrying", metavar="M,X,Y,Z", help="Carried and declared payload: kg, mm; default: the cell's hand."),
+    ] = None
+    payload: Annotated[bool, Option("--payload", help="Identify the payload, as 'robolang weigh' does.")] = False
     table: Annotated[
-        int | None, typer.Option("--table", metavar="K", min=2, max=7, help="Table over J2 and J3, K angles each.")
-    ] = None,
-    out: Annotated[Path | None, typer.Option("--out", metavar=f"FILE{ENDING}", help="Write the compensation.")] = None,
-    date: Annotated[str, typer.Option("--date", metavar="YYYY-MM-DD", help="Date that the file states.")] = "",
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-) -> None:
+        int | None,
+        Option("--table", metavar="K", low=2, high=7, help="Table over J2 and J3 with K angles of each."),
+    ] = None
+
+
+class _OutputOptions(JsonOptions):
+    """What is printed and written."""
+
+    out: Annotated[
+        Path | None, Option("--out", metavar=f"FILE{ENDING}", help="Write the compensation to this file.")
+    ] = None
+    date: Annotated[str, Option("--date", metavar="YYYY-MM-DD", help="Date that the file states.")] = ""
+
+
+def identify(subject: _Subject, options: _ExperimentOptions, output: _OutputOptions) -> None:
     """Identify inertia at the motor and weight of each axis, and what the model lacks of them."""
-    if payload:
-        given = {
-            "--axis": axis != "all",
-            "--positions": positions != POSITIONS,
-            "--error": error is not None,
-            "--carrying": carrying is not None,
-            "--table": table is not None,
-            "--out": out is not None,
-            "--date": date != "",
-        }
-        for option in (name for name, there in given.items() if there):
-            raise OptionValueError(option, "it has no place beside --payload")
-        program = _is_program(subject)
-        weigh(subject if program else None, None, None if program else subject, None, plant, None, as_json)
+    if options.payload:
+        _refuse_beside_payload(options, output)
+        weigh_subject(subject, options.plant, JsonOptions(as_json=output.as_json))
         return
-    if plant not in ("rigid", "mujoco"):
-        raise OptionValueError("--plant", f"'{plant}' is not one of rigid, mujoco")
+    out = output.out
     if out is not None and not out.name.endswith(ENDING):
         raise OptionValueError("--out", f"'{out}' must end in {ENDING}")
-    day = _day(date)
+    day = _day(output.date)
     with reported():
         from robolang.core.storage import check_writable, write_atomic
-        from robolang.experiments.excitation import Request
         from robolang.experiments.identify import as_json as figures
-        from robolang.experiments.identify import compensation_of, with_errors
+        from robolang.experiments.identify import compensation_of
         from robolang.experiments.identify import identify as run_all
         from runtime.dynamics.compensation import as_toml
 
-        spec, profile, hand = _subject(subject)
-        say_warnings(spec.warnings)
-        request = Request(
-            robot=spec,
-            axes=_axes(axis, spec.n),
-            positions=positions,
-            plant=cast("PlantName", plant),
-            real=None if error is None else with_errors(spec, error),
-            profile=profile,
-            payload=hand if carrying is None else values.payload(carrying, "--carrying", spec, heavier=False),
-            table=table or 0,
-        )
+        request = _request(subject, options)
         if out is not None:
             check_writable(out)
         with _progress(request) as progress:
@@ -106,14 +93,38 @@ def identify(
             text = as_toml(compensation_of(request, results, day))
             write_atomic(out, lambda stream: stream.write(text.encode("utf-8")))
         found = figures(request, results)
-        if as_json:
-            typer.echo(json.dumps(found))
+        if output.as_json:
+            echo(json.dumps(found))
         else:
             _print(request, found)
 
 
-def _is_program(subject: str) -> bool:
-    return subject.lower().endswith(".rbl")
+def _refuse_beside_payload(options: _ExperimentOptions, output: _OutputOptions) -> None:
+    """Refuse what only the identification of the arm takes: a weighing would ignore it."""
+    for group, names in ((options, ("axis", "positions", "error", "carrying", "table")), (output, ("out", "date"))):
+        for name in names:
+            if getattr(group, name) != getattr(type(group), name):  # the default is the value in the class
+                raise OptionValueError(f"--{name}", "cannot be used with --payload")
+
+
+def _request(subject: str, options: _ExperimentOptions) -> "Request":
+    """Return the experiment; ``Fault`` or ``OptionValueError`` for what cannot be used."""
+    from robolang.experiments.excitation import Request
+    from robolang.experiments.identify import with_errors
+
+    spec, profile, hand = _subject(subject)
+    say_warnings(spec.warnings)
+    carrying = options.carrying
+    return Request(
+        robot=spec,
+        axes=_axes(options.axis, spec.n),
+        positions=options.positions,
+        plant=cast("PlantName", options.plant),
+        real=None if options.error is None else with_errors(spec, options.error),
+        profile=profile,
+        payload=hand if carrying is None else values.payload(carrying, "--carrying", spec, heavier=False),
+        table=options.table or 0,
+    )
 
 
 def _subject(subject: str) -> "tuple[RobotSpec, Profile, Payload]":
@@ -122,7 +133,7 @@ def _subject(subject: str) -> "tuple[RobotSpec, Profile, Payload]":
     from runtime.robot.model.payload import NO_PAYLOAD, Payload
     from runtime.settings.profile import Profile
 
-    if not _is_program(subject):
+    if not subject.lower().endswith(".rbl"):
         return load_any_robot(subject), Profile(), NO_PAYLOAD
     if not Path(subject).exists():
         raise OptionValueError("PROG_OR_ROBOT", f"there is no file '{subject}'")
@@ -162,7 +173,7 @@ def _progress(request: "Request") -> Iterator["Progress"]:
         with Console(stderr=True).status("planning") as status:
             yield lambda axis, number, q: status.update(text(axis, number, q))
     else:
-        yield lambda axis, number, q: typer.echo(text(axis, number, q), err=True)
+        yield lambda axis, number, q: echo(text(axis, number, q), err=True)
 
 
 _UNIT = 1e-6

@@ -12,16 +12,18 @@ Exit codes: 0; 2 a value or a robot that cannot be used; 4 the picture cannot be
 import json
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from robolang.cli import values
 from robolang.cli.errors import reported, say_warnings
-from robolang.cli.values import OptionValueError
+from robolang.cli.options import Group, JsonOptions, Option, PostureOptions
+from robolang.cli.output import echo
+from robolang.cli.usage import OptionValueError
 
 if TYPE_CHECKING:
     from robolang.experiments.inertia import InertiaMap
+    from runtime.core.frames import Array
+    from runtime.robot.model.payload import Payload
     from runtime.robot.model.spec import RobotSpec
 
 KG_CM2 = 1e-4
@@ -30,77 +32,96 @@ KG_CM2 = 1e-4
 TICKS_DEG = 45.0
 
 
-def inertia(
-    robot: Annotated[str, typer.Option("--robot", help="Built-in robot, or a .toml, .urdf or .xml file.")],
-    joints: Annotated[str | None, typer.Option("--joints", metavar="J1,J2,...", help="Posture, deg.")] = None,
-    payload: Annotated[str, typer.Option("--payload", metavar="M,X,Y,Z", help="Carried: kg, mm.")] = "0,0,0,0",
-    compensation: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Compensation file of 'robolang identify'.")
-    ] = None,
-    over: Annotated[
-        str | None, typer.Option("--map", metavar="J2,J3", help="Map over the ranges of these two joints.")
-    ] = None,
-    axis: Annotated[int | None, typer.Option("--axis", help="Axis that is mapped, from 1; default 1.")] = None,
-    out: Annotated[Path | None, typer.Option("--out", metavar="FILE.svg", help="Draw the map there.")] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object, in SI.")] = False,
-) -> None:
-    """Print the inertia of every axis at the link and at the motor, and its gravity torque."""
-    _check_use(over, axis, out)
-    if over is not None and compensation is not None:
-        raise OptionValueError("--compensation", "it has no place on a map, which shows the model")
-    with reported():
-        import numpy as np
+class _MapOptions(Group):
+    """A map over two joints, instead of one posture."""
 
-        from robolang.experiments.inertia import at_posture, extremes, over_plane, plain
+    PANEL: ClassVar[str] = "Map"
+    over: Annotated[str | None, Option("--map", metavar="J2,J3", help="Map over the ranges of these two joints.")] = (
+        None
+    )
+    axis: Annotated[int | None, Option("--axis", metavar="N", help="Axis that is mapped, from 1; default: 1.")] = None
+    out: Annotated[Path | None, Option("--out", metavar="FILE.svg", help="Draw the map to this file.")] = None
+
+
+class _CompensationOptions(PostureOptions):
+    """The posture, and what the model of the robot lacks."""
+
+    compensation: Annotated[
+        Path | None, Option("--compensation", metavar="FILE", help="Compensation file of 'robolang identify'.")
+    ] = None
+
+
+def inertia(options: _CompensationOptions, chart: _MapOptions, output: JsonOptions) -> None:
+    """Print the inertia of every axis at the link and at the motor, and its gravity torque."""
+    _check_use(chart)
+    if chart.over is not None and options.compensation is not None:
+        raise OptionValueError("--compensation", "cannot be used with --map: the map shows the model")
+    with reported():
         from robolang.project.project import load_any_robot
 
-        spec = load_any_robot(robot)
+        spec = load_any_robot(options.robot)
         say_warnings(spec.warnings)
-        q, carried = values.posture(joints, spec), values.payload(payload, "--payload", spec)
+        q, carried = values.posture(options.joints, spec), values.payload(options.payload, "--payload", spec)
         values.note_overload(carried, "--payload", spec)
-        head = {
-            "robot": spec.name,
-            "joints_deg": [float(f"{angle:.12g}") + 0.0 for angle in np.rad2deg(q)],
-            "payload_kg": carried.mass,
-        }
-        if over is None:
-            from runtime.dynamics.compensation import load_compensation
-
-            extra = None if compensation is None else load_compensation(compensation, spec)
-            found: dict[str, Any] = {**head, "axes": plain(at_posture(spec, q, carried, extra))}
-            if as_json:
-                typer.echo(json.dumps(found))
-            else:
-                _print(found)
-            return
-        plane, mapped = _plane(over, spec), _axis(axis, spec)
-        if out is not None:
-            from robolang.core.storage import check_writable
-
-            check_writable(out)
-        drawn = over_plane(spec, mapped, plane, q, carried)
-        found = {
-            **head,
-            "axis": mapped + 1,
-            "map": [joint + 1 for joint in plane],
-            **extremes(drawn),
-            "file": None if out is None else str(out),
-        }
-        if out is not None:
-            _draw(out, spec, drawn, carried.mass)
-        if as_json:
-            typer.echo(json.dumps(found))
+        if chart.over is None:
+            found = _at_posture(spec, q, carried, options.compensation)
+        else:
+            found = _over_plane(spec, q, carried, chart)
+        if output.as_json:
+            echo(json.dumps(found))
+        elif chart.over is None:
+            _print(found)
         else:
             _print_extremes(found)
+
+
+def _head(spec: "RobotSpec", q: "Array", carried: "Payload") -> dict[str, Any]:
+    import numpy as np
+
+    return {
+        "robot": spec.name,
+        "joints_deg": [float(f"{angle:.12g}") + 0.0 for angle in np.rad2deg(q)],
+        "payload_kg": carried.mass,
+    }
+
+
+def _at_posture(spec: "RobotSpec", q: "Array", carried: "Payload", compensation: Path | None) -> dict[str, Any]:
+    from robolang.experiments.inertia import at_posture, plain
+    from runtime.dynamics.compensation import load_compensation
+
+    extra = None if compensation is None else load_compensation(compensation, spec)
+    return {**_head(spec, q, carried), "axes": plain(at_posture(spec, q, carried, extra))}
+
+
+def _over_plane(spec: "RobotSpec", q: "Array", carried: "Payload", chart: _MapOptions) -> dict[str, Any]:
+    """Return the extremes of a map over two joints, and draw it when ``--out`` names a file."""
+    from robolang.core.storage import check_writable
+    from robolang.experiments.inertia import extremes, over_plane
+
+    plane, mapped = _plane(chart.over or "", spec), _axis(chart.axis, spec)
+    if chart.out is not None:
+        check_writable(chart.out)
+    drawn = over_plane(spec, mapped, plane, q, carried)
+    if chart.out is not None:
+        _draw(chart.out, spec, drawn, carried.mass)
+    return {
+        **_head(spec, q, carried),
+        "axis": mapped + 1,
+        "map": [joint + 1 for joint in plane],
+        **extremes(drawn),
+        "file": None if chart.out is None else str(chart.out),
+    }
 
 
 # --- options ---------------------------------------------------------------------------------------------------------
 
 
-def _check_use(over: str | None, axis: int | None, out: Path | None) -> None:
+def _check_use(chart: _MapOptions) -> None:
+    """Refuse options of a map without one, and a drawing that is no .svg file."""
+    over, axis, out = chart.over, chart.axis, chart.out
     for option, value in (("--axis", axis), ("--out", out)):
         if over is None and value is not None:
-            raise OptionValueError(option, "is of a map; give --map too")
+            raise OptionValueError(option, "needs --map")
     if out is not None and out.suffix != ".svg":
         raise OptionValueError("--out", f"'{out}' must end in .svg")
 
@@ -177,19 +198,19 @@ def _print_extremes(found: dict[str, Any]) -> None:
 
     first, second = found["map"]
     over = f"over J{first} and J{second}{_with(found['payload_kg'])}"
-    typer.echo(safe(f"{found['robot']}: inertia of J{found['axis']} at the motor {over}"))
+    echo(safe(f"{found['robot']}: inertia of J{found['axis']} at the motor {over}"))
     low, high = (found[name]["motor_inertia"] for name in ("smallest", "largest"))
     if not high - low > 1e-9 * high:
-        typer.echo(f"  {low / KG_CM2:.4g} kg cm2 everywhere: these two joints do not change it")
+        echo(f"  {low / KG_CM2:.4g} kg cm2 everywhere: these two joints do not change it")
     for name in ("smallest", "largest") if high - low > 1e-9 * high else ():
         at = found[name]
         x, y = at["joints_deg"]
-        typer.echo(
+        echo(
             f"  {name:<9} {at['motor_inertia'] / KG_CM2:.4g} kg cm2 (link D {at['link_inertia']:.4g} kg m2) "
             f"at J{first} {x:.1f}, J{second} {y:.1f} deg"
         )
     if found["file"] is not None:
-        typer.echo(safe(f"  drawn in {found['file']}"))
+        echo(safe(f"  drawn in {found['file']}"))
 
 
 def _with(mass: float) -> str:

@@ -22,8 +22,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from robolang.cli.command import command
 from robolang.cli.errors import reported, say_warnings
-from robolang.cli.values import OptionValueError, numbers
+from robolang.cli.options import JsonOptions, Option, RobotOptions
+from robolang.cli.output import echo
+from robolang.cli.usage import OptionValueError
+from robolang.cli.values import numbers
 
 if TYPE_CHECKING:
     from runtime.core.frames import Array
@@ -37,37 +41,44 @@ POSE_UNITS = ("mm", "mm", "mm", "deg", "deg", "deg")
 MOST_TURNS = 1000
 """As many turns are listed of a pose, at most."""
 
-RobotOption = Annotated[str, typer.Option("--robot", help="Built-in robot, or a .toml, .urdf or .xml file.")]
-ToolOption = Annotated[
-    str | None, typer.Option("--tool", metavar="X,Y,Z,RX,RY,RZ", help="Tool in the flange frame, mm and deg.")
-]
-JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object in full precision.")]
+
+class _ToolOptions(RobotOptions):
+    """Which robot, with which tool."""
+
+    tool: Annotated[
+        str | None,
+        Option("--tool", metavar="X,Y,Z,RX,RY,RZ", help="Tool in the flange frame, mm and deg; default: the flange."),
+    ] = None
+
+
+class _JointsOptions(_ToolOptions):
+    joints: Annotated[str, Option("--joints", metavar="J1,J2,...", help="Joint angles, deg.")]
+
+
+class _PoseOptions(_ToolOptions):
+    pose: Annotated[str, Option("--pose", metavar="X,Y,Z,RX,RY,RZ", help="Pose of the tool, mm and deg.")]
 
 
 @app.command()
-def fk(
-    robot: RobotOption,
-    joints: Annotated[str, typer.Option("--joints", metavar="J1,J2,...", help="Joint angles, deg.")],
-    tool: ToolOption = None,
-    as_json: JsonOption = False,
-) -> None:
+@command
+def fk(options: _JointsOptions, output: JsonOptions) -> None:
     """Print the pose of the tool for given joint angles."""
     with reported():
-        _fk(robot, joints, tool, as_json)
+        _fk(options, output.as_json)
 
 
-def _fk(robot: str, joints: str, tool: str | None, as_json: bool) -> None:
+def _fk(options: _JointsOptions, as_json: bool) -> None:
     import numpy as np
 
     from runtime.core.frames import xyzrpy_from_pose
     from runtime.core.linear import matmul
 
-    kinematics = _kinematics(robot)
-    q_deg = numbers(joints, option="--joints", names=_joint_names(kinematics.n))
-    X_base_tool = matmul(kinematics.forward(np.deg2rad(q_deg)), _pose(tool, "--tool"))
+    kinematics = _kinematics(options.robot)
+    q_deg = numbers(options.joints, option="--joints", names=_joint_names(kinematics.n))
+    X_base_tool = matmul(kinematics.forward(np.deg2rad(q_deg)), _pose(options.tool, "--tool"))
     pose_mm_deg = _plain(xyzrpy_from_pose(X_base_tool) / _pose_scale())
     if as_json:
-        typer.echo(json.dumps({"pose_mm_deg": pose_mm_deg}))
+        echo(json.dumps({"pose_mm_deg": pose_mm_deg}))
         return
     headings = [f"{name}\n{unit}" for name, unit in zip(POSE, POSE_UNITS, strict=True)]
     _print_table(
@@ -76,29 +87,25 @@ def _fk(robot: str, joints: str, tool: str | None, as_json: bool) -> None:
 
 
 @app.command()
-def ik(
-    robot: RobotOption,
-    pose: Annotated[str, typer.Option("--pose", metavar="X,Y,Z,RX,RY,RZ", help="Pose of the tool, mm and deg.")],
-    tool: ToolOption = None,
-    as_json: JsonOption = False,
-) -> None:
+@command
+def ik(options: _PoseOptions, output: JsonOptions) -> None:
     """Print every set of joint angles that puts the tool at a pose, the one farthest from the limits first."""
     with reported():
-        _ik(robot, pose, tool, as_json)
+        _ik(options, output.as_json)
 
 
-def _ik(robot: str, pose: str, tool: str | None, as_json: bool) -> None:
+def _ik(options: _PoseOptions, as_json: bool) -> None:
     from runtime.core.frames import inverse
     from runtime.core.linear import matmul
 
-    kinematics = _kinematics(robot)
-    X_base_flange = matmul(_pose(pose, "--pose"), inverse(_pose(tool, "--tool")))
+    kinematics = _kinematics(options.robot)
+    X_base_flange = matmul(_pose(options.pose, "--pose"), inverse(_pose(options.tool, "--tool")))
     solutions, left = _solutions_deg(kinematics, X_base_flange)
     if as_json:
-        typer.echo(json.dumps({"solutions": solutions, "complete": kinematics.closed_form, "not_listed": left}))
+        echo(json.dumps({"solutions": solutions, "complete": kinematics.closed_form, "not_listed": left}))
     if not solutions:
         _say_out_of_reach(kinematics)
-        raise typer.Exit(1)
+        raise SystemExit(1)
     if not as_json:
         _print_table(
             f"Joint angles, {kinematics.spec.title}",
@@ -205,7 +212,7 @@ def _say_out_of_reach(kinematics: "Kinematics") -> None:
 
     code, robot = lookup("RBL410"), kinematics.spec.title
     meaning = code.meaning if kinematics.closed_form else "The numeric search met the pose from none of its starts."
-    typer.echo(f"error {code.code} {code.name} --pose: {meaning} ({robot})\n  help: {code.remedy}", err=True)
+    echo(f"error {code.code} {code.name} --pose: {meaning} ({robot})\n  help: {code.remedy}", err=True)
 
 
 def _print_table(title: str, headings: list[str], rows: list[list[str]], caption: str | None = None) -> None:

@@ -19,13 +19,14 @@ used, or one for another robot; 3 the real arm stopped with an alarm.
 import json
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from robolang.cli import lines
 from robolang.cli.errors import DIAGNOSTICS, MOTION, reader_may_leave, reported, say, say_warnings
-from robolang.cli.values import OptionValueError
+from robolang.cli.options import Argument, Group, Option, PlotOptions
+from robolang.cli.output import echo
+from robolang.cli.usage import OptionValueError
+from robolang.cli.values import check_plot
 from runtime.core.program_line import named
 from runtime.core.units import badness
 
@@ -38,53 +39,61 @@ if TYPE_CHECKING:
     from runtime.pulses.replay import MoveReplay
 
 
-def replay_pulses(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of exported pulse tables.")],
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    plot: Annotated[
-        Path | None, typer.Option("--plot", help="Write frequencies and path error as .svg or .html.")
-    ] = None,
+_Folder = Annotated[Path, Argument("DIR", "Folder of exported pulse tables.")]
+
+
+class _ReplayOptions(Group):
+    """What the tables are compared with, and whether the arm is driven with them."""
+
+    PANEL: ClassVar[str] = "Replay"
     max_error: Annotated[
-        float | None, typer.Option("--max-error", metavar="MM", help="Fail when the tables are further off a line.")
-    ] = None,
-    physics: Annotated[bool, typer.Option("--physics", help="Drive the arm of --cell in MuJoCo too.")] = False,
-    cell: Annotated[str | None, typer.Option("--cell", help="Cell file (.toml) for --physics.")] = None,
-) -> None:
+        float | None,
+        Option("--max-error", metavar="MM", help="Exit code 1 if the path error of a move is larger, mm."),
+    ] = None
+    physics: Annotated[bool, Option("--physics", help="Drive the arm of --cell in MuJoCo too.")] = False
+    cell: Annotated[str | None, Option("--cell", metavar="FILE", help="Cell file (.toml) for --physics.")] = None
+
+
+def replay_pulses(folder: _Folder, options: _ReplayOptions, output: PlotOptions) -> None:
     """Play exported pulse tables: frequencies, path error, and the real arm."""
-    if plot is not None and plot.suffix not in (".svg", ".html"):
-        raise OptionValueError("--plot", f"'{plot}' must end in .svg or .html")
-    if max_error is not None and not 0.0 <= max_error < math.inf:  # NaN is refused too
-        raise OptionValueError("--max-error", f"{max_error:g} is not a distance in mm")
-    if physics and cell is None:
-        raise OptionValueError("--physics", "it needs the cell of the arm, --cell FILE.toml")
-    if cell is not None and not physics:
-        raise OptionValueError("--cell", "it has a place beside --physics only")
+    _check_use(options)
+    check_plot(output.plot)
     with reported():
         from runtime.pulses.folder import read_export
         from runtime.pulses.replay import replay
 
         export = read_export(folder)
-        if plot is not None:
+        if output.plot is not None:
             from robolang.core.storage import check_writable
 
-            check_writable(plot)
-        drive = None if cell is None else _drive(export, cell)
+            check_writable(output.plot)
+        drive = None if options.cell is None else _drive(export, options.cell)
         replays = replay(export)
-        found = _figures(folder, export, replays, drive)
-        if plot is not None:
+        if output.plot is not None:
             from robolang.pulse_tables.plots import write_plot
 
-            write_plot(plot, export, replays)
+            write_plot(output.plot, export, replays)
+        found = _figures(folder, export, replays, drive)
         with reader_may_leave():
-            if as_json:
-                typer.echo(json.dumps(found))
+            if output.as_json:
+                echo(json.dumps(found))
             else:
                 _print(found)
-        too_far = max_error is not None and _is_too_far(replays, max_error)
+        too_far = options.max_error is not None and _is_too_far(replays, options.max_error)
     if drive is not None and drive.alarms:
-        raise typer.Exit(MOTION)
+        raise SystemExit(MOTION)
     if too_far:
-        raise typer.Exit(DIAGNOSTICS)
+        raise SystemExit(DIAGNOSTICS)
+
+
+def _check_use(options: _ReplayOptions) -> None:
+    """Refuse a distance that is none, and physics without a cell or a cell without physics."""
+    if options.max_error is not None and not 0.0 <= options.max_error < math.inf:  # NaN is refused too
+        raise OptionValueError("--max-error", f"{options.max_error:g} is not a distance in mm")
+    if options.physics and options.cell is None:
+        raise OptionValueError("--physics", "it needs the cell of the arm, --cell FILE.toml")
+    if options.cell is not None and not options.physics:
+        raise OptionValueError("--cell", "it needs --physics")
 
 
 def _drive(export: "Export", cell: str) -> "Drive":
@@ -94,7 +103,7 @@ def _drive(export: "Export", cell: str) -> "Drive":
     spec, settings = load_cell_and_settings(None, cell, None, None, {})
     say_warnings(spec.robot.warnings)
     start_angles(export, spec)  # before anything is said to move
-    typer.echo(f"driving {spec.robot.name}: {export.seconds:.1f} s of motion", err=True)
+    echo(f"driving {spec.robot.name}: {export.seconds:.1f} s of motion", err=True)
     return drive(export, spec, settings.profile)
 
 

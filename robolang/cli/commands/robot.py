@@ -4,11 +4,14 @@ import math
 import os
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import typer
 
+from robolang.cli.command import command
 from robolang.cli.errors import reported, say_warnings
+from robolang.cli.options import Argument, Group, Option
+from robolang.cli.output import echo
 from robolang.core.diagnostics import safe
 from runtime.core.faults import Fault
 
@@ -22,6 +25,7 @@ app = typer.Typer(no_args_is_help=True, help="The robot library.")
 
 
 @app.command("list")
+@command
 def list_robots() -> None:
     """List the built-in robots."""
     from runtime.robot.files.loader import load_builtin
@@ -31,11 +35,30 @@ def list_robots() -> None:
         names = library()
         for name in names:
             spec = load_builtin(name)
-            typer.echo(f"{name.ljust(max(map(len, names)))}  {spec.title}, {spec.n} axes, {spec.rated_payload:g} kg")
+            echo(f"{name.ljust(max(map(len, names)))}  {spec.title}, {spec.n} axes, {spec.rated_payload:g} kg")
+
+
+_Robot = Annotated[str, Argument("ROBOT", "Built-in robot, or a .toml, .urdf or .xml file.")]
+_Model = Annotated[Path, Argument("FILE", "URDF or MJCF file (.urdf, .xml).")]
+
+
+class _SidecarOptions(Group):
+    """What is written, and where."""
+
+    PANEL: ClassVar[str] = "Sidecar"
+    output: Annotated[
+        Path | None,
+        Option("--output", "-o", metavar="FILE", help="File to write; default: NAME.robot.toml beside FILE."),
+    ] = None
+    flange: Annotated[
+        str | None, Option("--flange", metavar="NAME", help="Frame that tools are mounted on; default: the last one.")
+    ] = None
+    force: Annotated[bool, Option("--force", help="Replace an existing file.")] = False
 
 
 @app.command()
-def show(robot: Annotated[str, typer.Argument(help="Built-in robot, or a .toml, .urdf or .xml file.")]) -> None:
+@command
+def show(robot: _Robot) -> None:
     """Show a robot: limits, drives, gear springs, bodies, corrections of published data, sources."""
     with reported():
         from robolang.cli.console import Console
@@ -63,14 +86,8 @@ def show(robot: Annotated[str, typer.Argument(help="Built-in robot, or a .toml, 
 
 
 @app.command("import")
-def import_model(
-    file: Annotated[Path, typer.Argument(help="URDF or MJCF file (.urdf, .xml).")],
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Where to write; default: NAME.robot.toml beside FILE.")
-    ] = None,
-    flange: Annotated[str | None, typer.Option(help="Frame that tools are mounted on, if not the last.")] = None,
-    force: Annotated[bool, typer.Option("--force", help="Write over a file that is there.")] = False,
-) -> None:
+@command
+def import_model(file: _Model, options: _SidecarOptions) -> None:
     """Write the sidecar of a URDF or MJCF file, with what it lacks marked MISSING."""
     with reported():
         from robolang.core.storage import write_atomic
@@ -78,15 +95,15 @@ def import_model(
         from runtime.robot.files.sidecar import template
         from runtime.robot.files.sidecar_file import NO_OVERLAY, sidecar_path
 
-        target = output if output is not None else sidecar_path(file)
-        arm = read_model(file, replace(NO_OVERLAY, flange=flange))
+        target = options.output if options.output is not None else sidecar_path(file)
+        arm = read_model(file, replace(NO_OVERLAY, flange=options.flange))
         say_warnings(arm.warnings)
         text = template(arm).encode()
-        if not force and os.path.lexists(target):
+        if not options.force and os.path.lexists(target):
             raise Fault("RBL706", f"{target} is there already", "Give another name with -o, or --force to replace it.")
         write_atomic(target, lambda stream: stream.write(text))
         gaps = text.count(b"MISSING:")
-        typer.echo(safe(f"wrote {target}: {gaps} values to fill in, marked MISSING"))
+        echo(safe(f"wrote {target}: {gaps} values to fill in, marked MISSING"))
 
 
 def _show_model(robot: str) -> None:

@@ -1,25 +1,28 @@
 """``robolang rules``: everything that ``robolang check`` can find, as a table or as JSON."""
 
 import json
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from robolang.cli.errors import reader_may_leave, reported
+from robolang.cli.options import Group, Option
+from robolang.cli.output import echo
 
 if TYPE_CHECKING:
     from runtime.core.faults import Code
 
 
-def rules(
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON array, with the text of each page.")] = False,
-) -> None:
+class _RulesOptions(Group):
+    PANEL: ClassVar[str] = "Output"
+    as_json: Annotated[bool, Option("--json", help="Print one JSON array, with the text of each page.")] = False
+
+
+def rules(output: _RulesOptions) -> None:
     """List the rules of robolang check; robolang explain CODE prints one of them."""
     from robolang.lint.registry import codes
 
     with reported(), reader_may_leave():
-        if as_json:
-            typer.echo(json.dumps([_as_json(entry) for entry in codes()], indent=2))
+        if output.as_json:
+            echo(json.dumps([_as_json(entry) for entry in codes()], indent=2))
         else:
             _print(codes())
 

@@ -14,17 +14,18 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-import typer
-
-from robolang.cli import servo_options as o
+from robolang.cli.controller_settings import settings_of
 from robolang.cli.errors import DIAGNOSTICS, MOTION, reader_may_leave, reported, say
+from robolang.cli.options import CellOptions, Group, Option, PhysicsOptions, Program, RunControllerOptions
+from robolang.cli.output import echo
 from robolang.cli.refuse import refuse
-from robolang.cli.values import OptionValueError
+from robolang.cli.usage import OptionValueError
 
 if TYPE_CHECKING:
     from robolang.core.diagnostics import Diagnostic
+    from robolang.execution.plan_memory import PlanMemory
     from robolang.execution.session import RunResult, Session
     from robolang.project.project import Project
 
@@ -33,100 +34,107 @@ _MOST_SHOWN = 3
 """Warnings of one code that are printed for one statement; a loop may raise thousands. The report has all."""
 
 
+class _SimulationOptions(PhysicsOptions):
+    """Which arm moves, and how fast."""
+
+    realtime: Annotated[bool, Option("--realtime", help="Run no faster than real time.")] = False
+
+
+class _OutputOptions(Group):
+    """What a run prints and writes."""
+
+    PANEL: ClassVar[str] = "Output and exit code"
+    report: Annotated[Path | None, Option("--report", metavar="FILE", help="Write the report as JSON.")] = None
+    log: Annotated[
+        Path | None,
+        Option("--log", metavar="FILE", help="Write every signal: .npz (numpy) or .mcap (log viewers)."),
+    ] = None
+    strict: Annotated[bool, Option("--strict", help="Exit code 1 if the run has warnings.")] = False
+    quiet: Annotated[bool, Option("--quiet", help="Print errors only; with --strict warnings too.")] = False
+
+    @property
+    def warnings(self) -> bool:
+        """Whether warnings are printed."""
+        return self.strict or not self.quiet
+
+
 def run(
-    program: Annotated[str, typer.Argument(metavar="PROG", help="Program file (.rbl).")],
-    cell: Annotated[str | None, typer.Option(help="Cell file (.toml); default: the one beside the program.")] = None,
-    robot: Annotated[str | None, typer.Option(help="Built-in robot or robot file, in place of the cell's.")] = None,
-    profile: o.ProfileFile = None,
-    servo: o.Servo = None,
-    fixed_at: o.FixedAt = None,
-    coupling: o.Coupling = None,
-    feedforward: o.Feedforward = None,
-    load_mode: o.LoadMode = None,
-    servo_period: o.ServoPeriod = None,
-    compensation: o.Compensation = None,
-    settings: o.Set = None,
-    no_physics: Annotated[bool, typer.Option("--no-physics", help="Ideal arm instead of MuJoCo.")] = False,
-    realtime: Annotated[bool, typer.Option("--realtime", help="Keep wall time.")] = False,
-    report: Annotated[Path | None, typer.Option(help="Write the report as JSON.")] = None,
-    log: Annotated[Path | None, typer.Option(help="Write every signal: .npz (numpy) or .mcap (log viewers).")] = None,
-    strict: Annotated[bool, typer.Option("--strict", help="Exit with 1 when the run has warnings.")] = False,
-    quiet: Annotated[
-        bool, typer.Option("--quiet", help="Print nothing but errors, and warnings only with --strict.")
-    ] = False,
+    program: Program,
+    files: CellOptions,
+    controller: RunControllerOptions,
+    simulation: _SimulationOptions,
+    output: _OutputOptions,
 ) -> None:
     """Run a program on the controller and the physics."""
-    options = o.controller_options(
-        servo=servo,
-        fixed_at=fixed_at,
-        coupling=coupling,
-        feedforward=feedforward,
-        load_mode=load_mode,
-        servo_period=servo_period,
-        settings=settings,
-        compensation=compensation,
-    )
+    settings = settings_of(controller)
     with reported():
-        _check_outputs(program, report, log)
+        _check_outputs(program, output)
         from robolang.project.project import load_project
 
         with _handled(_left_before_motion):
-            project = load_project(program, cell, robot, profile=profile, options=options)
+            project = load_project(program, files.cell, files.robot, profile=controller.profile, options=settings)
             from robolang.execution.plan_memory import PlanMemory
 
             plans = PlanMemory(project)
-            warned = refuse(project, warnings=strict or not quiet, plans=plans)
-        from robolang.cli.run_progress import shown
-        from robolang.execution.session import Session
-
-        with shown(quiet) as progress:
-            session = Session(project, physics=not no_physics, realtime=realtime, observer=progress, plans=plans)
-            with _signals(session) as stopped:  # until the files are written: a signal must not cut them off
-                result = session.run()
-                code = _write(result, report, log)
-        if not quiet:
+            warned = refuse(project, warnings=output.warnings, plans=plans)
+        result, code = _run(project, plans, simulation, output)
+        if not output.quiet:
             from robolang.cli.run_table import print_result
 
             with reader_may_leave():
                 print_result(result.report)
-        _print_alarms(project, result, warnings=strict or not quiet)
-    if stopped and not code:
-        code = 128 + stopped[0]
-    if code or not result.ok:
-        raise typer.Exit(code or MOTION)
-    if strict and (warned or result.warnings):
-        raise typer.Exit(DIAGNOSTICS)
+        _print_alarms(project, result, warnings=output.warnings)
+    code = code or (0 if result.ok else MOTION)
+    if not code and output.strict and (warned or result.warnings):
+        code = DIAGNOSTICS
+    if code:
+        raise SystemExit(code)
 
 
-def _check_outputs(program: str, report: Path | None, log: Path | None) -> None:
+def _run(
+    project: "Project", plans: "PlanMemory", simulation: _SimulationOptions, output: _OutputOptions
+) -> "tuple[RunResult, int]":
+    """Run the program and write its files; return the result, and the exit code of a file or a signal, or 0."""
+    from robolang.cli.run_progress import shown
+    from robolang.execution.session import Session
+
+    with shown(output.quiet) as progress:
+        physics, realtime = not simulation.no_physics, simulation.realtime
+        session = Session(project, physics=physics, realtime=realtime, observer=progress, plans=plans)
+        with _signals(session) as stopped:  # until the files are written: a signal must not cut them off
+            result = session.run()
+            code = _write(result, output)
+    return result, code or (128 + stopped[0] if stopped else 0)
+
+
+def _check_outputs(program: str, output: _OutputOptions) -> None:
     """Refuse outputs of a wrong kind or that would overwrite an input or each other, and try to write them."""
+    report, log = output.report, output.log
     if log is not None and log.suffix not in (".npz", ".mcap"):
         raise OptionValueError("--log", f"'{log}' must end in .npz or .mcap")
     if report is not None and report.suffix in (".rbl", ".toml"):
         raise OptionValueError("--report", f"'{report}' would be a program or a cell file; name a .json file")
+    from robolang.core.storage import check_writable
+
     taken = {os.path.realpath(program)}
-    for option, path in (("--report", report), ("--log", log)):
-        if path is None:
-            continue
+    files = [(option, path) for option, path in (("--report", report), ("--log", log)) if path is not None]
+    for option, path in files:
         if os.path.realpath(path) in taken:
             raise OptionValueError(option, f"'{path}' is the program or another output of this run")
         taken.add(os.path.realpath(path))
-    from robolang.core.storage import check_writable
-
-    for path in (report, log):
-        if path is not None:
-            check_writable(path)
+    for _, path in files:
+        check_writable(path)
 
 
-def _write(result: "RunResult", report: Path | None, log: Path | None) -> int:
-    """Write the files that were asked for; what cannot be written is said and does not keep the other from it."""
+def _write(result: "RunResult", output: _OutputOptions) -> int:
+    """Write report and log, each of them even if the other cannot be written; return the exit code."""
     from robolang.core.storage import write_json
     from robolang.execution.runlog import write_log
     from runtime.core.faults import Fault
 
     writers: list[tuple[Path | None, Callable[[Path], None]]] = [
-        (report, lambda path: write_json(path, result.report)),
-        (log, lambda path: write_log(path, result.log)),
+        (output.report, lambda path: write_json(path, result.report)),
+        (output.log, lambda path: write_log(path, result.log)),
     ]
     code = 0
     for path, write in writers:
@@ -156,7 +164,7 @@ def _print_alarms(project: "Project", result: "RunResult", *, warnings: bool) ->
 def _print_at(project: "Project", item: "Diagnostic", when: str) -> None:
     from robolang.core.diagnostics import render
 
-    typer.echo(render(replace(item, message=f"{when}: {item.message}"), project.source), err=True)
+    echo(render(replace(item, message=f"{when}: {item.message}"), project.source), err=True)
 
 
 @contextmanager
@@ -183,7 +191,7 @@ def _signals(session: "Session") -> Iterator[list[int]]:
 def _left_before_motion(number: int, _frame: object) -> None:
     """End the command while the program is read and its motion checked: there is nothing to stop and no log yet."""
     name = signal.Signals(number).name
-    typer.echo(f"stopped by {name} before the program began: nothing has moved, no file was written", err=True)
+    echo(f"stopped by {name} before the program began: nothing has moved, no file was written", err=True)
     sys.exit(128 + number)
 
 

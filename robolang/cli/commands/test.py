@@ -8,11 +8,11 @@ cannot be written. ``--junit FILE`` writes the report, of one test suite for eac
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from robolang.cli.errors import DIAGNOSTICS, USAGE, internal, reported, say_all
+from robolang.cli.options import Argument, Group, Option
+from robolang.cli.output import echo
 
 if TYPE_CHECKING:
     from robolang.core.diagnostics import Diagnostic
@@ -43,33 +43,40 @@ class _Outcome:
         return f"{self.expected.source.path}:{line}:{column}: {verdict.name}: {verdict.said}"
 
 
-def test(
-    paths: Annotated[
-        list[str] | None,
-        typer.Argument(metavar="[PATHS]", help="Programs, test files, or folders of them; default: this folder."),
-    ] = None,
-    update: Annotated[bool, typer.Option("--update", help="Write the golden logs anew.")] = False,
-    junit: Annotated[Path | None, typer.Option("--junit", metavar="FILE", help="Write a JUnit report.")] = None,
-    allow_empty: Annotated[bool, typer.Option("--allow-empty", help="A path without a test file is no error.")] = False,
-) -> None:
+_Paths = Annotated[
+    list[str] | None, Argument("[PATHS]", "Programs, test files, or folders of them; default: this folder.")
+]
+
+
+class _TestOptions(Group):
+    """What is written, and what an empty folder means."""
+
+    PANEL: ClassVar[str] = "Tests"
+    update: Annotated[bool, Option("--update", help="Write the golden logs anew.")] = False
+    junit: Annotated[Path | None, Option("--junit", metavar="FILE", help="Write a JUnit report to this file.")] = None
+    allow_empty: Annotated[bool, Option("--allow-empty", help="A folder without test files is no error.")] = False
+
+
+def test(paths: _Paths, options: _TestOptions) -> None:
     """Run programs and compare with what their test files expect."""
     with reported():
         from robolang.core.storage import check_writable, write_atomic
 
+        junit = options.junit
         if junit is not None:
             check_writable(junit)
         outcomes, worst = [], 0
-        for found in _files(paths or ["."], allow_empty):
-            outcome = _run(found, update) if isinstance(found, Path) else found
+        for found in _files(paths or ["."], options.allow_empty):
+            outcome = _run(found, options.update) if isinstance(found, Path) else found
             worst = max(worst, _tell(outcome))
             outcomes.append(outcome)
         if junit is not None:
             text = _as_junit(outcomes)
             write_atomic(junit, lambda stream: stream.write(text.encode("utf-8")))
         good = sum(outcome.ok for outcome in outcomes)
-        typer.echo(f"{good} of {len(outcomes)} programs as expected" if outcomes else "no test files (NAME.test.toml)")
+        echo(f"{good} of {len(outcomes)} programs as expected" if outcomes else "no test files (NAME.test.toml)")
     if worst:
-        raise typer.Exit(worst)
+        raise SystemExit(worst)
 
 
 def _files(paths: list[str], allow_empty: bool) -> Iterator[Path | _Outcome]:
@@ -154,12 +161,12 @@ def _tell(outcome: _Outcome) -> int:
     from robolang.core.diagnostics import safe
 
     code = 0 if outcome.ok else DIAGNOSTICS
-    typer.echo(safe(f"{'ok  ' if outcome.ok else 'FAIL'} {outcome.name}, {outcome.seconds:.3f} s"))
+    echo(safe(f"{'ok  ' if outcome.ok else 'FAIL'} {outcome.name}, {outcome.seconds:.3f} s"))
     for verdict in outcome.verdicts:
         if verdict.fault is not None:
             code = max(code, USAGE, say_all(verdict.fault))
         elif not verdict.ok or verdict.noted:
-            typer.echo(safe(f"     {outcome.line(verdict)}"))
+            echo(safe(f"     {outcome.line(verdict)}"))
     return code
 
 

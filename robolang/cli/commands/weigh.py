@@ -14,13 +14,13 @@ Exit codes: 0; 2 a value, a cell or a robot that cannot be used; 3 the exercise 
 import json
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, cast
-
-import typer
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, cast
 
 from robolang.cli import values
 from robolang.cli.errors import reported, say_warnings
-from robolang.cli.values import OptionValueError
+from robolang.cli.options import CellOptions, JsonOptions, Option, OptionalProgram, PlantOptions
+from robolang.cli.output import echo
+from robolang.cli.usage import OptionValueError
 from runtime.core.rounding import beside
 
 if TYPE_CHECKING:
@@ -30,58 +30,74 @@ if TYPE_CHECKING:
 MOST_AMPLITUDE = 90.0
 
 
-def weigh(
-    program: Annotated[str | None, typer.Argument(metavar="[PROG]", help="Program, for the cell beside it.")] = None,
-    cell: Annotated[str | None, typer.Option(help="Cell file (.toml).")] = None,
-    robot: Annotated[str | None, typer.Option(help="Built-in robot or robot file, in place of the cell's.")] = None,
+class _PayloadOptions(PlantOptions):
+    """What the arm carries, and how it is swung."""
+
+    PANEL: ClassVar[str] = "Experiment"
     payload: Annotated[
-        str | None, typer.Option("--payload", metavar="M,X,Y,Z", help="True body beside the hand: kg, mm.")
-    ] = None,
-    plant: Annotated[str, typer.Option("--plant", help="'mujoco' or 'rigid' ideal arm.")] = "mujoco",
+        str | None,
+        Option("--payload", metavar="M,X,Y,Z", help="Body carried beside the hand: mass, kg, and centre, mm."),
+    ] = None
     amplitude: Annotated[
-        float | None, typer.Option("--amplitude", metavar="DEG", help="Swing of the wrist axes; default: what fits.")
-    ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-) -> None:
+        float | None,
+        Option(
+            "--amplitude",
+            metavar="DEG",
+            help="Swing of the wrist axes, deg; default: the largest that fits.",
+        ),
+    ] = None
+
+
+def weigh(program: OptionalProgram, files: CellOptions, options: _PayloadOptions, output: JsonOptions) -> None:
     """Weigh what the arm carries: mass, centre of gravity and the LOAD to write."""
-    if plant not in ("mujoco", "rigid"):
-        raise OptionValueError("--plant", f"'{plant}' is not one of mujoco, rigid")
+    amplitude = options.amplitude
     if amplitude is not None and not 0.0 < amplitude <= MOST_AMPLITUDE:  # NaN is refused too
         shown, most = beside(amplitude, MOST_AMPLITUDE)
         raise OptionValueError("--amplitude", f"{shown} is not above 0 and at most {most} deg")
     if program is not None and not Path(program).exists():
         raise OptionValueError("PROG", f"there is no file '{program}'")
     with reported():
-        from robolang.experiments.weigh import WeighRequest, carried, plan_exercise
-        from robolang.experiments.weigh import as_json as figures
-        from robolang.experiments.weigh import weigh as run_weigh
-        from robolang.project.project import load_cell_and_settings
-        from runtime.core.units import DEG
+        _weigh(program, files, options, output)
 
-        where = None if program is None else Path(program)
-        found_cell, in_force = load_cell_and_settings(where, cell, robot, None, {})
-        say_warnings(found_cell.robot.warnings)
-        request = WeighRequest(
-            cell=found_cell,
-            added=None if payload is None else values.payload(payload, "--payload", found_cell.robot),
-            profile=in_force.profile,
-            plant=cast("PlantName", plant),
-            amplitude=None if amplitude is None else amplitude * DEG,
-        )
-        _note(carried(request).mass, found_cell)
-        _say_what_comes(request, plan_exercise(request).amplitudes)
-        found = figures(request, run_weigh(request))
-        if as_json:
-            typer.echo(json.dumps(found))
-        else:
-            _print(found)
+
+def weigh_subject(subject: str, plant: str, output: JsonOptions) -> None:
+    """Weigh what the arm carries in the cell of a program, or on a robot: ``robolang identify --payload``."""
+    is_program = subject.lower().endswith(".rbl")
+    files = CellOptions() if is_program else CellOptions(robot=subject)
+    weigh(subject if is_program else None, files, _PayloadOptions(plant=plant), output)
+
+
+def _weigh(program: str | None, files: CellOptions, options: _PayloadOptions, output: JsonOptions) -> None:
+    from robolang.experiments.weigh import WeighRequest, carried, plan_exercise
+    from robolang.experiments.weigh import as_json as figures
+    from robolang.experiments.weigh import weigh as run_weigh
+    from robolang.project.project import load_cell_and_settings
+    from runtime.core.units import DEG
+
+    where = None if program is None else Path(program)
+    cell, in_force = load_cell_and_settings(where, files.cell, files.robot, None, {})
+    say_warnings(cell.robot.warnings)
+    request = WeighRequest(
+        cell=cell,
+        added=None if options.payload is None else values.payload(options.payload, "--payload", cell.robot),
+        profile=in_force.profile,
+        plant=cast("PlantName", options.plant),
+        amplitude=None if options.amplitude is None else options.amplitude * DEG,
+    )
+    _note(carried(request).mass, cell)
+    _say_what_comes(request, plan_exercise(request).amplitudes)
+    found = figures(request, run_weigh(request))
+    if output.as_json:
+        echo(json.dumps(found))
+    else:
+        _print(found)
 
 
 def _note(mass: float, cell: "CellSpec") -> None:
     rated = cell.robot.rated_payload
     if not mass <= rated:
         shown, most = beside(mass, rated)
-        typer.echo(
+        echo(
             f"note: hand and --payload weigh {shown} kg, over the rated {most} kg of {cell.robot.name}; no "
             "program can declare that",
             err=True,
@@ -93,30 +109,30 @@ def _say_what_comes(request: "WeighRequest", amplitudes: Any) -> None:
     from runtime.core.units import DEG
 
     swings = ", ".join(f"J{axis + 1} {by / DEG:.3g}" for axis, by in enumerate(amplitudes) if by > 0.0)
-    typer.echo(f"weighing: {SECONDS:g} s of motion about home, swings of {swings} deg", err=True)
+    echo(f"weighing: {SECONDS:g} s of motion about home, swings of {swings} deg", err=True)
 
 
 def _print(found: dict[str, Any]) -> None:
     from robolang.core.diagnostics import safe
 
     estimated, true = found["estimated"], found["true"]
-    typer.echo(safe(f"{found['robot']}, {found['plant']} arm, {found['seconds']:.1f} s"))
-    typer.echo(f"  {'':<20} {'estimated':>9}    {'+-':>6} {'true':>10}")
+    echo(safe(f"{found['robot']}, {found['plant']} arm, {found['seconds']:.1f} s"))
+    echo(f"  {'':<20} {'estimated':>9}    {'+-':>6} {'true':>10}")
     _row("mass, kg", estimated["mass_kg"], estimated["mass_sd_kg"], true["mass_kg"], 3)
     if estimated["cog_mm"] is None:
-        typer.echo("  centre of gravity    unknown: the mass does not differ from nothing")
+        echo("  centre of gravity    unknown: the mass does not differ from nothing")
     else:
         for k, name in enumerate("xyz"):
             _row(f"cog {name}, mm", estimated["cog_mm"][k], estimated["cog_sd_mm"][k], true["cog_mm"][k], 2)
-    typer.echo(f"\n{found['load']}")
+    echo(f"\n{found['load']}")
     if found["load_note"]:
-        typer.echo(f"note: {found['load_note']}; the LOAD above is the nearest that a program may declare", err=True)
+        echo(f"note: {found['load_note']}; the LOAD above is the nearest that a program may declare", err=True)
 
 
 def _row(label: str, value: float, sd: float, true: float, digits: int) -> None:
     # adding zero turns a rounded -0.0 into 0.0; an uncertainty is never shown as none
     least = math.pow(10.0, -digits)
-    typer.echo(
+    echo(
         f"  {label:<20} {round(value, digits) + 0.0:9.{digits}f}    {max(sd, least):6.{digits}f} "
         f"{round(true, digits) + 0.0:10.{digits}f}"
     )

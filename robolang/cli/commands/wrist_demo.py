@@ -2,21 +2,22 @@
 
 import json
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
 from robolang.cli.errors import reported, say_warnings
-from robolang.cli.values import OptionValueError
+from robolang.cli.options import Argument, JsonOptions, Option
+from robolang.cli.output import echo
+from robolang.cli.usage import OptionValueError
 from runtime.core.units import badness
 
 if TYPE_CHECKING:
     from robolang.execution.plot import Mark
     from robolang.experiments.wrist_figures import Figure, Run
+    from runtime.robot.model.spec import RobotSpec
 
     Shown = tuple[Figure, list[Run]]
 
@@ -27,54 +28,67 @@ _LEAD_S = 0.2
 _STYLE = "body{font-family:sans-serif;max-width:46rem;margin:2em auto;padding:0 1em}img{width:100%}figure{margin:2em 0}"
 
 
-def wrist_demo(
-    figures: Annotated[
-        list[str] | None, typer.Argument(metavar="[FIGURE...]", help="Figures of the document; default: all.")
-    ] = None,
+_Figures = Annotated[list[str] | None, Argument("[FIGURE...]", "Figures of the document; default: all.")]
+
+
+class _DemoOptions(JsonOptions):
+    """Which robot, and where the figures are drawn."""
+
+    robot: Annotated[str, Option("--robot", help="Built-in robot, or a path to a robot file.")] = "irb2400"
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Write wrist-figNN.svg and index.html there.")
-    ] = None,
-    robot: Annotated[str, typer.Option("--robot", help="Built-in robot, or a path to a robot file.")] = "irb2400",
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-) -> None:
+        Path | None, Option("--out", metavar="DIR", help="Write wrist-figNN.svg and index.html to this folder.")
+    ] = None
+
+
+def wrist_demo(figures: _Figures, options: _DemoOptions) -> None:
     """Straight moves through a change of the wrist, as in the figures of CN103429397A."""
+    out = options.out
     with reported():
-        from robolang.experiments.wrist_figures import FIGURES, run, unusable
+        from robolang.experiments.wrist_figures import FIGURES, unusable
         from robolang.project.project import load_any_robot
-        from runtime.core.faults import Fault
 
         chosen = _chosen(figures or [], FIGURES)
-        spec = load_any_robot(robot)
+        spec = load_any_robot(options.robot)
         say_warnings(spec.warnings)
         why = unusable(spec)
         if why:
             raise OptionValueError("--robot", why)
         if out is not None:
             _check_folder(out, chosen)
-        shown, since = [], time.monotonic()
-        for count, figure in enumerate(chosen, start=1):
-            if time.monotonic() - since > SILENT_S:
-                typer.echo(f"{count}/{len(chosen)} figure {figure.number}", err=True)
-            try:
-                shown.append((figure, [run(spec, trial) for trial in figure.trials]))
-            except Fault as fault:
-                raise Fault(fault.code, f"figure {figure.number}: {fault.message}", fault.hint) from None
+        shown = list(_computed(spec, chosen))
         if out is not None:
             _write(out, spec.name, shown)
-        if as_json:
-            found = [
-                {
-                    "figure": figure.number,
-                    "title": figure.title,
-                    "sentence": figure.sentence,
-                    "file": None if out is None else str(out / _file(figure)),
-                    "runs": [_plain(each) for each in runs],
-                }
-                for figure, runs in shown
-            ]
-            typer.echo(json.dumps({"robot": spec.name, "figures": found}, indent=2))
+        if options.as_json:
+            found = [_figure(figure, runs, out) for figure, runs in shown]
+            echo(json.dumps({"robot": spec.name, "figures": found}, indent=2))
         else:
             _print(spec.name, shown, out)
+
+
+def _computed(spec: "RobotSpec", figures: Sequence["Figure"]) -> Iterator["Shown"]:
+    """Yield each figure with its runs; ``Fault`` names the figure. Progress goes to stderr after ``SILENT_S``."""
+    from robolang.experiments.wrist_figures import run
+    from runtime.core.faults import Fault
+
+    since = time.monotonic()
+    for count, figure in enumerate(figures, start=1):
+        if time.monotonic() - since > SILENT_S:
+            echo(f"{count}/{len(figures)} figure {figure.number}", err=True)
+        try:
+            yield figure, [run(spec, trial) for trial in figure.trials]
+        except Fault as fault:
+            raise Fault(fault.code, f"figure {figure.number}: {fault.message}", fault.hint) from None
+
+
+def _figure(figure: "Figure", runs: Sequence["Run"], out: Path | None) -> dict[str, Any]:
+    """Return a figure in plain types, with the name of its plot where one was drawn."""
+    return {
+        "figure": figure.number,
+        "title": figure.title,
+        "sentence": figure.sentence,
+        "file": None if out is None else str(out / _file(figure)),
+        "runs": [_plain(each) for each in runs],
+    }
 
 
 def _chosen(words: Sequence[str], known: Sequence["Figure"]) -> list["Figure"]:
@@ -117,6 +131,17 @@ def _plain(run: "Run") -> dict[str, Any]:
 # --- the table -------------------------------------------------------------------------------------------------------
 
 
+_HEADINGS = (
+    "fig",
+    "of",
+    "condition,\nor what is\nheld",
+    "switch\ns, by",
+    "J4, J5, J6\nfastest*\ndeg/s",
+    "tool\nturn\ndeg",
+    "end\nerror\ndeg",
+)
+
+
 def _print(robot: str, shown: list["Shown"], out: Path | None) -> None:
     from rich import box
     from rich.table import Table
@@ -125,33 +150,14 @@ def _print(robot: str, shown: list["Shown"], out: Path | None) -> None:
     from robolang.core.diagnostics import safe
 
     console = Console()
-    headings = [
-        "fig",
-        "of",
-        "condition,\nor what is\nheld",
-        "switch\ns, by",
-        "J4, J5, J6\nfastest*\ndeg/s",
-        "tool\nturn\ndeg",
-        "end\nerror\ndeg",
-    ]
-    table = Table(
-        title=safe(f"Figures of CN103429397A on {robot}"), box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False
-    )
-    for k, heading in enumerate([*headings, *(["file"] if out else [])]):
+    title = safe(f"Figures of CN103429397A on {robot}")
+    table = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+    for k, heading in enumerate((*_HEADINGS, *(["file"] if out else []))):
         table.add_column(heading, justify="right" if k in (4, 5, 6) else "left", no_wrap=k != 2)
     for figure, runs in shown:
         for k, row in enumerate(map(_plain, runs)):
-            speeds = " ".join(f"{speed:5.1f}" for speed in row["speed_deg_s"][-3:])
-            cells = [
-                str(figure.number) if k == 0 else "",
-                row["move"],
-                row["condition"],
-                "-" if row["switch_s"] is None else f"{row['switch_s']:.2f} {_axis(row)}",
-                speeds,
-                f"{row['posture_deviation_deg']:.1f}",
-                _small(row["end_error_deg"]),
-            ]
-            table.add_row(*cells, *([_file(figure) if k == 0 else ""] if out else []))
+            number, file = (str(figure.number), _file(figure)) if k == 0 else ("", "")
+            table.add_row(number, *_cells(row), *([file] if out else []))
     console.print(table)
     console.print("* from the switch on; of the whole move where there is none", style="italic")
     _print_components(console, shown)
@@ -159,6 +165,18 @@ def _print(robot: str, shown: list["Shown"], out: Path | None) -> None:
     console.print(f"tool point at most {worst * 1e3:.0e} mm off its path at any control point")
     if out is not None:
         console.print(safe(f"all plots: {out / 'index.html'}"), soft_wrap=True)
+
+
+def _cells(row: dict[str, Any]) -> tuple[str, ...]:
+    """Return the cells of a run, after the number of its figure."""
+    return (
+        row["move"],
+        row["condition"],
+        "-" if row["switch_s"] is None else f"{row['switch_s']:.2f} {_axis(row)}",
+        " ".join(f"{speed:5.1f}" for speed in row["speed_deg_s"][-3:]),
+        f"{row['posture_deviation_deg']:.1f}",
+        _small(row["end_error_deg"]),
+    )
 
 
 def _print_components(console: Any, shown: list["Shown"]) -> None:
@@ -258,21 +276,28 @@ def _joints_svg(title: str, figure: "Figure", runs: list["Run"]) -> str:
 
 
 def _marks(figure: "Figure", runs: list["Run"]) -> list["Mark"]:
-    """Return the switches, and the ends of the range where a run has to do with them."""
+    """Return the switches, and the ends of the range where a run depends on them."""
     from robolang.execution.plot import Mark
     from robolang.experiments.wrist_figures import RANGE
     from runtime.core.units import DEG
 
-    marks: list[Mark] = []
-    at = [run.switch_s for run in runs]
-    for k, switch in enumerate(at):
-        if switch is not None and switch not in at[:k]:
-            name = f"{figure.variant} {switch:.2f} s" if k else f"{figure.switch} {switch:.2f} s"
-            first = all(switch <= other for other in at if other is not None)
-            marks.append(Mark(name=name, x=switch, side="left" if first and len(runs) > 1 else "right"))
+    marks = list(_switches(figure, [run.switch_s for run in runs]))
     if any(run.trial.options.range_condition or abs(run.q[:, 3:]).max() > RANGE for run in runs):
         marks += [Mark(name=f"{bound / DEG:g} deg", y=bound / DEG) for bound in (RANGE, -RANGE)]
     return marks
+
+
+def _switches(figure: "Figure", times: list[float | None]) -> Iterator["Mark"]:
+    """Yield a mark for each time of a switch, s; two runs that switch at the same time have one."""
+    from robolang.execution.plot import Mark
+
+    earliest = min((time for time in times if time is not None), default=None)
+    for k, switch in enumerate(times):
+        if switch is None or switch in times[:k]:
+            continue
+        name = f"{figure.variant if k else figure.switch} {switch:.2f} s"
+        # the name of the earliest stands on its left, so that two names close together do not overlap
+        yield Mark(name=name, x=switch, side="left" if switch == earliest and len(times) > 1 else "right")
 
 
 def _components_svg(title: str, figure: "Figure", run: "Run") -> str:

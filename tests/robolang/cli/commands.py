@@ -43,6 +43,12 @@ def places(text):
     return [(int(line), int(column), code) for line, column, code in found]
 
 
+def counted(stderr):
+    """How many programs ``check`` says that it has checked."""
+    (count,) = re.findall(r"^(\d+) programs? checked$", stderr, re.M)
+    return int(count)
+
+
 def shell(*words, cwd=None, env=None, timeout=HANG_S, **options):
     """Run ``python -m robolang`` as a process."""
     return subprocess.run(

@@ -5,7 +5,7 @@ import sys
 import pytest
 
 from tests.messages import fields, heads
-from tests.robolang.cli.commands import BUILTIN, ROOT, places, robolang
+from tests.robolang.cli.commands import BUILTIN, ROOT, counted, places, robolang
 from tests.steps import HANG_S
 
 HEAVY = ("numpy", "pinocchio", "mujoco", "ruckig", "mcap", "google.protobuf")
@@ -81,8 +81,27 @@ def test_without_a_path_it_is_the_working_folder(folder):
 
 def test_a_folder_without_programs_is_said(folder):
     (folder / "none").mkdir()
-    result = robolang("check", "none")
-    assert (result.stdout, result.stderr[-5:]) == ("", "none\n")
+    result = robolang("check", "none", code=2)
+    assert result.stdout == ""
+    assert "error RBL713" in result.stderr
+    assert "none" in result.stderr
+    assert counted(robolang("check", "none", "--allow-empty").stderr) == 0
+
+
+def test_the_programs_of_a_folder_are_counted(folder):
+    (folder / "some").mkdir()
+    (folder / "some" / "good.rbl").write_text("MOVE P1\n")
+    assert counted(robolang("check", "some").stderr) == 1
+    (folder / "some" / "inside.rbl").mkdir()  # a folder of that name is no program, but the files in it are
+    (folder / "some" / "inside.rbl" / "more.rbl").write_text("MOVE P1\n")
+    (folder / "some" / "binary.rbl").write_bytes(b"MOVE \xff\n")
+    result = robolang("check", "some", code=1)
+    assert "RBL104" in result.stderr
+    assert counted(result.stderr) == 2  # a file that cannot be read is not checked
+
+
+def test_files_that_are_named_are_not_counted():
+    assert robolang("check", "good.rbl").stderr == ""
 
 
 def test_points_are_those_that_a_run_would_use(folder):

@@ -16,7 +16,7 @@ from robolang.cli import check_job
 from robolang.cli.main import app
 from runtime.core.faults import Fault
 from tests.messages import fields, heads
-from tests.robolang.cli.commands import ROOT, places, robolang
+from tests.robolang.cli.commands import ROOT, counted, places, robolang
 from tests.steps import HANG_S
 
 BAD = "10MOVE P1, SPEED 1_000 ' noqa\n20 MOVE P2 SPEED 20\n30 MOVE P9\n"
@@ -43,13 +43,14 @@ def test_what_is_certain_is_corrected_in_the_file(folder):
         ("1", "RBL190", "unused-suppression"),
     ]
     assert result.stderr.startswith("bad.rbl: ")
+    assert counted(result.stderr) == 2
     assert (folder / "good.rbl").read_text() == "MOVE P1\n"
 
 
 def test_a_second_time_there_is_nothing_to_do(folder):
     robolang("check", "--fix", code=1)
     stamp = (folder / "bad.rbl").stat().st_mtime_ns, (folder / "bad.rbl").stat().st_ino
-    assert robolang("check", "--fix", code=1).stderr == ""
+    assert counted(robolang("check", "--fix", code=1).stderr) == 2
     assert ((folder / "bad.rbl").stat().st_mtime_ns, (folder / "bad.rbl").stat().st_ino) == stamp
 
 
@@ -81,7 +82,7 @@ def test_a_diff_changes_nothing(words, folder):
         "+10 MOVE P1, SPEED 1000",
         "+20 MOVE P2, SPEED 20",
     ]
-    assert result.stderr == ""
+    assert counted(result.stderr) == 2
 
 
 def test_a_diff_of_nothing_is_exit_code_0_whatever_is_found(folder):

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from robolang.cli.main import app
 from tests.campaign import some
 from tests.messages import fields, heads
-from tests.robolang.cli.commands import ROOT, flat, places, robolang, shell
+from tests.robolang.cli.commands import ROOT, counted, flat, places, robolang, shell
 from tests.steps import HANG_S
 
 
@@ -152,7 +152,7 @@ def test_forms_for_machines_hold_faults_of_files_too(form):
 
 def test_a_report_goes_to_a_file(folder):
     result = robolang("check", "--output-format", "junit", "--output-file", "out.xml", code=1)
-    assert (result.stdout, result.stderr) == ("", "")
+    assert (result.stdout, counted(result.stderr)) == ("", 1)
     assert len(ET.parse(folder / "out.xml").findall("testsuite/testcase")) == 3
 
 

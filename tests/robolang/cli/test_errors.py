@@ -1,11 +1,11 @@
 import errno
 
 import pytest
-import typer
 
 import robolang.project.project  # noqa: F401 - registers its codes
 from robolang.cli import errors
 from robolang.cli.errors import exit_code, reader_may_leave, reported, say
+from robolang.cli.usage import OptionValueError
 from robolang.core.diagnostics import safe
 from runtime.core.faults import Fault, all_codes
 from runtime.core.tomlfile import Source
@@ -13,9 +13,9 @@ from tests.messages import heads
 
 
 def left_with(error):
-    with pytest.raises(typer.Exit) as caught, reported():
+    with pytest.raises(SystemExit) as caught, reported():
         raise error
-    return caught.value.exit_code
+    return caught.value.code
 
 
 EXPECTED = {"1": 1, "2": 1, "3": 2, "40": 1, "4": 3, "5": 3, "6": 2, "7": 2, "8": 2, "9": 70}
@@ -93,7 +93,7 @@ def test_a_fault_that_cannot_be_shown_is_an_internal_error(error, capsys, monkey
 @pytest.mark.parametrize("error", [Fault("RBL510", "x"), ValueError("x")])
 def test_where_nothing_can_be_shown_the_exit_code_is_left(error, monkeypatch):
     monkeypatch.delenv("ROBOLANG_DEBUG", raising=False)
-    monkeypatch.setattr(typer, "echo", lambda *_, **__: 1 / 0)
+    monkeypatch.setattr(errors, "echo", lambda *_, **__: 1 / 0)
     assert left_with(error) == 70
 
 
@@ -122,8 +122,8 @@ def test_a_reader_that_leaves_is_no_error(capsys):
     assert capsys.readouterr().err == ""
 
 
-@pytest.mark.parametrize("error", [typer.Exit(7), typer.BadParameter("no"), typer.Abort()])
-def test_what_typer_itself_raises_passes(error):
+@pytest.mark.parametrize("error", [SystemExit(7), OptionValueError("--axis", "no")])
+def test_what_ends_a_command_on_purpose_passes(error):
     with pytest.raises(type(error)) as caught, reported():
         raise error
     assert caught.value is error

@@ -1,0 +1,103 @@
+"""From a function over groups of options to a command of typer.
+
+Typer reads the parameters of a function from its signature. ``command`` gives it the flat one: the arguments of the
+function, and each option of its groups in the panel of the group.
+"""
+
+import functools
+import inspect
+from collections.abc import Callable, Iterator
+from typing import Annotated, Any, get_args
+
+import typer
+from typer.core import TyperGroup
+
+from robolang.cli.options import Group
+from robolang.cli.usage import OptionValueError
+
+_BY_NAME = inspect.Parameter.KEYWORD_ONLY  # in any order, with a default or without
+
+
+class RefusedValueError(typer.BadParameter):
+    """A usage error as typer shows it: exit code 2. The message has its code and names its option already."""
+
+    def __init__(self, error: OptionValueError) -> None:
+        super().__init__(str(error))
+
+    def format_message(self) -> str:
+        """Return the message as it is."""
+        return self.message
+
+
+def command(function: Callable[..., None]) -> Callable[..., None]:
+    """Return a command: ``function`` with the options of its groups as parameters of their own."""
+    groups: dict[str, type[Group]] = {}
+    parameters: list[inspect.Parameter] = []
+    for parameter in inspect.signature(function).parameters.values():
+        if isinstance(parameter.annotation, type) and issubclass(parameter.annotation, Group):
+            groups[parameter.name] = parameter.annotation
+            parameters += _parameters(parameter.annotation)
+        else:
+            parameters.append(_argument(parameter))
+
+    @functools.wraps(function)
+    def called(**given: Any) -> None:
+        try:
+            made = {name: made_of(group, given) for name, group in groups.items()}
+            function(**given, **made)
+        except OptionValueError as error:
+            raise RefusedValueError(error) from None
+
+    called.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    called.__annotations__ = {}  # typer would look for the groups otherwise
+    return called
+
+
+def made_of(group: type[Group], given: dict[str, Any]) -> Group:
+    """Return a group, its values taken out of ``given``; ``OptionValueError`` for a value that is not a choice."""
+    values = {name: given.pop(name) for name in group.FIELDS if name in given}
+    for name, _, option, _ in group.options():
+        value = values.get(name)
+        if option.choices is not None and value is not None and value not in option.choices:
+            raise OptionValueError(option.names[0], f"'{value}' is not one of {', '.join(option.choices)}")
+    return group(**values)
+
+
+def _parameters(group: type[Group]) -> Iterator[inspect.Parameter]:
+    for name, kind, option, panel in group.options():
+        shown = typer.Option(
+            *option.names,
+            help=option.help,
+            metavar=option.metavar or (None if option.choices is None else "|".join(option.choices)),
+            envvar=option.envvar,
+            min=option.low,
+            max=option.high,
+            rich_help_panel=panel,
+        )
+        yield _parameter(name, Annotated[kind, shown], getattr(group, name, inspect.Parameter.empty))
+
+
+def _argument(parameter: inspect.Parameter) -> inspect.Parameter:
+    kind, argument = parameter.annotation.__origin__, parameter.annotation.__metadata__[0]
+    shown = typer.Argument(metavar=argument.metavar, help=argument.help)
+    default = None if type(None) in get_args(kind) else inspect.Parameter.empty
+    return _parameter(parameter.name, Annotated[kind, shown], default)
+
+
+def _parameter(name: str, hint: Any, default: Any) -> inspect.Parameter:
+    return inspect.Parameter(name, _BY_NAME, annotation=hint, default=default)
+
+
+class CodedGroup(TyperGroup):
+    """The commands of ``robolang``: a value that the parser of the command line refuses has its code, too."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Carry the command out; a usage error with a code for a value that is no number or out of its range."""
+        try:
+            return super().invoke(ctx)
+        except typer.BadParameter as error:
+            if type(error) is not typer.BadParameter or error.param is None:
+                raise
+            coded = RefusedValueError(OptionValueError(error.param.opts[0], error.message.rstrip(".")))
+            coded.ctx = error.ctx
+            raise coded from None

@@ -1,0 +1,232 @@
+"""The options of the command line as data: each is declared once, in a group, and every command names its groups.
+
+A group is a record whose fields are options. ``command`` turns the groups of a command into parameters of typer and
+shows each group in a panel of ``--help``; ``quick`` reads those of ``check`` without typer. So nothing but the standard
+library is imported here.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated, Any, ClassVar
+
+from runtime.core.record import Record
+
+
+class Option:
+    """An option: its names, its help text and what values it takes.
+
+    Args:
+        names: The long name, and a short one for a few.
+        help: What it does, with the unit of a value.
+        metavar: How ``--help`` shows the value; None: by its type.
+        choices: The values it takes; None: any. Other values are refused before the command starts.
+        key: The key of ``[controller]`` that it sets; None: none.
+        envvar: The variable of the environment that it is read from where it is not given.
+        low, high: The range of a number, inclusive. NaN passes: a command refuses it.
+    """
+
+    __slots__ = ("choices", "envvar", "help", "high", "key", "low", "metavar", "names")
+
+    def __init__(
+        self,
+        *names: str,
+        help: str,
+        **rest: Any,
+    ) -> None:
+        self.names, self.help = names, help
+        self.metavar: str | None = rest.pop("metavar", None)
+        self.choices: tuple[str, ...] | None = rest.pop("choices", None)
+        self.key: str | None = rest.pop("key", None)
+        self.envvar: str | None = rest.pop("envvar", None)
+        self.low: float | None = rest.pop("low", None)
+        self.high: float | None = rest.pop("high", None)
+        if rest:
+            raise TypeError(f"{names[0]}: unknown: {', '.join(rest)}")
+
+
+class Argument:
+    """An argument of a command: how ``--help`` names it, and its help text."""
+
+    __slots__ = ("help", "metavar")
+
+    def __init__(self, metavar: str, help: str) -> None:
+        self.metavar, self.help = metavar, help
+
+
+class Group(Record):
+    """Options that belong together; ``PANEL`` is their heading in ``--help``."""
+
+    PANEL: ClassVar[str] = "Options"
+
+    @classmethod
+    def options(cls) -> Iterator[tuple[str, Any, Option, str]]:
+        """Yield field, type, option and panel of all options, those of the base first.
+
+        A group that declares a field of its base again with a type only gives it another default.
+        """
+        declared = {
+            name: (hint, base.PANEL)
+            for base in reversed(cls.__mro__)
+            if issubclass(base, Group)
+            for name, hint in base.__annotations__.items()
+            if hasattr(hint, "__metadata__")
+        }
+        for name in cls.FIELDS:
+            hint, panel = declared[name]
+            yield name, hint.__origin__, hint.__metadata__[0], panel
+
+
+Program = Annotated[str, Argument("PROG", "Program file (.rbl).")]
+OptionalProgram = Annotated[str | None, Argument("[PROG]", "Program file (.rbl); its cell is used.")]
+
+
+class CellOptions(Group):
+    """Which cell a program runs in, and which robot stands in it."""
+
+    PANEL: ClassVar[str] = "Files"
+    cell: Annotated[str | None, Option("--cell", help="Cell file (.toml); default: the one beside the program.")] = None
+    robot: Annotated[
+        str | None, Option("--robot", help="Built-in robot or robot file, instead of the robot of the cell.")
+    ] = None
+
+
+class RobotOptions(Group):
+    """Which robot, for the commands that need no cell."""
+
+    PANEL: ClassVar[str] = "Robot"
+    robot: Annotated[str, Option("--robot", help="Built-in robot, or a .toml, .urdf or .xml file.")]
+
+
+class PostureOptions(RobotOptions):
+    """Which robot, in which posture, with what in its hand."""
+
+    joints: Annotated[
+        str | None,
+        Option("--joints", metavar="J1,J2,...", help="Posture, deg; default: 0, or the nearest angle in range."),
+    ] = None
+    payload: Annotated[
+        str,
+        Option("--payload", metavar="M,X,Y,Z", help="Carried payload: mass, kg, and centre of gravity, mm."),
+    ] = "0,0,0,0"
+
+
+class SettingsOptions(Group):
+    """Settings of the controller (docs/servo.md). They override the profile file, which overrides the cell."""
+
+    PANEL: ClassVar[str] = "Controller"
+    profile: Annotated[str | None, Option("--profile", help="Controller profile file (.toml).")] = None
+    settings: Annotated[
+        list[str] | None,
+        Option("--set", metavar="KEY=VALUE", help="Any key of the profile, e.g. servo.gravity_compensation=0."),
+    ] = None
+    feedforward: Annotated[
+        str | None,
+        Option(
+            "--feedforward",
+            help="Derivatives of the 'command', or the 'measured' ones.",
+            key="servo.feedforward",
+            choices=("command", "measured"),
+        ),
+    ] = None
+    load_mode: Annotated[
+        str | None,
+        Option(
+            "--load-mode",
+            help="LOAD is an 'add'ition to the last link, or a 'replace'ment.",
+            key="load_mode",
+            choices=("add", "replace"),
+        ),
+    ] = None
+    servo_period: Annotated[
+        str | None,
+        Option(
+            "--servo-period",
+            metavar="MS",
+            help="Servo period, ms: 0.25, 0.5 or 1.",
+            key="servo_period_ms",
+            choices=("0.25", "0.5", "1"),
+        ),
+    ] = None
+
+
+class ControllerOptions(SettingsOptions):
+    """The settings of the controller with those of the servo gains, which ``compare`` varies itself."""
+
+    servo: Annotated[
+        str | None,
+        Option(
+            "--servo",
+            help="Servo gains: 'scheduled' follow the inertia, 'fixed' do not.",
+            key="servo.mode",
+            choices=("scheduled", "fixed"),
+        ),
+    ] = None
+    fixed_at: Annotated[
+        str | None,
+        Option(
+            "--fixed-at",
+            help="Fixed gains are those of the 'min', 'mid' or 'max' inertia.",
+            key="servo.fixed_at",
+            choices=("min", "mid", "max"),
+        ),
+    ] = None
+    coupling: Annotated[
+        str | None,
+        Option(
+            "--coupling",
+            help="Inertia in the servo: 'diagonal' elements, or 'full' rows.",
+            key="servo.coupling",
+            choices=("diagonal", "full"),
+        ),
+    ] = None
+
+
+class RunControllerOptions(ControllerOptions):
+    """All settings of the controller that have an option."""
+
+    compensation: Annotated[
+        str | None,
+        Option(
+            "--compensation",
+            help="Compensation file of 'robolang identify'; replaces the rotor inertia.",
+            key="servo.compensation",
+        ),
+    ] = None
+
+
+class PlantOptions(Group):
+    """Which arm an experiment moves."""
+
+    PANEL: ClassVar[str] = "Simulation"
+    plant: Annotated[
+        str,
+        Option("--plant", help="'mujoco', or 'rigid': the ideal arm with friction.", choices=("mujoco", "rigid")),
+    ] = "mujoco"
+
+
+class PhysicsOptions(Group):
+    """Whether a program moves the arm of MuJoCo or the ideal one."""
+
+    PANEL: ClassVar[str] = "Simulation"
+    no_physics: Annotated[bool, Option("--no-physics", help="Ideal arm instead of MuJoCo.")] = False
+
+
+class JsonOptions(Group):
+    """How a command prints its result."""
+
+    PANEL: ClassVar[str] = "Output"
+    as_json: Annotated[bool, Option("--json", help="Print one JSON object in full precision.")] = False
+
+
+class PlotOptions(JsonOptions):
+    """How a command prints and draws its result."""
+
+    plot: Annotated[Path | None, Option("--plot", metavar="FILE", help="Draw the result: .svg or .html.")] = None
+
+
+class RewriteOptions(Group):
+    """What a command that rewrites program files writes."""
+
+    PANEL: ClassVar[str] = "Output"
+    check: Annotated[bool, Option("--check", help="Write nothing; exit code 1 if a file would change.")] = False
+    diff: Annotated[bool, Option("--diff", help="Write nothing; print what would change.")] = False
