@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from robolang.cli.check_options import FixOptions, ReportOptions
 from robolang.cli.errors import DIAGNOSTICS, reader_may_leave, say, say_all, say_warnings
@@ -29,6 +30,9 @@ from robolang.project.discovery import CellFiles
 from runtime.core.faults import Fault, lookup
 from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault
+
+if TYPE_CHECKING:
+    from robolang.cli.check_motion import Planned
 
 _ROOTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")
 
@@ -74,6 +78,11 @@ class _Outcome(Record):
         return (self.checked,) if self.points is None else (self.checked, self.points)
 
     @property
+    def findings(self) -> Iterator[Diagnostic]:
+        """All findings in the program and its points."""
+        return (item for result in self.results for item in result.diagnostics)
+
+    @property
     def doubts(self) -> tuple[FileFault, ...]:
         """What is unlikely about the cell and the files of the robot."""
         return (*self.checked.warnings, *self.warnings)
@@ -108,12 +117,16 @@ def run_once(job: Job) -> int:
     if job.times is not None:
         _write_times(job.times, outcomes)
     _print(job, outcomes)
+    return max(_say_rest(job, outcomes), _judged(job, outcomes))
+
+
+def _say_rest(job: Job, outcomes: Sequence[_Outcome]) -> int:
+    """Say on stderr what is no finding, and return the exit code of the files that cannot be used."""
     if any(map(os.path.isdir, job.paths)):  # the count says that a folder held what the user thinks it holds
         count = sum(outcome.read for outcome in outcomes)
         echo(f"{count} program{'' if count == 1 else 's'} checked", err=True)
     say_warnings(doubt for outcome in outcomes for doubt in outcome.doubts)
-    worst = max([0, *(say(fault) for outcome in outcomes for fault in outcome.checked.faults)])
-    return max(worst, _judged(job, outcomes))
+    return max([0, *(say(fault) for outcome in outcomes for fault in outcome.checked.faults)])
 
 
 def _check_outputs(job: Job) -> None:
@@ -212,19 +225,24 @@ def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
         plan = planned(checked.analysis, job.max_cycle_s, settings.bounds(Path(checked.source.path).parent))
     except Fault as fault:
         return outcome.failing(*fault.all)
-    known = {(item.code, item.span) for item in checked.diagnostics}
-    later = [item for item in plan.diagnostics if (item.code, item.span) not in known]
-    diagnostics = in_order(filter(selection.keeps, add_later(checked.source, checked.diagnostics, later)))
-    if plan.times is None and not has_errors(diagnostics):
-        # Nothing was planned for an error that is ignored or has a noqa. It is reported all the same: exit code 0
-        # would say that the motion is right.
-        diagnostics = in_order((*diagnostics, *(item for item in later if item.severity is Severity.ERROR)))
     return outcome.replaced(
-        checked=replace(checked, diagnostics=diagnostics),
+        checked=replace(checked, diagnostics=_with_plan(checked, plan, selection)),
         table=plan.table,
         times=plan.times,
         warnings=plan.warnings,
     )
+
+
+def _with_plan(checked: Checked, plan: "Planned", selection: Selection) -> tuple[Diagnostic, ...]:
+    """Return the findings in the text and in the motion, by place, each once."""
+    known = {(item.code, item.span) for item in checked.diagnostics}
+    later = [item for item in plan.diagnostics if (item.code, item.span) not in known]
+    found = in_order(filter(selection.keeps, add_later(checked.source, checked.diagnostics, later)))
+    if plan.times is not None or has_errors(found):
+        return found
+    # Nothing was planned, for an error that is ignored or has a noqa. It is reported all the same: exit code 0 would
+    # say that the motion is right.
+    return in_order((*found, *(item for item in later if item.severity is Severity.ERROR)))
 
 
 def _write_times(path: Path, outcomes: Sequence[_Outcome]) -> None:
@@ -299,8 +317,10 @@ def _judged(job: Job, outcomes: Sequence[_Outcome]) -> int:
         return 0
     if job.fixes.diff:
         return DIAGNOSTICS if any(outcome.fixed for outcome in outcomes) else 0
-    found = [item for outcome in outcomes for result in outcome.results for item in result.diagnostics]
-    warned = job.report.strict and (
-        any(item.severity is Severity.WARNING for item in found) or any(outcome.doubts for outcome in outcomes)
-    )
+    found = [item for outcome in outcomes for item in outcome.findings]
+    warned = job.report.strict and _has_warnings(outcomes, found)
     return DIAGNOSTICS if warned or has_errors(found) else 0
+
+
+def _has_warnings(outcomes: Sequence[_Outcome], found: Sequence[Diagnostic]) -> bool:
+    return any(item.severity is Severity.WARNING for item in found) or any(outcome.doubts for outcome in outcomes)

@@ -44,22 +44,28 @@ def parsed(words: list[str]) -> dict[str, Any] | None:
     """Return the parameters of ``check``; None for words that are not plainly options and arguments."""
     known = {name: (field, kind) for field, kind, option in _options() for name in option.names}
     paths: list[str] = []
-    values: dict[str, Any] = _environment()
+    values = _environment()
     rest = iter(words)
     for word in rest:
-        name, equals, value = word.partition("=")
-        if name in known:
-            field, kind = known[name]
-            text = value if equals else "" if kind is bool else next(rest, "-")
-            if text.startswith("-") or (equals and kind is bool):
-                return None
-            values[field] = _value(kind, text, values.get(field))
-        elif word == "-" or not word.startswith("-"):
+        if word == "-" or not word.startswith("-"):
             paths.append(word)
-        else:
+        elif not _took(word, rest, known, values):
             return None
-    groups = {name: group(**{k: values[k] for k in group.FIELDS if k in values}) for name, group in _GROUPS.items()}
-    return {"paths": paths or None, **groups}
+    return {"paths": paths or None, **{name: _made(group, values) for name, group in _GROUPS.items()}}
+
+
+def _took(word: str, rest: Iterator[str], known: dict[str, tuple[str, Any]], values: dict[str, Any]) -> bool:
+    """Add an option to the values; False for one that is unknown or has no plain value."""
+    name, equals, value = word.partition("=")
+    if name not in known:
+        return False
+    field, kind = known[name]
+    if kind is bool:
+        values[field] = True
+        return not equals
+    text = value if equals else next(rest, "-")
+    values[field] = [*values.get(field, []), text] if kind == list[str] | None else text
+    return not text.startswith("-")
 
 
 def _options() -> Iterator[tuple[str, Any, Option]]:
@@ -68,11 +74,8 @@ def _options() -> Iterator[tuple[str, Any, Option]]:
             yield field, kind, option
 
 
-def _value(kind: Any, text: str, before: Any) -> Any:
-    """Return the value of an option: a flag is set, a list grows, of anything else the last one counts."""
-    if kind is bool:
-        return True
-    return [*(before or []), text] if kind == list[str] | None else text
+def _made(group: type[Group], values: dict[str, Any]) -> Group:
+    return group(**{field: values[field] for field in group.FIELDS if field in values})
 
 
 def _environment() -> dict[str, Any]:

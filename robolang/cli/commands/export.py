@@ -25,6 +25,8 @@ from runtime.core.rounding import beside
 from runtime.core.units import badness
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from robolang.project.project import Project
     from robolang.pulse_tables.export import Export, ExportRequest
     from runtime.pulses.channels import Channel
@@ -164,40 +166,15 @@ def _plain(found: "Export", out: Path) -> dict[str, Any]:
 
 
 def _print(found: "Export", out: Path) -> None:
-    from rich.box import SIMPLE_HEAD
-    from rich.table import Table
-
     from robolang.cli.console import Console
     from robolang.core.diagnostics import safe
-    from robolang.pulse_tables.export import ExportedMove
 
     plain, console = _plain(found, out), Console()
     moves, markers = plain["moves"], plain["markers"]
-    where = lines.headings([*moves, *markers])
-    width = 24 if len(where) == 1 else 19  # the table has 80 columns at most
-
-    def table(*headings: str) -> Table:
-        made = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
-        for heading in headings:
-            text = heading in ("statement", "channel")
-            made.add_column(
-                heading,
-                justify="left" if text else "right",
-                no_wrap=True,
-                overflow="ellipsis",
-                max_width=width if heading == "statement" else None,
-            )
-        return made
-
     title = f"{found.machine.name}: pulse tables in steps of {found.request.step_s * 1e3:g} ms"
     console.print(safe(title), soft_wrap=True)
-    by_move = table(*where, "statement", "steps", "time, s", "mm/s", "raised", "tables", "off, mm")
-    move_rows = ((*lines.cells(entry, where), *_move_row(entry)) for entry in moves)
-    marker_rows = ((*lines.cells(entry, where), safe(entry["text"])) for entry in markers)
-    for item in found.sequence:
-        by_move.add_row(*next(move_rows if isinstance(item, ExportedMove) else marker_rows))
-    console.print(by_move)
-    by_channel = table("channel", "one pulse", "lowest Hz", "largest Hz", "raised", "tables", "debt, pulses")
+    console.print(_moves_table(found, moves, markers))
+    by_channel = _table("channel", "one pulse", "lowest Hz", "largest Hz", "raised", "tables", "debt, pulses")
     for k, channel in enumerate(found.channels):
         by_channel.add_row(*_channel_row(channel, [entry["channels"][k] for entry in moves]))
     console.print(by_channel)
@@ -205,13 +182,40 @@ def _print(found: "Export", out: Path) -> None:
         console.print(safe(note), soft_wrap=True)
     seconds = sum(entry["seconds"] for entry in moves)
     worst = max((entry["error_mm"] for entry in moves), key=badness, default=0.0)
-    console.print(
-        safe(
-            f"{len(found.files)} files in {out}: {len(moves)} moves of {seconds:.2f} s, {len(markers)} "
-            f"markers between them; largest path error {worst:.4f} mm"
-        ),
-        soft_wrap=True,
-    )
+    total = f"{len(found.files)} files in {out}: {len(moves)} moves of {seconds:.2f} s, {len(markers)} "
+    total += f"markers between them; largest path error {worst:.4f} mm"
+    console.print(safe(total), soft_wrap=True)
+
+
+def _table(*headings: str, statement_width: int | None = None) -> "Table":
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    table = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+    for heading in headings:
+        table.add_column(
+            heading,
+            justify="left" if heading in ("statement", "channel") else "right",
+            no_wrap=True,
+            overflow="ellipsis",
+            max_width=statement_width if heading == "statement" else None,
+        )
+    return table
+
+
+def _moves_table(found: "Export", moves: list[dict[str, Any]], markers: list[dict[str, Any]]) -> "Table":
+    """Return the table of moves and markers in the order of the program, at most 80 columns wide."""
+    from robolang.core.diagnostics import safe
+    from robolang.pulse_tables.export import ExportedMove
+
+    where = lines.headings([*moves, *markers])
+    headings = ("statement", "steps", "time, s", "mm/s", "raised", "tables", "off, mm")
+    table = _table(*where, *headings, statement_width=24 if len(where) == 1 else 19)
+    move_rows = ((*lines.cells(entry, where), *_move_row(entry)) for entry in moves)
+    marker_rows = ((*lines.cells(entry, where), safe(entry["text"])) for entry in markers)
+    for item in found.sequence:
+        table.add_row(*next(move_rows if isinstance(item, ExportedMove) else marker_rows))
+    return table
 
 
 def _move_row(entry: dict[str, Any]) -> tuple[str, ...]:

@@ -44,10 +44,7 @@ class _Output(RewriteOptions):
 
 def renumber(program: _File, numbers: _Numbers, output: _Output) -> None:
     """Number the lines of a program, and change the targets of its jumps."""
-    if numbers.remove and (numbers.start is not None or numbers.step is not None):
-        raise OptionValueError("--remove", "takes neither --start nor --step")
-    if output.out is not None and output.dry:
-        raise OptionValueError("--out", "nothing is written with --check or --diff")
+    _refuse(numbers, output)
     with reported():
         from runtime.core.faults import Fault
 
@@ -61,6 +58,14 @@ def renumber(program: _File, numbers: _Numbers, output: _Output) -> None:
             raise SystemExit(STORAGE if say(fault) == STORAGE else BROKEN) from None
     if found.changed and output.dry:
         raise SystemExit(CHANGES)
+
+
+def _refuse(numbers: _Numbers, output: _Output) -> None:
+    """Refuse options that contradict each other."""
+    if numbers.remove and (numbers.start is not None or numbers.step is not None):
+        raise OptionValueError("--remove", "takes neither --start nor --step")
+    if output.out is not None and output.dry:
+        raise OptionValueError("--out", "nothing is written with --check or --diff")
 
 
 def _renumbered(loaded: "Loaded", numbers: _Numbers) -> "RenumberResult":

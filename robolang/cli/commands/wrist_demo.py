@@ -15,6 +15,8 @@ from robolang.cli.usage import OptionValueError
 from runtime.core.units import badness
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from robolang.execution.plot import Mark
     from robolang.experiments.wrist_figures import Figure, Run
     from runtime.robot.model.spec import RobotSpec
@@ -143,28 +145,31 @@ _HEADINGS = (
 
 
 def _print(robot: str, shown: list["Shown"], out: Path | None) -> None:
-    from rich import box
-    from rich.table import Table
-
     from robolang.cli.console import Console
     from robolang.core.diagnostics import safe
 
     console = Console()
-    title = safe(f"Figures of CN103429397A on {robot}")
-    table = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
-    for k, heading in enumerate((*_HEADINGS, *(["file"] if out else []))):
-        table.add_column(heading, justify="right" if k in (4, 5, 6) else "left", no_wrap=k != 2)
-    for figure, runs in shown:
-        for k, row in enumerate(map(_plain, runs)):
-            number, file = (str(figure.number), _file(figure)) if k == 0 else ("", "")
-            table.add_row(number, *_cells(row), *([file] if out else []))
-    console.print(table)
+    console.print(_table(safe(f"Figures of CN103429397A on {robot}"), shown, files=out is not None))
     console.print("* from the switch on; of the whole move where there is none", style="italic")
     _print_components(console, shown)
     worst = max((float(run.off_path.max()) for _, runs in shown for run in runs), key=badness)
     console.print(f"tool point at most {worst * 1e3:.0e} mm off its path at any control point")
     if out is not None:
         console.print(safe(f"all plots: {out / 'index.html'}"), soft_wrap=True)
+
+
+def _table(title: str, shown: list["Shown"], *, files: bool) -> "Table":
+    from rich import box
+    from rich.table import Table
+
+    table = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+    for k, heading in enumerate((*_HEADINGS, *(["file"] if files else []))):
+        table.add_column(heading, justify="right" if k in (4, 5, 6) else "left", no_wrap=k != 2)
+    for figure, runs in shown:
+        for k, row in enumerate(map(_plain, runs)):
+            number, file = (str(figure.number), _file(figure)) if k == 0 else ("", "")
+            table.add_row(number, *_cells(row), *([file] if files else []))
+    return table
 
 
 def _cells(row: dict[str, Any]) -> tuple[str, ...]:

@@ -1,0 +1,71 @@
+"""``--help`` of every command: each option once, with its help text, in the panel of its group, at 80 columns."""
+
+import re
+from typing import Annotated
+
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from robolang.cli.command import command
+from robolang.cli.main import app
+from robolang.cli.options import Group, Option
+from tests.robolang.cli.commands import flat, robolang
+
+
+def commands(found=None, words=()):
+    """Every command with the words that call it."""
+    found = typer.main.get_command(app) if found is None else found
+    if not hasattr(found, "commands"):
+        return [(words, found)]
+    return [each for name, inner in found.commands.items() for each in commands(inner, (*words, name))]
+
+
+COMMANDS = commands()
+
+
+@pytest.mark.parametrize(("words", "found"), COMMANDS, ids=[" ".join(words) for words, _ in COMMANDS])
+def test_every_option_is_in_the_help_with_its_text(words, found):
+    text = robolang(*words, "--help").stdout
+    assert all(len(line) <= 80 for line in text.splitlines())
+    for parameter in found.params:
+        assert parameter.help, parameter.name
+        assert parameter.help.endswith("."), parameter.help
+        if isinstance(parameter, typer.core.TyperOption) and parameter.name != "help":
+            (name, *_) = parameter.opts
+            assert len(re.findall(rf"(?m)^│ (?:\*? +)?(?:-\w,? +)?{name} ", text)) == 1, name
+            assert f" {parameter.rich_help_panel} " in text
+
+
+def test_a_number_has_its_unit_in_its_help():
+    units = re.compile(r"\b(deg|mm|ms|s|Hz|kg|from 1|from one number|[Nn]umber|angles|a time)\b")
+    plain = ("--error",)  # the seed of a random generator
+        r"\b(deg|mm|ms|s|Hz|kg|from 1|default: (1|2|10)|[Nn]umber|angles)\b|SEED|bodies of the plant", re.I
+    )
+    for words, found in COMMANDS:
+        for parameter in found.params:
+            if parameter.opts[0] not in plain and parameter.type.name in ("integer", "float", "integer range", "float range"):
+                assert units.search(parameter.help), (words, parameter.name, parameter.help)
+
+
+def test_a_value_that_is_no_choice_is_refused_before_the_command_starts():
+    result = flat(robolang("step", "--robot", "no-such", "--axis", "1", "--plant", "wood", code=2).stderr)
+    assert "RBL703 --plant: 'wood' is not one of mujoco, rigid" in result
+
+
+def test_a_command_has_the_options_of_its_groups():
+    class Sizes(Group):
+        PANEL = "Sizes"
+        width: Annotated[float, Option("--width", help="Width, mm.")] = 1.0
+
+    calls = []
+
+    @command
+    def build(sizes: Sizes) -> None:
+        calls.append(sizes)
+
+    probe = typer.Typer()
+    probe.command()(build)
+    result = CliRunner().invoke(probe, ["--width", "2.5"])
+    assert result.exit_code == 0
+    assert calls == [Sizes(width=2.5)]
