@@ -23,7 +23,7 @@ def by_typer(words):
     def probe(**given):
         calls.append(given)
 
-    probe.__signature__ = inspect.signature(check)
+    probe.__signature__ = inspect.signature(check)  # type: ignore[attr-defined]
     app = typer.Typer()
     app.command()(command(probe))
     CliRunner().invoke(app, words)
