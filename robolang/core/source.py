@@ -21,7 +21,7 @@ from typing import NoReturn
 
 import robolang.core.codes  # noqa: F401 - the codes raised here must be registered
 from runtime.core.bounded_files import RefusedError, read_bounded
-from runtime.core.tomlfile import FileFault
+from runtime.core.tomlfile import FileFault, FilePlace
 
 MAX_BYTES = 1_000_000
 _LINE_END = re.compile(r"\r\n?|\n")
@@ -141,8 +141,8 @@ def _not_text(name: str, raw: bytes, before: str, message: str) -> NoReturn:
 
 
 def _fail(code: str, message: str, hint: str = "", *, path: str, place: Place | None = None) -> NoReturn:
-    line, column = (place.line, place.column) if place else (1, 1)
-    raise FileFault(code, message, hint, path=path, line=line, column=column, excerpt="")
+    at = FilePlace(path, place.line, place.column) if place else FilePlace(path)
+    raise FileFault(code, message, hint, at)
 
 
 def _neighbour(name: str) -> str:

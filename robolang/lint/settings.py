@@ -166,12 +166,4 @@ def _done(table: Table) -> None:
 
 def _as_configuration(fault: FileFault) -> FileFault:
     """Return a fault of the configuration at the place of one of the TOML reader."""
-    return FileFault(
-        "RBL707",
-        fault.message,
-        fault.hint,
-        path=fault.path,
-        line=fault.line,
-        column=fault.column,
-        excerpt=fault.excerpt,
-    )
+    return FileFault("RBL707", fault.message, fault.hint, fault.place)

@@ -134,9 +134,7 @@ def _as_point_fault(fault: FileFault, path: Path) -> FileFault:
     if code == fault.code and not hint:
         return fault
     kept = "" if fault.hint == lookup(fault.code).remedy else fault.hint  # the remedy of the new code is better
-    return FileFault(
-        code, fault.message, hint or kept, path=fault.path, line=fault.line, column=fault.column, excerpt=fault.excerpt
-    )
+    return FileFault(code, fault.message, hint or kept, fault.place)
 
 
 def _schema(table: Table) -> None:

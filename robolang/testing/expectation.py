@@ -30,7 +30,7 @@ from pathlib import Path
 import robolang.core.codes  # noqa: F401 - all codes must be registered
 from runtime.core.faults import all_codes
 from runtime.core.toml_places import locate
-from runtime.core.tomlfile import FileFault, Source, Table, load_table, read_source
+from runtime.core.tomlfile import FileFault, FilePlace, Source, Table, load_table, read_source
 
 SCHEMA = 1
 ENDING = ".test.toml"
@@ -70,7 +70,7 @@ class Expectation:
         """Return a fault at a key of ``[expect]``."""
         line, column = self.place(*keys)
         excerpt = self.source.text.split("\n")[line - 1].removesuffix("\r")
-        return FileFault(code, message, hint, path=self.source.path, line=line, column=column, excerpt=excerpt)
+        return FileFault(code, message, hint, FilePlace(self.source.path, line, column, excerpt))
 
 
 def load_expectation(path: Path) -> Expectation:

@@ -1,1 +1,1 @@
-"""The cell: its file, its signals, its sensors, and whether its parts can lie where they are put."""
+"""The cell: its file, its signals, its sensors, and whether its parts can rest where they are put."""

@@ -1,7 +1,7 @@
-"""The cell file ``NAME.cell.toml``: which robot, which hand, what lies around it, and what is really true of it.
+"""The cell: its robot, hand, parts and obstacles in SI, with their true properties.
 
-Masses here are the *true* ones: the plant is built from them. What the controller believes comes from ``LOAD`` in
-the program, and the difference between the two is what payload supervision has to notice. Lengths are mm and
+Masses here are the *true* ones: the plant is built from them. The controller knows a payload from ``LOAD`` in the
+program alone, and the difference between the two is what payload supervision has to notice. Lengths are mm and
 angles degrees in the file, SI in ``CellSpec``; a pose is ``[x, y, z, rx, ry, rz]`` with ``R = Rz @ Ry @ Rx``
 (docs/language.md). ``cell_file`` reads the file. Read once, before anything moves.
 """
@@ -81,9 +81,9 @@ class LoadSpec:
 class CellSpec:
     """A cell in SI: robot, home joints (n,) rad, hand, parts, obstacles and the names a program may use.
 
-    ``tools`` are poses X_flange_tool, ``frames`` poses X_world_frame (4, 4), ``sensors`` seam sensors, ``inputs`` what
-    each input does. ``controller`` is what the file sets of the controller profile, ``doubts`` are parts that cannot
-    lie where they are.
+    ``tools`` are poses X_flange_tool, ``frames`` poses X_world_frame (4, 4), ``sensors`` seam sensors, ``inputs`` the
+    course of each input. ``controller`` are the settings of the controller profile in the file, ``doubts`` parts that
+    cannot rest where they are.
     """
 
     robot: RobotSpec
@@ -101,7 +101,7 @@ class CellSpec:
 
     @property
     def warnings(self) -> tuple[FileFault, ...]:
-        """What is unlikely about the robot and the cell."""
+        """Doubts about the robot (``plausibility``) and the cell."""
         return (*self.robot.warnings, *self.doubts)
 
 
@@ -156,6 +156,7 @@ def build(file: CellFile) -> CellSpec:
 
 
 def _robot(file: CellFile) -> RobotSpec:
+    # the file of the library itself, not one of the same name beside the cell: a built-in robot is built only once
     arm = file.arm
     is_builtin = arm.name in robot_file.library() and arm is robot_file.builtin(arm.name)
     return load_builtin(arm.name) if is_builtin else importer.build(arm)

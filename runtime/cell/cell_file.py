@@ -1,8 +1,8 @@
 """The cell file as it is written: every key known, every value of its kind and in its range, in the units of its keys.
 
 ``cell`` has the meaning and makes arrays of it. Imports no numerics: ``robolang check`` reads the same ``CellFile`` as
-a run, so what is wrong with a cell is the same for both, and all of it is found at once. The robot is a built-in name
-or a file inside the cell file's own folder: nothing outside that folder is ever opened, whatever the file says.
+a run, so both find the same errors, all of them at once (docs/decisions/0028). The robot is a built-in name or a file
+inside the cell file's own folder: nothing outside that folder is ever opened, whatever the file names.
 """
 
 import re
@@ -26,6 +26,7 @@ REACH_MM = 20_000.0
 """No coordinate of a cell is further away than this, mm."""
 
 HEAVIEST_KG = 5000.0
+"""Heaviest hand, part or load, as heavy as the heaviest rated payload of a robot file."""
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,62}")
 
 T = TypeVar("T")
@@ -77,7 +78,7 @@ class LoadFile:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CellFile:
     """A cell file. ``tools``, ``frames``: poses (6,) mm and deg by name, FLANGE and WORLD among them; ``controller``:
-    what ``[controller]`` sets; ``doubts``: parts that cannot lie where they are (RBL640)."""
+    the settings of ``[controller]``; ``doubts``: parts that cannot rest where they are (RBL640)."""
 
     path: str
     arm: ArmFile
@@ -95,7 +96,7 @@ class CellFile:
 
     @property
     def warnings(self) -> tuple[FileFault, ...]:
-        """What is unlikely about the cell and its arm, as far as that shows without numerics."""
+        """Doubts about the cell and its arm, those about bodies excepted, which need numerics."""
         return (*self.arm.warnings, *self.doubts)
 
 
@@ -113,31 +114,26 @@ def read_arm_alone(path: Path) -> ArmFile | None:
 
 
 def parse_cell_file(source: Source, folder: Path | None = None) -> CellFile:
-    """Return what the text of a cell file says; ``FileFault`` at the first line that is wrong, with all others.
+    """Return the content of a cell file; ``FileFault`` at the first line that is wrong, with all others.
 
-    ``folder`` is where the file stands; without one (a cell held as text) only built-in robots can be named.
+    ``folder`` is that of the file; without one (a cell held as text) only built-in robots can be named.
     """
     table = load_table(source, gather=True)
     table.integer("schema", low=SCHEMA, high=SCHEMA)
+    # every part is read whatever is wrong with another one; None stands for a part with errors until ``finish``
     arm = table.attempt(lambda: _arm(table, folder))
     home = table.table("home").gather(lambda home: _home(home, arm))
     hand = table.table("hand").gather(_hand)
     parts, obstacles = (table.tables(key, required=False) for key in ("parts", "obstacles"))
     _words(((item.text("name"), item) for item in (*obstacles, *parts)), "of a part or obstacle")
-    found = (
-        [item.gather(_part) for item in parts],
-        [item.gather(_obstacle) for item in obstacles],
-        _named(table, "loads", _load),
-        _poses(table, "tools", "FLANGE"),
-        _poses(table, "frames", "WORLD"),
-        _named(table, "sensors", lambda item: read_sensor_file(item, folder)),
-    )
+    lying, fixed = _all(parts, _part), _all(obstacles, _obstacle)
+    loads = _named(table, "loads", _load)
+    tools, frames = _poses(table, "tools", "FLANGE"), _poses(table, "frames", "WORLD")
+    sensors = _named(table, "sensors", lambda item: read_sensor_file(item, folder))
     inputs = table.attempt(lambda: read_inputs(table.named_tables("inputs")))
     controller = table.table("controller").gather(read_layer) if "controller" in table else {}
     table.finish()
     assert arm is not None and home is not None and hand is not None and inputs is not None and controller is not None
-    lying = tuple(each for each in found[0] if each is not None)
-    fixed = tuple(each for each in found[1] if each is not None)
     return CellFile(
         path=source.path,
         arm=arm,
@@ -145,14 +141,19 @@ def parse_cell_file(source: Source, folder: Path | None = None) -> CellFile:
         hand=hand,
         parts=lying,
         obstacles=fixed,
-        loads=found[2],
-        tools=found[3],
-        frames=found[4],
-        sensors=found[5],
+        loads=loads,
+        tools=tools,
+        frames=frames,
+        sensors=sensors,
         inputs=MappingProxyType(inputs),
         controller=controller,
         doubts=tuple(_doubts(lying, fixed, parts)),
     )
+
+
+def _all(tables: Iterable[Table], read: Callable[[Table], T]) -> tuple[T, ...]:
+    """Return the results of reading tables, without those in which something is wrong."""
+    return tuple(each for each in (table.gather(read) for table in tables) if each is not None)
 
 
 def _doubts(
@@ -160,7 +161,8 @@ def _doubts(
     obstacles: tuple[ObstacleFile, ...],
     items: list[Table],
 ) -> Iterator[FileFault]:
-    """Yield RBL640 for every part that cannot lie where it is; of two that overlap, at the later one."""
+    """Yield RBL640 for every part that cannot rest where it is; of two that overlap, at the later one."""
+    # obstacles and earlier parts may not be overlapped; any part may support, also one that comes later in the file
     fixed = [Box.of(f"obstacle '{each.name}'", each.size_mm, each.pose_mm_deg) for each in obstacles]
     loose = [Box.of(f"part '{each.name}'", each.size_mm, each.pose_mm_deg) for each in parts]
     for index, (part, item) in enumerate(zip(loose, items, strict=True)):
@@ -170,13 +172,16 @@ def _doubts(
 
 
 def _arm(table: Table, folder: Path | None) -> ArmFile:
+    """Return the arm that ``robot`` names: a built-in one, or a file by its ending; ``FileFault`` RBL6xx."""
     name = table.text("robot")
+    # by its ending: a name without one is a robot of the library, and a misspelt one gets the list of these
     if not name.lower().endswith(ROBOT_ENDINGS):
         return robot_file.builtin(table.text("robot", choices=robot_file.library()))
     return read_arm_file(inside(table, name, folder, "robot"))
 
 
 def _home(table: Table, arm: ArmFile | None) -> Numbers:
+    # without an arm, whose file may be what is wrong, any number of joints is accepted
     q_deg = table.numbers("joints_deg", None if arm is None else len(arm.limits), low=-3600.0, high=3600.0)
     table.done()
     for index, (angle, limits) in enumerate(zip(q_deg, arm.limits if arm else (), strict=False)):
@@ -250,7 +255,8 @@ def _size(table: Table, key: str, default: Numbers | None = None) -> Numbers:
 
 
 def _named(table: Table, key: str, read: Callable[[Table], T]) -> Mapping[str, T]:
-    """Read the tables ``[key.NAME]``; names are words of the language, which does not tell capitals apart."""
+    """Read the tables ``[key.NAME]``; names are words of the language, which ignores case."""
+    # names are checked apart from contents: an error of the one does not hide those of the other
     tables = table.named_tables(key)
     _words(tables.items(), f"of [{key}]")
     found = {name: item.gather(read) for name, item in tables.items()}
@@ -273,7 +279,7 @@ def _poses(table: Table, key: str, origin: str) -> Mapping[str, Numbers]:
 
 
 def _words(names: Iterable[tuple[str, Table]], where: str) -> None:
-    """Refuse names that a program could not write, and names that are there twice."""
+    """Refuse names that a program could not write, and names that are used twice."""
     seen: set[str] = set()
     for name, item in names:
         item.gather(lambda item, name=name: _word(name, item, where, seen))  # type: ignore[misc]

@@ -1,4 +1,4 @@
-"""Whether the parts of a cell can lie where its file puts them: boxes against boxes, the floor and what is below.
+"""Whether the parts of a cell can rest where its file puts them: boxes against boxes, the floor and their supports.
 
 Two boxes overlap by the least distance that one must move to leave the other: the least overlap of their shadows on
 the 15 axes of the separating axis theorem, the normals of their faces and the products of their edges (S. Gottschalk,
@@ -13,16 +13,16 @@ from itertools import product
 from typing import Self
 
 OVERLAP_MM = 1.0
-"""A part may be this far in something: contacts of a simulation give way by less."""
+"""A part may be this far inside another body: contacts of a simulation yield by less."""
 DROP_MM = 5.0
-"""A part may hang this far over what it will stand on."""
+"""A part may be this far above its support, and falls onto it."""
 
 Vector = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Box:
-    """A box: what people call it, centre mm, unit vectors of its edges in the world, half of their lengths mm."""
+    """A box: its name in messages, centre mm, unit vectors of its edges in the world, half of their lengths mm."""
 
     name: str
     centre: Vector
@@ -33,6 +33,7 @@ class Box:
     def of(cls, name: str, size_mm: Sequence[float], pose_mm_deg: Sequence[float]) -> Self:
         """Return the box of a size (3,) and the pose (6,) of its centre."""
         x, y, z, *angles = pose_mm_deg
+        # the columns of Rz Ry Rx, written out: numpy is not imported here
         (cx, sx), (cy, sy), (cz, sz) = ((math.cos(a), math.sin(a)) for a in map(math.radians, angles))
         axes = (
             (cz * cy, sz * cy, -sy),
@@ -58,26 +59,29 @@ class Box:
 
 
 def unrest(part: Box, others: Sequence[Box], below: Sequence[Box]) -> str:
-    """Return why a part cannot lie where it is, nothing when it can.
+    """Return the reason for which a part cannot rest where it is, an empty text when it can.
 
-    ``others`` are what it may not be in, ``below`` is what it may stand on beside the floor, z = 0.
+    ``others`` are the bodies that it must not overlap, ``below`` those that may support it beside the floor, z = 0.
     """
     deepest = max(others, key=lambda other: overlap(part, other), default=None)
     if deepest is not None and not overlap(part, deepest) <= OVERLAP_MM:
         return f"{part.name} overlaps {deepest.name} by {overlap(part, deepest):.0f} mm"
     if not part.bottom >= -OVERLAP_MM:
-        return f"{part.name} is {-part.bottom:.0f} mm deep in the floor, z = 0"
+        return f"{part.name} is {-part.bottom:.0f} mm below the floor, z = 0"
+    # moved down it must meet a body or the floor; whether it would tip over there is not judged
     lower = part.lowered(DROP_MM)
     if lower.bottom <= 0.0 or any(overlap(lower, other) > 0.0 for other in below):
         return ""
-    return f"{part.name} stands on nothing: there is nothing within {DROP_MM:g} mm below it"
+    return f"{part.name} has no support: there is no body within {DROP_MM:g} mm below it"
 
 
 def overlap(one: Box, other: Box) -> float:
     """Return how far one box must move to leave the other, mm; 0 where they do not meet."""
+    # most pairs are far apart: their spheres settle it without the 15 axes
     apart = _minus(other.centre, one.centre)
     if math.hypot(*apart) >= math.hypot(*one.halves) + math.hypot(*other.halves):
         return 0.0
+    # parallel edges give no direction of their own: the faces have it
     crossed = (_unit(_cross(a, b)) for a, b in product(one.axes, other.axes))
     directions = [*one.axes, *other.axes, *(each for each in crossed if each is not None)]
     return max(0.0, min(one.half_shadow(d) + other.half_shadow(d) - abs(_dot(apart, d)) for d in directions))

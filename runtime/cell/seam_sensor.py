@@ -1,14 +1,14 @@
-"""A simulated seam sensor: how far the true seam is from the taught one, as a sensor in front of the torch sees it.
+"""A simulated seam sensor: the deviation of the true seam from the taught one, as a sensor before the torch reads it.
 
-``[sensors.NAME]`` of a cell file. The true deviation is a function of the way along the taught path since SEAM ON:
+``[sensors.NAME]`` of a cell file. The true deviation is a function of the distance along the taught path since SEAM ON:
 
-    ramp    from nothing to ``deviation_mm_deg`` over ``over_mm``, and that from there on
-    sine    ``deviation_mm_deg`` times sin(2 pi way / ``over_mm``)
-    table   a CSV file beside the cell: rows way_mm, x, y, z [, rx, ry, rz], straight in between
+    ramp    from zero to ``deviation_mm_deg`` over ``over_mm``, constant from there on
+    sine    ``deviation_mm_deg`` times sin(2 pi distance / ``over_mm``)
+    table   a CSV file beside the cell: rows way_mm, x, y, z [, rx, ry, rz], linear in between
 
 A reading adds noise and may be lost; both come from a generator with a seed of its own, so a run repeats byte for byte.
 Readings are in the world frame, or in the weld-line frame (X along the travel, Z up) with ``frame = "line"``. Read once
-per 8 ms cycle by the controller.
+per 8 ms cycle by the controller (docs/wrist.md, CN103429397A embodiment 3).
 """
 
 import copy
@@ -26,12 +26,12 @@ from runtime.motion.wrist.hold import weld_line_frame
 
 SCALE = np.array([MM, MM, MM, DEG, DEG, DEG])
 SHORTEST_TRAVEL = 1e-6
-"""A shorter way has no direction, m."""
+"""A shorter path has no direction, m."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SensorSpec:
-    """A seam sensor in SI: ``way`` (K,) m and ``values`` (K, 6) m and rad of a table; noise, loss and what is believed.
+    """A seam sensor in SI: ``way`` (K,) m and ``values`` (K, 6) m and rad of a table; noise, loss and limits.
 
     ``deviation`` (6,) and ``over`` m of a ramp or sine; ``noise`` (6,) standard deviations; ``lost`` share of readings.
     """
@@ -70,7 +70,7 @@ class SensorSpec:
         )
 
     def at(self, way: float) -> Array:
-        """Return the true deviation (6,) at a way along the path, m."""
+        """Return the true deviation (6,), m and rad, at a distance ``way`` m along the path; constant past a table."""
         if self.kind == "ramp":
             return np.asarray(self.deviation * min(1.0, way / self.over))
         if self.kind == "sine":
@@ -93,13 +93,14 @@ class SeamSensor:
         return twin
 
     def read(self, way: float, travel: Array) -> Array | None:
-        """Return the deviation (6,) seen at a way along the path, m and rad in the world; None when it is lost.
+        """Return the deviation (6,) read at ``way`` m along the path, m and rad in the world; None when it is lost.
 
         ``travel`` (3,) is the direction of the path; where it has none, that of the move before counts.
         """
         if norm(travel) > SHORTEST_TRAVEL:
             self._travel = travel
         spec = self._spec
+        # drawn in every cycle, used or not: one lost reading more must not change the noise of all later ones
         noise, lost = self._random.normal(size=6) * spec.noise, self._random.random() < spec.lost
         if lost:
             return None
@@ -107,5 +108,6 @@ class SeamSensor:
         if not spec.in_line_frame:
             return seen
         R_world_line = weld_line_frame(self._travel)
+        # a rotation changes its frame by similarity; the three angles themselves are no vector
         turned = matmul(R_world_line, rotation_from_rpy(seen[3:]), R_world_line.T)
         return np.concatenate([matmul(R_world_line, seen[:3]), rpy_from_rotation(turned)])

@@ -1,4 +1,4 @@
-"""``[sensors.NAME]`` of a cell file as it is written: the deviation a seam sensor shall see, its noise and its limits.
+"""``[sensors.NAME]`` of a cell file as it is written: the deviation that a seam sensor reads, its noise and its limits.
 
 Units are those of the keys, mm and deg. ``seam_sensor`` has the meaning and makes a sensor of it. Imports no numerics:
 ``robolang check`` reads it, and a run reads the same.
@@ -22,7 +22,7 @@ MOST_ROWS = 10_000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SensorFile:
-    """A seam sensor: ``rows`` (K, 7) of way, x, y, z, rx, ry, rz for a table; ``deviation`` (6,) for a ramp or sine."""
+    """A seam sensor: ``deviation`` (6,) of a ramp or sine; ``rows`` (K, 7) of a table: distance and deviation."""
 
     kind: Kind
     deviation: tuple[float, ...]
@@ -39,12 +39,13 @@ class SensorFile:
 
 
 def read_sensor_file(table: Table, folder: Path | None) -> SensorFile:
-    """Read ``[sensors.NAME]``; ``FileFault`` RBL6xx at what is wrong. ``folder`` is where the cell file stands."""
+    """Read ``[sensors.NAME]``; ``FileFault`` RBL6xx at the key that is wrong. ``folder`` is that of the cell file."""
     kind = cast(Kind, table.text("kind", choices=KINDS))
     listed = kind == "table"
     nothing = (0.0,) * 6
     found = SensorFile(
         kind=kind,
+        # keys of the other kinds are not read, so ``done`` refuses them: a deviation would have no effect on a table
         deviation=nothing if listed else table.numbers("deviation_mm_deg", 6, low=-1000.0, high=1000.0),
         over_mm=1e3 if listed else table.number("over_mm", positive=True, high=1e5),
         rows=(table.attempt(lambda: _rows(table, folder)) or ()) if listed else (),
@@ -62,22 +63,29 @@ def read_sensor_file(table: Table, folder: Path | None) -> SensorFile:
 
 
 def _rows(table: Table, folder: Path | None) -> tuple[tuple[float, ...], ...]:
-    """Read the CSV file of a sensor: rows of 7 whose first number, the way, rises."""
+    """Read the CSV file of a sensor: rows of 7 whose first number, the distance, rises; ``FileFault`` RBL604, 605."""
     name = table.text("file")
     source = read_source(inside(table, name, folder, "file"))
-    found: list[tuple[float, ...]] = []
     try:
-        for number, cells in enumerate(csv.reader(io.StringIO(source.text), strict=True), start=1):
-            row = _numbers(cells)
-            if row is not None:
-                found.append(row)
-            elif any(cell.strip() for cell in cells) and not (number == 1 and _is_heading(cells)):
-                table.fail("RBL604", f"line {number} of '{name}' is not 4 or 7 finite numbers", key="file")
+        # strict: a quote that is never closed would otherwise make one cell of the rest of the file
+        lines = list(csv.reader(io.StringIO(source.text), strict=True))
     except csv.Error as error:
         table.fail("RBL604", f"'{name}' is not a CSV file: {error}", key="file")
+    found: list[tuple[float, ...]] = []
+    for number, cells in enumerate(lines, start=1):
+        row = _numbers(cells)
+        if row is not None:
+            found.append(row)
+        elif not _may_be_left_out(number, cells):
+            table.fail("RBL604", f"line {number} of '{name}' is not 4 or 7 finite numbers", key="file")
     if not 1 <= len(found) <= MOST_ROWS or not all(one[0] < two[0] for one, two in pairwise(found)):
         table.fail("RBL605", f"'{name}' must have 1 to {MOST_ROWS} rows whose first number rises", key="file")
     return tuple(found)
+
+
+def _may_be_left_out(number: int, cells: Sequence[str]) -> bool:
+    """Return whether a line (from 1) is empty, or the heading of the file."""
+    return not any(cell.strip() for cell in cells) or (number == 1 and _is_heading(cells))
 
 
 def _is_heading(cells: Sequence[str]) -> bool:
@@ -92,6 +100,7 @@ def _is_heading(cells: Sequence[str]) -> bool:
 
 
 def _numbers(cells: Sequence[str]) -> tuple[float, ...] | None:
+    """Return a row of 4 or 7 finite numbers as 7, without turns where it has 4; None for any other."""
     try:
         row = [float(cell) for cell in cells]
     except ValueError:

@@ -8,8 +8,9 @@
     follows = 3                      # output 3, half a second later
     delay_s = 0.5
 
-An input without a word in the file is not there. Outputs are numbered 1 to 1024 and are 0 until a program sets them;
-one that PULSE set goes back to 0 by itself. Times are integers of microseconds on the controller's clock.
+An input that the file does not name does not exist. Outputs are numbered 1 to 1024 and are 0 until a program sets
+them; one that PULSE set goes back to 0 by itself. Times are integers of microseconds on the controller's clock, so that
+no sum of times rounds. Read by every WAIT and condition of a program, and by the dry run on its own clock.
 """
 
 from collections.abc import Mapping
@@ -20,6 +21,7 @@ from runtime.core.tomlfile import Table
 
 MOST = 1024
 LONGEST_S = 86_400.0
+"""A day, s: longer than any program runs."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,7 +34,7 @@ class InputSpec:
 
 
 def read_input(table: Table) -> InputSpec:
-    """Read one ``[inputs.N]``; ``FileFault`` at what is wrong."""
+    """Read one ``[inputs.N]``; ``FileFault`` RBL605, RBL608 or RBL61x."""
     if "follows" in table:
         found = InputSpec(
             follows=table.integer("follows", low=1, high=MOST),
@@ -40,10 +42,12 @@ def read_input(table: Table) -> InputSpec:
         )
         table.done()
         return found
+    # each pair as a table of its own, so that the usual getters check and name it
     changes: list[tuple[int, float]] = []
     for pair in table.raw_list("changes"):
         row = Table(table.source, {"changes": pair}, table.keys)
         seconds, state = row.numbers("changes", 2)
+        # compared in whole microseconds: two times that are one on the clock would leave the order of states open
         if not 0.0 <= seconds <= LONGEST_S or (changes and round(seconds * 1e6) <= changes[-1][0]):
             table.fail("RBL605", f"the times of '{table.name('changes')}' must rise from 0 on", key="changes")
         changes.append((round(seconds * 1e6), state))
@@ -95,7 +99,7 @@ class Signals:
     def set(self, output: int, value: float, now_us: int, off_us: int | None = None) -> None:
         """Set an output from ``now_us`` on, and back to 0 at ``off_us``."""
         rows = self._history.setdefault(output, [])
-        while rows and rows[-1][0] >= now_us:  # a pulse that would still have ended
+        while rows and rows[-1][0] >= now_us:  # the end of a pulse that is still to come: the new state replaces it
             rows.pop()
         rows.append((now_us, value))
         if off_us is not None:
@@ -116,6 +120,7 @@ class Signals:
                 f"write [inputs.{number}] into the cell file",
             )
         if spec.follows is not None:
+            # the whole history is kept: a delay may reach back further than the last change
             return _at(self._history.get(spec.follows, ()), now_us - spec.delay_us)
         return _at(spec.changes, now_us)
 

@@ -29,12 +29,14 @@ class RefusedError(Exception):
 @contextmanager
 def regular_file(path: str | os.PathLike[str], *, links: bool = True) -> Iterator[IO[bytes]]:
     """Yield a regular file, open for reading; ``RefusedError``. ``links`` False: a link is refused, too (ELOOP)."""
+    # without O_NONBLOCK the open of a pipe waits for a writer; O_NOCTTY: a terminal must not become ours
     flags = os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC | (0 if links else os.O_NOFOLLOW)
     try:
         handle = os.open(path, flags)
     except (OSError, ValueError) as error:  # ValueError: a NUL character in the name
         raise RefusedError(error=error) from None
     try:
+        # of the open file, not of its name, which may be another file by now
         mode = os.fstat(handle).st_mode
         if not stat.S_ISREG(mode):
             raise RefusedError(mode=mode)

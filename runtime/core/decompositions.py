@@ -1,6 +1,7 @@
 """Solutions of linear equations and eigenvalues, the same bytes on every processor (see ``runtime.core.linear``).
 
-Eigen computes them: ``eigenpy`` comes with Pinocchio and is compiled for one instruction set. Arrays are float64.
+Eigen computes them: ``eigenpy`` comes with Pinocchio and is compiled for one instruction set. The LAPACK of numpy was
+rejected, since it calls the BLAS of the machine (docs/decisions/0033). Arrays are float64.
 """
 
 import eigenpy
@@ -24,6 +25,7 @@ def least_squares(A: Array, b: Array, rcond: float) -> Array:
 
     Pivots below ``rcond`` times the largest count as zero (complete orthogonal decomposition).
     """
+    # complete, not only with column pivoting: where A lacks rank, the shortest of all solutions is needed
     found = eigenpy.CompleteOrthogonalDecomposition(A)
     found.setThreshold(rcond)
     return np.array(found.solve(b))

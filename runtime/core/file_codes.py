@@ -42,7 +42,8 @@ register(
     Code(
         code="RBL606",
         name="inertia-not-physical",
-        meaning="An inertia is one that no body can have: not positive, or breaking the triangle inequality.",
+        meaning="An inertia is not physically possible: a principal moment is not positive, or exceeds the sum of the "
+        "other two.",
         remedy="Each principal moment must be positive and at most the sum of the other two.",
     ),
     Code(
@@ -102,7 +103,7 @@ register(
     Code(
         code="RBL640",
         name="part-not-at-rest",
-        meaning="A part of a cell is inside of another part, an obstacle or the floor, or stands on nothing.",
+        meaning="A part of a cell overlaps another part, an obstacle or the floor, or has no support.",
         remedy="Correct its pose (the centre of the box, mm) or its size; a physical run would push it or let it fall.",
     ),
 )

@@ -3,7 +3,7 @@
 A pose ``X_a_b`` is a 4x4 homogeneous matrix that takes coordinates in frame b to frame a; names match like
 dominoes (``X_world_base @ X_base_tool``). Orientation at the surface is RX RY RZ about the fixed X, Y, Z axes in
 that order: ``R = Rz @ Ry @ Rx`` (docs/language.md). All functions broadcast over leading dimensions unless they say
-otherwise. Source of the principal axis: JPH06190750A Fig 6, steps 200-208.
+otherwise. Source of the principal axis: JPH06190750A Fig 6, steps 200-208. Angles rad, lengths m.
 """
 
 import math
@@ -23,7 +23,8 @@ HALF_TURN = 1e-6 * DEG
 """
 
 _SURELY_NOT_ZERO = 0.55
-"""One component of a unit vector is larger than this; and no axis that people choose has one that equals it."""
+"""One component of a unit vector is larger than this, since 1 / sqrt(3) = 0.577; axes at 30, 45 and 60 deg have none
+that equals it, so rounding does not change which component leads."""
 
 _NO_ROTATION = 1e-200
 """Below this the sine of an angle has no direction; the angle is then zero to the last bit."""
@@ -67,7 +68,7 @@ def principal_axis(R_from: Array, R_to: Array) -> tuple[Array, float]:
     if cosine >= 0.0:
         return (w / sine if sine > _NO_ROTATION else np.array([0.0, 0.0, 1.0])), theta
     kk = (0.5 * (M + M.T) - cosine * np.eye(3)) / (1.0 - cosine)
-    column = kk[:, int(np.argmax(np.diag(kk)))]
+    column = kk[:, int(np.argmax(np.diag(kk)))]  # the longest of the three, so the least rounding
     k = column / norm(column)
     return (-k if dot(k, w) < 0.0 else k), theta
 
@@ -86,6 +87,7 @@ def principal_axes(R_from: Array, R_to: Array) -> tuple[tuple[Array, float], ...
     k, theta = principal_axis(R_from, R_to)
     if not is_half_turn(theta):
         return ((k, theta),)
+    # judged in the frame of the tool, so that the direction does not depend on where the tool is (decision 0030)
     in_tool = matmul(R_from.T, k)
     leading = in_tool[int(np.argmax(np.abs(in_tool) > _SURELY_NOT_ZERO))]
     both = ((k, theta), (-k, 2.0 * math.pi - theta))
@@ -99,6 +101,7 @@ def rotation_angle(R_a: Array, R_b: Array) -> float:
 
 def rotation_angles(R_a: Array, R_b: Array) -> Array:
     """Return the angles (...,) between orientations (..., 3, 3) in rad, in [0, pi], exact near zero."""
+    # atan2 of twice sine and cosine: arccos of the trace alone loses half of the digits of small angles
     M = matmul(np.swapaxes(R_a, -1, -2), R_b)
     w = np.stack([M[..., 2, 1] - M[..., 1, 2], M[..., 0, 2] - M[..., 2, 0], M[..., 1, 0] - M[..., 0, 1]], axis=-1)
     return np.asarray(np.arctan2(np.linalg.norm(w, axis=-1), np.trace(M, axis1=-2, axis2=-1) - 1.0))
@@ -116,6 +119,7 @@ def rpy_from_rotation(R: Array) -> Array:
 
     Half a turn is +pi, never -pi: both are the same, and rounding must not decide the sign that a program reads.
     """
+    # below 1e-9 the first two terms of R are rounding and rx and rz turn about one axis: all of it is given to rz
     cy = np.hypot(R[..., 0, 0], R[..., 1, 0])
     regular = cy > 1e-9
     rx = np.where(regular, np.arctan2(R[..., 2, 1], R[..., 2, 2]), 0.0)

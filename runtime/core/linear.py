@@ -30,6 +30,7 @@ def matmul(*factors: Array) -> Array:
 
 
 def _matmul(a: Array, b: Array) -> Array:
+    # without ``optimize``: einsum would then hand large products to BLAS, whose order of summation is the machine's
     if b.ndim == 1:
         return np.asarray(einsum("...j,j->...", a, b))
     if a.ndim == 1:

@@ -11,12 +11,13 @@ _DOUBLE = re.compile(r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|
 
 
 def number_in(text: str) -> float | None:
-    """Return the number that a text is, NaN and infinity included; None for a text that is none."""
+    """Return the number of a text, NaN and infinity included; None for a text that is not a number."""
     return float(text) if _DOUBLE.fullmatch(text) else None
 
 
 def why_none(text: str) -> str:
-    """Return why a text that looks like a number is none, to follow its mention; empty when it does not look so."""
+    """Return why a text that resembles a number is none, to follow its mention; empty for any other text."""
+    # the three that other tools and languages accept; each gets its own reason
     if any(character.isdigit() and not "0" <= character <= "9" for character in text):
         return ": the digits of a number are 0 to 9"
     if re.fullmatch(r"[0-9][0-9_.]*", text) and "_" in text:

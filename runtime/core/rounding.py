@@ -8,7 +8,7 @@ fits. Called wherever a message compares a value with a limit; standard library 
 import math
 
 FEWEST_DIGITS, MOST_DIGITS = 6, 17
-"""Digits of a number where a few are enough, and so many that any two numbers of 64 bits differ in them."""
+"""Digits of a number as a rule, and those with which any two different numbers of 64 bits differ."""
 
 
 def beside(value: float, *limits: float, form: str = "g") -> tuple[str, ...]:
@@ -26,6 +26,7 @@ def beside(value: float, *limits: float, form: str = "g") -> tuple[str, ...]:
 
 def down(value: float, digits: int = 3) -> float:
     """Return the largest number of so many digits that is not above a value > 0."""
+    # 1e-9 of the last digit: 0.3 is 299.99999999999994 of its thousandths
     size = _place(value, digits)
     return float(f"{math.floor(value / size + 1e-9) * size:.{digits}g}")
 
@@ -46,5 +47,5 @@ def _order(a: float, b: float) -> int:
 
 
 def _place(value: float, digits: int) -> float:
-    """Return the worth of the last of the digits of a value > 0."""
+    """Return the unit of the last of so many digits of a value > 0."""
     return float(10.0 ** (math.floor(math.log10(value)) - digits + 1))

@@ -1,6 +1,7 @@
-"""Where the keys of a TOML text stand: tomllib keeps no places.
+"""The places of the keys of a TOML text: tomllib keeps none.
 
-A scan of lines, not a parser: an inline table is located at its own key. Imports the standard library only.
+A scan of lines, not a parser: an inline table is located at its own key. A second parser with places was rejected: it
+would have to agree with tomllib on every file. Called when an error is reported; the standard library only.
 """
 
 import re
@@ -11,9 +12,9 @@ _KEY = re.compile(r"^(\s*)([A-Za-z0-9_.\"'-]+)\s*=")
 
 
 def locate(text: str, keys: Sequence[str | int]) -> tuple[int, int]:
-    """Return the 1-based line and column where a key path stands; the nearest enclosing header otherwise.
+    """Return the 1-based line and column of a key path; of the nearest enclosing header where it is missing.
 
-    A path that stands only inside of longer ones (``a`` in ``[[a]]`` or ``[a.b]``) is at the first of these.
+    A path that occurs only in longer ones (``a`` in ``[[a]]`` or ``[a.b]``) is at the first of these.
     """
     best, place = -1, (1, 1)
     for number, column, path in _places(text):
@@ -25,7 +26,7 @@ def locate(text: str, keys: Sequence[str | int]) -> tuple[int, int]:
 
 
 def clash(text: str, line: int) -> tuple[int, int, str, int | None]:
-    """Return what is written up to ``line``: its line, column and name, and the earlier line of the same, if any."""
+    """Return the last key or header up to ``line``: its line, column and name, and the line of an earlier one of it."""
     earlier = [found for found in _places(text) if found[0] <= line]
     number, column, path = earlier[-1] if earlier else (line, 1, [])
     first = next((found[0] for found in earlier[:-1] if found[2] == path), None)
@@ -42,7 +43,10 @@ def lines_of(text: str) -> list[str]:
 
 
 def _places(text: str) -> Iterator[tuple[int, int, list[str | int]]]:
-    """Yield line, column and key path of every header and key."""
+    """Yield line, column and key path of every header and key.
+
+    A line inside a text of several lines may look like a key; it then only takes part in the search for the best match.
+    """
     here: list[str | int] = []
     counts: dict[tuple[str | int, ...], int] = {}
     for number, line in enumerate(lines_of(text), start=1):
@@ -63,6 +67,7 @@ def _header_path(dotted: str, is_array: bool, counts: dict[tuple[str | int, ...]
     for position, part in enumerate(parts):
         path.append(part)
         key = tuple(path)
+        # [[a]] counts up its own entry; [a.b] after it belongs to the entry that is open
         if is_array and position == len(parts) - 1:
             counts[key] = counts.get(key, -1) + 1
             path.append(counts[key])

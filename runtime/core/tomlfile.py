@@ -1,6 +1,6 @@
-"""TOML files with located errors: the one way in for robot, cell, points and profile files.
+"""TOML files with located errors: the one reader of robot, cell, points and profile files.
 
-A ``Table`` hands out its keys by type and remembers which were asked for; ``Table.done`` rejects the rest, so a
+A ``Table`` hands out its keys by type and remembers which were read; ``Table.done`` rejects the rest, so a
 misspelt key never passes silently. Every error is a ``FileFault`` with file, line, column, code and hint.
 Reading is bounded: only regular files up to 1 MB are opened. Imports the standard library only.
 """
@@ -22,23 +22,33 @@ from runtime.core.rounding import beside
 from runtime.core.toml_places import clash, lines_of, locate
 
 MAX_BYTES = 1_000_000
+"""Files of this kind are written by hand: some kilobytes."""
 MAX_ABS = 1e9
+"""A larger number is in no unit of any key."""
 TWICE = "is given twice"
-"""What the message of a key or table that stands twice says."""
+"""The message of a key or table that is there twice; lint gives it a code of its own."""
 
 _CLASHES = ("Cannot overwrite a value", "Cannot declare", "Cannot mutate immutable", "Cannot redefine")
-"""How the messages of tomllib begin where a key or table is there already."""
+"""Beginnings of the messages of tomllib for a key or table that is there already; it has no error classes."""
+
+
+@dataclass(frozen=True, slots=True)
+class FilePlace:
+    """A place in a file: its name, 1-based line and column, and the text of the line."""
+
+    path: str
+    line: int = 1
+    column: int = 1
+    excerpt: str = ""
 
 
 class FileFault(Fault):
-    """A fault at a place in a file. ``line`` and ``column`` are 1-based; ``excerpt`` is the line's text."""
+    """A fault at a place in a file."""
 
-    def __init__(self, code: str, message: str, hint: str, *, path: str, line: int, column: int, excerpt: str) -> None:
+    def __init__(self, code: str, message: str, hint: str, place: FilePlace) -> None:
         super().__init__(code, message, hint)
-        self.path = path
-        self.line = line
-        self.column = column
-        self.excerpt = excerpt
+        self.place = place
+        self.path, self.line, self.column, self.excerpt = place.path, place.line, place.column, place.excerpt
 
     def __str__(self) -> str:
         return f"{self.path}:{self.line}:{self.column}: {self.code} {self.message}"
@@ -56,7 +66,7 @@ class Source:
         line, column = locate(self.text, keys)
         lines = lines_of(self.text)
         excerpt = lines[line - 1] if 0 < line <= len(lines) else ""
-        return FileFault(code, message, hint, path=self.path, line=line, column=column, excerpt=excerpt)
+        return FileFault(code, message, hint, FilePlace(self.path, line, column, excerpt))
 
     def fail(self, code: str, message: str, hint: str = "", keys: Sequence[str | int] = ()) -> NoReturn:
         """Raise ``FileFault`` at the place of the key path ``keys`` (best match)."""
@@ -81,12 +91,12 @@ def read_source(path: Path, code: str = "RBL600") -> Source:
 
 
 def _not_text(path: Path, raw: bytes, start: int, code: str) -> NoReturn:
-    """Raise ``FileFault`` at a byte that is not UTF-8; ``start`` counts behind a byte order mark."""
+    """Raise ``FileFault`` at a byte that is not UTF-8; ``start`` counts after a byte order mark."""
     body = raw.removeprefix(b"\xef\xbb\xbf")
     before = body[:start].decode("utf-8").split("\n")
     excerpt = lines_of(body.decode("utf-8", "replace"))[len(before) - 1]
     message = f"{path} is not UTF-8 text (byte {start})"
-    raise FileFault(code, message, "", path=str(path), line=len(before), column=len(before[-1]) + 1, excerpt=excerpt)
+    raise FileFault(code, message, "", FilePlace(str(path), len(before), len(before[-1]) + 1, excerpt))
 
 
 def load_table(source: Source, code: str = "RBL601", *, gather: bool = False) -> "Table":
@@ -94,6 +104,7 @@ def load_table(source: Source, code: str = "RBL601", *, gather: bool = False) ->
     try:
         return Table(source, tomllib.loads(source.text), (), [] if gather else None)
     except tomllib.TOMLDecodeError as error:
+        # tomllib has the place in its message only (attributes from Python 3.14 on)
         text = str(error)
         found = re.search(r"at line (\d+), column (\d+)", text)
         lines = lines_of(source.text)
@@ -105,7 +116,7 @@ def load_table(source: Source, code: str = "RBL601", *, gather: bool = False) ->
             message = f"{name} {TWICE}" + (f", first in line {first}" if first is not None else "")
             hint = "remove one of the two, or put their contents together"
         excerpt = lines[line - 1] if line <= len(lines) else ""
-        raise FileFault(code, message, hint, path=source.path, line=line, column=column, excerpt=excerpt) from None
+        raise FileFault(code, message, hint, FilePlace(source.path, line, column, excerpt)) from None
     except RecursionError:
         source.fail(code, "the file is nested too deeply")
     except ValueError as error:  # int() refuses a literal of thousands of digits
@@ -114,14 +125,14 @@ def load_table(source: Source, code: str = "RBL601", *, gather: bool = False) ->
 
 @dataclass(frozen=True, slots=True)
 class _Missing:
-    """A key that a table lacks, noted by a reader that goes on."""
+    """A key that a table lacks, noted by a reader that continues."""
 
     table: "Table"
     key: str
 
 
 class _NotedError(Exception):
-    """A key that cannot be had, and has been noted."""
+    """A key that is missing, and has been noted."""
 
 
 T = TypeVar("T")
@@ -130,10 +141,10 @@ T = TypeVar("T")
 class Table:
     """One TOML table being read: typed getters, each key at most once, unknown keys rejected by ``done``.
 
-    With ``gathered`` a reader looks for everything that is wrong: a getter that fails notes it there and returns a
-    value that is as good as any, and ``finish`` of the whole file raises what was noted. What a reader says itself
-    (``fail``) ends its part of the file: ``attempt`` notes it, unless something was noted in that part before, since
-    it may follow from that.
+    With ``gathered`` a reader finds every error of a file: a getter that fails notes its fault there and returns a
+    substitute in the range of the key, and ``finish`` of the whole file raises all faults noted. A fault that a reader
+    raises itself (``fail``) ends its part of the file: ``attempt`` notes it, unless something was noted in that part
+    before, since it may follow from that.
     """
 
     def __init__(
@@ -171,16 +182,17 @@ class Table:
         raise self.fault(code, message, hint, key)
 
     def name(self, key: str = "") -> str:
-        """Return the dotted name of ``key`` as people write it, axes counted from 1."""
+        """Return the dotted name of ``key`` as messages have it, axes counted from 1."""
         parts = [str(k + 1) if isinstance(k, int) else k for k in self.keys]
         return ".".join([*parts, key] if key else parts)
 
     # --- everything that is wrong at once ----------------------------------------------------------------------------
 
     def attempt(self, read: Callable[[], T]) -> T | None:
-        """Return what reads a part of the file, None when something in it is wrong (noted, or raised: see above)."""
+        """Return the result of reading a part of the file, None when something in it is wrong (see the class)."""
         if self._gathered is None:
             return read()
+        # one list for the whole file, shared by all of its tables: more notes in it mean that this part has errors
         before = len(self._gathered)
         try:
             found = read()
@@ -191,7 +203,7 @@ class Table:
         return found if len(self._gathered) == before else None
 
     def gather(self, read: "Callable[[Table], T]") -> T | None:
-        """Return what reads this table; None when it is not there or something in it is wrong."""
+        """Return the result of reading this table; None when it is missing or something in it is wrong."""
         return None if self._absent else self.attempt(lambda: read(self))
 
     def finish(self) -> None:
@@ -201,13 +213,14 @@ class Table:
             tables = {id(note.table): note.table for note in self._gathered if isinstance(note, _Missing)}
             faults = [note for note in self._gathered if isinstance(note, FileFault)]
             faults += [table._lacking() for table in tables.values()]
+            # two readers of one key may note the same fault; faults of the file itself come before those of others
             faults = list({(fault.path, fault.line, fault.column, fault.message): fault for fault in faults}.values())
             faults.sort(key=lambda fault: (fault.path != self.source.path, fault.line, fault.column))
             faults[0].others = tuple(faults[1:])
             raise faults[0]
 
     def _noted(self, read: Callable[[], T], instead: T) -> T:
-        """Return what a getter reads; ``instead`` where it fails and the reader goes on."""
+        """Return what a getter reads; ``instead`` where it fails and the reader continues."""
         if self._gathered is None:
             return read()
         try:
@@ -226,6 +239,7 @@ class Table:
     def _lacking(self) -> FileFault:
         """Return the one fault that names every key which this table lacks."""
         keys = self._missing_keys()
+        # an unknown key that resembles a missing one is most likely that one, misspelt: said once, with the missing key
         near = {key: self._looks_like(key) for key in keys}
         hint = "; ".join(f"'{found}' looks like '{key}'" for key, found in near.items() if found)
         if len(keys) == 1:
@@ -264,20 +278,22 @@ class Table:
     ) -> float:
         """Return a finite float in ``[low, high]`` (``positive``: above zero)."""
         if key not in self._data and default is not None:
-            self._asked.add(key)
+            self._asked.add(key)  # a known key, although it is missing
             return default
         return self._noted(lambda: self._checked(key, self._take(key), low, high, positive), _within(low, high))
 
     def _checked(self, key: str, value: Any, low: float, high: float, positive: bool) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float):
             self.fail("RBL613", f"'{self.name(key)}' must be a number, not {_kind(value)}", key=key)
+        # compared before it is converted: an integer of thousands of digits is beyond any float
         number = float(value) if abs(value) <= MAX_ABS else math.inf
         if not math.isfinite(number):
             self.fail("RBL604", f"'{self.name(key)}' is {_shown(value)}, not a finite number", key=key)
         if not (low <= number <= high) or (positive and not number > 0.0):
-            shown, wanted = _beside_range(number, low, high, positive)
+            shown, bounds = _beside_range(number, low, high, positive)
+            # the usual mistake at a key in metres: a drawing has mm
             mm = f"lengths are in m: write {number / 1e3:g} for {number:g} mm" if key.endswith("_m") else ""
-            self.fail("RBL605", f"'{self.name(key)}' is {shown} and must be {wanted}", mm, key=key)
+            self.fail("RBL605", f"'{self.name(key)}' is {shown} and must be {bounds}", mm, key=key)
         return number
 
     def numbers(
@@ -300,20 +316,20 @@ class Table:
         value = self._take(key)
         if not isinstance(value, list) or (count is not None and len(value) != count):
             got = f"{len(value)} entries" if isinstance(value, list) else _kind(value)
-            wanted = "a list of numbers" if count is None else f"a list of {count} numbers"
-            self.fail("RBL613", f"'{self.name(key)}' must be {wanted}, not {got}", key=key)
+            form = "a list of numbers" if count is None else f"a list of {count} numbers"
+            self.fail("RBL613", f"'{self.name(key)}' must be {form}, not {got}", key=key)
         return tuple(self._checked(key, item, low, high, positive) for item in value)
 
     def is_list(self, key: str) -> bool:
-        """Return whether a key is there and holds a list."""
+        """Return whether the value of a key is a list; False without the key."""
         return isinstance(self._data.get(key), list)
 
     def is_table(self, key: str) -> bool:
-        """Return whether a key is there and holds a table."""
+        """Return whether the value of a key is a table; False without the key."""
         return isinstance(self._data.get(key), dict)
 
     def raw_list(self, key: str) -> list[Any]:
-        """Return an optional list as it stands (empty when missing)."""
+        """Return an optional list, its entries unchecked (empty when missing)."""
         self._asked.add(key)
         return self._noted(lambda: self._list(key), [])
 
@@ -366,6 +382,7 @@ class Table:
         if not required and key not in self._data:
             self._asked.add(key)
             return Table(self.source, {}, (*self.keys, key), self._gathered)
+        # an empty table instead, whose own missing keys are not noted: the table that lacks is the error
         nothing = Table(self.source, {}, (*self.keys, key), self._gathered, absent=True)
         return self._noted(lambda: self._table(key), nothing)
 
@@ -394,7 +411,7 @@ class Table:
         return {name: outer.table(name) for name in outer.names()}
 
     def ask(self, *keys: str) -> None:
-        """Count optional keys as known, whether they are there or not."""
+        """Count keys as known to this file, present or not."""
         self._asked.update(keys)
 
     def place(self, key: str) -> str:
@@ -402,11 +419,11 @@ class Table:
         return f"{self.source.path}:{locate(self.source.text, (*self.keys, key))[0]}"
 
     def done(self) -> None:
-        """Reject every key that was not asked for."""
+        """Reject every key that was not read; RBL609, with the key that it resembles."""
         missing = self._missing_keys()
         for key in self._data:
             if key in self._asked or difflib.get_close_matches(key, missing, n=1):
-                continue  # a key that looks like a missing one is named with that
+                continue  # reported with the missing key that it resembles: one mistake, one message
             near = _near(key, self._asked - set(self._data)) or next(
                 iter(difflib.get_close_matches(key, self._asked, n=1)), ""
             )
@@ -425,7 +442,7 @@ def _near(key: str, free: AbstractSet[str]) -> str:
 
 
 def _beside_range(number: float, low: float, high: float, positive: bool) -> tuple[str, str]:
-    """Return a number and the range that it is not in, in words; ``MAX_ABS`` is the end of no key's own range."""
+    """Return a number and the range that it is not in, in words; ``MAX_ABS`` is not named as the end of a range."""
     shown, least, most = beside(number, 0.0 if positive else low, high)
     if positive:
         return shown, "above 0" if high >= MAX_ABS else f"above 0 and at most {most}"
@@ -435,7 +452,7 @@ def _beside_range(number: float, low: float, high: float, positive: bool) -> tup
 
 
 def _within(low: float, high: float) -> float:
-    """Return a number of a range, 1 where it may be."""
+    """Return a number of a range as a substitute, 1 where it is in the range: most checks of others accept it."""
     return min(max(low, 1.0), high)
 
 
@@ -445,20 +462,24 @@ def _kind(value: object) -> str:
 
 
 def _shown(value: float) -> str:
-    """Return a number for a message; an integer may have more digits than Python is willing to print."""
+    """Return a number for a message; Python refuses to print an integer of more than 4300 digits."""
     if isinstance(value, int) and abs(value) >= 10**20:
         return f"a whole number of {value.bit_length()} bits"
     return str(value)
 
 
 def inside(table: Table, name: str, folder: Path | None, key: str) -> Path:
-    """Return the file that ``name`` means, or refuse it when it is not inside ``folder`` (RBL602)."""
+    """Return the path of the file ``name`` inside ``folder``; ``FileFault`` RBL602 when it leads out of it.
+
+    Without a folder (a cell held as text) no file can be named at all.
+    """
     if folder is None:
         table.fail("RBL602", f"'{name}' is a file, and this cell has no folder", key=key)
     # a Windows path must be refused on Linux too: the same cell file means the same on both
     absolute = any(kind(name).is_absolute() or kind(name).anchor for kind in (PurePosixPath, PureWindowsPath))
     if absolute or ".." in re.split(r"[/\\]", name) or "\0" in name:
         table.fail("RBL602", f"'{name}' is not a path inside the folder of the cell file", key=key)
+    # resolved as well: a symbolic link may lead out although the name does not
     try:
         target = (folder / name).resolve()
     except (OSError, RuntimeError, ValueError) as error:

@@ -1,12 +1,12 @@
-"""The compensation file ``NAME.compensation.toml``: what identification found beyond the model, axis by axis.
+"""The compensation file ``NAME.compensation.toml``: the inertia that identification found beyond the model, by axis.
 
     J_total,i = D_i / N_i^2 + Jc_i            kg m2 at the motor end (document 003, EFORT, 3.5: S3 and S4)
 
-Jc is the identified inertia minus that of the model's links, so it holds the rotor, the gear and whatever the model
-misses. It takes the place of the rotor inertia J in D' = D + N^2 J of eqs (9) and (10); the two are never added
+Jc is the identified inertia minus that of the model's links, so it includes the rotor, the gear and all that the model
+lacks. It takes the place of the rotor inertia J in D' = D + N^2 J of eqs (9) and (10); the two are never added
 (docs/identification.md). One scalar per axis: D_ii does not depend on the axis' own angle, so neither does Jc. It may
-depend on the joints beyond the axis; a table over one or two of them then says how. The first moment that a link has
-beyond the model stands beside it: the weight that the same passes showed (``first_moments``).
+depend on the joints beyond the axis, as a table over one or two of them. The first moment that a link has beyond the
+model is given with it: the weight that the same passes showed (``first_moments``).
 
 ::
 
@@ -14,7 +14,7 @@ beyond the model stands beside it: the weight that the same passes showed (``fir
     robot = "puma560"
     date = "2026-11-24"                 # optional
     positions = 5
-    [payload]                           # what the arm carried and was declared
+    [payload]                           # carried by the arm, and declared
     mass_kg = 0.0
     cog_mm = [0.0, 0.0, 0.0]
     [[axes]]                            # one for each axis, from J1
@@ -25,7 +25,7 @@ beyond the model stands beside it: the weight that the same passes showed (``fir
     table_joints = [2, 3]               # optional, all three: joints beyond the axis, one or two,
     table_deg = [[-90, 0], [0, 45, 90]] # their angles, rising,
     table_kg_m2 = [1e-4, ...]           # and Jc over them, the angle of the last joint first
-    first_moment_kg_m = [0.2, 0.0, 0.0] # optional: what the link has beyond the model, in its own frame
+    first_moment_kg_m = [0.2, 0.0, 0.0] # optional: of the link beyond the model, in its own frame
 
 Every error is a ``FileFault`` at its line. Read once, before anything moves.
 """
@@ -55,7 +55,7 @@ from runtime.robot.model.spec import RobotSpec
 SCHEMA = 1
 MOST_POSITIONS = 1000
 MOST = 10.0
-"""Largest N^2 Jc that is believed, in terms of the largest D + N^2 J of the axis."""
+"""Largest N^2 Jc that is accepted, in terms of the largest D + N^2 J of the axis."""
 MOST_JOINTS, MOST_ANGLES = 2, 50
 """Size of the largest table that is read."""
 FURTHEST = 3600.0
@@ -63,7 +63,9 @@ FURTHEST = 3600.0
 FAR = 0.3
 """Distance at which the rated payload may have been left out of the model, m."""
 _POSTURES = 200
+"""Postures that bound D of an axis; a bound of 10 times does not need the 2000 of ``inertia_range``."""
 _FEW = 20
+"""Postures of the other joints at each point of a table, which may have 2500 points."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,7 +73,7 @@ class AxisCompensation:
     """One axis, kg m2 at the motor: ``compensation`` Jc; None where the axis was not identified.
 
     ``table``: Jc over joints beyond the axis, where it is known; ``compensation`` is its mean then. ``first_moment``:
-    what the link has beyond the model, kg m in its frame; empty where it was not identified.
+    that of the link beyond the model, kg m in its frame; empty where it was not identified.
     """
 
     compensation: float
@@ -98,7 +100,7 @@ class Compensation:
 
     @property
     def first_moments(self) -> tuple[tuple[float, ...], ...]:
-        """What each link has beyond the model, kg m in its frame; () where none was identified."""
+        """First moment of each link beyond the model, kg m in its frame; () where none was identified."""
         if not any(axis.first_moment for axis in self.axes):
             return ()
         return tuple(axis.first_moment or (0.0, 0.0, 0.0) for axis in self.axes)
@@ -111,7 +113,7 @@ class Compensation:
         return found
 
     def rotor_tables(self, spec: RobotSpec) -> tuple[JointTable | None, ...]:
-        """Return N^2 (Jc(q) - Jc) of every axis, kg m2 at the joint: what is beyond ``rotors``; () without tables."""
+        """Return N^2 (Jc(q) - Jc) of every axis, kg m2 at the joint, to be added to ``rotors``; () without tables."""
         if all(axis.table is None for axis in self.axes):
             return ()
         squared = (spec.per_axis("motor", "gear_ratio") ** 2).tolist()
@@ -126,11 +128,13 @@ def load_compensation(path: Path, spec: RobotSpec) -> Compensation:
     table = load_table(read_source(path))
     _schema(table)
     robot = table.text("robot")
+    # by name: the same numbers on another arm would be accepted by every other check
     if robot != spec.name:
         table.fail("RBL617", f"the compensation is that of '{robot}'; this robot is {spec.name}", key="robot")
     axes = table.tables("axes")
     if len(axes) != spec.n:
         table.fail("RBL613", f"'axes' has {len(axes)} entries; {spec.name} has {spec.n} axes", key="axes")
+    # the checks against the arm come last, when every value is one of its kind
     found = Compensation(
         robot=robot,
         date=_date(table),
@@ -139,8 +143,8 @@ def load_compensation(path: Path, spec: RobotSpec) -> Compensation:
         axes=tuple(_axis(item, axis, spec.n) for axis, item in enumerate(axes)),
     )
     table.done()
-    _believe(found, spec, axes)
-    _believe_moments(found, spec, axes)
+    _check_inertias(found, spec, axes)
+    _check_moments(found, spec, axes)
     return found
 
 
@@ -164,6 +168,7 @@ def as_toml(found: Compensation) -> str:
 
 def _table_lines(table: JointTable) -> list[str]:
     """Return the lines of a table, one line of values for each angle of the first joint; angles to 1e-9 deg."""
+    # rounded angles: 45 deg in rad and back is 45.00000000000001, which nobody would type
     angles = ", ".join(f"[{', '.join(repr(round(angle / DEG, 9)) for angle in grid)}]" for grid in table.grid)
     size = len(table.values) // len(table.grid[0])
     rows = [table.values[k : k + size] for k in range(0, len(table.values), size)]
@@ -195,6 +200,7 @@ def _payload(table: Table, spec: RobotSpec) -> Payload:
     mass = table.number("mass_kg", low=0.0)
     cog = np.array(table.numbers("cog_mm", 3)) * MM
     table.done()
+    # the payload of the identification may be above the rated one: a test bench is no program
     try:
         return declared(mass, cog, max(mass, spec.rated_payload))
     except Fault as fault:
@@ -217,12 +223,7 @@ def _joint_table(table: Table, axis: int, n: int) -> JointTable | None:
     """Read the table of axis ``axis`` (0-based) of ``n``, None where it has none."""
     if not any(f"table_{name}" in table for name in ("joints", "deg", "kg_m2")):
         return None
-    joints = table.numbers("table_joints", None)
-    if not 1 <= len(joints) <= MOST_JOINTS:
-        table.fail("RBL613", f"'{table.name('table_joints')}' must name one or two joints", key="table_joints")
-    if not all(joint in range(axis + 2, n + 1) for joint in joints) or not _rising(joints):
-        beyond = f"joints beyond J{axis + 1}, up to J{n} and rising" if axis + 1 < n else "no joint: none is beyond it"
-        table.fail("RBL605", f"'{table.name('table_joints')}' must name {beyond}", key="table_joints")
+    joints = _table_joints(table, axis, n)
     grid = tuple(_angles(table, angles) for angles in table.raw_list("table_deg"))
     if len(grid) != len(joints):
         table.fail(
@@ -231,7 +232,21 @@ def _joint_table(table: Table, axis: int, n: int) -> JointTable | None:
             key="table_deg",
         )
     values = table.numbers("table_kg_m2", prod(len(angles) for angles in grid))
-    return JointTable(joints=tuple(int(joint) - 1 for joint in joints), grid=grid, values=values)
+    return JointTable(joints=tuple(joint - 1 for joint in joints), grid=grid, values=values)
+
+
+def _table_joints(table: Table, axis: int, n: int) -> tuple[int, ...]:
+    """Return the joints (from 1) of the table of axis ``axis`` (0-based) of ``n``; ``FileFault`` RBL605 or RBL613.
+
+    Beyond the axis and rising: D_ii depends on no other joint, and one order means one file for one table.
+    """
+    joints, name = table.numbers("table_joints", None), table.name("table_joints")
+    if not 1 <= len(joints) <= MOST_JOINTS:
+        table.fail("RBL613", f"'{name}' must name one or two joints", key="table_joints")
+    if not all(joint in range(axis + 2, n + 1) for joint in joints) or not _rising(joints):
+        beyond = f"joints beyond J{axis + 1}, up to J{n} and rising" if axis + 1 < n else "no joint: none is beyond it"
+        table.fail("RBL605", f"'{name}' must name {beyond}", key="table_joints")
+    return tuple(int(joint) for joint in joints)
 
 
 def _angles(table: Table, angles: Any) -> tuple[float, ...]:
@@ -252,27 +267,28 @@ def _rising(values: tuple[float, ...]) -> bool:
     return all(before < after for before, after in pairwise(values))
 
 
-def _believe(found: Compensation, spec: RobotSpec, axes: list[Table]) -> None:
-    """Refuse a Jc with which the inertia in the gains is not positive, or beyond anything the axis can have."""
+def _check_inertias(found: Compensation, spec: RobotSpec, axes: list[Table]) -> None:
+    """Refuse a Jc with which the inertia in the gains is not positive, or far beyond that of the axis; RBL605."""
     squared = spec.per_axis("motor", "gear_ratio") ** 2
     smallest, largest = inertia_range(spec, postures=_POSTURES)
     most = MOST * (largest + spec_rotors(spec))
     for axis, (entry, table) in enumerate(zip(found.axes, axes, strict=True)):
-        what = [("compensation_kg_m2", entry.compensation, float(smallest[axis]))]
+        # with the smallest D that the axis has there: a gain that is negative in one posture is unstable in it
+        values = [("compensation_kg_m2", entry.compensation, float(smallest[axis]))]
         if entry.table is not None:
             at_points = _smallest_over(entry.table, spec, axis)
-            what += [("table_kg_m2", Jc, D) for Jc, D in zip(entry.table.values, at_points, strict=True)]
-        for key, Jc, D in what:
+            values += [("table_kg_m2", Jc, D) for Jc, D in zip(entry.table.values, at_points, strict=True)]
+        for key, Jc, D in values:
             total = float(D + squared[axis] * Jc)
             if not (total > 0.0 and squared[axis] * Jc <= most[axis]):
                 lightest = f"which leaves J{axis + 1} {total:.3g} kg m2 at the joint where it is lightest"
-                why = f"more than {MOST:g} times what J{axis + 1} has" if total > 0.0 else lightest
+                why = f"more than {MOST:g} times the inertia of J{axis + 1}" if total > 0.0 else lightest
                 verb = "has" if key == "table_kg_m2" else "is"
                 table.fail("RBL605", f"'{key}' of J{axis + 1} {verb} {Jc:.4g}, {why}", key=key)
 
 
-def _believe_moments(found: Compensation, spec: RobotSpec, axes: list[Table]) -> None:
-    """Refuse a first moment beyond anything the link can have."""
+def _check_moments(found: Compensation, spec: RobotSpec, axes: list[Table]) -> None:
+    """Refuse a first moment far beyond that of the link, RBL605."""
     most = MOST * (scale(spec) + FAR * spec.rated_payload)
     for axis, (moment, table) in enumerate(zip(found.first_moments, axes, strict=False)):
         size = norm(np.asarray(moment))
@@ -280,7 +296,7 @@ def _believe_moments(found: Compensation, spec: RobotSpec, axes: list[Table]) ->
             long, bound = beside(size, float(most[axis]), form=".4g")
             table.fail(
                 "RBL605",
-                f"'first_moment_kg_m' of J{axis + 1} is {long} long; more than {bound} is not believed of that link",
+                f"'first_moment_kg_m' of J{axis + 1} is {long} long; at most {bound} is accepted for that link",
                 key="first_moment_kg_m",
             )
 

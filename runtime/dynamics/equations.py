@@ -34,6 +34,7 @@ def inertia_range(spec: RobotSpec, payload: Payload = NO_PAYLOAD, postures: int 
 
     Sampled at ``postures`` fixed pseudo-random postures, so the same robot always gives the same numbers.
     """
+    # sampled: the extremes over all postures have no closed form, and bounds for checks need no last digit
     model = ArmModel(spec)
     samples = np.random.default_rng(560).uniform(spec.lower, spec.upper, (postures, spec.n))
     found = []

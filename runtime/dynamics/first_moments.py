@@ -1,18 +1,18 @@
-"""First moments that the links have beyond the model, from the torques that hold an arm against gravity.
+"""First moments of the links beyond the model, from the torques that hold an arm against gravity.
 
 A first moment h_j = m_j c_j (3,), kg m, fixed to link j, loads axis i <= j with
 
     T_i = g (e_z x z_i) . (R_j h_j)             R_j rotation base <- link j, z_i the axis, e_z up
 
 and T is linear in all of them. A mass that the model lacks acts on the axes before it like a first moment of the link
-before, at the origin of its own frame, so first moments alone say everything that gravity can show. What is left of the
+before, at the origin of its own frame, so first moments alone describe all that gravity can show. The rest of the
 torques of an identification at no acceleration,
 
     tau_i - T_i(q) = sum_j Y_ij(q) dh_j + F_i
 
-has one friction F_i for each axis, which passes all places at one speed in one direction; gravity turns with the
-posture and friction does not. Least squares; of moments that gravity cannot tell apart the smallest, in terms of
-``scale``. Used by ``ArmModel`` (gravity torque of the dynamics task); docs/identification.md.
+has one friction F_i for each axis, which passes all places at one speed in one direction; gravity changes with the
+posture and friction does not. Least squares; of moments that gravity cannot distinguish the smallest, in terms of
+``scale`` (docs/decisions/0020). Used by ``ArmModel`` (gravity torque of the dynamics task); docs/identification.md.
 """
 
 from dataclasses import dataclass
@@ -32,16 +32,16 @@ READING = 5e-4
 DIGITS = 9
 """Decimals of a first moment in kg m that are kept."""
 LACKING = 0.5
-"""Standard deviation of what a link lacks before anything is read, as a share of ``scale``."""
+"""Standard deviation of a first moment beyond the model before anything is measured, as a share of ``scale``."""
 ROUNDING = 1e-13
-"""Pivots smaller than this share of the largest are rounding: the measurements say nothing of what they belong to."""
+"""Pivots smaller than this share of the largest are rounding: the measurements do not determine their parameters."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Weight:
-    """What gravity showed: first moments beyond the model (n, 3) kg m in link frames, friction (n,) N m at the joint.
+    """The fit: first moments beyond the model (n, 3) kg m in link frames, friction (n,) N m at the joint.
 
-    ``left`` is the root mean square of what neither explains, N m.
+    ``left`` is the root mean square of the residual torques, N m.
     """
 
     first_moments: Array
@@ -61,13 +61,13 @@ def gravity_columns(spec: RobotSpec, q: Array) -> Array:
     for i in range(n):
         z = rotations[i][:, 2]
         lever = GRAVITY * np.array([-z[1], z[0], 0.0])  # g e_z x z_i
-        for j in range(i, n):
+        for j in range(i, n):  # only links from the axis on turn with it
             Y[i, j] = matmul(lever, rotations[j])
     return Y
 
 
 def scale(spec: RobotSpec) -> Array:
-    """Return how large the first moment of each link is (n,), kg m: its own, and what hangs on the end of it."""
+    """Return the size of the first moment of each link (n,), kg m: its own, and that of all mass beyond its end."""
     found, beyond = np.zeros(spec.n), 0.0
     for j in reversed(range(spec.n)):
         body = spec.axes[j].body
@@ -78,10 +78,10 @@ def scale(spec: RobotSpec) -> Array:
 
 
 def weigh_links(spec: RobotSpec, payload: Payload, axes: Array, postures: Array, torques: Array, most: Array) -> Weight:
-    """Fit the torques (K,) N m of ``axes`` (K,), 0-based, that turn evenly in ``postures`` (K, n) rad.
+    """Return the fit to torques (K,) N m of ``axes`` (K,), 0-based, at constant speed in ``postures`` (K, n) rad.
 
-    ``payload`` is what the arm carries and the model knows, ``most`` (n,) N m the torque limits. Joint side, SI. An
-    axis that is not among ``axes`` has no friction in the result, 0.
+    ``payload`` is carried by the arm and known to the model, ``most`` (n,) N m are the torque limits. Joint side, SI.
+    An axis that is not among ``axes`` has no friction in the result, 0.
     """
     n, model = spec.n, ArmModel(spec)
     model.set_payload(payload)
@@ -89,8 +89,9 @@ def weigh_links(spec: RobotSpec, payload: Payload, axes: Array, postures: Array,
     A, b = np.zeros((len(axes), 4 * n)), np.zeros(len(axes))
     for row, (axis, q, tau) in enumerate(zip(axes, postures, torques, strict=True)):
         A[row, : 3 * n] = (gravity_columns(spec, q)[axis] * prior[:, None]).ravel() / noise[axis]
-        A[row, 3 * n + axis] = 1.0  # friction in terms of ``noise``, as large as it likes
+        A[row, 3 * n + axis] = 1.0  # friction in terms of ``noise``, without a bound
         b[row] = (tau - model.gravity(q)[axis]) / noise[axis]
+    # rows that hold each moment to 0 with its prior: what gravity cannot show stays as small as it may
     bound = np.hstack([np.eye(3 * n), np.zeros((3 * n, n))])
     x = least_squares(np.vstack([A, bound]), np.concatenate([b, np.zeros(3 * n)]), ROUNDING)
     left = (b - matmul(A, x)) * noise[axes]

@@ -52,9 +52,10 @@ _BLOCK = 256
 """Postures that ``link_inertia`` takes at a time: what it keeps of them stays in the processor's cache."""
 
 
+# without slots: cached_property keeps X_j and A_j in the instance, which is made anew with every LOAD
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LinkChain:
-    """What the pass needs of an arm, in the frames of its axes (3.2); read-only arrays.
+    """The arm as the pass needs it, in the frames of its axes (3.2); read-only arrays.
 
     ``rotations`` (n, 3, 3) and ``offsets`` (n, 3) m: R0_j and P_j, frame j at angle zero in frame j-1. ``masses`` (n,)
     kg, ``moments`` (n, 3) kg m (first moments Pm_j), ``inertias`` (n, 3, 3) kg m2 about the frame's origin.
@@ -101,6 +102,7 @@ def link_chain(spec: RobotSpec, payload: Payload = NO_PAYLOAD, mode: "LoadMode" 
     bodies = [axis.body for axis in spec.axes]
     parts = [_about_origin(body) for body in bodies]
     load = _about_origin(_carried(payload, spec.X_last_flange))
+    # the payload is fixed to the last link, so the two are one body of the chain
     parts[-1] = load if mode == "replace" else _sum(parts[-1], load)
     return LinkChain(
         rotations=frozen([axis.placement[:3, :3] for axis in spec.axes]),
@@ -156,14 +158,16 @@ def _moments(chain: LinkChain, q: Array, axis: int, last: int) -> list[Array]:
     if not 0 <= axis < chain.n:
         raise IndexError(f"axis {axis} of {chain.n}")
     R = [matmul(R0, _about_z(angle)) for R0, angle in zip(chain.rotations, q.tolist(), strict=True)]
+    # links before the axis stand still, so their accelerations stay zero and their own inertia does not enter
     dw, dv = [_NOTHING] * chain.n, [_NOTHING] * chain.n
     dw[axis] = _Z
     for j in range(axis + 1, chain.n):
         dw[j], dv[j] = outward(R[j], chain.offsets[j], dw[j - 1], dv[j - 1])
+    # no weight: the pass is at rest without gravity, T_i is computed apart (``equations``)
     moments = [_NOTHING] * chain.n
     Rf = Rn = _NOTHING  # R_{j+1} f_{j+1}, and R_{j+1} n_{j+1} + P_{j+1} x (R_{j+1} f_{j+1})
     for j in range(chain.n - 1, last - 1, -1):
-        f, moments[j] = back(chain.masses[j], chain.moments[j], chain.inertias[j], dw[j], dv[j], Rf, Rn)
+        f, moments[j] = back(chain, j, dw[j], dv[j], (Rf, Rn))
         Rf = matmul(R[j], f)
         Rn = matmul(R[j], moments[j]) + cross(chain.offsets[j], Rf)
     return moments
@@ -174,10 +178,12 @@ def outward(R: Array, P: Array, dw: Array, dv: Array) -> tuple[Array, Array]:
     return matmul(R.T, dw), matmul(R.T, cross(dw, P) + dv)
 
 
-def back(m: float, Pm: Array, inertia: Array, dw: Array, dv: Array, Rf: Array, Rn: Array) -> tuple[Array, Array]:
-    """Return (f_j, n_j) of link j; ``Rf`` and ``Rn`` are the force and moment of link j+1 at the origin of frame j."""
-    f = Rf + m * dv + cross(dw, Pm)
-    n = Rn - cross(dv, Pm) + matmul(inertia, dw)
+def back(chain: LinkChain, j: int, dw: Array, dv: Array, beyond: tuple[Array, Array]) -> tuple[Array, Array]:
+    """Return (f_j, n_j) of link j (0-based); ``beyond``: force and moment of link j+1 at the origin of frame j."""
+    Rf, Rn = beyond
+    Pm = chain.moments[j]
+    f = Rf + chain.masses[j] * dv + cross(dw, Pm)
+    n = Rn - cross(dv, Pm) + matmul(chain.inertias[j], dw)
     return f, n
 
 
@@ -202,6 +208,7 @@ def link_inertia(chain: LinkChain, q: Array) -> Array:
     3.4 for all axes together. Timing: offline, for maps and tables; about 0.1 us per axis and posture in large batches
     (``python -m tests.bench.inertia``).
     """
+    # in blocks: the columns of all links at all postures of a large map would not fit the cache
     rows = np.asarray(q, dtype=np.float64).reshape(-1, chain.n)
     J = np.empty_like(rows)
     for start in range(0, len(rows), _BLOCK):
@@ -214,6 +221,7 @@ def _block(chain: LinkChain, q: Array) -> Array:
     """Return J (n, B) at q (n, B). Columns (6, k, B): of link k, under the unit acceleration of each axis up to k."""
     n, count = q.shape
     c, s = np.cos(q), np.sin(q)
+    # a step back serves all axes before it: the load beyond link j is needed by each of them alike
     moved = _accelerations(chain, c, s)
     J = np.empty((n, count))
     load = _product(chain.bodies[-1], moved[-1])

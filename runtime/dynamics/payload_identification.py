@@ -1,27 +1,28 @@
-r"""The payload from the torques of a whole motion: mass, centre of gravity and how well they are known.
+r"""The payload from the torques of a whole motion: mass, centre of gravity and their uncertainties.
 
-What the motors gave beyond the bare arm, over two cycles (the triangle of ``runtime.supervision.torque_observer``),
+The torque of the motors beyond that of the bare arm, over two cycles (the triangle of
+``runtime.supervision.torque_observer``),
 
     r = tau - (M(q) + N^2 J) ddq - h(q, dq) - f(dq)  =  Y p + F s + V v + o + noise,        one row per axis that turns
 
 is linear in p, the ten parameters of the body beyond the flange (mass, first moment, inertia about the last joint),
 with Y = J' R(v, a - g) as in the observer, but all ten columns of R. The rest is nuisance, per axis: ``s`` and ``v``
 are the shares by which Coulomb and viscous friction differ from the robot file, ``o`` is a torque that is always there.
-Friction turns its sign with the motion and weight does not, so an exercise that goes both ways tells s and v from p by
-itself; they are bound only loosely (``LOOSE``). An offset is told from weight only by how weight changes with posture;
-it is bound by what the supervision believes of the model,
+Friction changes its sign with the motion and weight does not, so an exercise in both directions separates s and v from
+p by itself; they are bound only loosely (``LOOSE``). An offset differs from weight only in that weight changes with
+posture; it is bound by the uncertainties that the supervision has of the model,
 
     sigma_o = hypot(friction_uncertainty |N| Tc, torque_uncertainty tau_max).
 
-Weighted least squares; an axis weighs 1/sigma^2, sigma the root mean square of what is left on it, found in ``ROUNDS``
+Weighted least squares; an axis weighs 1/sigma^2, sigma the root mean square of its residuals, found in ``ROUNDS``
 rounds. A row is the mean of ``BLOCK`` averages, one for each cycle: the equation holds for means as well, and the steps
 of an encoder, which second differences make large, cancel in them but for the first and the last. Where an axis turns
-slower than ``TURNING``, or turns round, dry friction is anything: no such row is used.
+slower than ``TURNING``, or reverses, dry friction is not determined: no such row is used.
 
-Gear springs: readings are those of the motor, and the link is the twist t = (tau - f - N^2 J ddq) / Kc behind. For the
+Gear springs: readings are those of the motor, and the link lags by the twist t = (tau - f - N^2 J ddq) / Kc. For the
 Manutec that is up to 1.5 mrad; without the acceleration of t its 13.5 kg came out 0.1 kg heavier. So posture, speed
-and acceleration of the links are those of q - t, with differences of means of t. When an axis turns round, its dry
-friction jumps and strikes the springs; rows in which they still swing, or whose differences would reach there, are left
+and acceleration of the links are those of q - t, with differences of means of t. When an axis reverses, its dry
+friction jumps and excites the springs; rows in which they still swing, or whose differences would reach there, are left
 out on all axes.
 
 Pure functions; called once, after the motion.
@@ -46,20 +47,21 @@ BODY = 10
 LOOSE = 0.3
 """Standard deviation of the share by which friction differs from the robot file."""
 SPREAD = 0.3
-"""Radius of gyration of what is carried, about the last joint, that nobody is surprised by, m."""
+"""Usual radius of gyration of a payload about the last joint, m; the prior of its inertia."""
 VAGUE = 10.0
 """Standard deviation of the mass before anything is measured, in rated payloads; of the first moment, over 1 m."""
 QUIETEST = 1e-4
-"""Smallest noise that an axis is credited with, as a share of its torque limit."""
+"""Smallest noise of an axis, as a share of its torque limit: an axis without residuals would rule alone."""
 ROUNDS = 4
+"""Rounds of reweighting: the weights of the axes change the residuals, and these the weights."""
 BLOCK = 5
 """Averages that make one row of the least squares."""
 BASE = 5
 """Rows over which the twist of a gear is differentiated, and of which each value is the mean; odd."""
 REACH = BASE + BASE // 2
-"""Rows to either side of which such a difference makes use."""
+"""Rows to either side that such a difference uses."""
 DECAY_S = 0.1
-"""Time in which the gear springs come to rest after an axis has turned round: dry friction strikes them, s."""
+"""Time in which the gear springs come to rest after an axis has reversed, s."""
 FEWEST = 20
 """Rows of all axes together without which nothing is estimated."""
 LIGHTEST = 3.0
@@ -68,7 +70,7 @@ LIGHTEST = 3.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Knowledge:
-    """What is known of the arm beside its model.
+    """The properties of the arm beside its model.
 
     ``torque`` (n,) N m: torque limits. ``friction``: share of the robot file's friction that the arm has.
     ``springs``: whether the gears yield as the robot file says. By ``friction_uncertainty``, a share of the Coulomb
@@ -84,11 +86,11 @@ class Knowledge:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WeighedPayload:
-    """What is carried beyond the flange, with standard uncertainties.
+    """The payload beyond the flange, with standard uncertainties.
 
-    ``mass`` kg, ``cog`` (3,) m in the flange frame (None: the mass does not differ from nothing), ``mass_sd`` kg,
+    ``mass`` kg, ``cog`` (3,) m in the flange frame (None: the mass does not differ from zero), ``mass_sd`` kg,
     ``cog_sd`` (3,) m. ``friction`` (n,): share by which the Coulomb friction of an axis differs from the robot file.
-    ``left`` (n,) N m: root mean square of what no payload explains, ``peak`` (n,) its largest value; 0 for an axis that
+    ``left`` (n,) N m: root mean square of the residual torque, ``peak`` (n,) its largest value; 0 for an axis that
     did not turn. ``rows`` (n,): how many torques of an axis were used.
     """
 
@@ -117,7 +119,7 @@ class BodyModel(LoadModel):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Rows:
-    """Averages over two cycles, one for each cycle: angles, speeds, accelerations, torques (N, n); who turns."""
+    """Averages over two cycles, one for each cycle: angles, speeds, accelerations, torques (N, n); which axes turn."""
 
     q: Array
     dq: Array
@@ -135,6 +137,7 @@ def identify_payload(
     Row k of ``tau`` acts in the tick that begins with row k of ``q``. Half the window over which is averaged has
     ``ticks`` of ``tick_s`` s. ``ValueError`` when too little of it is motion.
     """
+    # the order matters: averages, then what the bare arm needs, then blocks of rows in which an axis turned throughout
     rows = _averages(tau, q, ticks, tick_s)
     if int(rows.turning.sum()) < FEWEST:
         raise ValueError("the arm does not move enough to be weighed")
@@ -143,18 +146,23 @@ def identify_payload(
     residual, Y = _beyond_the_bare_arm(spec, model, rows, friction, known.springs)
     usable = np.asarray(rows.turning & ~_shaken(spec, rows, known.springs)[:, None])
     A, r, turning = _blocks(np.concatenate([Y, columns], axis=2), residual, usable)
-    axis = np.nonzero(turning)[1]
+    axis = np.nonzero(turning)[1]  # of each row that is left: its weight is that of its axis
     found, covariance, left = _weighted(A[turning], r[turning], axis, spec, known)
     return _in_flange(spec, found, covariance, _per_axis(left, axis, spec.n))
 
 
 def _averages(tau: Array, q: Array, ticks: int, tick_s: float) -> _Rows:
+    """Return the averages over 2 ``ticks`` of ``tick_s`` s around every cycle; the same weights for both sides.
+
+    The triangle is the weight under which the mean of ddq is the second difference of q, exactly.
+    """
     m, h = ticks, ticks * tick_s
     at = np.arange(m, len(q) - m, m)
     before, now, after = q[at - m], q[at], q[at + m]
     ramp = (np.arange(m) + 0.5) / m**2
     triangle = np.concatenate([ramp, ramp[::-1]])
     first, second = (now - before) / h, (after - now) / h
+    # an axis that changes its direction within the window is counted as not turning
     slowest = np.where(first * second > 0.0, np.minimum(np.abs(first), np.abs(second)), 0.0)
     return _Rows(
         q=now,
@@ -180,8 +188,9 @@ def _nuisances(spec: RobotSpec, rows: _Rows, share: float) -> tuple[Array, Array
 def _beyond_the_bare_arm(
     spec: RobotSpec, model: BodyModel, rows: _Rows, friction: Array, springs: bool
 ) -> tuple[Array, Array]:
-    """Return r (N, n) and Y (N, n, 10)."""
+    """Return r (N, n) N m and Y (N, n, 10), at the posture of the links where the gears are springs."""
     rotors = spec_rotors(spec)
+    # friction of an axis at rest is whatever holds it, so none is taken off there
     through_gear = rows.tau - np.where(rows.turning, friction, 0.0) - rotors * rows.ddq
     twist = through_gear / spec.per_axis("motor", "stiffness") if springs else np.zeros_like(through_gear)
     speed, acceleration = _differences(twist, rows.step_s)
@@ -203,7 +212,9 @@ def _differences(x: Array, step_s: float) -> tuple[Array, Array]:
 
 
 def _shaken(spec: RobotSpec, rows: _Rows, springs: bool) -> NDArray[np.bool_]:
-    """Return when (N,) an axis with a gear spring is about to turn round or has just done so."""
+    """Return the rows (N,) in which an axis with a gear spring is about to reverse or has just reversed."""
+    # an axis that is not turning now may just have reversed; rows around it are shaken on all axes, since links are
+    # coupled
     elastic = np.isfinite(spec.per_axis("motor", "stiffness")) & rows.turning.any(axis=0) & springs
     sticks = np.asarray((~rows.turning & elastic).any(axis=1))
     decay = max(REACH, round(DECAY_S / rows.step_s))
@@ -223,7 +234,8 @@ def _blocks(A: Array, r: Array, turning: NDArray[np.bool_]) -> tuple[Array, Arra
 def _weighted(
     A: Array, r: Array, axis: NDArray[np.intp], spec: RobotSpec, known: Knowledge
 ) -> tuple[Array, Array, Array]:
-    """Return parameters (10 + 3 n,), their covariance and what is left (rows,), after reweighting the axes."""
+    """Return parameters (10 + 3 n,), their covariance and the residuals (rows,), after reweighting the axes."""
+    # a prior on every parameter keeps the system regular: without an exercise of an axis nothing determines its own
     prior = np.diag(1.0 / _before(spec, known) ** 2)
     quietest = QUIETEST * known.torque
     sigma = known.torque_uncertainty * known.torque
@@ -247,6 +259,7 @@ def _before(spec: RobotSpec, known: Knowledge) -> Array:
 
 
 def _per_axis(left: Array, axis: NDArray[np.intp], n: int) -> tuple[Array, Array, Array]:
+    """Return root mean square and peak of the residuals of each axis (n,), and its number of rows."""
     rows = np.bincount(axis, minlength=n).astype(np.float64)
     peak: Array = np.zeros(n)
     np.maximum.at(peak, axis, np.abs(left))
@@ -262,6 +275,7 @@ def _in_flange(spec: RobotSpec, found: Array, covariance: Array, left: tuple[Arr
     mass, *moment = matmul(to_flange, found[:4])
     spread = matmul(to_flange, covariance[:4, :4], to_flange.T)
     mass_sd = float(np.sqrt(spread[0, 0]))
+    # c = h / m is no estimate where m may be zero; its spread by the first derivatives of the quotient
     cog = cog_sd = None
     if mass > LIGHTEST * mass_sd:
         cog = np.array(moment) / mass

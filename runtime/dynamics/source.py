@@ -1,11 +1,12 @@
-"""Where the dynamics task takes the inertia of an axis from: three ways to the same numbers.
+"""The sources of the dynamics task for the inertia of an axis: three methods, the same numbers.
 
     pass        one unit-acceleration pass of Pinocchio over the chain; the default      ``ArmModel.inertia_column``
     recursion   document 003, from the link of the axis outward and back to the base     ``motor_inertia.inertia_row``
     matrix      the whole mass matrix, of which one row is taken                          ``ArmModel.mass_matrix``
 
-They agree to 1e-12 kg m2 and differ in cost alone (docs/decisions/0019). Each returns the row of the axis, rotor not in
-it, because a servo with whole rows needs it; D is the element of the axis. Called once per axis by the dynamics task.
+They agree to 1e-12 kg m2 and differ in cost alone (docs/decisions/0019). Each returns the row of the axis, without the
+rotor, since a servo with whole rows needs it (docs/decisions/0017); D is the element of the axis. Called once per axis
+by the dynamics task.
 Where a compensation file has a table, D is more by N^2 (Jc(q) - Jc), Jc being what the servo adds (``rotors``).
 """
 
@@ -49,6 +50,7 @@ class InertiaRows(Stateful):
     def set_payload(self, payload: Payload, mode: LoadMode) -> None:
         """Carry ``payload`` from now on, in the model as well."""
         self._model.set_payload(payload, mode)
+        # the other two read the payload from the model; a chain is rebuilt only where it is used
         if self._source == "recursion":
             self._chain = link_chain(self._spec, payload, mode)
 
@@ -56,6 +58,7 @@ class InertiaRows(Stateful):
         row, table = self._bare(q, axis), self._tables[axis]
         if table is None:
             return row
+        # D alone has the table: what identification found belongs to the drive of the axis, not to its coupling
         row = np.array(row)
         row[axis] += table.at(q)
         return frozen(row)

@@ -12,7 +12,6 @@ import math
 import re
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -21,7 +20,7 @@ import numpy as np
 from runtime.core.bounded_files import RefusedError, read_bounded
 from runtime.core.frames import Array, frozen
 from runtime.core.linear import matmul
-from runtime.core.tomlfile import MAX_ABS, FileFault
+from runtime.core.tomlfile import MAX_ABS, FileFault, FilePlace
 
 MAX_MANIFEST_BYTES = 16_000_000
 POSE_TOLERANCE = 1e-6
@@ -31,23 +30,9 @@ POSE_TOLERANCE = 1e-6
 # --- a file ----------------------------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class Place:
-    """A place in a text: 1-based line and column, and the text of the line."""
-
-    line: int = 1
-    column: int = 1
-    excerpt: str = ""
-
-
-START = Place()
-"""Where errors are reported that concern a file as a whole, or a value of it by its key."""
-
-
-def fail(path: Path, code: str, message: str, hint: str = "", place: Place = START) -> NoReturn:
-    """Raise ``FileFault`` at a place of a file."""
-    at = {"line": place.line, "column": place.column}
-    raise FileFault(code, message, hint, path=str(path), excerpt=place.excerpt, **at) from None
+def fail(path: Path, code: str, message: str, hint: str = "", place: FilePlace | None = None) -> NoReturn:
+    """Raise ``FileFault`` at a place of a file; without one at its start, for the file as a whole or a key of it."""
+    raise FileFault(code, message, hint, place or FilePlace(str(path))) from None
 
 
 def reason(error: Exception) -> str:
@@ -71,7 +56,7 @@ def read_text(path: Path, most: int) -> str:
         return raw.decode("utf-8")
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
-        fail(path, "RBL630", f"{path} is not UTF-8 text (byte {error.start})", place=Place(line))
+        fail(path, "RBL630", f"{path} is not UTF-8 text (byte {error.start})", place=FilePlace(str(path), line))
 
 
 # --- words of a message ----------------------------------------------------------------------------------------------
@@ -146,7 +131,7 @@ def _fail_in(path: Path, text: str, at: int, message: str) -> NoReturn:
     """Raise ``FileFault`` RBL630 at a character (0-based) of the text."""
     start = text.rfind("\n", 0, at) + 1
     excerpt = text[start:].partition("\n")[0].removesuffix("\r")
-    fail(path, "RBL630", message, place=Place(text.count("\n", 0, at) + 1, at - start + 1, excerpt))
+    fail(path, "RBL630", message, place=FilePlace(str(path), text.count("\n", 0, at) + 1, at - start + 1, excerpt))
 
 
 # --- typed getters ---------------------------------------------------------------------------------------------------

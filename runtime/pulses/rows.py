@@ -20,8 +20,9 @@ import numpy as np
 
 from runtime.core.frames import frozen
 from runtime.core.rounding import beside
+from runtime.core.tomlfile import FilePlace
 from runtime.pulses.exported import Channel, Table
-from runtime.pulses.manifest import Place, fail, quoted, read_text
+from runtime.pulses.manifest import fail, quoted, read_text
 
 HEADER = "control,frequency_hz,target_pulses,steps"
 MAX_TABLE_BYTES = 64_000_000
@@ -167,4 +168,4 @@ class Rows:
         line = self._lines[self._line - 1]
         if column is None:
             column = 1 + sum(len(part) + 1 for part in line.split(",")[:place])
-        fail(self._path, code, message, place=Place(self._line, column, line))
+        fail(self._path, code, message, place=FilePlace(str(self._path), self._line, column, line))

@@ -17,7 +17,7 @@ from xml.parsers import expat
 
 import runtime.robot.files.codes  # noqa: F401 - registers what is raised here
 from runtime.core.numerals import number_in, why_none
-from runtime.core.tomlfile import MAX_ABS, FileFault, Source
+from runtime.core.tomlfile import MAX_ABS, FileFault, FilePlace, Source
 
 _LINE_END = re.compile(r"\r\n?|\n")  # XML 2.11: a CR alone ends a line, too
 MAX_DEPTH = 100
@@ -161,7 +161,7 @@ def fault_at(source: Source, line: int, column: int, code: str, message: str, hi
     """Return a ``FileFault`` at a place (1-based) of a source."""
     lines = _LINE_END.split(source.text)
     excerpt = lines[line - 1] if 0 < line <= len(lines) else ""
-    return FileFault(code, message, hint, path=source.path, line=line, column=column, excerpt=excerpt)
+    return FileFault(code, message, hint, FilePlace(source.path, line, column, excerpt))
 
 
 def parse_xml(source: Source) -> Element:

@@ -21,7 +21,7 @@ from robolang.core.diagnostics import (
 )
 from robolang.core.source import Span
 from runtime.core.faults import lookup
-from runtime.core.tomlfile import FileFault
+from runtime.core.tomlfile import FileFault, FilePlace
 from tests.campaign import examples
 from tests.robolang.helpers import only, source
 
@@ -129,7 +129,7 @@ def test_json_is_plain_and_has_both_ends():
 
 
 def test_a_fault_of_a_file_has_the_same_two_forms():
-    fault = FileFault("RBL309", "x\x1b", "y", path="p.toml", line=3, column=2, excerpt=" pose = 1")
+    fault = FileFault("RBL309", "x\x1b", "y", FilePlace("p.toml", 3, 2, " pose = 1"))
     assert render_fault(fault).splitlines() == [
         "p.toml:3:2: error RBL309 x\ufffd",
         "   3 |  pose = 1",

@@ -16,7 +16,7 @@ from robolang.lint.pages import page
 from robolang.lint.reporters import FOR_PEOPLE, FORMS, render, statistics
 from robolang.lint.reporters.finding import Region, findings, fingerprints, relative
 from runtime.core.faults import Fault, lookup
-from runtime.core.tomlfile import FileFault
+from runtime.core.tomlfile import FileFault, FilePlace
 from tests.messages import fields
 from tests.robolang.lint.helpers import checked
 
@@ -24,9 +24,7 @@ ROOT = Path("/srv/repo")
 BAD = "10 MOVE P1\r\n10 MOVE P9\n30 LOAD (0, 0, 60), -1\n"
 """RBL110 info with a fix, RBL113 with a note, RBL301 and RBL401 errors."""
 CODES = ["RBL110", "RBL113", "RBL301", "RBL401"]
-LOST = FileFault(
-    "RBL307", "one, two", "write six", path="/srv/repo/cell/pick.points.toml", line=3, column=2, excerpt="pose = [1]"
-)
+LOST = FileFault("RBL307", "one, two", "write six", FilePlace("/srv/repo/cell/pick.points.toml", 3, 2, "pose = [1]"))
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ from robolang.lint.engine import Checked
 from robolang.lint.registry import rules
 from robolang.lint.reporters import render
 from runtime.core.faults import Fault
-from runtime.core.tomlfile import FileFault
+from runtime.core.tomlfile import FileFault, FilePlace
 from tests.robolang.lint.helpers import checked
 from tests.robolang.lint.schemas import problems, validator
 
@@ -49,7 +49,7 @@ RESULTS = {
     "damaged": [
         unreadable(
             "/srv/repo/c.rbl",
-            FileFault("RBL303", "no value", "", path="/srv/repo/c.points.toml", line=3, column=2, excerpt="P1 ="),
+            FileFault("RBL303", "no value", "", FilePlace("/srv/repo/c.points.toml", 3, 2, "P1 =")),
         )
     ],
     "rules": [checked(rule.bad, f"/srv/repo/{rule.code}.rbl") for rule in rules().values() if not rule.points],
