@@ -167,9 +167,11 @@ def _lengths(values_mm: tuple[float, ...]) -> Array:
 
 
 def _pose(values_mm_deg: tuple[float, ...]) -> Array:
+    # the one place where mm and deg of a cell become SI: everything after it computes without units of files
     values = np.array(values_mm_deg)
     return frozen(pose_from_xyzrpy([*(values[:3] * MM), *(values[3:] * DEG)]))
 
 
 def _each(found: Mapping[str, T], make: Callable[[T], U]) -> Mapping[str, U]:
+    # read-only: a cell is shared by planner, plant and report
     return MappingProxyType({name: make(each) for name, each in found.items()})

@@ -1,1 +1,1 @@
-"""Numbers and texts, places in programs, faults, files: what everything else stands on."""
+"""Numbers and texts, places in programs, faults, files: the base of all other rooms."""

@@ -444,6 +444,7 @@ def _near(key: str, free: AbstractSet[str]) -> str:
 def _beside_range(number: float, low: float, high: float, positive: bool) -> tuple[str, str]:
     """Return a number and the range that it is not in, in words; ``MAX_ABS`` is not named as the end of a range."""
     shown, least, most = beside(number, 0.0 if positive else low, high)
+    # only the ends that exclude something are named
     if positive:
         return shown, "above 0" if high >= MAX_ABS else f"above 0 and at most {most}"
     if low <= -MAX_ABS and high < MAX_ABS:

@@ -125,7 +125,7 @@ def blend(
     room = min(_inside(before[::-1], corner, zone), _inside(after, corner, zone))
     if room == 0:
         return overlapped(a, b, 0), Corner(radius=zone)
-    # one row more to either side: what is accelerated from rest, and to it
+    # one row more at either end, so that accelerating from rest and braking to it count as well
     allowed = _Tool.most(
         _Tool.of(np.concatenate([before, before[-1:]])),
         _Tool.of(np.concatenate([after[:1], after])),

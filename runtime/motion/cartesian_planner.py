@@ -187,6 +187,7 @@ class CartesianPlanner:
         limits = speed_limits(path, command, self._spec.path, self._profile, turn)
         if len(lines) > 1:
             lines = in_order(lines, profile(limits, self._profile.period_s, command.duration), command.q_end)
+        # the other direction of a half turn is taken only where the better one is refused
         refused: list[Fault] = []
         for line in lines:
             try:
@@ -266,6 +267,7 @@ def _wrist_change(
     """Return what the plan does with the wrist, measured on its samples; None where it follows the path."""
     if choice.switch is None:
         return None
+    # measured on the final rows, whose samples differ from those on which the move was chosen
     row = int(np.searchsorted(s, choice.switch, side="right")) - 1
     trigger, solver = choice.trigger, choice.solver
     assert isinstance(solver, WristSolver)  # a candidate with a switch has a law from there on
@@ -327,6 +329,7 @@ def speed_limits(
 
     ``wrist_turn`` rad is how far the wrist has to turn, for a move whose tool stays where it is.
     """
+    # TIME rules alone: the speed is then only bounded by the robot, and the profile is stretched to the time
     speed = command.speed if command.speed is not None else robot.default_speed
     if command.duration is not None:
         speed = robot.max_speed

@@ -83,7 +83,7 @@ class Part:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes for people."""
+        """Notes of the plan, as the report shows them."""
         return self.plan.notes
 
     @property
@@ -108,7 +108,7 @@ class ChainPlan:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes of all moves, for people."""
+        """Notes of all moves, as the report shows them."""
         return tuple(note for part in self.parts for note in part.notes)
 
 
@@ -140,6 +140,7 @@ class MotionPlanner:
     ) -> ChainPlan:
         """Return the plan of a chain of moves from q_start (n,) rad; ``ChainFault`` names the first that is refused."""
         plans: list[MovePlan] = []
+        # each from the end of the plan before, not from its taught end: under KEEP the two may differ
         for index, command in enumerate(commands):
             try:
                 plans.append(self.plan(plans[-1].q[-1] if plans else q_start, command, X_flange_tool, override))
@@ -157,6 +158,7 @@ class MotionPlanner:
         arm = Arm(spec=self._spec, kinematics=self.kinematics, fine=self._pace.fine, X_flange_tool=X_flange_tool)
         q, modes = plans[0].q, plans[0].modes
         offsets, lasts, corners = [0], [], []
+        # from the first corner on: a blend changes only the first half of the next move, so corners are independent
         for before, after, zone in zip(plans, plans[1:], zones, strict=False):
             # half of each move at most, so that the blends at its two ends never meet
             halves = (len(before.q) - 1) // 2, (len(after.q) - 1) // 2

@@ -89,11 +89,13 @@ def ruling(plan: MovePlan, command: Command, spec: RobotSpec, profile: Profile) 
         return _of_joints(plan, spec)
     times = _Times(plan=plan, command=command, limits=spec.path, profile=profile)
     moves = path.length >= IN_PLACE
+    # each limit is timed as if it were alone; the longest time is that of the limit that rules
     bounds = [_accelerating(times, path, moves), _turning(times, path, moves), _curving(times, path, moves)]
     rows = [(each.seconds, each.why, each.remedy) for each in bounds if each is not None]
     asked_s = rows[0][0]
     longest_s, why, remedy = max(rows)
     slowdown = plan.slowdown
+    # a joint rules where the slowing that it needed outweighs the longest of the path's own limits
     of_joint = slowdown is not None and slowdown.factor * asked_s >= longest_s
     if slowdown is not None and of_joint:
         why = _joint_limit(slowdown, spec, plan.override)

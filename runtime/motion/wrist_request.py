@@ -50,6 +50,7 @@ class SampledPath:
     @property
     def last_solved(self) -> int:
         """The last sample, of all but the end itself, up to which every sample has a solution."""
+        # the law needs a part of the path after its switch, so the last sample is none to switch at
         finite = np.isfinite(self.q).all(axis=1)
         solved = len(self.s) - 1 if finite.all() else int(np.argmin(finite)) - 1
         return min(len(self.s) - 2, solved)

@@ -157,7 +157,7 @@ class RobotArm:
         return np.asarray(matmul(self._kinematics.forward(q), self._X_flange_tool)[..., :3, 3])
 
     def described(self) -> dict[str, Any]:
-        """Return the chain of axes."""
+        """Return the chain of axes, by which a reader computes its own kinematics."""
         return {
             "kind": "arm",
             "name": self.name,

@@ -37,7 +37,7 @@ _FREQUENCY, _TARGET, _STEPS = 1, 2, 3
 
 
 class _Row(NamedTuple):
-    """A row as it stands: control, frequency Hz, absolute target in pulses, number of steps."""
+    """A row as written: control, frequency Hz, absolute target in pulses, number of steps."""
 
     control: str
     hz: int

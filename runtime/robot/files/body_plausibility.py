@@ -38,6 +38,7 @@ def doubt_bodies(labels: Sequence[str], bodies: Sequence[Body | None], offsets: 
     next, from the base first and to the flange last.
     """
     lengths = np.linalg.norm(offsets, axis=1)
+    # a corrected body (None) or one without mass is left out: neither says anything about the units of the file
     size = float(np.maximum(lengths.sum(), SMALLEST))
     known = {axis: body for axis, body in enumerate(bodies) if body is not None and body.mass > 0.0}
     return [
@@ -75,6 +76,7 @@ def _doubt_mass(bodies: Mapping[int, Body], size: float, place: Place) -> Iterat
 
 def doubt_torques(labels: Sequence[str], torques: Sequence[float], weight: float, place: Place) -> list[FileFault]:
     """Return the doubts about torques, N m, NaN where none is known (RBL629); ``weight`` N m: ``weight_moment``."""
+    # against the weight and not against a fixed number: a torque of 1000 N m is right for a large arm; NaN is no doubt
     strong = [axis for axis, torque in enumerate(torques) if torque > STRONGEST * weight > 0.0]
     if not strong:
         return []
@@ -108,6 +110,7 @@ def _spread(body: Body, size: float) -> bool:
 
 def _dense(body: Body, size: float) -> bool:
     """Return whether a body is smaller than a ball of ``DENSEST``: a ball has the least inertia of all its mass."""
+    # compared by the trace, which does not depend on the axes: three times 2/5 m r^2 for a ball
     radius = (0.75 * body.mass / (math.pi * DENSEST)) ** (1.0 / 3.0)
     return not float(np.trace(body.inertia)) >= 3.0 * 0.4 * body.mass * radius**2
 

@@ -1,7 +1,7 @@
 """An arm as URDF and MJCF files describe it: a tree of frames, made one serial chain of revolute axes.
 
 Both readers give the same tree. A ``Node`` is a frame with a body, fixed to the node before it or turning about
-one hinge of its own. ``serial_chain`` walks it from the root: what is fixed together becomes one link, masses
+one hinge of its own. ``serial_chain`` walks it from the root: nodes fixed together become one link, masses
 added, inertias moved by the parallel axis theorem,
 
     I_c = sum_i  R_i I_i R_i' + m_i (|r_i|^2 E - r_i r_i'),   r_i from the common centre of gravity,
@@ -96,7 +96,7 @@ class ImportedAxis:
 class ImportedArm:
     """A serial arm of a URDF or MJCF file. ``lower``, ``upper`` (n,) rad; ``flange`` names its last frame.
 
-    ``warnings`` are what is unlikely about it (``plausibility``).
+    ``warnings`` are the doubts about it (``plausibility``).
     """
 
     name: str
@@ -125,6 +125,7 @@ def rotation_z_to(axis: Array) -> Array:
     across = math.hypot(axis[0], axis[1])
     if across < _NO_DIRECTION:
         return np.eye(3) if axis[2] > 0.0 else np.diag([1.0, -1.0, -1.0])
+    # about the horizontal normal of z and the axis; every such frame serves, this one turns least
     k = np.array([-axis[1], axis[0], 0.0]) / across
     return np.asarray(rotation_about(k, math.atan2(across, axis[2])))
 
@@ -138,6 +139,7 @@ def moved(body: Body, X: Array) -> Body:
 def combined(bodies: list[Body]) -> Body:
     """Return several bodies of one frame as one; a body of no mass at the origin for none."""
     mass = sum(body.mass for body in bodies)
+    # the inertias are kept although there is no centre to move them to: an impossible one is then still found
     if mass <= 0.0:
         return Body(
             mass=0.0, cog=frozen(np.zeros(3)), inertia=frozen(sum((b.inertia for b in bodies), np.zeros((3, 3))))
@@ -207,6 +209,7 @@ def _turning(cluster: list[tuple[Array, Node]]) -> tuple[Array, Node, Hinge] | N
 
 
 def _limits(axes: list[ImportedAxis], side: str) -> Array:
+    # NaN, not infinity: a missing range must come from the sidecar, and every comparison with it fails until then
     values = [getattr(axis.hinge, side) for axis in axes]
     return frozen([np.nan if value is None else value for value in values])
 
@@ -264,7 +267,7 @@ def _flange(cluster: list[tuple[Array, Node]], name: str | None, root: Node) -> 
 
 
 def _ends(cluster: list[tuple[Array, Node]]) -> list[tuple[str, Array]]:
-    """Return the frames of a link, by name, on which no other frame hangs; markers neither count nor carry."""
+    """Return the frames of a link, by name, that carry no other frame; markers are no ends and no carriers."""
     parents = {id(child): node for _, node in cluster for child in node.children}
     inner = {id(parents[id(node)]) for _, node in cluster if id(node) in parents and not node.marker}
     return [(node.name, X) for X, node in cluster if id(node) not in inner and not node.marker]

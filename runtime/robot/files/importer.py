@@ -76,6 +76,7 @@ def parse_model(source: Source, overlay: Overlay = NO_OVERLAY) -> ImportedArm:
     root = model_root(source)
     name, tree = read_urdf(root) if root.tag == "robot" else read_mjcf(root, Path(source.path).name)
     arm = serial_chain(tree, source.path, name, overlay.flange)
+    # ranges of the sidecar replace those of the model before anything is computed from them
     ranges = [
         overlay.ranges.get(axis.name, (low, high))
         for axis, low, high in zip(arm.axes, arm.lower, arm.upper, strict=True)
@@ -93,7 +94,7 @@ def parse_model(source: Source, overlay: Overlay = NO_OVERLAY) -> ImportedArm:
 def _doubted_axes(arm: ImportedArm) -> Iterator[FileFault]:
     """Yield the axes of a URDF that are no unit vectors, as its specification asks for (RBL628)."""
     for index, axis in enumerate(arm.axes):
-        element = axis.hinge.element.one("axis")  # of an MJCF it is an attribute, and need not be one
+        element = axis.hinge.element.one("axis")  # in MJCF an attribute, which need not be a unit vector
         if element is None:
             continue
         length = math.hypot(*element.numbers("xyz", 3))

@@ -43,6 +43,7 @@ def parse_robot(source: Source) -> RobotSpec:
 
 def build(file: RobotFile) -> RobotSpec:
     """Return the robot of a file; ``FileFault`` RBL606 or RBL615 where its bodies or its closed form cannot be."""
+    # bodies before the closed form: an impossible body is the more useful message of the two
     geometry = geometry_of(file)
     axes, published, corrections = _chain(file.axes, geometry)
     spec = RobotSpec(
@@ -145,6 +146,7 @@ def _check_opw(spec: RobotSpec, table: Table) -> None:
         return
     from runtime.robot.kinematics import opw
 
+    # given parameters are not trusted: an arm with a wrong closed form would move to wrong places without an error
     error = opw.mismatch(spec)
     if not error < 1e-9:
         table.fail("RBL615", f"the closed form and the table of axes differ by {error * 1000:.6f} mm", key="kinematics")

@@ -104,6 +104,7 @@ def doubt_turning(joints: Sequence[Turning], place: Place) -> list[FileFault]:
     """Return the doubts about ranges and speeds (RBL627)."""
     # every comparison is false for NaN: a value that the file does not give is not doubted
     doubts = []
+    # one warning a rule, at the first axis, for all that share it: a file in the wrong unit breaks one rule six times
     for rule in _TURNING_RULES:
         for in_degrees, (tail, hint) in ((False, rule.radians), (True, rule.degrees)):
             axes = [k for k, joint in enumerate(joints) if joint.in_degrees is in_degrees and rule.unlikely(joint)]
@@ -142,7 +143,9 @@ def doubt_axes(axes: Sequence[Driven]) -> tuple[FileFault, ...]:
         for label, axis in zip(labels, axes, strict=True)
     ]
     place = in_tables([axis.table for axis in axes])
+    # these files are in degrees by their keys; only a URDF or MJCF may be in radians
     doubts = doubt_turning(joints, place)
+    # gears of arms reduce: a ratio below 1 is most likely joint turns per motor turn
     slow = [k for k, axis in enumerate(axes) if not abs(axis.motor.gear_ratio) >= 1.0]
     if slow:
         listed = ", ".join(f"{labels[k]} {axes[k].motor.gear_ratio:g}" for k in slow)

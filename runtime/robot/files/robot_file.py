@@ -137,6 +137,7 @@ def builtin(name: str) -> RobotFile:
     """Return the file of a built-in robot; ``KeyError`` when there is none of that name."""
     if name not in library():
         raise KeyError(name)
+    # read as any robot file, so that the library cannot hold what a user's file may not
     text = resources.files("runtime.robot.library").joinpath(f"{name}.toml").read_text("utf-8")
     return parse(Source(f"{name}.toml", text))
 
@@ -152,6 +153,7 @@ def parse(source: Source) -> RobotFile:
     opw = _opw(kinematics.table("opw")) if "opw" in kinematics else None
     kinematics.done()
     path = drives.path_limits(table.table("path"))
+    # by the number of axes before the axes themselves: a file of another kind is refused for what it is
     tables = table.tables("axes")
     if not 1 <= len(tables) <= MOST_AXES:
         table.fail("RBL605", f"a robot has 1 to {MOST_AXES} axes, not {len(tables)}", key="axes")
@@ -170,6 +172,7 @@ def parse(source: Source) -> RobotFile:
         table=table,
     )
     table.done()
+    # whether the parameters fit the axes needs numerics and is judged by ``loader``; their number does not
     if opw is not None and len(tables) != 6:
         table.fail("RBL615", f"the closed form is for 6 axes, not {len(tables)}", key="kinematics")
     return found
@@ -211,6 +214,7 @@ def axis_drive(table: Table) -> AxisDrive:
 
 
 def _axis(table: Table, form: Literal["dh", "lines"], names: set[str]) -> AxisFile:
+    # keys of the other form are not read, so ``done`` refuses them: two geometries of one axis could disagree
     row = _dh(table) if form == "dh" else _line(table)
     name = table.text("name")
     if name in names:
@@ -241,6 +245,7 @@ def _line(table: Table) -> LineRow:
         origin_m=table.numbers("origin_m", 3, low=-10.0, high=10.0),
         direction=table.numbers("direction", 3, low=-10.0, high=10.0),
     )
+    # of any other length: only the direction counts, and it is made a unit vector by ``geometry``
     if not math.hypot(*row.direction) >= SHORTEST_DIRECTION:
         table.fail(
             "RBL605",

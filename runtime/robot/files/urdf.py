@@ -40,7 +40,7 @@ def read_urdf(robot: Element) -> tuple[str, Node]:
         start, hung = (_end(joint, end, nodes) for end in ("parent", "child"))
         if hung in placed:
             # refused before it is joined: the tree would hold the link twice, and its mass with it
-            joint.fail("RBL611", f"link {hung!r} hangs on two joints, {placed[hung]!r} and {name!r}: a loop")
+            joint.fail("RBL611", f"link {hung!r} is the child of two joints, {placed[hung]!r} and {name!r}: a loop")
         placed[hung] = name
         _join(joint, nodes[start], nodes[hung])
     return robot.text("name", "robot"), _root(robot, nodes, placed)
@@ -69,13 +69,13 @@ def _end(joint: Element, end: str, nodes: dict[str, Node]) -> str:
 
 
 def _root(robot: Element, nodes: dict[str, Node], placed: dict[str, str]) -> Node:
-    """Return the one link that hangs on no joint and carries all others; ``FileFault`` RBL611 for loops and islands.
+    """Return the one link that is no joint's child and carries all others; ``FileFault`` RBL611 for loops and islands.
 
-    ``placed``: the joint on which each link hangs, by link.
+    ``placed``: the joint whose child each link is, by link.
     """
     roots = [node for name, node in nodes.items() if name not in placed]
     if not roots:
-        robot.fail("RBL611", "every link hangs on another: the joints form a loop")
+        robot.fail("RBL611", "every link is the child of a joint: the joints form a loop")
     if len(roots) > 1:
         roots[1].element.fail("RBL611", f"links {roots[0].name!r} and {roots[1].name!r} are not joined")
     # one root does not mean one tree: links in a loop of their own have a parent each, and none of them is the root
@@ -86,7 +86,7 @@ def _root(robot: Element, nodes: dict[str, Node], placed: dict[str, str]) -> Nod
         todo += node.children
     for name, node in nodes.items():
         if name not in reached:
-            node.element.fail("RBL611", f"link {name!r} hangs on itself, in a loop, and not on {roots[0].name!r}")
+            node.element.fail("RBL611", f"link {name!r} is not joined to {roots[0].name!r}: its joints form a loop")
     return roots[0]
 
 

@@ -29,7 +29,7 @@ Inverse, wrist. ``W = (Rz(t1) Ry(t2 + t3))' R = Rz(t4) Ry(t5) Rz(t6)`` has the t
 instead of from W, so that an error of t4 next to the singularity is made good by t6.
 
 Branches. Three choices of two name the eight solutions. Each is a property of the arm, not of the signs and zeros
-of its joints, except that the wrist's is the sign that people read from the display.
+of its joints, except that the wrist's is the sign that a teach pendant shows.
 
 * RIGHTY: r >= 0, the wrist centre is in front of the waist (on the +x side of the frame that turns with t1);
   LEFTY: r < 0, in its back. Most industrial arms have b = 0: there this is front and back. The Puma 560 has b < 0

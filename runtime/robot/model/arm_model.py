@@ -46,6 +46,7 @@ class ArmModel(Stateful):
 
     def set_payload(self, payload: Payload = NO_PAYLOAD, mode: LoadMode = "add") -> None:
         """Carry ``payload`` from now on: added to the last link, or in its place (``replace``)."""
+        # from the bare last link every time: adding and taking off payloads would sum up rounding
         load = self._X_last_flange.act(pin.Inertia(payload.mass, np.array(payload.cog), np.array(payload.inertia)))
         self._carry(load if mode == "replace" else self._bare_last + load)
 

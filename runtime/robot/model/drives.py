@@ -172,6 +172,7 @@ def _check_spring(table: Table, motor: Motor) -> None:
             f"'{table.name('rotor_inertia_kg_m2')}' is 0, and the spring of the gear needs a rotor",
             key="rotor_inertia_kg_m2",
         )
+    # the eigenfrequency of the rotor against its gear, sqrt(Kc / (N^2 J)), squared
     if not motor.stiffness <= motor.reflected_inertia * FASTEST_SPRING**2:
         table.fail(
             "RBL605",
@@ -254,6 +255,7 @@ def beyond_range(q_deg: Sequence[float | None], limits: Sequence[Limits]) -> str
 
     An angle of None is not known. With fewer ``limits`` than angles, or fewer angles, only the pairs are compared.
     """
+    # the worst joint only: the others are often outside for the same reason
     worst, found = RANGE_ROUNDING, ""
     for index, (angle, axis) in enumerate(zip(q_deg, limits, strict=False)):
         if angle is None:

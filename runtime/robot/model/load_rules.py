@@ -46,6 +46,7 @@ def mass_fault(mass: float, rated: float | None) -> Fault | None:
         return Fault("RBL401", f"a payload of {mass:g} kg is not a mass")
     if rated is None or mass <= rated:
         return None
+    # the hint only where grams would make sense: 2300 for a robot of 4 kg, but not 5
     grams = mass / 1000.0 <= rated and mass >= _GRAMS
     shown, most = beside(mass, rated)
     return Fault(

@@ -91,7 +91,7 @@ class Correction:
 class RobotSpec:
     """A robot of ``n`` axes. ``X_last_flange`` (4, 4) is the flange in the frame of the last axis.
 
-    ``published`` holds the bodies as the source prints them, before ``corrections``. ``warnings`` are what is unlikely
+    ``published`` holds the bodies as the source prints them, before ``corrections``. ``warnings`` are the doubts
     about its files, each at its place (``plausibility``). ``link_radii`` m, one for each axis: of the capsules from
     joint to joint that stand for the links; empty: the shapes of the arm are not known.
     """
@@ -152,6 +152,7 @@ def shift_between_links(axis_spec: AxisSpec, before: Body, shift: float) -> tupl
     joint: the two angular velocities differ only along z, where it is zero. The equations of motion are therefore
     unchanged in exact arithmetic. Returns (body of the axis, body before it).
     """
+    # added to one side and taken from the other, each in its own frame, in which the joint axis has other components
     z = np.array([0.0, 0.0, 1.0])
     own = axis_spec.body.inertia + shift * (np.eye(3) - np.outer(z, z))
     z_before = axis_spec.placement[:3, 2]
