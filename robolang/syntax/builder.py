@@ -1,28 +1,23 @@
 """From the rules of ``grammar.lark`` to the nodes of the tree: one method for each, called when the rule is reduced.
 
 The parser calls these while it reads, so no parse tree is built and nothing is visited afterwards. Every node gets the
-place of its text. Called by ``parser`` alone.
+place of its text. The automaton of ``line_reader`` calls
+them, and Lark for a line with an error.
 """
 
 from collections.abc import Iterable
 from sys import intern
-
-from lark import Token, Transformer, v_args
+from typing import Any
 
 from robolang.core.source import Span
 from robolang.syntax import ast
 from robolang.syntax.ast import Expression, replace
+from robolang.syntax.tokens import Token, span_of
 
 Parsed = tuple[ast.Name | None, ast.Statement | None, ast.Comment | None]
 """Label, statement and comment of a line."""
 
 _Head = tuple[Token, tuple[Expression, ...]]
-
-
-def span_of(token: Token) -> Span:
-    """Return the place of a token."""
-    assert token.start_pos is not None and token.end_pos is not None
-    return Span(token.start_pos, token.end_pos)
 
 
 def _over(first: Token | ast.Node, last: Token | ast.Node) -> Span:
@@ -33,9 +28,8 @@ def _over(first: Token | ast.Node, last: Token | ast.Node) -> Span:
     return Span(start.start, end.end)
 
 
-@v_args(inline=True)
-class _Builder(Transformer[Token, ast.Node]):
-    """One method for each rule of the grammar."""
+class _Builder:
+    """One method for each rule of the grammar, called with what the parts of the rule gave."""
 
     def start(self, label: ast.Name | None, statement: ast.Statement | None, comment: Token | None) -> Parsed:
         if comment is None:
@@ -258,8 +252,8 @@ class _Builder(Transformer[Token, ast.Node]):
         return ast.Name(text=intern(str(token)), span=span_of(token))
 
 
-def builder() -> Transformer[Token, ast.Node]:
-    """Return what the parser calls for each rule that it reduces."""
+def builder() -> Any:
+    """Return an object with a method for each rule of the grammar."""
     return _Builder()
 
 
@@ -279,7 +273,7 @@ def _options(parts: Iterable[ast.Option | list[Token] | Token]) -> tuple[ast.Opt
     found: list[ast.Option | list[Token]] = []
     hold: list[Token] = []
     for part in parts:
-        if isinstance(part, Token):
+        if isinstance(part, str):  # Lark's tokens are texts, too
             hold.append(part)
             continue
         if isinstance(part, list):

@@ -10,7 +10,7 @@ forgotten (docs/decisions/0022).
 """
 
 import json
-import math
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,8 @@ from lark.grammar import Rule
 from lark.lexer import TerminalDef
 
 from robolang.syntax.builder import builder
-from robolang.syntax.keywords import kind_of
+from robolang.syntax.line_reader import TABLE as LINE_TABLE
+from robolang.syntax.tokens import CLASSIFIED, kind
 
 TABLE = Path(__file__).with_name("grammar.json")
 _GRAMMAR = Path(__file__).with_name("grammar.lark")
@@ -79,8 +80,8 @@ def _ordered(table: dict[str, Any]) -> dict[str, Any]:
     }
     order = [table["start_states"][name] for name in sorted(table["start_states"])]
     for state in order:  # grows while it is gone through
-        for _, (kind, to) in sorted(rows[state].items()):
-            if kind == 0 and to not in order:
+        for _, (step, to) in sorted(rows[state].items()):
+            if step == 0 and to not in order:
                 order.append(to)
     number = {state: index for index, state in enumerate(order)}
     return {
@@ -101,24 +102,78 @@ def _by_number(table: dict[str, Any]) -> dict[int, Any]:
     return {int(key): value for key, value in table.items()}
 
 
+class _Called:
+    """The builder as Lark calls it: with one list of children."""
+
+    def __init__(self) -> None:
+        self._builder = builder()
+
+    def __getattr__(self, name: str) -> Callable[[list[Any]], Any]:
+        method: Callable[..., Any] = getattr(self._builder, name)
+        return lambda children: method(*children)
+
+
 def _callbacks() -> dict[str, Any]:
-    kinds = dict.fromkeys(("NAME", "NUMBER", "MALFORMED", "OTHER"), _classify)
-    return {"transformer": builder(), "lexer_callbacks": kinds}
+    return {"transformer": _Called(), "lexer_callbacks": dict.fromkeys(CLASSIFIED, _classify)}
 
 
 def _classify(token: Token) -> Token:
     """Give a word, a number or a stray character its final kind (callback of the lexer)."""
-    kind: str | None = None
-    if not token.isascii():
-        kind = "SUSPICIOUS"
-    elif token.type == "NAME":
-        kind = kind_of(token)
-    elif token.type == "NUMBER" and not math.isfinite(float(token)):
-        kind = "HUGE"
-    if kind is not None:
-        token.type = kind
+    token.type = kind(token.type, token)
     return token
+
+
+# --- the table of line_reader ----------------------------------------------------------------------------------------
+
+
+def line_table() -> str:
+    """Return the content of the table of ``line_reader``: the same automaton without what only Lark needs."""
+    content = json.loads(serialized())
+    memo, table = content["memo"], content["data"]["parser"]["parser"]
+    numbers = sorted((int(number) for number, each in memo.items() if each["__type__"] == "Rule"))
+    place = {number: at for at, number in enumerate(numbers)}
+    tokens, states = table["tokens"], table["states"]
+    lexer: Any = made().parse_interactive("", start="start").lexer_thread.lexer  # its terminals are by priority
+    plain = {
+        "pattern": "|".join(f"(?P<{each.name}>{each.pattern.to_regexp()})" for each in lexer.terminals),
+        "ignored": content["data"]["parser"]["lexer_conf"]["ignore"],
+        "start": table["start_states"]["start"],
+        "end": table["end_states"]["start"],
+        "rows": [
+            {tokens[token]: to if step == 0 else ~place[to["@"]] for token, (step, to) in states[str(at)].items()}
+            for at in range(len(states))
+        ],
+        "rules": [_rule(memo[str(number)]) for number in numbers],
+    }
+    return json.dumps(plain, separators=(",", ":"), sort_keys=True) + "\n"
+
+
+def _rule(rule: dict[str, Any]) -> list[Any]:
+    """Return origin, length, method, single and parts of a rule, as ``line_reader`` has them.
+
+    They follow Lark's ``ParseTreeBuilder``: a rule whose name begins with an underscore is taken apart in the rule
+    above, a terminal whose name does is left out, and ``empty_indices`` mark optional parts that are not there.
+    """
+    origin, options, expansion = rule["origin"]["name"], rule["options"], rule["expansion"]
+    absent = [len(ones) for ones in "".join(str(int(bit)) for bit in options["empty_indices"]).split("0")]
+    parts: list[int | None] = []
+    for at, symbol in enumerate(expansion):
+        parts += [None] * (absent[at] if options["empty_indices"] else 0)
+        if symbol["__type__"] == "NonTerminal" and symbol["name"].startswith("_"):
+            parts.append(~at)
+        elif symbol["__type__"] == "NonTerminal" or not symbol["filter_out"]:
+            parts.append(at)
+    parts += [None] * (absent[-1] if options["empty_indices"] else 0)
+    method = rule["alias"] or origin
+    return [
+        origin,
+        len(expansion),
+        method if hasattr(builder(), method) else None,
+        options["expand1"] and rule["alias"] is None,
+        None if parts == list(range(len(expansion))) else parts,
+    ]
 
 
 if __name__ == "__main__":
     TABLE.write_text(serialized(), encoding="utf-8")
+    LINE_TABLE.write_text(line_table(), encoding="utf-8")

@@ -6,7 +6,8 @@ and every line is looked at first for what would make parsing it unsafe: hidden 
 tree is built while the parser reduces, without a visitor, so its depth is bounded by ``MAX_DEPTH`` and
 nothing recurses.
 
-The parser of a line is Lark's, with a table that is part of the package (``grammar``).
+A line is read by ``line_reader`` and, where it has an error, parsed by Lark (``line_errors``); both have the table that
+Lark makes of the grammar, which is part of the package (``grammar``).
 """
 
 import re
@@ -14,15 +15,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from lark import Token, UnexpectedToken
-
 from robolang.core.diagnostics import HIDDEN, MAX_DIAGNOSTICS, Diagnostic, Severity, in_order
 from robolang.core.source import MAX_BYTES, Source, Span
 from robolang.syntax import ast
-from robolang.syntax.builder import Parsed, span_of
-from robolang.syntax.grammar import line_parser
-from robolang.syntax.keywords import NEW
-from robolang.syntax.syntax_errors import Unexpected, explain, quote, suspicious
+from robolang.syntax.builder import Parsed
+from robolang.syntax.line_reader import line_reader
 
 MAX_LINE = 10_000
 MAX_DEPTH = 100
@@ -99,6 +96,8 @@ def _parse_line(text: str, span: Span, row: int) -> tuple[ast.Line, Diagnostic |
     parsed: Parsed | Diagnostic | None = _refusal(text, span.start)
     number_span = _part(span, span.start + head.start(1), span.start + head.end(1)) if digits else ast.NOWHERE
     if parsed is None and digits and number is None:
+        from robolang.syntax.syntax_errors import quote
+
         message = f"the line number {quote(digits)} has more than {MAX_NUMBER_DIGITS} digits"
         parsed = Diagnostic(code="RBL114", message=message, span=number_span)
     if parsed is None:
@@ -126,6 +125,8 @@ def _part(line: Span, start: int, end: int) -> Span:
 def _refusal(text: str, base: int) -> Diagnostic | None:
     """Return why a line is not parsed at all; None when it may be."""
     if not (text.isascii() and text.isprintable()) and (hidden := HIDDEN.search(text)):
+        from robolang.syntax.syntax_errors import suspicious
+
         return suspicious(hidden[0], base + hidden.start())
     plain = _STRING.sub(lambda found: " " * len(found[0]), text) if '"' in text else text
     comment = _COMMENT.search(plain) if len(text) > MAX_DEPTH else None
@@ -167,29 +168,10 @@ def _parse_statement(code: str, base: int, line: Span) -> Parsed | Diagnostic:
     if code[0] == "'":
         text = code.rstrip()
         return None, None, ast.Comment(text=text, span=_part(line, base, base + len(text)))
-    session = line_parser().parse_interactive(code, start="start")
-    token = None
-    try:
-        # The lexer sees one line; shifting its tokens here makes every place one of the source.
-        for token in session.iter_parse():
-            token.start_pos = base + (token.start_pos or 0)
-            token.end_pos = base + (token.end_pos or 0)
-            if token.type in NEW and token.type not in session.choices():  # type: ignore[no-untyped-call]
-                token.type = "NAME"
-        result: Parsed = session.feed_eof(token)  # type: ignore[no-untyped-call]
-    except UnexpectedToken as error:
-        accepts: set[str] = session.accepts()  # type: ignore[no-untyped-call]
-        return explain(_unexpected(error.token, accepts, code, base))
-    return result
+    reader = line_reader()
+    read = None if reader is None else reader.read(code, base)
+    if read is not None:
+        return read
+    from robolang.syntax.line_errors import parsed_by_lark
 
-
-def _unexpected(token: Token, accepts: set[str], code: str, base: int) -> Unexpected:
-    if token.type in ("$END", "COMMENT"):
-        start = len(code if token.type == "$END" else code[: span_of(token).start - base])
-        end = start = len(code[:start].rstrip(" \t"))
-    else:
-        start, end = span_of(token).start - base, span_of(token).end - base
-    span = Span(base + start, base + end)
-    return Unexpected(
-        kind=token.type, text=str(token), span=span, accepts=accepts, before=code[:start], after=code[end:]
-    )
+    return parsed_by_lark(code, base)

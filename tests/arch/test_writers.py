@@ -26,6 +26,7 @@ OF_MODULES = {"save", "copy", "move", "rename", "replace"}
 MODULES = {"os", "shutil", "np", "Path"}
 KNOWN = {
     "robolang/syntax/grammar.py: TABLE.write_text": "run by hand, makes a file of the source",
+    "robolang/syntax/grammar.py: LINE_TABLE.write_text": "run by hand, makes a file of the source",
     "robolang/syntax/generate.py: NODES.write_text": "run by hand, makes a file of the source",
     "robolang/lint/pages.py: folder / name.write_text": "run by hand, makes the pages of the rules",
     "robolang/testing/golden.py: np.savez_compressed": "to a stream of write_atomic",

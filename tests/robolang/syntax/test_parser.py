@@ -362,7 +362,8 @@ def test_a_point_may_have_the_name_of_a_new_word(tmp_path):
 
 
 def test_a_new_instruction_clashes_with_a_variable_in_one_error_that_names_it(monkeypatch):
-    monkeypatch.setattr("robolang.syntax.parser.NEW", frozenset({"PULSE"}))
+    for module in ("line_reader", "line_errors"):
+        monkeypatch.setattr(f"robolang.syntax.{module}.NEW", frozenset({"PULSE"}))
     for text in ("MOVE PULSE, SPEED PULSE", "*PULSE PULSE 1, 0.5", "FRAME PULSE", "x = PULSE + PULSE", "CALL f(PULSE)"):
         assert parse_found(text) == []
     assert parse_found("PULSE = 5") == [("RBL111", 1, 7, 1)]
