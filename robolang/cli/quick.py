@@ -9,6 +9,7 @@ import sys
 from collections.abc import Iterator
 from typing import Any
 
+import robolang.cli.check_job  # noqa: F401 - what `check` imports when it starts
 from robolang.cli.check_options import FileOptions, FixOptions, MotionOptions, ReportOptions, SelectionOptions
 from robolang.cli.commands.check import check
 from robolang.cli.errors import escape_what_a_terminal_lacks

@@ -126,7 +126,7 @@ def agree(code):
 
 def pieces():
     """Good lines in pieces: words, numbers, signs and blanks."""
-    lines = [line for path in (*PROGRAMS, *MORE) for line in path.read_text("utf-8").splitlines() if line.strip()]
+    lines = [line for path in (*PROGRAMS, *MORE) for line in path.read_text("utf-8", "replace").splitlines()]
     codes = {re.sub(r"^[ \t]*(?:[0-9]+(?![\w.]))?[ \t]*", "", line) for line in (*lines, *GOOD.splitlines())}
     return [re.findall(r"\s+|\w+|[^\w\s]", code) for code in sorted(codes) if code]
 
