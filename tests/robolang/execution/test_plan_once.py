@@ -2,14 +2,15 @@
 
 import pytest
 
-from robolang.cli.check_motion import planned
 from robolang.execution.dry_run import motion_check
 from robolang.execution.plan_memory import PlanMemory
 from robolang.execution.session import Session
 from robolang.project.project import load_project
+from robolang.syntax.parser import parse
 from runtime.motion.motion_planner import MotionPlanner
 from runtime.robot.kinematics.kinematics import Kinematics
 from tests.programs.runs import ROOT
+from tests.robolang.cli.commands import robolang
 
 PALLETISE = ROOT / "shop/palletise.rbl"
 
@@ -53,7 +54,8 @@ def test_a_run_that_begins_elsewhere_plans_what_the_check_has_not(monkeypatch):
 
 
 @pytest.mark.physics
-def test_a_check_of_the_motion_has_one_kinematics(monkeypatch):
-    kinematics = counted(monkeypatch, Kinematics, "__init__")
-    assert planned(str(PALLETISE), None).times["complete"]
-    assert len(kinematics) == 1
+def test_a_check_of_the_motion_parses_once_with_one_kinematics(monkeypatch):
+    kinematics, parsed = counted(monkeypatch, Kinematics, "__init__"), []
+    monkeypatch.setattr("robolang.analysis.analysis.parse", lambda *given: parsed.append(given) or parse(*given))
+    assert "total" in robolang("check", "--motion", PALLETISE).stdout
+    assert len(parsed) == len(kinematics) == 1
