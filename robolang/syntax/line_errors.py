@@ -13,8 +13,9 @@ from robolang.core.source import Span
 from robolang.syntax.builder import Parsed
 from robolang.syntax.grammar import line_parser
 from robolang.syntax.keywords import NEW
-from robolang.syntax.syntax_errors import Unexpected, explain
+from robolang.syntax.syntax_errors import explain
 from robolang.syntax.tokens import Token, span_of
+from robolang.syntax.unexpected import Unexpected
 
 
 def parsed_by_lark(code: str, base: int) -> Parsed | Diagnostic:

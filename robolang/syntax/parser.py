@@ -96,7 +96,7 @@ def _parse_line(text: str, span: Span, row: int) -> tuple[ast.Line, Diagnostic |
     parsed: Parsed | Diagnostic | None = _refusal(text, span.start)
     number_span = _part(span, span.start + head.start(1), span.start + head.end(1)) if digits else ast.NOWHERE
     if parsed is None and digits and number is None:
-        from robolang.syntax.syntax_errors import quote
+        from robolang.syntax.unexpected import quote
 
         message = f"the line number {quote(digits)} has more than {MAX_NUMBER_DIGITS} digits"
         parsed = Diagnostic(code="RBL114", message=message, span=number_span)

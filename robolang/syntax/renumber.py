@@ -19,7 +19,7 @@ from robolang.syntax.ast import Line, Program, Target
 from robolang.syntax.blocks import targets
 from robolang.syntax.formatter import outgrown
 from robolang.syntax.parser import MAX_LINE, MAX_NUMBER_DIGITS, ParseResult, parse
-from robolang.syntax.syntax_errors import quote
+from robolang.syntax.unexpected import quote
 from runtime.core.faults import Fault
 
 MAX_NUMBER = 10**MAX_NUMBER_DIGITS - 1
