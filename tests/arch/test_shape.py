@@ -20,9 +20,9 @@ COMPLEX = 10
 MANY = 6
 """More arguments than this are hard to call rightly; ``self`` and ``cls`` do not count."""
 LONG = 500
-MOST_COMPLEX_PCT, MOST_MANY_PCT, MOST_LONG, LEAST_COMMENTS = 2.8, 1.05, 0, 1.05
-
-"""Today's values, which may only be tightened; the aims are 2 %, 0.5 %, no file, 3 lines of 100."""
+MOST_COMPLEX_PCT, MOST_MANY_PCT, MOST_LONG = 2.0, 0.5, 0
+LEAST_COMMENTS = 1.65
+"""Lines of 100; today's value, which may only become larger: the aim is 3."""
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
