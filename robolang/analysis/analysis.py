@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from robolang.analysis.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.analysis.checker import check
 from robolang.analysis.facts import Facts
-from robolang.analysis.tabulation import Ways
+from robolang.analysis.tabulation import Edges
 from robolang.core.diagnostics import Diagnostic, Edit, in_order
 from robolang.core.source import Source
 from robolang.syntax.ast import Program
@@ -66,7 +66,7 @@ class Analysis:
         return SymbolTable(self.program, self.blocks, self.cell)
 
     @property
-    def flow(self) -> Ways:
+    def flow(self) -> Edges:
         """Control flow: the lines to which each line may lead."""
         return self.facts.flow
 

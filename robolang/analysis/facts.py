@@ -6,8 +6,8 @@ Each part is computed when a rule asks for it, and kept for the others.
 from collections.abc import Iterator
 from functools import cached_property
 
-from robolang.analysis.dataflow import MAX_LINES, facts_before, ways_of
-from robolang.analysis.tabulation import Way, Ways
+from robolang.analysis.dataflow import MAX_LINES, edges_of, facts_before
+from robolang.analysis.tabulation import Edge, Edges
 from robolang.syntax.ast import Head, If, Program, Statement, Word
 from robolang.syntax.blocks import Structure, structure_of
 
@@ -24,9 +24,9 @@ class Facts:
         return structure_of(self.program)
 
     @cached_property
-    def flow(self) -> Ways:
+    def flow(self) -> Edges:
         """Control flow: the lines to which each line may lead."""
-        return ways_of(self.program, self.blocks)
+        return edges_of(self.program, self.blocks)
 
     @cached_property
     def parts(self) -> tuple[tuple[int, Statement], ...]:
@@ -51,14 +51,14 @@ class Facts:
         before = facts_before(self._resumed(), True, lambda at, node, fact: (fact,))
         return None if before is None else tuple(map(bool, before))
 
-    def _resumed(self) -> Ways:
+    def _resumed(self) -> Edges:
         """Return the flow with that of RESUME NEXT, where a program has it: after a CALL and a block that failed."""
         if not any(isinstance(node, Word) and node.word == "RESUME NEXT" for node in self.statements):
             return self.flow
         after = {at: self.blocks.end.get(at, at) + 1 for at, node in self.parts if isinstance(node, Head)}
         return [
-            [*each, Way(None, "go", after.get(index, index + 1))]
-            if index in after or any(way.kind == "call" for way in each)
+            [*each, Edge(None, "go", after.get(index, index + 1))]
+            if index in after or any(edge.kind == "call" for edge in each)
             else each
             for index, each in enumerate(self.flow)
         ]

@@ -2,7 +2,7 @@
 
 A *context* is a part of the program that runs: the main program, what a GOSUB, a CALL or an error has led to. It is
 told apart by how, where and with which fact it was entered, and by the handler of errors then; it goes by a number. An
-*exit* is a way out of a context, with the fact and the handler there. RETURN leaves the last GOSUB, or else the SUB;
+*exit* is what leaves a context, with the fact and the handler there. RETURN leaves the last GOSUB, or else the SUB;
 ENDSUB leaves the SUB, so it goes through the GOSUBs in it; an error that no handler of the SUB takes leaves it as well.
 
 A handler runs as a context of its own, whose callers are the statements that may fail: RESUME goes back to them. RETURN
@@ -31,8 +31,8 @@ STOPS, NOTHING = -1, -2
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
-    """A way out of a line: the statement that it carries out, and where it leads.
+class Edge:
+    """An edge out of a line: the statement that it carries out, and where it leads.
 
     ``kind``: ``go`` to line ``to``; ``gosub`` or ``call`` the part whose first line is ``to``, to come back to the line
     below; ``return`` from the last GOSUB, or else the SUB; ``leave`` the SUB; ``end``: the program ends; ``catch``:
@@ -44,7 +44,7 @@ class Way:
     to: int = -1
 
 
-Ways = list[list[Way]]
+Edges = list[list[Edge]]
 
 
 class _Caller(NamedTuple):
@@ -56,7 +56,7 @@ class _Caller(NamedTuple):
 
 
 class _Exit(NamedTuple, Generic[Fact]):
-    """A way out of a context. ``unwind``: a RETURN from one of the GOSUBs around."""
+    """What leaves a context. ``unwind``: a RETURN from one of the GOSUBs around."""
 
     kind: str
     fact: Fact
@@ -66,9 +66,9 @@ class _Exit(NamedTuple, Generic[Fact]):
 class Search(Generic[Fact]):
     """The tabulation: pairs of a context and a fact before a line."""
 
-    def __init__(self, ways: Ways, step: Step[Fact]) -> None:
-        self._ways, self._step = ways, step
-        self._before: list[set[Fact]] = [set() for _ in range(len(ways) + 1)]
+    def __init__(self, edges: Edges, step: Step[Fact]) -> None:
+        self._edges, self._step = edges, step
+        self._before: list[set[Fact]] = [set() for _ in range(len(edges) + 1)]
         self._seen: set[tuple[int, int, Fact, int]] = set()
         self._work: list[tuple[int, int, Fact, int]] = []
         self._contexts: dict[tuple[str, int, Fact, int], int] = {}
@@ -92,9 +92,9 @@ class Search(Generic[Fact]):
             context, at, fact, handler = self._work.pop()
             if len(self._before[at]) > MAX_FACTS:
                 return None
-            for way in self._ways[at] if at < len(self._ways) else ():
-                for after in (fact,) if way.statement is None else self._step(at, way.statement, fact):
-                    self._follow(context, at, way, after, handler)
+            for edge in self._edges[at] if at < len(self._edges) else ():
+                for after in (fact,) if edge.statement is None else self._step(at, edge.statement, fact):
+                    self._follow(context, at, edge, after, handler)
         return self._before
 
     def _context(self, kind: str, line: int, fact: Fact, handler: int) -> int:
@@ -111,18 +111,18 @@ class Search(Generic[Fact]):
             self._before[at].add(fact)
             self._work.append(key)
 
-    def _follow(self, context: int, at: int, way: Way, fact: Fact, handler: int) -> None:
-        if way.kind == "go":
-            self._push(context, way.to, fact, handler)
-        elif way.kind == "catch":
-            self._push(context, at + 1, fact, way.to)
-        elif way.kind in ("gosub", "call"):
-            within = handler if way.kind == "gosub" else NOTHING
-            self._enter(way.kind, way.to, fact, within, _Caller(context, at, handler))
-        elif way.kind == "fail":
+    def _follow(self, context: int, at: int, edge: Edge, fact: Fact, handler: int) -> None:
+        if edge.kind == "go":
+            self._push(context, edge.to, fact, handler)
+        elif edge.kind == "catch":
+            self._push(context, at + 1, fact, edge.to)
+        elif edge.kind in ("gosub", "call"):
+            within = handler if edge.kind == "gosub" else NOTHING
+            self._enter(edge.kind, edge.to, fact, within, _Caller(context, at, handler))
+        elif edge.kind == "fail":
             self._fail(_Caller(context, at, handler), fact)
-        elif way.kind != "end":
-            self._exit(context, _Exit(way.kind, fact, handler))
+        elif edge.kind != "end":
+            self._exit(context, _Exit(edge.kind, fact, handler))
 
     def _enter(self, kind: str, line: int, fact: Fact, handler: int, caller: _Caller) -> None:
         callee = self._context(kind, line, fact, handler)
@@ -146,13 +146,11 @@ class Search(Generic[Fact]):
     def _return(self, kind: str, caller: _Caller, left: _Exit[Fact]) -> None:
         """Carry an exit of a context of some kind to one of its callers."""
         if kind == "call":
-            if left.kind == "fail":
-                self._fail(caller, left.fact)
-            elif left.kind in ("return", "leave", "unwind"):
-                self._push(caller.context, caller.line + 1, left.fact, caller.handler)
+            self._return_from_call(caller, left)
         elif kind == "gosub" and left.kind in ("return", "unwind"):
             self._push(caller.context, caller.line + 1, left.fact, left.handler)
             if left.kind == "unwind":
+                # RETURN of a handler may leave this GOSUB or one around it: both are followed
                 self._exit(caller.context, left)
         elif kind == "handler" and left.kind in ("resume", "resume next"):
             self._push(caller.context, caller.line + (left.kind == "resume next"), left.fact, caller.handler)
@@ -160,3 +158,10 @@ class Search(Generic[Fact]):
             self._exit(caller.context, left._replace(kind="unwind"))
         else:
             self._exit(caller.context, left)
+
+    def _return_from_call(self, caller: _Caller, left: _Exit[Fact]) -> None:
+        """Carry an exit of a SUB to one of its CALLs, where the caller's handler is in force again."""
+        if left.kind == "fail":
+            self._fail(caller, left.fact)
+        elif left.kind in ("return", "leave", "unwind"):
+            self._push(caller.context, caller.line + 1, left.fact, caller.handler)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from robolang.analysis.dataflow import facts_before, ways_of
+from robolang.analysis.dataflow import edges_of, facts_before
 from robolang.analysis.tabulation import MAX_FACTS
 from robolang.syntax.ast import Print
 from robolang.syntax.blocks import structure_of
@@ -12,7 +12,7 @@ from tests.robolang.helpers import parsed
 def lines_before(text):
     """Line by line, and behind the last: the sets of numbers of PRINTs that can have come last."""
     program = parsed(text)
-    ways = ways_of(program, structure_of(program))
+    ways = edges_of(program, structure_of(program))
     return facts_before(ways, 0, lambda at, node, fact: (at + 1 if isinstance(node, Print) else fact,))
 
 

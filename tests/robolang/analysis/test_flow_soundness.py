@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolang.analysis.checker import check
-from robolang.analysis.dataflow import facts_before, ways_of
+from robolang.analysis.dataflow import edges_of, facts_before
 from robolang.core.diagnostics import has_errors
 from robolang.interpreter.branch_oracle import Decisions
 from robolang.interpreter.effects import MoveTo, SetHand, SetPayload, Show
@@ -223,7 +223,7 @@ FACTS = {"print": (0, printed), "hand": ((False, 0), declared)}
 
 
 def found_by_flow(program):
-    ways = ways_of(program, structure_of(program))
+    ways = edges_of(program, structure_of(program))
     return {name: facts_before(ways, *rule) for name, rule in FACTS.items()}
 
 
