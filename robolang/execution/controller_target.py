@@ -16,6 +16,7 @@ from robolang.execution.observer import Observer
 from robolang.execution.plan_findings import PlanFindings, PlannedMove
 from robolang.execution.result import RunRecord, StatementRun
 from robolang.execution.target import Requested
+from robolang.execution.world import RobotWorld
 from robolang.interpreter.effects import (
     Drain,
     Effect,
@@ -84,6 +85,7 @@ class TargetSnapshot:
     statements: tuple[StatementRun, ...]
     payloads: tuple[dict[str, object], ...]
     shown: tuple[tuple[float, str], ...]
+    acknowledged: tuple[Alarm, ...]
     activity: _Activity
     warned: frozenset[tuple[str, Span]]
 
@@ -94,6 +96,8 @@ class ControllerTarget:
     def __init__(self, record: RunRecord, kinematics: Kinematics, observer: Observer) -> None:
         self._record, self._observer = record, observer
         self._project = record.project
+        self.world = RobotWorld(record.project.points, record.project.cell, kinematics, lambda: self.time_us)
+        """What the program reads of robot and cell."""
         self._findings = PlanFindings(record.project, kinematics)
         self._activity: _Activity = None
         self._warned: frozenset[tuple[str, Span]] = frozenset()
@@ -212,6 +216,12 @@ class ControllerTarget:
     def stop(self) -> None:
         """Raise RBL530."""
         self._record.controller.alarm("RBL530", "the run was stopped from outside")
+
+    def acknowledge(self) -> None:
+        """Release the brakes; the record keeps the alarms."""
+        alarms = list(self.alarms)
+        self._record.controller.acknowledge()
+        self._record.acknowledged += alarms
 
     def fail(self, fault: Failed) -> None:
         """Raise the alarm of a fault that the program does not catch."""
@@ -353,6 +363,7 @@ class ControllerTarget:
             statements=tuple(map(_copied, record.statements)),
             payloads=tuple(record.payloads),
             shown=tuple(record.shown),
+            acknowledged=tuple(record.acknowledged),
             activity=self._activity,
             warned=self._warned,
         )
@@ -363,6 +374,7 @@ class ControllerTarget:
         record.controller.restore(snapshot.controller)
         record.statements[:] = map(_copied, snapshot.statements)
         record.payloads[:], record.shown[:] = snapshot.payloads, snapshot.shown
+        record.acknowledged[:] = snapshot.acknowledged
         self._activity, self._warned = snapshot.activity, snapshot.warned
 
 

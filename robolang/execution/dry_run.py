@@ -122,8 +122,7 @@ def rehearse(
     plans = plans or PlanMemory(project)
     most_us = run_bounds.MAX_RUN_US if most_us is None else most_us
     target = _DryRun(project, plans, most_us)
-    world = RobotWorld(project.points, project.cell, plans.kinematics, lambda: target.time_us)
-    executor = Executor(project, target, world, decisions=decisions, most_us=most_us)
+    executor = Executor(project, target, decisions=decisions, most_us=most_us)
     while executor.advance().state not in ENDED:
         pass
     return Rehearsal(
@@ -145,6 +144,7 @@ class _DryRun(Untimed):
         cell = project.cell
         self._period_us, self._plans, self._most_us = project.profile.period_us, plans, most_us
         self.time_us = 0
+        self.world = RobotWorld(project.points, cell, plans.kinematics, lambda: self.time_us)
         self.statement: Origin | None = None
         self._X_flange_tool = cell.hand.X_flange_tool
         self._payload = NO_PAYLOAD

@@ -14,7 +14,7 @@ from typing import Any, TypeAlias, assert_never
 from robolang.execution import lowering, run_bounds
 from robolang.execution.observer import Observer
 from robolang.execution.target import Requested, Target
-from robolang.execution.world import RobotWorld, WorldSnapshot
+from robolang.execution.world import WorldSnapshot
 from robolang.interpreter.branch_oracle import Decisions
 from robolang.interpreter.effects import (
     Drain,
@@ -77,6 +77,8 @@ class _Phase(Enum):
 
 
 _End: TypeAlias = Done | Failed | FedEnded
+Setting: TypeAlias = SetPayload | SetWrist | SetSeam | SetTool | SetOutput
+"""Effects that last; mypy refuses a new one that is carried out neither as one of these nor by ``_carry_out``."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -116,7 +118,6 @@ class Executor:
         self,
         project: Project,
         target: Target,
-        world: RobotWorld,
         *,
         decisions: Decisions | None = None,
         alter: Alter | None = None,
@@ -124,11 +125,12 @@ class Executor:
         most_us: int | None = None,
     ) -> None:
         """``decisions`` may force the branches of conditions; ``most_us`` ends the run earlier than usual."""
-        self._project, self._target, self.world = project, target, world
+        self._project, self._target = project, target
+        self.world = target.world
         self._alter = alter or (lambda effect: effect)
         self._observer = observer or Observer()
         self._most_us = run_bounds.MAX_RUN_US if most_us is None else most_us
-        self._machine = Machine(project.program, world, project.points.names, decisions)
+        self._machine = Machine(project.program, self.world, project.points.names, decisions)
         self._now = _Progress()
         self._stop_requested = self._halt_requested = False
 
@@ -194,6 +196,21 @@ class Executor:
         now.phase, now.fault = _Phase.READY, None
         now.pausing = now.resting = now.resumed = False
 
+    def acknowledge(self) -> None:
+        """Take note of the alarm that has ended the program: the servos hold the arm where it stands.
+
+        The program stays ended: the move that was interrupted is not taken up, and no seam is followed. Statements can
+        be fed. ``RuntimeError`` while the program runs or the arm still stops, and when the state of the plant is no
+        longer valid.
+        """
+        if self._now.phase is not _Phase.OVER:
+            raise RuntimeError("the program still runs, or the arm is still stopping")
+        self._target.acknowledge()
+        self._machine.end()
+        self.world.q_last = self._target.q  # where the brakes have left the arm, not where the move would have ended
+        self._now = _Progress(phase=_Phase.OVER)
+        self._stop_requested = self._halt_requested = False
+
     def snapshot(self) -> ExecutorSnapshot:
         """Return the whole state: machine, world, target with its record, and what is kept here."""
         return ExecutorSnapshot(
@@ -215,26 +232,34 @@ class Executor:
 
     def _ready(self) -> bool:
         """Carry out what takes no time; return whether there is a cycle to run."""
-        target, now = self._target, self._now
+        now = self._now
         while True:
             if now.pausing and not self._interrupted():
                 return not now.resting
-            match now.phase:
-                case _Phase.READY:
-                    self._go_on()
-                case _Phase.BUSY:
-                    if target.goes_on() and not self._stop_requested:
-                        return True
-                    self._end_effects()
-                case _Phase.STOPPING:
-                    if not target.at_rest:
-                        return True
-                    self._finish()
-                    now.phase = _Phase.OVER
-                case _Phase.OVER:
+            if not self._went_on():
+                return now.phase is not _Phase.OVER
+
+    def _went_on(self) -> bool:
+        """Do one thing that takes no time, if there is one; else a cycle is due, or the program is over."""
+        target, now = self._target, self._now
+        match now.phase:
+            case _Phase.READY:
+                self._go_on()
+            case _Phase.BUSY:
+                # ``goes_on`` first: it notes what the last cycle did, also where a stop ends the effect
+                if target.goes_on() and not self._stop_requested:
                     return False
-                case _:
-                    assert_never(now.phase)
+                self._end_effects()
+            case _Phase.STOPPING:
+                if not target.at_rest:
+                    return False
+                self._finish()
+                now.phase = _Phase.OVER
+            case _Phase.OVER:
+                return False
+            case _:
+                assert_never(now.phase)
+        return True
 
     def _interrupted(self) -> bool:
         """Pause or go on; return whether the program goes on, else the arm comes to rest or rests (``resting``)."""
@@ -324,9 +349,8 @@ class Executor:
                 now.request = effect = self._alter(event)
                 if effect is not None:
                     self._target.begin(effect)
-                    if isinstance(
-                        effect, MoveTo | SetWrist
-                    ):  # each move carries the setting of WRIST that holds for it
+                    # WRIST does not wait for the moves before it: each move carries the setting that holds for it
+                    if isinstance(effect, MoveTo | SetWrist):
                         self._carry_out(effect)
                     else:
                         self._after_motion(effect)
@@ -371,35 +395,43 @@ class Executor:
 
     def _carry_out(self, effect: Effect) -> None:
         """Start an effect on the target, in SI."""
-        target, cell, now = self._target, self._project.cell, self._now
+        target, now = self._target, self._now
         now.phase, now.doing = _Phase.BUSY, (effect,)
         match effect:
             case MoveTo():
                 self._move(effect)
-            case SetWrist():
-                target.wrist(effect)
+            case SetHand():
+                target.hand(effect, self._cycles(lowering.dwell_s(effect, self._project.cell)))
+            case Pass():
+                # a cycle at least: a WAIT that reads the time would never end if its clock stood still
+                target.wait(effect, max(1, self._cycles(effect.seconds)))
             case Drain():
                 target.drain(effect)
                 now.phase, now.doing = _Phase.READY, ()
+            case Show():
+                target.show(effect)
+            case Halt():
+                target.halt(effect)
+            case _:
+                self._set(effect)
+
+    def _set(self, effect: Setting) -> None:
+        """Change what holds for the statements that follow, from now on."""
+        target, cell = self._target, self._project.cell
+        match effect:
             case SetPayload():
                 target.load(effect, lowering.payload(effect, cell))
-            case SetHand():
-                target.hand(effect, self._cycles(lowering.dwell_s(effect, cell)))
+            case SetWrist():
+                target.wrist(effect)
             case SetSeam():
                 target.seam(effect)
-                now.tracked = effect.sensor is not None
+                self._now.tracked = effect.sensor is not None
             case SetTool():
                 self.world.X_flange_tool = lowering.tool(effect.tool, cell)
                 target.tool(effect, self.world.X_flange_tool)
             case SetOutput():
                 self.world.set_output(effect.output, effect.value, effect.seconds)
                 target.output(effect)
-            case Pass():
-                target.wait(effect, max(1, self._cycles(effect.seconds)))
-            case Show():
-                target.show(effect)
-            case Halt():
-                target.halt(effect)
             case _:
                 assert_never(effect)
 

@@ -29,7 +29,7 @@ def build_report(record: RunRecord, log: dict[str, Array], wall_s: float) -> dic
     return {
         "program": record.project.source.path,
         "robot": controller.spec.name,
-        "ok": not controller.alarms,
+        "ok": not record.alarms,
         "physics": record.physics,
         "servo": record.project.profile.servo.mode,
         "sim_time_s": sim_s,
@@ -45,7 +45,7 @@ def build_report(record: RunRecord, log: dict[str, Array], wall_s: float) -> dic
         "payload_history": record.payloads,
         "printed": [{"time_s": time_s, "text": text} for time_s, text in record.shown],
         "objects": {name: {"pose_mm_deg": pose_mm_deg(X)} for name, X in sorted(controller.plant.parts().items())},
-        "alarms": _events(record, controller.alarms, Severity.ERROR),
+        "alarms": _events(record, record.alarms, Severity.ERROR),
         "warnings": _events(record, controller.warnings, Severity.WARNING),
     }
 

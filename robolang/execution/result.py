@@ -7,6 +7,7 @@ from robolang.core.diagnostics import Diagnostic
 from robolang.interpreter.effects import Origin
 from robolang.project.project import Project
 from runtime.control.controller import Controller
+from runtime.core.faults import Alarm
 from runtime.core.frames import Array
 from runtime.motion.cartesian_planner import WristChange
 from runtime.motion.path import Path
@@ -61,3 +62,10 @@ class RunRecord:
     statements: list[StatementRun] = field(default_factory=list)
     payloads: list[dict[str, object]] = field(default_factory=list)
     shown: list[tuple[float, str]] = field(default_factory=list)
+    acknowledged: list[Alarm] = field(default_factory=list)
+    """Alarms that the controller no longer holds."""
+
+    @property
+    def alarms(self) -> list[Alarm]:
+        """All alarms of the run, in order."""
+        return [*self.acknowledged, *self.controller.alarms]

@@ -5,6 +5,7 @@ stands still; the plans are kept for the run.
 """
 
 from pathlib import Path
+from typing import TypedDict, Unpack
 
 from robolang.core.diagnostics import Diagnostic, Severity, render
 from robolang.execution.alarms import as_diagnostic
@@ -59,15 +60,19 @@ class Session:
         plans = plans or PlanMemory(project)
         controller = Rig.of(project, physics, realtime=realtime, plans=plans).controller
         self.record = RunRecord(project=project, controller=controller, physics=physics)
-        self.world = RobotWorld(project.points, project.cell, plans.kinematics, lambda: self.controller.time_us)
         observer = observer or Observer()
         target = ControllerTarget(self.record, plans.kinematics, observer)
-        self.executor = Executor(project, target, self.world, alter=alter, observer=observer)
+        self.executor = Executor(project, target, alter=alter, observer=observer)
 
     @property
     def controller(self) -> Controller:
         """The controller of the run."""
         return self.record.controller
+
+    @property
+    def world(self) -> RobotWorld:
+        """What the program reads of robot and cell."""
+        return self.executor.world
 
     def request_stop(self) -> None:
         """Request a controlled stop from the next cycle on; safe to call from a signal handler."""
@@ -94,32 +99,38 @@ class Session:
         alarms, warnings = (
             tuple(as_diagnostic(alarm, severity) for alarm in found)
             for found, severity in (
-                (self.controller.alarms, Severity.ERROR),
+                (self.record.alarms, Severity.ERROR),
                 (self.controller.warnings, Severity.WARNING),
             )
         )
         return RunResult(ok=not alarms, alarms=alarms, warnings=warnings, report=report, log=log)
 
 
+class Replaced(TypedDict, total=False):
+    """What a run may take in place of what stands beside its program, as ``load_project`` does."""
+
+    cell: Path | str | None
+    robot: str | None
+    servo: ServoMode | None
+
+
 def run(
     program: Path | str,
     *,
-    cell: Path | str | None = None,
-    robot: str | None = None,
-    servo: ServoMode | None = None,
     physics: bool = True,
     realtime: bool = False,
     observer: Observer | None = None,
+    **replaced: Unpack[Replaced],
 ) -> RunResult:
     """Run a program file and return its result.
 
-    ``cell``, ``robot`` and ``servo`` replace what the files beside the program say (see ``project``); ``physics``
+    ``cell``, ``robot`` and ``servo`` replace what the files beside the program say (see ``load_project``); ``physics``
     False runs on the ideal arm without MuJoCo; ``realtime`` keeps wall time; ``observer`` sees what happens.
 
     Raises ``ProgramError`` when the program has errors or a move cannot be planned, ``FileFault`` or ``Fault`` when a
     file cannot be used: in all these cases nothing has moved. A fault while running gives ``ok = False``.
     """
-    project = load_project(program, cell, robot, servo)
+    project = load_project(program, **replaced)
     if not project.ok:
         raise ProgramError(project, project.diagnostics)
     plans = PlanMemory(project)

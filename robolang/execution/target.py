@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from robolang.execution.world import RobotWorld
 from robolang.interpreter.effects import (
     Drain,
     Effect,
@@ -90,6 +91,10 @@ class Target(Effects, Protocol):
     """Statement that is carried out."""
 
     @property
+    def world(self) -> RobotWorld:
+        """What the program reads, by the clock of the target; the executor keeps its state."""
+
+    @property
     def time_us(self) -> int:
         """Time since the program began, us."""
 
@@ -125,6 +130,9 @@ class Target(Effects, Protocol):
 
     def stop(self) -> None:
         """Raise the alarm of a stop from outside (category 1)."""
+
+    def acknowledge(self) -> None:
+        """Take note of the alarms, so that effects can be carried out again; ``RuntimeError`` where they cannot."""
 
     def fail(self, fault: Failed) -> None:
         """End with a fault that the program does not catch."""
@@ -170,6 +178,9 @@ class Untimed:
 
     def stop(self) -> None:
         """Do nothing: the executor takes no further effect."""
+
+    def acknowledge(self) -> None:
+        """Do nothing: there are no alarms."""
 
     def snapshot(self) -> dict[str, Any]:
         """Return all attributes; containers are copied, what is in them never changes."""

@@ -218,6 +218,10 @@ class Machine:
                 kept.append(top)
             run.suspended = tuple(kept)
 
+    def end(self) -> None:
+        """End the program where it stands: of its own nothing comes any more; what is fed is carried out."""
+        self._run.cursor, self._run.suspended = Cursor(at=len(self._run.lines), ended=DONE), ()
+
     # --- state -------------------------------------------------------------------------------------------------------
 
     def snapshot(self) -> MachineSnapshot:

@@ -92,10 +92,7 @@ Marker: TypeAlias = LoadMarker | HandMarker | OtherMarker
 def in_tables(project: Project, machine: Machine, channels: Sequence[Channel], step_s: float) -> "TableTarget":
     """Return the target with the whole program carried out; ``NotExportableError`` at what cannot be in tables."""
     target = TableTarget(project, machine, channels, step_s)
-    kinematics = machine.kinematics if isinstance(machine, RobotArm) else Kinematics(project.cell.robot)
-    world = _Unread(project.points, project.cell, kinematics, lambda: 0)
-    world.q_last = target.q
-    executor = Executor(project, target, world, decisions=_WaitsPass())
+    executor = Executor(project, target, decisions=_WaitsPass())
     while executor.advance().state not in ENDED:
         pass
     return target
@@ -122,6 +119,9 @@ class TableTarget(Untimed):
         self.first = self._start = counted(machine.home.q, self._channels)
         """Where the channels stand before the first move, pulses."""
         self.sequence: list[TableMove | Marker] = []
+        kinematics = machine.kinematics if isinstance(machine, RobotArm) else Kinematics(project.cell.robot)
+        self.world = _Unread(project.points, project.cell, kinematics, lambda: 0)
+        self.world.q_last = self.q
 
     @property
     def q(self) -> Array:

@@ -279,3 +279,63 @@ def test_a_pause_rests_with_physics_too_and_under_a_seam_sensor_at_the_end_of_th
     session = paused_at(load_project(ROOT / "wrist/seam.rbl"), 150)
     session.executor.resume()
     assert ended(session)[1]["ok"]
+
+
+def carried_out(executor, text):
+    """The status after a statement of a prompt."""
+    executor.feed(fed(text))
+    while executor.advance().state not in (*ENDED, State.PAUSED):
+        pass
+    return executor.status
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("physics", [False, True])
+@pytest.mark.parametrize(
+    ("text", "code", "cycles"), [("X = 0\nMOVE P1\nX = 1 / X\n", "RBL501", None), ("MOVE P1\nMOVE P2\n", "RBL530", 60)]
+)
+def test_after_an_alarm_is_acknowledged_statements_are_fed_again(tmp_path, physics, text, code, cycles):
+    """The program stays ended, moves begin where the arm stands, and the record keeps the alarm."""
+    session = Session(project_of(tmp_path, text), physics=physics)
+    executor = session.executor
+    if cycles is not None:
+        executor.advance(cycles)
+        executor.stop()
+    with pytest.raises(RuntimeError):
+        executor.acknowledge()
+    while executor.advance().state not in ENDED:
+        pass
+    with pytest.raises(RuntimeError):
+        executor.feed(fed("MOVE P2"))
+    executor.acknowledge()
+    assert (executor.status.state, executor.status.fault) == (State.DONE, None)
+    np.testing.assert_array_equal(executor.world.q_last, session.controller.areas.ina)
+    acknowledged = executor.snapshot()
+    assert carried_out(executor, "MOVE P2 + (0, 0, 20)").fault is None
+    (log, report) = ended_by_resume(session)
+    assert executor.status.state is State.DONE
+    assert [alarm["code"] for alarm in report["alarms"]] == [code]
+    assert not report["ok"]
+    speed = session.controller.recorder.signals(session.controller.tool_poses)["dq_cmd"]
+    assert np.isfinite(speed).all()
+    executor.restore(acknowledged)
+    assert carried_out(executor, "MOVE P2 + (0, 0, 20)").fault is None
+    assert ended_by_resume(session) == (log, report)
+
+
+def ended_by_resume(session):
+    """The log and the report of a session that is resumed after a pause."""
+    session.executor.resume()
+    return ended(session)
+
+
+def test_a_fault_of_a_dry_run_is_acknowledged_as_well(tmp_path):
+    """Targets without alarms end by a fault; a jump that is fed afterwards starts the program again."""
+    session = Session(project_of(tmp_path, "10 X = 0\n20 X = X + 1\n30 Y = 1 / (X - 1)\n"), physics=False)
+    assert session.executor.advance(1000).state is State.ALARM
+    session.executor.acknowledge()
+    assert carried_out(session.executor, "GOTO 20").fault is None
+    session.executor.resume()
+    while session.executor.advance().state not in ENDED:
+        pass
+    assert session.executor.status.state is State.DONE
