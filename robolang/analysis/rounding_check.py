@@ -41,7 +41,7 @@ from robolang.syntax.ast import (
     Word,
     Wrist,
 )
-from robolang.syntax.tree import walk
+from robolang.syntax.tree import Node, walk
 from robolang.syntax.unparse import print_expression
 from robolang.values.functions import FUNCTIONS
 from robolang.values.kinds import Exactness
@@ -172,15 +172,20 @@ def _compared(statements: list[Statement]) -> Iterator[_Compared]:
     for node in statements:
         if isinstance(node, _SKIPPED):
             continue
-        parts = (node.condition,) if isinstance(node, If) else (node,)
-        for each in (each for part in parts for each in walk(part)):
-            if isinstance(each, Chain) and each.rest[0][0] in ("=", "<>"):
-                sign, other = each.rest[0]
-                yield each, (each.first, other), sign
+        # the statements of a one-line IF are in the list by themselves
+        yield from _signs(node.condition if isinstance(node, If) else node)
         if isinstance(node, Head) and node.word == "SELECT":
             yield node.value, (node.value,), "CASE"
         elif isinstance(node, Case):
             yield from ((value, (value,), "CASE") for value in node.values)
+
+
+def _signs(node: Node) -> Iterator[_Compared]:
+    """Yield the comparisons by = and <> in a statement or an expression."""
+    for each in walk(node):
+        if isinstance(each, Chain) and each.rest[0][0] in ("=", "<>"):
+            sign, other = each.rest[0]
+            yield each, (each.first, other), sign
 
 
 def _finding(
@@ -214,22 +219,27 @@ def _key(node: Expression | Name) -> str:
 
 def _kinds(statements: list[Statement], sides: Iterable[Expression]) -> _Exactnesses:
     """Return the kinds of the names that some expressions depend on."""
-    by_key: dict[str, list[_Giving]] = {}
-    for giving in _givings(statements):
-        by_key.setdefault(giving.key, []).append(giving)
-    todo, followed, givings = [_key(name) for side in sides for name in _read(side)], set[str](), list[_Giving]()
-    while todo:
-        key = todo.pop()
-        if key not in followed:
-            followed.add(key)
-            for giving in by_key.get(key, ()):
-                givings.append(giving)
-                todo += [_key(name) for value in giving.values for name in _read(value)]
+    givings = _followed(statements, [_key(name) for side in sides for name in _read(side)])
     kinds = _Exactnesses()
     for _ in range(MAX_PASSES):
+        # summed, not any(): each of them is taken in every pass
         if not sum(kinds.take(giving) for giving in givings):
             break
     return kinds
+
+
+def _followed(statements: list[Statement], todo: list[str]) -> list[_Giving]:
+    """Return what gives the names of ``todo`` their values, and what gives the names in those theirs."""
+    by_key: dict[str, list[_Giving]] = {}
+    for giving in _givings(statements):
+        by_key.setdefault(giving.key, []).append(giving)
+    givings: list[_Giving] = []
+    while todo:
+        # taken out, so that a key is followed once
+        for giving in by_key.pop(todo.pop(), ()):
+            givings.append(giving)
+            todo += [_key(name) for value in giving.values for name in _read(value)]
+    return givings
 
 
 def _read(node: Expression) -> Iterator[Expression]:
@@ -247,9 +257,14 @@ def _givings(statements: list[Statement]) -> Iterator[_Giving]:
         elif isinstance(node, For):
             step = () if node.step is None else (node.step,)
             yield _Giving(key=node.variable.key, values=(node.first, *step), counts=True)
-        elif isinstance(node, CallSub) and (sub := subs.get(node.name.key)) is not None:
-            for parameter, value in zip(sub.parameters, node.arguments, strict=False):
-                yield _Giving(key=parameter.key, values=(value,))
+        elif isinstance(node, CallSub) and node.name.key in subs:
+            yield from _arguments(node, subs[node.name.key])
+
+
+def _arguments(node: CallSub, sub: Sub) -> Iterator[_Giving]:
+    """Yield what a CALL gives the parameters; a wrong number of arguments is reported elsewhere."""
+    for parameter, value in zip(sub.parameters, node.arguments, strict=False):
+        yield _Giving(key=parameter.key, values=(value,))
 
 
 def _parts(node: Statement | None) -> Iterator[Statement]:

@@ -50,6 +50,22 @@ class _Own:
     arrays: dict[str, float] = field(default_factory=dict)
     constants: dict[str, Span] = field(default_factory=dict)
 
+    def take(self, node: Statement) -> None:
+        """Enter what a statement defines."""
+        if isinstance(node, Assign) and isinstance(node.target, Name):
+            if all(name.key != node.target.key for name in values_read(node.value)):  # n = n + 1 gives no first value
+                self.values.add(node.target.key)
+        elif isinstance(node, For):
+            self.values.add(node.variable.key)
+        elif isinstance(node, Const):
+            self.values.add(node.name.key)
+            self.constants.setdefault(node.name.key, node.name.span)
+        elif isinstance(node, Dim):
+            size = fixed(node.size)
+            # an impossible size is an error by itself: no index is judged by it
+            known = size if size is not None and limits.SIZE.fault(size) is None else math.inf
+            self.arrays[node.name.key] = max(known, self.arrays.get(node.name.key, 0.0))
+
 
 @dataclass(slots=True)
 class Defined:
@@ -123,23 +139,13 @@ class Defined:
             for part in (node.then, node.otherwise):
                 if part is not None:
                     self._take(part, own)
-        elif isinstance(node, Assign) and isinstance(node.target, Name):
-            if all(name.key != node.target.key for name in values_read(node.value)):  # n = n + 1 gives no first value
-                own.values.add(node.target.key)
-        elif isinstance(node, For):
-            own.values.add(node.variable.key)
-        elif isinstance(node, Const):
-            own.values.add(node.name.key)
-            own.constants.setdefault(node.name.key, node.name.span)
-        elif isinstance(node, Dim):
-            size = fixed(node.size)
-            known = size if size is not None and limits.SIZE.fault(size) is None else math.inf
-            own.arrays[node.name.key] = max(known, own.arrays.get(node.name.key, 0.0))
         elif isinstance(node, Sub):
             self.subs.setdefault(node.name.key, node)
             own.values.update(parameter.key for parameter in node.parameters)
         elif isinstance(node, Unparsed):
             self.seeming |= seems_to_define(node.text)
+        else:
+            own.take(node)
 
 
 def _words(node: Statement) -> frozenset[str]:
@@ -167,16 +173,21 @@ def values_read(node: Expression) -> Iterator[Name]:
 
 def seems_to_define(text: str) -> frozenset[str]:
     """Return the names, in capitals, that a statement with an error seems to give a value."""
-    plain = _TEXTS.sub(" ", _LABEL.sub(" ", text, count=1) if text.lstrip().startswith("*") else text)
-    words = [word.upper() for word in _WORD.findall(plain)]
+    is_labelled = text.lstrip().startswith("*")
+    plain = _TEXTS.sub(" ", _LABEL.sub(" ", text, count=1) if is_labelled else text)
+    words = frozenset(word.upper() for word in _WORD.findall(plain))
     begin = _FIRST.match(plain)
     first = begin[1].upper() if begin else ""
-    for word in _DEFINING:
-        if first.startswith(word) and first != word:  # SUBf(x): the blank is missing
-            return frozenset({*words, first.removeprefix(word)}) - RESERVED
+    if joined := _without_blank(first):
+        return (words | {joined}) - RESERVED
     if first in _DEFINING or (first not in KEYWORDS and near(first, _DEFINING)):
-        return frozenset(words) - RESERVED
+        return words - RESERVED
     return frozenset(found[1].upper() for found in _ASSIGNED.finditer(plain)) - RESERVED
+
+
+def _without_blank(first: str) -> str:
+    """Return the name that stands right after a defining word, the blank missing: ``SUBf(x)``; or ``""``."""
+    return next((first.removeprefix(word) for word in _DEFINING if first.startswith(word) and first != word), "")
 
 
 def of_cell(

@@ -20,6 +20,7 @@ without its head moves nothing, since ``structure`` says what is wrong with it.
 
 import re
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from robolang.core.diagnostics import Diagnostic
@@ -103,27 +104,35 @@ class _Row:
 
 
 def _rows(source: Source, program: Program) -> list[_Row]:
-    """Return the lines of the result, with comments two spaces behind their statements."""
-    lines = iter(program.lines)
-    following = next(lines, None)
-    width = max((len(str(line.number)) for line in program.lines if line.number is not None), default=0)
+    """Return the lines of the result, with comments two spaces after their statements."""
+    width = _number_width(program)
     rows: list[_Row] = []
-    blocks, blank, on = _Blocks(), 0, True
-    for number, span in enumerate(_line_spans(source), start=1):
-        text, line = source.slice(span), None
-        if following is not None and following.source_line == number:
-            line, following = following, next(lines, None)
-        switch = None if line is None else _switch(line)
-        depth = 0 if line is None else blocks.enter(word_of(line.statement))
-        kept = not on and switch is None
+    blocks, blank = _Blocks(), 0
+    for text, line, kept in _lines(source, program):
+        depth = blocks.enter("" if line is None else word_of(line.statement))
         blank = 0 if kept or text.strip(" \t") else blank + 1
-        on = on if switch is None else switch
         if blank <= MAX_BLANK:
-            row = None if kept else _Row("", ends_group=True) if blank else _row(line, depth, width)
-            rows.append(_Row(text, ends_group=True) if row is None else row)
+            row = _row(line, depth, width) if not (kept or blank) else None
+            rows.append(row or _Row("" if blank else text, ends_group=True))
     if blank:
         del rows[-min(blank, MAX_BLANK) :]
     return rows
+
+
+def _lines(source: Source, program: Program) -> Iterator[tuple[str, Line | None, bool]]:
+    """Yield the text of every line, its tree, and whether the switches keep it as it is."""
+    lines = {line.source_line: line for line in program.lines}
+    on = True
+    for number, span in enumerate(_line_spans(source), start=1):
+        line = lines.get(number)
+        switch = _switch(line)
+        # a line that switches is formatted itself, on and off
+        yield source.slice(span), line, not on and switch is None
+        on = on if switch is None else switch
+
+
+def _number_width(program: Program) -> int:
+    return max((len(str(line.number)) for line in program.lines if line.number is not None), default=0)
 
 
 def _line_spans(source: Source) -> tuple[Span, ...]:
@@ -132,9 +141,9 @@ def _line_spans(source: Source) -> tuple[Span, ...]:
     return spans if spans[-1].start < spans[-1].end else spans[:-1]
 
 
-def _switch(line: Line) -> bool | None:
+def _switch(line: Line | None) -> bool | None:
     """Return whether a line of its own switches the formatter on or off; None when it does neither."""
-    if line.comment is None or line.label is not None or line.statement is not None:
+    if line is None or line.comment is None or line.label is not None or line.statement is not None:
         return None
     found = _SWITCH.fullmatch(line.comment.text)
     return found[1].lower() == "on" if found else None
@@ -145,12 +154,16 @@ def _row(line: Line | None, depth: int, width: int) -> _Row | None:
     if line is None or isinstance(line.statement, Unparsed) or _names_no_line(line):
         return None
     code, comment = print_code(line), "" if line.comment is None else _comment(line.comment)
-    alone = not code
-    number = "" if line.number is None else str(line.number)
-    column = width + 1 if width and (number or code or depth) else 0
-    margin = number.ljust(column) + INDENT * min(depth, MAX_INDENT)
-    row = _Row(f"{margin}{comment}".rstrip(), ends_group=True) if alone else _Row(f"{margin}{code}", comment)
+    # a comment outside of all blocks stands at the margin, also where the program has line numbers
+    has_column = line.number is not None or code or depth
+    margin = _margin(line.number, width if has_column else 0) + INDENT * min(depth, MAX_INDENT)
+    row = _Row(f"{margin}{code}", comment) if code else _Row(f"{margin}{comment}".rstrip(), ends_group=True)
     return row if len(row.text) <= MAX_LINE else None
+
+
+def _margin(number: int | None, width: int) -> str:
+    """Return the column of line numbers at a line, with a blank after it; nothing where there is none."""
+    return ("" if number is None else str(number)).ljust(width + 1 if width else 0)
 
 
 def _names_no_line(line: Line) -> bool:

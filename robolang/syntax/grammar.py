@@ -10,7 +10,7 @@ forgotten (docs/decisions/0022).
 """
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -78,23 +78,28 @@ def _ordered(table: dict[str, Any]) -> dict[str, Any]:
     rows = {
         state: {table["tokens"][token]: step for token, step in row.items()} for state, row in table["states"].items()
     }
-    order = [table["start_states"][name] for name in sorted(table["start_states"])]
+    starts = [table["start_states"][name] for name in sorted(table["start_states"])]
+    number = {state: index for index, state in enumerate(_reached(starts, rows))}
+
+    def renumbered(row: dict[str, Any]) -> dict[int, Any]:
+        return {tokens.index(name): (step, to if step else number[to]) for name, (step, to) in row.items()}
+
+    return {
+        "tokens": dict(enumerate(tokens)),
+        "states": {number[state]: renumbered(row) for state, row in rows.items()},
+        "start_states": {name: number[state] for name, state in table["start_states"].items()},
+        "end_states": {name: number[state] for name, state in table["end_states"].items()},
+    }
+
+
+def _reached(starts: list[int], rows: dict[int, dict[str, Any]]) -> list[int]:
+    """Return the states in the order in which they are reached; the steps of a row are taken by the names of tokens."""
+    order = list(starts)
     for state in order:  # grows while it is gone through
         for _, (step, to) in sorted(rows[state].items()):
             if step == 0 and to not in order:
                 order.append(to)
-    number = {state: index for index, state in enumerate(order)}
-    return {
-        "tokens": dict(enumerate(tokens)),
-        "states": {
-            number[state]: {
-                tokens.index(token): (kind, number[to] if kind == 0 else to) for token, (kind, to) in row.items()
-            }
-            for state, row in rows.items()
-        },
-        "start_states": {name: number[state] for name, state in table["start_states"].items()},
-        "end_states": {name: number[state] for name, state in table["end_states"].items()},
-    }
+    return order
 
 
 def _by_number(table: dict[str, Any]) -> dict[int, Any]:
@@ -155,23 +160,31 @@ def _rule(rule: dict[str, Any]) -> list[Any]:
     above, a terminal whose name does is left out, and ``empty_indices`` mark optional parts that are not there.
     """
     origin, options, expansion = rule["origin"]["name"], rule["options"], rule["expansion"]
-    absent = [len(ones) for ones in "".join(str(int(bit)) for bit in options["empty_indices"]).split("0")]
-    parts: list[int | None] = []
-    for at, symbol in enumerate(expansion):
-        parts += [None] * (absent[at] if options["empty_indices"] else 0)
-        if symbol["__type__"] == "NonTerminal" and symbol["name"].startswith("_"):
-            parts.append(~at)
-        elif symbol["__type__"] == "NonTerminal" or not symbol["filter_out"]:
-            parts.append(at)
-    parts += [None] * (absent[-1] if options["empty_indices"] else 0)
+    parts, all_of_them = _kept_parts(options["empty_indices"], expansion), list(range(len(expansion)))
     method = rule["alias"] or origin
     return [
         origin,
         len(expansion),
         method if hasattr(builder(), method) else None,
         options["expand1"] and rule["alias"] is None,
-        None if parts == list(range(len(expansion))) else parts,
+        None if parts == all_of_them else parts,
     ]
+
+
+def _kept_parts(empty_indices: Sequence[bool], expansion: list[dict[str, Any]]) -> list[int | None]:
+    """Return which symbols of an expansion ``line_reader`` keeps, and in which form (see ``_reduced`` there)."""
+    # "1" is an absent part and "0" a symbol, so between two symbols stand as many absent parts as "1"
+    absent = [len(ones) for ones in "".join(str(int(bit)) for bit in empty_indices).split("0")]
+    absent = absent if empty_indices else [0] * (len(expansion) + 1)
+    parts: list[int | None] = [None] * absent[0]
+    for at, symbol in enumerate(expansion):
+        is_rule = symbol["__type__"] == "NonTerminal"
+        if is_rule and symbol["name"].startswith("_"):
+            parts.append(~at)
+        elif is_rule or not symbol["filter_out"]:
+            parts.append(at)
+        parts += [None] * absent[at + 1]
+    return parts
 
 
 if __name__ == "__main__":

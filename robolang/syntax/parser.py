@@ -86,27 +86,18 @@ def _mixed_line_ends(source: Source) -> list[Diagnostic]:
     return [Diagnostic(code="RBL110", severity=Severity.INFO, message=message, span=Span(other.start(), other.start()))]
 
 
-def _parse_line(text: str, span: Span, row: int) -> tuple[ast.Line, Diagnostic | None]:
+def _parse_line(text: str, span: Span, row: int) -> ParsedLine:
     """Parse one line that is not blank; ``text`` is the text of ``span``."""
     head = _HEAD.match(text)
     assert head is not None
-    digits = head[1]
-    number = int(digits) if digits and len(digits) <= MAX_NUMBER_DIGITS else None
-    code, base = text[head.end() :], span.start + head.end()
-    parsed: Parsed | Diagnostic | None = _refusal(text, span.start)
+    digits, code, base = head[1], text[head.end() :], span.start + head.end()
     number_span = _part(span, span.start + head.start(1), span.start + head.end(1)) if digits else ast.NOWHERE
-    if parsed is None and digits and number is None:
-        from robolang.syntax.unexpected import quote
-
-        message = f"the line number {quote(digits)} has more than {MAX_NUMBER_DIGITS} digits"
-        parsed = Diagnostic(code="RBL114", message=message, span=number_span)
-    if parsed is None:
-        parsed = _parse_statement(code, base, span)
-    problem = parsed if isinstance(parsed, Diagnostic) else None
+    parsed = _refusal(text, span.start) or _long_number(digits, number_span) or _parse_statement(code, base, span)
+    problem = None
     if isinstance(parsed, Diagnostic):
-        parsed = None, ast.Unparsed(text=code, span=_part(span, base, span.end)), None
+        problem, parsed = parsed, (None, ast.Unparsed(text=code, span=_part(span, base, span.end)), None)
     line = ast.Line(
-        number=number,
+        number=int(digits) if digits and len(digits) <= MAX_NUMBER_DIGITS else None,
         label=parsed[0],
         statement=parsed[1],
         comment=parsed[2],
@@ -115,6 +106,16 @@ def _parse_line(text: str, span: Span, row: int) -> tuple[ast.Line, Diagnostic |
         number_span=number_span,
     )
     return line, problem
+
+
+def _long_number(digits: str | None, span: Span) -> Diagnostic | None:
+    """Return RBL114 for a line number with too many digits."""
+    if digits is None or len(digits) <= MAX_NUMBER_DIGITS:
+        return None
+    from robolang.syntax.unexpected import quote
+
+    message = f"the line number {quote(digits)} has more than {MAX_NUMBER_DIGITS} digits"
+    return Diagnostic(code="RBL114", message=message, span=span)
 
 
 def _part(line: Span, start: int, end: int) -> Span:

@@ -5,7 +5,7 @@ object as before. A line after it is copied with other places, in a third of the
 """
 
 from dataclasses import fields
-from typing import Any
+from typing import Any, NamedTuple
 
 from robolang.core.diagnostics import Diagnostic, Edit, Fix, Related
 from robolang.core.source import Source, Span
@@ -25,25 +25,42 @@ _FIELDS: dict[type, tuple[str, ...]] = {}
 def reparse(before: ParseResult, was: Source, now: Source, edit: Edit) -> ParseResult:
     """Return what ``parse(now)`` returns, where ``edit`` made ``now`` of ``was``, whose result was ``before``."""
     problems = {was.place(item.span.start).line: item for item in before.diagnostics if item.code not in _NO_LINE}
-    by = len(edit.text) - (edit.span.end - edit.span.start)
-    rows = len(now.line_spans) - len(was.line_spans)
+    move = _Move(
+        edit=edit,
+        now=now,
+        by=len(edit.text) - (edit.span.end - edit.span.start),
+        rows=len(now.line_spans) - len(was.line_spans),
+    )
     known: dict[int, ParsedLine] = {}
     for line in before.program.lines:
         problem = problems.get(line.source_line)
         if isinstance(line.statement, Unparsed) and problem is None:
             continue  # there were more problems than are kept
-        if line.span.end <= edit.span.start and _is_line(now, line.source_line, line.span):
-            known[line.span.start] = line, problem
-        elif line.span.start >= edit.span.end and _may_move(line, now, by, rows):
-            known[line.span.start + by] = _moved_line(line, by, rows), problem and _moved(problem, by)
+        if (kept := move.of(line, problem)) is not None:
+            known[kept[0].span.start] = kept
     return parse(now, known)
 
 
-def _may_move(line: Line, now: Source, by: int, rows: int) -> bool:
-    """Return whether a line after an edit is a line of the text with the edit, and not too deep."""
-    return _is_line(now, line.source_line + rows, Span(line.span.start + by, line.span.end + by)) and (
-        line.statement is None or not is_deeper(line.statement, MAX_LEVELS)
-    )
+class _Move(NamedTuple):
+    """What an edit does to the lines around it: those after it move by characters and by rows."""
+
+    edit: Edit
+    now: Source
+    by: int
+    rows: int
+
+    def of(self, line: Line, problem: Diagnostic | None) -> ParsedLine | None:
+        """Return a line and its problem where the edit leaves them; None where the line must be parsed again."""
+        if line.span.end <= self.edit.span.start:
+            return (line, problem) if _is_line(self.now, line.source_line, line.span) else None
+        if line.span.start < self.edit.span.end:
+            return None
+        there = Span(line.span.start + self.by, line.span.end + self.by)
+        if not _is_line(self.now, line.source_line + self.rows, there):
+            return None
+        if line.statement is not None and is_deeper(line.statement, MAX_LEVELS):
+            return None
+        return _moved_line(line, self.by, self.rows), problem and _moved(problem, self.by)
 
 
 def _is_line(source: Source, row: int, span: Span) -> bool:
