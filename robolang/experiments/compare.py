@@ -279,12 +279,10 @@ def measures(log: dict[str, Array], X_cmd: Array, statements: list[StatementRun]
     p_line = p_tool - log["seam_deviation"][:, :3]
     tool = np.linalg.norm(X_cmd[ticks, :3, 3] - p_tool[ticks], axis=1) / MM
     rows = [_move(run, log, p_line) for run in moves]
-    overshoots = [row["overshoot_pct"] for row in rows if row["overshoot_pct"] is not None]
-    settled = [row["settling_s"] for row in rows]
     droop = np.array([row["droop_deg"] for row in rows])
     return {
-        "overshoot_pct": max(overshoots, key=badness, default=None),
-        "settling_s": None if None in settled else max(settled),
+        "overshoot_pct": _worst_overshoot(rows),
+        "settling_s": _longest_settling(rows),
         "joint_error_deg": float(joint.max()),
         "joint_rms_deg": float(np.sqrt((joint**2).mean(axis=0)).max()),
         "tool_error_mm": float(tool.max()),
@@ -298,6 +296,18 @@ def measures(log: dict[str, Array], X_cmd: Array, statements: list[StatementRun]
         },
         "moves": rows,
     }
+
+
+def _worst_overshoot(moves: list[dict[str, Any]]) -> float | None:
+    """Return the largest overshoot of moves, %; None when none of them has one."""
+    overshoots = [move["overshoot_pct"] for move in moves if move["overshoot_pct"] is not None]
+    return max(overshoots, key=badness, default=None)
+
+
+def _longest_settling(moves: list[dict[str, Any]]) -> float | None:
+    """Return the longest settling time of moves, s; None when one of them does not settle."""
+    settled = [move["settling_s"] for move in moves]
+    return None if None in settled else max(settled)
 
 
 def _move(run: StatementRun, log: dict[str, Array], p_tool: Array) -> dict[str, Any]:
@@ -328,12 +338,12 @@ def last_approach(q_cmd: Array, q_link: Array, t: Array) -> tuple[float | None, 
     worst, settled = None, 0.0
     for axis in range(q_cmd.shape[1]):
         begin = _turn(q_cmd[:, axis])
-        way = end[axis] - q_cmd[begin, axis]
-        if not abs(way) >= LEAST:
+        stroke = end[axis] - q_cmd[begin, axis]
+        if not abs(stroke) >= LEAST:
             continue
-        past = float(((q_link[begin:, axis] - end[axis]) / way).max()) * 100.0
+        past = float(((q_link[begin:, axis] - end[axis]) / stroke).max()) * 100.0
         worst = max(worst or 0.0, past, key=badness)
-        outside = np.flatnonzero(~(np.abs(q_link[stop:, axis] - end[axis]) <= BAND * abs(way)))
+        outside = np.flatnonzero(~(np.abs(q_link[stop:, axis] - end[axis]) <= BAND * abs(stroke)))
         if len(outside):
             if outside[-1] == len(q_link) - stop - 1:
                 return worst, None

@@ -147,54 +147,81 @@ def plan_table(request: Request, payload: Payload, test: Test) -> Grid | None:
     out of itself. As long as a point of the grid itself has none, the rectangle is shrunk by a raster step on every
     side.
     """
-    spec, axis, joints = request.robot, test.axis, _table_joints(request, test.axis)
+    joints = _table_joints(request, test.axis)
     if not joints:
         return None
+    postures = _Postures(request=request, test=test, joints=joints, folded=folds(request))
+    grid = _grid(postures)
+    model = _loaded(request.robot, payload)
+    tests = tuple(_table_test(postures, model, angles) for angles in product(*grid))
+    return Grid(joints=joints, angles=grid, tests=tests)
 
-    def at(angles: tuple[float, ...]) -> Array:
-        q = np.array(test.q)
-        q[list(joints)] = angles
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Postures:
+    """The postures of a table: those of a test with other angles (rad) of ``joints`` (0-based), and their room."""
+
+    request: Request
+    test: Test
+    joints: tuple[int, ...]
+    folded: Folds
+
+    def at(self, angles: tuple[float, ...]) -> Array:
+        """Return the posture (n,) rad."""
+        q = np.array(self.test.q)
+        q[list(self.joints)] = angles
         return q
 
-    folded = folds(request)
-
-    def room(angles: tuple[float, ...], within: float = np.inf) -> tuple[float, float]:
-        q = at(angles)
+    def room(self, angles: tuple[float, ...], within: float = np.inf) -> tuple[float, float]:
+        """Return the ends of the free range of the axis, rad, at most ``within`` rad from its middle."""
+        spec, axis, q = self.request.robot, self.test.axis, self.at(angles)
         low, high = _room(spec, q, axis)
         middle = 0.5 * (spec.lower[axis] + spec.upper[axis])
-        return _unfolded(spec, q, axis, (max(low, middle - within), min(high, middle + within)), folded)
+        return _unfolded(spec, q, axis, (max(low, middle - within), min(high, middle + within)), self.folded)
 
-    step = (spec.upper[axis] - spec.lower[axis]) / (2 * _SCAN)
-
-    def safe(angles: tuple[float, ...]) -> bool:
-        low, high = _usable(spec, axis, room(angles, 2.0 * LEAST_STROKE + step))  # the rest does not matter
+    def safe(self, angles: tuple[float, ...]) -> bool:
+        """Return whether the axis has room for the least test motion."""
+        spec, axis = self.request.robot, self.test.axis
+        step = (spec.upper[axis] - spec.lower[axis]) / (2 * _SCAN)
+        # folding costs a collision check each; past twice the least stroke and one scan step the answer is known
+        low, high = _usable(spec, axis, self.room(angles, 2.0 * LEAST_STROKE + step))
         return high - low >= 2.0 * LEAST_STROKE
 
+
+def _rectangle(postures: _Postures) -> tuple[list[Array], list[float]]:
+    """Return the ends (2,) rad of each joint in the largest rectangle of safe postures, and the steps of the raster."""
+    spec, joints = postures.request.robot, postures.joints
     raster = [np.linspace(spec.lower[joint] + MARGIN, spec.upper[joint] - MARGIN, RASTER) for joint in joints]
-    fits = np.array([safe(angles) for angles in product(*raster)]).reshape([RASTER] * len(joints))
+    fits = np.array([postures.safe(angles) for angles in product(*raster)]).reshape([RASTER] * len(joints))
     ends = [values[list(span)] for values, span in zip(raster, _largest(fits), strict=True)]
-    steps = [values[1] - values[0] for values in raster]
-    while True:
-        if not all(high - low >= LEAST_STROKE for low, high in ends):
-            over = " and ".join(f"J{joint + 1}" for joint in joints)
-            raise Fault(
-                "RBL420",
-                f"J{axis + 1} has no room for a table over {over}: too few postures have all of the "
-                "arm over the ground and out of itself",
-            )
-        grid = tuple(np.round(np.linspace(low, high, request.table) / DEG, 2) * DEG for low, high in ends)
-        if all(safe(angles) for angles in product(*grid)):
-            break
+    return ends, [float(values[1] - values[0]) for values in raster]
+
+
+def _grid(postures: _Postures) -> tuple[Array, ...]:
+    """Return the angles (K,) rad of each joint of a table; ``Fault`` RBL420 when there is no room for one."""
+    ends, steps = _rectangle(postures)
+    while all(high - low >= LEAST_STROKE for low, high in ends):
+        # whole hundredths of a degree: the sidecar file shows the angles in degrees
+        grid = tuple(np.round(np.linspace(low, high, postures.request.table) / DEG, 2) * DEG for low, high in ends)
+        if all(postures.safe(angles) for angles in product(*grid)):
+            return grid
         ends = [values + [step, -step] for values, step in zip(ends, steps, strict=True)]
-    model = _loaded(spec, payload)
-    tests = []
-    for angles in product(*grid):
-        try:
-            tests.append(_planned(request, model, axis, at(angles), room(angles), 1))
-        except Fault as fault:
-            where = ", ".join(f"J{joint + 1} {angle / DEG:.1f}" for joint, angle in zip(joints, angles, strict=True))
-            raise Fault(fault.code, f"{fault.message}, in the posture {where} deg of its table", fault.hint) from None
-    return Grid(joints=joints, angles=grid, tests=tuple(tests))
+    over = " and ".join(f"J{joint + 1}" for joint in postures.joints)
+    raise Fault(
+        "RBL420",
+        f"J{postures.test.axis + 1} has no room for a table over {over}: too few postures have all of the "
+        "arm over the ground and out of itself",
+    )
+
+
+def _table_test(postures: _Postures, model: ArmModel, angles: tuple[float, ...]) -> Test:
+    """Return the test of one posture of a table; a ``Fault`` names the posture."""
+    try:
+        return _planned(postures.request, model, postures.test.axis, postures.at(angles), postures.room(angles), 1)
+    except Fault as fault:
+        named = zip(postures.joints, angles, strict=True)
+        where = ", ".join(f"J{joint + 1} {angle / DEG:.1f}" for joint, angle in named)
+        raise Fault(fault.code, f"{fault.message}, in the posture {where} deg of its table", fault.hint) from None
 
 
 def _table_joints(request: Request, axis: int) -> tuple[int, ...]:

@@ -28,6 +28,7 @@ from runtime.servo.axes import ServoAxes, first_moments, rotors
 from runtime.servo.fixed import fixed_inertia
 from runtime.servo.motor import encoder_resolution, torque_limit
 from runtime.settings.profile import Profile
+from runtime.supervision.drive_data import DriveData
 from runtime.supervision.finding import Finding
 from runtime.supervision.supervisor import LOST, Supervisor
 from runtime.supervision.torque_observer import LoadModel
@@ -69,13 +70,15 @@ class DriveTrain(Stateful):
         self.supervisor = Supervisor(
             spec,
             profile.supervision,
-            torque=torque_limit(spec),
-            resolution=encoder_resolution(spec),
-            lag=(1.0 - profile.servo.velocity_feedforward) / spec.per_axis("bandwidths", "position"),
-            ticks=profile.ticks_per_cycle,
-            tick_s=profile.tick_s,
-            friction=profile.servo.friction_compensation,
-            model=LoadModel(spec, rotors(spec, profile.servo), moments),
+            DriveData(
+                torque=torque_limit(spec),
+                resolution=encoder_resolution(spec),
+                lag=(1.0 - profile.servo.velocity_feedforward) / spec.per_axis("bandwidths", "position"),
+                ticks=profile.ticks_per_cycle,
+                tick_s=profile.tick_s,
+                friction=profile.servo.friction_compensation,
+            ),
+            LoadModel(spec, rotors(spec, profile.servo), moments),
         )
         self.touches = None if plant.bodies is None else Touches(plant.bodies, plant.gripped)
         """What the arm, the hand and held parts touch; None where the plant knows no contacts."""

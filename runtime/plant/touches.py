@@ -19,6 +19,7 @@ import math
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, field, replace
+from itertools import chain
 
 import numpy as np
 
@@ -334,16 +335,21 @@ class Touches:
 
     def _pushes(self, seen: _Seen) -> Iterable[Pair]:
         """Yield (by, part) of every contact that may push a part and is not allowed."""
-        for by, part in seen.on_parts:
-            hand = not by.startswith("link")
-            if not (hand and (part in self._taken or (part in self._free and by != "palm"))):
-                yield by, part
+        yield from (pair for pair in seen.on_parts if not self._may_touch(*pair))
         moving = self._taken | self._free
         loose = moving | {key for key in self._open if key in self._index}
-        for first, second in seen.among_parts:
-            for by, part in ((first, second), (second, first)):
-                if by in loose and part not in moving and not self._pushed_by(by, part):
-                    yield by, part
+        # a contact of two parts has no direction: either one may push the other
+        both = chain.from_iterable((pair, pair[::-1]) for pair in seen.among_parts)
+        for by, part in both:
+            if by in loose and part not in moving and not self._pushed_by(by, part):
+                yield by, part
+
+    def _may_touch(self, by: str, part: str) -> bool:
+        """Return whether a shape of the arm or hand may touch a part: the hand may while it holds it or lets it go."""
+        if by.startswith("link"):
+            return False
+        # the palm never lets a part go: it pushes what is left of an opened grip
+        return part in self._taken or (part in self._free and by != "palm")
 
     def _pushed_by(self, part: str, other: str) -> bool:
         """Return whether it is the other one that pushes this part."""
@@ -389,20 +395,29 @@ class Touches:
         for key, going in list(self._open.items()):
             going.gap = 0 if key in touched else going.gap + 1
             pushed = key in self._index
-            if not going.gap or (pushed and not going.in_tool):  # what is pushed moves on by itself
+            rolls_on = pushed and not going.in_tool  # what is pushed moves on by itself
+            if not going.gap or rolls_on:
                 self._displace(going, pushed)
-            if going.gap > GAP and not (pushed and not going.in_tool and self._moves(going.body)):
+            if self._ended(going, rolls_on):
                 del self._open[key]
-        self._free = {part for part in self._free if part in self._seen.pads or self._moves(self._index[part])}
+        self._free = {part for part in self._free if self._stays_free(part)}
+
+    def _ended(self, going: _Open, rolls_on: bool) -> bool:
+        """Return whether a touch is over: without a contact for ``GAP`` cycles, and what rolled on is at rest."""
+        return going.gap > GAP and not (rolls_on and self._moves(going.body))
+
+    def _stays_free(self, part: str) -> bool:
+        """Return whether a part that was let go still touches a pad or moves."""
+        return part in self._seen.pads or self._moves(self._index[part])
 
     def _displace(self, going: _Open, pushed: bool) -> None:
         p, R = _pose(self._bodies, going.body, going.in_tool)
-        touch, way = going.touch, p - going.p
-        reach = float(np.linalg.norm(matmul(self._corners[going.body], (R - going.R).T) + way, axis=1).max())
+        touch, offset = going.touch, p - going.p
+        reach = float(np.linalg.norm(matmul(self._corners[going.body], (R - going.R).T) + offset, axis=1).max())
         if not pushed:
             touch.slid = touch.slid if reach <= touch.slid else reach
         elif not reach <= touch.reach:
-            touch.reach, touch.moved = reach, norm(way)
+            touch.reach, touch.moved = reach, norm(offset)
             touch.turned = rotation_angle(going.R, R)
 
     def _moves(self, body: int) -> bool:

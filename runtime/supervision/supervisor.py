@@ -17,6 +17,7 @@ from runtime.robot.model.load_rules import LoadMode
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.supervision import SupervisionLimits
+from runtime.supervision.drive_data import DriveData
 from runtime.supervision.finding import Finding
 from runtime.supervision.tick_monitor import Watch
 from runtime.supervision.torque_observer import FEWEST, STRIDE, LoadModel, Observer
@@ -34,34 +35,18 @@ LOST = 3.0
 
 
 class Supervisor(Stateful):
-    """Watches one robot.
-
-    ``torque`` (n,) N m are its torque limits, ``resolution`` (n,) rad its encoder steps, ``lag`` (n,) s by how much a
-    servo without full velocity feed-forward follows late, ``friction`` the share that the servo compensates, ``model``
-    what torques are judged by: that of the robot file by default.
-    """
+    """Watches one robot; ``model`` is what torques are judged by, that of the robot file by default."""
 
     VALUES = ("_payload", "_since", "_unexpected", "_suspect", "_late", "_warned", "_first_tick", "_cycle")
     PARTS = ("watch", "observer")
 
     def __init__(
-        self,
-        spec: RobotSpec,
-        limits: SupervisionLimits,
-        *,
-        torque: Array,
-        resolution: Array,
-        lag: Array,
-        ticks: int,
-        tick_s: float,
-        friction: float,
-        model: LoadModel | None = None,
+        self, spec: RobotSpec, limits: SupervisionLimits, drives: DriveData, model: LoadModel | None = None
     ) -> None:
-        self._limits, self._ticks, self._rated = limits, ticks, spec.rated_payload
-        share = limits.friction if limits.friction is not None else friction
-        self.watch = Watch(spec, limits, torque, resolution, lag, ticks, tick_s)
-        self.observer = Observer(spec, limits, torque, ticks, tick_s, share, model)
-        self._collision = limits.collision * torque
+        self._limits, self._ticks, self._rated = limits, drives.ticks, spec.rated_payload
+        self.watch = Watch(spec, limits, drives)
+        self.observer = Observer(spec, limits, drives, model)
+        self._collision = limits.collision * drives.torque
         self._top = spec.per_axis("limits", "speed")
         self._payload: Payload | None = None
         self._stale_us = limits.stale_s * 1e6
@@ -131,21 +116,26 @@ class Supervisor(Stateful):
         if math.isfinite(limits.collision) and not leftover.max() <= UNEXPLAINED:
             return self._unexplained(int(np.argmax(leftover)), tick)
         if limits.payload_mismatch == "off" or self._warned:
-            return None
-        mass, sigma = observer.estimate()
+            return None  # one finding for each LOAD: the estimate goes on and would repeat it every few cycles
+        return self._mismatch(tick)
+
+    def _mismatch(self, tick: int) -> Finding | None:
+        """Compare the estimated mass with the declared one; a finding after ``CONFIRMED`` estimates that differ."""
+        mass, sigma = self.observer.estimate()
         declared = self._payload.mass if self._payload is not None else 0.0
-        near = abs(mass - declared) <= limits.payload_tolerance * self._rated
+        near = abs(mass - declared) <= self._limits.payload_tolerance * self._rated
         self._suspect = 0 if near or sigma > SURE * self._rated else self._suspect + 1
-        if self._suspect >= CONFIRMED:
-            self._warned = True
-            return Finding(
-                code="RBL517",
-                tick=tick,
-                warning=limits.payload_mismatch == "warn" or self._payload is None,
-                message=f"{f'declared {declared:.2f} kg' if self._payload else 'no LOAD yet'}, "
-                f"estimated {mass:.2f} +- {sigma:.2f} kg",
-            )
-        return None
+        if self._suspect < CONFIRMED:
+            return None
+        self._warned = True
+        return Finding(
+            code="RBL517",
+            tick=tick,
+            # a program without LOAD has declared nothing wrong: it goes on
+            warning=self._limits.payload_mismatch == "warn" or self._payload is None,
+            message=f"{f'declared {declared:.2f} kg' if self._payload else 'no LOAD yet'}, "
+            f"estimated {mass:.2f} +- {sigma:.2f} kg",
+        )
 
     def _unexplained(self, axis: int, tick: int) -> Finding:
         return Finding(

@@ -23,6 +23,7 @@ from runtime.core.state import Stateful
 from runtime.core.units import DEG
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.supervision import SupervisionLimits
+from runtime.supervision.drive_data import DriveData
 from runtime.supervision.finding import Finding
 
 JUMP = 3.0
@@ -42,16 +43,8 @@ class Watch(Stateful):
     BUFFERS = ("speed",)
     VALUES = ("_saturated", "_standing", "_lost", "_dirty")
 
-    def __init__(
-        self,
-        spec: RobotSpec,
-        limits: SupervisionLimits,
-        torque: Array,
-        resolution: Array,
-        lag: Array,
-        ticks: int,
-        tick_s: float,
-    ) -> None:
+    def __init__(self, spec: RobotSpec, limits: SupervisionLimits, drives: DriveData) -> None:
+        torque, lag, ticks, tick_s = drives.torque, drives.lag, drives.ticks, drives.tick_s
         self._n, self._limits, self._ticks, self._tick_s = spec.n, limits, ticks, tick_s
         n = spec.n
         self._centre = np.concatenate([np.zeros(2 * n), (spec.lower + spec.upper) / 2.0, np.zeros(n)])
@@ -59,7 +52,7 @@ class Watch(Stateful):
         half = (spec.upper - spec.lower) / 2.0 + limits.position_margin
         most = self._speed * (1.0 + limits.speed_margin)
         slack = 1.0 + 1e-9
-        self._fast = resolution * STEPS / tick_s
+        self._fast = drives.resolution * STEPS / tick_s
         first_limit = np.full(n, limits.following_error)
         self._bound = np.concatenate([torque * slack, torque * slack, half, most, first_limit, self._fast])
         self._away = np.zeros((ticks, 6 * n))

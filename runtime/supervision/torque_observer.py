@@ -41,6 +41,7 @@ from runtime.robot.model.load_rules import LoadMode
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.supervision import SupervisionLimits
+from runtime.supervision.drive_data import DriveData
 
 TURNING = 0.05
 """Speed above which the sign of the friction is known, rad/s."""
@@ -90,24 +91,20 @@ class Observer(Stateful):
     PARTS = ("_model",)
 
     def __init__(
-        self,
-        spec: RobotSpec,
-        limits: SupervisionLimits,
-        torque: Array,
-        ticks: int,
-        tick_s: float,
-        friction: float,
-        model: LoadModel | None = None,
+        self, spec: RobotSpec, limits: SupervisionLimits, drives: DriveData, model: LoadModel | None = None
     ) -> None:
+        ticks = drives.ticks
+        # by default as much as the servo compensates: the rigid plant has no friction, and its servo compensates none
+        friction = limits.friction if limits.friction is not None else drives.friction
         self._model = model or LoadModel(spec)
-        self._ticks, self._period_s = ticks, ticks * tick_s
+        self._ticks, self._period_s = ticks, ticks * drives.tick_s
         ramp = (np.arange(ticks) + 0.5) / ticks**2
         self._triangle = np.concatenate([ramp, ramp[::-1]])
         coulomb = friction * np.array([axis.motor.joint_coulomb_friction for axis in spec.axes])
         self._forward, self._backward = coulomb[:, 0].copy(), coulomb[:, 1].copy()
         self._coulomb = coulomb.max(axis=1)
         self._viscous = friction * spec.per_axis("motor", "joint_viscous_friction")
-        self._base = limits.torque_uncertainty * torque
+        self._base = limits.torque_uncertainty * drives.torque
         self._share = limits.friction_uncertainty
         self._rated = spec.rated_payload
         self._declared = Payload(mass=0.0, cog=np.zeros(3))

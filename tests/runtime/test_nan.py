@@ -20,6 +20,7 @@ from runtime.pulses.replay import MoveReplay
 from runtime.robot.kinematics.newton import NewtonSolver
 from runtime.robot.model.payload import declared
 from runtime.settings.supervision import SupervisionLimits
+from runtime.supervision.drive_data import DriveData
 from runtime.supervision.supervisor import CONFIRMED, Supervisor
 from runtime.supervision.torque_observer import Observer
 from tests.runtime.motion.test_cartesian_planner import HOME, HOME_POSE, KINEMATICS, PROFILE, SPEC, TOOL
@@ -97,7 +98,8 @@ def test_a_payload_of_nan_is_refused(values):
 @pytest.mark.parametrize("estimate", [(NAN, 0.01), (1.5, NAN), (NAN, NAN)])
 def test_an_estimate_of_nan_is_no_declared_payload(estimate, monkeypatch):
     motors = {"torque": SPEC.per_axis("limits", "torque"), "resolution": np.full(6, 1e-6), "lag": np.zeros(6)}
-    supervisor = Supervisor(SPEC, SupervisionLimits(), **motors, ticks=8, tick_s=1e-3, friction=0.0)
+    drives = DriveData(**motors, ticks=8, tick_s=1e-3, friction=0.0)
+    supervisor = Supervisor(SPEC, SupervisionLimits(), drives)
     monkeypatch.setattr(Observer, "estimate", lambda self: estimate)
     found = [supervisor._weigh(tick) for tick in range(CONFIRMED)]
     assert found[:-1] == [None] * (CONFIRMED - 1)

@@ -13,6 +13,7 @@ from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import Payload
 from runtime.settings.layers import parse_profile
 from runtime.settings.supervision import SupervisionLimits
+from runtime.supervision.drive_data import DriveData
 from runtime.supervision.tick_monitor import Watch
 from runtime.supervision.torque_observer import LoadModel, Observer
 from tests.messages import numbers
@@ -22,6 +23,17 @@ TORQUE = SPEC.per_axis("limits", "torque")
 RESOLUTION = np.full(6, 1e-6)
 COG, FEWEST, MEMORY, TURNING = 0.1, 5, 12, 0.05
 """As numbers, so that a change of the constants of the observer fails here."""
+
+
+def drives(lag: np.ndarray | None = None, friction: float = 0.0) -> DriveData:
+    return DriveData(
+        torque=TORQUE,
+        resolution=RESOLUTION,
+        lag=np.zeros(6) if lag is None else lag,
+        ticks=8,
+        tick_s=1e-3,
+        friction=friction,
+    )
 
 
 def limits_of(values: dict) -> SupervisionLimits:
@@ -45,7 +57,7 @@ def test_wrong_keys_are_refused(values):
 
 
 def watch() -> Watch:
-    return Watch(SPEC, SupervisionLimits(), TORQUE, RESOLUTION, np.zeros(6), 8, 1e-3)
+    return Watch(SPEC, SupervisionLimits(), drives())
 
 
 def still() -> tuple[np.ndarray, np.ndarray]:
@@ -121,7 +133,7 @@ def test_the_regressor_is_the_derivative_of_the_torque(flange):
 
 
 def test_the_residual_of_an_exact_motion_vanishes_and_a_payload_is_weighed():
-    observer = Observer(SPEC, SupervisionLimits(), TORQUE, 8, 1e-3, 0.0)
+    observer = Observer(SPEC, SupervisionLimits(), drives())
     carried = ArmModel(SPEC, rotors=spec_rotors(SPEC))
     carried.set_payload(Payload(mass=1.3, cog=np.array([0.0, 0.0, 0.05])))
     t = np.arange(17)[:, None] * 1e-3
@@ -333,11 +345,11 @@ def test_the_peak_and_the_held_speed_are_those_of_the_command():
 
 def test_a_lagging_servo_may_lag_and_stand_for_longer():
     lag = np.full(6, 0.05)
-    one = Watch(SPEC, SupervisionLimits(), TORQUE, RESOLUTION, lag, 8, 1e-3)
+    one = Watch(SPEC, SupervisionLimits(), drives(lag=lag))
     rows, q, dq = turning(0.5)
     rows[:, 12 + 3] -= (1.0 * DEG + 0.5 * (0.02 + 0.05)) * 0.999
     assert judged([(rows, q, dq)], one) is None
-    found = judged([frozen(range(8))] * 12, Watch(SPEC, SupervisionLimits(), TORQUE, RESOLUTION, lag, 8, 1e-3))
+    found = judged([frozen(range(8))] * 12, Watch(SPEC, SupervisionLimits(), drives(lag=lag)))
     assert (found.code, found.tick) == ("RBL515", 73)  # 24 ms and 50 ms
 
 
@@ -345,7 +357,7 @@ def test_a_lagging_servo_may_lag_and_stand_for_longer():
 
 
 def test_what_was_weighed_is_forgotten_with_a_new_declaration():
-    observer = Observer(SPEC, SupervisionLimits(), TORQUE, 8, 1e-3, 0.0)
+    observer = Observer(SPEC, SupervisionLimits(), drives())
     observer.residual[:] = 1.0
     for _ in range(6):
         observer.learn()
@@ -368,7 +380,7 @@ def test_an_identified_arm_is_judged_by_its_own_rotors_and_first_moments():
     model, arm = LoadModel(SPEC, rotors, first_moments), ArmModel(SPEC, rotors=rotors, first_moments=first_moments)
     q, dq, ddq = np.random.default_rng(4).uniform(-1, 1, (3, 6))
     np.testing.assert_array_equal(model.torque(q, dq, ddq), arm.torque(q, dq, ddq))
-    observer = Observer(SPEC, SupervisionLimits(), TORQUE, 8, 1e-3, 0.0, model)
+    observer = Observer(SPEC, SupervisionLimits(), drives(), model)
     observer.update(np.tile(arm.torque(np.full(6, 0.3), dq, ddq), (17, 1)), spin(dq, ddq))
     np.testing.assert_allclose(observer.residual, 0.0, atol=1e-6)
 
@@ -376,7 +388,7 @@ def test_an_identified_arm_is_judged_by_its_own_rotors_and_first_moments():
 @pytest.mark.parametrize("mode", ["add", "replace"])
 def test_the_declared_payload_is_on_the_last_link_or_in_its_place(mode):
     payload, arm = Payload(mass=1.5, cog=np.array([0.1, 0.0, 0.1])), ArmModel(SPEC, rotors=spec_rotors(SPEC))
-    observer = Observer(SPEC, SupervisionLimits(), TORQUE, 8, 1e-3, 0.0)
+    observer = Observer(SPEC, SupervisionLimits(), drives())
     observer.declare(payload, mode)
     arm.set_payload(payload, mode)
     observer.update(np.tile(arm.gravity(np.full(6, 0.3)), (17, 1)), spin(np.zeros(6)))
@@ -392,7 +404,7 @@ def test_friction_of_an_even_motion_leaves_no_residual_and_is_known_to_its_share
     dry = np.where(speed > 0.0, forward, -backward)
     friction = share * (dry + SPEC.per_axis("motor", "joint_viscous_friction") * speed)
     arm, limits = ArmModel(SPEC, rotors=spec_rotors(SPEC)), SupervisionLimits()
-    observer = Observer(SPEC, limits, TORQUE, 8, 1e-3, share)
+    observer = Observer(SPEC, limits, drives(friction=share))
     observer.update(np.tile(arm.torque(np.full(6, 0.3), speed, np.zeros(6)) + friction, (17, 1)), spin(speed))
     np.testing.assert_allclose(observer.residual, 0.0, atol=1e-6)
     known = limits.torque_uncertainty * TORQUE + limits.friction_uncertainty * np.abs(friction)
@@ -405,7 +417,7 @@ def test_friction_of_an_even_motion_leaves_no_residual_and_is_known_to_its_share
 )
 def test_near_rest_the_dry_friction_may_have_any_of_its_values(speed, rests):
     limits = SupervisionLimits()
-    observer = Observer(SPEC, limits, TORQUE, 8, 1e-3, 0.5)
+    observer = Observer(SPEC, limits, drives(friction=0.5))
     observer.update(np.zeros((17, 6)), spin(np.full(6, speed)))
     dry = 0.5 * np.array([max(axis.motor.joint_coulomb_friction) for axis in SPEC.axes])
     resting = limits.torque_uncertainty * TORQUE + dry
@@ -415,7 +427,7 @@ def test_near_rest_the_dry_friction_may_have_any_of_its_values(speed, rests):
 
 def test_the_sign_of_the_friction_fades_out_towards_standing():
     """At 0.01 rad/s it is tanh 1 of what it is in motion: no step where an axis turns back."""
-    one, other = (Observer(SPEC, SupervisionLimits(), TORQUE, 8, 1e-3, share) for share in (0.0, 1.0))
+    one, other = (Observer(SPEC, SupervisionLimits(), drives(friction=share)) for share in (0.0, 1.0))
     for each in (one, other):
         each.update(np.zeros((17, 6)), spin(np.full(6, 0.01)))
     forward = np.array([axis.motor.joint_coulomb_friction[0] for axis in SPEC.axes])
@@ -426,7 +438,7 @@ def test_the_sign_of_the_friction_fades_out_towards_standing():
 def test_the_estimate_is_the_least_squares_of_the_last_steps_and_what_is_known_before_them():
     """Against NumPy: every axis a row that weighs 1 / sigma, each step 1 / 12 of its mean, and the two priors."""
     declared = Payload(mass=0.7, cog=np.array([0.02, -0.04, 0.1]))
-    observer, model = Observer(SPEC, SupervisionLimits(), TORQUE, 8, 1e-3, 0.5), LoadModel(SPEC)
+    observer, model = Observer(SPEC, SupervisionLimits(), drives(friction=0.5)), LoadModel(SPEC)
     observer.declare(declared, "add")
     model.set_payload(declared, "add")
     rated = SPEC.rated_payload

@@ -8,6 +8,7 @@ from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.load_rules import LoadMode
 from runtime.robot.model.payload import Payload
 from runtime.settings.supervision import SupervisionLimits
+from runtime.supervision.drive_data import DriveData
 from runtime.supervision.supervisor import Supervisor
 from runtime.supervision.torque_observer import LoadModel, Observer
 from tests.messages import numbers
@@ -24,13 +25,10 @@ def supervisor(model: LoadModel | None = None, **limits) -> Supervisor:
     return Supervisor(
         SPEC,
         SupervisionLimits(**limits),
-        torque=TORQUE,
-        resolution=np.full(6, 1e-9),
-        lag=np.zeros(6),
-        ticks=TICKS,
-        tick_s=TICK_S,
-        friction=0.0,
-        model=model,
+        DriveData(
+            torque=TORQUE, resolution=np.full(6, 1e-9), lag=np.zeros(6), ticks=TICKS, tick_s=TICK_S, friction=0.0
+        ),
+        model,
     )
 
 
