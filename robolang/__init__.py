@@ -1,6 +1,7 @@
 """robolang: an industrial robot controller in a package.
 
-``robolang.run("prog.rbl")`` executes a program on the controller and the physics and returns its ``RunResult``.
+``robolang.run("prog.rbl")`` executes a program on the controller and the physics and returns its ``RunResult``; the
+other names are those of ``robolang.api``.
 
 Nothing is imported here, not even of the standard library: with ``python -m robolang`` this runs before ``__main__``
 takes the working folder out of where modules are looked for.
@@ -10,15 +11,38 @@ TYPE_CHECKING = False  # a type checker takes this name for True
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
-    from robolang.execution.session import ProgramError, RunResult, run
+    from robolang.api import *  # noqa: F403
 
-__all__ = ["ProgramError", "RunResult", "__version__", "run"]
+# written out, since reading them from ``api`` would import it; tests/robolang/test_api.py compares the two
+__all__ = [  # noqa: F405
+    "ENDED",
+    "Analysis",
+    "Diagnostic",
+    "Edit",
+    "Executor",
+    "ExecutorSnapshot",
+    "Fault",
+    "Line",
+    "Observer",
+    "ProgramError",
+    "Project",
+    "RunResult",
+    "Session",
+    "Source",
+    "Span",
+    "State",
+    "Status",
+    "__version__",
+    "load_project",
+    "read_program",
+    "run",
+]
 
 
 def __getattr__(name: str) -> object:
     # parsing and checking must not pay for numpy, pinocchio and mujoco: the run is imported when it is asked for
-    if name in ("run", "RunResult", "ProgramError"):
-        from robolang.execution import session
+    if name in __all__ and name != "__version__":
+        from robolang import api
 
-        return getattr(session, name)
+        return getattr(api, name)
     raise AttributeError(f"module 'robolang' has no attribute '{name}'")

@@ -339,3 +339,19 @@ def test_a_fault_of_a_dry_run_is_acknowledged_as_well(tmp_path):
     while session.executor.advance().state not in ENDED:
         pass
     assert session.executor.status.state is State.DONE
+
+
+@pytest.mark.physics
+def test_with_physics_a_run_that_goes_back_ends_as_one_that_does_not(tmp_path):
+    """A blend, a hand that closes on nothing, a wait: log and report of the whole run, after several restores."""
+    text = "MOVE P1, ZONE 20\nMOVE P1 + (0, 40, 0)\nHAND ON\nWAIT TIMER > 1\nMOVE P1\n"
+    whole = ended(Session(project_of(tmp_path, text)))
+    session = Session(project_of(tmp_path, text))
+    kept = []
+    for _ in range(4):
+        kept.append(session.executor.snapshot())
+        session.executor.advance(41)
+    for number in (2, 0, 3, 1):
+        session.executor.restore(kept[number])
+        session.executor.advance(23)
+    assert ended(session) == whole

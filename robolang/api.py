@@ -1,0 +1,38 @@
+"""What ``import robolang`` offers to Python: to analyse a program, to run it, and to carry it out step by step.
+
+Everything else is internal and may change. ``robolang`` imports this module when a name of it is first used.
+"""
+
+from robolang.analysis.analysis import Analysis
+from robolang.core.diagnostics import Diagnostic, Edit
+from robolang.core.source import Source, Span, read_program
+from robolang.execution.executor import ENDED, Executor, ExecutorSnapshot, State, Status
+from robolang.execution.observer import Observer
+from robolang.execution.result import RunResult
+from robolang.execution.session import ProgramError, Session, run
+from robolang.project.project import Project, load_project
+from robolang.syntax.ast import Line
+from runtime.core.faults import Fault
+
+__all__ = [
+    "ENDED",
+    "Analysis",
+    "Diagnostic",
+    "Edit",
+    "Executor",
+    "ExecutorSnapshot",
+    "Fault",
+    "Line",
+    "Observer",
+    "ProgramError",
+    "Project",
+    "RunResult",
+    "Session",
+    "Source",
+    "Span",
+    "State",
+    "Status",
+    "load_project",
+    "read_program",
+    "run",
+]
