@@ -5,7 +5,6 @@ for the first time, and kept. Nothing of it changes afterwards: an edit gives a 
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -18,25 +17,22 @@ from robolang.core.source import Source
 from robolang.syntax.ast import Program
 from robolang.syntax.blocks import Structure
 from robolang.syntax.parser import ParseResult, parse
+from runtime.core.record import Record
 
 if TYPE_CHECKING:
     from robolang.analysis.symbol_table import SymbolTable
 
 
-@dataclass(frozen=True, kw_only=True)  # no slots: cached properties need the dictionary
-class Analysis:
+class Analysis(Record):
     """A text in a cell: tree, blocks, names, control flow, diagnostics. Equal when text and cell are.
 
     ``cell`` are the names and facts of the cell and of the taught points; what is not known is not checked.
     """
 
+    __slots__ = ("__dict__",)  # for the cached properties
+
     source: Source
     cell: CellSymbols = NOTHING_KNOWN
-    _kept: Mapping[str, object] = field(default_factory=dict, compare=False, repr=False)
-    """Parts that are taken over from another analysis, by the name of the property."""
-
-    def __post_init__(self) -> None:
-        self.__dict__.update(self._kept)
 
     @cached_property
     def parsed(self) -> ParseResult:
@@ -88,7 +84,7 @@ class Analysis:
         if cell == self.cell:
             return self
         kept: dict[str, object] = {name: self.__dict__[name] for name in ("parsed", "facts") if name in self.__dict__}
-        return Analysis(source=self.source, cell=cell, _kept=kept)
+        return _with(Analysis(source=self.source, cell=cell), kept)
 
     def updated(self, edit: Edit) -> "Analysis":
         """Return the analysis of the text after an edit; only the lines that it changes are parsed."""
@@ -97,4 +93,10 @@ class Analysis:
         text = self.source.text
         source = Source(self.source.path, f"{text[: edit.span.start]}{edit.text}{text[edit.span.end :]}")
         kept = {"parsed": reparse(self.parsed, self.source, source, edit)}
-        return Analysis(source=source, cell=self.cell, _kept=kept)
+        return _with(Analysis(source=source, cell=self.cell), kept)
+
+
+def _with(analysis: Analysis, kept: Mapping[str, object]) -> Analysis:
+    """Return a new analysis with parts taken over from another one, by the names of their properties."""
+    analysis.__dict__.update(kept)
+    return analysis

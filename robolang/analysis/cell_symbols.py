@@ -6,16 +6,15 @@ checked. Names are in capitals.
 """
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
 
 from runtime.cell.cell_file import CellFile, LoadFile
+from runtime.core.record import Record
 from runtime.core.units import MM
 from runtime.robot.files.arm_file import ArmFile
 from runtime.robot.model.drives import SPEED_ROUNDING, Limits
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CellSymbols:
+class CellSymbols(Record):
     """Names of a cell and of its taught points, what the arm may carry (kg), and the limits of its axes and its tool.
 
     ``loads`` have their numbers where these are known. ``cell_file`` and ``points_file`` are the paths that a remedy
@@ -51,8 +50,7 @@ class CellSymbols:
         arm = cell.arm if isinstance(cell, CellFile) else cell
         found = CellSymbols(points=_keys(points), cell_file=cell_file, points_file=points_file)
         if arm is not None:
-            found = replace(
-                found,
+            found = found.replaced(
                 robot=arm.name,
                 limits=arm.limits,
                 rated_payload=arm.rated_payload,
@@ -60,8 +58,7 @@ class CellSymbols:
             )
         if not isinstance(cell, CellFile):
             return found
-        return replace(
-            found,
+        return found.replaced(
             sensors=_keys(cell.sensors),
             tools=_keys(cell.tools),
             frames=_keys(cell.frames),

@@ -9,7 +9,6 @@ worst of all that is assigned to it anywhere. Only names that a comparison can d
 """
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field
 from typing import get_args
 
 from robolang.core.diagnostics import Diagnostic, Related, Severity
@@ -45,14 +44,14 @@ from robolang.syntax.tree import Node, walk
 from robolang.syntax.unparse import print_expression
 from robolang.values.functions import FUNCTIONS
 from robolang.values.kinds import Exactness
+from runtime.core.record import Record
 
 MAX_PASSES = 20
 SMALL = "1E-6"
 """Difference below which the remedy takes two numbers for equal."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Giving:
+class _Giving(Record):
     """A statement that gives ``key`` a value: of one expression, or ``counts`` from the first by the second."""
 
     key: str
@@ -60,12 +59,12 @@ class _Giving:
     counts: bool = False
 
 
-@dataclass(slots=True)
 class _Exactnesses:
     """Exactnesss of names and arrays, by ``_key``, and the first expression that made a name ``ROUNDED``."""
 
-    names: dict[str, Exactness] = field(default_factory=dict)
-    causes: dict[str, Expression] = field(default_factory=dict)
+    def __init__(self) -> None:
+        self.names: dict[str, Exactness] = {}
+        self.causes: dict[str, Expression] = {}
 
     def of(self, node: Expression) -> Exactness:
         """Return the kind of an expression; without recursion, its parts before itself."""

@@ -7,7 +7,6 @@ in ``FOR i = 1 TO 4`` is not followed by a mistake for each use of i.
 import math
 import re
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field
 
 from robolang.analysis.cell_symbols import CellSymbols
 from robolang.core import limits
@@ -42,13 +41,13 @@ _WORD = re.compile(r"(?<!\w)[A-Za-z]\w*+\$?")
 _ASSIGNED = re.compile(r"(?<!\w)([A-Za-z]\w*+\$?)[ \t]*(?:\([^()=]*\)[ \t]*)?=")
 
 
-@dataclass(slots=True)
 class _Own:
     """What the lines of the main program, or of one SUB, define; ``arrays`` with their largest index."""
 
-    values: set[str] = field(default_factory=set)
-    arrays: dict[str, float] = field(default_factory=dict)
-    constants: dict[str, Span] = field(default_factory=dict)
+    def __init__(self) -> None:
+        self.values: set[str] = set()
+        self.arrays: dict[str, float] = {}
+        self.constants: dict[str, Span] = {}
 
     def take(self, node: Statement) -> None:
         """Enter what a statement defines."""
@@ -67,7 +66,6 @@ class _Own:
             self.arrays[node.name.key] = max(known, self.arrays.get(node.name.key, 0.0))
 
 
-@dataclass(slots=True)
 class Defined:
     """Names that a program gives values: variables, arrays, constants, and subroutines with their parameters.
 
@@ -77,11 +75,12 @@ class Defined:
     ``missing`` are the names that are used and not defined.
     """
 
-    subs: dict[str, Sub] = field(default_factory=dict)
-    seeming: set[str] = field(default_factory=set)
-    missing: Repeats = field(default_factory=Repeats)
-    _own: dict[int | None, _Own] = field(default_factory=lambda: {None: _Own()})
-    _here: _Own = field(default_factory=_Own)
+    def __init__(self) -> None:
+        self.subs: dict[str, Sub] = {}
+        self.seeming: set[str] = set()
+        self.missing = Repeats()
+        self._own: dict[int | None, _Own] = {None: _Own()}
+        self._here = _Own()
 
     @staticmethod
     def of(program: Program, owner: Mapping[int, int], lost_subs: Collection[int] = ()) -> "Defined":

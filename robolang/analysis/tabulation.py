@@ -11,7 +11,6 @@ runs, no error is caught.
 """
 
 from collections.abc import Callable, Hashable, Iterable
-from dataclasses import dataclass
 from typing import Generic, Literal, NamedTuple, TypeAlias, TypeVar
 
 from robolang.syntax.ast import Statement
@@ -30,8 +29,7 @@ STOPS, NOTHING = -1, -2
 """In place of a handler's line: an error ends the run, and nothing is said in this SUB."""
 
 
-@dataclass(frozen=True, slots=True)
-class Edge:
+class Edge(NamedTuple):
     """An edge out of a line: the statement that it carries out, and where it leads.
 
     ``kind``: ``go`` to line ``to``; ``gosub`` or ``call`` the part whose first line is ``to``, to come back to the line

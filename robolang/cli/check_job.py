@@ -7,7 +7,6 @@ fixed. With ``--fix`` a program from stdin goes to stdout, corrected, and its re
 import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -89,7 +88,7 @@ class _Outcome(Record):
 
     def failing(self, *faults: Fault) -> "_Outcome":
         """Return the outcome with faults more."""
-        return self.replaced(checked=replace(self.checked, faults=(*self.checked.faults, *faults)))
+        return self.replaced(checked=self.checked.replaced(faults=(*self.checked.faults, *faults)))
 
 
 def watched(job: Job) -> int:
@@ -172,7 +171,7 @@ def _once(outcomes: Sequence[_Outcome]) -> list[_Outcome]:
         new = {(fault.code, str(fault)): fault for fault in outcome.checked.faults}
         kept = tuple(fault for key, fault in new.items() if key not in seen)
         seen.update(new)
-        found.append(outcome.replaced(checked=replace(outcome.checked, faults=kept)))
+        found.append(outcome.replaced(checked=outcome.checked.replaced(faults=kept)))
     return found
 
 
@@ -226,7 +225,7 @@ def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
     except Fault as fault:
         return outcome.failing(*fault.all)
     return outcome.replaced(
-        checked=replace(checked, diagnostics=_with_plan(checked, plan, selection)),
+        checked=checked.replaced(diagnostics=_with_plan(checked, plan, selection)),
         table=plan.table,
         times=plan.times,
         warnings=plan.warnings,

@@ -74,7 +74,7 @@ def _parameters(group: type[Group]) -> Iterator[inspect.Parameter]:
             max=option.high,
             rich_help_panel=panel,
         )
-        yield _parameter(name, Annotated[kind, shown], getattr(group, name, inspect.Parameter.empty))
+        yield _parameter(name, Annotated[kind, shown], group.DEFAULTS.get(name, inspect.Parameter.empty))
 
 
 def _argument(parameter: inspect.Parameter) -> inspect.Parameter:

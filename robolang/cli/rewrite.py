@@ -7,12 +7,12 @@ the file is replaced whole or not at all. Imports no numpy, pinocchio or mujoco.
 import re
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robolang.cli.output import echo
 from robolang.core.diagnostics import has_errors, render, safe
+from runtime.core.record import Record
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -29,8 +29,7 @@ _CONTEXT = 3
 _LINE = re.compile(r"[^\r\n]*(?:\r\n?|\n)|[^\r\n]+")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Loaded:
+class Loaded(Record):
     """A program with the name the user gave it, and the byte order mark that it began with, if any."""
 
     name: str

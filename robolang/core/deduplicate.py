@@ -5,7 +5,6 @@ subroutine or target of a jump is one diagnostic for a program.
 """
 
 from collections.abc import Hashable, Iterable
-from dataclasses import replace
 
 from robolang.core.diagnostics import Diagnostic, Related
 from robolang.core.source import Span
@@ -35,4 +34,4 @@ class Repeats:
 
 def _with_notes(item: Diagnostic, others: list[Span]) -> Diagnostic:
     notes = tuple(Related(span=place, message="and here") for place in others)
-    return replace(item, related=item.related + notes) if notes else item
+    return item.replaced(related=item.related + notes) if notes else item

@@ -16,13 +16,13 @@ characters count two columns, and a long line is cut around the place.
 import re
 import unicodedata
 from collections.abc import Iterable
-from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
 import robolang.core.codes  # noqa: F401 - every code a diagnostic may carry
 from robolang.core.source import Source, Span
 from runtime.core.faults import lookup
+from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault
 
 MAX_DIAGNOSTICS = 1000
@@ -44,24 +44,21 @@ class Severity(Enum):
     INFO = "info"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Related:
+class Related(Record):
     """Another place that explains a diagnostic."""
 
     span: Span
     message: str
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Edit:
+class Edit(Record):
     """One change of the text: what ``span`` covers becomes ``text``; an empty span is an insertion."""
 
     span: Span
     text: str
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Fix:
+class Fix(Record):
     """A correction of a diagnostic: edits that do not overlap, and a title that says what they do.
 
     ``safe``: there is only one thing the text can have meant, so a program may apply it without asking.
@@ -72,8 +69,7 @@ class Fix:
     safe: bool = True
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Diagnostic:
+class Diagnostic(Record):
     """One problem of a program: registered code, severity, one-line message, place, what would help.
 
     Without a hint the remedy of the code is given. ``fix`` is a correction that a tool can apply.

@@ -5,14 +5,13 @@ is written so that NaN fails it.
 """
 
 import math
-from dataclasses import dataclass
 
 from runtime.core.faults import Fault
+from runtime.core.record import Record
 from runtime.core.rounding import beside
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Limit:
+class Limit(Record):
     """A range: ``low`` to ``high`` in a unit; ``above``: low itself is not in it; ``whole``: numbers without a part."""
 
     name: str

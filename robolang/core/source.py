@@ -14,38 +14,54 @@ import os
 import re
 import stat
 from bisect import bisect_right
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import NoReturn
 
 import robolang.core.codes  # noqa: F401 - the codes raised here must be registered
 from runtime.core.bounded_files import RefusedError, read_bounded
+from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault, FilePlace
 
 MAX_BYTES = 1_000_000
 _LINE_END = re.compile(r"\r\n?|\n")
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class Span:
+class Span(Record, kw_only=False):
     """A range of offsets ``[start, end)``; empty (``start == end``) where something is missing."""
 
     start: int
     end: int
 
+    # Every token of a program has one, so the methods that sets and sorting call are not those of all records.
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Place:
+    def __init__(self, start: int, end: int) -> None:
+        object.__setattr__(self, "start", start)
+        object.__setattr__(self, "end", end)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Span):
+            return NotImplemented
+        return self.start == other.start and self.end == other.end
+
+    def __lt__(self, other: "Span") -> bool:
+        return (self.start, self.end) < (other.start, other.end)
+
+    def __hash__(self) -> int:
+        return hash((self.start, self.end))
+
+
+class Place(Record):
     """A 1-based line and column."""
 
     line: int
     column: int
 
 
-@dataclass(frozen=True)
-class Source:
+class Source(Record, kw_only=False):
     """The text of a program and its path as the user gave it."""
+
+    __slots__ = ("__dict__",)  # for the cached properties
 
     path: str
     text: str

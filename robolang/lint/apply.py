@@ -8,20 +8,19 @@ earlier one waits for the next round, where the finding has its new place. Round
 from bisect import bisect_left, insort
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 
 from robolang.core.diagnostics import Diagnostic, Edit
 from robolang.core.source import Source, Span
+from runtime.core.record import Record, default
 
 MAX_ROUNDS = 20
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Fixed:
+class Fixed(Record):
     """A text after its fixes, and how often each code was fixed."""
 
     source: Source
-    counts: Mapping[str, int] = field(default_factory=dict)
+    counts: Mapping[str, int] = default(factory=dict)
 
 
 def fix_all(source: Source, find: Callable[[Source], Iterable[Diagnostic]]) -> Fixed:

@@ -5,7 +5,6 @@ checked without the names that such a file has.
 """
 
 import os
-from dataclasses import dataclass
 from pathlib import Path
 
 from robolang.analysis.analysis import Analysis
@@ -19,12 +18,12 @@ from robolang.lint.suppress import suppress
 from robolang.project.discovery import CellFiles, points_file, read_beside
 from robolang.project.points import load_points
 from runtime.core.faults import Fault
+from runtime.core.record import Record
 from runtime.core.toml_places import locate
 from runtime.core.tomlfile import FileFault, read_source
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Checked:
+class Checked(Record):
     """What was found in one program, by place. A program that could not be read has an empty ``source``.
 
     ``warnings`` are about its cell and the files of its robot. ``analysis`` is None for another file.

@@ -8,7 +8,6 @@ text, not from its message. Findings that bring their own fix keep it.
 
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 
 from robolang.core.diagnostics import Diagnostic, Edit, Fix
 from robolang.core.source import Source, Span
@@ -28,7 +27,7 @@ def with_fix(diagnostic: Diagnostic, source: Source) -> Diagnostic:
     if make is None or diagnostic.fix is not None:
         return diagnostic
     fix = make(diagnostic, source)
-    return diagnostic if fix is None else replace(diagnostic, fix=fix)
+    return diagnostic if fix is None else diagnostic.replaced(fix=fix)
 
 
 def _look_alikes(diagnostic: Diagnostic, source: Source) -> Fix | None:

@@ -9,20 +9,19 @@ by its whole code or name in ``ignore``, never by a beginning or by selecting so
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import robolang.lint.registry  # noqa: F401 - selectors are compared with every code there is
 from robolang.core.diagnostics import Diagnostic, Severity
 from robolang.syntax.keywords import near
 from runtime.core.faults import Group, all_codes, lookup
+from runtime.core.record import Record
 
 ALL = "ALL"
 _PREFIX = "RBL"
 _WHOLE = 6
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Layer:
+class Layer(Record):
     """Selectors of one place, as ``selector`` returns them; ``select`` None: nothing is said of it."""
 
     select: tuple[str, ...] | None = None
@@ -30,8 +29,7 @@ class Layer:
     ignore: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Selection:
+class Selection(Record):
     """Layers, the lowest first."""
 
     layers: tuple[Layer, ...] = ()

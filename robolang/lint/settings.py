@@ -18,12 +18,12 @@ An unknown key, or one given twice, is a ``FileFault`` RBL707 at its place, an u
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robolang.lint.selection import Layer, guess, selector
+from runtime.core.record import Record, default
 from runtime.core.tomlfile import TWICE, FileFault, Source, Table, load_table, read_source
 
 if TYPE_CHECKING:
@@ -32,16 +32,15 @@ if TYPE_CHECKING:
 FILE, PYPROJECT = "robolang.toml", "pyproject.toml"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Configuration:
+class Configuration(Record):
     """What a file says: of rules, and which paths below ``folder`` are passed over where a folder is searched.
 
     ``bounds`` are the tables ``[lint.NAME]`` as they were read, checked.
     """
 
     folder: Path
-    layer: Layer = field(default_factory=Layer)
-    bounds: "Mapping[Bound, float]" = field(default_factory=dict)
+    layer: Layer = Layer()
+    bounds: "Mapping[Bound, float]" = default(factory=dict)
     exclude: tuple[str, ...] = ()
 
 

@@ -15,13 +15,13 @@ Only the last ``noqa`` of a line is looked at, so the time is linear in the text
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from itertools import islice
 
 from robolang.core.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Edit, Fix, Severity
 from robolang.core.source import Source, Span
 from robolang.lint.selection import guess, is_syntax_error, words
 from runtime.core.faults import lookup
+from runtime.core.record import Record
 
 UNUSED, UNKNOWN = "RBL190", "RBL191"
 
@@ -34,8 +34,7 @@ _NEAR_MARK = 64
 _SHOWN = 30
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Named:
+class _Named(Record):
     """One word behind ``noqa:``; ``code`` is empty when it is no code."""
 
     span: Span
@@ -43,8 +42,7 @@ class _Named:
     code: str
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Directive:
+class _Directive(Record):
     """One ``noqa``: from its ``'`` or ``REM`` to the end of the line.
 
     ``named`` are its codes, None when it has no colon; ``mistake`` says why it is none at all.

@@ -5,18 +5,16 @@ points it gets the built-in ones (docs/language.md). A link that leads nowhere i
 not passed over. ``check`` and a run read these files here, so what one refuses the other refuses. Imports no numpy.
 """
 
-import difflib
 import os
-from dataclasses import dataclass, replace
 from functools import cache
-from importlib import resources
 from pathlib import Path
 
 from robolang.analysis.cell_symbols import NOTHING_KNOWN, CellSymbols
-from robolang.project.builtin import cell_text
+from robolang.project.builtin import POINTS, cell_text
 from robolang.project.points import PointStore, load_points
 from runtime.cell.cell_file import CellFile, parse_cell_file, read_arm_alone, read_cell_file
 from runtime.core.faults import Fault
+from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault, Source, read_source
 from runtime.core.units import DEG
 from runtime.robot.files import robot_file
@@ -24,8 +22,7 @@ from runtime.robot.files.arm_file import ROBOT_ENDINGS, ArmFile, read_arm_file
 from runtime.settings.layers import Layer, Settings, check_axes, compensation_file, settle
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Beside:
+class Beside(Record):
     """What stands beside a program; None where it cannot be used, which ``faults`` say, each once."""
 
     cell: CellFile | None
@@ -124,8 +121,7 @@ def taught_points(program: Path, *, builtin: bool, symbols: CellSymbols = NOTHIN
         return load_points(beside, symbols)
     if not builtin:
         return PointStore(path=str(beside))
-    with resources.as_file(resources.files("robolang.project.builtin").joinpath("points.toml")) as path:
-        return load_points(path, replace(symbols, robot=None))
+    return load_points(POINTS, symbols.replaced(robot=None))
 
 
 def named_arm(name: str) -> ArmFile:
@@ -139,6 +135,8 @@ def named_arm(name: str) -> ArmFile:
 
 def no_robot(name: str) -> Fault:
     """Return the fault of a name that no robot has (RBL708)."""
+    import difflib  # needed for a hint only
+
     near = difflib.get_close_matches(name, robot_file.library(), n=1)
     guess = f"did you mean {near[0]}? " if near else ""
     return Fault(
@@ -156,7 +154,7 @@ def with_robot(cell: CellFile, arm: ArmFile) -> CellFile:
     for index, (angle, limits) in enumerate(zip(cell.home_deg, arm.limits, strict=True)):
         if not limits.lower <= angle * DEG <= limits.upper:
             raise Fault("RBL709", f"the cell's home position is outside the range of J{index + 1} of {arm.name}")
-    return replace(cell, arm=arm)
+    return cell.replaced(arm=arm)
 
 
 def controller_settings(cell: CellFile, layers: tuple[Layer, ...] = ()) -> Settings:

@@ -20,7 +20,6 @@ Teaching, which writes this file, is not here.
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 from typing import NoReturn
@@ -29,6 +28,7 @@ import robolang.core.codes  # noqa: F401 - the codes raised here must be registe
 from robolang.analysis.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.syntax.keywords import RESERVED, near
 from runtime.core.faults import lookup
+from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault, Source, Table, load_table, read_source
 from runtime.robot.model.drives import beyond_range
 
@@ -50,8 +50,7 @@ _TRANSLATED = {
 }
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Point:
+class Point(Record):
     """A taught point: exactly one of ``pose`` (mm, mm, mm, deg, deg, deg) and ``joints`` (deg) is given."""
 
     name: str
@@ -64,13 +63,12 @@ class Point:
     comment: str = ""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PointStore:
+class PointStore(Record):
     """The points of one file by upper-case name, in file order."""
 
     path: str
     robot: str = ""
-    points: Mapping[str, Point] = field(default_factory=lambda: MappingProxyType({}))
+    points: Mapping[str, Point] = MappingProxyType({})
 
     @property
     def names(self) -> frozenset[str]:

@@ -15,7 +15,6 @@ itself is RBL204, since a NEXT without its FOR has nothing to count.
 import re
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 
 from robolang.core.deduplicate import Repeats
 from robolang.core.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related
@@ -58,7 +57,6 @@ _LIKENESS = 0.75
 _ONE_LINE = re.compile(r"\bTHEN\b[ \t]*[^ \t']", re.IGNORECASE)
 
 
-@dataclass(slots=True)
 class Structure:
     """The tables of a program; places are indices into its lines.
 
@@ -69,18 +67,19 @@ class Structure:
     in. ``inside``: heads of the blocks that a line is in, outermost first.
     """
 
-    after: dict[int, int] = field(default_factory=dict)
-    end: dict[int, int] = field(default_factory=dict)
-    numbers: dict[int, int] = field(default_factory=dict)
-    labels: dict[str, int] = field(default_factory=dict)
-    lost_subs: set[int] = field(default_factory=set)
-    subs: dict[str, int] = field(default_factory=dict)
-    owner: dict[int, int] = field(default_factory=dict)
-    inside: list[tuple[int, ...]] = field(default_factory=list)
-    diagnostics: list[Diagnostic] = field(default_factory=list)
-    missing: Repeats = field(default_factory=Repeats)
-    first_names: dict[tuple[str, str], Name] = field(default_factory=dict)
-    _counts: Counter[str] = field(default_factory=Counter)
+    def __init__(self) -> None:
+        self.after: dict[int, int] = {}
+        self.end: dict[int, int] = {}
+        self.numbers: dict[int, int] = {}
+        self.labels: dict[str, int] = {}
+        self.lost_subs: set[int] = set()
+        self.subs: dict[str, int] = {}
+        self.owner: dict[int, int] = {}
+        self.inside: list[tuple[int, ...]] = []
+        self.diagnostics: list[Diagnostic] = []
+        self.missing = Repeats()
+        self.first_names: dict[tuple[str, str], Name] = {}
+        self._counts: Counter[str] = Counter()
 
     def report(self, diagnostic: Diagnostic) -> None:
         """Keep a diagnostic, unless there are more of its code than are ever listed."""
@@ -151,7 +150,6 @@ def _define(found: Structure, table: dict[str, int], index: int, name: Name, wha
     table.setdefault(name.key, index)
 
 
-@dataclass(slots=True)
 class _Open:
     """A block that is not closed yet: its head's word, and the lines of it so far.
 
@@ -159,11 +157,12 @@ class _Open:
     ``unknown`` is its last line with an error that may be anything, such as the head or end that another line lacks.
     """
 
-    word: str
-    lines: list[int]
-    last: bool = False
-    guessed: bool = False
-    unknown: int | None = None
+    def __init__(self, *, word: str, lines: list[int], last: bool = False, guessed: bool = False) -> None:
+        self.word = word
+        self.lines = lines
+        self.last = last
+        self.guessed = guessed
+        self.unknown: int | None = None
 
 
 class _Matcher:

@@ -4,7 +4,6 @@
 idea of Unicode report 39, restricted to what can be mistaken for a character that the language reads.
 """
 
-import difflib
 import re
 import unicodedata
 from collections.abc import Iterable
@@ -84,6 +83,8 @@ def near(word: str, choices: Iterable[str], cutoff: float = 0.6) -> str:
     names = list(choices)
     if len(word) > 40 or len(names) > MAX_CHOICES:  # each comparison costs: a check must stay linear
         return ""
+    import difflib  # most programs have nothing to guess at: a check starts sooner
+
     by_key = {choice.upper(): choice for choice in sorted(names)}
     found = difflib.get_close_matches(word.upper(), by_key, n=1, cutoff=cutoff)
     return by_key[found[0]] if found else ""

@@ -12,7 +12,6 @@ Lark makes of the grammar, which is part of the package (``grammar``).
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 
 from robolang.core.diagnostics import HIDDEN, MAX_DIAGNOSTICS, Diagnostic, Severity, in_order
@@ -20,6 +19,7 @@ from robolang.core.source import MAX_BYTES, Source, Span
 from robolang.syntax import ast
 from robolang.syntax.builder import Parsed
 from robolang.syntax.line_reader import line_reader
+from runtime.core.record import Record
 
 MAX_LINE = 10_000
 MAX_DEPTH = 100
@@ -37,8 +37,7 @@ ParsedLine = tuple[ast.Line, Diagnostic | None]
 _NO_LINES: Mapping[int, ParsedLine] = MappingProxyType({})
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ParseResult:
+class ParseResult(Record):
     """The tree of what could be parsed, and the diagnostics by place.
 
     Lines with an error are in the tree as ``Unparsed``. After ``MAX_DIAGNOSTICS`` errors the rest of the text

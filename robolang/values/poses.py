@@ -5,18 +5,17 @@ symbolic until the move is lowered (``robolang.execution.lowering``) or the prog
 deg.
 """
 
-from dataclasses import dataclass, replace
 from typing import Literal
 
 from robolang.values.kinds import Kind
+from runtime.core.record import Record
 
 Six = tuple[float, float, float, float, float, float]
 Frame = str | Six
 """A frame: its name in the cell, or its pose in the world; ``""`` is the world."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Shift:
+class Shift(Record):
     """An offset and a rotation: along the axes of ``frame``, or of the tool where it then is."""
 
     kind: Literal["frame", "tool"]
@@ -24,8 +23,7 @@ class Shift:
     frame: Frame = ""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Place:
+class Place(Record):
     """A place for the tool: one of ``point`` (key of a taught point), ``pose`` in ``frame``, ``joints`` deg, or
     ``last``, where the motion before it ends; then ``shifts`` from the first to the last.
     """
@@ -40,8 +38,8 @@ class Place:
     def shifted(self, shift: Shift) -> "Place":
         """Return the place with one more shift; two offsets in a row along the same axes become one."""
         if self.shifts and (both := _joined(self.shifts[-1], shift)) is not None:
-            return replace(self, shifts=(*self.shifts[:-1], both))
-        return replace(self, shifts=(*self.shifts, shift))
+            return self.replaced(shifts=(*self.shifts[:-1], both))
+        return self.replaced(shifts=(*self.shifts, shift))
 
 
 def _joined(one: Shift, other: Shift) -> Shift | None:
@@ -49,7 +47,7 @@ def _joined(one: Shift, other: Shift) -> Shift | None:
     if one.kind != other.kind or one.frame != other.frame or any(one.by[3:]) or any(other.by[3:]):
         return None
     x, y, z = (a + b for a, b in zip(one.by[:3], other.by[:3], strict=True))
-    return replace(one, by=(x, y, z, 0.0, 0.0, 0.0))
+    return one.replaced(by=(x, y, z, 0.0, 0.0, 0.0))
 
 
 Value = float | str | Place

@@ -7,7 +7,6 @@ inside the cell file's own folder: nothing outside that folder is ever opened, w
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import TypeVar
@@ -15,6 +14,7 @@ from typing import TypeVar
 from runtime.cell.resting import Box, unrest
 from runtime.cell.sensor_file import SensorFile, read_sensor_file
 from runtime.cell.signals import InputSpec, read_inputs
+from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault, Source, Table, inside, load_table, read_source
 from runtime.core.units import DEG
 from runtime.robot.files import robot_file
@@ -33,8 +33,7 @@ T = TypeVar("T")
 Numbers = tuple[float, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HandFile:
+class HandFile(Record):
     """``[hand]``: see ``runtime.cell.cell.HandSpec``."""
 
     mass_kg: float
@@ -47,8 +46,7 @@ class HandFile:
     finger_length_mm: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PartFile:
+class PartFile(Record):
     """One ``[[parts]]``: a loose box."""
 
     name: str
@@ -58,8 +56,7 @@ class PartFile:
     friction: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ObstacleFile:
+class ObstacleFile(Record):
     """One ``[[obstacles]]``: a fixed box."""
 
     name: str
@@ -67,16 +64,14 @@ class ObstacleFile:
     pose_mm_deg: Numbers
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LoadFile:
+class LoadFile(Record):
     """``[loads.NAME]``: a load that a program may declare by name, in the flange frame."""
 
     mass_kg: float
     cog_mm: Numbers
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CellFile:
+class CellFile(Record):
     """A cell file. ``tools``, ``frames``: poses (6,) mm and deg by name, FLANGE and WORLD among them; ``controller``:
     the settings of ``[controller]``; ``doubts``: parts that cannot rest where they are (RBL640)."""
 

@@ -8,9 +8,10 @@ M. C. Lin and D. Manocha, "OBBTree", SIGGRAPH 1996). Poses are ``[x, y, z, rx, r
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import product
 from typing import Self
+
+from runtime.core.record import Record
 
 OVERLAP_MM = 1.0
 """A part may be this far inside another body: contacts of a simulation yield by less."""
@@ -20,8 +21,7 @@ DROP_MM = 5.0
 Vector = tuple[float, float, float]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Box:
+class Box(Record):
     """A box: its name in messages, centre mm, unit vectors of its edges in the world, half of their lengths mm."""
 
     name: str

@@ -4,15 +4,14 @@ Units are those of the keys, mm and deg. ``seam_sensor`` has the meaning and mak
 ``robolang check`` reads it, and a run reads the same.
 """
 
-import csv
 import io
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import Literal, cast
 
+from runtime.core.record import Record
 from runtime.core.tomlfile import Table, inside, read_source
 
 Kind = Literal["ramp", "sine", "table"]
@@ -20,8 +19,7 @@ KINDS: tuple[Kind, ...] = ("ramp", "sine", "table")
 MOST_ROWS = 10_000
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SensorFile:
+class SensorFile(Record):
     """A seam sensor: ``deviation`` (6,) of a ramp or sine; ``rows`` (K, 7) of a table: distance and deviation."""
 
     kind: Kind
@@ -64,6 +62,8 @@ def read_sensor_file(table: Table, folder: Path | None) -> SensorFile:
 
 def _rows(table: Table, folder: Path | None) -> tuple[tuple[float, ...], ...]:
     """Read the CSV file of a sensor: rows of 7 whose first number, the distance, rises; ``FileFault`` RBL604, 605."""
+    import csv  # a cell without such a file is checked sooner
+
     name = table.text("file")
     source = read_source(inside(table, name, folder, "file"))
     try:

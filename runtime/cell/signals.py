@@ -14,9 +14,9 @@ no sum of times rounds. Read by every WAIT and condition of a program, and by th
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from runtime.core.faults import Fault
+from runtime.core.record import Record
 from runtime.core.tomlfile import Table
 
 MOST = 1024
@@ -24,8 +24,7 @@ LONGEST_S = 86_400.0
 """A day, s: longer than any program runs."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class InputSpec:
+class InputSpec(Record):
     """An input: its ``changes`` (us, state) in order, or the output that it ``follows`` after ``delay_us``."""
 
     changes: tuple[tuple[int, float], ...] = ()

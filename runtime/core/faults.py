@@ -10,10 +10,13 @@ as the front end gave it to the controller, so that its place in the program is 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from enum import Enum
+from typing import TYPE_CHECKING
 
-from runtime.core.program_line import ProgramLine
+from runtime.core.record import Record
+
+if TYPE_CHECKING:
+    from runtime.core.program_line import ProgramLine
 
 
 class Group(Enum):
@@ -42,8 +45,7 @@ _STAGES = {Group.TEXT: Stage.TEXT, Group.MEANING: Stage.CELL, Group.POINTS: Stag
 """Stage of the codes of a group, where a code does not give its own."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Code:
+class Code(Record):
     """One thing that can go wrong: ``RBL412``, its kebab-case name, what it means and what to do.
 
     ``category`` is how an alarm of this code stops the arm: 1 on its path, then the brakes; 0 at once. ``found``: the
@@ -108,8 +110,7 @@ def all_codes() -> list[Code]:
     return [_registry[key] for key in sorted(_registry)]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Alarm:
+class Alarm(Record):
     """A latched event of the running controller.
 
     ``tick`` is the servo tick at which it was raised, ``axis`` is 0-based (None: no single axis), ``statement`` the
@@ -121,8 +122,8 @@ class Alarm:
     message: str
     tick: int
     axis: int | None = None
-    statement: ProgramLine | None = None
-    calls: tuple[ProgramLine, ...] = ()
+    statement: "ProgramLine | None" = None
+    calls: "tuple[ProgramLine, ...]" = ()
     hint: str = ""
     category: int = 1
 

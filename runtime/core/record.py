@@ -1,33 +1,134 @@
-"""Small immutable records whose definition costs nothing at import.
+"""Small immutable records whose definition costs little at import.
 
 ``dataclasses`` writes and compiles the source of every class anew in each process, and imports ``inspect`` to do so:
-0.3 to 1 ms a class, which is more than reading a program of 50 lines takes. A ``Record`` shares its methods instead.
-Making one takes some microseconds longer, so what is made thousands of times a run is a data class or plain source.
+0.3 to 1 ms a class, which is more than reading a program of 50 lines takes. Records share their methods instead.
+Making one takes some tenths of a microsecond longer, so what is made per character or per cycle has an ``__init__`` of
+its own or is a data class.
 """
 
-from typing import Any, ClassVar, Self, dataclass_transform
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar, dataclass_transform
+
+if TYPE_CHECKING:
+    from dataclasses import Field
+
+T = TypeVar("T")
 
 
-@dataclass_transform(kw_only_default=True, frozen_default=True)
-class Record:
+class _Default:
+    """The default of a field that is more than a value: made for each record, or with a note that readers of the class
+    find in ``NOTES``."""
+
+    __slots__ = ("factory", "note", "value")
+
+    def __init__(self, value: Any, factory: Callable[[], Any] | None, note: object) -> None:
+        self.value = value
+        self.factory = factory
+        self.note = note
+
+
+def default(value: Any = None, *, factory: Callable[[], Any] | None = None, note: object = None) -> Any:
+    """Declare a field with a default value, or with one that ``factory`` makes for each record."""
+    return _Default(value, factory, note)
+
+
+class _Described:
+    """What ``dataclasses`` keeps with a class, for its functions; made when one of them reads it."""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    def __get__(self, record: "Record | None", kind: "type[Record]") -> Any:
+        from dataclasses import make_dataclass
+
+        if "_described" not in vars(kind):
+            kind._described = make_dataclass(kind.__name__, kind.FIELDS, frozen=True, kw_only=True)
+        return getattr(kind._described, self._name)
+
+
+class _RecordType(type):
+    """Turns annotated names into slots. ``kw_only=False`` lets the values be given by position too."""
+
+    def __new__(
+        cls, name: str, bases: tuple[type, ...], namespace: dict[str, Any], *, kw_only: bool | None = None
+    ) -> "_RecordType":
+        base: Any = bases[0] if bases else None
+        defaults = dict(base.DEFAULTS) if base else {}
+        factories = dict(base._factories) if base else {}
+        notes = dict(base.NOTES) if base else {}
+        hints = namespace.get("__annotations__", {}).items()
+        own = [field for field, hint in hints if bases and not _is_of_the_class(hint)]
+        for field in own:
+            if field not in namespace:
+                continue
+            value = namespace.pop(field)  # a slot and a value of one name exclude each other
+            given = value if type(value) is _Default else _Default(value, None, None)
+            defaults.pop(field, None)
+            factories.pop(field, None)
+            (defaults if given.factory is None else factories)[field] = given.factory or given.value
+            if given.note is not None:
+                notes[field] = given.note
+        inherited: tuple[str, ...] = base.FIELDS if base else ()
+        namespace["__slots__"] = (*namespace.get("__slots__", ()), *(field for field in own if field not in inherited))
+        if kw_only is not None:
+            namespace["_kw_only"] = kw_only
+        made: Any = super().__new__(cls, name, bases, namespace)
+        made.FIELDS = tuple(dict.fromkeys((*inherited, *own)))  # a field that is declared again keeps its place
+        made.NOTES, made.DEFAULTS, made._factories = notes, defaults, factories
+        made._known = frozenset(made.FIELDS)
+        made._put = tuple((field, getattr(made, field).__set__) for field in made.FIELDS)
+        return made  # type: ignore[no-any-return]
+
+
+@dataclass_transform(kw_only_default=True, frozen_default=True, field_specifiers=(default,))
+class Record(metaclass=_RecordType):
     """Base of records: each annotated name is a field, given by keyword; the value in the class is its default.
 
-    Type checkers see a frozen data class. A default is shared by all records, so it must not be mutable.
+    Type checkers see a frozen data class with slots, and so do the functions of ``dataclasses``. A plain default is
+    shared by all records, so it must not be mutable. A class with cached properties has ``__slots__ = ("__dict__",)``;
+    they are no part of its value. ``__post_init__`` runs when all fields are set.
     """
 
-    FIELDS: ClassVar[tuple[str, ...]] = ()
-    _needed: ClassVar[frozenset[str]] = frozenset()
+    FIELDS: ClassVar[tuple[str, ...]]
+    DEFAULTS: ClassVar[dict[str, Any]]
+    """Plain defaults of the fields that have one."""
+    NOTES: ClassVar[dict[str, Any]]
+    """Notes of the fields that have one."""
 
-    def __init_subclass__(cls) -> None:
-        own = (name for name, hint in cls.__annotations__.items() if not _is_of_the_class(hint))
-        cls.FIELDS = tuple(dict.fromkeys((*cls.FIELDS, *own)))  # a field that is declared again keeps its place
-        cls._needed = frozenset(name for name in cls.FIELDS if not hasattr(cls, name))
+    _factories: ClassVar[dict[str, Callable[[], Any]]]
+    _known: ClassVar[frozenset[str]]
+    _put: ClassVar[tuple[tuple[str, Callable[[Any, Any], None]], ...]]
+    _described: ClassVar[Any]
+    _kw_only: ClassVar[bool] = True
+    if TYPE_CHECKING:
+        __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+    else:
+        __dataclass_fields__ = _Described()
+        __dataclass_params__ = _Described()
 
-    def __init__(self, **given: Any) -> None:
-        if not self._needed <= given.keys() <= frozenset(self.FIELDS):
-            wrong = sorted((self._needed - given.keys()) | (given.keys() - frozenset(self.FIELDS)))
-            raise TypeError(f"{type(self).__name__} needs {', '.join(self.FIELDS)}; missing or unknown: {wrong}")
-        self.__dict__.update(given)
+    def __init__(self, *values: Any, **given: Any) -> None:
+        kind = type(self)
+        if values:
+            given = kind._by_name(values, given)
+        if given.keys() != kind._known:
+            given = {**kind.DEFAULTS, **{name: make() for name, make in kind._factories.items()}, **given}
+            if given.keys() != kind._known:
+                wrong = ", ".join(sorted(kind._known ^ given.keys()))
+                raise TypeError(f"{kind.__name__} needs {', '.join(kind.FIELDS)}; missing or unknown: {wrong}")
+        for name, put in kind._put:
+            put(self, given[name])
+        self.__post_init__()
+
+    def __post_init__(self) -> None:
+        """Check or complete a new record; nothing by default."""
+
+    @classmethod
+    def _by_name(cls, values: tuple[Any, ...], given: dict[str, Any]) -> dict[str, Any]:
+        """Return the values that were given by position with the others."""
+        placed = dict(zip(cls.FIELDS, values, strict=False))
+        if cls._kw_only or len(values) > len(cls.FIELDS) or placed.keys() & given.keys():
+            raise TypeError(f"{cls.__name__} takes {', '.join(cls.FIELDS)}, each once" + " by name" * cls._kw_only)
+        return {**placed, **given}
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"{type(self).__name__}.{name} cannot be set: a record does not change")
@@ -37,22 +138,31 @@ class Record:
 
     def replaced(self, **changes: Any) -> Self:
         """Return a copy with other values in some fields."""
-        return type(self)(**{**self.__dict__, **changes})
+        return _restored(type(self), {**self._values(), **changes})
 
-    def _values(self) -> tuple[Any, ...]:
-        return tuple(getattr(self, name) for name in self.FIELDS)
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Without this, pickle and copy would set the fields of an empty record, which does not change.
+        return _restored, (type(self), self._values())
+
+    def _values(self) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in self.FIELDS}
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
-        return self._values() == other._values()
+        # as tuples, which count a value as equal to itself: a record with NaN is then equal to itself, as a data class
+        return tuple(self._values().values()) == tuple(other._values().values())
 
     def __hash__(self) -> int:
-        return hash((type(self), self._values()))
+        return hash(tuple(self._values().values()))
 
     def __repr__(self) -> str:
-        shown = ", ".join(f"{name}={getattr(self, name)!r}" for name in self.FIELDS)
+        shown = ", ".join(f"{name}={value!r}" for name, value in self._values().items())
         return f"{type(self).__name__}({shown})"
+
+
+def _restored(kind: type[T], values: dict[str, Any]) -> T:
+    return kind(**values)
 
 
 def _is_of_the_class(hint: Any) -> bool:

@@ -5,19 +5,18 @@ misspelt key never passes silently. Every error is a ``FileFault`` with file, li
 Reading is bounded: only regular files up to 1 MB are opened. Imports the standard library only.
 """
 
-import difflib
 import math
 import re
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any, NoReturn, TypeVar
 
 import runtime.core.file_codes  # noqa: F401 - registers what is raised here
 from runtime.core.bounded_files import RefusedError, read_bounded
 from runtime.core.faults import Fault
+from runtime.core.record import Record
 from runtime.core.rounding import beside
 from runtime.core.toml_places import clash, lines_of, locate
 
@@ -32,8 +31,7 @@ _CLASHES = ("Cannot overwrite a value", "Cannot declare", "Cannot mutate immutab
 """Beginnings of the messages of tomllib for a key or table that is there already; it has no error classes."""
 
 
-@dataclass(frozen=True, slots=True)
-class FilePlace:
+class FilePlace(Record, kw_only=False):
     """A place in a file: its name, 1-based line and column, and the text of the line."""
 
     path: str
@@ -54,8 +52,7 @@ class FileFault(Fault):
         return f"{self.path}:{self.line}:{self.column}: {self.code} {self.message}"
 
 
-@dataclass(frozen=True, slots=True)
-class Source:
+class Source(Record, kw_only=False):
     """The text of a file and its name as the user gave it."""
 
     path: str
@@ -123,8 +120,7 @@ def load_table(source: Source, code: str = "RBL601", *, gather: bool = False) ->
         source.fail(code, f"a value cannot be read: {error}")
 
 
-@dataclass(frozen=True, slots=True)
-class _Missing:
+class _Missing(Record, kw_only=False):
     """A key that a table lacks, noted by a reader that continues."""
 
     table: "Table"
@@ -249,7 +245,7 @@ class Table:
 
     def _looks_like(self, key: str) -> str:
         """Return the unknown key that may be a misspelt one, or nothing."""
-        return next(iter(difflib.get_close_matches(key, set(self._data) - self._asked, n=1)), "")
+        return _closest(key, set(self._data) - self._asked)
 
     def _lacks(self, key: str) -> FileFault:
         near = self._looks_like(key)
@@ -361,8 +357,8 @@ class Table:
         if not isinstance(value, str):
             self.fail("RBL613", f"'{self.name(key)}' must be a text, not {_kind(value)}", key=key)
         if choices and value not in choices:
-            near = difflib.get_close_matches(value, choices, n=1)
-            hint = f"did you mean '{near[0]}'?" if near else ""
+            near = _closest(value, choices)
+            hint = f"did you mean '{near}'?" if near else ""
             self.fail("RBL610", f"'{self.name(key)}' is '{value}'; known: {', '.join(choices)}", hint, key=key)
         return value
 
@@ -422,11 +418,9 @@ class Table:
         """Reject every key that was not read; RBL609, with the key that it resembles."""
         missing = self._missing_keys()
         for key in self._data:
-            if key in self._asked or difflib.get_close_matches(key, missing, n=1):
+            if key in self._asked or _closest(key, missing):
                 continue  # reported with the missing key that it resembles: one mistake, one message
-            near = _near(key, self._asked - set(self._data)) or next(
-                iter(difflib.get_close_matches(key, self._asked, n=1)), ""
-            )
+            near = _near(key, self._asked - set(self._data)) or _closest(key, self._asked)
             hint = f"did you mean '{near}'?" if near else f"known here: {', '.join(sorted(self._asked))}"
             fault = self.fault("RBL609", f"'{self.name(key)}' is not a key of this file", hint, key=key)
             if self._gathered is None:
@@ -436,9 +430,16 @@ class Table:
 
 def _near(key: str, free: AbstractSet[str]) -> str:
     """Return the key that an unknown one may stand for, or nothing; ``position`` may stand for ``pose``."""
-    close = difflib.get_close_matches(key, free, n=1)
+    close = _closest(key, free)
     begins = [] if close or len(key) < 3 else sorted(each for each in free if each[:3] == key[:3])
-    return next(iter([*close, *begins]), "")
+    return close or next(iter(begins), "")
+
+
+def _closest(word: str, known: Iterable[str]) -> str:
+    """Return the word that resembles another one most, or nothing."""
+    import difflib  # needed for a hint only: a check starts sooner
+
+    return next(iter(difflib.get_close_matches(word, known, n=1)), "")
 
 
 def _beside_range(number: float, low: float, high: float, positive: bool) -> tuple[str, str]:

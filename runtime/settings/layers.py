@@ -7,16 +7,16 @@ A profile file has ``schema = 1`` and the same ``[controller]`` table as a cell.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
 from runtime.core.faults import Fault, raise_all
+from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault, Source, Table, inside, load_table, read_source
 from runtime.settings.profile import Profile
 from runtime.settings.setting import Setting, groups_of, settings_of
 
-T = TypeVar("T")
+T = TypeVar("T", bound=Record)
 
 _IDEAL_WHEN_MEASURED = ("servo.velocity_feedforward", "servo.acceleration_feedforward")
 _FEEDS_BACK_WHEN_MEASURED = (*_IDEAL_WHEN_MEASURED, "servo.spring_compensation")
@@ -30,8 +30,7 @@ def settings() -> dict[str, Setting]:
     return found
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Given:
+class Given(Record):
     """A value as its file writes it, and its place: ``origin`` for people; the table when there is one."""
 
     value: Any
@@ -54,12 +53,11 @@ Layer = Mapping[str, Given]
 """What one file or the command line gives, by dotted key."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Settings:
+class Settings(Record):
     """Every key with its effective value and origin, and the profile they make."""
 
     given: Layer
-    profile: Profile = field(default_factory=Profile)
+    profile: Profile = Profile()
 
     def __getitem__(self, key: str) -> Given:
         return self.given[key]
@@ -78,7 +76,7 @@ def read_layer(table: Table | None) -> Layer:
     return found
 
 
-def _read(table: Table, kind: type, prefix: str) -> dict[str, Given]:
+def _read(table: Table, kind: type[Record], prefix: str) -> dict[str, Given]:
     """Read the settings of a data class, by dotted key."""
     settings = settings_of(kind).values()
     found = {

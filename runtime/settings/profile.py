@@ -5,9 +5,9 @@ file or option a value is taken from is in ``layers``. Times in whole microsecon
 docs/servo.md (Kf, Ka, K2, feed-forward source).
 """
 
-from dataclasses import dataclass, replace
 from typing import Literal
 
+from runtime.core.record import Record
 from runtime.core.tomlfile import Table
 from runtime.robot.model.joint_table import JointTable
 from runtime.robot.model.load_rules import LoadMode
@@ -42,8 +42,7 @@ def _seconds_us(seconds: float) -> int:
     return round(seconds * 1e6)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ServoOptions:
+class ServoOptions(Record):
     """How the servo law is applied.
 
     ``fixed_at``: where in its range the inertia of each axis is held when ``mode`` is fixed. ``coupling`` full takes
@@ -79,8 +78,7 @@ class ServoOptions:
     first_moments: tuple[tuple[float, ...], ...] = ()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class WristOptions:
+class WristOptions(Record):
     """When and how a straight move leaves its posture to change the wrist (``runtime.motion.wrist.switch``,
     docs/wrist.md).
 
@@ -115,8 +113,7 @@ class WristOptions:
 
     def only(self, *, range_condition: bool = False, guard: bool = False) -> "WristOptions":
         """Return the options with no condition but these."""
-        return replace(
-            self,
+        return self.replaced(
             speed_condition="off",
             remaining_time=0.0,
             remaining_distance=0.0,
@@ -131,8 +128,7 @@ class WristOptions:
         return {"linear": 1.0, "hermite": 1.6, "smooth": 1.0 / (1.0 - self.width / 2.0)}[self.shape]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Profile:
+class Profile(Record):
     """Cycle times, declared costs and options of a controller."""
 
     period_us: int = 8000

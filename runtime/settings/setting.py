@@ -1,23 +1,29 @@
 """A key of ``[controller]``, declared at the field that holds its value.
 
 The declaration gives the key, its unit, range and default as people write them, and how they become SI. Readers,
-``--set``, ``config show`` and the profile come from it, so that a new setting is one field of one data class.
+``--set``, ``config show`` and the profile come from it, so that a new setting is one field of one record.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, fields
 from typing import Any
 
+from runtime.core import record
+from runtime.core.record import Record
 from runtime.core.tomlfile import Table
 from runtime.core.units import DEG, MM
 
-_SETTING, _GROUP = "setting", "group"
 _SI = {"ms": 1e-3, "deg": DEG, "deg/s": DEG, "mm": MM}
 """What a number of a unit is multiplied by to be SI; of other units it is SI already."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Setting:
+class _Group(Record, kw_only=False):
+    """A table of settings: its key, and the record that holds them."""
+
+    key: str
+    kind: type[Record]
+
+
+class Setting(Record):
     """One key: how it is read, its unit and default in a file, and how a value of a file becomes the field's."""
 
     key: str
@@ -69,21 +75,21 @@ def custom(key: str, default: Any, unit: str, read: Callable[[Table, str], Any],
     return _declared(key, unit, default, read, si)
 
 
-def group(key: str, kind: type) -> Any:
-    """Declare a table of settings, which are the fields of a data class."""
-    return field(default_factory=kind, metadata={_GROUP: (key, kind)})
+def group(key: str, kind: type[Record]) -> Any:
+    """Declare a table of settings, which are the fields of a record."""
+    return record.default(factory=kind, note=_Group(key, kind))
 
 
-def settings_of(kind: type) -> dict[str, Setting]:
-    """Return the settings of a data class by the names of its fields."""
-    return {each.name: each.metadata[_SETTING] for each in fields(kind) if _SETTING in each.metadata}
+def settings_of(kind: type[Record]) -> dict[str, Setting]:
+    """Return the settings of a record by the names of its fields."""
+    return {name: note for name, note in kind.NOTES.items() if isinstance(note, Setting)}
 
 
-def groups_of(kind: type) -> Iterator[tuple[str, str, type]]:
-    """Yield the tables of a data class: name of the field, key, and the data class of the table."""
-    for each in fields(kind):
-        if _GROUP in each.metadata:
-            yield each.name, *each.metadata[_GROUP]
+def groups_of(kind: type[Record]) -> Iterator[tuple[str, str, type[Record]]]:
+    """Yield the tables of a record: name of the field, key, and the record of the table."""
+    for name, note in kind.NOTES.items():
+        if isinstance(note, _Group):
+            yield name, note.key, note.kind
 
 
 def _declared(
@@ -94,7 +100,7 @@ def _declared(
     si: Callable[[Any], Any] = lambda value: value,
 ) -> Any:
     setting = Setting(key=key, unit=unit, default=default, read=read, si=si)
-    return field(default=si(default), metadata={_SETTING: setting})
+    return record.default(si(default), note=setting)
 
 
 def _scaled(unit: str) -> Callable[[float], float]:

@@ -5,9 +5,9 @@ here. Shares are of the robot file's own limits, so one set of numbers serves ev
 """
 
 import math
-from dataclasses import dataclass
 from typing import Literal
 
+from runtime.core.record import Record
 from runtime.core.tomlfile import Table
 from runtime.settings.setting import choice, custom, flag, number, whole
 
@@ -18,8 +18,7 @@ def _share(table: Table, name: str) -> float:
     return table.number(name, low=0.0, high=2.0)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SupervisionLimits:
+class SupervisionLimits(Record):
     """When an arm no longer does what it was told.
 
     ``enabled``: off, nothing but a state that is not finite stops the arm; for experiments that are wrong on purpose.

@@ -40,7 +40,7 @@ def test_check_and_a_run_have_the_same_facts(tmp_path):
         if not found.faults:
             facts = load_project(tmp_path / "p.rbl").analysis.cell
             assert facts == found.analysis.cell
-            assert None not in [getattr(facts, name) for name in CellSymbols.__slots__]
+            assert None not in [getattr(facts, name) for name in CellSymbols.FIELDS]
             assert load_project(found.analysis).analysis is found.analysis
             compared += 1
     assert compared > len(SAMPLE) / 2

@@ -1,7 +1,7 @@
 """Blends that do not take place: a ZONE before a stop, and a LOAD between two moves that would blend."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from robolang.analysis.dataflow import facts_before
 from robolang.analysis.facts import Facts
@@ -60,8 +60,7 @@ _STOPS = (Load, LoadNamed, Hand, Seam, Out, Pulse, Delay, Wait, Print)
 """Statements before which the arm comes to rest, besides TOOL, PAUSE and the end."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Corner:
+class _Corner(NamedTuple):
     """The place of the ZONE that is set, of the move whose end may be passed without a stop (None: the arm stands), and
     of the setting by which it may; None: by a ZONE of its own."""
 
@@ -70,7 +69,6 @@ class _Corner:
     by: Span | None = None
 
 
-@dataclass(slots=True)
 class _Corners:
     """What became of the corners: moves that blended on some branch, those that did not, and LOADs within.
 
@@ -78,11 +76,12 @@ class _Corners:
     state of the arm, so that it comes to rest before them although the move before could blend.
     """
 
-    zones: dict[Span, Zone]
-    used: set[Span] = field(default_factory=set)
-    lost: dict[Span, Statement | None] = field(default_factory=dict)
-    loads: dict[Span, Span] = field(default_factory=dict)
-    waiting: dict[Span, Moving] = field(default_factory=dict)
+    def __init__(self, zones: dict[Span, Zone]) -> None:
+        self.zones = zones
+        self.used: set[Span] = set()
+        self.lost: dict[Span, Statement | None] = {}
+        self.loads: dict[Span, Span] = {}
+        self.waiting: dict[Span, Moving] = {}
 
     def step(self, at: int, node: Statement, corner: _Corner) -> tuple[_Corner]:
         """Follow one statement."""

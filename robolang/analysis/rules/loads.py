@@ -4,7 +4,7 @@ The fact that is followed is what the hand holds, and whether a LOAD has declare
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from robolang.analysis.dataflow import facts_before
 from robolang.analysis.facts import Facts
@@ -30,8 +30,7 @@ LOAD_MISSING = LintRule(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class _Hold:
+class _Hold(NamedTuple):
     """Whether the hand is closed, the HAND since which no LOAD has come, if any, and whether one has come at all."""
 
     closed: bool = False

@@ -103,7 +103,7 @@ def _refuse_beside_payload(options: _ExperimentOptions, output: _OutputOptions) 
     """Refuse what only the identification of the arm takes: a weighing would ignore it."""
     for group, names in ((options, ("axis", "positions", "error", "carrying", "table")), (output, ("out", "date"))):
         for name in names:
-            if getattr(group, name) != getattr(type(group), name):  # the default is the value in the class
+            if getattr(group, name) != group.DEFAULTS[name]:
                 raise OptionValueError(f"--{name}", "cannot be used with --payload")
 
 

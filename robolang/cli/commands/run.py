@@ -12,7 +12,6 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
@@ -164,7 +163,7 @@ def _print_alarms(project: "Project", result: "RunResult", *, warnings: bool) ->
 def _print_at(project: "Project", item: "Diagnostic", when: str) -> None:
     from robolang.core.diagnostics import render
 
-    echo(render(replace(item, message=f"{when}: {item.message}"), project.source), err=True)
+    echo(render(item.replaced(message=f"{when}: {item.message}"), project.source), err=True)
 
 
 @contextmanager

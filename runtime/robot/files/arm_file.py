@@ -4,9 +4,9 @@ Either gives axes, ranges and rated payload without numerics; ``importer`` makes
 folder of a file is opened.
 """
 
-from dataclasses import dataclass
 from pathlib import Path
 
+from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault, Source, read_source
 from runtime.robot.files import robot_file
 from runtime.robot.files.plausibility import doubt_axes
@@ -22,8 +22,7 @@ _TAGS = ("robot", "mujoco")
 """Root elements of URDF and MJCF; they decide which of the two a file is, since both may end in .xml."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ModelFile:
+class ModelFile(Record):
     """A model file, well-formed, and its sidecar."""
 
     source: Source

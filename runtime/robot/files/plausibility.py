@@ -13,9 +13,9 @@ Units that differ by less than a factor of about ten (lb, inches) look like a li
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Literal, Protocol
 
+from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault, Table
 from runtime.core.units import DEG
 from runtime.robot.model.drives import Limits, Motor, joint_label
@@ -31,8 +31,7 @@ Place = Callable[[What, int], Callable[[str, str, str], FileFault]]
 """``place(what, axis)(code, message, hint)`` is a fault at the place of a value of an axis (0-based)."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Turning:
+class Turning(Record):
     """Range and speed of a joint, rad and rad/s; NaN where its file gives none.
 
     ``in_degrees``: the file has degrees and deg/s, else radians and rad/s.
@@ -58,8 +57,7 @@ class Turning:
         return f"{self.label} {degrees if self.in_degrees else f'{radians} = {degrees}'}"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _TurningRule:
+class _TurningRule(Record):
     """A condition, and its explanation and remedy in a file of radians and in one of degrees."""
 
     what: What

@@ -8,11 +8,11 @@ key, and so is a key that nothing reads. The geometry comes as Denavit-Hartenber
 """
 
 import math
-from dataclasses import dataclass
 from functools import cache
-from importlib import resources
+from pathlib import Path
 from typing import Literal, cast
 
+from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault, Source, Table, load_table
 from runtime.robot.files.plausibility import doubt_axes
 from runtime.robot.model import drives
@@ -24,11 +24,12 @@ MOST_AXES = 7
 SHORTEST_DIRECTION = 1e-6
 """A direction shorter than this has lost its digits."""
 
+# a path and no importlib.resources, which would import tempfile and zipfile: 6 ms of every check
+_LIBRARY = Path(__file__).parents[1] / "library"
 _LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DhRow:
+class DhRow(Record):
     """A row of standard Denavit-Hartenberg: m and deg."""
 
     d_m: float
@@ -37,24 +38,21 @@ class DhRow:
     theta_offset_deg: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LineRow:
+class LineRow(Record):
     """A joint axis as a line in the base frame at the zero pose: a point on it, m, and its direction of any length."""
 
     origin_m: tuple[float, ...]
     direction: tuple[float, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FlangeRow:
+class FlangeRow(Record):
     """The flange in the base frame at the zero pose: m, and turns about the fixed x, y and z axes, deg."""
 
     position_m: tuple[float, ...]
     rotation_deg: tuple[float, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class OpwRow:
+class OpwRow(Record):
     """The closed form of ``[kinematics.opw]``: lengths m of a1, a2, b, c1 to c4; offsets deg; signs 1 or -1."""
 
     lengths_m: tuple[float, ...]
@@ -62,8 +60,7 @@ class OpwRow:
     signs: tuple[float, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CorrectionRow:
+class CorrectionRow(Record):
     """A change to published body data, kg m2 and kg, with its reason; ``table`` is its place."""
 
     inertia_shift: float
@@ -73,8 +70,7 @@ class CorrectionRow:
     table: Table
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AxisDrive:
+class AxisDrive(Record):
     """The drive of one ``[[axes]]``, in a robot file or in a sidecar; ``table`` is its place."""
 
     name: str
@@ -85,8 +81,7 @@ class AxisDrive:
     table: Table
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AxisFile:
+class AxisFile(Record):
     """One ``[[axes]]``: ``cog_m`` (3,) and ``inertia_kg_m2`` (3 or 6,) in the frame of the row."""
 
     row: DhRow | LineRow
@@ -96,8 +91,7 @@ class AxisFile:
     drive: AxisDrive
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RobotFile:
+class RobotFile(Record):
     """A robot file; ``flange`` is given in the form of lines only. ``table`` is the whole file, for places.
 
     ``link_radii`` m are those of the capsules that stand for the links; empty: the file gives none.
@@ -128,8 +122,7 @@ class RobotFile:
 
 def library() -> list[str]:
     """Return the names of the built-in robots."""
-    files = resources.files("runtime.robot.library")
-    return sorted(item.name.removesuffix(".toml") for item in files.iterdir() if item.name.endswith(".toml"))
+    return sorted(path.stem for path in _LIBRARY.glob("*.toml"))
 
 
 @cache
@@ -138,7 +131,7 @@ def builtin(name: str) -> RobotFile:
     if name not in library():
         raise KeyError(name)
     # read as any robot file, so that the library cannot hold what a user's file may not
-    text = resources.files("runtime.robot.library").joinpath(f"{name}.toml").read_text("utf-8")
+    text = (_LIBRARY / f"{name}.toml").read_text("utf-8")
     return parse(Source(f"{name}.toml", text))
 
 

@@ -6,9 +6,9 @@ no numerics: ``robolang check`` reads it, and a run reads the same.
 """
 
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
+from runtime.core.record import Record
 from runtime.core.tomlfile import Source, Table, load_table
 from runtime.robot.files.gaps import listed, whole
 from runtime.robot.files.robot_file import AxisDrive, axis_drive, rated_payload
@@ -56,8 +56,7 @@ def sidecar_path(model: Path) -> Path:
     return model.with_name(f"{model.stem}{ENDING}")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Overlay:
+class Overlay(Record):
     """What the geometry of an arm takes from its sidecar: flange, ranges (rad) by joint, joints with a correction.
 
     ``tables`` are where the ranges stand, by joint.
@@ -91,8 +90,7 @@ def read_overlay(source: Source) -> Overlay:
     return Overlay(flange=flange, ranges=ranges, tables=tables, corrected=frozenset(corrected))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SidecarFile:
+class SidecarFile(Record):
     """A sidecar that is filled in; texts that it does not have are empty. ``table`` is the whole file."""
 
     title: str

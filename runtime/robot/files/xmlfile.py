@@ -10,13 +10,13 @@ leads out of the folder (RBL602). Nothing that a file names is ever opened. Stan
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from pathlib import PurePosixPath, PureWindowsPath
 from typing import NoReturn
 from xml.parsers import expat
 
 import runtime.robot.files.codes  # noqa: F401 - registers what is raised here
 from runtime.core.numerals import number_in, why_none
+from runtime.core.record import Record, default
 from runtime.core.tomlfile import MAX_ABS, FileFault, FilePlace, Source
 
 _LINE_END = re.compile(r"\r\n?|\n")  # XML 2.11: a CR alone ends a line, too
@@ -67,8 +67,7 @@ _SPACE = re.compile(r"[ \t\r\n]+")
 _FILES = frozenset(["file", "filename", "meshdir", "texturedir", "assetdir"])
 
 
-@dataclass(slots=True, eq=False)
-class Element:
+class Element(Record, kw_only=False):
     """One element: ``tag``, ``attributes``, ``children`` and its 1-based place in ``source``."""
 
     source: Source
@@ -76,7 +75,7 @@ class Element:
     attributes: dict[str, str]
     line: int
     column: int
-    children: "list[Element]" = field(default_factory=list)
+    children: "list[Element]" = default(factory=list)
 
     def fault(self, code: str, message: str, hint: str = "") -> FileFault:
         """Return a fault at this element."""

@@ -6,8 +6,8 @@ and deg, and kept in SI. Imports no numerics: ``robolang check`` reads the range
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+from runtime.core.record import Record
 from runtime.core.tomlfile import Table
 from runtime.core.units import DEG, MM
 
@@ -30,8 +30,7 @@ FASTEST_LOOP = 8000.0
 """No loop is stable beyond this at the shortest servo period: bandwidth times 0.25 ms is 2, 1/s (see ``project``)."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Motor:
+class Motor(Record):
     """The drive of one axis, motor side.
 
     ``gear_ratio`` N is signed (motor turns per joint turn), ``rotor_inertia`` kg m2, ``torque_constant`` N m/A,
@@ -80,8 +79,7 @@ class Motor:
         return abs(self.gear_ratio) * forward, abs(self.gear_ratio) * backward
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Limits:
+class Limits(Record):
     """Joint limits: range rad, speed rad/s, acceleration rad/s2, torque N m (at the joint).
 
     ``rated_moment`` N m and ``rated_inertia`` kg m2 that a payload may have about the axis; None: not published
@@ -97,16 +95,14 @@ class Limits:
     rated_inertia: float | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Bandwidths:
+class Bandwidths(Record):
     """The bandwidths that give the loop gains of an axis: Kp = ``position`` 1/s, Kv = K Ktn = ``velocity`` 1/s."""
 
     position: float
     velocity: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PathLimits:
+class PathLimits(Record):
     """Limits and defaults of the tool point on a straight move, m/s, m/s2, m/s3 and rad/s, rad/s2, rad/s3."""
 
     default_speed: float

@@ -5,9 +5,10 @@ numerics, since the settings of a controller hold it.
 """
 
 from bisect import bisect_right
-from dataclasses import dataclass
 from math import prod
 from typing import Protocol, SupportsFloat
+
+from runtime.core.record import Record
 
 
 class Angles(Protocol):
@@ -16,8 +17,7 @@ class Angles(Protocol):
     def __getitem__(self, joint: int, /) -> SupportsFloat: ...
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class JointTable:
+class JointTable(Record):
     """Values over the angles of ``joints`` (0-based): ``grid`` rad, one rising tuple of two or more for each joint.
 
     ``values`` are row-major, so the angle of the last joint changes first. ``ValueError`` when the sizes do not fit.

@@ -271,7 +271,7 @@ def test_other_commands_are_not_imported(folder):
     ):
         assert importlib.util.find_spec(f"robolang.{name}")
         assert f"'robolang.{name}'" not in done.stderr
-    for name in ("rich", "numpy"):
+    for name in ("rich", "numpy", "dataclasses", "inspect", "importlib.resources"):
         assert f"'{name}'" not in done.stderr
 
 

@@ -1,7 +1,7 @@
 """A setting is declared once, at its field: readers, options, units and the documentation come from there."""
 
 import re
-from dataclasses import fields, make_dataclass
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
@@ -19,15 +19,21 @@ DOCS = (Path(__file__).parents[3] / "docs" / "language.md").read_text("utf-8")
 
 def test_a_new_field_is_a_setting_everywhere(monkeypatch):
     """Nothing but the field is written; the profile that has it is made here."""
-    new = ("hover", float, number("hover_deg", 3.0, "deg", low=1.0, high=5.0))
-    more = make_dataclass("More", [new], bases=(Profile,), frozen=True, kw_only=True)
-    monkeypatch.setattr(layers, "Profile", more)
+
+    class More(Profile):
+        hover: float = number("hover_deg", 3.0, "deg", low=1.0, high=5.0)
+
+    def hover(found):
+        assert isinstance(found.profile, More)
+        return found.profile.hover
+
+    monkeypatch.setattr(layers, "Profile", More)
     assert (settings()["hover_deg"].unit, settings()["hover_deg"].default) == ("deg", 3.0)
-    assert getattr(settle().profile, new[0]) == 3.0 * DEG
+    assert hover(settle()) == 3.0 * DEG
     table = load_table(Source("cell.toml", "[controller]\nhover_deg = 4\n")).table("controller")
     found = settle(read_layer(table))
-    assert (getattr(found.profile, new[0]), found["hover_deg"].origin) == (4.0 * DEG, "cell.toml:2")
-    assert getattr(settle(read_options({"hover_deg": ("--set", 2.0)})).profile, new[0]) == 2.0 * DEG
+    assert (hover(found), found["hover_deg"].origin) == (4.0 * DEG, "cell.toml:2")
+    assert hover(settle(read_options({"hover_deg": ("--set", 2.0)}))) == 2.0 * DEG
     for value, code in ((6.0, "RBL605"), (float("nan"), "RBL604"), ("x", "RBL613")):
         with pytest.raises(Fault) as caught:
             read_options({"hover_deg": ("--set", value)})
