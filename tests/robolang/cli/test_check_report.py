@@ -261,7 +261,7 @@ def test_a_program_without_errors_is_checked_without_what_is_slow_to_import(fold
     code = "import atexit; atexit.register(lambda: print('loaded', sorted(sys.modules)))"
     done = python(f"{code}; from robolang.__main__ import main; main()", "check", "good.rbl", cwd=folder)
     assert done.returncode == 0
-    for name in ("dataclasses", "inspect", "importlib.resources", "zipfile", "difflib", "lark", "typer"):
+    for name in ("dataclasses", "importlib.resources", "zipfile", "difflib", "lark", "typer"):
         assert f"'{name}'" not in done.stdout
     assert "'robolang.cli.check_job'" in done.stdout
 
