@@ -23,6 +23,7 @@ from robolang.core.source import Span
 from robolang.execution.dry_run import Rehearsal, RehearsedHand, RehearsedMove
 from robolang.project.project import Project
 from runtime.core.frames import Array, inverse, pose
+from runtime.plant.mjcf import APART
 from runtime.plant.mujoco_plant import CLEARANCE, MARGIN, MujocoPlant
 from runtime.plant.touches import NOTICED, shape_text
 from runtime.robot.kinematics.kinematics import Kinematics
@@ -33,8 +34,6 @@ PRESSED = 1e-3
 """How far a carried part may be in what it stands on, m: a point is taught no better."""
 ALIKE = 2e-4
 """Difference in width of parts that are gripped side by side, m."""
-APART = 3
-"""Links fewer joints than this from the flange have shapes too coarse for a carried part."""
 
 Found = Iterator[Diagnostic]
 _PART = "part:"
@@ -171,7 +170,7 @@ class CellTouches:
         """Return a column of ``_bounds`` for two shapes, what moves first."""
         part, fixed, link = what.startswith(_PART), not _moves(what), what.startswith("link")
         if by.removeprefix(_PART) in scene.held:
-            near = link and int(what.removeprefix("link")) > self._cell.robot.n - APART  # too coarse, and it holds it
+            near = link and int(what.removeprefix("link")) > self._cell.robot.n - APART  # too coarse
             touch = -CLEARANCE if link and not near else -PRESSED if part or fixed else -np.inf
             return -np.inf, touch, MARGIN if fixed else -np.inf
         if by.startswith(_PART) or not _moves(by):
