@@ -67,7 +67,9 @@ class ExpressionCheck:
         """Report NAN and INF where only a finite number can stand."""
         value = fixed(node)
         if value is not None and not math.isfinite(value):
-            yield Diagnostic(code="RBL209", message=f"this has no value: {value:g} is not finite", span=node.span)
+            yield Diagnostic(
+                code="RBL209", message=f"this expression has no value: {value:g} is not finite", span=node.span
+            )
 
     def must_be(self, node: Expression, needed: Kind) -> Iterator[Diagnostic]:
         """Report an expression of another kind than is needed (RBL217)."""
@@ -92,7 +94,9 @@ class ExpressionCheck:
             message = f"{node.text} has no value: no statement assigns it first, and it is not a taught point"
             hint = other_languages.VALUES.get(node.key) or hint_for(node, self._known)
             if self._defined.is_of_a_sub(node.key):
-                message = f"{node.text} has no value here: only a SUB assigns it, and its variables end with it"
+                message = (
+                    f"{node.text} has no value here: only a SUB assigns it, and variables of a SUB exist only inside it"
+                )
                 hint = f"give {node.text} a first value in the main program"
             yield Diagnostic(code="RBL215", message=message, span=node.span, hint=hint)
 
@@ -267,7 +271,7 @@ def _mixed_product(node: Chain) -> Iterator[Diagnostic]:
     signs = {sign for sign, _ in node.rest}
     if "MOD" not in signs or signs == {"MOD"}:
         return
-    message = "MOD and * or / are of one level here and are computed from the left"
+    message = "MOD, * and / have the same precedence and are computed from left to right"
     hint = ""
     if len(node.rest) == 2:
         (sign, second), last = node.rest

@@ -87,6 +87,7 @@ class _Exactnesses:
         return True
 
     def _kind(self, node: Expression, found: dict[int, Exactness]) -> Exactness:
+        # exact: whole numbers and binary fractions of up to 20 places
         if isinstance(node, Number):
             return Exactness.EXACT if (node.value * 2.0**20).is_integer() else Exactness.NEAREST
         if isinstance(node, Component6):

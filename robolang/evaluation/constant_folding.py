@@ -59,6 +59,7 @@ def _depends(node: Expression) -> bool:
 
 def fixed(node: Expression) -> float | None:
     """Return the value of an expression of numbers alone; None when it needs more or has none."""
+    # most operands are literals, which need no evaluator
     value = _number(node)
     if value is not None or isinstance(node, Number | Name | Negate) or _depends(node):
         return value
@@ -79,4 +80,4 @@ def no_value(node: Expression) -> Iterator[Diagnostic]:
         return
     except Fault as fault:
         if fault.code in ("RBL501", "RBL502"):
-            yield Diagnostic(code="RBL209", message=f"this has no value: {fault.message}", span=node.span)
+            yield Diagnostic(code="RBL209", message=f"this expression has no value: {fault.message}", span=node.span)

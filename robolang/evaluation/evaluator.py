@@ -3,7 +3,7 @@
 Numbers are floats; a comparison gives 1 or 0, and anything but 0 is true. Angles are degrees. Precedence is in the
 tree (``grammar.lark``). What has no value is a ``Fault``: RBL501 division by zero, RBL502 no finite result, RBL506 a
 text that is too long, RBL507 no such element, RBL531 a value of another kind, RBL532 a name without.
-``World`` is what a running program can ask of the robot; it is asked when the motion before it has ended.
+``World`` is what a running program can read of the robot; it is read when the motion before it has ended.
 """
 
 import math
@@ -31,7 +31,7 @@ class World(Robot, Protocol):
 
 
 class Nowhere:
-    """A world for programs that ask nothing of it: everything is a ``Fault``."""
+    """A world for programs that read nothing of it: everything is a ``Fault``."""
 
     def input(self, number: int) -> float:
         """Refuse."""
@@ -50,7 +50,7 @@ class Nowhere:
         self._refuse("the numbers of a pose")
 
     def _refuse(self, what: str) -> NoReturn:
-        raise Fault("RBL532", f"{what} is known while a program runs only")
+        raise Fault("RBL532", f"{what} is known only while a program runs")
 
 
 class Names(Protocol):
@@ -189,6 +189,7 @@ class Evaluator:
                 power = values.pop() ** result
             except (OverflowError, ZeroDivisionError):
                 power = math.inf
+            # Python gives a complex number for a negative base with a fraction as exponent
             result = finite(math.nan if isinstance(power, complex) else power, "^")
         return result
 

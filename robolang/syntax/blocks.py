@@ -135,6 +135,7 @@ def _names(program: Program, found: Structure) -> None:
             _define(found, found.labels, index, line.label, "label *")
         if isinstance(line.statement, Sub):
             _define(found, found.subs, index, line.statement.name, "SUB ")
+    # last, so that a label of a line without an error counts first
     for index, line in enumerate(program.lines):
         if isinstance(line.statement, Unparsed) and (label := _LABEL.match(line.statement.text)):
             found.labels.setdefault(label[1].upper(), index)
@@ -216,12 +217,12 @@ class _Matcher:
             while self._stack and self._may_be_end(self._stack[-1]):
                 self._stack.pop()
             if self._stack:
-                self._wrong("RBL219", "a SUB stands outside of every block", line, self._stack[-1])
+                self._wrong("RBL219", "a SUB must not be inside another block", line, self._stack[-1])
         self._stack.append(_Open(word=word, lines=[index], guessed=guessed))
 
     def _too_deep(self, statement: Statement, word: str) -> None:
         """Report a block that is nested too deeply; the lines from it on belong to none, so tables stay linear."""
-        message = f"this {word} is inside of {MAX_BLOCKS} blocks; no more are possible"
+        message = f"this {word} is nested too deeply: it is inside {MAX_BLOCKS} blocks, the most that are allowed"
         self._found.report(Diagnostic(code="RBL108", message=message, span=statement.span))
         self._found.inside.extend(() for _ in range(len(self._program.lines) - len(self._found.inside)))
 
@@ -269,7 +270,7 @@ class _Matcher:
         statement, opener = line.statement, self._program.lines[block.lines[0]].statement
         named = statement.variable if isinstance(statement, Next) else None
         if named is not None and isinstance(opener, For) and named.key != opener.variable.key:
-            self._wrong("RBL212", f"NEXT {named.text} closes FOR {opener.variable.text}", line, block)
+            self._wrong("RBL212", f"NEXT {named.text} does not match FOR {opener.variable.text}", line, block)
         block.lines.append(index)
         for here, there in zip(block.lines, [*block.lines[1:], block.lines[0]], strict=True):
             self._found.after[here], self._found.end[here] = there, index

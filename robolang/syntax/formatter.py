@@ -5,9 +5,9 @@ Every line becomes ``number *LABEL statement  ' comment`` in the canonical text 
 - Line numbers stand to the left in a column as wide as the widest of them. A line without one leaves the column blank;
   a comment outside of all blocks stands at the margin.
 - The inside of IF, FOR, WHILE, SELECT, CASE and SUB is indented by two spaces, as far as ``MAX_INDENT``.
-- A comment behind a statement is two spaces away from it, and comments of lines that follow one another stand in one
+- A comment after a statement is two spaces away from it, and comments of lines that follow one another stand in one
   column. A blank line, a line of its own for a comment and a line that is kept end such a group, and so does a comment
-  that the common column would push beyond ``MAX_WIDTH``.
+  that the common column would move beyond ``MAX_WIDTH``.
 - At most two blank lines in a row, none at the end; the line end is that of the first line.
 
 Kept as it is: a line that does not parse, one that would become too long for the language, and what stands between
@@ -80,7 +80,7 @@ def outgrown(text: str) -> Diagnostic | None:
     size = len(text.encode("utf-8", "surrogatepass"))
     if size <= MAX_BYTES:
         return None
-    message = f"written anew, the program would have {size} bytes, more than {MAX_BYTES}"
+    message = f"the rewritten program would have {size} bytes, more than {MAX_BYTES}"
     return Diagnostic(code="RBL106", message=message, span=Span(0, 0))
 
 
@@ -136,7 +136,7 @@ def _number_width(program: Program) -> int:
 
 
 def _line_spans(source: Source) -> tuple[Span, ...]:
-    """Return the places of the lines; behind the last line end there is none."""
+    """Return the places of the lines; after the last line end there is none."""
     spans = source.line_spans
     return spans if spans[-1].start < spans[-1].end else spans[:-1]
 
@@ -167,7 +167,7 @@ def _margin(number: int | None, width: int) -> str:
 
 
 def _names_no_line(line: Line) -> bool:
-    """Return whether a target is spelt in a way that the tree does not tell, such as ``GOTO 1.5``."""
+    """Return whether a target has a spelling that the tree does not keep, such as ``GOTO 1.5``."""
     return any(target.number is not None and target.number < 0 for target in targets(line.statement))
 
 
@@ -217,7 +217,7 @@ class _Blocks:
                 return True
 
 
-# --- comments behind statements --------------------------------------------------------------------------------------
+# --- comments after statements --------------------------------------------------------------------------------------
 
 
 def _align(rows: list[_Row]) -> None:

@@ -61,6 +61,7 @@ def _shipped() -> Lark | None:
 def serialized() -> str:
     """Return the content of the shipped table."""
     data, memo = made().memo_serialize([TerminalDef, Rule])
+    # functions cannot be written to JSON; they are passed anew when the table is read
     for name in _callbacks():
         del data["options"][name]
     data["parser"]["parser"] = _ordered(data["parser"]["parser"])

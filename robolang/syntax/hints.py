@@ -126,7 +126,7 @@ def unit_hint(before: str, number: str, rest: str) -> str:
 
 def _single_quotes(found: Unexpected) -> str | None:
     quoted = _QUOTED.match(found.text) if found.kind == "COMMENT" and found.takes_value else None
-    return quoted and f'\' begins a comment; a text stands in double quotes: "{quote(quoted[1])}"'
+    return quoted and f'\' begins a comment; write a text in double quotes: "{quote(quoted[1])}"'
 
 
 def _label_colon(found: Unexpected) -> str | None:
@@ -152,12 +152,12 @@ def _decimal_comma(found: Unexpected) -> str | None:
 
 def _parenthesis(found: Unexpected) -> str | None:
     if found.kind == "RPAR":
-        return None if _open(found.before) else "remove this ), no ( belongs to it"
+        return None if _open(found.before) else "remove this ): no ( is open"
     if "RPAR" not in found.accepts or found.takes_value:
         return None
     if found.kind in END:
-        return "a ) is missing at the end"
-    return f"a ) is missing before {found.word}" if found.word in KEYWORDS else None
+        return "write ) at the end: a ( is still open"
+    return f"write ) before {found.word}: a ( is still open" if found.word in KEYWORDS else None
 
 
 def _bracket(found: Unexpected) -> str | None:
@@ -242,7 +242,7 @@ def _then(found: Unexpected) -> str | None:
 
 
 def _end_of_one_line(found: Unexpected) -> str | None:
-    return "an IF on one line has no ENDIF" if found.kind == "ENDIF" and found.instruction == "IF" else None
+    return "remove ENDIF: an IF on one line has none" if found.kind == "ENDIF" and found.instruction == "IF" else None
 
 
 def _label_star(found: Unexpected) -> str | None:
@@ -265,7 +265,7 @@ def _speed_or_zone(found: Unexpected) -> str | None:
 
 
 def _of_instruction(found: Unexpected) -> str:
-    """Return what stands for the word that begins a statement; an ordinary name where a value is assigned to it."""
+    """Return what replaces the word that begins a statement; an ordinary name where a value is assigned to it."""
     return "" if _ASSIGNMENT.match(found.before) else other_languages.instruction(found.instruction)
 
 
@@ -305,7 +305,7 @@ def _not_an_instruction(found: Unexpected) -> str | None:
 
 
 def _open_text(found: Unexpected) -> str | None:
-    return 'a text ends with " on its line' if found.text == '"' else None
+    return 'end the text with " on the same line' if found.text == '"' else None
 
 
 def _two_words(found: Unexpected) -> str | None:

@@ -56,6 +56,7 @@ class LineReader:
                 token = Token(found[0])
                 if name in CLASSIFIED:
                     name = kind(name, token)
+                    # a keyword later than edition 1 is a name wherever the grammar has no keyword (decision 0029)
                     if name in NEW and name not in self._rows[states[-1]]:
                         name = "NAME"
                 token.type, token.start_pos, token.end_pos = name, base + at, base + found.end()

@@ -1,4 +1,4 @@
-"""Words and signs of other languages, and what stands for them in this one: KRL, RAPID, KAREL, INFORM, MELFA, V+, C.
+"""Words and signs of other languages, and what replaces them in this one: KRL, RAPID, KAREL, INFORM, MELFA, V+, C.
 
 Data alone. A message names the word of this language; nothing is ever read as if it stood there.
 """
@@ -19,19 +19,19 @@ _LOAD = "LOAD (x, y, z), mass declares the payload"
 _SPEED = "SPEED mm/s sets the speed of straight moves, SPEEDJ % that of joint moves"
 _ACCEL = "ACCEL % sets the acceleration"
 _ZONE = "ZONE mm blends a move into the next one"
-_TOOL = "TOOL name takes a tool of the cell"
-_FRAME = "FRAME name takes a frame of the cell, FRAME WORLD goes back"
+_TOOL = "TOOL name selects a tool of the cell"
+_FRAME = "FRAME name selects a frame of the cell, FRAME WORLD the world"
 _PRINT = 'PRINT shows values: PRINT "count "; n'
 _SUB = "SUB name begins a subroutine, ENDSUB ends it, CALL name runs it"
-_STOP = "STOP ends the program where it is, PAUSE notes a halt and goes on"
-_VALUE = "a name needs no declaration: name = value gives it one; DIM a(n) makes an array"
+_STOP = "STOP ends the program, PAUSE reports a halt and continues"
+_VALUE = "a variable needs no declaration: write name = value; DIM a(n) makes an array"
 _LABEL = "*NAME at the start of a line is a label"
 _GOTO = "GOTO *NAME goes to a label"
-_LEAVE = "a loop is left by GOTO to a label below its end"
+_LEAVE = "to leave a loop, write GOTO and a label that is after its end"
 _WHILE = "WHILE condition begins a loop, WEND ends it"
 _SELECT = "SELECT value, CASE value and ENDSELECT choose between values"
 _COMMENT = "a comment begins with ' or REM"
-_ERROR = "ON ERROR GOTO *LABEL deals with errors"
+_ERROR = "ON ERROR GOTO *LABEL handles errors"
 
 _HINTS = {
     _MOVEJ: "PTP SPTP MOVJ MOVABSJ JMOVE J G0 G00 PMOVE DRIVE",
@@ -171,7 +171,7 @@ def sign(text: str) -> str:
     if text[:1] == "$":
         word = re.match(r"\w*", text[1:])
         name = word[0].upper() if word else ""
-        return _FOLLOWING.get(name) or "$ stands at the end of the name of a text, as in s$"
+        return _FOLLOWING.get(name) or "write $ at the end of the name of a text, as in s$"
     return next((hint for begin, hint in _SIGNS if text.startswith(begin)), "")
 
 
@@ -179,5 +179,5 @@ def setting(word: str) -> str:
     """Return what stands for a speed or zone of RAPID such as v100 or z10, or ``""``."""
     found = re.fullmatch(r"([vz])([0-9]{1,5})", word, re.IGNORECASE)
     if found is None:
-        return "write FINE, or nothing: a move stops where it has no ZONE" if word.upper() == "CNT0" else ""
+        return "write FINE, or no option: without ZONE a move stops at its end" if word.upper() == "CNT0" else ""
     return f"write SPEED {found[2]}" if found[1] in "vV" else f"write ZONE {found[2]}"

@@ -2,7 +2,7 @@
 
 Grammar: ``grammar.lark`` (LALR(1)) for what follows the line number of a line,
 ``line = [digits] [*label] [statement] [comment]``. Lines are parsed one by one, so an error costs exactly its own line,
-and every line is looked at first for what would make parsing it unsafe: hidden characters, nesting, length. The
+and every line is checked first for what would make parsing it unsafe: hidden characters, nesting, length. The
 tree is built while the parser reduces, without a visitor, so its depth is bounded by ``MAX_DEPTH`` and
 nothing recurses.
 
@@ -21,6 +21,7 @@ from robolang.syntax.builder import Parsed
 from robolang.syntax.line_reader import line_reader
 from runtime.core.record import Record
 
+# bounds, so that every text is read in time and memory that are known beforehand
 MAX_LINE = 10_000
 MAX_DEPTH = 100
 MAX_OPERATORS = 1000
@@ -81,7 +82,7 @@ def _mixed_line_ends(source: Source) -> list[Diagnostic]:
     other = next((end for end in _LINE_END.finditer(source.text) if end[0] != first[0]), None)
     if other is None:
         return []
-    message = "this line has another line end than the first line"
+    message = "this line ends with other characters (LF, CR LF or CR) than the first line"
     return [Diagnostic(code="RBL110", severity=Severity.INFO, message=message, span=Span(other.start(), other.start()))]
 
 
@@ -128,11 +129,13 @@ def _refusal(text: str, base: int) -> Diagnostic | None:
         from robolang.syntax.syntax_errors import suspicious
 
         return suspicious(hidden[0], base + hidden.start())
+    # blanks in place of texts keep the offsets
     plain = _STRING.sub(lambda found: " " * len(found[0]), text) if '"' in text else text
+    # a shorter line cannot go beyond a bound, with or without its comment
     comment = _COMMENT.search(plain) if len(text) > MAX_DEPTH else None
     code = plain[: comment.start()] if comment else plain
     if (at := _too_deep(code)) is not None:
-        message = f"more than {MAX_DEPTH} parentheses or signs inside one another"
+        message = f"more than {MAX_DEPTH} nested parentheses or signs"
         return Diagnostic(code="RBL108", message=message, span=Span(base + at, base + at + 1))
     if (operators := sum(map(code.count, "+-*/^"))) > MAX_OPERATORS:
         message = f"{operators} operators in one line, more than {MAX_OPERATORS}"
@@ -147,6 +150,7 @@ def _too_deep(code: str) -> int | None:
     """Return the offset of the parenthesis, sign or NOT that is nested too deeply."""
     if len(nots := list(_NOT.finditer(code))) > MAX_DEPTH:
         return nots[MAX_DEPTH].start()
+    # most lines have too few signs to be too deep: their characters need not be read one by one
     if code.count("(") + code.count("-") + code.count("+") <= MAX_DEPTH:
         return None
     depth = signs = 0

@@ -1,7 +1,7 @@
 """New line numbers for a program, and no other change: the text is edited at its numbers, not printed anew.
 
 Every line with a statement, a label or a number gets ``start``, ``start + step`` and so on; a comment alone and a blank
-line stay without one. Line numbers behind GOTO, GOSUB, ON ERROR GOTO and WAIT ... GOTO follow the line they name, also
+line stay without one. Line numbers after GOTO, GOSUB, ON ERROR GOTO and WAIT ... GOTO follow the line they name, also
 in a one-line IF. Labels, comments, spelling and spacing are untouched, so a comment that names a line still names the
 old one, and ``robolang fmt`` puts the columns right.
 
@@ -32,7 +32,7 @@ _Edit = tuple[Span, str]
 class RenumberResult:
     """The text with new numbers; with an error among the diagnostics, the old one.
 
-    ``lines``: how many lines got another number, or none; ``targets``: how many jumps were led to it.
+    ``lines``: how many lines got another number, or none; ``targets``: how many jumps were changed to follow.
     """
 
     text: str
@@ -108,7 +108,8 @@ def _numbered(line: Line, new: str) -> _Edit:
 
 
 def _unnumbered(line: Line, text: str) -> _Edit:
-    """Return the edit that takes the number of a line away, and one blank behind it."""
+    """Return the edit that takes the number of a line away, and one blank after it."""
+    # one blank belongs to the number; further ones are the indent
     end = line.number_span.end
     return Span(line.number_span.start, end + (text[end : end + 1] in (" ", "\t"))), ""
 
@@ -121,6 +122,7 @@ def _edited(
         [(span, new) for span, new in edits if source.slice(span) != new] for edits in (of_lines, of_targets)
     )
     parts, at = [], 0
+    # edits do not overlap, so one pass makes them all
     for span, new in sorted([*of_lines, *of_targets]):
         parts += [source.text[at : span.start], new]
         at = span.end

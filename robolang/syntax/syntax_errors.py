@@ -50,6 +50,7 @@ def _malformed(found: Unexpected) -> Diagnostic:
 def _is_after_first_name(found: Unexpected) -> bool:
     """Return whether a statement begins with a name and the token is what follows it."""
     return (
+        # = that assigns is accepted without <, = that compares with it
         {"EQ", "LPAR"} <= found.accepts
         and "LESS" not in found.accepts
         and re.fullmatch(r"[^\W\d]\w*\$?", last_word(found.before)) is not None
@@ -84,6 +85,7 @@ def _unknown(found: Unexpected) -> Diagnostic | None:
 def _unexpected(found: Unexpected) -> Diagnostic:
     message = f"expected {expected(found)}{_after(found.before)}"
     if found.kind in END:
+        # nothing stands there, so the place has no width
         end = found.span.start
         return Diagnostic(code="RBL111", message=message, span=Span(end, end), hint=hint_of(found))
     shown = quote(found.text) if re.match(r"\w", found.text) else f"'{found.text}'"

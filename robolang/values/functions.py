@@ -102,6 +102,7 @@ class Function(NamedTuple):
 
 def shown(value: float) -> str:
     """Return a number as PRINT and STR$ show it: up to ten digits, whole numbers without a point."""
+    # + 0.0 makes 0 of -0
     return f"{value + 0.0:.10g}"
 
 
@@ -117,6 +118,7 @@ def _sign(x: float) -> float:
 
 
 def _root(x: float) -> float:
+    # negated, so that NaN is refused as well
     if not x >= 0.0:
         raise Fault("RBL502", f"SQR of {shown(x)} has no real result")
     return math.sqrt(x)

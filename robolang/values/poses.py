@@ -44,6 +44,7 @@ class Place(Record):
 
 def _joined(one: Shift, other: Shift) -> Shift | None:
     """Return the sum of two offsets along the same axes; None where one of them rotates or the axes differ."""
+    # after a rotation an offset follows other axes
     if one.kind != other.kind or one.frame != other.frame or any(one.by[3:]) or any(other.by[3:]):
         return None
     x, y, z = (a + b for a, b in zip(one.by[:3], other.by[:3], strict=True))
