@@ -217,7 +217,13 @@ def test_watch_goes_on_after_a_wrong_configuration(folder, monkeypatch):
 def test_ctrl_c_ends_a_watch(folder):
     command = [sys.executable, "-m", "robolang", "check", "--watch", "good.rbl"]
     env = {**os.environ, "PYTHONPATH": str(ROOT)}
-    with subprocess.Popen(command, cwd=folder, env=env, stderr=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+    # a shell starts what runs in the background with SIGINT ignored, and a child inherits that
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        started = subprocess.Popen(command, cwd=folder, env=env, stderr=subprocess.PIPE, stdout=subprocess.PIPE)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    with started as process:
         assert process.stderr.readline() == b"watching; Ctrl-C ends\n"
         process.send_signal(signal.SIGINT)
         out, said = process.communicate(timeout=HANG_S)
