@@ -13,29 +13,12 @@ __version__ = "0.1.0"
 if TYPE_CHECKING:
     from robolang.api import *  # noqa: F403
 
-# written out, since reading them from ``api`` would import it; tests/robolang/test_api.py compares the two
-__all__ = [  # noqa: F405
-    "ENDED",
-    "Analysis",
-    "Diagnostic",
-    "Edit",
-    "Executor",
-    "ExecutorSnapshot",
-    "Fault",
-    "Line",
-    "Observer",
-    "ProgramError",
-    "Project",
-    "RunResult",
-    "Session",
-    "Source",
-    "Span",
-    "State",
-    "Status",
+# named here as well, since reading them from ``api`` would import it; tests/robolang/test_api.py compares the two
+__all__ = [
     "__version__",
-    "load_project",
-    "read_program",
-    "run",
+    *("Analysis", "Diagnostic", "Edit", "Line", "Source", "Span", "read_program"),
+    *("Executor", "ExecutorSnapshot", "State", "Status", "ENDED", "Fault"),
+    *("Observer", "ProgramError", "Project", "RunResult", "Session", "load_project", "run"),
 ]
 
 
