@@ -6,40 +6,11 @@ and GOSUBs are not too many within one another, and memory is enough. All of it 
 handler would seem to be reached from everywhere.
 """
 
-from robolang.syntax.ast import (
-    Assign,
-    Block,
-    Call,
-    CallSub,
-    Case,
-    Chain,
-    Const,
-    Delay,
-    Expression,
-    For,
-    Hand,
-    Head,
-    If,
-    Jump,
-    Load,
-    LoadNamed,
-    Name,
-    Number,
-    OnError,
-    Print,
-    Seam,
-    Setting,
-    Statement,
-    Sub,
-    Wait,
-    Word,
-    Wrist,
-    walk,
-)
+from robolang.syntax.ast import Call, Chain, Expression, For, If, Name, Number, Statement, Unparsed, Wait, walk
+from robolang.syntax.declaration import Fails, Operand, Role
+from robolang.syntax.statements import declaration
 from robolang.values.functions import FUNCTIONS
 
-_NEVER = (Block, Hand, Jump, Load, LoadNamed, OnError, Seam, Setting, Sub, Wrist)
-_WORDS = frozenset({"END", "STOP", "PAUSE", "ON ERROR STOP"})
 _COMPUTES = ("+", "-", "*", "AND", "OR", "XOR", "=", "<>", "<", ">", "<=", ">=")
 _HARMLESS = frozenset({*_COMPUTES, *(name for name, function in FUNCTIONS.items() if function.always)})
 """Functions and signs that have a value wherever what they are of has one."""
@@ -52,24 +23,24 @@ def may_fail(node: Statement) -> bool:
         return not _harmless(node.condition) or any(may_fail(part) for part in parts)
     if isinstance(node, Wait):
         return not _harmless(node.condition) or (node.timeout is not None and node.target is None)
-    if isinstance(node, Word):
-        return node.word not in _WORDS
-    return not isinstance(node, _NEVER) and not all(_harmless(each) for each in _asked(node))
+    if isinstance(node, Unparsed):
+        return True
+    declared = declaration(node)
+    if declared.fails is Fails.OPERANDS:
+        return not all(_harmless(each) for operand in declared.operands for each in _computed(node, operand))
+    return declared.fails is Fails.ALWAYS
 
 
-def _asked(node: Statement) -> tuple[Expression | None, ...]:
-    """Return the expressions of a statement that fails with them only; one that is None fails."""
-    if isinstance(node, Assign):
-        return (node.value, node.target if isinstance(node.target, Name) else None)
-    if isinstance(node, Const | Head):
-        return (node.value,)
-    if isinstance(node, Delay):
-        return (node.seconds,)
-    if isinstance(node, For):
-        return (node.first, node.last, *(() if node.step is None else (node.step if _number(node.step) else None,)))
-    if isinstance(node, Case):
-        return ()  # asked by its SELECT
-    return node.items if isinstance(node, Print) else node.arguments if isinstance(node, CallSub) else (None,)
+def _computed(node: Statement, operand: Operand) -> tuple[Expression | None, ...]:
+    """Return the expressions of an operand; one that is None fails."""
+    value = getattr(node, operand.name)
+    if operand.role is Role.ASSIGNED:
+        return () if isinstance(value, Name) else (None,)  # an index may be out of range
+    if operand.role is not Role.VALUE or value is None:
+        return ()
+    if isinstance(node, For) and operand.name == "step":
+        return (value if _number(value) else None,)  # STEP 0 fails
+    return value if operand.separator else (value,)
 
 
 def _number(node: Expression) -> bool:

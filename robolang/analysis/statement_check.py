@@ -1,11 +1,12 @@
 """Statements: values out of range, options that contradict, names of the cell that are none, and wrong arguments.
 
-Ranges are those of ``limits``, by which the interpreter judges as well; what the arm may carry is judged by
-``runtime.robot.model.load_rules``, as in a run.
+Kinds, ranges and names of the cell are checked as ``robolang.syntax.statements`` declares the operands; a method stands
+here where a rule concerns more than one operand. The interpreter judges by the same ranges (``limits``). What the arm
+may carry is judged by ``runtime.robot.model.load_rules``, as in a run.
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 
 from robolang.analysis.cell_symbols import CellSymbols
 from robolang.analysis.expression_check import ExpressionCheck
@@ -17,23 +18,17 @@ from robolang.core.source import Span
 from robolang.evaluation.constant_folding import fixed
 from robolang.syntax import other_languages
 from robolang.syntax.ast import (
-    Accel,
     Approach,
     Assign,
     Block,
     Call,
     CallSub,
     Case,
-    Chain,
     Component,
-    Component6,
     Const,
-    Delay,
     Depart,
-    Dim,
     Expression,
     For,
-    Hand,
     Head,
     If,
     Load,
@@ -43,24 +38,17 @@ from robolang.syntax.ast import (
     MoveJ,
     Moving,
     Name,
-    Negate,
     Node,
-    Not,
-    Number,
     Option,
-    Out,
-    Pulse,
-    Seam,
-    Setting,
     Speed,
     Statement,
-    Text,
     Time,
+    Unparsed,
     Vector,
-    Wait,
     Wrist,
-    Zone,
 )
+from robolang.syntax.declaration import Declaration, Operand, Role
+from robolang.syntax.statements import declaration
 from robolang.values.kinds import Kind
 from runtime.core.faults import Fault
 from runtime.core.units import MM
@@ -86,38 +74,44 @@ class StatementCheck:
                 if part is not None:
                     yield from self.check(part)
             return
+        if isinstance(node, Unparsed):
+            return
+        declared = declaration(node)
+        yield from self._operands(node, declared)
         rule = _RULES.get(type(node))
         if rule is not None:
             yield from rule(self, node)
-        yield from self._names(node)
+        for expression in _expressions(node, declared):
+            yield from self._expressions.check(expression)
 
-    def _names(self, node: Statement) -> Iterator[Diagnostic]:
-        """Check every expression of a statement that is not a place for a name of another sort."""
-        if isinstance(node, Setting) and node.word in ("TOOL", "FRAME") and isinstance(node.value, Name):
+    # --- what the declarations say -----------------------------------------------------------------------------------
+
+    def _operands(self, node: Node, declared: Declaration) -> Iterator[Diagnostic]:
+        """Report operands of another kind than declared, out of their range, or that name nothing of the cell."""
+        for operand in declared.operands:
+            value = getattr(node, operand.name)
+            if operand.role is Role.PLACE:
+                yield from self._place(value)
+            elif operand.of and isinstance(value, Name):
+                yield from self._of_cell(value, operand)
+            elif operand.role in (Role.VALUE, Role.OF_CELL) and isinstance(value, Node):
+                yield from self._value(value, operand)  # type: ignore[arg-type]
+
+    def _value(self, value: Expression, operand: Operand) -> Iterator[Diagnostic]:
+        if operand.limit is not None:
+            yield from self._within(value, operand.limit)
+        elif operand.kind is not None:
+            yield from self._expressions.must_be(value, operand.kind)
+        if operand.finite:
+            yield from self._expressions.finite(value)
+
+    def _of_cell(self, name: Name, operand: Operand) -> Iterator[Diagnostic]:
+        # a pose may stand for a tool or a frame, so the name may be one of the program or of a taught point
+        takes_pose = operand.role is Role.OF_CELL
+        if takes_pose and (self._defined.has_value(name.key) or name.key in (self._symbols.points or ())):
             return
-        for part in _expressions(node):
-            yield from self._expressions.check(part)
-
-    # --- motion ------------------------------------------------------------------------------------------------------
-
-    def _moving(self, node: Moving) -> Iterator[Diagnostic]:
-        for target in ([node.via] if isinstance(node, MoveC) else []) + (
-            [] if isinstance(node, Depart) else [node.target]
-        ):
-            yield from self._place(target)
-        if isinstance(node, Approach | Depart):
-            yield from self._within(node.distance, limits.DISTANCE)
-        seen: dict[type, Option] = {}
-        for option in node.options:
-            word = type(option).__name__.upper()
-            if earlier := seen.get(type(option)):
-                yield _twice(word, option.span, earlier.span)
-            seen.setdefault(type(option), option)
-            yield from self._option(option, word, joint=isinstance(node, MoveJ))
-        if Speed in seen and Time in seen:
-            message = "TIME fixes how long the move takes, so SPEED cannot be given too"
-            related = (Related(span=seen[Time].span, message="TIME is given here"),)
-            yield Diagnostic(code="RBL119", message=message, span=seen[Speed].span, related=related)
+        known: Collection[str] | None = getattr(self._symbols, f"{operand.of}s")
+        yield from of_cell(name, known, operand.of, self._symbols, operand.code)
 
     def _place(self, node: Expression) -> Iterator[Diagnostic]:
         points = self._symbols.points
@@ -130,14 +124,23 @@ class StatementCheck:
         if kind is not None and kind is not Kind.POSE:
             yield Diagnostic(code="RBL217", message=f"a pose is needed here, not {kind}", span=node.span)
 
-    def _option(self, option: Option, word: str, *, joint: bool) -> Iterator[Diagnostic]:
-        if isinstance(option, Wrist):
-            yield from self._wrist(option)
-        elif isinstance(option, Zone):
-            if option.value is not None:
-                yield from self._within(option.value, limits.ZONE)
-        else:
-            yield from self._within(option.value, _limit(option, joint=joint))
+    # --- motion ------------------------------------------------------------------------------------------------------
+
+    def _moving(self, node: Moving) -> Iterator[Diagnostic]:
+        seen: dict[type, Option] = {}
+        for option in node.options:
+            word = type(option).__name__.upper()
+            if earlier := seen.get(type(option)):
+                yield _twice(word, option.span, earlier.span)
+            seen.setdefault(type(option), option)
+            if isinstance(option, Wrist):
+                yield from self._wrist(option)
+            else:
+                yield from self._operands(option, _option(node, option))
+        if Speed in seen and Time in seen:
+            message = "TIME fixes how long the move takes, so SPEED cannot be given too"
+            related = (Related(span=seen[Time].span, message="TIME is given here"),)
+            yield Diagnostic(code="RBL119", message=message, span=seen[Speed].span, related=related)
 
     def _within(self, node: Expression, limit: Limit) -> Iterator[Diagnostic]:
         """Report a value that is no number, or out of a range."""
@@ -157,23 +160,6 @@ class StatementCheck:
                 yield Diagnostic(code="RBL120", message=message, span=place)
             seen.setdefault(component, place)
 
-    def _seam(self, node: Seam) -> Iterator[Diagnostic]:
-        if node.sensor is not None:
-            yield from of_cell(node.sensor, self._symbols.sensors, "sensor", self._symbols, "RBL306")
-
-    def _setting(self, node: Setting) -> Iterator[Diagnostic]:
-        assert node.value is not None
-        if node.word in ("TOOL", "FRAME"):
-            names = self._symbols.tools if node.word == "TOOL" else self._symbols.frames
-            if isinstance(node.value, Name):
-                key = node.value.key
-                if not self._defined.has_value(key) and key not in (self._symbols.points or ()):
-                    yield from of_cell(node.value, names, node.word.lower(), self._symbols)
-            else:
-                yield from self._expressions.must_be(node.value, Kind.POSE)
-        else:
-            yield from self._within(node.value, limits.SETTINGS[node.word])
-
     # --- payload and hand --------------------------------------------------------------------------------------------
 
     def _load(self, node: Load) -> Iterator[Diagnostic]:
@@ -182,7 +168,7 @@ class StatementCheck:
                 message = f"{count} values stand in these parentheses, not {len(vector.items)}"
                 yield Diagnostic(code="RBL220", message=message, span=vector.span)
                 return
-        for part in (*node.cog.items, node.mass, *(node.inertia.items if node.inertia else ())):
+        for part in (*node.cog.items, *(node.inertia.items if node.inertia else ())):
             yield from self._expressions.must_be(part, Kind.NUMBER)
         mass, cog = fixed(node.mass), _fixed(node.cog)
         inertia = None if node.inertia is None else _fixed(node.inertia)
@@ -195,14 +181,9 @@ class StatementCheck:
 
     def _load_named(self, node: LoadNamed) -> Iterator[Diagnostic]:
         loads, rated = self._symbols.loads, self._symbols.rated_payload
-        yield from of_cell(node.name, loads, "load", self._symbols)
         load = None if loads is None else loads.get(node.name.key)
         if load is not None and rated is not None:
             yield from _refused(load_fault(load.mass_kg, [value * MM for value in load.cog_mm], None, rated), node.name)
-
-    def _hand(self, node: Hand) -> Iterator[Diagnostic]:
-        if node.dwell is not None:
-            yield from self._within(node.dwell, limits.DWELL)
 
     # --- values and control ------------------------------------------------------------------------------------------
 
@@ -235,9 +216,6 @@ class StatementCheck:
             yield Diagnostic(code="RBL216", message=message, span=node.name.span, related=related)
         yield from self._fits(node.name, node.value)
 
-    def _dim(self, node: Dim) -> Iterator[Diagnostic]:
-        yield from self._within(node.size, limits.SIZE)
-
     def _case(self, node: Case) -> Iterator[Diagnostic]:
         selected = self._selected[-1] if self._selected else None
         for value in node.values:
@@ -246,41 +224,21 @@ class StatementCheck:
                 message = f"{kind} is compared with {selected} of the SELECT: they are never equal"
                 yield Diagnostic(code="RBL217", message=message, span=value.span)
 
+    def _head(self, node: Head) -> Iterator[Diagnostic]:
+        if node.word == "SELECT":
+            self._selected.append(self._expressions.kind(node.value))
+        yield from ()
+
     def _block(self, node: Block) -> Iterator[Diagnostic]:
         if node.word == "ENDSELECT" and self._selected:
             self._selected.pop()
         yield from ()
-
-    def _head(self, node: Head) -> Iterator[Diagnostic]:
-        if node.word == "SELECT":
-            self._selected.append(self._expressions.kind(node.value))
-        else:
-            yield from self._expressions.must_be(node.value, Kind.NUMBER)
-
-    def _out(self, node: Out | Pulse) -> Iterator[Diagnostic]:
-        yield from self._within(node.index, limits.OUTPUT)
-        if isinstance(node, Pulse):
-            yield from self._within(node.seconds, limits.PULSE)
-        else:
-            yield from self._expressions.must_be(node.value, Kind.NUMBER)
-            yield from self._expressions.finite(node.value)
-
-    def _delay(self, node: Delay) -> Iterator[Diagnostic]:
-        yield from self._within(node.seconds, limits.DELAY)
-
-    def _wait(self, node: Wait) -> Iterator[Diagnostic]:
-        yield from self._expressions.must_be(node.condition, Kind.NUMBER)
-        if node.timeout is not None:
-            yield from self._within(node.timeout, limits.TIMEOUT)
 
     def _for(self, node: For) -> Iterator[Diagnostic]:
         if self._defined.constant(node.variable.key) is not None:
             message = f"{node.variable.text} is a constant"
             yield Diagnostic(code="RBL216", message=message, span=node.variable.span)
         yield from self._fits(node.variable, node.first)
-        for limit in (node.first, node.last, node.step):
-            if limit is not None:
-                yield from self._expressions.must_be(limit, Kind.NUMBER)
         if node.step is None:
             return
         step = fixed(node.step)
@@ -322,63 +280,49 @@ _RULES: dict[type, Callable[..., Iterator[Diagnostic]]] = {
     Depart: _Check._moving,
     Load: _Check._load,
     LoadNamed: _Check._load_named,
-    Hand: _Check._hand,
     Wrist: _Check._wrist,
-    Seam: _Check._seam,
-    Setting: _Check._setting,
     Assign: _Check._assign,
-    Out: _Check._out,
-    Pulse: _Check._out,
-    Delay: _Check._delay,
-    Wait: _Check._wait,
     For: _Check._for,
     CallSub: _Check._call_sub,
     Const: _Check._const,
-    Dim: _Check._dim,
-    Head: _Check._head,
     Case: _Check._case,
+    Head: _Check._head,
     Block: _Check._block,
 }
-_NAMED_FIELDS = {"name", "variable", "sensor", "parameters", "label", "then", "otherwise"}
 
 
-def _expressions(node: Statement) -> Iterator[Expression]:
+def _expressions(node: Node, declared: Declaration) -> Iterator[Expression]:
     """Yield the expressions of a statement, its options' among them; not the names that it defines or that name
-    something of the cell, nor a bare point, which ``_place`` looks at."""
-    if isinstance(node, Moving) and not isinstance(node, Depart) and not isinstance(node.target, Name):
-        yield node.target
-    if isinstance(node, MoveC) and not isinstance(node.via, Name):
-        yield node.via
-    if isinstance(node, Moving):
-        yield from (
-            option.value
-            for option in node.options
-            if isinstance(option, Speed | Accel | Time | Zone) and option.value is not None
-        )
-    for name in node.__slots__:
-        if name in _NAMED_FIELDS or (isinstance(node, Moving) and name in ("target", "via", "options")):
-            continue
-        value = getattr(node, name)
-        if isinstance(node, Assign) and name == "target":
-            yield from value.arguments if isinstance(value, Call) else ()
-            continue
-        for each in value if isinstance(value, tuple) else (value,):
-            if isinstance(each, _EXPRESSIONS):
-                yield from each.items if isinstance(each, Vector) and isinstance(node, Load) else (each,)
+    something of the cell, nor a bare point, which ``_place`` checks."""
+    # an unknown name is reported at its first use only; in a move, the target's counts before the via point's
+    for operand in sorted(declared.operands, key=_rank) if declared.options else declared.operands:
+        value = getattr(node, operand.name)
+        if operand.role is Role.VALUE and value is not None:
+            yield from value if operand.separator else (value,)
+        elif operand.role in (Role.PLACE, Role.OF_CELL) and not isinstance(value, Name):
+            yield value
+        elif operand.role is Role.VECTOR and value is not None:
+            yield from value.items
+        elif operand.role is Role.ASSIGNED and isinstance(value, Call):
+            yield from value.arguments
+        elif operand.role is Role.OPTIONS:
+            for option in value:
+                yield from _expressions(option, _option(node, option))
 
 
-_EXPRESSIONS = (Number, Text, Name, Negate, Not, Chain, Call, Component6, Vector)
+def _rank(operand: Operand) -> int:
+    return ("target", "via", "options", "distance").index(operand.name)
+
+
+def _option(move: Node, option: Node) -> Declaration:
+    """Return the declaration of an option of a move: SPEED of a MOVEJ has another range than of other moves."""
+    name = type(option).__name__
+    return next(each for each in declaration(move).options if each.node == name)
 
 
 def _twice(word: str, place: Span, first: Span) -> Diagnostic:
     related = (Related(span=first, message="first given here"),)
     return Diagnostic(code="RBL118", message=f"{word} is given twice", span=place, related=related)
-
-
-def _limit(option: Speed | Accel | Time, *, joint: bool) -> Limit:
-    if isinstance(option, Speed):
-        return limits.SPEED_PCT if joint else limits.SPEED
-    return limits.ACCEL if isinstance(option, Accel) else limits.TIME
 
 
 def _fixed(node: Vector) -> list[float] | None:

@@ -1,17 +1,22 @@
-"""From the rules of ``grammar.lark`` to the nodes of the tree: one method for each, called when the rule is reduced.
+"""From the rules of ``grammar.lark`` to the nodes of the tree: what is called when a rule is reduced.
 
 The parser calls these while it reads, so no parse tree is built and nothing is visited afterwards. Every node gets the
-place of its text. The automaton of ``line_reader`` calls
-them, and Lark for a line with an error.
+place of its text. The automaton of ``line_reader`` calls them, and Lark for a line with an error.
+
+A rule that is named like its node, as ``on_error`` of ``OnError``, needs no method: its node is built of the operands
+of its declaration. Rules with methods hold words with a meaning, options, or parentheses that are remembered.
 """
 
-from collections.abc import Iterable
+import re
+from collections.abc import Callable, Iterable
 from sys import intern
 from typing import Any
 
 from robolang.core.source import Span
 from robolang.syntax import ast
 from robolang.syntax.ast import Expression, replace
+from robolang.syntax.declaration import Declaration
+from robolang.syntax.statements import BY_NODE
 from robolang.syntax.tokens import Token, span_of
 
 Parsed = tuple[ast.Name | None, ast.Statement | None, ast.Comment | None]
@@ -28,8 +33,56 @@ def _over(first: Token | ast.Node, last: Token | ast.Node) -> Span:
     return Span(start.start, end.end)
 
 
+_NODES = {
+    "named_load": "LoadNamed",
+    "tool": "Setting",
+    "one_line": "If",
+    "if_head": "Head",
+    "else_if": "Head",
+    "while_head": "Head",
+    "select_head": "Head",
+    "for_head": "For",
+    "closing": "Block",
+}
+"""The nodes of rules that have another name, as several rules of one node must."""
+_BY_RULE = {
+    **{re.sub("(?<=.)([A-Z])", r"_\1", node).lower(): node for node, each in BY_NODE.items() if each[0].operands},
+    **_NODES,
+}
+
+
+def _from_declaration(node: str) -> Callable[..., Any]:
+    """Return what builds a node of the parts of its rule: operands in the order of the declaration, the optional last.
+
+    Signs and words within the statement are no operands. A list is the last operand and takes all that are left.
+    """
+    declared: Declaration = BY_NODE[node][0]
+    kind: Any = getattr(ast, node)
+    names = [operand.name for operand in declared.operands]
+    rest = names.pop() if declared.operands and declared.operands[-1].separator else ""
+    has_word = "word" in kind.__slots__
+
+    def build(*parts: Token | ast.Node | None) -> Any:
+        found = [part for part in parts if part is not None]
+        # Lark's tokens are texts, too, and so are those of line_reader
+        operands = [part for part in found if not isinstance(part, str)]
+        fields: dict[str, Any] = dict(zip(names, operands, strict=False))
+        if rest:
+            fields[rest] = tuple(operands[len(names) :])
+        if has_word:
+            fields["word"] = str(found[0].type)  # type: ignore[union-attr]
+        return kind(**fields, span=_over(found[0], found[-1]))
+
+    return build
+
+
 class _Builder:
-    """One method for each rule of the grammar, called with what the parts of the rule gave."""
+    """What builds the nodes, by the names of the rules, called with what the parts of a rule gave."""
+
+    def __getattr__(self, rule: str) -> Callable[..., Any]:
+        if rule not in _BY_RULE:
+            raise AttributeError(rule)
+        return _from_declaration(_BY_RULE[rule])
 
     def start(self, label: ast.Name | None, statement: ast.Statement | None, comment: Token | None) -> Parsed:
         if comment is None:
@@ -59,12 +112,6 @@ class _Builder:
             return ast.Approach(target=values[0], distance=values[1], options=options, span=span)
         return ast.Depart(distance=values[0], options=options, span=span)
 
-    def load(self, word: Token, cog: ast.Vector, mass: Expression, inertia: ast.Vector | None) -> ast.Load:
-        return ast.Load(cog=cog, mass=mass, inertia=inertia, span=_over(word, inertia or mass))
-
-    def named_load(self, word: Token, name: ast.Name) -> ast.LoadNamed:
-        return ast.LoadNamed(name=name, span=_over(word, name))
-
     def hand(self, word: Token, state: Token, dwell: Expression | None) -> ast.Hand:
         return ast.Hand(state=ast.HandState[state.type], dwell=dwell, span=_over(word, dwell or state))
 
@@ -80,110 +127,15 @@ class _Builder:
     def seam(self, word: Token, state: Token, sensor: ast.Name | None = None) -> ast.Seam:
         return ast.Seam(sensor=sensor, span=_over(word, sensor or state))
 
-    def setting(self, word: Token, value: Expression) -> ast.Setting:
-        return ast.Setting(word=str(word.type), value=value, span=_over(word, value))
-
-    tool = setting
-
-    def speed(self, word: Token, value: Expression) -> ast.Speed:
-        return ast.Speed(value=value, span=_over(word, value))
-
-    def accel(self, word: Token, value: Expression) -> ast.Accel:
-        return ast.Accel(value=value, span=_over(word, value))
-
-    def time(self, word: Token, value: Expression) -> ast.Time:
-        return ast.Time(value=value, span=_over(word, value))
-
-    def zone(self, word: Token, value: Expression | None = None) -> ast.Zone:
-        return ast.Zone(value=value, span=_over(word, value or word))
-
     # --- values, inputs and outputs ----------------------------------------------------------------------------------
-
-    def assign(self, target: ast.Name | ast.Call, sign: Token, value: Expression) -> ast.Assign:
-        return ast.Assign(target=target, value=value, span=_over(target, value))
 
     def element(self, name: ast.Name, left: Token, index: Expression, right: Token) -> ast.Call:
         return ast.Call(name=name, arguments=(index,), span=_over(name, right))
 
-    def dim(self, word: Token, name: ast.Name, left: Token, size: Expression, right: Token) -> ast.Dim:
-        return ast.Dim(name=name, size=size, span=_over(word, right))
-
-    def const(self, word: Token, name: ast.Name, sign: Token, value: Expression) -> ast.Const:
-        return ast.Const(name=name, value=value, span=_over(word, value))
-
-    def out(self, word: Token, left: Token, index: Expression, right: Token, sign: Token, value: Expression) -> ast.Out:
-        return ast.Out(index=index, value=value, span=_over(word, value))
-
-    def pulse(self, word: Token, index: Expression, seconds: Expression) -> ast.Pulse:
-        return ast.Pulse(index=index, seconds=seconds, span=_over(word, seconds))
-
-    def delay(self, word: Token, seconds: Expression) -> ast.Delay:
-        return ast.Delay(seconds=seconds, span=_over(word, seconds))
-
-    def wait(
-        self,
-        word: Token,
-        condition: Expression,
-        until: Token | None,
-        timeout: Expression | None,
-        goto: Token | None,
-        target: ast.Target | None,
-    ) -> ast.Wait:
-        return ast.Wait(
-            condition=condition, timeout=timeout, target=target, span=_over(word, target or timeout or condition)
-        )
-
-    def print(self, word: Token, *items: Expression | None) -> ast.Print:
-        found = tuple(item for item in items if item is not None)
-        return ast.Print(items=found, span=_over(word, found[-1] if found else word))
-
     # --- control -----------------------------------------------------------------------------------------------------
-
-    def one_line(
-        self,
-        word: Token,
-        condition: Expression,
-        then: Token,
-        statement: ast.Statement,
-        other: Token | None,
-        otherwise: ast.Statement | None,
-    ) -> ast.If:
-        return ast.If(
-            condition=condition, then=statement, otherwise=otherwise, span=_over(word, otherwise or statement)
-        )
-
-    def if_head(self, word: Token, value: Expression, then: Token | None = None) -> ast.Head:
-        return ast.Head(word=str(word.type), value=value, span=_over(word, then or value))
-
-    else_if = while_head = if_head
-
-    def select_head(self, word: Token, case: Token | None, value: Expression) -> ast.Head:
-        return ast.Head(word="SELECT", value=value, span=_over(word, value))
-
-    def case(self, word: Token, *values: Expression) -> ast.Case:
-        return ast.Case(values=values, span=_over(word, values[-1]))
 
     def case_else(self, word: Token, other: Token) -> ast.Block:
         return ast.Block(word="CASE ELSE", span=_over(word, other))
-
-    def closing(self, word: Token) -> ast.Block:
-        return ast.Block(word=str(word.type), span=span_of(word))
-
-    def for_head(
-        self,
-        word: Token,
-        variable: ast.Name,
-        sign: Token,
-        first: Expression,
-        to: Token,
-        last: Expression,
-        by: Token | None,
-        step: Expression | None,
-    ) -> ast.For:
-        return ast.For(variable=variable, first=first, last=last, step=step, span=_over(word, step or last))
-
-    def next(self, word: Token, variable: ast.Name | None) -> ast.Next:
-        return ast.Next(variable=variable, span=_over(word, variable or word))
 
     def sub(self, word: Token, name: ast.Name, *parts: Token | ast.Name | None) -> ast.Sub:
         parameters = tuple(part for part in parts if isinstance(part, ast.Name))
@@ -195,15 +147,9 @@ class _Builder:
         last = _last(name, parts)
         return ast.CallSub(name=name, arguments=arguments, parentheses=int(last is not name), span=_over(word, last))
 
-    def jump(self, word: Token, target: ast.Target) -> ast.Jump:
-        return ast.Jump(word=str(word.type), target=target, span=_over(word, target))
-
     def word(self, *words: Token | None) -> ast.Word:
         found = [word for word in words if word is not None]
         return ast.Word(word=" ".join(word.type for word in found), span=_over(found[0], found[-1]))
-
-    def on_error(self, on: Token, error: Token, goto: Token, target: ast.Target) -> ast.OnError:
-        return ast.OnError(target=target, span=_over(on, target))
 
     def line_target(self, token: Token) -> ast.Target:
         # a number with a point or an exponent names no line: -1 is none, and the checker says so
@@ -253,7 +199,7 @@ class _Builder:
 
 
 def builder() -> Any:
-    """Return an object with a method for each rule of the grammar."""
+    """Return an object with an attribute to call for each rule that builds something."""
     return _Builder()
 
 
