@@ -45,6 +45,11 @@ def say(fault: Fault) -> int:
     return exit_code(fault.code)
 
 
+def say_warning(code: str, place: str, message: str, hint: str) -> None:
+    """Print a warning about an option to stderr; ``place`` names the option and, in a list, the number of the value."""
+    echo(f"warning {code} {place}: {safe(message)}\n  help: {safe(hint)}", err=True)
+
+
 def say_warnings(warnings: Iterable[FileFault], said: set[str] | None = None) -> None:
     """Print what is unlikely about a file to stderr; ``said`` keeps what was printed, for a file that is read again."""
     printed = set() if said is None else said

@@ -8,18 +8,21 @@ Imports the standard library and typer only, so that ``robolang --help`` stays q
 import math
 from typing import TYPE_CHECKING, NoReturn
 
+from robolang.cli.errors import say_warning
 from robolang.cli.output import echo
 from robolang.cli.usage import OptionValueError
 from runtime.core.numerals import number_in, why_none
 from runtime.core.rounding import beside
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from runtime.core.frames import Array
     from runtime.robot.model.payload import Payload
     from runtime.robot.model.spec import RobotSpec
 
+_OUTSIDE = "The result is calculated, but the arm cannot take this posture; give an angle in the range."
 PAYLOAD = ("mass kg", "x mm", "y mm", "z mm")
 MAX_ABS = 1e9
 
@@ -43,6 +46,27 @@ def posture(text: str | None, spec: "RobotSpec") -> "Array":
         return np.clip(np.zeros(spec.n), spec.lower, spec.upper)
     names = tuple(f"J{i}" for i in range(1, spec.n + 1))
     return np.deg2rad(numbers(text, option="--joints", names=names))
+
+
+def outside(q: "Array", lower: "Array", upper: "Array") -> "Iterator[tuple[int, str]]":
+    """Yield each joint (0-based) whose angle in q (n,) rad is outside its range, and a sentence about it, in deg."""
+    from runtime.core.units import DEG
+    from runtime.robot.model.drives import RANGE_ROUNDING
+
+    for joint, (angle, low, high) in enumerate(zip(q, lower, upper, strict=True)):
+        # the rounding that points and JOINT(...) are granted: an angle that check accepts is accepted here
+        if not low - RANGE_ROUNDING <= angle <= high + RANGE_ROUNDING:
+            shown, least, most = beside(angle / DEG, low / DEG, high / DEG)
+            yield joint, f"J{joint + 1} at {shown} deg is outside its range of {least} to {most} deg"
+
+
+def warn_outside(q: "Array", lower: "Array", upper: "Array") -> None:
+    """Print a warning for each angle of ``--joints`` outside its range (RBL309).
+
+    It is calculated all the same: ``kin ik`` lists such postures, and their poses are asked for.
+    """
+    for joint, sentence in outside(q, lower, upper):
+        say_warning("RBL309", f"--joints, number {joint + 1}", sentence, _OUTSIDE)
 
 
 def payload(text: str, option: str, spec: "RobotSpec", *, heavier: bool = True) -> "Payload":

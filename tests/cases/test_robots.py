@@ -39,7 +39,9 @@ def test_reports_13_limits_in_degrees_are_doubted_once(command, tmp_path):
 
 def test_reports_15_mass_without_inertia_is_refused():
     case = arm("reports_15_urdf_zero_inertia")
-    assert "RBL606" in robolang("robot", "show", case).stdout
+    shown = robolang("robot", "show", case, code=2)
+    assert "RBL606" in shown.stdout
+    assert places(shown.stderr) == [(8, 1, "RBL606")]
     assert places(robolang("kin", "fk", "--robot", case, "--joints", JOINTS, code=2).stderr) == [(8, 1, "RBL606")]
 
 

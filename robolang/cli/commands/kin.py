@@ -11,7 +11,8 @@ that order; without ``--tool`` the tool is the flange. ``--json`` gives full dou
 ``turns_deg`` holds the joint angles of a solution and all others inside the ranges that differ from them by whole
 turns: a joint with a range above one turn has several angles for one place. ``complete`` is false for an arm without a
 closed form, whose numeric search may have missed solutions. ``not_listed`` counts the turns beyond ``MOST_TURNS``.
-Exit codes: 0; 1 out of reach (RBL410 on stderr); 2 a value, a robot name or a robot file that cannot be used.
+Exit codes: 0; 1 out of reach (RBL410 on stderr); 2 a value, a robot name or a robot file that cannot be used. ``fk``
+warns of joint angles outside their ranges (RBL309 on stderr), and prints their pose.
 A robot may be a URDF or MJCF file: no drives are needed here. An arm without a closed form has the branch NUMERIC.
 numpy, rich and the runtime are imported inside the commands, so that ``robolang --help`` stays quick.
 """
@@ -27,7 +28,7 @@ from robolang.cli.errors import reported, say_warnings
 from robolang.cli.options import JsonOptions, Option, RobotOptions
 from robolang.cli.output import echo
 from robolang.cli.usage import OptionValueError
-from robolang.cli.values import numbers
+from robolang.cli.values import numbers, warn_outside
 
 if TYPE_CHECKING:
     from runtime.core.frames import Array
@@ -74,8 +75,9 @@ def _fk(options: _JointsOptions, as_json: bool) -> None:
     from runtime.core.linear import matmul
 
     kinematics = _kinematics(options.robot)
-    q_deg = numbers(options.joints, option="--joints", names=_joint_names(kinematics.n))
-    X_base_tool = matmul(kinematics.forward(np.deg2rad(q_deg)), _pose(options.tool, "--tool"))
+    q = np.deg2rad(numbers(options.joints, option="--joints", names=_joint_names(kinematics.n)))
+    warn_outside(q, kinematics.spec.lower, kinematics.spec.upper)
+    X_base_tool = matmul(kinematics.forward(q), _pose(options.tool, "--tool"))
     pose_mm_deg = _plain(xyzrpy_from_pose(X_base_tool) / _pose_scale())
     if as_json:
         echo(json.dumps({"pose_mm_deg": pose_mm_deg}))

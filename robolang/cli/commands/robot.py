@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import typer
 
 from robolang.cli.command import command
-from robolang.cli.errors import reported, say_warnings
+from robolang.cli.errors import reader_may_leave, reported, say, say_warnings
 from robolang.cli.options import Argument, Group, Option
 from robolang.cli.output import echo
 from robolang.core.diagnostics import safe
@@ -60,29 +60,18 @@ class _SidecarOptions(Group):
 @command
 def show(robot: _Robot) -> None:
     """Show a robot: limits, drives, gear springs, bodies, corrections of published data, sources."""
+    worst = 0
     with reported():
-        from robolang.cli.console import Console
         from robolang.project.project import load_any_robot
         from runtime.robot.files.arm_file import is_model
         from runtime.robot.files.sidecar_file import sidecar_path
 
         if is_model(robot) and not os.path.lexists(sidecar_path(Path(robot))):
-            _show_model(robot)
-            return
-        spec = load_any_robot(robot)
-        say_warnings(spec.warnings)
-        console = Console()
-        console.print(safe(f"{spec.name}: {spec.title}, {spec.n} axes, rated payload {spec.rated_payload:g} kg"), "\n")
-        for table in (_limits(spec), _wrist(spec), _drives(spec), *_springs(spec), _loops(spec), _bodies(spec)):
-            console.print(table)
-        for title, lines in (
-            ("Corrections of published data", _corrections(spec)),
-            ("Sources", list(spec.sources)),
-            ("Notes", list(spec.notes)),
-        ):
-            if lines:
-                console.print(title, style="bold")
-                console.print(_bullets(lines))
+            worst = _show_model(robot)
+        else:
+            _show_robot(load_any_robot(robot))
+    if worst:
+        raise SystemExit(worst)
 
 
 @app.command("import")
@@ -106,8 +95,30 @@ def import_model(file: _Model, options: _SidecarOptions) -> None:
         echo(safe(f"wrote {target}: {gaps} values to fill in, marked MISSING"))
 
 
-def _show_model(robot: str) -> None:
-    """Print what a model file without a sidecar says: it has no drives."""
+def _show_robot(spec: "RobotSpec") -> None:
+    """Print what is known of a robot that can be run."""
+    from robolang.cli.console import Console
+
+    say_warnings(spec.warnings)
+    console = Console()
+    console.print(safe(f"{spec.name}: {spec.title}, {spec.n} axes, rated payload {spec.rated_payload:g} kg"), "\n")
+    for table in (_limits(spec), _wrist(spec), _drives(spec), *_springs(spec), _loops(spec), _bodies(spec)):
+        console.print(table)
+    for title, lines in (
+        ("Corrections of published data", _corrections(spec)),
+        ("Sources", list(spec.sources)),
+        ("Notes", list(spec.notes)),
+    ):
+        if lines:
+            console.print(title, style="bold")
+            console.print(_bullets(lines))
+
+
+def _show_model(robot: str) -> int:
+    """Print what a model file without a sidecar says, and return the exit code of its bodies; it has no drives.
+
+    A body that cannot exist is an error here as for every other command, and the tables show its figures.
+    """
     from robolang.cli.console import Console
     from runtime.robot.files.importer import read_model
     from runtime.robot.files.sidecar_file import sidecar_path
@@ -116,17 +127,20 @@ def _show_model(robot: str) -> None:
     path = Path(robot)
     arm = read_model(path)
     say_warnings(arm.warnings)
-    console = Console()
-    console.print(safe(f"{arm.title}, {arm.n} axes; the flange is {arm.flange!r}"), "\n")
-    for table in (_model_limits(arm), _model_bodies(arm)):
-        console.print(table)
+    faults = [axis.impossible for axis in arm.axes if axis.impossible is not None]
     form = "closed form" if Kinematics(arm).closed_form else "Newton's method"
     lines = [
         f"Inverse kinematics: {form}.",
         f"Drives: none. 'robolang robot import' writes {sidecar_path(path).name}, to be filled in.",
+        *(f"{fault.code} {fault.message}" for fault in faults),
     ]
-    lines += [f"{axis.impossible.code} {axis.impossible.message}" for axis in arm.axes if axis.impossible is not None]
-    console.print(_bullets(lines))
+    with reader_may_leave():
+        console = Console()
+        console.print(safe(f"{arm.title}, {arm.n} axes; the flange is {arm.flange!r}"), "\n")
+        for table in (_model_limits(arm), _model_bodies(arm)):
+            console.print(table)
+        console.print(_bullets(lines))
+    return max(map(say, faults), default=0)
 
 
 def _model_limits(arm: "ImportedArm") -> "Table":

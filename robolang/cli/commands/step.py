@@ -15,6 +15,7 @@ from runtime.core.rounding import beside
 
 if TYPE_CHECKING:
     from robolang.experiments.step import PlantName, StepRequest, StepResult
+    from runtime.core.frames import Array
     from runtime.robot.model.payload import Payload
     from runtime.robot.model.spec import RobotSpec
 
@@ -63,6 +64,8 @@ def step(options: _StepOptions, arm: _ArmOptions, controller: ControllerOptions,
         from robolang.experiments.step import as_json as figures
         from robolang.experiments.step import step as run_step
 
+        if arm.lock and arm.plant == "mujoco":
+            raise OptionValueError("--lock-others", "it needs --plant rigid")
         request = _request(options, arm, controller.profile, settings)
         if output.plot is not None:
             from robolang.core.storage import check_writable
@@ -97,12 +100,14 @@ def _request(options: _StepOptions, arm: _ArmOptions, profile: str | None, setti
     tool_point = np.array(numbers(options.tool, option="--tool", names=("x", "y", "z"))) * MM
     in_force = load_settings(spec, pose(tool_point, np.eye(3)), profile, settings)
     _check_numbers(options)
+    q, size = values.posture(options.joints, spec), options.size * DEG
+    _check_range(q, options.axis - 1, size, spec)
     carried = _payload(options.payload, "--payload", spec)
     return StepRequest(
         robot=spec,
         axis=options.axis - 1,
-        q=values.posture(options.joints, spec),
-        size=options.size * DEG,
+        q=q,
+        size=size,
         carried=carried,
         declared=carried if options.load is None else _payload(options.load, "--load", spec),
         profile=in_force.profile,
@@ -122,6 +127,19 @@ def _check_numbers(options: _StepOptions) -> None:
         raise OptionValueError("--size", f"{shown} is not between {-MOST_DEG:g} and {MOST_DEG:g} deg")
     if not seconds <= MOST_S:
         raise OptionValueError("--seconds", f"{beside(seconds, MOST_S)[0]} is not between 0.2 and {MOST_S:g} s")
+
+
+def _check_range(q: "Array", axis: int, size: float, spec: "RobotSpec") -> None:
+    """Refuse a posture q (n,) rad and a step of ``size`` rad that leave the range of a joint.
+
+    An axis that the robot has not is left to the experiment.
+    """
+    for joint, sentence in values.outside(q, spec.lower, spec.upper):
+        raise OptionValueError("--joints", sentence, joint + 1)
+    end = q.copy()
+    end[axis : axis + 1] += size
+    for _, sentence in values.outside(end, spec.lower, spec.upper):
+        raise OptionValueError("--size", f"at the end of the step {sentence}")
 
 
 def _payload(text: str, option: str, spec: "RobotSpec") -> "Payload":

@@ -80,6 +80,13 @@ def test_no_negative_zeros_and_a_posture_in_range_by_default():
     assert json.loads(text)["joints_deg"] == [0.0] * 6
 
 
+def test_a_posture_outside_the_ranges_is_a_warning_at_its_number():
+    result = robolang("inertia", "--robot", "puma560", "--joints", JOINTS, "--json")
+    assert "warning RBL309 --joints" in result.stderr
+    assert {"3", "J3", "150", "-225", "45", "deg"} <= fields(result.stderr)
+    assert json.loads(result.stdout)["joints_deg"][2] == 150.0
+
+
 def test_a_payload_over_the_rated_one_is_said_and_taken():
     result = robolang("inertia", "--robot", "puma560", "--payload", "5,0,0,100", "--json")
     assert {"2.5", "kg"} <= fields(result.stderr)

@@ -10,12 +10,13 @@ from typer.testing import CliRunner
 
 from robolang.cli.commands.kin import MOST_TURNS, app
 from robolang.cli.usage import OptionValueError
-from robolang.cli.values import numbers
+from robolang.cli.values import numbers, outside
 from runtime.core.frames import pose_from_xyzrpy, xyzrpy_from_pose
 from runtime.core.units import DEG, MM
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
 from tests.messages import fields
+from tests.messages import numbers as numbers_of
 from tests.robolang.cli.commands import flat
 from tests.runtime.robot.models import SEVEN
 
@@ -46,6 +47,24 @@ def test_fk_prints_the_pose_in_full_precision():
 
 def test_fk_of_qn_is_the_published_pose():
     assert fk("0,45,180,0,45,0")[:3] == pytest.approx([596.3, -150.05, 657.65], abs=0.05)
+
+
+def test_fk_of_joints_outside_their_ranges_is_a_warning_at_each_of_them():
+    # the ranges of J2 and J3 are -45 to 225 and -225 to 45 deg
+    result = run("fk", "--robot", "puma560", "--joints", "0,-45.001,180,0,45,0", "--json")
+    warnings = re.findall(r"^warning RBL309 --joints, number (\d): (.*)\n  help: .", result.stderr, re.M)
+    assert [(int(position), numbers_of(said)[1:]) for position, said in warnings] == [
+        (2, [-45.001, -45.0, 225.0]),
+        (3, [180.0, -225.0, 45.0]),
+    ]
+    assert len(json.loads(result.stdout)["pose_mm_deg"]) == 6
+    assert run("fk", "--robot", "puma560", "--joints", "0,-45,45,0,45,0").stderr == ""
+
+
+def test_angles_outside_are_found_in_every_comparison_and_rounding_is_none():
+    low, high = np.array([-1.0, -1.0, -1.0, np.nan]), np.array([1.0, 1.0, 1.0, 1.0])
+    found = outside(np.array([1.0 + 1e-12, np.nan, -1.1, 0.0]), low, high)
+    assert [joint for joint, _ in found] == [1, 2, 3]
 
 
 def test_fk_has_no_negative_zeros():

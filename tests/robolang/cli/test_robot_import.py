@@ -1,5 +1,6 @@
 """``robolang robot import`` and the way of a model file through the commands."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +13,7 @@ from runtime.cell.sensor_file import read_sensor_file
 from runtime.core.frames import frozen
 from runtime.core.tomlfile import FileFault, Source, load_table
 from tests.messages import fields, numbers
-from tests.robolang.cli.commands import flat, robolang
+from tests.robolang.cli.commands import flat, places, robolang
 from tests.runtime.robot.models import ANGLES, SEVEN, fill
 
 HOME = np.array([0.0, 0.5, 0.0, -1.4, 0.0, 0.9, 0.0])
@@ -79,6 +80,18 @@ def test_show_says_what_a_model_has_and_that_it_has_no_drives(seven):
     assert "Drives: none" in words
     assert "Newton" in words
     assert "J4 joint_4 -120 .. 120 129.998 176" in words
+
+
+def test_a_model_with_impossible_bodies_is_shown_and_called_an_error(seven):
+    lines = SEVEN.read_text().splitlines()
+    at = [n for n, line in enumerate(lines) if "<inertia " in line][1:3]
+    for n in at:
+        lines[n] = re.sub(r'ixx="[^"]*"', 'ixx="9"', lines[n])
+    seven.write_text("\n".join(lines))
+    found = robolang("robot", "show", seven, code=2)
+    assert [code for _, _, code in places(found.stderr)] == ["RBL606", "RBL606"]
+    assert found.stderr.count("  help: ") == 2
+    assert {"RBL606", "J4", "joint_4"} <= fields(flat(found.stdout))  # the tables are printed all the same
 
 
 def test_a_run_without_drives_is_refused_with_what_is_missing(seven):

@@ -110,7 +110,11 @@ def test_step_prints_its_figures_and_writes_a_plot(tmp_path):
     [
         (["--axis", "7"], "1 6"),
         (["--axis", "1", "--joints", "1,2"], "6"),
-        (["--axis", "1", "--joints", "161,0,0,0,0,0"], "J1 161"),
+        (["--axis", "7", "--size", "1000"], "RBL703 --size"),
+        (["--axis", "1", "--joints", "161,0,0,0,0,0"], "RBL703 --joints 1 J1 161"),
+        (["--axis", "2", "--joints", "0,0,46,0,0,0"], "RBL703 --joints 3 J3 46"),
+        (["--axis", "1", "--joints", "159,0,0,0,0,0", "--size", "1.5"], "RBL703 --size J1 160.5"),
+        (["--axis", "1", "--lock-others", "--plant", "mujoco"], "RBL703 --lock-others"),
         (["--axis", "1", "--payload", "-1,0,0,0"], "RBL703 --payload -1 kg"),
         (["--axis", "1", "--size", "nan"], "RBL703 --size"),
         (["--axis", "1", "--plot", "a.png"], "RBL703 --plot"),
