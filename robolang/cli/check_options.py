@@ -15,18 +15,19 @@ class SelectionOptions(Group):
 
     PANEL: ClassVar[str] = "Selection"
     select: Annotated[
-        _Codes, Option("--select", metavar="CODE,...", help="Report these only: RBL2, RBL301, a name, ALL.")
+        _Codes,
+        Option("--select", metavar="CODE,...", help="Report only these: a code, RBL2 for a group, a name, or ALL."),
     ] = None
     ignore: Annotated[_Codes, Option("--ignore", metavar="CODE,...", help="Do not report these.")] = None
-    extend_select: Annotated[_Codes, Option("--extend-select", metavar="CODE,...", help="Report these as well.")] = None
+    extend_select: Annotated[_Codes, Option("--extend-select", metavar="CODE,...", help="Report these too.")] = None
 
 
 class FixOptions(Group):
     """What is corrected."""
 
     PANEL: ClassVar[str] = "Fixes"
-    fix: Annotated[bool, Option("--fix", help="Apply the fixes that are certain to the files.")] = False
-    diff: Annotated[bool, Option("--diff", help="Print what --fix would change; change nothing.")] = False
+    fix: Annotated[bool, Option("--fix", help="Correct the files, where only one correction is possible.")] = False
+    diff: Annotated[bool, Option("--diff", help="Print what --fix would change; write nothing.")] = False
 
 
 class ReportOptions(Group):
@@ -46,8 +47,8 @@ class ReportOptions(Group):
         str | None, Option("--output-file", metavar="FILE", help="Write the report to this file.")
     ] = None
     statistics: Annotated[bool, Option("--statistics", help="Count the findings of each code.")] = False
-    strict: Annotated[bool, Option("--strict", help="Exit code 1 for warnings, too.")] = False
-    exit_zero: Annotated[bool, Option("--exit-zero", help="Exit code 0 for findings of any kind.")] = False
+    strict: Annotated[bool, Option("--strict", help="Exit code 1 for warnings too.")] = False
+    exit_zero: Annotated[bool, Option("--exit-zero", help="Exit code 0 in place of 1, whatever is found.")] = False
 
 
 class MotionOptions(Group):
@@ -55,7 +56,7 @@ class MotionOptions(Group):
 
     PANEL: ClassVar[str] = "Motion"
     motion: Annotated[
-        bool, Option("--motion", help="Plan every move as well: reach, limits, collisions, time of each line.")
+        bool, Option("--motion", help="Plan every move too: reach, limits, collisions, time of each line.")
     ] = False
     max_cycle: Annotated[
         str | None,
@@ -72,7 +73,7 @@ class FileOptions(Group):
 
     PANEL: ClassVar[str] = "Files"
     stdin_filename: Annotated[
-        str | None, Option("--stdin-filename", metavar="NAME", help="The name of the program that - reads.")
+        str | None, Option("--stdin-filename", metavar="NAME", help="File name to report for the program that - reads.")
     ] = None
     watch: Annotated[bool, Option("--watch", help="Check again whenever a file changes, until Ctrl-C.")] = False
-    allow_empty: Annotated[bool, Option("--allow-empty", help="Folders without programs are no error.")] = False
+    allow_empty: Annotated[bool, Option("--allow-empty", help="Accept folders without programs.")] = False

@@ -4,13 +4,14 @@ Typer reads the parameters of a function from its signature. ``command`` gives i
 function, and each option of its groups in the panel of the group.
 """
 
+import copy
 import functools
 import inspect
 from collections.abc import Callable, Iterator
 from typing import Annotated, Any, get_args
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperArgument, TyperCommand, TyperGroup
 
 from robolang.cli.options import Group
 from robolang.cli.usage import OptionValueError
@@ -50,6 +51,7 @@ def command(function: Callable[..., None]) -> Callable[..., None]:
 
     called.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
     called.__annotations__ = {}  # typer would look for the groups otherwise
+    called.__doc__ = "\n\n".join(map(_unwrapped, (inspect.getdoc(function) or "").split("\n\n")))
     return called
 
 
@@ -77,6 +79,11 @@ def _parameters(group: type[Group]) -> Iterator[inspect.Parameter]:
         yield _parameter(name, Annotated[kind, shown], group.DEFAULTS.get(name, inspect.Parameter.empty))
 
 
+def _unwrapped(paragraph: str) -> str:
+    """Return a paragraph as one line: typer keeps the line ends of the source where a terminal has its own."""
+    return " ".join(paragraph.split("\n"))
+
+
 def _argument(parameter: inspect.Parameter) -> inspect.Parameter:
     kind, argument = parameter.annotation.__origin__, parameter.annotation.__metadata__[0]
     shown = typer.Argument(metavar=argument.metavar, help=argument.help)
@@ -86,6 +93,22 @@ def _argument(parameter: inspect.Parameter) -> inspect.Parameter:
 
 def _parameter(name: str, hint: Any, default: Any) -> inspect.Parameter:
     return inspect.Parameter(name, _BY_NAME, annotation=hint, default=default)
+
+
+class PlainCommand(TyperCommand):
+    """A command whose help names an argument without braces, and without its type in Python."""
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        for each in self.params:
+            if isinstance(each, TyperArgument):
+                # a copy, since all texts share one type object; without a text of its own typer prints <str>, <path>
+                each.type = copy.copy(each.type)
+                each.type.get_metavar = lambda *_, **__: ""  # type: ignore[method-assign]
+
+    def collect_usage_pieces(self, ctx: Any) -> list[str]:
+        """Return what follows the name of the command in its line of usage."""
+        return [piece.strip("{}") for piece in super().collect_usage_pieces(ctx)]
 
 
 class CodedGroup(TyperGroup):

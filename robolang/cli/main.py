@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from robolang.cli.command import CodedGroup, command
+from robolang.cli.command import CodedGroup, PlainCommand, command
 from robolang.cli.commands import (
     check,
     compare,
@@ -37,7 +37,10 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
-    help="A robot controller in a package: run a program in an industrial robot language on a true controller.",
+    help="Check, run and test programs of an industrial robot language on a simulated robot controller.",
+    epilog="Exit codes: 0 done; 1 the program has errors, or the answer is no; 2 a file or an option cannot be used; "
+    "3 a move was refused or ended with an alarm; 4 a file cannot be written; 70 a defect of robolang; "
+    "130, 143 stopped by a signal. Each command lists its own.",
 )
 _COMMANDS: dict[str, Callable[..., None]] = {
     "run": run.run,
@@ -56,7 +59,7 @@ _COMMANDS: dict[str, Callable[..., None]] = {
     "explain": explain.explain,
 }
 for name, function in _COMMANDS.items():
-    app.command(name)(command(function))
+    app.command(name, cls=PlainCommand)(command(function))
 app.add_typer(config.app, name="config")
 app.add_typer(export.app, name="export")
 app.add_typer(kin.app, name="kin")
@@ -65,7 +68,7 @@ app.add_typer(robot.app, name="robot")
 
 @app.callback()
 def options(
-    version: Annotated[bool, typer.Option("--version", help="Print the version and leave.")] = False,
+    version: Annotated[bool, typer.Option("--version", help="Print the version and exit.")] = False,
 ) -> None:
     """Take the options that stand before a command."""
     if version:  # pragma: no cover - ``__main__`` answers before this module is imported

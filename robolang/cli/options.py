@@ -77,16 +77,24 @@ class Group(Record):
 
 
 Program = Annotated[str, Argument("PROG", "Program file (.rbl).")]
-OptionalProgram = Annotated[str | None, Argument("[PROG]", "Program file (.rbl); its cell is used.")]
+OptionalProgram = Annotated[
+    str | None, Argument("[PROG]", "Program file (.rbl), for its cell; default: the built-in cell.")
+]
+
+
+ROBOT = "Built-in robot (see robolang robot list), or a .toml, .urdf or .xml file."
 
 
 class CellOptions(Group):
     """Which cell a program runs in, and which robot stands in it."""
 
     PANEL: ClassVar[str] = "Files"
-    cell: Annotated[str | None, Option("--cell", help="Cell file (.toml); default: the one beside the program.")] = None
+    cell: Annotated[
+        str | None, Option("--cell", metavar="FILE", help="Cell file (.toml); default: the one beside the program.")
+    ] = None
     robot: Annotated[
-        str | None, Option("--robot", help="Built-in robot or robot file, instead of the robot of the cell.")
+        str | None,
+        Option("--robot", metavar="ROBOT", help="Built-in robot or robot file, instead of the robot of the cell."),
     ] = None
 
 
@@ -94,7 +102,7 @@ class RobotOptions(Group):
     """Which robot, for the commands that need no cell."""
 
     PANEL: ClassVar[str] = "Robot"
-    robot: Annotated[str, Option("--robot", help="Built-in robot, or a .toml, .urdf or .xml file.")]
+    robot: Annotated[str, Option("--robot", metavar="ROBOT", help=ROBOT)]
 
 
 class PostureOptions(RobotOptions):
@@ -114,16 +122,20 @@ class SettingsOptions(Group):
     """Settings of the controller (docs/servo.md). They override the profile file, which overrides the cell."""
 
     PANEL: ClassVar[str] = "Controller"
-    profile: Annotated[str | None, Option("--profile", help="Controller profile file (.toml).")] = None
+    profile: Annotated[str | None, Option("--profile", metavar="FILE", help="Controller profile file (.toml).")] = None
     settings: Annotated[
         list[str] | None,
-        Option("--set", metavar="KEY=VALUE", help="Any key of the profile, e.g. servo.gravity_compensation=0."),
+        Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Set a key of the profile, such as servo.gravity_compensation=0. May be repeated.",
+        ),
     ] = None
     feedforward: Annotated[
         str | None,
         Option(
             "--feedforward",
-            help="Derivatives of the 'command', or the 'measured' ones.",
+            help="Source of the speed and acceleration that the servo feeds forward.",
             key="servo.feedforward",
             choices=("command", "measured"),
         ),
@@ -132,7 +144,7 @@ class SettingsOptions(Group):
         str | None,
         Option(
             "--load-mode",
-            help="LOAD is an 'add'ition to the last link, or a 'replace'ment.",
+            help="add: LOAD is added to the last link; replace: it takes its place.",
             key="load_mode",
             choices=("add", "replace"),
         ),
@@ -156,7 +168,7 @@ class ControllerOptions(SettingsOptions):
         str | None,
         Option(
             "--servo",
-            help="Servo gains: 'scheduled' follow the inertia, 'fixed' do not.",
+            help="scheduled: the servo gains follow the inertia; fixed: they do not.",
             key="servo.mode",
             choices=("scheduled", "fixed"),
         ),
@@ -165,7 +177,7 @@ class ControllerOptions(SettingsOptions):
         str | None,
         Option(
             "--fixed-at",
-            help="Fixed gains are those of the 'min', 'mid' or 'max' inertia.",
+            help="Inertia that fixed gains are made for: smallest, middle or largest.",
             key="servo.fixed_at",
             choices=("min", "mid", "max"),
         ),
@@ -174,7 +186,7 @@ class ControllerOptions(SettingsOptions):
         str | None,
         Option(
             "--coupling",
-            help="Inertia in the servo: 'diagonal' elements, or 'full' rows.",
+            help="Inertia in the servo: diagonal of the mass matrix, or full rows.",
             key="servo.coupling",
             choices=("diagonal", "full"),
         ),
@@ -188,6 +200,7 @@ class RunControllerOptions(ControllerOptions):
         str | None,
         Option(
             "--compensation",
+            metavar="FILE",
             help="Compensation file of 'robolang identify'; replaces the rotor inertia.",
             key="servo.compensation",
         ),
@@ -200,7 +213,9 @@ class PlantOptions(Group):
     PANEL: ClassVar[str] = "Simulation"
     plant: Annotated[
         str,
-        Option("--plant", help="'mujoco', or 'rigid': the ideal arm with friction.", choices=("mujoco", "rigid")),
+        Option(
+            "--plant", help="Simulated arm: MuJoCo, or the rigid ideal arm with friction.", choices=("mujoco", "rigid")
+        ),
     ] = "mujoco"
 
 
@@ -208,7 +223,7 @@ class PhysicsOptions(Group):
     """Whether a program moves the arm of MuJoCo or the ideal one."""
 
     PANEL: ClassVar[str] = "Simulation"
-    no_physics: Annotated[bool, Option("--no-physics", help="Ideal arm instead of MuJoCo.")] = False
+    no_physics: Annotated[bool, Option("--no-physics", help="Move an ideal arm instead of the arm of MuJoCo.")] = False
 
 
 class JsonOptions(Group):

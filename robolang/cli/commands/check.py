@@ -3,9 +3,6 @@
 Text, cell and taught points; with ``--motion`` also the motion, planned as a run plans it (``check_motion``). A file
 that cannot be read does not keep the others from being checked. Without ``--motion`` no numpy, pinocchio, mujoco, rich,
 and no typer either: ``quick`` calls the function with the options that it has read.
-
-Exit codes (docs/decisions/0005): 0 no errors; 1 errors, with ``--strict`` also warnings, with ``--diff`` something to
-correct; 2 a file, an option or the configuration cannot be used; 4 a file cannot be written. The worst one counts.
 """
 
 import re
@@ -35,7 +32,11 @@ def check(
     report: ReportOptions,
     motion: MotionOptions,
 ) -> None:
-    """Check programs; exit code 1 when one has an error, 2 when one, its cell or its points cannot be used."""
+    """Find errors in programs without running them, and correct those that have one correction.
+
+    Exit codes: 0 no errors; 1 errors, with --strict also warnings, with --diff something to correct; 2 a file or an
+    option cannot be used; 4 a file cannot be written. The largest counts.
+    """
     with reported():
         from robolang.cli.check_job import Job, run_once, watched
 

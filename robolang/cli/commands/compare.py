@@ -19,10 +19,12 @@ if TYPE_CHECKING:
 class _CompareOptions(PhysicsOptions):
     """What is compared, and how many runs there are at a time."""
 
-    only: Annotated[str | None, Option("--only", metavar="NAME,...", help="These variants only.")] = None
+    only: Annotated[
+        str | None, Option("--only", metavar="NAME,...", help="Run these variants only, such as scheduled,load-wrong.")
+    ] = None
     jobs: Annotated[
         int | None,
-        Option("--jobs", metavar="N", low=1, high=64, help="Runs at a time; default: 2, or the number of processors."),
+        Option("--jobs", metavar="N", low=1, high=64, help="Number of runs at a time; default: 2, on one processor 1."),
     ] = None
 
 
@@ -33,7 +35,11 @@ def compare(
     choice: _CompareOptions,
     output: JsonOptions,
 ) -> None:
-    """Compare scheduled gains with fixed ones, right LOADs with wrong ones."""
+    """Run a program with scheduled and fixed gains, right and wrong LOADs, and compare the errors.
+
+    Exit codes: 0 all ran to the end; 1 the program has errors; 2 a file or an option cannot be used; 3 a move was
+    refused, or a run ended with an alarm.
+    """
     settings = settings_of(controller)
     with reported():
         from robolang.experiments.compare import VARIANTS, Request

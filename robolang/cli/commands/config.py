@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from robolang.cli.command import command
+from robolang.cli.command import PlainCommand, command
 from robolang.cli.controller_settings import settings_of
 from robolang.cli.errors import reported, say_warnings
 from robolang.cli.options import CellOptions, ControllerOptions, JsonOptions, OptionalProgram
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from runtime.robot.model.spec import RobotSpec
     from runtime.settings.layers import Settings
 
-app = typer.Typer(no_args_is_help=True, help="The settings in force.")
+app = typer.Typer(no_args_is_help=True, help="Show the settings of the controller.")
 
 
 @app.callback()
@@ -25,10 +25,13 @@ def config() -> None:
     """Keep ``show`` a sub-command."""
 
 
-@app.command()
+@app.command(cls=PlainCommand)
 @command
 def show(program: OptionalProgram, files: CellOptions, controller: ControllerOptions, output: JsonOptions) -> None:
-    """Show every controller setting in force and where it came from."""
+    """Show every controller setting in force, and the file or option that it comes from.
+
+    Exit codes: 0 done; 2 a file or an option cannot be used.
+    """
     settings = settings_of(controller)
     if program is not None and not Path(program).exists():
         raise OptionValueError("PROG", f"there is no file '{program}'")

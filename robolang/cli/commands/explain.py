@@ -12,11 +12,14 @@ if TYPE_CHECKING:
     from runtime.core.faults import Code
 
 
-_Code = Annotated[str | None, Argument("CODE", "A code such as RBL412, or its name; without one, all are listed.")]
+_Code = Annotated[str | None, Argument("CODE", "Code such as RBL412, or its name; default: list all codes.")]
 
 
 def explain(code: _Code) -> None:
-    """Explain a code of a diagnostic, a fault or an alarm."""
+    """Explain the code of an error, a warning or an alarm, and what to do.
+
+    Exit codes: 0 done; 2 there is no such code.
+    """
     import robolang.lint.registry  # noqa: F401 - every code there is
     from runtime.core.faults import all_codes
 

@@ -3,8 +3,6 @@
 The folder is written whole or not at all: manifest.json, one table for each move and channel, the same for F174
 (docs/pulses.md). ``--json`` prints one object: {"machine", "step_s", "folder", "moves": [{"line", "number", "text",
 "steps", "seconds", "length_mm", "speed_mm_s", "slowed", "error_mm", "notes", "channels": [...]}], "markers": [...]}.
-
-Exit codes: 0; 1 the program has errors; 2 a file or an option; 3 a move that cannot be exported; 4 the folder.
 """
 
 import json
@@ -15,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 import typer
 
 from robolang.cli import lines
-from robolang.cli.command import command
+from robolang.cli.command import PlainCommand, command
 from robolang.cli.errors import DIAGNOSTICS, exit_code, reported, say_warnings
 from robolang.cli.options import CellOptions, Group, Option, PlotOptions, Program
 from robolang.cli.output import echo
@@ -31,14 +29,14 @@ if TYPE_CHECKING:
     from robolang.pulse_tables.export import Export, ExportRequest
     from runtime.pulses.channels import Channel
 
-app = typer.Typer(no_args_is_help=True, help="Turn a program into what other controllers run.")
+app = typer.Typer(no_args_is_help=True, help="Write a program in the form of other controllers.")
 SHORTEST_MS, LONGEST_MS = 1.0, 1000.0
 LOWEST_HZ, HIGHEST_HZ = 1.0, 1e5
 
 
 @app.callback()
 def formats() -> None:
-    """Turn a program into what other controllers run."""
+    """Keep ``pulses`` a sub-command."""
 
 
 class _TableOptions(Group):
@@ -47,26 +45,34 @@ class _TableOptions(Group):
     PANEL: ClassVar[str] = "Pulse tables"
     channels: Annotated[
         str | None,
-        Option("--channels", metavar="F.toml|NAME", help="Channel file, or xy, cylindrical, scara; default: the arm."),
+        Option(
+            "--channels", metavar="F.toml|NAME", help="Channel file, or xy, cylindrical or scara; default: the arm."
+        ),
     ] = None
     step: Annotated[str, Option("--step", metavar="TIME", help="Length of a step, such as 10ms.")] = "10ms"
     fmin: Annotated[
         float | None,
         Option("--fmin", metavar="HZ", help="Lowest pulse frequency of every channel, Hz; default: 191."),
     ] = None
-    plc: Annotated[str, Option("--plc", help="Form of a PLC beside the neutral one.", choices=("f174", "none"))] = (
-        "f174"
-    )
+    plc: Annotated[
+        str, Option("--plc", help="Form of a PLC to write beside the neutral tables.", choices=("f174", "none"))
+    ] = "f174"
 
 
 class _OutputOptions(PlotOptions):
-    out: Annotated[Path, Option("--out", "-o", metavar="DIR", help="Folder to write: new, empty, or an export.")]
+    out: Annotated[
+        Path, Option("--out", "-o", metavar="DIR", help="Folder to write: new, empty, or an earlier export.")
+    ]
 
 
-@app.command("pulses")
+@app.command("pulses", cls=PlainCommand)
 @command
 def pulses(program: Program, files: CellOptions, tables: _TableOptions, output: _OutputOptions) -> None:
-    """Export a program as pulse tables: equal-time steps for the channels of a PLC."""
+    """Write a program as pulse tables: steps of equal time for the pulse channels of a PLC.
+
+    Exit codes: 0 done; 1 the program has errors; 2 a file or an option cannot be used; 3 a move cannot be exported; 4
+    the folder cannot be written.
+    """
     request = _request(tables)
     check_plot(output.plot)
     with reported():

@@ -2,9 +2,7 @@
 
 Without ``--check`` and ``--diff`` files are rewritten. A file that cannot be read or has errors in its text is left
 alone and reported, and the others are formatted all the same. ``-`` formats the standard input to the standard output.
-
-Exit codes: 0; 1 with ``--check`` or ``--diff``, something would change; 2 a file is left alone; 4 one cannot be
-written. Imports no numpy, pinocchio or mujoco.
+Imports no numpy, pinocchio or mujoco.
 """
 
 from dataclasses import dataclass
@@ -21,12 +19,17 @@ if TYPE_CHECKING:
 
 
 _Paths = Annotated[
-    list[str] | None, Argument("[PATH...]", "Programs, folders of them (*.rbl), or -; default: this folder.")
+    list[str] | None,
+    Argument("[PATH...]", "Programs, folders of programs (*.rbl), or - for stdin; default: this folder."),
 ]
 
 
 def fmt(paths: _Paths, output: RewriteOptions) -> None:
-    """Format programs: keywords in capitals, blocks indented, comments aligned."""
+    """Format programs: keywords in capitals, blocks indented, comments aligned.
+
+    Exit codes: 0 done; 1 with --check or --diff, a file would change; 2 a file has errors or cannot be read, and is
+    left as it is; 4 a file cannot be written.
+    """
     run, names = _Run(check=output.check, diff=output.diff), paths or ["."]
     with reported():
         if names == [STDIO]:

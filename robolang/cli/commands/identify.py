@@ -32,7 +32,9 @@ if TYPE_CHECKING:
 ENDING = ".compensation.toml"
 
 
-_Subject = Annotated[str, Argument("PROG_OR_ROBOT", "Program file (.rbl), for its cell; built-in robot or robot file.")]
+_Subject = Annotated[
+    str, Argument("PROG_OR_ROBOT", "Program file (.rbl), for the robot of its cell; or a built-in robot or robot file.")
+]
 
 
 class _ExperimentOptions(PlantOptions):
@@ -45,16 +47,23 @@ class _ExperimentOptions(PlantOptions):
     ] = 5
     error: Annotated[
         int | None,
-        Option("--error", metavar="SEED", low=0, help="Bodies of the plant are 5 to 20 % heavier than the model."),
+        Option(
+            "--error",
+            metavar="SEED",
+            low=0,
+            help="Make the bodies of the simulated arm 5 to 20 % heavier, at random from this seed.",
+        ),
     ] = None
     carrying: Annotated[
         str | None,
-        Option("--carrying", metavar="M,X,Y,Z", help="Carried and declared payload: kg, mm; default: the cell's hand."),
+        Option(
+            "--carrying", metavar="M,X,Y,Z", help="Payload carried and declared: kg, mm; default: the hand of the cell."
+        ),
     ] = None
     payload: Annotated[bool, Option("--payload", help="Identify the payload, as 'robolang weigh' does.")] = False
     table: Annotated[
         int | None,
-        Option("--table", metavar="K", low=2, high=7, help="Table over J2 and J3 with K angles of each."),
+        Option("--table", metavar="K", low=2, high=7, help="Identify a table over J2 and J3, K angles of each."),
     ] = None
 
 
@@ -64,11 +73,15 @@ class _OutputOptions(JsonOptions):
     out: Annotated[
         Path | None, Option("--out", metavar=f"FILE{ENDING}", help="Write the compensation to this file.")
     ] = None
-    date: Annotated[str, Option("--date", metavar="YYYY-MM-DD", help="Date that the file states.")] = ""
+    date: Annotated[str, Option("--date", metavar="YYYY-MM-DD", help="Date to write into the file.")] = ""
 
 
 def identify(subject: _Subject, options: _ExperimentOptions, output: _OutputOptions) -> None:
-    """Identify inertia at the motor and weight of each axis, and what the model lacks of them."""
+    """Move each axis and identify its inertia at the motor and its weight; compare with the model.
+
+    Exit codes: 0 done; 2 a file or an option cannot be used; 3 a motion was refused or ended with an alarm; 4 a file
+    cannot be written.
+    """
     if options.payload:
         _refuse_beside_payload(options, output)
         weigh_subject(subject, options.plant, JsonOptions(as_json=output.as_json))

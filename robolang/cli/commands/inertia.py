@@ -5,8 +5,6 @@
     {"robot", "joints_deg", "payload_kg", "axes": [{"axis", "link_inertia", "rotor_inertia", "motor_inertia",
                                                     "compensation", "gravity"}, ...]}
     with --map  {"robot", "joints_deg", "payload_kg", "axis", "map", "smallest": {...}, "largest": {...}, "file"}
-
-Exit codes: 0; 2 a value or a robot that cannot be used; 4 the picture cannot be written.
 """
 
 import json
@@ -52,7 +50,10 @@ class _CompensationOptions(PostureOptions):
 
 
 def inertia(options: _CompensationOptions, chart: _MapOptions, output: JsonOptions) -> None:
-    """Print the inertia of every axis at the link and at the motor, and its gravity torque."""
+    """Print the inertia of every axis at the joint and at the motor, and its gravity torque.
+
+    Exit codes: 0 done; 2 a value or a robot cannot be used; 4 the picture cannot be written.
+    """
     _check_use(chart)
     if chart.over is not None and options.compensation is not None:
         raise OptionValueError("--compensation", "cannot be used with --map: the map shows the model")

@@ -11,8 +11,7 @@ that order; without ``--tool`` the tool is the flange. ``--json`` gives full dou
 ``turns_deg`` holds the joint angles of a solution and all others inside the ranges that differ from them by whole
 turns: a joint with a range above one turn has several angles for one place. ``complete`` is false for an arm without a
 closed form, whose numeric search may have missed solutions. ``not_listed`` counts the turns beyond ``MOST_TURNS``.
-Exit codes: 0; 1 out of reach (RBL410 on stderr); 2 a value, a robot name or a robot file that cannot be used. ``fk``
-warns of joint angles outside their ranges (RBL309 on stderr), and prints their pose.
+``fk`` warns of joint angles outside their ranges (RBL309 on stderr), and prints their pose.
 A robot may be a URDF or MJCF file: no drives are needed here. An arm without a closed form has the branch NUMERIC.
 numpy, rich and the runtime are imported inside the commands, so that ``robolang --help`` stays quick.
 """
@@ -23,7 +22,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from robolang.cli.command import command
+from robolang.cli.command import PlainCommand, command
 from robolang.cli.errors import reported, say_warnings
 from robolang.cli.options import JsonOptions, Option, RobotOptions
 from robolang.cli.output import echo
@@ -60,10 +59,13 @@ class _PoseOptions(_ToolOptions):
     pose: Annotated[str, Option("--pose", metavar="X,Y,Z,RX,RY,RZ", help="Pose of the tool, mm and deg.")]
 
 
-@app.command()
+@app.command(cls=PlainCommand)
 @command
 def fk(options: _JointsOptions, output: JsonOptions) -> None:
-    """Print the pose of the tool for given joint angles."""
+    """Print the pose of the tool for given joint angles.
+
+    Exit codes: 0 done, also for angles outside the joint ranges (a warning); 2 a value or a robot cannot be used.
+    """
     with reported():
         _fk(options, output.as_json)
 
@@ -88,10 +90,13 @@ def _fk(options: _JointsOptions, as_json: bool) -> None:
     )
 
 
-@app.command()
+@app.command(cls=PlainCommand)
 @command
 def ik(options: _PoseOptions, output: JsonOptions) -> None:
-    """Print every set of joint angles that puts the tool at a pose, the one farthest from the limits first."""
+    """Print every set of joint angles that puts the tool at a pose, the one farthest from the limits first.
+
+    Exit codes: 0 done; 1 the pose is out of reach; 2 a value or a robot cannot be used.
+    """
     with reported():
         _ik(options, output.as_json)
 

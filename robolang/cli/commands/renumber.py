@@ -1,10 +1,8 @@
-"""``robolang renumber FILE``: number the lines of a program anew, and lead its jumps to the new numbers.
+"""``robolang renumber FILE``: give the lines of a program new numbers, and its jumps the new targets.
 
 Only the numbers change; ``robolang fmt`` puts the columns right. ``FILE`` or ``-o`` may be ``-``. A program that has
 errors, the same number twice or a jump to no line is left alone and reported.
-
-Exit codes: 0; 1 with ``--check`` or ``--diff``, something would change; 2 the program is left alone; 4 it cannot be
-written. Imports no numpy, pinocchio or mujoco.
+Imports no numpy, pinocchio or mujoco.
 """
 
 from typing import TYPE_CHECKING, Annotated, ClassVar
@@ -19,7 +17,7 @@ if TYPE_CHECKING:
     from robolang.cli.rewrite import Loaded
     from robolang.syntax.renumber import RenumberResult
 
-_File = Annotated[str, Argument("FILE", "Program file (.rbl), or -.")]
+_File = Annotated[str, Argument("FILE", "Program file (.rbl), or - for stdin.")]
 
 
 class _Numbers(Group):
@@ -28,9 +26,9 @@ class _Numbers(Group):
     PANEL: ClassVar[str] = "Line numbers"
     start: Annotated[int | None, Option("--start", metavar="N", low=0, help="First number; default: 10.")] = None
     step: Annotated[
-        int | None, Option("--step", metavar="N", low=1, help="From one number to the next; default: 10.")
+        int | None, Option("--step", metavar="N", low=1, help="Step from one number to the next; default: 10.")
     ] = None
-    remove: Annotated[bool, Option("--remove", help="Remove the numbers that are no target of a jump.")] = False
+    remove: Annotated[bool, Option("--remove", help="Remove the numbers that no jump uses.")] = False
 
 
 class _Output(RewriteOptions):
@@ -43,7 +41,11 @@ class _Output(RewriteOptions):
 
 
 def renumber(program: _File, numbers: _Numbers, output: _Output) -> None:
-    """Number the lines of a program, and change the targets of its jumps."""
+    """Number the lines of a program, and change the targets of its jumps.
+
+    Exit codes: 0 done; 1 with --check or --diff, the file would change; 2 the file has errors or cannot be read, and is
+    left as it is; 4 the file cannot be written.
+    """
     _refuse(numbers, output)
     with reported():
         from runtime.core.faults import Fault

@@ -1,4 +1,4 @@
-"""``robolang replay-pulses DIR``: exported pulse tables, read anew and played; how straight they are, and the real arm.
+"""``robolang replay-pulses DIR``: exported pulse tables, read and replayed: frequencies, path error, simulated arm.
 
 The tables are integrated as a PLC counts them (``runtime.pulses.replay``) and compared with the straight lines that the
 program asks for. ``--physics`` drives the arm of the cell with them too. ``--json`` prints one object, in mm, s and Hz:
@@ -11,9 +11,6 @@ program asks for. ``--physics`` drives the arm of the cell with them too. ``--js
                    "real": null or {"seconds", "error_mm", "end_mm"}}, ...],
      "physics": null or {"seconds", "alarms": [{"code", "message", "line", "number", "axis", "time_s"}, ...],
                                   "warnings"}}
-
-Exit codes: 0; 1 the tables lead further from a line than ``--max-error`` (RBL635); 2 a value or a folder that cannot be
-used, or one for another robot; 3 the real arm stopped with an alarm.
 """
 
 import json
@@ -50,12 +47,16 @@ class _ReplayOptions(Group):
         float | None,
         Option("--max-error", metavar="MM", help="Exit code 1 if the path error of a move is larger, mm."),
     ] = None
-    physics: Annotated[bool, Option("--physics", help="Drive the arm of --cell in MuJoCo too.")] = False
+    physics: Annotated[bool, Option("--physics", help="Drive the arm of --cell with the tables, in MuJoCo.")] = False
     cell: Annotated[str | None, Option("--cell", metavar="FILE", help="Cell file (.toml) for --physics.")] = None
 
 
 def replay_pulses(folder: _Folder, options: _ReplayOptions, output: PlotOptions) -> None:
-    """Play exported pulse tables: frequencies, path error, and the real arm."""
+    """Replay exported pulse tables: frequencies, path error, with --physics also the simulated arm.
+
+    Exit codes: 0 done; 1 a path error is larger than --max-error; 2 a value or a folder cannot be used, or is for
+    another robot; 3 the simulated arm stopped with an alarm; 4 the plot cannot be written.
+    """
     _check_use(options)
     check_plot(output.plot)
     with reported():

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import typer
 
-from robolang.cli.command import command
+from robolang.cli.command import PlainCommand, command
 from robolang.cli.errors import reader_may_leave, reported, say, say_warnings
-from robolang.cli.options import Argument, Group, Option
+from robolang.cli.options import ROBOT, Argument, Group, Option
 from robolang.cli.output import echo
 from robolang.core.diagnostics import safe
 from runtime.core.faults import Fault
@@ -21,13 +21,16 @@ if TYPE_CHECKING:
     from runtime.robot.files.imported import ImportedArm
     from runtime.robot.model.spec import Body, Correction, RobotSpec
 
-app = typer.Typer(no_args_is_help=True, help="The robot library.")
+app = typer.Typer(no_args_is_help=True, help="List and show robots, import robot models.")
 
 
-@app.command("list")
+@app.command("list", cls=PlainCommand)
 @command
 def list_robots() -> None:
-    """List the built-in robots."""
+    """List the built-in robots.
+
+    Exit codes: 0 done.
+    """
     from runtime.robot.files.loader import load_builtin
     from runtime.robot.files.robot_file import library
 
@@ -38,7 +41,7 @@ def list_robots() -> None:
             echo(f"{name.ljust(max(map(len, names)))}  {spec.title}, {spec.n} axes, {spec.rated_payload:g} kg")
 
 
-_Robot = Annotated[str, Argument("ROBOT", "Built-in robot, or a .toml, .urdf or .xml file.")]
+_Robot = Annotated[str, Argument("ROBOT", ROBOT)]
 _Model = Annotated[Path, Argument("FILE", "URDF or MJCF file (.urdf, .xml).")]
 
 
@@ -51,15 +54,18 @@ class _SidecarOptions(Group):
         Option("--output", "-o", metavar="FILE", help="File to write; default: NAME.robot.toml beside FILE."),
     ] = None
     flange: Annotated[
-        str | None, Option("--flange", metavar="NAME", help="Frame that tools are mounted on; default: the last one.")
+        str | None, Option("--flange", metavar="NAME", help="Frame that carries the tool; default: the last one.")
     ] = None
     force: Annotated[bool, Option("--force", help="Replace an existing file.")] = False
 
 
-@app.command()
+@app.command(cls=PlainCommand)
 @command
 def show(robot: _Robot) -> None:
-    """Show a robot: limits, drives, gear springs, bodies, corrections of published data, sources."""
+    """Show a robot: limits, drives, gear springs, bodies, corrections of published data, sources.
+
+    Exit codes: 0 done; 2 the robot cannot be used, or has a body that cannot exist.
+    """
     worst = 0
     with reported():
         from robolang.project.project import load_any_robot
@@ -74,10 +80,13 @@ def show(robot: _Robot) -> None:
         raise SystemExit(worst)
 
 
-@app.command("import")
+@app.command("import", cls=PlainCommand)
 @command
 def import_model(file: _Model, options: _SidecarOptions) -> None:
-    """Write the sidecar of a URDF or MJCF file, with what it lacks marked MISSING."""
+    """Write a sidecar for a URDF or MJCF file: a robot file for the missing data, each marked MISSING.
+
+    Exit codes: 0 done; 2 the model cannot be used; 4 the sidecar exists or cannot be written.
+    """
     with reported():
         from robolang.core.storage import write_atomic
         from runtime.robot.files.importer import read_model

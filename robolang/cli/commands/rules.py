@@ -17,7 +17,10 @@ class _RulesOptions(Group):
 
 
 def rules(output: _RulesOptions) -> None:
-    """List the rules of robolang check; robolang explain CODE prints one of them."""
+    """List the rules of robolang check; robolang explain CODE explains one of them.
+
+    Exit codes: 0 done.
+    """
     from robolang.lint.registry import codes
 
     with reported(), reader_may_leave():

@@ -1,8 +1,6 @@
 """``robolang run PROG``: a program on the controller and the physics, with progress, a table and files to keep.
 
-Progress, warnings and errors go to stderr, the table to stdout. Output files are tried before the run.
-
-Exit codes: 0; 3 the run ended with an alarm; with ``--strict`` 1 where it ended well and there were warnings.
+Progress, warnings and errors go to stderr, the table to stdout. Output files are opened before the run.
 ``--quiet`` leaves warnings out, but not with ``--strict``: what makes the exit code 1 is shown.
 """
 
@@ -43,10 +41,12 @@ class _OutputOptions(Group):
     """What a run prints and writes."""
 
     PANEL: ClassVar[str] = "Output and exit code"
-    report: Annotated[Path | None, Option("--report", metavar="FILE", help="Write the report as JSON.")] = None
+    report: Annotated[Path | None, Option("--report", metavar="FILE", help="Write the report to this file (JSON).")] = (
+        None
+    )
     log: Annotated[
         Path | None,
-        Option("--log", metavar="FILE", help="Write every signal: .npz (numpy) or .mcap (log viewers)."),
+        Option("--log", metavar="FILE", help="Write all signals: .npz (numpy) or .mcap (log viewers)."),
     ] = None
     strict: Annotated[bool, Option("--strict", help="Exit code 1 if the run has warnings.")] = False
     quiet: Annotated[bool, Option("--quiet", help="Print errors only; with --strict warnings too.")] = False
@@ -64,7 +64,11 @@ def run(
     simulation: _SimulationOptions,
     output: _OutputOptions,
 ) -> None:
-    """Run a program on the controller and the physics."""
+    """Run a program on the controller and the simulated arm.
+
+    Exit codes: 0 done; 1 the program has errors, with --strict also warnings; 2 a file or an option cannot be used; 3 a
+    move was refused, or the run ended with an alarm; 4 a file cannot be written; 130 or 143 stopped by a signal.
+    """
     settings = settings_of(controller)
     with reported():
         _check_outputs(program, output)

@@ -29,7 +29,7 @@ class _StepOptions(PostureOptions):
     """The step, and what it is made with."""
 
     PANEL: ClassVar[str] = "Step"
-    axis: Annotated[int, Option("--axis", low=1, high=7, help="Axis that makes the step, from 1.")]
+    axis: Annotated[int, Option("--axis", metavar="N", low=1, high=7, help="Axis that makes the step, from 1.")]
     size: Annotated[float, Option("--size", metavar="DEG", help="Size of the step, deg; 0: only the droop.")] = 0.5
     load: Annotated[
         str | None,
@@ -49,15 +49,19 @@ class _ArmOptions(PlantOptions):
         str,
         Option(
             "--drives",
-            help="Drives with 'real' limits, current loop and encoder, or 'ideal' ones.",
+            help="real: with limits, current loop and encoder; ideal: without.",
             choices=("real", "ideal"),
         ),
     ] = "real"
-    lock: Annotated[bool, Option("--lock-others", help="Hold the other axes fast (rigid arm).")] = False
+    lock: Annotated[bool, Option("--lock-others", help="Lock the other axes; needs --plant rigid.")] = False
 
 
 def step(options: _StepOptions, arm: _ArmOptions, controller: ControllerOptions, output: PlotOptions) -> None:
-    """Measure the step response of one axis: overshoot, settling, rise, droop."""
+    """Measure the step response of one axis: overshoot, settling, rise, droop.
+
+    Exit codes: 0 done; 2 a value or a file cannot be used; 3 the axis does not come to rest, or an alarm stopped it; 4
+    the plot cannot be written.
+    """
     settings = settings_of(controller)
     check_plot(output.plot)
     with reported():

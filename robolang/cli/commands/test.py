@@ -1,8 +1,7 @@
 """``robolang test [PATHS]``: run programs that have a test file beside them, and compare with what it expects.
 
 ``NAME.test.toml`` beside ``NAME.rbl`` (docs/testing.md). A test whose files cannot be used fails, and the others run
-all the same. Exit codes: 0 all as expected; 1 one is not; 2 a file cannot be used, or a path has no test; 4 a file
-cannot be written. ``--junit FILE`` writes the report, of one test suite for each program.
+all the same. ``--junit FILE`` writes the report, of one test suite for each program.
 """
 
 from collections.abc import Iterator
@@ -43,22 +42,24 @@ class _Outcome:
         return f"{self.expected.source.path}:{line}:{column}: {verdict.name}: {verdict.said}"
 
 
-_Paths = Annotated[
-    list[str] | None, Argument("[PATHS]", "Programs, test files, or folders of them; default: this folder.")
-]
+_Paths = Annotated[list[str] | None, Argument("[PATHS]", "Programs, test files, or folders; default: this folder.")]
 
 
 class _TestOptions(Group):
     """What is written, and what an empty folder means."""
 
     PANEL: ClassVar[str] = "Tests"
-    update: Annotated[bool, Option("--update", help="Write the golden logs anew.")] = False
+    update: Annotated[bool, Option("--update", help="Replace the golden logs by the logs of these runs.")] = False
     junit: Annotated[Path | None, Option("--junit", metavar="FILE", help="Write a JUnit report to this file.")] = None
-    allow_empty: Annotated[bool, Option("--allow-empty", help="A folder without test files is no error.")] = False
+    allow_empty: Annotated[bool, Option("--allow-empty", help="Accept folders without test files.")] = False
 
 
 def test(paths: _Paths, options: _TestOptions) -> None:
-    """Run programs and compare with what their test files expect."""
+    """Run programs and compare them with their test files (NAME.test.toml).
+
+    Exit codes: 0 all as expected; 1 one is not; 2 a file cannot be used, or a path has no test; 4 a file cannot be
+    written.
+    """
     with reported():
         from robolang.core.storage import check_writable, write_atomic
 

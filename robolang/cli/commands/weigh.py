@@ -7,8 +7,6 @@
      "load_note"}
 
 ``load`` may be declared by a program; ``load_note`` is what it states otherwise than it was weighed, mostly empty.
-
-Exit codes: 0; 2 a value, a cell or a robot that cannot be used; 3 the exercise was refused or ended with an alarm.
 """
 
 import json
@@ -36,7 +34,11 @@ class _PayloadOptions(PlantOptions):
     PANEL: ClassVar[str] = "Experiment"
     payload: Annotated[
         str | None,
-        Option("--payload", metavar="M,X,Y,Z", help="Body carried beside the hand: mass, kg, and centre, mm."),
+        Option(
+            "--payload",
+            metavar="M,X,Y,Z",
+            help="Body carried in addition to the hand: mass, kg, and centre of gravity, mm.",
+        ),
     ] = None
     amplitude: Annotated[
         float | None,
@@ -49,7 +51,10 @@ class _PayloadOptions(PlantOptions):
 
 
 def weigh(program: OptionalProgram, files: CellOptions, options: _PayloadOptions, output: JsonOptions) -> None:
-    """Weigh what the arm carries: mass, centre of gravity and the LOAD to write."""
+    """Move the arm and weigh what it carries: mass, centre of gravity, and the LOAD to write.
+
+    Exit codes: 0 done; 2 a value, a cell or a robot cannot be used; 3 the motion was refused or ended with an alarm.
+    """
     amplitude = options.amplitude
     if amplitude is not None and not 0.0 < amplitude <= MOST_AMPLITUDE:  # NaN is refused too
         shown, most = beside(amplitude, MOST_AMPLITUDE)

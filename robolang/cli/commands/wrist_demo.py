@@ -1,4 +1,4 @@
-"""``robolang wrist-demo [FIGURE...]``: the figures of CN103429397A, computed anew; a table, plots with ``--out``."""
+"""``robolang wrist-demo [FIGURE...]``: the figures of CN103429397A, calculated; a table, plots with ``--out``."""
 
 import json
 import time
@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from robolang.cli.errors import reported, say_warnings
-from robolang.cli.options import Argument, JsonOptions, Option
+from robolang.cli.options import Argument, JsonOptions, Option, RobotOptions
 from robolang.cli.output import echo
 from robolang.cli.usage import OptionValueError
 from runtime.core.units import badness
@@ -30,21 +30,29 @@ _LEAD_S = 0.2
 _STYLE = "body{font-family:sans-serif;max-width:46rem;margin:2em auto;padding:0 1em}img{width:100%}figure{margin:2em 0}"
 
 
-_Figures = Annotated[list[str] | None, Argument("[FIGURE...]", "Figures of the document; default: all.")]
+_Figures = Annotated[list[str] | None, Argument("[FIGURE...]", "Numbers of figures of the document; default: all.")]
 
 
-class _DemoOptions(JsonOptions):
-    """Which robot, and where the figures are drawn."""
+class _DemoRobot(RobotOptions):
+    """The robot of the figures."""
 
-    robot: Annotated[str, Option("--robot", help="Built-in robot, or a path to a robot file.")] = "irb2400"
+    robot: str = "irb2400"
+
+
+class _OutputOptions(JsonOptions):
+    """Where the figures are drawn."""
+
     out: Annotated[
         Path | None, Option("--out", metavar="DIR", help="Write wrist-figNN.svg and index.html to this folder.")
     ] = None
 
 
-def wrist_demo(figures: _Figures, options: _DemoOptions) -> None:
-    """Straight moves through a change of the wrist, as in the figures of CN103429397A."""
-    out = options.out
+def wrist_demo(figures: _Figures, options: _DemoRobot, output: _OutputOptions) -> None:
+    """Calculate the figures of CN103429397A: straight moves through a change of the wrist.
+
+    Exit codes: 0 done; 2 a figure or a robot cannot be used; 3 a move was refused; 4 a file cannot be written.
+    """
+    out = output.out
     with reported():
         from robolang.experiments.wrist_figures import FIGURES, unusable
         from robolang.project.project import load_any_robot
@@ -60,7 +68,7 @@ def wrist_demo(figures: _Figures, options: _DemoOptions) -> None:
         shown = list(_computed(spec, chosen))
         if out is not None:
             _write(out, spec.name, shown)
-        if options.as_json:
+        if output.as_json:
             found = [_figure(figure, runs, out) for figure, runs in shown]
             echo(json.dumps({"robot": spec.name, "figures": found}, indent=2))
         else:

@@ -1,6 +1,7 @@
 """``--help`` of every command: each option once, with its help text, in the panel of its group, at 80 columns."""
 
 import re
+import signal
 from typing import Annotated
 
 import pytest
@@ -8,6 +9,7 @@ import typer
 from typer.testing import CliRunner
 
 from robolang.cli.command import command
+from robolang.cli.errors import DIAGNOSTICS, INTERNAL, INTERRUPTED, MOTION, STORAGE, USAGE
 from robolang.cli.main import app
 from robolang.cli.options import Group, Option
 from tests.robolang.cli.commands import flat, robolang
@@ -22,6 +24,7 @@ def commands(found=None, words=()):
 
 
 COMMANDS = commands()
+EXIT_CODES = {0, DIAGNOSTICS, USAGE, MOTION, STORAGE, INTERNAL, INTERRUPTED, 128 + signal.SIGTERM}
 
 
 @pytest.mark.parametrize(("words", "found"), COMMANDS, ids=[" ".join(words) for words, _ in COMMANDS])
@@ -35,6 +38,23 @@ def test_every_option_is_in_the_help_with_its_text(words, found):
             (name, *_) = parameter.opts
             assert len(re.findall(rf"(?m)^│ (?:\*? +)?(?:-\w,? +)?{name} ", text)) == 1, name
             assert f" {parameter.rich_help_panel} " in text
+
+
+@pytest.mark.parametrize(("words", "found"), COMMANDS, ids=[" ".join(words) for words, _ in COMMANDS])
+def test_the_help_is_for_people_who_know_no_python_and_names_the_exit_codes(words, found):
+    text = robolang(*words, "--help").stdout
+    assert not re.search(r"[<{](?!=)", text), "the type of an option, or an argument in braces"
+    paragraph = flat(re.split(r"\n *\n", text.partition("Exit codes: ")[2])[0])
+    codes = [int(code) for code in re.findall(r"(?:^|; |or )(\d+)", paragraph)]
+    assert codes == sorted(codes)
+    assert codes[0] == 0
+    assert set(codes) <= EXIT_CODES
+    assert "\n " not in found.help.partition("Exit codes")[2]  # wrapped where the terminal ends, not the source
+
+
+def test_all_exit_codes_are_in_the_help_of_the_program():
+    paragraph = flat(robolang("--help").stdout.partition("Exit codes: ")[2])
+    assert {int(code) for code in re.findall(r"(?:^|[;,] )(\d+)", paragraph)} == EXIT_CODES
 
 
 def test_a_number_has_its_unit_in_its_help():
