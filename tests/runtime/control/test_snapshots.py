@@ -7,10 +7,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from runtime.cell.seam_sensor import SeamSensor
 from runtime.control.controller import Controller
 from runtime.core.state import State, Stateful
+from runtime.motion.seam import SeamTracker
+from runtime.robot.model.arm_model import ArmModel
+from runtime.robot.model.payload import Payload
 from tests.campaign import size
-from tests.runtime.control.script import PLANTS, STEPS, Script, controller, log_of, outcome
+from tests.runtime.control.script import PLANTS, SENSOR, STEPS, Script, controller, log_of, outcome
 
 AHEAD = 50
 """Cycles that are run before the controller is taken back."""
@@ -69,7 +73,7 @@ def test_a_new_controller_takes_a_run_over_with_its_log(plant):
 
 
 def test_two_futures_of_one_snapshot_do_not_mix_in_the_log():
-    """Back to an early snapshot, another way, and on to a later snapshot of the first way: its log is of the first."""
+    """Back to an early snapshot, on to another future, and to a later snapshot of the first: its log is of the first."""
     script = Script(controller("rigid"))
     script.run(140)
     early, state = script.robot.snapshot(), script.state
@@ -101,7 +105,7 @@ def test_a_snapshot_outlives_what_happens_after_it(plant):
 
 
 def flat(value: Any) -> object:
-    """Return a state as plain values that compare by content; rows of the log and random numbers left out."""
+    """Return a state as plain values that compare by content; rows of the log left out."""
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         state: Any = value
         if type(value).__name__ == "_Block":
@@ -110,6 +114,10 @@ def flat(value: Any) -> object:
         return type(value).__name__, [flat(getattr(value, name)) for name in fields]
     if isinstance(value, np.ndarray):
         return value.tobytes()
+    if isinstance(value, np.random.Generator):
+        return repr(value.bit_generator.state)
+    if isinstance(value, SeamTracker | SeamSensor):
+        return flat(vars(value))
     if isinstance(value, dict):
         return sorted((str(key), repr(flat(each))) for key, each in value.items())
     if isinstance(value, list | tuple):
@@ -262,6 +270,155 @@ def test_the_controller_itself_has_no_state_but_late_cycles():
         "_clock",
         "_no_deviation",
     }
+
+
+# --- every attribute comes back --------------------------------------------------------------------------------------
+
+OWN_FORM = {
+    "Recorder": "tick cycle _block",
+    "Touches": "records _before _pairs _seen _closed _closing _held _lost _free _open _place _statement",
+    "MujocoPlant": "_closed _touched _ncon _valid _last_qpos _last_qvel",
+}
+"""Attributes of the classes of ``APART`` on which the future depends."""
+IN_DATA = (
+    "qpos qvel ctrl qfrc_applied qacc_warmstart xpos xquat xmat xipos ximat geom_xpos geom_xmat site_xpos site_xmat"
+)
+
+
+def every_part(owner: Any) -> list[Any]:
+    """Return an object and all its parts, and theirs, also where its class does not name them."""
+    name = type(owner).__name__
+    if name in APART or owner is None:
+        return []
+    return [owner, *(part for each in PART_NAMES.get(name, ()) for part in every_part(getattr(owner, each)))]
+
+
+def attributes(robot: Controller) -> list[tuple[Any, str]]:
+    """Return (owner, name) of all that the future depends on, of whatever the classes themselves name as state."""
+    found: list[tuple[Any, str]] = [(robot, "late_cycles")]
+    drives = robot.drives
+    for part in [part for root in (robot.requests, drives, robot.stops) for part in every_part(root)]:
+        name = type(part).__name__
+        other = {*CONSTANT.get(name, "").split(), *ANEW.get(name, "").split(), *BY_HAND.get(name, ())}
+        found += [(part, each) for each in sorted({*vars(part)} - other - {*PART_NAMES.get(name, ())})]
+    for part in (robot.recorder, robot.plant, robot.touches):
+        found += [(part, each) for each in OWN_FORM.get(type(part).__name__, "").split()]
+    if type(robot.plant).__name__ == "MujocoPlant":
+        plant: Any = robot.plant
+        found += [(plant._data, each) for each in IN_DATA.split()]
+    return found
+
+
+PART_NAMES = {
+    "IdleProcessor": ("_task",),
+    "DynamicsTask": ("_loaded",),
+    "InertiaRows": ("_model",),
+    "RequestQueue": ("interpolator",),
+    "DriveTrain": ("plant", "areas", "fine", "servo", "processor", "recorder", "supervisor", "touches"),
+    "ServoAxes": ("law", "motors"),
+    "Supervisor": ("watch", "observer"),
+    "Observer": ("_model",),
+    "RigidPlant": ("_model",),
+}
+"""Attributes that are objects with a state of their own."""
+
+
+def contents(robot: Controller) -> dict[tuple[str, str, int], object]:
+    """Return all that the future depends on, by content; trackers and the carried inertia as well."""
+    seam = robot.requests.interpolator.seam
+    values = {
+        (type(owner).__name__, name, k): flat(getattr(owner, name)) for k, (owner, name) in enumerate(attributes(robot))
+    }
+    values["RequestQueue", "tracker", 0] = flat(robot.requests.tracker)
+    values["Interpolator", "seam", 0] = None if seam is None else flat(vars(seam))
+    for k, arm in enumerate(arms(robot)):
+        values["ArmModel", "inertia", k] = arm._model.inertias[arm.n].toDynamicParameters().tobytes()
+    return values
+
+
+def arms(robot: Controller) -> list[Any]:
+    every = [part for root in (robot.requests, robot.drives) for part in every_part(root)]
+    return [part for part in every if isinstance(part, ArmModel)]
+
+
+def damage(robot: Controller) -> None:
+    """Give every attribute on which the future depends another value, in place where it is written in place."""
+    for owner, name in attributes(robot):
+        value = getattr(owner, name)
+        if isinstance(value, np.ndarray) and name != "_X_tool_part" and value.flags.writeable and live(owner, name):
+            value[...] = value + 1.0
+        elif isinstance(value, list | set | dict):
+            setattr(owner, name, type(value)())
+            if not value:
+                setattr(owner, name, {list: [0], set: {0}, dict: {0: 0}}[type(value)])
+        elif name not in LEFT_ALONE:
+            setattr(owner, name, other_than(value))
+    for arm in arms(robot):
+        arm.set_payload(Payload(mass=0.7, cog=np.array([0.01, 0.02, 0.03])))
+    queue: Any = robot.requests
+    for moving in (queue.tracker, queue.interpolator.seam):
+        if moving is not None:
+            for name, value in vars(moving).items():
+                if isinstance(value, np.ndarray | int | float | None):
+                    setattr(moving, name, other_than(value))
+    if queue.tracker is None:
+        queue.tracker = SeamTracker("torch", SENSOR.limits, 8e-3, SeamSensor(SENSOR).read)
+    else:
+        queue.tracker._read(0.0, np.array([0.0, 1.0, 0.0]))
+
+
+LEFT_ALONE = {"_before"}
+"""Poses of the touches that are written in place, damaged by ``live`` arrays of their own."""
+
+
+def live(owner: Any, name: str) -> bool:
+    """Return whether other objects hold views of an array, so that it must stay the same object."""
+    return type(owner).__name__ in ("MujocoPlant", "MjData") or name in BUFFERS.get(type(owner).__name__, ())
+
+
+BUFFERS = {
+    "Areas": ("ang",),
+    "FineInterpolator": ("_points",),
+    "ServoAxes": ("alpha", "tau_cmd", "tau"),
+    "ServoLaw": ("beta", "_alpha", "_beta_before"),
+    "Motors": ("i",),
+    "Watch": ("speed",),
+    "RigidPlant": ("q", "dq"),
+}
+"""Arrays that are written in place."""
+
+
+def other_than(value: Any) -> Any:
+    """Return another value than this one, of the same type where that is plain."""
+    if isinstance(value, bool):
+        return not value
+    if isinstance(value, np.ndarray | int | float):
+        return value + 1
+    return (value, "damaged") if not isinstance(value, str) else value + "x"
+
+
+STAGES = (30, 150, 420, 640)
+"""Cycles with an empty hand, a blend, a seam, and what comes after it."""
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("source", ["pass", "recursion"])
+@pytest.mark.parametrize("plant", PLANTS)
+def test_every_attribute_on_which_the_future_depends_comes_back(plant, source):
+    """Whatever has become of the controller: what is not restored is still damaged."""
+    script = Script(controller(plant, inertia_source=source))
+    robot = script.robot
+    for stage in STAGES:
+        script.run(stage - robot.recorder.cycle)
+        kept, state, before = robot.snapshot(), script.state, contents(robot)
+        damage(robot)
+        robot.restore(kept)
+        after = contents(robot)
+        assert [name for name in before if before[name] != after.get(name)] == [], stage
+        script.run(AHEAD)
+        robot.restore(kept)
+        script.state = state
+        assert contents(robot) == before, stage
 
 
 class Counter(Stateful):

@@ -63,9 +63,9 @@ def link_error(move: str, K2: float, **servo: object) -> tuple[np.ndarray, np.nd
     for _ in range(50):
         assert controller.cycle()
     start, cycles = np.array(controller.areas.ina), round(seconds / 0.008)
-    for k in range(1, cycles + 61):
-        s = min(k / cycles, 1.0)
-        controller.areas.ina = start + np.array(turn) * s**3 * (10.0 - 15.0 * s + 6.0 * s * s)
+    s = np.minimum(np.arange(1, cycles + 61) / cycles, 1.0)[:, None]
+    controller.play(start + np.array(turn) * s**3 * (10.0 - 15.0 * s + 6.0 * s * s))
+    while controller.moving:
         assert controller.cycle()
     log = controller.recorder.signals(controller.tool_poses)
     error = log["q_cmd"] - np.array(links)
