@@ -6,6 +6,7 @@ have a value.
 """
 
 import re
+from collections.abc import Iterator
 from enum import Enum, auto
 from functools import cache
 from typing import NamedTuple, TypeAlias
@@ -14,6 +15,10 @@ from robolang.core.limits import Limit
 from robolang.values.kinds import Kind
 
 _WORDS = re.compile(r"[A-Z]+\d*(?: [A-Z]+)*")
+_KEYWORD = re.compile(r"\b[A-Z]+\d*\b")
+"""A keyword of a form; names of operands are in small letters."""
+_KEYWORD_OR_OPERAND = re.compile(r"\{(\w+)\}|[A-Z]+\d*")
+_START = re.compile(r"([A-Z]+\d*(?: [A-Z]+)*)(?: \{(\w+)\})?")
 _PIECE = re.compile(r"\{(\w+)\}|([\[\]])|([^\[\]{}]+)")
 
 
@@ -110,6 +115,28 @@ class Declaration(NamedTuple):
         return self.word.partition(" ")[0]
 
     @property
+    def inner_words(self) -> tuple[str, ...]:
+        """The keywords after the first one: of its options, its operands and its forms; some may be twice."""
+        of_options = [word for each in self.options for text in each.forms for word in _KEYWORD.findall(text)[:1]]
+        choices = [word for each in (self, *self.options) for operand in each.operands for word in operand.words]
+        of_forms = [word for text in self.forms for word in _KEYWORD.findall(text)[bool(self.keyword) :]]
+        return (*of_options, *choices, *of_forms)
+
+    @property
+    def starts(self) -> tuple[str, ...]:
+        """The words that it may begin with, as ``ZONE`` and ``FINE``, or ``SEAM ON`` and ``SEAM OFF``."""
+        choices = {operand.name: operand.words for operand in self.operands}
+        found: dict[str, None] = {}
+        for text in self.forms:
+            if start := _START.match(text):
+                words, first = start[1], choices.get(start[2], ())
+                # a word that is chosen right after the keyword belongs to it, as ON to HAND
+                found.update(
+                    dict.fromkeys([f"{words} {word}" for word in first] if first and " " not in words else [words])
+                )
+        return tuple(found)
+
+    @property
     def drains(self) -> bool:
         """Whether all motion ends before it: it asks the robot or the cell for something, and is no move.
 
@@ -145,6 +172,18 @@ def pieces(text: str) -> tuple[Piece, ...]:
         else:
             stack[-1].append(Field(name) if name else plain)
     return tuple(stack[0])
+
+
+def units(declared: Declaration) -> Iterator[tuple[str, str]]:
+    """Yield the keywords of a statement or an option with the unit of the number after each, as TIMEOUT with s."""
+    unit = {operand.name: operand.unit for operand in declared.operands if operand.unit}
+    for text in declared.forms:
+        word = ""
+        for found in _KEYWORD_OR_OPERAND.finditer(text):
+            if found[1] is None:
+                word = found[0]
+            elif found[1] in unit:
+                yield word, unit[found[1]]
 
 
 def form(declared: Declaration) -> str:

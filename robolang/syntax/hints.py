@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable, Sequence
 
 from robolang.syntax import other_languages
+from robolang.syntax.declaration import units
 from robolang.syntax.keywords import (
     COMPONENTS,
     INSTRUCTIONS,
@@ -20,6 +21,7 @@ from robolang.syntax.keywords import (
     instruction_hint,
     near,
 )
+from robolang.syntax.statements import STATEMENTS
 from robolang.syntax.unexpected import END, Unexpected, expected, last_word, quote
 from runtime.core.faults import lookup
 
@@ -34,14 +36,9 @@ _ASSIGNMENT = re.compile(r"\w+\$?[ \t]*(?:\([^=]*\)[ \t]*)?=")
 _SETTINGS = frozenset(
     {"SPEED", "SPEEDJ", "ACCEL", "OVERRIDE", "ZONE", "TOOL", "FRAME", "DELAY", "LOAD", "TIME", "TIMEOUT"}
 )
-_UNIT_OF = {
-    **dict.fromkeys(("DELAY", "TIME", "TIMEOUT", "PULSE", "HAND"), "s"),
-    **dict.fromkeys(("SPEEDJ", "ACCEL", "OVERRIDE"), "%"),
-    **dict.fromkeys(("ZONE", "APPROACH", "DEPART"), "mm"),
-    "SPEED": "mm/s",
-    "LOAD": "kg",
-}
-"""Units of the numbers that follow a word."""
+_DECLARED = (*STATEMENTS, *(option for each in STATEMENTS for option in each.options))
+_UNIT_OF = {word: unit for each in reversed(_DECLARED) for word, unit in units(each)}
+"""Units of the numbers that follow a word; of SPEED that of most moves, which is declared first."""
 _SCALES = {
     "s": {"s": 1.0, "sec": 1.0, "ms": 1e-3, "msec": 1e-3, "min": 60.0},
     "%": {"%": 1.0},

@@ -8,22 +8,22 @@ import re
 import unicodedata
 from collections.abc import Iterable
 
-from robolang.syntax import other_languages
+from robolang.syntax import other_languages, statements
 from robolang.syntax.statements import STATEMENTS, forms
 from robolang.values import functions
 
-_OF_WORDS = frozenset(word for each in STATEMENTS for operand in each.operands for word in operand.words)
-INSTRUCTIONS = frozenset(each.keyword for each in STATEMENTS if each.keyword) - _OF_WORDS
+_CHOICES = frozenset(word for each in STATEMENTS for operand in each.operands for word in operand.words)
+INSTRUCTIONS = frozenset(each.keyword for each in STATEMENTS if each.keyword) - _CHOICES
 """First words of statements; ON of ON ERROR is a word of HAND as well, and not one of them."""
-OPTIONS = ("SPEED", "ACCEL", "TIME", "ZONE", "FINE", "WRIST")
 MOTIONS = frozenset(each.keyword for each in STATEMENTS if each.options)
-COMPONENTS = ("TILT", "ADVANCE", "ROTATION")
+OPTIONS = tuple(dict.fromkeys(form.partition(" ")[0] for each in statements.OPTIONS for form in each.forms))
+COMPONENTS = statements.COMPONENTS
 COMPONENTS6 = ("X", "Y", "Z", "RX", "RY", "RZ")
 """Components of a pose, as in P1.X."""
-_BETWEEN = ("TIMEOUT", "GOTO", "STOP", "THEN", "ELSE", "TO", "STEP", "CASE", "NEXT", "ERROR")
-_SIGN_WORDS = ("NOT", "AND", "OR", "XOR", "MOD")
-INNER_WORDS = ("ON", "OFF", *OPTIONS, "KEEP", "AUTO", "HOLD", *COMPONENTS, *_BETWEEN, *_SIGN_WORDS)
-"""Words that stand behind an instruction, in the order in which messages list them."""
+_DECLARED = tuple(dict.fromkeys(word for each in STATEMENTS for word in each.inner_words))
+# no form has CASE after its first word: SELECT CASE is read, too, and printed as SELECT
+INNER_WORDS = (*_DECLARED, "CASE", "NOT", "AND", "OR", "XOR", "MOD")
+"""Words that stand after an instruction, in the order in which messages list them."""
 KEYWORDS = INSTRUCTIONS | frozenset(INNER_WORDS)
 FUNCTIONS = frozenset(name for name, function in functions.FUNCTIONS.items() if function.parameters)
 VALUES = frozenset(functions.FUNCTIONS) - FUNCTIONS
@@ -33,19 +33,6 @@ NEW = frozenset({"XOR"})
 that older points, cells and programs keep their names (docs/decisions/0029)."""
 RESERVED = (KEYWORDS - NEW) | FUNCTIONS | VALUES | {"REM", "NAN", "INF"}
 
-_PHRASES = {
-    "ON ERROR GOTO",
-    "ON ERROR STOP",
-    "RESUME NEXT",
-    "CASE ELSE",
-    "HAND ON",
-    "HAND OFF",
-    "WRIST KEEP",
-    "WRIST AUTO",
-    "WRIST HOLD",
-    "SEAM ON",
-    "SEAM OFF",
-}
 MAX_CHOICES = 300
 """Among more names than this nothing is suggested."""
 
@@ -96,7 +83,7 @@ def instruction_hint(word: str) -> str:
         return known
     if joined := re.fullmatch(r"(MOVE|LOAD|HAND)(\w*\d)", word.upper()):
         return f"leave a space: {joined[1]} {joined[2]}"
-    guess = near(word, INSTRUCTIONS | _PHRASES)
+    guess = near(word, INSTRUCTIONS.union(*(each.starts for each in STATEMENTS)))
     return f"did you mean {guess}?" if guess else ""
 
 

@@ -47,6 +47,8 @@ _PARENTHESES = Operand("parentheses", "", Role.WRITTEN)
 
 # --- options ---------------------------------------------------------------------------------------------------------
 
+COMPONENTS = ("TILT", "ADVANCE", "ROTATION")
+"""Components of the posture that the wrist can hold."""
 _WRIST = Declaration(
     "Wrist",
     ("WRIST HOLD {held}", "WRIST {mode}"),
@@ -58,7 +60,7 @@ _WRIST = Declaration(
             "component [, component]",
             Role.WORD,
             separator=", ",
-            words=("TILT", "ADVANCE", "ROTATION"),
+            words=COMPONENTS,
             type="Component",
         ),
     ),

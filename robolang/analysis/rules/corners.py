@@ -11,22 +11,8 @@ from robolang.analysis.state_reads import reads_state
 from robolang.core.diagnostics import Diagnostic, Related
 from robolang.core.source import Span
 from robolang.evaluation.constant_folding import fixed
-from robolang.syntax.ast import (
-    Delay,
-    Hand,
-    Load,
-    LoadNamed,
-    Moving,
-    Out,
-    Print,
-    Pulse,
-    Seam,
-    Setting,
-    Statement,
-    Wait,
-    Word,
-    Zone,
-)
+from robolang.syntax.ast import Load, LoadNamed, Moving, Setting, Statement, Unparsed, Word, Zone
+from robolang.syntax.statements import declaration
 from runtime.core.faults import Code, Stage
 
 NO_BLEND = LintRule(
@@ -55,9 +41,6 @@ LOAD_IN_BLEND = LintRule(
     good="10 LOAD (0, 0, 60), 0.8\n20 MOVE P1, ZONE 20\n30 MOVE P2\n",
     line=2,
 )
-
-_STOPS = (Load, LoadNamed, Hand, Seam, Out, Pulse, Delay, Wait, Print)
-"""Statements before which the arm comes to rest, besides TOOL, PAUSE and the end."""
 
 
 class _Corner(NamedTuple):
@@ -157,11 +140,11 @@ def _blends(node: Moving, is_set: bool) -> bool:
 
 
 def _stops(node: Statement) -> bool:
-    if isinstance(node, Setting):
-        return node.word == "TOOL"
-    if isinstance(node, Word):
-        return node.word in ("PAUSE", "STOP", "END")
-    return isinstance(node, _STOPS) or reads_state(node)
+    """Return whether the arm comes to rest before a statement."""
+    if isinstance(node, Unparsed):
+        return False
+    ends = isinstance(node, Word) and node.word == "END"  # has no effect of its own, but no move follows
+    return ends or declaration(node).drains or reads_state(node)
 
 
 CHECK = Check(find, NO_BLEND, LOAD_IN_BLEND)
