@@ -3,6 +3,7 @@
 ``python -m tests.arch.test_docs`` writes docs/codes.md and docs/decisions/README.md anew.
 """
 
+import ast
 import importlib
 import inspect
 import io
@@ -34,6 +35,7 @@ from tests.robolang.helpers import cell_with
 ROOT = Path(__file__).parents[2]
 CODES = ROOT / "docs" / "codes.md"
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
+TEMPLATES = sorted((ROOT / ".github").rglob("*.md"))
 RECORDS = sorted((ROOT / "docs" / "decisions").glob("[0-9]*.md"))
 DECISIONS = ROOT / "docs" / "decisions" / "README.md"
 STATUS = re.compile(r"Status: (accepted|superseded by \d{4}), (\d{4}-\d{2}-\d{2})((?:; amended by .*)?)")
@@ -70,6 +72,12 @@ FILE = re.compile(
     r"(?<![\w/.-])((?:runtime|robolang|tests|programs|docs)/[\w./-]*\.(?:py|toml|rbl|md|lark))(?:::(\w+))?"
 )
 TEST = re.compile(r"`(test_\w+)`")
+WORD = re.compile(r"`([^`\n]+)`")
+PATH = re.compile(r"(?:\.ci|\.github|docs|programs|robolang|runtime|tests)/[\w./*-]*")
+MODULE = re.compile(r"[a-z]\w*\.(?:py|lark)")
+MEMBER = re.compile(r"([A-Z]\w+)\.([a-z]\w*)")
+ELSEWHERE = {"lark.py", "typer.py", "ctypes.py"}
+"""Modules of libraries, which docs/testing.md names."""
 COMMAND = re.compile(r"`(robolang(?: [^`]*)?)`")
 OPTION = re.compile(r"`(--[a-z-]+)")
 MAKE = re.compile(r"`(make [\w-]+)`")
@@ -175,6 +183,45 @@ def test_a_name_that_does_not_exist_is_noticed():
     for wrong in ("runtime.motion.plan", "runtime.motion.cartesian_planner.CartesianPlanner.plans", "robolang.nothing"):
         with pytest.raises((ModuleNotFoundError, AttributeError)):
             resolve(wrong)
+
+
+@cache
+def members() -> dict[str, set[str]]:
+    """Return the classes of both packages, each with every name that its body defines, assigns or reads on self."""
+    found: dict[str, set[str]] = {}
+    for tree in (ast.parse(path.read_text("utf-8")) for path in CODE if "tests" not in path.relative_to(ROOT).parts):
+        for item in ast.walk(tree):
+            if isinstance(item, ast.ClassDef):
+                inner = list(ast.walk(item))
+                names = {node.name for node in inner if isinstance(node, ast.FunctionDef)}
+                names |= {node.attr for node in inner if isinstance(node, ast.Attribute)}
+                names |= {node.id for node in inner if isinstance(node, ast.Name)}
+                found[item.name] = found.get(item.name, set()) | names
+    return found
+
+
+def gone(text: str) -> list[str]:
+    """Return the paths, modules and members of classes that a text names in backquotes and that are not there."""
+    modules = {path.name for path in CODE} | {path.name for path in ROOT.glob("robolang/**/*.lark")} | ELSEWHERE
+    words = [word.partition("::")[0].strip(",.;:()") for quoted in WORD.findall(text) for word in quoted.split()]
+    missing = [word for word in words if PATH.fullmatch(word) and not any(ROOT.glob(word.rstrip("/")))]
+    missing += [word for word in words if MODULE.fullmatch(word) and word not in modules]
+    pairs = [(word, MEMBER.fullmatch(word.partition("(")[0])) for word in words]
+    return missing + [word for word, pair in pairs if pair and pair[2] not in members().get(pair[1], {pair[2]})]
+
+
+@pytest.mark.parametrize("page", [*PAGES, *TEMPLATES], ids=name)
+def test_paths_modules_and_members_exist(page):
+    """The history alone may name what is gone: what CHANGELOG.md says of an edition was true of that edition."""
+    if page.name != "CHANGELOG.md":
+        assert gone(prose(page)) == []
+
+
+def test_a_path_a_module_and_a_member_that_are_gone_are_noticed():
+    old = "`runtime/areas.py`, `robolang/syntax/nodes.py::Node`, `printer.py`, `Controller.step_back(1)`, `tests/lang/`"
+    now = "`runtime/control`, `tests/*/test_api.py`, `unparse.py`, `Controller.rehearse`, `Areas.sda`, `NAME.rbl`"
+    assert len(gone(old)) == 5
+    assert gone(now) == []
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name)
