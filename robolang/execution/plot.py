@@ -19,9 +19,21 @@ _BANDS = 10.0
 _ROW, _LETTER = 18, 6.6  # height of a row of names, width of a letter in it
 
 
+Corner = Literal["top", "bottom", "above"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Labels:
+    """The ``title`` of a plot and what its axes ``x`` and ``y`` show, with units."""
+
+    title: str
+    x: str
+    y: str
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Curve:
-    """A named line: ``x`` and ``y`` (N,); ``dashed`` to tell lines that lie on one another apart.
+    """A named line: ``x`` and ``y`` (N,); ``dashed`` to keep lines that lie on one another apart.
 
     ``colour``: of COLOURS; by default each curve has its own.
     """
@@ -56,71 +68,37 @@ class Dots:
 
 
 def as_svg(
-    title: str,
-    x_label: str,
-    y_label: str,
+    labels: Labels,
     curves: Sequence[Curve],
     level: float | None = None,
-    corner: Literal["top", "bottom", "above"] = "bottom",
+    corner: Corner = "bottom",
     marks: Sequence[Mark] = (),
     dots: Dots | None = None,
 ) -> str:
-    """Return an SVG of the curves; ``level`` draws a thin horizontal line, the value that is wanted.
+    """Return an SVG of the curves; ``level`` draws a thin horizontal line, the set value.
 
     The names of the curves stand in the right-hand ``corner``, or ``above`` the plot, where no curve runs through them.
     """
-    levels = [mark.y for mark in marks if mark.y is not None]
-    xs, ys = (
-        _ticks(_range([c.x for c in curves])),
-        _ticks(_range([*(c.y for c in curves), np.array([0.0, level or 0.0, *levels]), *([dots.y] if dots else [])])),
-    )
+    xs, ys = _ticks(_range([curve.x for curve in curves])), _ticks(_heights(curves, level, marks, dots))
     view = _View(xs[0], xs[-1], ys[0], ys[-1])
     keys, rows = _keys_above(curves, dots) if corner == "above" else ([], 0)
+    # rows of names and the name of an upright mark need room over the plot, which goes down by as much
     down = _ROW * rows + (14 if any(mark.x is not None for mark in marks) else 0)
-    parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT + down}" font-family="sans-serif" '
-        f'font-size="12" fill="#222"><rect width="{WIDTH}" height="{HEIGHT + down}" fill="#fff"/>',
-        f'<text x="{LEFT}" y="20" font-size="14">{escape(title)}</text>',
-        *keys,
+    plot = [
+        *_grid(view, xs, ys),
+        *_level(view, level),
+        _text((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 8, labels.x, "middle"),
+        _upright((TOP + HEIGHT - BOTTOM) / 2, labels.y),
+        *(part for mark in marks for part in _mark(view, mark)),
+        *_curves(view, curves, corner),
+        *_dots(view, dots, curves),
     ]
-    if down:
-        parts.append(f'<g transform="translate(0 {down})">')
-    for x in xs:
-        parts += [
-            _line(view.x(x), TOP, view.x(x), HEIGHT - BOTTOM, "#e4e4e4"),
-            _text(view.x(x), HEIGHT - 28, f"{x:g}", "middle"),
-        ]
-    for y in ys:
-        parts += [
-            _line(LEFT, view.y(y), WIDTH - RIGHT, view.y(y), "#e4e4e4"),
-            _text(LEFT - 6, view.y(y) + 4, f"{y:g}", "end"),
-        ]
-    if level is not None:
-        parts.append(_line(LEFT, view.y(level), WIDTH - RIGHT, view.y(level), "#999"))
-    parts += [
-        _text((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 8, x_label, "middle"),
-        f'<text x="16" y="{(TOP + HEIGHT - BOTTOM) / 2:.0f}" text-anchor="middle" '
-        f'transform="rotate(-90 16 {(TOP + HEIGHT - BOTTOM) / 2:.0f})">{escape(y_label)}</text>',
-    ]
-    for mark in marks:
-        parts += _mark(view, mark)
-    for index, curve in enumerate(curves):
-        parts.append(_polyline(view, curve, index))
-        if corner != "above":
-            row = HEIGHT - BOTTOM - 14 - 17 * (len(curves) - 1 - index) if corner == "bottom" else TOP + 14 + 17 * index
-            parts += _key(WIDTH - RIGHT - 270, row, curve, index)
-    if dots is not None:
-        parts += [
-            _dot(view.x(x), view.y(y), _stroke(curves[k], k)[0])
-            for k, (x, y) in enumerate(zip(dots.x, dots.y, strict=True))
-        ]
-    return "\n".join([*parts, *(["</g>"] if down else []), "</svg>", ""])
+    moved = [f'<g transform="translate(0 {down})">', *plot, "</g>"] if down else plot
+    return "\n".join([*_head(labels.title, HEIGHT + down), *keys, *moved, "</svg>", ""])
 
 
 def as_map_svg(
-    title: str,
-    x_label: str,
-    y_label: str,
+    labels: Labels,
     scale_label: str,
     x: Array,
     y: Array,
@@ -136,11 +114,9 @@ def as_map_svg(
     view = _MapView(x, y)
     edges = _bands(values)
     parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {_MAP_HEIGHT}" font-family="sans-serif" '
-        f'font-size="12" fill="#222"><rect width="{WIDTH}" height="{_MAP_HEIGHT}" fill="#fff"/>',
-        f'<text x="{LEFT}" y="20" font-size="14">{escape(title)}</text>',
+        *_head(labels.title, _MAP_HEIGHT),
         *(_band(view, values, edge, colour) for edge, colour in zip(edges[:-1], _shades(len(edges) - 1), strict=True)),
-        *_map_axes(view, x_label, y_label, every),
+        *_map_axes(view, labels, every),
         *_scale(edges, scale_label),
     ]
     if len(edges) > 2:
@@ -178,6 +154,53 @@ class _View:
         return HEIGHT - BOTTOM - (value - self._y0) * self._sy
 
 
+def _head(title: str, height: int) -> list[str]:
+    return [
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" font-family="sans-serif" '
+        f'font-size="12" fill="#222"><rect width="{WIDTH}" height="{height}" fill="#fff"/>',
+        f'<text x="{LEFT}" y="20" font-size="14">{escape(title)}</text>',
+    ]
+
+
+def _heights(
+    curves: Sequence[Curve], level: float | None, marks: Sequence[Mark], dots: Dots | None
+) -> tuple[float, float]:
+    """Return the range of everything that has a height in the plot; zero is always in it."""
+    levels = [mark.y for mark in marks if mark.y is not None]
+    drawn = [*(curve.y for curve in curves), np.array([0.0, level or 0.0, *levels])]
+    return _range(drawn if dots is None else [*drawn, dots.y])
+
+
+def _grid(view: _View, xs: Sequence[float], ys: Sequence[float]) -> list[str]:
+    """Return the grey lines of the grid and the numbers at their ends."""
+    parts = []
+    for x in xs:
+        parts += [
+            _line(view.x(x), TOP, view.x(x), HEIGHT - BOTTOM, "#e4e4e4"),
+            _text(view.x(x), HEIGHT - 28, f"{x:g}", "middle"),
+        ]
+    for y in ys:
+        parts += [
+            _line(LEFT, view.y(y), WIDTH - RIGHT, view.y(y), "#e4e4e4"),
+            _text(LEFT - 6, view.y(y) + 4, f"{y:g}", "end"),
+        ]
+    return parts
+
+
+def _level(view: _View, level: float | None) -> list[str]:
+    return [] if level is None else [_line(LEFT, view.y(level), WIDTH - RIGHT, view.y(level), "#999")]
+
+
+def _curves(view: _View, curves: Sequence[Curve], corner: Corner) -> list[str]:
+    """Return the lines of the curves, each with its name where the names stand in a corner."""
+    parts = []
+    for index, curve in enumerate(curves):
+        parts.append(_polyline(view, curve, index))
+        if corner != "above":
+            parts += _key(WIDTH - RIGHT - 270, _key_row(corner, index, len(curves)), curve, index)
+    return parts
+
+
 def _polyline(view: _View, curve: Curve, index: int) -> str:
     every = max(1, len(curve.x) // _POINTS)
     points = " ".join(
@@ -187,32 +210,42 @@ def _polyline(view: _View, curve: Curve, index: int) -> str:
     return f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="1.8"{dash}/>'
 
 
-def _key(x: float, y: float, curve: Curve, index: int) -> list[str]:
-    """Return a piece of a curve's line with its name behind it."""
-    colour, dash = _stroke(curve, index)
-    return [
-        f'<line x1="{x}" y1="{y}" x2="{x + 26}" y2="{y}" stroke="{colour}" stroke-width="2"{dash}/>',
-        _text(x + 32, y + 4, curve.name, "start"),
-    ]
+def _key(x: float, y: float, item: Curve | Dots, index: int) -> list[str]:
+    """Return a piece of a curve's line, or a dot, followed by its name."""
+    name = _text(x + 32, y + 4, item.name, "start")
+    if isinstance(item, Dots):
+        return [_dot(x + 13, y, "#666"), name]
+    colour, dash = _stroke(item, index)
+    return [f'<line x1="{x}" y1="{y}" x2="{x + 26}" y2="{y}" stroke="{colour}" stroke-width="2"{dash}/>', name]
+
+
+def _key_row(corner: Corner, index: int, count: int) -> int:
+    """Return the height of a name in its corner; the last one stands lowest in both corners."""
+    return HEIGHT - BOTTOM - 14 - 17 * (count - 1 - index) if corner == "bottom" else TOP + 14 + 17 * index
 
 
 def _keys_above(curves: Sequence[Curve], dots: Dots | None) -> tuple[list[str], int]:
     """Return names in rows under the title, and the number of rows: solid curves and the dots, then dashed curves."""
-    solid: list[tuple[int, Curve | Dots]] = [(k, curve) for k, curve in enumerate(curves) if not curve.dashed]
+    solid = [(k, curve) for k, curve in enumerate(curves) if not curve.dashed]
     dashed = [(k, curve) for k, curve in enumerate(curves) if curve.dashed]
+    keyed: list[tuple[int, Curve | Dots]] = [*solid, *([(0, dots)] if dots else []), *dashed]
+    first_dashed = len(keyed) - len(dashed)
     parts: list[str] = []
     x, row = LEFT, 1
-    for index, item in [*solid, *([(0, dots)] if dots else []), *dashed]:
+    for place, (index, item) in enumerate(keyed):
         width = round(32 + _LETTER * len(item.name))
-        if x > LEFT and (x + width > WIDTH - RIGHT or (dashed and index == dashed[0][0])):
+        if x > LEFT and (x + width > WIDTH - RIGHT or place == first_dashed):
             x, row = LEFT, row + 1
-        y = 18 + _ROW * row
-        if isinstance(item, Curve):
-            parts += _key(x, y, item, index)
-        else:
-            parts += [_dot(x + 13, y, "#666"), _text(x + 32, y + 4, item.name, "start")]
+        parts += _key(x, 18 + _ROW * row, item, index)
         x += width + 16
     return parts, row
+
+
+def _dots(view: _View, dots: Dots | None, curves: Sequence[Curve]) -> list[str]:
+    if dots is None:
+        return []
+    places = zip(dots.x, dots.y, strict=True)
+    return [_dot(view.x(x), view.y(y), _stroke(curves[k], k)[0]) for k, (x, y) in enumerate(places)]
 
 
 def _stroke(curve: Curve, index: int) -> tuple[str, str]:
@@ -295,7 +328,7 @@ def _shades(count: int) -> list[str]:
     return ["#" + "".join(f"{round(float(part[k])):02x}" for part in mixed) for k in range(count)]
 
 
-def _map_axes(view: _MapView, x_label: str, y_label: str, every: float | None) -> list[str]:
+def _map_axes(view: _MapView, labels: Labels, every: float | None) -> list[str]:
     bottom, middle = _MAP_HEIGHT - BOTTOM, (_MAP_TOP + _MAP_HEIGHT - BOTTOM) / 2
     parts = []
     for tick in _inner_ticks(view.x_bounds, every):
@@ -310,9 +343,8 @@ def _map_axes(view: _MapView, x_label: str, y_label: str, every: float | None) -
         ]
     return [
         *parts,
-        _text((LEFT + WIDTH - _MAP_RIGHT) / 2, _MAP_HEIGHT - 8, x_label, "middle"),
-        f'<text x="16" y="{middle:.0f}" text-anchor="middle" transform="rotate(-90 16 {middle:.0f})">'
-        f"{escape(y_label)}</text>",
+        _text((LEFT + WIDTH - _MAP_RIGHT) / 2, _MAP_HEIGHT - 8, labels.x, "middle"),
+        _upright(middle, labels.y),
     ]
 
 
@@ -368,6 +400,11 @@ def _line(x1: float, y1: float, x2: float, y2: float, colour: str) -> str:
 
 def _text(x: float, y: float, text: str, anchor: str) -> str:
     return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{escape(text)}</text>'
+
+
+def _upright(y: float, text: str) -> str:
+    """Return the label of a vertical axis, read from below."""
+    return f'<text x="16" y="{y:.0f}" text-anchor="middle" transform="rotate(-90 16 {y:.0f})">{escape(text)}</text>'
 
 
 def _range(values: Sequence[Array]) -> tuple[float, float]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from robolang.core.diagnostics import safe
 from robolang.core.storage import write_atomic
-from robolang.execution.plot import COLOURS, LEFT, RIGHT, WIDTH, Curve, Mark, as_html, as_svg, stacked
+from robolang.execution.plot import COLOURS, LEFT, RIGHT, WIDTH, Curve, Labels, Mark, as_html, as_svg, stacked
 from runtime.core.frames import Array
 from runtime.core.units import badness
 from runtime.pulses.exported import Export, Move
@@ -53,18 +53,22 @@ def _svgs(program: str, export: Export, replays: list[MoveReplay]) -> list[str]:
     error = Curve(name="tool point", x=x, y=y * per_mm)
     return [
         as_svg(
-            f"{program}: frequency of each channel, below 0 when counting down",
-            "time, s",
-            f"frequency, {hz}",
+            Labels(
+                title=f"{program}: frequency of each channel, below 0 when counting down",
+                x="time, s",
+                y=f"frequency, {hz}",
+            ),
             curves,
             level=0.0,
             corner="above",
             marks=marks,
         ),
         as_svg(
-            f"{program}: distance of the tool point from its straight lines",
-            "time, s",
-            f"path error, {mm}",
+            Labels(
+                title=f"{program}: distance of the tool point from its straight lines",
+                x="time, s",
+                y=f"path error, {mm}",
+            ),
             [error],
             corner="above",
             marks=marks,

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from robolang.execution.plot import Curve, as_svg
+from robolang.execution.plot import Curve, Labels, as_svg
 from robolang.experiments.step import step
 from runtime.core.units import DEG
 from runtime.robot.model.payload import NO_PAYLOAD
@@ -25,9 +25,7 @@ def response(name, end, seconds, dashed=False, **servo):
 def steps(seconds: float) -> str:
     """Draw the step responses of A4."""
     return as_svg(
-        "Step of 0.1 rad, waist of the Puma 560, D' 2.341 or 9.680 kg m2",
-        "time, s",
-        "angle, rad",
+        Labels(title="Step of 0.1 rad, waist of the Puma 560, D' 2.341 or 9.680 kg m2", x="time, s", y="angle, rad"),
         [
             response("scheduled, largest inertia", FAR, seconds),
             response("scheduled, smallest inertia", NEAR, seconds, dashed=True),
@@ -57,7 +55,8 @@ def droops(every_deg: float) -> str:
             found.append(step(replace(request, seconds=0.2)).droop / DEG)
         curves.append(Curve(name=name, x=angles, y=np.array(found)))
     title = "Droop of the shoulder of the Puma 560, arm stretched, Kp 20, Kv 80 1/s"
-    return as_svg(title, "angle of J2 above level, deg", "droop, deg", curves, corner="top")
+    labels = Labels(title=title, x="angle of J2 above level, deg", y="droop, deg")
+    return as_svg(labels, curves, corner="top")
 
 
 def draw(folder: Path, seconds: float = 0.6, every_deg: float = 7.5) -> list[Path]:

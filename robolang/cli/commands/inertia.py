@@ -221,7 +221,7 @@ def _with(mass: float) -> str:
 
 def _draw(path: Path, spec: "RobotSpec", found: "InertiaMap", mass: float) -> None:
     from robolang.core.storage import write_atomic
-    from robolang.execution.plot import as_map_svg
+    from robolang.execution.plot import Labels, as_map_svg
     from runtime.core.units import DEG
 
     first, second = (f"J{joint + 1}" for joint in found.joints)
@@ -229,9 +229,7 @@ def _draw(path: Path, spec: "RobotSpec", found: "InertiaMap", mass: float) -> No
     others = [joint for joint in range(found.axis + 1, spec.n) if joint not in found.joints]  # it depends on these
     held = ", ".join(f"J{joint + 1} {round(found.q[joint] / DEG, 3) + 0.0:g}" for joint in others)
     svg = as_map_svg(
-        title,
-        f"{first}, deg{f' (at {held} deg)' if held else ''}",
-        f"{second}, deg",
+        Labels(title=title, x=f"{first}, deg{f' (at {held} deg)' if held else ''}", y=f"{second}, deg"),
         "kg cm2",
         found.x / DEG,
         found.y / DEG,

@@ -184,11 +184,11 @@ def _print(found: dict[str, Any]) -> None:
 
 def _write_plot(path: Path, request: "StepRequest", result: "StepResult") -> None:
     from robolang.core.storage import write_atomic
-    from robolang.execution.plot import Curve, as_html, as_svg
+    from robolang.execution.plot import Curve, Labels, as_html, as_svg
     from runtime.core.units import DEG
 
     title = f"{request.robot.name}: step on J{request.axis + 1}, D' = {result.inertia:.3g} kg m2"
     curve = Curve(name=f"{request.profile.servo.mode} gains", x=result.t, y=result.response / DEG)
-    svg = as_svg(title, "time, s", "angle, deg", [curve], level=request.size / DEG)
+    svg = as_svg(Labels(title=title, x="time, s", y="angle, deg"), [curve], level=request.size / DEG)
     text = as_html(title, svg) if path.suffix == ".html" else svg
     write_atomic(path, lambda stream: stream.write(text.encode("utf-8")))

@@ -268,7 +268,7 @@ def _joints_svg(title: str, figure: "Figure", runs: list["Run"]) -> str:
     """Draw J4 to J6 of the runs over time, the second one dashed, with the switches and the taught end angles."""
     import numpy as np
 
-    from robolang.execution.plot import Curve, Dots, as_svg
+    from robolang.execution.plot import Curve, Dots, Labels, as_svg
     from runtime.core.units import DEG
 
     curves = [
@@ -285,7 +285,8 @@ def _joints_svg(title: str, figure: "Figure", runs: list["Run"]) -> str:
     moved = any(run.trial.seam for run in runs)
     ends = np.concatenate([run.q_end[3:] for run in (runs if moved else runs[:1])]) / DEG
     dots = Dots(name="taught and moved end" if moved else "taught end", x=np.full(len(ends), runs[0].t[-1]), y=ends)
-    return as_svg(title, "time, s", "angle, deg", curves, corner="above", marks=_marks(figure, runs), dots=dots)
+    labels = Labels(title=title, x="time, s", y="angle, deg")
+    return as_svg(labels, curves, corner="above", marks=_marks(figure, runs), dots=dots)
 
 
 def _marks(figure: "Figure", runs: list["Run"]) -> list["Mark"]:
@@ -315,7 +316,7 @@ def _switches(figure: "Figure", times: list[float | None]) -> Iterator["Mark"]:
 
 def _components_svg(title: str, figure: "Figure", run: "Run") -> str:
     """Draw the change of tilt, advance and rotation over time."""
-    from robolang.execution.plot import Curve, Mark, as_svg
+    from robolang.execution.plot import Curve, Labels, Mark, as_svg
     from runtime.core.units import DEG
 
     switch = run.switch_s or 0.0
@@ -325,7 +326,8 @@ def _components_svg(title: str, figure: "Figure", run: "Run") -> str:
         for k, name in enumerate(("tilt", "advance", "rotation"))
     ]
     mark = Mark(name=f"{figure.switch} {switch:.2f} s", x=switch)
-    return as_svg(title, "time, s", "change of the posture, deg", curves, level=0.0, corner="above", marks=[mark])
+    labels = Labels(title=title, x="time, s", y="change of the posture, deg")
+    return as_svg(labels, curves, level=0.0, corner="above", marks=[mark])
 
 
 def _index(robot: str, shown: list["Shown"]) -> str:

@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from robolang.execution.plot import LEFT, SHADES, WIDTH, as_map_svg
+from robolang.execution.plot import LEFT, SHADES, WIDTH, Labels, as_map_svg
 from robolang.experiments.inertia import POINTS, AxisInertia, extremes, over_plane, plain
 from runtime.core.units import DEG
 from runtime.dynamics.equations import axis_gravity, axis_inertia
@@ -204,7 +204,7 @@ def bands(svg):
 
 def test_bands_lie_where_the_values_are():
     x, y = np.linspace(0.0, 10.0, 21), np.linspace(-1.0, 1.0, 5)
-    svg = as_map_svg("a < b", "x", "y", "unit", x, y, np.broadcast_to(x, (5, 21)))
+    svg = as_map_svg(Labels(title="a < b", x="x", y="y"), "unit", x, y, np.broadcast_to(x, (5, 21)))
     drawn = bands(svg)
     assert len(drawn) == 10
     assert (drawn[0][0], drawn[-1][0]) == (SHADES[0], SHADES[-1])
@@ -223,7 +223,7 @@ def test_bands_upward_and_what_is_not_finite():
     x, y = np.linspace(0.0, 1.0, 4), np.linspace(0.0, 1.0, 6)
     values = np.broadcast_to(y[:, None], (6, 4)).copy()
     values[0, 1] = np.nan
-    drawn = bands(as_map_svg("t", "x", "y", "unit", x, y, values))
+    drawn = bands(as_map_svg(Labels(title="t", x="x", y="y"), "unit", x, y, values))
     assert len(drawn[0][1]) == 7  # six rows, the lowest in two pieces
     top = drawn[-1][1]
     assert len(top) == 1
@@ -233,11 +233,11 @@ def test_bands_upward_and_what_is_not_finite():
 @pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])
 def test_values_of_any_size_and_values_that_are_all_one(scale):
     x = np.linspace(0.0, 1.0, 5)
-    varied = as_map_svg("t", "x", "y", "unit", x, x, scale * (1.0 + np.outer(x, x)))
+    varied = as_map_svg(Labels(title="t", x="x", y="y"), "unit", x, x, scale * (1.0 + np.outer(x, x)))
     assert 8 <= len(bands(varied)) <= 12
     rounded = scale * (1.0 + 1e-13 * np.outer(x, x))
     for alike in (rounded, np.full((5, 5), scale), np.zeros((5, 5)), np.full((5, 5), np.nan)):
-        svg = as_map_svg("t", "x", "y", "unit", x, x, alike)
+        svg = as_map_svg(Labels(title="t", x="x", y="y"), "unit", x, x, alike)
         assert len(bands(svg)) == 1
         assert "circle" not in svg
 

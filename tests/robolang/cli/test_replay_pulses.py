@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from robolang.cli.commands import replay_pulses as module
-from robolang.execution.plot import HEIGHT, LEFT, RIGHT, TOP, WIDTH, Curve, as_svg, stacked
+from robolang.execution.plot import HEIGHT, LEFT, RIGHT, TOP, WIDTH, Curve, Labels, as_svg, stacked
 from tests.messages import fields, numbers
 from tests.robolang.cli.commands import ROOT, flat, places, robolang
 from tests.robolang.pulse_tables.test_drive import puma, swing
@@ -303,7 +303,8 @@ def test_the_plot_is_tried_before_anything_is_played(stairs, tmp_path, monkeypat
 
 def test_stacked_plots_keep_their_heights():
     curve = Curve(name="a", x=np.array([0.0, 1.0]), y=np.array([0.0, 1.0]))
-    low, high = as_svg("low", "x", "y", [curve]), as_svg("high", "x", "y", [curve], corner="above")
+    labels = Labels(title="t", x="x", y="y")
+    low, high = as_svg(labels, [curve]), as_svg(labels, [curve], corner="above")
     root = ElementTree.fromstring(stacked([low, high, low]))
     assert [plot.get("y") for plot in root] == ["0", str(HEIGHT), str(2 * HEIGHT + 18)]
     assert root.get("viewBox") == f"0 0 {WIDTH} {3 * HEIGHT + 18}"

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from robolang.execution.plot import BOTTOM, COLOURS, HEIGHT, LEFT, RIGHT, TOP, WIDTH, Curve, Dots, Mark, as_svg
+from robolang.execution.plot import BOTTOM, COLOURS, HEIGHT, LEFT, RIGHT, TOP, WIDTH, Curve, Dots, Labels, Mark, as_svg
 from robolang.experiments import wrist_figures as demo
 from runtime.core.faults import Fault
 from runtime.core.units import DEG
@@ -296,7 +296,8 @@ def test_marks_dots_and_names_above_stand_where_no_curve_is():
     curves = [Curve(name="a", x=x, y=x), Curve(name="b", x=x, y=-x, dashed=True, colour=0)]
     marks = [Mark(name="here", x=1.0), Mark(name="before", x=1.0, side="left"), Mark(name="top", y=6.0)]
     dots = Dots(name="end", x=np.array([4.0]), y=np.array([4.0]))
-    root = ElementTree.fromstring(as_svg("t", "x", "y", curves, corner="above", marks=marks, dots=dots))
+    labels = Labels(title="t", x="x", y="y")
+    root = ElementTree.fromstring(as_svg(labels, curves, corner="above", marks=marks, dots=dots))
     assert root.get("viewBox") == f"0 0 {WIDTH} {HEIGHT + 2 * 18 + 14}"
     texts = {item.text: item for item in root.iter(f"{SVG}text")}
     assert texts["here"].get("text-anchor") == "start"
@@ -314,3 +315,13 @@ def test_marks_dots_and_names_above_stand_where_no_curve_is():
         if line.get("stroke-dasharray") == "3 3" and line.get("x1") == str(LEFT)
     ]
     assert len(level) == 1
+
+
+def test_the_name_of_dots_stands_with_the_solid_curves_where_the_first_curve_is_dashed():
+    x = np.linspace(0.0, 4.0, 5)
+    curves = [Curve(name="a", x=x, y=x, dashed=True), Curve(name="b", x=x, y=-x)]
+    svg = as_svg(
+        Labels(title="t", x="x", y="y"), curves, corner="above", dots=Dots(name="end", x=np.array([4.0]), y=x[-1:])
+    )
+    heights = {item.text: float(item.get("y")) for item in ElementTree.fromstring(svg).iter(f"{SVG}text")}
+    assert heights["b"] == heights["end"] < heights["a"]
