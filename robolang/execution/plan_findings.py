@@ -171,35 +171,42 @@ class PlanFindings:
 
     def zone(self, move: PlannedMove) -> Found:
         """Find a zone that leaves no room for the blends at both ends of a move, or in which the arm stops."""
-        corner, effect = move.corner, move.effect
-        if move.after is None or corner is None or not corner.radius > 0.0:
-            if effect.zone_mm > 0.0 and not move.command.zone > 0.0:
+        corner, after = move.corner, move.after
+        if after is None or corner is None or not corner.radius > 0.0:
+            if move.effect.zone_mm > 0.0 and not move.command.zone > 0.0:
                 yield PlanFinding(
                     code="RBL414",
                     message="the arm stops at the end of this move: moves under a seam sensor do not blend",
                     hint="Write FINE, or SEAM OFF before the move.",
                 )
-            return
-        paths = [
-            (plan.path.length, which)
-            for plan, which in ((move.plan, "to"), (move.after, "from"))
-            if plan.path is not None and not plan.path.length <= 0.0
-        ]
-        zone = f"a zone of {corner.radius / MM:g} mm"
-        if corner.cycles == 0:
+        elif corner.cycles == 0:
             yield PlanFinding(
                 code="RBL414",
-                message=f"{zone} leaves no room for a blend: the arm stops at the corner",
+                message=f"{_zone(corner)} leaves no room for a blend: the arm stops at the corner",
                 hint="Make the moves at the corner longer, or write FINE where the stop is meant.",
             )
-        elif len(paths) == 2 and not corner.radius <= 0.5 * min(paths)[0] + 1e-9:
+        else:
+            yield from self._short_path(move.plan, corner, after)
+
+    def _short_path(self, before: MovePlan, corner: Corner, after: MovePlan) -> Found:
+        """Find a zone that is more than half of a path at its corner: two blends would not fit on that."""
+        paths = [
+            (plan.path.length, which)
+            for plan, which in ((before, "to"), (after, "from"))
+            if plan.path is not None and not plan.path.length <= 0.0
+        ]
+        if len(paths) == 2 and not corner.radius <= 0.5 * min(paths)[0] + 1e-9:
             short, which = min(paths)
             yield PlanFinding(
                 code="RBL414",
-                message=f"{zone} is more than half of the path {which} this corner, "
+                message=f"{_zone(corner)} is more than half of the path {which} this corner, "
                 f"{short / MM:.1f} mm: the blend begins and ends within "
                 f"{corner.reach / MM:.1f} mm",
             )
+
+
+def _zone(corner: Corner) -> str:
+    return f"a zone of {corner.radius / MM:g} mm"
 
 
 def _largest_turn(start: Array, end: Array) -> str:

@@ -5,7 +5,7 @@ or a name that was given such a value somewhere. What depends on numbers of the 
 ``robolang.interpreter.branch_oracle.Decisions`` forces them.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from robolang.analysis.symbols import names_in
@@ -20,6 +20,7 @@ from robolang.syntax.ast import (
     For,
     Head,
     If,
+    Name,
     Program,
     Statement,
     Sub,
@@ -45,28 +46,37 @@ def open_conditions(program: Program) -> dict[Span, Condition]:
     outside = _from_outside(program)
     return {
         place: Condition(place=place, line=line, wait=wait)
-        for place, line, wait, asked in _conditions(program)
-        if any(_is_outside(node, outside) for node in asked)
+        for place, line, wait, values in _conditions(program)
+        if any(_is_outside(node, outside) for node in values)
     }
 
 
 def _conditions(program: Program) -> Iterator[tuple[Span, int, bool, tuple[Expression, ...]]]:
-    """Yield place, line, whether it is a WAIT that may time out, and what is asked, of every condition."""
+    """Yield place, line, whether it is a WAIT that may time out, and the values it depends on, of every condition."""
     selected: list[Expression] = []
     for line in program.statements:
         for node in _parts(line.statement):
-            if isinstance(node, If):
-                yield node.condition.span, line.source_line, False, (node.condition,)
-            elif isinstance(node, Wait) and node.timeout is not None:
-                yield node.condition.span, line.source_line, True, (node.condition,)
-            elif isinstance(node, Head) and node.word == "SELECT":
+            if isinstance(node, Head) and node.word == "SELECT":
                 selected.append(node.value)
-            elif isinstance(node, Head):
-                yield node.value.span, line.source_line, False, (node.value,)
-            elif isinstance(node, Case):
-                yield node.span, line.source_line, False, (*node.values, *selected[-1:])
             elif getattr(node, "word", "") == "ENDSELECT" and selected:
                 selected.pop()
+            elif (condition := _condition(node, selected)) is not None:
+                place, values = condition
+                yield place, line.source_line, isinstance(node, Wait), values
+
+
+def _condition(node: Statement, selected: list[Expression]) -> tuple[Span, tuple[Expression, ...]] | None:
+    """Return the place of the condition that a statement decides, and the values it depends on; None: it has none."""
+    match node:
+        case If():
+            return node.condition.span, (node.condition,)
+        case Wait() if node.timeout is not None:  # without TIMEOUT the program only goes on when it is true
+            return node.condition.span, (node.condition,)
+        case Head():
+            return node.value.span, (node.value,)
+        case Case():  # it compares with the value of the innermost SELECT
+            return node.span, (*node.values, *selected[-1:])
+    return None
 
 
 def _parts(node: Statement | None) -> Iterator[Statement]:
@@ -101,15 +111,21 @@ def _given(program: Program) -> Iterator[tuple[str, Expression]]:
     subs = {line.statement.name.key: line.statement for line in program.statements if isinstance(line.statement, Sub)}
     for line in program.statements:
         for node in _parts(line.statement):
-            if isinstance(node, Assign):
-                yield (node.target.name if isinstance(node.target, Call) else node.target).key, node.value
-            elif isinstance(node, Const):
-                yield node.name.key, node.value
-            elif isinstance(node, For):
-                yield from ((node.variable.key, limit) for limit in (node.first, node.last, node.step) if limit)
-            elif isinstance(node, CallSub) and node.name.key in subs:
-                parameters = subs[node.name.key].parameters
-                yield from zip((name.key for name in parameters), node.arguments, strict=False)
+            yield from _assignments(node, subs)
+
+
+def _assignments(node: Statement, subs: Mapping[str, Sub]) -> Iterator[tuple[str, Expression]]:
+    match node:
+        case Assign(target=Call(name=name) | (Name() as name)):
+            yield name.key, node.value
+        case Const():
+            yield node.name.key, node.value
+        case For():
+            yield from ((node.variable.key, limit) for limit in (node.first, node.last, node.step) if limit)
+        case CallSub() if node.name.key in subs:
+            # a wrong number of arguments is an error of the check, which comes before
+            parameters = subs[node.name.key].parameters
+            yield from zip((name.key for name in parameters), node.arguments, strict=False)
 
 
 def _is_outside(node: Node, names: frozenset[str]) -> bool:

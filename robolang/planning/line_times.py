@@ -7,6 +7,7 @@ import numpy as np
 from robolang.execution.dry_run import Rehearsal, RehearsedMove
 from robolang.project.project import Project
 from robolang.syntax.unparse import describe
+from runtime.core.frames import Array
 from runtime.core.units import DEG, MM
 from runtime.robot.kinematics.singularity import singularities
 from runtime.robot.model.spec import OpwParameters
@@ -40,29 +41,36 @@ def line_times(project: Project, rehearsal: Rehearsal) -> list[LineTime]:
         if line.source_line not in rehearsal.times_us or line.statement is None:
             continue
         moves = [move for move in rehearsal.moves if move.effect.line == line.source_line]
-        joint, share, margin, length = "", None, None, None
-        if moves:
-            shares = np.max([np.abs(np.diff(move.q, axis=0)).max(axis=0, initial=0.0) for move in moves], axis=0)
-            shares = shares / project.profile.period_s / speed
-            joint, share = f"J{int(np.argmax(shares)) + 1}", 100.0 * float(shares.max())
-            margin = float(np.min([range_margin(move, spec.lower, spec.upper)[0] for move in moves])) / DEG
-            lengths = [move.plan.path.length for move in moves if move.plan.path is not None]
-            length = sum(lengths) / MM if lengths else None
+        joint, share = _fastest(moves, speed, project.profile.period_s) if moves else ("", None)
+        margins = [range_margin(move, spec.lower, spec.upper)[0] for move in moves]
         rows.append(
             LineTime(
                 line=line.source_line,
                 number=line.number,
                 text=describe(line.statement),
-                count=max(1, rehearsal.runs.get(line.source_line, 0)),
+                count=rehearsal.runs[line.source_line],
                 seconds=rehearsal.times_us[line.source_line] / 1e6,
-                length_mm=length,
+                length_mm=_length_mm(moves),
                 joint=joint,
                 speed_pct=share,
-                margin_deg=margin,
+                margin_deg=float(np.min(margins)) / DEG if margins else None,
                 wrist_deg=_wrist_deg(opw, moves),
             )
         )
     return rows
+
+
+def _fastest(moves: list[RehearsedMove], limits: Array, period: float) -> tuple[str, float]:
+    """Return the joint that moves fastest for its limit, ``limits`` (n,) rad/s, and its share of that in %."""
+    steps = np.max([np.abs(np.diff(move.q, axis=0)).max(axis=0, initial=0.0) for move in moves], axis=0)
+    shares = steps / period / limits
+    return f"J{int(np.argmax(shares)) + 1}", 100.0 * float(shares.max())
+
+
+def _length_mm(moves: list[RehearsedMove]) -> float | None:
+    """Return the length of all paths of the tool; None: joint moves only."""
+    lengths = [move.plan.path.length for move in moves if move.plan.path is not None]
+    return sum(lengths) / MM if lengths else None
 
 
 def _wrist_deg(opw: OpwParameters | None, moves: list[RehearsedMove]) -> float | None:
