@@ -132,11 +132,10 @@ def folds(request: Request) -> Folds:
     spec = request.robot
     if request.plant != "mujoco" or not spec.link_radii:
         return lambda q: False
-    from runtime.plant.mujoco_plant import MujocoPlant
+    from runtime.plant.shapes import Shapes
 
-    cell = replace(bench(request), home=0.5 * (spec.lower + spec.upper))
-    plant = MujocoPlant(spec, cell, request.profile.tick_s)
-    return lambda q: plant.folded(q) is not None
+    shapes = Shapes(spec, replace(bench(request), home=0.5 * (spec.lower + spec.upper)))
+    return lambda q: shapes.folded(q) is not None
 
 
 def plan_table(request: Request, payload: Payload, test: Test) -> Grid | None:

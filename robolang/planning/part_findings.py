@@ -9,23 +9,25 @@ centre it. From there it goes with the tool, to HAND OFF, and rests where it is 
 carried part may stand on what is under it, but not slide along an obstacle by more than ``NOTICED``, as in a run.
 
 Where a part is not known (dropped from higher up, touched, put into something else by the cell), it is left out of
-everything that follows: one cause, one finding. Shapes are those of ``MujocoPlant``, without physics; the rows are the
+everything that follows: one cause, one finding. Shapes are those of a run, without its physics; the rows are the
 executed set-points, 8 ms apart.
 """
 
-from collections.abc import Collection, Generator, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Generator, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robolang.core.diagnostics import Diagnostic, Severity
 from robolang.core.source import Span
 from robolang.execution.dry_run import Rehearsal, RehearsedHand, RehearsedMove
 from robolang.project.project import Project
 from runtime.core.frames import Array, inverse, pose
+from runtime.plant.cell_model import CLEARANCE
 from runtime.plant.mjcf import APART
-from runtime.plant.mujoco_plant import CLEARANCE, MARGIN, MujocoPlant
-from runtime.plant.touches import NOTICED, shape_text
+from runtime.plant.shapes import MARGIN, Shapes
+from runtime.plant.touches import NOTICED, Pair, is_fixed, shape_text
 from runtime.robot.kinematics.kinematics import Kinematics
 
 DROP = 5e-3
@@ -37,6 +39,7 @@ ALIKE = 2e-4
 
 Found = Iterator[Diagnostic]
 _PART = "part:"
+NO_BOUND = (-np.inf, -np.inf, -np.inf)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,6 +77,32 @@ class Meeting:
     what: str
 
 
+@dataclass(slots=True, kw_only=True)
+class Sweep:
+    """What a move meets, row by row: ``struck`` the first of what is fixed, ``met`` the first of what is not allowed.
+
+    ``stood``: where (3,) m carried parts came to stand on what they still stand on.
+    """
+
+    struck: Meeting | None = None
+    met: Meeting | None = None
+    stood: dict[Pair, Array] = field(default_factory=dict)
+
+    def note(self, row: int, pairs: Sequence[Pair], under: NDArray[np.bool_]) -> None:
+        """Take the pairs of a row; ``under`` (3, k): which of them are under their distances of ``_bounds``."""
+        if self.struck is None and under[0].any():
+            self.struck = _meeting(row, pairs[int(np.argmax(under[0]))])
+        if self.met is None and under[1].any():
+            self.met = _meeting(row, pairs[int(np.argmax(under[1]))])
+
+    def stand(self, row: int, on: Collection[Pair], carried: Mapping[str, Array]) -> None:
+        """Take on what carried parts X_world_part (4, 4) stand: a part that slides on it meets it."""
+        self.stood = {pair: self.stood.get(pair, _centre(carried, pair)) for pair in on}
+        for pair, start in self.stood.items():
+            if not np.linalg.norm(_centre(carried, pair) - start) <= NOTICED:
+                self.met = _meeting(row, pair)
+
+
 Followed = Generator[Diagnostic, None, Scene]
 
 
@@ -83,8 +112,8 @@ class CellTouches:
     def __init__(self, project: Project, kinematics: Kinematics) -> None:
         cell = project.cell
         self._cell, self._kinematics = cell, kinematics
-        self.shapes = MujocoPlant(cell.robot, cell, project.profile.tick_s)
-        self._swept: dict[tuple[object, ...], tuple[Meeting | None, Meeting | None]] = {}
+        self.shapes = Shapes(cell.robot, cell)
+        self._swept: dict[tuple[object, ...], Sweep] = {}
         self._sizes = {part.name: part.size for part in cell.parts}
         self._limits: dict[tuple[object, ...], Array | None] = {}
         self._start = self._resting(
@@ -116,74 +145,73 @@ class CellTouches:
         key = (move.q.tobytes(), scene.key)
         if key not in self._swept:
             self._swept[key] = self._sweep(move.q, scene)
-        struck, met = self._swept[key]
+        struck, met = self._swept[key].struck, self._swept[key].met
         if struck is not None:
             by, what = struck.by, struck.what.removeprefix("obstacle:")
             message = f"at {move.share(struck.row):.1f} % of the path {by} would be in {what}"
             yield _at("RBL421", move.effect.span, message, Severity.ERROR)
-        if met is None or struck is not None:  # where it is stopped by an obstacle, parts are the lesser thing
+        if met is None or struck is not None:  # an obstacle stops the move, so that what it meets later is not reached
             return scene
         carried = "the carried " if met.by.startswith(_PART) else ""
         what = f"{carried}{shape_text(met.by)} would touch {shape_text(met.what)}"
         yield _at("RBL440", move.effect.span, f"at {move.share(met.row):.1f} % of the path {what}")
         return scene.without({name.removeprefix(_PART) for name in (met.by, met.what) if name.startswith(_PART)})
 
-    def _sweep(self, q: Array, scene: Scene) -> tuple[Meeting | None, Meeting | None]:
-        """Return where the arm first strikes what is fixed, and where something first touches what it should not."""
+    def _sweep(self, q: Array, scene: Scene) -> Sweep:
+        """Return what joint angles q (rows, n) rad strike and meet."""
         self.shapes.lay(scene.lying, scene.opening)
         X_world_tool = self._tool(q) if scene.held else np.empty((len(q), 4, 4))
         held = {name: X_world_tool @ X for name, X in scene.held.items()}
-        found: list[Meeting | None] = [None, None]
-        stood: dict[tuple[str, str], Array] = {}  # where carried parts came to stand on what
+        sweep = Sweep()
         for row in range(len(q)):
             carried = {name: X[row] for name, X in held.items()}
-            pairs, distances = self.shapes.meeting(q[row], carried)
-            bounds = self._bounds(pairs, scene) if pairs else None
+            meeting, distances = self.shapes.meeting(q[row], carried)
+            bounds = self._bounds(meeting, scene) if meeting else None
             if bounds is None:
-                stood.clear()
+                sweep.stood.clear()
                 continue
-            for which, limits in enumerate(bounds[:2]):
-                if found[which] is None and not (distances >= limits).all():
-                    by, what = self._ordered(pairs, int(np.argmin(distances >= limits)), scene)
-                    found[which] = Meeting(row=row, by=by, what=what)
-            if held and found[1] is None:
-                on = {self._ordered(pairs, int(k), scene) for k in np.flatnonzero(~(distances >= bounds[2]))}
-                stood = {pair: stood.get(pair, carried[pair[0].removeprefix(_PART)][:3, 3]) for pair in on}
-                for (by, what), start in stood.items():
-                    if not np.linalg.norm(carried[by.removeprefix(_PART)][:3, 3] - start) <= NOTICED:
-                        found[1] = Meeting(row=row, by=by, what=what)
-        return found[0], found[1]
+            pairs, under = self._ordered(meeting, scene), ~(distances >= bounds)
+            sweep.note(row, pairs, under)
+            if held and sweep.met is None:
+                sweep.stand(row, {pairs[k] for k in np.flatnonzero(under[2])}, carried)
+        return sweep
 
-    def _bounds(self, pairs: bytes, scene: Scene) -> Array | None:
+    def _bounds(self, meeting: bytes, scene: Scene) -> Array | None:
         """Return the distances (3, k) m below which the k pairs that meet count; None: none of them can.
 
         In the rows: for RBL421, for RBL440, and for a carried part that stands on what is fixed.
         """
-        key = (pairs, tuple(scene.held))
+        key = (meeting, tuple(scene.held))
         if key not in self._limits:
-            count = len(self.shapes.pairs_of(pairs))
-            limits = np.array([self._bound(*self._ordered(pairs, k, scene), scene) for k in range(count)]).T
+            limits = np.array([self._bound(*pair, scene) for pair in self._ordered(meeting, scene)]).T
             self._limits[key] = limits if np.isfinite(limits).any() else None
         return self._limits[key]
 
     def _bound(self, by: str, what: str, scene: Scene) -> tuple[float, float, float]:
         """Return a column of ``_bounds`` for two shapes, what moves first."""
-        part, fixed, link = what.startswith(_PART), not _moves(what), what.startswith("link")
+        fixed = is_fixed(what)
         if by.removeprefix(_PART) in scene.held:
-            near = link and int(what.removeprefix("link")) > self._cell.robot.n - APART  # too coarse
-            touch = -CLEARANCE if link and not near else -PRESSED if part or fixed else -np.inf
-            return -np.inf, touch, MARGIN if fixed else -np.inf
-        if by.startswith(_PART) or not _moves(by):
-            return -np.inf, -np.inf, -np.inf
-        return -CLEARANCE if fixed else -np.inf, -NOTICED if part else -np.inf, -np.inf
+            return -np.inf, self._carried_bound(what), MARGIN if fixed else -np.inf
+        if by.startswith(_PART) or is_fixed(by):  # what lies on the table or on one another
+            return NO_BOUND
+        # the arm may not strike, but open fingers may graze a part: a run reports that from NOTICED on, too
+        return -CLEARANCE if fixed else -np.inf, -NOTICED if what.startswith(_PART) else -np.inf, -np.inf
 
-    def _ordered(self, pairs: bytes, k: int, scene: Scene) -> tuple[str, str]:
-        """Return pair k with what moves first: a carried part, then a shape of the arm, then the others."""
-        first, second = sorted(
-            self.shapes.pairs_of(pairs)[k],
-            key=lambda name: (name.removeprefix(_PART) not in scene.held, name.startswith(_PART), not _moves(name)),
-        )
-        return first, second
+    def _carried_bound(self, what: str) -> float:
+        """Return the distance m below which a carried part meets what it should not."""
+        if what.startswith("link"):
+            # the last links hold the part: their coarse shapes reach into it in every posture
+            near = int(what.removeprefix("link")) > self._cell.robot.n - APART
+            return -np.inf if near else -CLEARANCE
+        return -PRESSED if what.startswith(_PART) or is_fixed(what) else -np.inf
+
+    def _ordered(self, meeting: bytes, scene: Scene) -> list[Pair]:
+        """Return pairs with what moves first: a carried part, then a shape of the arm, then the others."""
+
+        def rank(name: str) -> tuple[bool, bool, bool]:
+            return name.removeprefix(_PART) not in scene.held, name.startswith(_PART), is_fixed(name)
+
+        return [(a, b) if rank(a) <= rank(b) else (b, a) for a, b in self.shapes.pairs_of(meeting)]
 
     # the hand -------------------------------------------------------------------------------------------------------
 
@@ -221,7 +249,7 @@ class CellTouches:
         X_world_tool, opening = self._tool(hand.q), self._cell.hand.stroke
         released = {name: X_world_tool @ X for name, X in scene.held.items()}
         scene = replace(scene, held={}, opening=opening, closed=False)
-        _, met = self._sweep(hand.q[None], scene)
+        met = self._sweep(hand.q[None], scene).met
         if met is not None:
             yield _at("RBL440", hand.effect.span, f"{shape_text(met.by)} would touch {shape_text(met.what)}")
             scene = scene.without({met.what.removeprefix(_PART)})
@@ -240,8 +268,13 @@ class CellTouches:
         return scene.without(unknown) if unknown else scene
 
 
-def _moves(name: str) -> bool:
-    return name != "floor" and not name.startswith("obstacle:")
+def _meeting(row: int, pair: Pair) -> Meeting:
+    return Meeting(row=row, by=pair[0], what=pair[1])
+
+
+def _centre(carried: Mapping[str, Array], pair: Pair) -> Array:
+    """Return the centre (3,) m of the carried part of a pair."""
+    return carried[pair[0].removeprefix(_PART)][:3, 3]
 
 
 def _at(code: str, span: Span, message: str, severity: Severity = Severity.WARNING) -> Diagnostic:

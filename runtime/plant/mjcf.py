@@ -32,7 +32,7 @@ A grasp is friction between pads and part and nothing else. Two errors of the si
   Shorter steps would have bought the same for 20 times the cost; a weld would have been no grasp.
 
 The text is built here and never read from a user's file, so none of MJCF's own ways in (includes, plugins,
-meshes) exists (R22). Pure Python: MuJoCo is imported by ``mujoco_plant`` only. Read at start, no rate.
+meshes) exists (R22). MuJoCo is not imported here (``cell_model``). Read at start, no rate.
 """
 
 import xml.etree.ElementTree as ET

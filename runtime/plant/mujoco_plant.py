@@ -1,4 +1,4 @@
-"""The robot as MuJoCo simulates it: friction, rotor inertia, contacts, hand and parts; the only importer of mujoco.
+"""The robot as MuJoCo simulates it: friction, rotor inertia, contacts, hand and parts.
 
 ``step`` is the inner loop of every run (one call per servo tick). It writes the torques, lets MuJoCo advance by one
 or more physics steps of at most 1 ms, and copies the joint state out. How a broken state is noticed in the same
@@ -16,9 +16,7 @@ motor's, which the encoder sees, ``q_link`` the link's; the physics step is then
 torque (see ``mjcf``).
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any, cast
 
 import mujoco
@@ -28,9 +26,10 @@ from runtime.cell.cell import CellSpec
 from runtime.core.frames import Array, pose
 from runtime.core.linear import dot, norm
 from runtime.core.state import State
+from runtime.plant.cell_model import CellModel
 from runtime.plant.gears import elastic_axes, physics_steps
-from runtime.plant.hand import FINGERS, finger_sign
-from runtime.plant.mjcf import build_mjcf, friction_bias, gear_joint, joint_name, own_pair_name, own_pairs
+from runtime.plant.hand import FINGERS
+from runtime.plant.mjcf import friction_bias
 from runtime.plant.plant import HandState
 from runtime.plant.touches import Bodies, Pair
 from runtime.robot.model.spec import RobotSpec
@@ -56,24 +55,18 @@ class MujocoPlant:
     def __init__(self, spec: RobotSpec, cell: CellSpec, tick_s: float = 1e-3) -> None:
         if not 1e-5 <= tick_s <= 0.1:
             raise ValueError(f"a tick of {tick_s} s")
-        _keep_off_the_disk()
         self._n = n = spec.n
-        self._spec, self._home = spec, cell.home
         self._tick_s = tick_s
         self._substeps = physics_steps(spec, tick_s, MAX_PHYSICS_STEP)
-        xml = build_mjcf(spec, cell, timestep=tick_s / self._substeps)
-        self._model: Any = mujoco.MjModel.from_xml_string(xml)
-        self._own_pairs = _keep_off_itself(self._model, xml, spec, cell.home)
+        built = CellModel.of(spec, cell, tick_s / self._substeps)
+        self._model = built.model
         self._data: Any = mujoco.MjData(self._model)
         self._qpos, self._qvel = cast(Array, self._data.qpos), cast(Array, self._data.qvel)
         self._tau, self._finger_force = self._data.ctrl[:n], self._data.ctrl[n:]
-        self._grip_force, self._stroke = cell.hand.grip_force, cell.hand.stroke
-        self._motors = _addresses(self._model, [joint_name(axis) for axis in range(n)])
+        self._grip_force = cell.hand.grip_force
+        self._motors, self._gears, self._fingers = built.motors, built.gears, built.fingers
         self._elastic = elastic_axes(spec)
-        self._gears = _addresses(self._model, [gear_joint(axis) for axis in self._elastic])
-        hand = n + len(self._elastic)
-        self._fingers = slice(hand, hand + len(FINGERS))
-        self._part_address = {part.name: hand + len(FINGERS) + 7 * k for k, part in enumerate(cell.parts)}
+        self._part_address, self._geom_names = built.parts, built.shapes
         self._warnings = self._data.warning.number.tobytes
         self._no_warning = self._warnings()
         self._valid = True
@@ -101,7 +94,6 @@ class MujocoPlant:
             R_tool=data.site_xmat[site].reshape(3, 3),
             pad_length=float(cell.hand.pad[2]),
         )
-        self._geom_names = [str(self._model.geom(index).name) for index in range(self._model.ngeom)]
         self._known_contacts: dict[bytes, frozenset[Pair]] = {}
         self._touched: frozenset[Pair] = frozenset()
         self._ncon = -1
@@ -290,98 +282,6 @@ class MujocoPlant:
         if not pairs <= self._touched:
             self._touched |= pairs
 
-    # as a plant that stands for the shapes of the cell and is not run -------------------------------------------------
-
-    def lay(self, parts: Mapping[str, Array], opening: float) -> None:
-        """Put parts to X_world_part (4, 4), all others out of the way, and the fingers ``opening`` m apart."""
-        quaternion = np.empty(4)
-        for name, at in self._part_address.items():
-            X = parts.get(name, AWAY)
-            mujoco.mju_mat2Quat(quaternion, X[:3, :3].ravel())
-            self._qpos[at : at + 3], self._qpos[at + 3 : at + 7] = X[:3, 3], quaternion
-            self._model.geom(f"part:{name}").margin = MARGIN
-        self._qpos[self._fingers] = opening / 2.0
-
-    def meeting(self, q: Array, held: Mapping[str, Array]) -> tuple[bytes, Array]:
-        """Return which shapes meet at joint angles q (n,) rad, and the distances (k,) m, negative inside one another.
-
-        The held parts are put to X_world_part (4, 4), those that ``lay`` has put stay. ``pairs_of`` names the shapes.
-        """
-        quaternion = np.empty(4)
-        for name, X in held.items():
-            at = self._part_address[name]
-            mujoco.mju_mat2Quat(quaternion, X[:3, :3].ravel())
-            self._qpos[at : at + 3], self._qpos[at + 3 : at + 7] = X[:3, 3], quaternion
-        self._qpos[self._motors] = q
-        mujoco.mj_kinematics(self._model, self._data)
-        mujoco.mj_collision(self._model, self._data)
-        contact = self._data.contact
-        return contact.geom.tobytes(), contact.dist
-
-    def pairs_of(self, meeting: bytes) -> list[Pair]:
-        """Return the names of the shapes of a ``meeting``, in the order of its distances."""
-        names = self._geom_names
-        return [(names[a], names[b]) for a, b in np.frombuffer(meeting, dtype=np.int32).reshape(-1, 2).tolist()]
-
-    def faces(self, q: Array, name: str) -> tuple[float, float] | None:
-        """Return from where to where a part reaches between the pads along y of the tool, m; None: it is not there.
-
-        Each pad goes inwards by its distance from the part until it meets it (conservative advancement).
-        """
-        self._qpos[self._motors] = q
-        part, ends = int(self._model.geom(f"part:{name}").id), []
-        stroke = self._stroke
-        for index, side in enumerate(FINGERS):
-            pad, at = int(self._model.geom(f"pad_{side}").id), stroke / 2.0
-            for _ in range(ADVANCES):
-                self._qpos[self._fingers.start + index] = at
-                mujoco.mj_kinematics(self._model, self._data)
-                distance = mujoco.mj_geomDistance(self._model, self._data, pad, part, stroke, None)
-                at -= max(distance, 0.0)
-                if not at >= -stroke / 2.0:
-                    return None
-                if distance <= MET:
-                    break
-            ends.append(finger_sign(side) * at)
-        low, high = sorted(ends)
-        return (low, high) if ends[0] > ends[1] else None
-
-    def gap_below(self, name: str, most: float, inside: float) -> float | None:
-        """Return how far a part that ``lay`` has put would fall until it rests on something, m.
-
-        None: over ``most``, or it is in something by more than ``inside``, and physics would throw it out.
-        """
-        at = self._part_address[name]
-        own = int(self._model.geom(f"part:{name}").id)
-        others = [index for index, other in enumerate(self._geom_names) if index != own and not _of_arm(other)]
-        fallen, z = 0.0, float(self._qpos[at + 2])
-        for _ in range(ADVANCES):
-            self._qpos[at + 2] = z - fallen
-            mujoco.mj_kinematics(self._model, self._data)
-            distance = min(
-                mujoco.mj_geomDistance(self._model, self._data, own, other, 2.0 * most + MARGIN, None)
-                for other in others
-            )
-            if distance <= MET:
-                return fallen if distance >= -inside else None
-            fallen += distance
-            if not fallen <= most:
-                return None
-        return fallen
-
-    def folded(self, q: Array) -> tuple[str, str] | None:
-        """Return what of the arm or the hand would be in another link at joint angles q (n,) rad, and in which.
-
-        Checked with the hand open, for the pairs that meet in a run as well: none of an arm whose shapes are not known.
-        """
-        self._qpos[self._motors] = q
-        self._qpos[self._fingers] = self._stroke / 2.0
-        mujoco.mj_kinematics(self._model, self._data)
-        for first, second in self._own_pairs:
-            if mujoco.mj_geomDistance(self._model, self._data, first, second, CLEARANCE, None) < -CLEARANCE:
-                return str(self._model.geom(second).name), str(self._model.geom(first).name)
-        return None
-
     def parts(self) -> dict[str, Array]:
         """Return the pose X_world_part (4, 4) of every part by name."""
         return {name: _pose(self._last_qpos[at : at + 7]) for name, at in self._part_address.items()}
@@ -402,80 +302,6 @@ SIDEWAYS = 0.7
 """Cosine of the largest angle between a contact and the direction in which the fingers close, of a grip."""
 MOST_KNOWN = 10_000
 """Sets of contacts whose names are remembered."""
-AWAY = pose([0.0, 0.0, 1000.0])
-"""Where a part is put that is not in the cell."""
-MARGIN = 1e-4
-"""Shapes of parts that are nearer than this meet, m."""
-MET = 1e-6
-"""Distance at which a pad has met a part, or a part its support, m."""
-ADVANCES = 100
-"""Most steps of a conservative advancement."""
-CLEARANCE = 1e-4
-"""Shapes that meet by less than this touch, m."""
-POSTURES = 200
-"""Postures in which it is looked which shapes meet anyway."""
-OFTEN = 0.5
-"""Share of them from which on a pair says nothing."""
-NEVER = -1e3
-"""Distance of shapes that is never reached, m."""
-
-
-def _keep_off_itself(model: Any, xml: str, spec: RobotSpec, home: Array) -> list[tuple[int, int]]:
-    """Return the geoms of the arm and the hand that may meet one another, and let all other pairs of them never meet.
-
-    The shapes are coarse: pairs that meet at home or in more than ``OFTEN`` of some postures say nothing.
-    """
-    pairs = own_pairs(spec)
-    if not pairs:
-        return []
-    rows = np.random.default_rng(0).uniform(spec.lower, spec.upper, (POSTURES, spec.n))
-    kept = []
-    for name, keep in zip(pairs, _tell(xml, tuple(pairs), np.vstack([home, rows]).tobytes(), spec.n), strict=True):
-        pair = model.pair(own_pair_name(*name))
-        if keep:
-            kept.append((int(model.geom(name[0]).id), int(model.geom(name[1]).id)))
-        else:
-            pair.margin = NEVER
-    return kept
-
-
-@lru_cache(maxsize=32)
-def _tell(xml: str, pairs: tuple[tuple[str, str], ...], postures: bytes, n: int) -> tuple[bool, ...]:
-    """Return of which pairs it says something that they meet; ``postures``: home and others, rows of n angles, rad."""
-    model: Any = mujoco.MjModel.from_xml_string(xml)
-    data: Any = mujoco.MjData(model)
-    joints = _addresses(model, [joint_name(axis) for axis in range(n)])
-    geoms = [(int(model.geom(a).id), int(model.geom(b).id)) for a, b in pairs]
-    met = []
-    for q in np.frombuffer(postures).reshape(-1, n):
-        data.qpos[joints] = q
-        mujoco.mj_kinematics(model, data)
-        met.append([mujoco.mj_geomDistance(model, data, a, b, CLEARANCE, None) < -CLEARANCE for a, b in geoms])
-    return tuple((~np.array(met[0]) & (np.mean(met[1:], axis=0) <= OFTEN)).tolist())
-
-
-def _of_arm(name: str) -> bool:
-    return name.startswith(("link", "palm", "pad_", "shank_"))
-
-
-def _is_fixed(name: str) -> bool:
-    return name == "floor" or name.startswith("obstacle:")
-
-
-def _addresses(model: Any, joints: list[str]) -> Any:
-    """Return where these hinges stand in the state (m,): the same place in positions and speeds, before any part."""
-    return np.array([int(model.joint(name).qposadr[0]) for name in joints], dtype=np.intp)
-
-
-def _keep_off_the_disk() -> None:
-    """Stop MuJoCo from writing MUJOCO_LOG.TXT to the working folder and warnings to the console.
-
-    The setting holds for the process: MuJoCo has one log. What it would say is in ``why_invalid``.
-    """
-    config = mujoco.MjLogConfig.get()
-    config.logto_file = False
-    config.logto_console = False
-    mujoco.MjLogConfig.set(config)
 
 
 def _text(kind: int, info: int) -> str:

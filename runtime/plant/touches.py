@@ -447,7 +447,7 @@ def _sorted(pairs: frozenset[Pair]) -> _Seen:
     seen = _Seen()
     for pair in sorted(pairs):
         parts = [name.startswith(_PART) for name in pair]
-        fixed = [_is_fixed(name) for name in pair]
+        fixed = [is_fixed(name) for name in pair]
         if all(parts):
             seen.among_parts.append(pair)
         elif any(parts):
@@ -466,5 +466,6 @@ def _sorted(pairs: frozenset[Pair]) -> _Seen:
     return seen
 
 
-def _is_fixed(name: str) -> bool:
+def is_fixed(name: str) -> bool:
+    """Return whether a shape never moves: the floor and obstacles."""
     return name == "floor" or name.startswith(_OBSTACLE)

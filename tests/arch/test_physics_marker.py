@@ -1,7 +1,7 @@
 """What runs MuJoCo has the marker ``physics``, so that ``make test-ideal`` leaves it out.
 
-There, the plant of MuJoCo refuses to be made (``tests/conftest.py``). Here, a module that makes the plant has the
-marker.
+There, the model of MuJoCo refuses to be made (``tests/conftest.py``). Here, a module that makes the plant or its
+shapes has the marker.
 """
 
 import ast
@@ -14,11 +14,11 @@ MODULES = [path for path in sorted(TESTS.rglob("test_*.py")) if path != Path(__f
 
 
 def names_the_plant(tree: ast.AST) -> bool:
-    """Return whether a module imports mujoco or calls the plant; only its name in a message or a path is no use."""
+    """Return whether a module imports mujoco or calls the plant or its shapes; names in a text do not count."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import) and any(alias.name == "mujoco" for alias in node.names):
             return True
-        if isinstance(node, ast.Call) and ast.unparse(node.func).endswith("MujocoPlant"):
+        if isinstance(node, ast.Call) and ast.unparse(node.func).endswith(("MujocoPlant", "Shapes", "CellModel.of")):
             return True
     return False
 
@@ -32,4 +32,5 @@ def test_what_makes_the_plant_of_mujoco_has_the_marker(path):
 def test_the_plant_is_found():
     assert names_the_plant(ast.parse("import mujoco"))
     assert names_the_plant(ast.parse("plant = mujoco_plant.MujocoPlant(spec, cell, 1e-3)"))
+    assert names_the_plant(ast.parse("shapes = Shapes(spec, cell)"))
     assert not names_the_plant(ast.parse("heavy = ('numpy', 'mujoco')\nname = 'MujocoPlant'"))

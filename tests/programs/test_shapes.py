@@ -7,8 +7,8 @@ import pytest
 
 from robolang.execution.session import Session
 from robolang.project.project import builtin_cell, load_project
+from runtime.plant.cell_model import CellModel
 from runtime.plant.mjcf import own_pairs
-from runtime.plant.mujoco_plant import MujocoPlant
 from tests.robolang.cli.commands import BUILTIN, PUMA, robolang
 
 pytestmark = pytest.mark.physics
@@ -49,6 +49,6 @@ def test_pairs_that_say_nothing_never_meet():
     assert ("link1", "link4") in pairs
     assert ("link1", "link3") not in pairs
     assert ("link3", "palm") in pairs
-    plant = MujocoPlant(cell.robot, cell)
-    margins = [plant._model.pair_margin[index] for index in range(len(pairs))]
-    assert margins.count(0.0) == len(plant._own_pairs)
+    built = CellModel.of(cell.robot, cell)
+    margins = [built.model.pair_margin[index] for index in range(len(pairs))]
+    assert margins.count(0.0) == len(built.own_pairs)

@@ -10,7 +10,7 @@ from robolang.experiments.identify import RubbingPlant, identify, with_errors
 from robolang.project.project import load_project
 from runtime.core.faults import Fault
 from runtime.motion.fine_interpolator import FineInterpolator
-from runtime.plant.mujoco_plant import MujocoPlant
+from runtime.plant.shapes import Shapes
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
@@ -51,9 +51,9 @@ def assert_unfolded(request, test):
     first, last = min(test.starts(test.positions[0])), max(test.starts(test.positions[-1])) + test.stroke
     q = np.array(test.q)
     q[test.axis] = test.starts(test.positions[0])[0]  # where the plant begins: shapes that meet there never do
-    plant = MujocoPlant(request.robot, replace(bench(request), home=q))
+    shapes = Shapes(request.robot, replace(bench(request), home=q))
     for q[test.axis] in np.linspace(first, last, 50):
-        assert plant.folded(q) is None, (test.axis, q)
+        assert shapes.folded(q) is None, (test.axis, q)
 
 
 def test_what_folds_everywhere_leaves_no_room():

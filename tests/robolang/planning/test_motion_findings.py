@@ -13,7 +13,7 @@ from robolang.planning import motion_findings
 from robolang.planning.motion_findings import LoadShare, findings, worst_loads
 from robolang.project.project import builtin_cell, load_project
 from runtime.core.units import DEG
-from runtime.plant.mujoco_plant import MujocoPlant
+from runtime.plant.shapes import Shapes
 from tests.messages import fields, numbers
 
 pytestmark = pytest.mark.physics
@@ -61,7 +61,7 @@ def test_the_arm_in_itself(tmp_path):
 
 def test_what_always_meets_is_not_looked_at():
     cell = builtin_cell()
-    shapes = MujocoPlant(cell.robot, cell, 1e-3)
+    shapes = Shapes(cell.robot, cell)
     assert shapes.folded(cell.home) is None
     assert shapes.folded(np.array([2.0, -25.0, -199.0, 70.0, -58.0, -45.0]) * DEG) is not None
 

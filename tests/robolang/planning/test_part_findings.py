@@ -4,17 +4,23 @@
 """
 
 import re
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from robolang.execution.dry_run import rehearse
 from robolang.planning.motion_findings import findings
 from robolang.planning.path_coverage import explore
+from robolang.project.project import load_project
+from runtime.core.frames import pose
+from runtime.core.units import MM
 from tests.runtime.plant.cells import BESIDE, GRIP, LEDGE, LET_GO, OWN, job
 from tests.runtime.plant.test_touches_of_mujoco import ALLOWED
 
 pytestmark = pytest.mark.physics
 
+PROGRAMS = Path(__file__).parents[3] / "programs"
 CODES = ("RBL421", "RBL440", "RBL441")
 
 
@@ -182,3 +188,16 @@ def test_nothing_to_grip_is_not_said_of_another_branch(tmp_path):
     assert len(explored.detours) == 1
     items = findings(project, explored.rehearsal, None, explored.detours)
     assert [item.code for item in items if item.code in CODES] == []
+
+
+@pytest.mark.parametrize(("raised_mm", "codes"), [(39.6, set()), (40.3, {"RBL421"})])
+def test_the_links_of_an_elastic_arm_stand_at_the_set_points(raised_mm, codes):
+    """The pads of MOVE PICK end 40 mm over the table; the weight at home would twist the gears by another 1.1 mm.
+
+    In a run the drives hold the links to 0.2 mm.
+    """
+    project = load_project(PROGRAMS / "manutec_pick_and_place.rbl")
+    (table,) = project.cell.obstacles
+    raised = replace(table, X_world_obstacle=pose([0.0, 0.0, raised_mm * MM]) @ table.X_world_obstacle)
+    project = replace(project, cell=replace(project.cell, obstacles=(raised,), parts=()))
+    assert {item.code for item in findings(project, rehearse(project))} == codes
