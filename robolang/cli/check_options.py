@@ -2,7 +2,7 @@
 
 from typing import Annotated, ClassVar
 
-from robolang.cli.options import Argument, Group, Option
+from robolang.cli.options import AllowEmpty, Argument, Group, Option, Strict
 
 _Codes = list[str] | None
 Paths = Annotated[
@@ -47,7 +47,7 @@ class ReportOptions(Group):
         str | None, Option("--output-file", metavar="FILE", help="Write the report to this file.")
     ] = None
     statistics: Annotated[bool, Option("--statistics", help="Count the findings of each code.")] = False
-    strict: Annotated[bool, Option("--strict", help="Exit code 1 for warnings too.")] = False
+    strict: Strict = False
     exit_zero: Annotated[bool, Option("--exit-zero", help="Exit code 0 in place of 1, whatever is found.")] = False
 
 
@@ -76,4 +76,4 @@ class FileOptions(Group):
         str | None, Option("--stdin-filename", metavar="NAME", help="File name to report for the program that - reads.")
     ] = None
     watch: Annotated[bool, Option("--watch", help="Check again whenever a file changes, until Ctrl-C.")] = False
-    allow_empty: Annotated[bool, Option("--allow-empty", help="Accept folders without programs.")] = False
+    allow_empty: AllowEmpty = False

@@ -85,6 +85,10 @@ OptionalProgram = Annotated[
 ROBOT = "Built-in robot (see robolang robot list), or a .toml, .urdf or .xml file."
 
 
+Strict = Annotated[bool, Option("--strict", help="Exit code 1 for warnings too.")]
+AllowEmpty = Annotated[bool, Option("--allow-empty", help="Accept folders without programs or tests.")]
+
+
 class CellOptions(Group):
     """Which cell a program runs in, and which robot stands in it."""
 

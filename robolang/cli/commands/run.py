@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from robolang.cli.controller_settings import settings_of
 from robolang.cli.errors import DIAGNOSTICS, MOTION, reader_may_leave, reported, say
-from robolang.cli.options import CellOptions, Group, Option, PhysicsOptions, Program, RunControllerOptions
+from robolang.cli.options import CellOptions, Group, Option, PhysicsOptions, Program, RunControllerOptions, Strict
 from robolang.cli.output import echo
 from robolang.cli.refuse import refuse
 from robolang.cli.usage import OptionValueError
@@ -48,7 +48,7 @@ class _OutputOptions(Group):
         Path | None,
         Option("--log", metavar="FILE", help="Write all signals: .npz (numpy) or .mcap (log viewers)."),
     ] = None
-    strict: Annotated[bool, Option("--strict", help="Exit code 1 if the run has warnings.")] = False
+    strict: Strict = False
     quiet: Annotated[bool, Option("--quiet", help="Print errors only; with --strict warnings too.")] = False
 
     @property

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from robolang.cli.errors import DIAGNOSTICS, USAGE, internal, reported, say_all
-from robolang.cli.options import Argument, Group, Option
+from robolang.cli.options import AllowEmpty, Argument, Group, Option
 from robolang.cli.output import echo
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class _TestOptions(Group):
     PANEL: ClassVar[str] = "Tests"
     update: Annotated[bool, Option("--update", help="Replace the golden logs by the logs of these runs.")] = False
     junit: Annotated[Path | None, Option("--junit", metavar="FILE", help="Write a JUnit report to this file.")] = None
-    allow_empty: Annotated[bool, Option("--allow-empty", help="Accept folders without test files.")] = False
+    allow_empty: AllowEmpty = False
 
 
 def test(paths: _Paths, options: _TestOptions) -> None:

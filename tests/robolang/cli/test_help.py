@@ -66,6 +66,25 @@ def test_a_number_has_its_unit_in_its_help():
                 assert units.search(parameter.help), (words, parameter.name, parameter.help)
 
 
+def groups(base=Group):
+    """Every group of options of the commands."""
+    return [
+        each for group in base.__subclasses__() for each in (group, *groups(group)) if "robolang" in each.__module__
+    ]
+
+
+def test_an_option_of_one_meaning_is_declared_once():
+    declared = {(option.names[0], option.help): set() for group in groups() for _, _, option, _ in group.options()}
+    for group in groups():
+        for _, _, option, _ in group.options():
+            declared[option.names[0], option.help].add(id(option))
+    assert {name: ids for name, ids in declared.items() if len(ids) > 1} == {}
+    flags = [option for group in groups() for _, kind, option, _ in group.options() if kind is bool]
+    same = {option.names[0]: {other.help for other in flags if other.names == option.names} for option in flags}
+    # two options of one name with two meanings: what they print is another thing
+    assert {name for name, helps in same.items() if len(helps) > 1} == {"--diff", "--json"}
+
+
 def test_a_value_that_is_no_choice_is_refused_before_the_command_starts():
     result = flat(robolang("step", "--robot", "no-such", "--axis", "1", "--plant", "wood", code=2).stderr)
     assert "RBL703 --plant: 'wood' is not one of mujoco, rigid" in result
