@@ -153,12 +153,12 @@ def _examined_all(names: Sequence[str], job: Job, settings: Settings) -> list[_O
 
 def _planned_all(outcomes: Sequence[_Outcome], job: Job, settings: Settings) -> list[_Outcome]:
     """Add what the motion of each program shows, with progress on a terminal."""
-    from robolang.cli.check_motion import told
+    from robolang.cli.check_motion import progress
 
     found = []
-    with told(len(outcomes)) as tell:
+    with progress(len(outcomes)) as show:
         for number, outcome in enumerate(outcomes):
-            tell(number, outcome.checked.source.path)
+            show(number, outcome.checked.source.path)
             found.append(_planned(outcome, job, settings))
     return found
 

@@ -1,6 +1,6 @@
 """The motion part of ``robolang check --motion``: findings of a rehearsal, and a table of what each line takes.
 
-Imported where it is asked for: it needs numpy, pinocchio and mujoco, which checking a text does not.
+Imported with ``--motion`` only: it needs numpy, pinocchio and mujoco, which checking a text does not.
 """
 
 import sys
@@ -14,18 +14,31 @@ from robolang.core.bounds import Bounds
 from robolang.core.diagnostics import Diagnostic, safe
 from robolang.execution.dry_run import Rehearsal
 from robolang.planning.line_times import LineTime, line_times
-from robolang.planning.motion_findings import DEFAULTS, findings, worst_loads
+from robolang.planning.motion_findings import DEFAULTS, LoadShare, findings, worst_loads
 from robolang.planning.path_coverage import Exploration, explore
 from robolang.project.project import Project, load_project
 from runtime.core.tomlfile import FileFault
 
-_STATEMENT = 30
+_WIDTH = 80
+"""Columns of the table. Not those of the terminal: it stands in report files too."""
+_NARROWEST = 12
+"""Columns of the statements where numbers leave fewer than this."""
 _NOTHING = 5e-4
+"""A moment or inertia at the wrist below this, N m or kg m2, is printed as 0: a payload on the axis leaves 1e-17."""
+_COLUMNS = (
+    ("times", ""),
+    ("time", "s"),
+    ("path", "mm"),
+    ("fastest", "joint %"),
+    ("margin", "deg"),
+    ("wrist", "deg"),
+)
+"""Heading and unit of the columns after the statement."""
 
 
 @contextmanager
-def told(count: int) -> Iterator[Callable[[int, str], None]]:
-    """Yield what is to be told which of ``count`` programs is planned; on a terminal a live line says so."""
+def progress(count: int) -> Iterator[Callable[[int, str], None]]:
+    """Yield a function that takes which of ``count`` programs is planned; on a terminal it shows a live line."""
     if count < 2 or sys.stderr is None or not sys.stderr.isatty():
         yield lambda number, name: None
         return
@@ -62,7 +75,7 @@ def planned(program: Analysis | str, max_cycle_s: float | None, bounds: Bounds =
     return Planned(
         diagnostics=found,
         warnings=project.cell.warnings,
-        table=_table(project, explored.rehearsal, rows) + _ways(project, explored) + _shapes(project),
+        table=_table(project, explored.rehearsal, rows) + _branches(project, explored) + _shapes(project),
         times=_times(project, explored, rows),
     )
 
@@ -92,33 +105,46 @@ def _times(project: Project, explored: Exploration, rows: Sequence[LineTime]) ->
 
 
 def _missed(project: Project, explored: Exploration) -> list[int]:
-    """Return the lines of moves that no way led to."""
+    """Return the lines of moves that no branch reached."""
     return sorted({project.source.place(node.span.start).line for node in explored.missed})
 
 
 def _table(project: Project, rehearsal: Rehearsal, rows: Sequence[LineTime]) -> str:
     where = lines.headings([asdict(row) for row in rows])
+    blank, (names, units) = [""] * len(where), zip(*_COLUMNS, strict=True)
+    cells = [
+        [*where, "statement", *names],
+        [*blank, "", *units],
+        *([*lines.cells(asdict(row), where), safe(row.text), *_cells(row)] for row in rows),
+        [*blank, "total", "", f"{rehearsal.total_us / 1e6:.3f}", *[""] * (len(names) - 2)],
+    ]
     table = [
         f"{safe(project.source.path)} on {project.cell.robot.name}, planned without physics",
-        f"{_where(where)}  {'statement':<{_STATEMENT}} {'times':>5} {'time, s':>8} {'path, mm':>8} {'fastest':>11} "
-        f"{'to range':>9} {'wrist':>9}",
-        *(_row(row, where) for row in rows),
-        f"{_where([''] * len(where))}  {'total':<{_STATEMENT}} {'':>5} {rehearsal.total_us / 1e6:8.3f}",
+        *_aligned(cells, len(where)),
         *_wrist(project, rehearsal),
     ]
     return "\n".join(line.rstrip() for line in table) + "\n"
 
 
-def _where(cells: Sequence[str]) -> str:
-    return " ".join(f"{cell:>5}" for cell in cells)
+def _aligned(rows: Sequence[Sequence[str]], statement: int) -> Iterator[str]:
+    """Yield the lines of a table: numbers as wide as they need, the column ``statement`` with the room that is left."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    room = _WIDTH - sum(widths) + widths[statement] - len(widths) - 1  # a space between columns, two at the statement
+    widths[statement] = max(_NARROWEST, min(widths[statement], room))
+    for row in rows:
+        text, width = row[statement], widths[statement]
+        cut = text if len(text) <= width else f"{text[: width - 1]}…"
+        cells = [f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True)]
+        cells[statement] = f" {cut:<{width}}"
+        yield f" {' '.join(cells)}"
 
 
-def _ways(project: Project, explored: Exploration) -> str:
-    """Return what to say of the ways through the program: how many were planned, and which moves on none of them."""
+def _branches(project: Project, explored: Exploration) -> str:
+    """Return how many other branches were planned, and which moves on none of them."""
     text = ""
     if explored.detours:
-        ways = len(explored.detours)
-        text += f"and {ways} other branch{'es' * (ways > 1)}, where inputs, time or errors decide\n"
+        count = len(explored.detours)
+        text += f"and {count} other branch{'es' * (count > 1)}, where inputs, time or errors decide\n"
     if explored.missed:
         missed = ", ".join(map(str, _missed(project, explored)))
         text += f"not planned, since no branch reached them: the moves in line {missed}\n"
@@ -126,39 +152,38 @@ def _ways(project: Project, explored: Exploration) -> str:
 
 
 def _shapes(project: Project) -> str:
-    """Return what to say of an arm whose shapes are not known."""
+    """Return what is not checked for an arm whose shapes are not known."""
     robot = project.cell.robot
     if robot.link_radii:
         return ""
     return (
-        f"not checked: the arm against itself, since {safe(robot.name)} has no shapes (link_radius_mm); against "
-        "obstacles its links are taken as thin capsules\n"
+        f"not checked: the arm against itself, since {safe(robot.name)} has no shapes (link_radius_mm);\n"
+        "against obstacles its links are taken as thin capsules\n"
     )
 
 
 def _wrist(project: Project, rehearsal: Rehearsal) -> list[str]:
-    """Return the lines that say what the payload asks of the wrist in its worst posture, and of what; ~ estimated."""
+    """Return the lines with moment and inertia of the payload at the wrist in its worst posture, and their limits."""
     shares = worst_loads(project, rehearsal.kinematics, rehearsal.moves)
-    said_of = []
-    for what in ("moment", "inertia"):
-        said = [
-            f"J{share.axis + 1} {share.value if share.value >= _NOTHING else 0:.3g} of "
-            f"{'' if share.given else '~'}{share.limit:.3g}"
-            for share in shares
-            if share.what == what
-        ]
-        if said:
-            unit = next(share.unit for share in shares if share.what == what)
-            said_of.append(f"{what} of the payload at the wrist, worst posture: {', '.join(said)} {unit}")
-    return said_of
+    found = [
+        f"  {what:<8} {', '.join(map(_share, of_it))} {of_it[0].unit}"
+        for what in ("moment", "inertia")
+        if (of_it := [share for share in shares if share.what == what])
+    ]
+    return ["payload at the wrist, worst posture (~: limit estimated from the drive)", *found] if found else []
 
 
-def _row(row: LineTime, where: tuple[str, ...]) -> str:
-    text = safe(row.text)
-    text = text if len(text) <= _STATEMENT else f"{text[: _STATEMENT - 1]}…"
-    way = "" if row.length_mm is None else f"{row.length_mm:.1f}"
-    fastest = "" if row.speed_pct is None else f"{row.joint} {row.speed_pct:4.0f} %"
-    margin = "" if row.margin_deg is None else f"{row.margin_deg:.1f} deg"
-    wrist = "" if row.wrist_deg is None else f"{row.wrist_deg:.1f} deg"
-    at = _where(lines.cells(asdict(row), where))
-    return f"{at}  {text:<{_STATEMENT}} {row.count:>5} {row.seconds:8.3f} {way:>8} {fastest:>11} {margin:>9} {wrist:>9}"
+def _share(share: LoadShare) -> str:
+    value = share.value if share.value >= _NOTHING else 0
+    return f"J{share.axis + 1} {value:.3g} of {'' if share.given else '~'}{share.limit:.3g}"
+
+
+def _cells(row: LineTime) -> tuple[str, ...]:
+    return (
+        str(row.count),
+        f"{row.seconds:.3f}",
+        "" if row.length_mm is None else f"{row.length_mm:.1f}",
+        "" if row.speed_pct is None else f"{row.joint} {row.speed_pct:4.0f}",
+        "" if row.margin_deg is None else f"{row.margin_deg:.1f}",
+        "" if row.wrist_deg is None else f"{row.wrist_deg:.1f}",
+    )

@@ -18,7 +18,7 @@ _COLUMNS = (
     ("time\n\ns", "duration_s", "{:.3f}"),
     ("joint\nerror\ndeg", "joint_error_deg", "{:.4f}"),
     ("tool\nerror\nmm", "tool_error_mm", "{:.3f}"),
-    ("off\npath\nmm", "path_deviation_mm", "{:.3f}"),
+    ("path\nerror\nmm", "path_deviation_mm", "{:.3f}"),
     ("peak\ntorque\n%", "peak_torque_pct", "{:.0f}"),
 )
 _NARROWEST, _WIDEST = 12, 40

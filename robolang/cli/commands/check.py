@@ -103,6 +103,6 @@ def _selectors(option: str, given: list[str]) -> tuple[str, ...]:
         chosen = selector(word)
         if chosen is None:
             near = guess(word)
-            raise OptionValueError(option, f"'{word}' is no rule" + (f"; {near}" if near else ""))
+            raise OptionValueError(option, f"'{word}' is not a rule; {near or 'robolang rules lists them'}")
         found.append(chosen)
     return tuple(found)

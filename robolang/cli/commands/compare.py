@@ -98,7 +98,7 @@ _COLUMNS = (
     ("joint\nrms\ndeg", "joint_rms_deg", "{:.4f}"),
     ("tool\nmax\nmm", "tool_error_mm", "{:.3f}"),
     ("tool\nrms\nmm", "tool_rms_mm", "{:.3f}"),
-    ("off\npath\nmm", "path_deviation_mm", "{:.3f}"),
+    ("path\nmax\nmm", "path_deviation_mm", "{:.3f}"),
     ("droop\n\ndeg", "droop_deg", "{:.4f}"),
 )
 

@@ -180,7 +180,7 @@ def _print(found: "Export", out: Path) -> None:
     title = f"{found.machine.name}: pulse tables in steps of {found.request.step_s * 1e3:g} ms"
     console.print(safe(title), soft_wrap=True)
     console.print(_moves_table(found, moves, markers))
-    by_channel = _table("channel", "one pulse", "lowest Hz", "largest Hz", "raised", "tables", "debt, pulses")
+    by_channel = _table("channel", "one pulse", "lowest\nHz", "highest\nHz", "raised\nsteps", "tables", "debt\npulses")
     for k, channel in enumerate(found.channels):
         by_channel.add_row(*_channel_row(channel, [entry["channels"][k] for entry in moves]))
     console.print(by_channel)
@@ -215,8 +215,9 @@ def _moves_table(found: "Export", moves: list[dict[str, Any]], markers: list[dic
     from robolang.pulse_tables.export import ExportedMove
 
     where = lines.headings([*moves, *markers])
-    headings = ("statement", "steps", "time, s", "mm/s", "raised", "tables", "off, mm")
-    table = _table(*where, *headings, statement_width=24 if len(where) == 1 else 19)
+    headings = ("statement", "steps", "time\ns", "speed\nmm/s", "raised\nsteps", "tables", "error\nmm")
+    # what the other columns leave of 80
+    table = _table(*where, *headings, statement_width=26 if len(where) == 1 else 21)
     move_rows = ((*lines.cells(entry, where), *_move_row(entry)) for entry in moves)
     marker_rows = ((*lines.cells(entry, where), safe(entry["text"])) for entry in markers)
     for item in found.sequence:

@@ -193,7 +193,7 @@ _UNIT = 1e-6
 _COLUMNS = (
     ("identified", "identified_kg_m2"),
     ("links of\nthe model", "model_kg_m2"),
-    ("compen-\nsation", "compensation_kg_m2"),
+    ("compensation", "compensation_kg_m2"),
     ("spread", "spread_kg_m2"),
     ("rotor", "rotor_kg_m2"),
 )
@@ -215,7 +215,7 @@ def _print(request: "Request", found: dict[str, Any]) -> None:
     console.print(safe(title), soft_wrap=True)
     table = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
     table.add_column("axis", no_wrap=True)
-    for heading in ("accel.\nrad/s2", *(heading for heading, _ in _COLUMNS), "off the\nplant, %"):
+    for heading in ("accel.\nrad/s2", *(heading for heading, _ in _COLUMNS), "error\n%"):
         table.add_column(heading, justify="right", no_wrap=True)
     for row in found["axes"]:
         off = (row["identified_kg_m2"] / row["true_kg_m2"] - 1.0) * 100.0
@@ -233,7 +233,12 @@ def _weights(found: dict[str, Any]) -> "Table":
 
     table = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
     table.add_column("axis", no_wrap=True)
-    for heading in ("friction\nN m", "at\nrad/s", "weight off\nmodel, N m", "first moment of the\nlink beyond, kg m"):
+    for heading in (
+        "friction\nN m",
+        "at\nrad/s",
+        "weight not in\nthe model, N m",
+        "first moment not in\nthe model, kg m",
+    ):
         table.add_column(heading, justify="right", no_wrap=True)
     for row in found["axes"]:
         moment = found["first_moments_kg_m"][row["axis"] - 1]

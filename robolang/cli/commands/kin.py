@@ -123,9 +123,9 @@ def _ik(options: _PoseOptions, as_json: bool) -> None:
 
 
 def _caption(kinematics: "Kinematics", solutions: list[dict[str, Any]], left: int) -> str:
-    lines = ["margin: from the joint nearest to a limit; negative: outside its range"]
+    lines = ["margin: distance to the nearest joint limit; negative: outside the range"]
     if any(len(solution["turns_deg"]) > 1 for solution in solutions):
-        lines.append("no branch: the row above, whole turns of joints on")
+        lines.append("rows without a branch: as the row above, with joints turned by whole turns")
     if left:
         lines.append(f"{left} more turns are not listed")
     if not kinematics.closed_form:

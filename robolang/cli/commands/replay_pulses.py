@@ -216,8 +216,8 @@ def _alarm(alarm: "Alarm", tick_s: float) -> dict[str, Any]:
 
 # --- the table -------------------------------------------------------------------------------------------------------
 
-_COLUMNS = ("steps", "time\n\ns", "fastest\nchannel\nHz", "at\nrows\nmm", "be-\ntween\nmm", "at\nend\nmm")
-_REAL = "real\narm\nmm"
+_COLUMNS = ("steps", "time\n\ns", "fastest\nchannel\nHz", "error\nat row\nmm", "error\nin row\nmm", "error\nat end\nmm")
+_REAL = "error\nof arm\nmm"
 _NARROWEST, _WIDEST = 8, 40
 
 
@@ -289,20 +289,20 @@ def _room(rows: list[list[str]], where: tuple[str, ...], headings: tuple[str, ..
 
 
 def _totals(found: dict[str, Any]) -> list[str]:
-    """Return a line of the tables and, where it was driven, one of the real arm."""
+    """Return a line of the tables and, where it was driven, one of the simulated arm."""
     moves = [row for row in found["sequence"] if row["kind"] == "move"]
     pulses = sum(channel["pulses"] for channel in found["channels"])
     many = "1 move" if len(moves) == 1 else f"{len(moves)} moves"
     totals = [f"{many}, {sum(row['steps'] for row in moves)} steps, {found['seconds']:.3f} s, {pulses} pulses"]
     if moves:
         worst = max(moves, key=lambda row: badness(_worst(row)))
-        totals[0] += f"; at most {_worst(worst):.4f} mm off, in {lines.name(worst)}"
+        totals[0] += f"; largest path error {_worst(worst):.4f} mm, in {lines.name(worst)}"
     driven = [row for row in moves if row["real"] is not None]
     if driven:
         worst = max(driven, key=lambda row: badness(float(row["real"]["error_mm"])))
         totals.append(
-            f"real arm: {found['physics']['seconds']:.3f} s simulated; at most "
-            f"{worst['real']['error_mm']:.3f} mm off, in {lines.name(worst)}"
+            f"simulated arm: {found['physics']['seconds']:.3f} s; largest path error "
+            f"{worst['real']['error_mm']:.3f} mm, in {lines.name(worst)}"
         )
     return totals
 

@@ -153,13 +153,14 @@ def _payload(text: str, option: str, spec: "RobotSpec") -> "Payload":
     return payload
 
 
+# z: the droop is the one figure with a sign, and -0.0000 would look like a direction
 _LINES = (
     ("true inertia with rotor", "inertia_kg_m2", "{:.4g} kg m2"),
     ("inertia in the gains", "gain_inertia_kg_m2", "{:.4g} kg m2"),
     ("overshoot", "overshoot_pct", "{:.2f} %"),
     ("settling to 2 %", "settling_s", "{:.4f} s"),
     ("rise 10 to 90 %", "rise_s", "{:.4f} s"),
-    ("droop", "droop_deg", "{:.4f} deg"),
+    ("droop", "droop_deg", "{:z.4f} deg"),
     ("peak torque", "peak_torque_nm", "{:.1f} N m"),
 )
 
@@ -176,8 +177,7 @@ def _print(found: dict[str, Any]) -> None:
     )
     for label, key, form in _LINES:
         if found[key] is not None:
-            # adding zero turns a rounded -0.0 into 0.0
-            echo(f"  {label:<24} {form.format(round(found[key], 6) + 0.0)}")
+            echo(f"  {label:<24} {form.format(found[key])}")
     if not found["stable"]:
         echo("  the axis does not come to rest")
 

@@ -26,7 +26,7 @@ def stairs(tmp_path):
 
 def table(text):
     """The lines of the table: what stands below it is of any length."""
-    return [line for line in text.splitlines() if not re.match(r"\d+ moves?, |real arm|warning|stopped", line)]
+    return [line for line in text.splitlines() if not re.match(r"\d+ moves?, |simulated arm|warning|stopped", line)]
 
 
 def rows(text):
