@@ -187,12 +187,17 @@ class SymbolTable:
         for where in (scope, None):
             if (space, where, key) in self._defined:
                 return space, where, key
+        return self._undefined(kind, space, key), None, key
+
+    def _undefined(self, kind: SymbolKind, space: SymbolKind, key: str) -> SymbolKind:
+        """Return what a name is of that the program itself does not define."""
         points = self._cell.points
         if space is SymbolKind.VARIABLE and key in (points or ()):
-            return SymbolKind.POINT, None, key
+            return SymbolKind.POINT
         if kind in _SETTINGS:
-            return kind, None, key
-        return (SymbolKind.POINT if points is None and space is not SymbolKind.ARRAY else SymbolKind.UNKNOWN), None, key
+            return kind
+        # without a list of points any free name may be one
+        return SymbolKind.POINT if points is None and space is not SymbolKind.ARRAY else SymbolKind.UNKNOWN
 
     @staticmethod
     def _symbol(key: _Key, places: list[_Place]) -> Symbol:

@@ -5,6 +5,7 @@ checked without the names that such a file has.
 """
 
 import os
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
 from robolang.analysis.analysis import Analysis
@@ -16,7 +17,7 @@ from robolang.lint.fixes import with_fix
 from robolang.lint.selection import Selection, is_syntax_error
 from robolang.lint.suppress import suppress
 from robolang.project.discovery import CellFiles, points_file, read_beside
-from robolang.project.points import load_points
+from robolang.project.points import PointStore, load_points
 from runtime.core.faults import Fault
 from runtime.core.record import Record
 from runtime.core.toml_places import locate
@@ -75,19 +76,25 @@ def check_points(checked: Checked, selection: Selection | None = None) -> Checke
 
     A program that does not parse may name points where nothing can be read: then nothing is said.
     """
-    where = points_file(Path(checked.source.path))
-    unread = checked.analysis is None or checked.faults or any(map(is_syntax_error, checked.diagnostics))
-    if unread or not os.path.lexists(where):
+    analysis, where = checked.analysis, points_file(Path(checked.source.path))
+    if analysis is None or not _is_whole(checked) or not os.path.lexists(where):
         return None
     try:
         store, source = load_points(where), Source(str(where), read_source(where).text)
     except Fault:  # it has just been written to: the next check says what is wrong
         return None
-    assert checked.analysis is not None
-    names = named(checked.analysis.program)
-    unused = (_unused(point.name, source) for key, point in store.points.items() if key not in names)
+    unused = _unused_points(store, named(analysis.program), source)
     found = in_order(item for item in unused if selection is None or selection.keeps(item))
     return Checked(source=source, diagnostics=found) if found else None
+
+
+def _is_whole(checked: Checked) -> bool:
+    """Return whether the program and the files beside it could be read from end to end."""
+    return not checked.faults and not any(map(is_syntax_error, checked.diagnostics))
+
+
+def _unused_points(store: PointStore, names: Collection[str], source: Source) -> Iterator[Diagnostic]:
+    return (_unused(point.name, source) for key, point in store.points.items() if key not in names)
 
 
 def _unused(name: str, source: Source) -> Diagnostic:

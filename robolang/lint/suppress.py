@@ -14,7 +14,7 @@ Only the last ``noqa`` of a line is looked at, so the time is linear in the text
 """
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 
 from robolang.core.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Edit, Fix, Severity
@@ -161,29 +161,40 @@ def _unknown(directive: _Directive) -> Iterator[Diagnostic]:
 
 
 def _unused(directive: _Directive, used: set[str], source: Source) -> Iterator[Diagnostic]:
-    """Yield the finding about what a directive names for nothing, if there is such a thing."""
+    """Yield the finding about the codes that a directive names without effect, if there are any."""
     if directive.mistake or directive.names(UNUSED):
         return
     if directive.named is None:
         if not used:
             yield _warning(UNUSED, "this noqa suppresses nothing", directive.span, fix=_removal(directive, source))
         return
-    idle: list[_Named] = []
-    left: list[_Named] = []
-    for item in directive.named:
-        repeats = item.code != "" and any(item.code == other.code for other in left)
-        needed = item.code in used or item.code in (UNKNOWN, "") or not lookup(item.code).is_certain
-        (left if needed and not repeats else idle).append(item)
+    left = _needed(directive.named, used)
+    idle = [item for item in directive.named if item not in left]
     if not idle:
         return
     message = f"noqa of {', '.join(item.code for item in idle)} suppresses nothing"
     if left:
-        whole = Span(directive.named[0].span.start, directive.named[-1].span.end)
-        edit = Edit(span=whole, text=", ".join(item.text for item in left))
-        fix = Fix(title=f"keep {edit.text} only", edits=(edit,))
-        yield _warning(UNUSED, message, idle[0].span, fix=fix)
+        yield _warning(UNUSED, message, idle[0].span, fix=_reduction(directive.named, left))
     else:
         yield _warning(UNUSED, message, directive.span, fix=_removal(directive, source))
+
+
+def _needed(named: Iterable[_Named], used: set[str]) -> list[_Named]:
+    """Return the items of a directive that stay: those with effect, each code once, and those not to be judged here."""
+    left: list[_Named] = []
+    for item in named:
+        # an unknown code has a finding of its own; where a finding is not certain, its absence says nothing
+        needed = item.code in used or item.code in (UNKNOWN, "") or not lookup(item.code).is_certain
+        repeats = item.code != "" and any(item.code == other.code for other in left)
+        if needed and not repeats:
+            left.append(item)
+    return left
+
+
+def _reduction(named: Sequence[_Named], left: Iterable[_Named]) -> Fix:
+    """Return the fix that keeps some of the codes that a directive names."""
+    edit = Edit(span=Span(named[0].span.start, named[-1].span.end), text=", ".join(item.text for item in left))
+    return Fix(title=f"keep {edit.text} only", edits=(edit,))
 
 
 def _removal(directive: _Directive, source: Source) -> Fix:

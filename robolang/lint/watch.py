@@ -1,12 +1,12 @@
 """Doing something again whenever a file changes: programs, what stands beside them, and the configuration above.
 
-Files are looked at every ``PERIOD_S``, new ones in a folder included. A file counts as changed when its time, size or
+Files are compared every ``PERIOD_S``, new ones in a folder included. A file counts as changed when its time, size or
 identity is another. ``rounds`` and ``sleep`` are there for tests.
 """
 
 import os
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from robolang.lint.files import STANDARD_INPUT, programs
@@ -44,12 +44,17 @@ def watch(
 def stamps(paths: Iterable[str]) -> dict[str, Stamp]:
     """Return what tells whether anything has changed that a check of these paths reads; None: not there."""
     found = [name for name in programs(paths) if name != STANDARD_INPUT and "\0" not in name]
-    folders = {Path(name).parent for name in found} | {Path(name) for name in paths if os.path.isdir(name)}  # noqa: PTH112
+    folders = {Path(name).parent for name in found} | {Path(name) for name in filter(os.path.isdir, paths)}
+    # files that do not exist yet are included: a cell file that appears changes what check says
     files = {str(path) for folder in folders for path in (folder / "cell.toml", *files_above(folder))}
     for name in found:
-        beside = (Path(name).with_suffix(ending) for ending in (".points.toml", ".cell.toml"))
-        files.update((name, *map(str, beside)))
+        files.update((name, *_beside(name)))
     return {name: _stamp(name) for name in sorted(files)}
+
+
+def _beside(name: str) -> Iterator[str]:
+    """Yield the names of the files of one program."""
+    return (str(Path(name).with_suffix(ending)) for ending in (".points.toml", ".cell.toml"))
 
 
 def _stamp(name: str) -> Stamp:

@@ -86,8 +86,8 @@ def read_beside(
         settings = controller_settings(found, layers)
     except Fault as fault:
         faults += fault.all
-        if found is None and where is not None and robot is None:
-            facts = read_arm_alone(where)  # so that a points file is checked all the same
+        if found is None:
+            facts = _arm_alone(where, robot)
     cell_file = "" if where is None else str(where)  # nothing can be added to the built-in cell
     try:
         points = taught_points(program, builtin=where is None, symbols=CellSymbols.of(facts, cell_file=cell_file))
@@ -96,6 +96,11 @@ def read_beside(
     names = None if points is None else points.names
     symbols = CellSymbols.of(facts, names, cell_file=cell_file, points_file=str(points_file(program)))
     return Beside(cell=found, points=points, settings=settings, symbols=symbols, faults=tuple(faults))
+
+
+def _arm_alone(cell: Path | None, robot: str | None) -> ArmFile | None:
+    """Return the robot of a cell that cannot be used, so that a points file is checked all the same."""
+    return None if cell is None or robot is not None else read_arm_alone(cell)
 
 
 def cell_beside(program: Path) -> Path | None:

@@ -27,6 +27,7 @@ from typing import NoReturn
 import robolang.core.codes  # noqa: F401 - the codes raised here must be registered
 from robolang.analysis.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.syntax.keywords import RESERVED, near
+from runtime.core.bounded_files import resolved_inside
 from runtime.core.faults import lookup
 from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault, Source, Table, load_table, read_source
@@ -99,12 +100,12 @@ def load_points(path: Path | str, symbols: CellSymbols = NOTHING_KNOWN) -> Point
 def _source(path: Path) -> Source:
     nowhere = Source(str(path), "")
     try:
-        inside = path.resolve(strict=True).is_relative_to(path.parent.resolve(strict=True))
+        target = resolved_inside(path, path.parent, strict=True)
     except (FileNotFoundError, NotADirectoryError):
         nowhere.fail("RBL302", f"there is no file {path}")
-    except (OSError, RuntimeError, ValueError) as error:  # RuntimeError: a ring of links, before Python 3.13
+    except (OSError, RuntimeError, ValueError) as error:
         nowhere.fail("RBL311", f"cannot open {path}: {getattr(error, 'strerror', None) or error}")
-    if not inside:
+    if target is None:
         nowhere.fail("RBL311", f"{path} is a link to a file outside its folder")
     source = read_source(path, "RBL311")
     if not source.text.strip():
@@ -154,14 +155,8 @@ def _store(table: Table, symbols: CellSymbols) -> PointStore:
 
 
 def _point(name: str, entry: Table, symbols: CellSymbols, others: Mapping[str, Point]) -> Point:
-    if not _NAME.fullmatch(name) or name.upper() in RESERVED:
-        entry.fail("RBL303", f"'{name}' cannot be the name of a point")
-    if name.upper() in others:
-        entry.fail("RBL303", f"point '{name}' is there twice: names ignore case")
-    if "pose" in entry and "joints" in entry:
-        entry.fail("RBL303", f"point '{name}' has 'pose' and 'joints'", "remove one of the two", key="joints")
-    if "pose" not in entry and "joints" not in entry:
-        _without_place(name, entry)
+    _check_name(name, entry, others)
+    _check_one_place(name, entry)
     point = Point(
         name=name,
         pose=entry.attempt(lambda: _pose(entry)) if "pose" in entry else None,
@@ -174,6 +169,22 @@ def _point(name: str, entry: Table, symbols: CellSymbols, others: Mapping[str, P
     )
     entry.done()
     return point
+
+
+def _check_name(name: str, entry: Table, others: Mapping[str, Point]) -> None:
+    if not _NAME.fullmatch(name) or name.upper() in RESERVED:
+        entry.fail("RBL303", f"'{name}' cannot be the name of a point")
+    # TOML keeps P1 and p1 apart, the language does not
+    if name.upper() in others:
+        entry.fail("RBL303", f"point '{name}' is there twice: names ignore case")
+
+
+def _check_one_place(name: str, entry: Table) -> None:
+    """Refuse a point with both 'pose' and 'joints', which might contradict each other, and one with neither."""
+    if "pose" in entry and "joints" in entry:
+        entry.fail("RBL303", f"point '{name}' has 'pose' and 'joints'", "remove one of the two", key="joints")
+    if "pose" not in entry and "joints" not in entry:
+        _without_place(name, entry)
 
 
 def _without_place(name: str, entry: Table) -> NoReturn:

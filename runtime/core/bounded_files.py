@@ -5,10 +5,31 @@ is read. What a refusal is called depends on the reader: it turns ``RefusedError
 """
 
 import os
+import re
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import IO
+
+
+def stays_inside(name: str) -> bool:
+    """Return whether a file name is a relative path that stays in its folder, on any system.
+
+    A Windows path is refused on Linux too: the same file means the same on both. Links are not followed here.
+    """
+    absolute = any(kind(name).is_absolute() or kind(name).anchor for kind in (PurePosixPath, PureWindowsPath))
+    return not (absolute or ".." in re.split(r"[/\\]", name) or "\0" in name)
+
+
+def resolved_inside(path: Path, folder: Path, *, strict: bool = False) -> Path | None:
+    """Return a path with its links followed; None where they lead out of a folder.
+
+    ``OSError``, ``RuntimeError`` (a ring of links, before Python 3.13) or ``ValueError`` where it cannot be followed;
+    ``strict``: also where it does not exist.
+    """
+    target = path.resolve(strict=strict)
+    return target if target.is_relative_to(folder.resolve(strict=strict)) else None
 
 
 class RefusedError(Exception):

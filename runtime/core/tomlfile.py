@@ -10,11 +10,11 @@ import re
 import tomllib
 from collections.abc import Callable, Iterable, Sequence
 from collections.abc import Set as AbstractSet
-from pathlib import Path, PurePosixPath, PureWindowsPath
+from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
 import runtime.core.file_codes  # noqa: F401 - registers what is raised here
-from runtime.core.bounded_files import RefusedError, read_bounded
+from runtime.core.bounded_files import RefusedError, read_bounded, resolved_inside, stays_inside
 from runtime.core.faults import Fault
 from runtime.core.record import Record
 from runtime.core.rounding import beside
@@ -477,15 +477,13 @@ def inside(table: Table, name: str, folder: Path | None, key: str) -> Path:
     """
     if folder is None:
         table.fail("RBL602", f"'{name}' is a file, and this cell has no folder", key=key)
-    # a Windows path must be refused on Linux too: the same cell file means the same on both
-    absolute = any(kind(name).is_absolute() or kind(name).anchor for kind in (PurePosixPath, PureWindowsPath))
-    if absolute or ".." in re.split(r"[/\\]", name) or "\0" in name:
+    if not stays_inside(name):
         table.fail("RBL602", f"'{name}' is not a path inside the folder of the cell file", key=key)
     # resolved as well: a symbolic link may lead out although the name does not
     try:
-        target = (folder / name).resolve()
+        target = resolved_inside(folder / name, folder)
     except (OSError, RuntimeError, ValueError) as error:
         table.fail("RBL602", f"'{name}' cannot be followed: {error}", key=key)
-    if not target.is_relative_to(folder.resolve()):
+    if target is None:
         table.fail("RBL602", f"'{name}' leads out of the folder of the cell file", key=key)
     return target

@@ -11,11 +11,12 @@ by its key.
 
 import os
 import stat
-from pathlib import Path, PurePosixPath, PureWindowsPath
+from pathlib import Path, PureWindowsPath
 from typing import Literal, cast
 
 import numpy as np
 
+from runtime.core.bounded_files import stays_inside
 from runtime.core.frames import frozen
 from runtime.core.units import MM
 from runtime.pulses.exported import KINDS, Channel, Export, Kind, Load, Marker, Mechanism, Move, Table, Unit
@@ -238,9 +239,8 @@ def _file(names: Object, channel: str, files: set[str]) -> str | None:
     if names.value(channel) is None:
         return None
     file = names.text(channel)
-    # a Windows path must be refused on Linux too: the same folder means the same on both
-    plain = all(kind(file).name == file for kind in (PurePosixPath, PureWindowsPath))
-    if not plain or file in ("", ".", "..") or "\0" in file:
+    # a name in the folder itself, none below it: PureWindowsPath splits at both kinds of slash
+    if not stays_inside(file) or PureWindowsPath(file).name != file or file in ("", "."):
         names.fail(channel, f"is {quoted(file)}, not the plain name of a file in the folder")
     if file in files:
         names.fail(channel, f"is {quoted(file)}, which another table is too")

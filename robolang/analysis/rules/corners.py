@@ -1,6 +1,6 @@
 """Blends that do not take place: a ZONE before a stop, and a LOAD between two moves that would blend."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from robolang.analysis.dataflow import facts_before
@@ -81,6 +81,12 @@ class _Corners:
             self.lost[corner.move] = node
         return (_Corner(corner.zone),)
 
+    def end(self, left: Iterable[_Corner]) -> None:
+        """Note the moves with a ZONE that the program ends after."""
+        for corner in left:
+            if corner.move is not None and corner.move in self.zones:
+                self.lost.setdefault(corner.move, None)
+
     def _after_move(self, node: Moving, corner: _Corner) -> _Corner:
         if corner.move is not None and not reads_state(node):
             self.used.add(corner.move if corner.by is None else corner.by)
@@ -100,9 +106,7 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
     before = None if facts.reached is None else facts_before(facts.flow, _Corner(), corners.step)
     if before is None:
         return
-    for corner in before[-1]:  # the program ends below its last line
-        if corner.move is not None and corner.move in corners.zones:
-            corners.lost.setdefault(corner.move, None)
+    corners.end(before[-1])  # the program ends below its last line
     yield from _lost(corners)
     yield from _waiting(corners)
     for load, span in corners.loads.items():

@@ -44,15 +44,12 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
     """Report the first move of each kind that can run before its speed was set, and the first before the tool was."""
     if facts.reached is None:
         return
+    all_moves = [node for node in facts.statements if isinstance(node, MOVES)]
     for word, joint, default in _SPEEDS:
-        moves = [node for node in facts.statements if isinstance(node, MOVES) and isinstance(node, MoveJ) is joint]
+        moves = [node for node in all_moves if isinstance(node, MoveJ) is joint]
         if _sets(facts, word) or any(has_option(node, Speed) for node in moves):
             yield from _speed(facts, moves, word, default)
-    if _sets(facts, "TOOL"):
-        unset = _before_setting(facts, "TOOL", {node.span for node in facts.statements if isinstance(node, MOVES)})
-        if unset:
-            message = "TOOL is set elsewhere but not where this move runs: it goes with the hand's own tool point"
-            yield TOOL_UNSET.at(unset[0].span, message)
+    yield from _tool(facts, all_moves)
 
 
 def _speed(facts: Facts, moves: list[Moving], word: str, default: str) -> Iterator[Diagnostic]:
@@ -61,6 +58,14 @@ def _speed(facts: Facts, moves: list[Moving], word: str, default: str) -> Iterat
         more = f", and {len(unset) - 1} more moves" if len(unset) > 1 else ""
         message = f"no {word} is set where this move runs{more}: it goes at {default}"
         yield SPEED_UNSET.at(unset[0].span, message)
+
+
+def _tool(facts: Facts, moves: list[Moving]) -> Iterator[Diagnostic]:
+    # a program that never sets TOOL means the hand's own tool point
+    unset = _before_setting(facts, "TOOL", {node.span for node in moves}) if _sets(facts, "TOOL") else []
+    if unset:
+        message = "TOOL is set elsewhere but not where this move runs: it goes with the hand's own tool point"
+        yield TOOL_UNSET.at(unset[0].span, message)
 
 
 def _sets(facts: Facts, word: str) -> bool:

@@ -10,11 +10,11 @@ leads out of the folder (RBL602). Nothing that a file names is ever opened. Stan
 import math
 import re
 from collections.abc import Iterator
-from pathlib import PurePosixPath, PureWindowsPath
 from typing import NoReturn
 from xml.parsers import expat
 
 import runtime.robot.files.codes  # noqa: F401 - registers what is raised here
+from runtime.core.bounded_files import stays_inside
 from runtime.core.numerals import number_in, why_none
 from runtime.core.record import Record, default
 from runtime.core.tomlfile import MAX_ABS, FileFault, FilePlace, Source
@@ -242,8 +242,7 @@ def check_path(element: Element, key: str, text: str) -> None:
     # schemes that name a folder by a package; what is left must be a relative path on every system, on which the file
     # may be opened later
     name = re.sub(r"^(package|model)://", "", text)
-    absolute = any(kind(name).is_absolute() or kind(name).anchor for kind in (PurePosixPath, PureWindowsPath))
-    if absolute or "://" in name or ".." in re.split(r"[/\\]", name) or "\0" in name:
+    if "://" in name or not stays_inside(name):
         element.fail("RBL602", f"'{key}' of <{element.tag}> is {_shown(text)}, not a path inside the folder")
 
 
