@@ -11,7 +11,7 @@ from runtime.cell.cell_file import CellFile, LoadFile
 from runtime.core.record import Record
 from runtime.core.units import MM
 from runtime.robot.files.arm_file import ArmFile
-from runtime.robot.model.drives import SPEED_ROUNDING, Limits
+from runtime.robot.model.drives import Limits
 
 
 class CellSymbols(Record):
@@ -54,7 +54,7 @@ class CellSymbols(Record):
                 robot=arm.name,
                 limits=arm.limits,
                 rated_payload=arm.rated_payload,
-                max_speed_mm_s=arm.path.max_speed / MM * (1.0 + SPEED_ROUNDING),
+                max_speed_mm_s=arm.path.max_speed / MM,
             )
         if not isinstance(cell, CellFile):
             return found

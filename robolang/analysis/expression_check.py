@@ -25,6 +25,8 @@ from robolang.syntax.keywords import COMPONENTS6, near
 from robolang.syntax.unparse import print_expression
 from robolang.values.functions import FUNCTIONS, Function
 from robolang.values.kinds import Kind
+from runtime.cell.signals import unknown_input
+from runtime.core.limits import INPUT
 from runtime.robot.model.drives import beyond_range
 
 _OFFSET_COUNTS = {"+": (3,), "*": (3, 6)}
@@ -161,10 +163,13 @@ class ExpressionCheck:
 
     def _input(self, node: Expression) -> Iterator[Diagnostic]:
         number, inputs = fixed(node), self._symbols.inputs
-        if number is not None and inputs is not None and number not in inputs:
-            known = ", ".join(map(str, sorted(inputs))) or "none"
-            message = f"the cell has no input {number:g} (known: {known})"
-            yield Diagnostic(code="RBL534", message=message, span=node.span)
+        if number is None:
+            return
+        fault = INPUT.fault(number)
+        if fault is None and inputs is not None and number not in inputs:
+            fault = unknown_input(int(number), inputs)
+        if fault is not None:
+            yield Diagnostic(code=fault.code, message=fault.message, span=node.span, hint=fault.hint)
 
     # --- chains ------------------------------------------------------------------------------------------------------
 

@@ -11,9 +11,7 @@ from collections.abc import Callable, Collection, Iterator
 from robolang.analysis.cell_symbols import CellSymbols
 from robolang.analysis.expression_check import ExpressionCheck
 from robolang.analysis.symbols import Defined, hint_for, names_hint, of_cell
-from robolang.core import limits
 from robolang.core.diagnostics import Diagnostic, Related, Severity
-from robolang.core.limits import Limit
 from robolang.core.source import Span
 from robolang.evaluation.constant_folding import fixed
 from robolang.syntax import other_languages
@@ -50,7 +48,9 @@ from robolang.syntax.ast import (
 from robolang.syntax.declaration import Declaration, Operand, Role
 from robolang.syntax.statements import declaration
 from robolang.values.kinds import Kind
+from runtime.core import limits
 from runtime.core.faults import Fault
+from runtime.core.limits import Limit
 from runtime.core.units import MM
 from runtime.robot.model.load_rules import centre_fault, inertia_fault, load_fault, mass_fault
 

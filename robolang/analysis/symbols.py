@@ -9,7 +9,6 @@ import re
 from collections.abc import Collection, Iterator, Mapping
 
 from robolang.analysis.cell_symbols import CellSymbols
-from robolang.core import limits
 from robolang.core.deduplicate import Repeats
 from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import Span
@@ -32,6 +31,7 @@ from robolang.syntax.ast import (
 )
 from robolang.syntax.keywords import KEYWORDS, RESERVED, near
 from robolang.syntax.tree import walk
+from runtime.core import limits
 
 _DEFINING = ("CONST", "DIM", "FOR", "SUB")
 _LABEL = re.compile(r"[ \t]*\*[ \t]*\w*")

@@ -131,8 +131,8 @@ register(
     Code(
         code="RBL415",
         name="blend-radius-negative",
-        meaning="The radius of a blend is below 0.",
-        remedy="Give 0 or more, or FINE to stop.",
+        meaning="The radius of a blend is below 0, not finite or beyond every robot.",
+        remedy="Give 0 to 100000 mm, or FINE to stop.",
         found=Stage.CELL,
         computed=True,
     ),
@@ -264,7 +264,7 @@ register(
         code="RBL507",
         name="no-such-element",
         meaning="An array has no element of that number, or it or all arrays and names together are too large.",
-        remedy="Give DIM the largest number that is used; elements count from 0.",
+        remedy="Give DIM the largest number that is used, at most 99999; elements count from 0.",
         found=Stage.CELL,
         computed=True,
     ),
@@ -315,8 +315,9 @@ register(
     Code(
         code="RBL534",
         name="no-such-signal",
-        meaning="An input or output has a number that the cell does not have.",
-        remedy="Give a number of the cell's [inputs] or 1 to 1024 for an output.",
+        meaning="The cell has no input of that number, or the number of an input or output is not from 1 to 1024.",
+        remedy="Give an input that the cell file has, or write [inputs.N] into it; give a whole number from 1 to 1024 "
+        "for an output.",
         found=Stage.CELL,
         computed=True,
     ),

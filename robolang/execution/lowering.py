@@ -18,13 +18,13 @@ from typing import cast
 
 import numpy as np
 
-from robolang.core.limits import DWELL
 from robolang.interpreter.effects import MoveTo, SetHand, SetPayload
 from robolang.project.points import Point, PointStore
 from robolang.values.poses import Frame, Place, Shift, Six
 from runtime.cell.cell import CellSpec
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, inverse, pose_from_xyzrpy, xyzrpy_from_pose
+from runtime.core.limits import DWELL
 from runtime.core.linear import matmul
 from runtime.core.units import DEG, MM, PERCENT
 from runtime.motion.commands import Command, Component, MoveArc, MoveJoint, MoveLinear, Wrist

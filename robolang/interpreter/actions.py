@@ -10,7 +10,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias, TypeGuard
 
-from robolang.core import limits
 from robolang.evaluation.evaluator import Evaluator
 from robolang.interpreter import effects
 from robolang.interpreter.effects import Effect, origin
@@ -43,6 +42,7 @@ from robolang.syntax.ast import (
 )
 from robolang.values.functions import finite
 from robolang.values.poses import Frame, Place, Shift, Six
+from runtime.core import limits
 from runtime.core.faults import Fault
 
 Action: TypeAlias = Moving | Load | LoadNamed | Hand | Wrist | Seam | Setting | Out | Pulse

@@ -16,10 +16,10 @@ RBL507), and what texts and the offsets after poses hold beyond that (``MAX_TEXT
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from robolang.core.limits import SIZE
 from robolang.interpreter.arrays import Array
 from robolang.values.poses import Place, Value, kind_of
 from runtime.core.faults import Fault
+from runtime.core.limits import SIZE
 
 MAX_CELLS = 1_000_000
 """Most elements of all arrays and names with a value together."""

@@ -4,13 +4,13 @@ A statement is a function of the run, its line, the statement itself (which is a
 the index of the line.
 """
 
-from robolang.core import limits
 from robolang.interpreter import run_limits
 from robolang.interpreter.effects import Show, origin
 from robolang.interpreter.run_state import Result, RunState
 from robolang.syntax.ast import Assign, Call, Const, Dim, Line, Print
 from robolang.values.functions import shown
 from robolang.values.poses import Place
+from runtime.core import limits
 from runtime.core.faults import Fault
 
 

@@ -2,12 +2,12 @@
 
 import math
 
-from robolang.core import limits
 from robolang.interpreter.effects import Drain, Pass, origin
 from robolang.interpreter.positions import WaitDue, Waiting
 from robolang.interpreter.run_state import Result, RunState
 from robolang.syntax.ast import Delay, Line, Wait
 from robolang.values.functions import shown
+from runtime.core import limits
 from runtime.core.faults import Fault
 
 ROUNDING = 1e-9

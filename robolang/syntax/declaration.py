@@ -11,8 +11,8 @@ from enum import Enum, auto
 from functools import cache
 from typing import NamedTuple, TypeAlias
 
-from robolang.core.limits import Limit
 from robolang.values.kinds import Kind
+from runtime.core.limits import Limit
 
 _WORDS = re.compile(r"[A-Z]+\d*(?: [A-Z]+)*")
 _KEYWORD = re.compile(r"\b[A-Z]+\d*\b")

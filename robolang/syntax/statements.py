@@ -1,14 +1,14 @@
 """The statements of the language, each declared once: form, operands with unit and range, options, effect, meaning.
 
 Keywords, nodes of the tree, printer, checker ranges, hints of the parser, completion and the reference in
-docs/language.md come from ``STATEMENTS`` and ``OPTIONS``. Ranges are those of ``robolang.core.limits``, referred to and
+docs/language.md come from ``STATEMENTS`` and ``OPTIONS``. Ranges are those of ``runtime.core.limits``, referred to and
 not repeated.
 """
 
-from robolang.core import limits
-from robolang.core.limits import Limit
 from robolang.syntax.declaration import Declaration, Fails, Operand, Role, form
 from robolang.values.kinds import Kind
+from runtime.core import limits
+from runtime.core.limits import Limit
 
 # --- operands --------------------------------------------------------------------------------------------------------
 

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, Protocol
 from robolang.values.kinds import Exactness, Kind
 from robolang.values.poses import Frame, Place, Six, Value
 from runtime.core.faults import Fault
+from runtime.core.limits import INPUT
 from runtime.core.numerals import number_in
 
 MOST_DIGITS = 12
@@ -131,9 +132,7 @@ def _round(x: float, digits: float = 0.0) -> float:
 
 
 def _input(run: Context, number: float) -> float:
-    if not (math.isfinite(number) and number == math.floor(number)):
-        raise Fault("RBL534", f"there is no input {number:g}: input numbers are whole")
-    return run.robot.input(int(number))
+    return run.robot.input(int(INPUT.checked(number)))
 
 
 def _pose(run: Context, *values: float) -> Place:

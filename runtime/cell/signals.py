@@ -13,15 +13,15 @@ them; one that PULSE set goes back to 0 by itself. Times are integers of microse
 no sum of times rounds. Read by every WAIT and condition of a program, and by the dry run on its own clock.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from runtime.core.faults import Fault
+from runtime.core.limits import DELAY, INPUT, OUTPUT
 from runtime.core.record import Record
 from runtime.core.tomlfile import Table
 
-MOST = 1024
-LONGEST_S = 86_400.0
-"""A day, s: longer than any program runs."""
+LONGEST_S = DELAY.high
+"""The latest change of an input, s: no program can wait for a later one."""
 
 
 class InputSpec(Record):
@@ -36,7 +36,7 @@ def read_input(table: Table) -> InputSpec:
     """Read one ``[inputs.N]``; ``FileFault`` RBL605, RBL608 or RBL61x."""
     if "follows" in table:
         found = InputSpec(
-            follows=table.integer("follows", low=1, high=MOST),
+            follows=table.integer("follows", low=1, high=int(OUTPUT.high)),
             delay_us=round(table.number("delay_s", 0.0, low=0.0, high=LONGEST_S) * 1e6),
         )
         table.done()
@@ -71,8 +71,9 @@ def read_inputs(tables: Mapping[str, Table]) -> dict[int, InputSpec]:
 
 
 def _numbered(name: str, table: Table) -> InputSpec:
-    if not (name.isdecimal() and 1 <= int(name[:9]) <= MOST and str(int(name)) == name):
-        table.fail("RBL605", f"an input is a number from 1 to {MOST}, not '{name[:20]}'")
+    # only the first digits are read as a number, since a name may have thousands
+    if not (name.isdecimal() and INPUT.fault(int(name[:9])) is None and str(int(name)) == name):
+        table.fail("RBL605", f"an input is a number from {INPUT.low:g} to {INPUT.high:g}, not '{name[:20]}'")
     return read_input(table)
 
 
@@ -112,16 +113,20 @@ class Signals:
         """Return the state of an input; ``Fault`` RBL534 when the cell has none of that number."""
         spec = self._inputs.get(number)
         if spec is None:
-            known = ", ".join(map(str, sorted(self._inputs))) or "none"
-            raise Fault(
-                "RBL534",
-                f"the cell has no input {number} (known: {known})",
-                f"write [inputs.{number}] into the cell file",
-            )
+            raise unknown_input(number, self._inputs)
         if spec.follows is not None:
             # the whole history is kept: a delay may reach back further than the last change
             return _at(self._history.get(spec.follows, ()), now_us - spec.delay_us)
         return _at(spec.changes, now_us)
+
+
+def unknown_input(number: int, known: Collection[int]) -> Fault:
+    """Return the fault of an input that a cell with other inputs does not have."""
+    return Fault(
+        "RBL534",
+        f"the cell has no input {number} (known: {', '.join(map(str, sorted(known))) or 'none'})",
+        f"write [inputs.{number}] into the cell file, or correct the number",
+    )
 
 
 def _at(rows: tuple[tuple[int, float], ...] | list[tuple[int, float]], now_us: int) -> float:

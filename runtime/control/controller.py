@@ -30,14 +30,15 @@ from runtime.control.scheduler import IdleProcessor
 from runtime.control.stop_logic import StopLogic
 from runtime.core.faults import Alarm
 from runtime.core.frames import Array
+from runtime.core.limits import OVERRIDE
 from runtime.core.linear import matmul
 from runtime.core.program_line import ProgramLine
 from runtime.core.state import State
+from runtime.core.units import PERCENT
 from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.commands import Command
 from runtime.motion.motion_planner import ChainPlan, MotionPlanner
 from runtime.motion.seam import SeamTracker
-from runtime.motion.velocity_profile import check_requests
 from runtime.plant.plant import Plant
 from runtime.plant.touches import Touches
 from runtime.robot.kinematics.kinematics import Kinematics
@@ -323,7 +324,7 @@ class Controller:
 
     @override.setter
     def override(self, share: float) -> None:
-        check_requests(("OVERRIDE in %", share * 100.0, 100.0))
+        OVERRIDE.checked(share / PERCENT, OVERRIDE.high)
         self.requests.override = min(share, 1.0)
 
     @property

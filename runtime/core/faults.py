@@ -184,16 +184,17 @@ register(
     Code(
         code="RBL404",
         name="speed-out-of-range",
-        meaning="A speed, acceleration or duration is not a positive number in the robot's range.",
-        remedy="Give SPEED in mm/s, SPEED of MOVEJ, SPEEDJ, ACCEL and OVERRIDE in % (above 0 to 100), TIME in s.",
+        meaning="A speed, acceleration, duration or distance of a move is not a number in its range.",
+        remedy="Give SPEED in mm/s, above 0 to the robot's; SPEED of MOVEJ, SPEEDJ, ACCEL and OVERRIDE in %, above 0 "
+        "to 100; TIME in s, above 0 to 600; the distance of APPROACH and DEPART in mm, 0 to 100000.",
         found=Stage.CELL,
         computed=True,
     ),
     Code(
         code="RBL405",
         name="dwell-out-of-range",
-        meaning="A waiting time is negative, not finite or longer than ten minutes.",
-        remedy="Give the time in s, between 0 and 600.",
+        meaning="A waiting time is negative, not finite or longer than its statement allows.",
+        remedy="Give the time in s: 0 to 600 for HAND, 0 to 86400 for DELAY, PULSE and TIMEOUT.",
         found=Stage.CELL,
         computed=True,
     ),

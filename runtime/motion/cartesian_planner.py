@@ -28,15 +28,16 @@ from numpy.typing import NDArray
 
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, frozen
+from runtime.core.limits import ACCEL, SPEED, TIME
 from runtime.core.linear import matmul
-from runtime.core.units import DEG, MM
+from runtime.core.units import DEG, MM, PERCENT
 from runtime.motion.commands import Component, MoveArc, MoveLinear, PathMove
 from runtime.motion.half_turn import in_order
 from runtime.motion.path import ArcPath, LinePath, Path
 from runtime.motion.path_ik import Arm, LineSolver, WristSolver
 from runtime.motion.seam import CalculatedMove, SeamMove, SeamTracker
 from runtime.motion.time_scaling import Pace, Slowdown
-from runtime.motion.velocity_profile import MAX_DURATION, SpeedLimits, bound, check_requests, profile
+from runtime.motion.velocity_profile import SpeedLimits, bound, profile
 from runtime.motion.wrist.switch import CONDITIONS, SAME_ANGLES, Condition, PathTiming
 from runtime.motion.wrist_planner import choose, explained
 from runtime.motion.wrist_request import Candidate, SampledPath, posture_deviation
@@ -329,15 +330,15 @@ def speed_limits(
 
     ``wrist_turn`` rad is how far the wrist has to turn, for a move whose tool stays where it is.
     """
-    # TIME rules alone: the speed is then only bounded by the robot, and the profile is stretched to the time
-    speed = command.speed if command.speed is not None else robot.default_speed
+    ACCEL.checked(command.acceleration / PERCENT, ACCEL.high)
+    speed = robot.default_speed
     if command.duration is not None:
+        # TIME rules alone: the speed is then only bounded by the robot, and the profile is stretched to the time
+        TIME.checked(command.duration)
         speed = robot.max_speed
-    check_requests(
-        ("SPEED in mm/s", speed / MM, robot.max_speed / MM),
-        ("ACCEL in %", command.acceleration * 100.0, 100.0),
-        ("TIME in s", command.duration if command.duration is not None else 1.0, MAX_DURATION),
-    )
+    elif command.speed is not None:
+        speed = command.speed
+        SPEED.checked(speed / MM, robot.max_speed / MM)
     share = command.acceleration
     acceleration, jerk = robot.acceleration * share, robot.jerk * share
     if isinstance(path, ArcPath):

@@ -40,7 +40,7 @@ class Motion:
     override: float = 1.0
 
     def __post_init__(self) -> None:
-        # SPEED, ACCEL and TIME come from programs and are refused with their place (``check_requests``); these two are
+        # SPEED, ACCEL and TIME come from programs and are refused with their place (``limits``); these two are
         # set by our own code, so a bad one is a mistake there
         if not (0.0 < self.override <= 1.0):
             raise ValueError(f"an override of {self.override} is not a share in (0, 1]")

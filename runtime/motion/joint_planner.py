@@ -26,14 +26,15 @@ import numpy as np
 
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, frozen, inverse
+from runtime.core.limits import ACCEL, SPEED_PCT, TIME
 from runtime.core.linear import matmul
-from runtime.core.units import DEG, MM
+from runtime.core.units import DEG, MM, PERCENT
 from runtime.motion.cartesian_planner import NOTHING_TO_DO, MovePlan
 from runtime.motion.commands import MoveJoint
 from runtime.motion.path_ik import RANGE_TOLERANCE, Arm, check_range
 from runtime.motion.taught_end import as_taught, turned
 from runtime.motion.time_scaling import Pace
-from runtime.motion.velocity_profile import MAX_DURATION, SpeedLimits, bound, check_requests, profile
+from runtime.motion.velocity_profile import SpeedLimits, bound, profile
 from runtime.robot.kinematics.kinematics import LIMIT_ROUNDING, Kinematics, Solution
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import Profile
@@ -191,10 +192,10 @@ def changed(kinematics: Kinematics, q_start: Array, q_end: Array, command: MoveJ
 
 def _share(command: MoveJoint) -> float:
     """Return the programmed share of the joints' speeds, 1 with TIME; ``Fault`` RBL404 outside (0, 1]."""
-    speed = 1.0 if command.speed is None else command.speed
-    check_requests(
-        ("SPEED in %", speed * 100.0, 100.0),
-        ("ACCEL in %", command.acceleration * 100.0, 100.0),
-        ("TIME in s", command.duration if command.duration is not None else 1.0, MAX_DURATION),
-    )
-    return 1.0 if command.duration is not None else speed
+    ACCEL.checked(command.acceleration / PERCENT, ACCEL.high)
+    if command.duration is not None:
+        TIME.checked(command.duration)
+        return 1.0
+    share = 1.0 if command.speed is None else command.speed
+    SPEED_PCT.checked(share / PERCENT, SPEED_PCT.high)
+    return share

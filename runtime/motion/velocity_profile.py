@@ -14,12 +14,13 @@ import ruckig
 
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
+from runtime.core.limits import TIME
 from runtime.core.rounding import beside
 from runtime.core.units import badness
 from runtime.settings.profile import SpeedShape
 
-MAX_DURATION = 600.0
-"""Longest move that is planned, s: its set-points are held in memory as a whole."""
+MAX_DURATION = TIME.high
+"""Longest move that is planned, s."""
 
 EASINGS = (0.0, 1e-12, 1e-9)
 """Shares by which the jerk is lowered, one after another, until Ruckig finds a profile.
@@ -85,14 +86,6 @@ def check_duration(seconds: float) -> None:
     if not seconds <= MAX_DURATION:
         takes, most = beside(seconds, MAX_DURATION, form=".4g")
         raise Fault("RBL404", f"the move would take {takes} s and may take at most {most} s")
-
-
-def check_requests(*requests: tuple[str, float, float]) -> None:
-    """Refuse a request (name with unit, value, most) that is not above 0 and at most ``most``; ``Fault`` RBL404."""
-    for name, value, most in requests:
-        if not (0.0 < value <= most * (1.0 + 1e-12)):
-            shown, bound = beside(value, most)
-            raise Fault("RBL404", f"{name} is {shown} and must be above 0 and at most {bound}")
 
 
 def shortest_s(limits: SpeedLimits) -> float:

@@ -18,6 +18,7 @@ import numpy as np
 
 from runtime.core.bounded_files import stays_inside
 from runtime.core.frames import frozen
+from runtime.core.limits import DWELL
 from runtime.core.units import MM
 from runtime.pulses.exported import KINDS, Channel, Export, Kind, Load, Marker, Mechanism, Move, Table, Unit
 from runtime.pulses.manifest import Object, digits, fail, quoted, read_json, reason, type_name
@@ -29,7 +30,7 @@ MAX_STEPS = 1_000_000
 """Most time steps of all moves together."""
 HIGHEST_RATE = 10_000
 """Most time steps in a second."""
-LONGEST_DWELL_S = 600.0
+LONGEST_DWELL_S = DWELL.high
 """As long as the longest move of the controller."""
 MAX_PULSES = 10**15
 """No position is further from zero, pulses: every whole number up to there is a float."""

@@ -38,12 +38,13 @@ import numpy as np
 import runtime.pulses.codes  # noqa: F401 - registers what is raised here
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, frozen, principal_axes
+from runtime.core.limits import ACCEL, SPEED
 from runtime.core.linear import norm
 from runtime.core.rounding import beside
 from runtime.core.tomlfile import Source, Table, load_table, read_source
-from runtime.core.units import DEG, MM
+from runtime.core.units import DEG, MM, PERCENT
 from runtime.motion.commands import MoveLinear
-from runtime.motion.velocity_profile import SpeedLimits, bound, check_requests
+from runtime.motion.velocity_profile import SpeedLimits, bound
 from runtime.pulses.machine import Joint, Stand
 from runtime.robot.kinematics.kinematics import SAME_ROOM
 
@@ -127,11 +128,13 @@ class Mechanism:
                 )
         turns = self._turns(stand, command)
         turn = turns[0]
-        speed = self.speed if command.speed is None else command.speed
-        speed = self.max_speed if command.duration is not None else speed
-        check_requests(
-            ("SPEED in mm/s", speed / MM, self.max_speed / MM), ("ACCEL in %", command.acceleration * 100.0, 100.0)
-        )
+        speed = self.speed
+        if command.duration is not None:
+            speed = self.max_speed
+        elif command.speed is not None:
+            speed = command.speed
+            SPEED.checked(speed / MM, self.max_speed / MM)
+        ACCEL.checked(command.acceleration / PERCENT, ACCEL.high)
         length = norm(end - start)
         extents = [(length, speed, self.acceleration * command.acceleration, np.inf)]
         if turn:  # as fast as the joint that turns it; ``move`` slows it where the other joints need longer

@@ -4,10 +4,10 @@ from collections.abc import Iterator
 
 from robolang.analysis.facts import Facts
 from robolang.analysis.lint_rule import Check, LintRule
-from robolang.core import limits
 from robolang.core.diagnostics import Diagnostic
 from robolang.evaluation.constant_folding import fixed
 from robolang.syntax.ast import Wait
+from runtime.core import limits
 from runtime.core.faults import Code
 
 NO_TIMEOUT = LintRule(

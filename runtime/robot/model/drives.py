@@ -20,9 +20,6 @@ FASTEST_SPRING = 1e4
 RANGE_ROUNDING = 1e-9
 """An angle may pass the end of its range by as much, rad: rounding of deg."""
 
-SPEED_ROUNDING = 1e-12
-"""Share by which a speed may pass the greatest one: rounding of mm."""
-
 WIDEST = 3600.0 * DEG
 """No joint turns further than ten turns to a side, rad."""
 

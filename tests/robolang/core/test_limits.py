@@ -1,13 +1,12 @@
 """Every limit of a run, at the limit and one beyond it; those of the text are in ``test_parse_errors``."""
 
 import math
+import re
 
 import pytest
 
 from robolang.analysis.checker import check
-from robolang.core import limits
 from robolang.core.diagnostics import Severity
-from robolang.core.limits import SIZE
 from robolang.evaluation.evaluator import MAX_TEXT
 from robolang.execution import run_bounds
 from robolang.execution.dry_run import rehearse
@@ -17,9 +16,11 @@ from robolang.interpreter.run_limits import MAX_CALLS, MAX_ROUNDS
 from robolang.interpreter.scope import MAX_CELLS, MAX_TEXTS
 from robolang.project.project import load_project
 from robolang.syntax.parser import parse
-from runtime.core.faults import Fault
+from runtime.core import limits
+from runtime.core.faults import Fault, lookup
+from runtime.core.limits import SIZE
 from tests.robolang.helpers import source
-from tests.robolang.running import execute, fault, ran
+from tests.robolang.running import World, execute, fault, ran
 
 MAX_ELEMENTS = int(SIZE.high) + 1
 
@@ -97,9 +98,17 @@ def test_no_handler_outlives_the_simulated_time(tmp_path, monkeypatch):
     assert found.total_us == 400_000
 
 
-@pytest.mark.parametrize(
-    "limit", [each for each in vars(limits).values() if isinstance(each, limits.Limit)], ids=lambda limit: limit.name
-)
+RANGES = [each for each in vars(limits).values() if isinstance(each, limits.Limit)]
+
+
+@pytest.mark.parametrize("limit", RANGES, ids=lambda limit: limit.name)
+def test_the_remedy_of_a_range_states_its_end(limit):
+    """SPEED ends at the robot's, which a page for all robots cannot state."""
+    if limit is not limits.SPEED:
+        assert f"{limit.high:.10g}" in re.findall(r"\d+", lookup(limit.code).remedy)
+
+
+@pytest.mark.parametrize("limit", RANGES, ids=lambda limit: limit.name)
 def test_every_range_holds_its_ends_and_nothing_beyond(limit):
     least = 0.5 if limit.above else limit.low
     assert limit.fault(least) is limit.fault(limit.high) is None
@@ -146,3 +155,84 @@ def test_check_and_a_run_judge_a_value_alike(text, code, value):
     with pytest.raises(Fault) as caught:
         list(execute(parse(source(f"v = {value}\n{text.format('v')}")).program, points=("P1",)))
     assert caught.value.code == code
+
+
+AT_AN_END = [
+    ("MOVE P1, ACCEL {}", limits.ACCEL),
+    ("MOVE P1, TIME {}", limits.TIME),
+    ("MOVE P1, ZONE {}", limits.ZONE),
+    ("MOVEJ P1, SPEED {}", limits.SPEED_PCT),
+    ("SPEEDJ {}", limits.SPEEDJ),
+    ("OVERRIDE {}", limits.OVERRIDE),
+    ("HAND ON, {}", limits.DWELL),
+    ("DELAY {}", limits.DELAY),
+    ("PULSE 1, {}", limits.PULSE),
+    ("WAIT 1, TIMEOUT {}", limits.TIMEOUT),
+    ("OUT({}) = 1", limits.OUTPUT),
+    ("x = IN({})", limits.INPUT),
+    ("DIM a({})", limits.SIZE),
+]
+
+
+def beside_the_ends(limit):
+    """The ends of a range, the numbers next to them, and NaN."""
+    low, high = limit.low, limit.high
+    return (low, math.nextafter(low, -math.inf), math.nextafter(low, 1), high, math.nextafter(high, math.inf), math.nan)
+
+
+def written(value):
+    return "NAN" if math.isnan(value) else f"0 - {-value:.17g}" if value < 0.0 else f"{value:.17g}"
+
+
+@pytest.mark.parametrize(("text", "limit"), AT_AN_END, ids=[text for text, _ in AT_AN_END])
+def test_check_and_a_run_agree_at_the_ends(text, limit):
+    world = World()
+    world.inputs = {1: 0.0, 1024: 0.0}
+    for value in beside_the_ends(limit):
+        refused = value != value or limit.fault(value) is not None
+        found = check(parse(source(text.format(written(value)))).program)
+        assert [item.code for item in found if item.severity is Severity.ERROR] == [limit.code] * refused, value
+        program = parse(source(f"v = {written(value)}\n{text.format('v')}")).program
+        if refused:
+            with pytest.raises(Fault) as caught:
+                list(execute(program, world, points=("P1",)))
+            assert caught.value.code == limit.code, value
+        else:
+            list(execute(program, world, points=("P1",)))
+
+
+PUMA_MM_S, PUMA_KG, FARTHEST_MM = 1000.0, 2.5, 2000.0
+"""Greatest speed and rated payload of the robot, and the farthest centre of gravity."""
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "code"),
+    [
+        ("MOVE POSE(400, 0, 300, 0, 180, 0), SPEED {}", PUMA_MM_S, ""),
+        # less than conversions to SI and back may add
+        ("MOVE POSE(400, 0, 300, 0, 180, 0), SPEED {}", math.nextafter(PUMA_MM_S, math.inf), ""),
+        ("MOVE POSE(400, 0, 300, 0, 180, 0), SPEED {}", PUMA_MM_S * (1.0 + 1e-9), "RBL404"),
+        ("MOVE POSE(400, 0, 300, 0, 180, 0), SPEED {}", math.nan, "RBL404"),
+        ("LOAD (0, 0, 60), {}", PUMA_KG, ""),
+        ("LOAD (0, 0, 60), {}", math.nextafter(PUMA_KG, math.inf), "RBL402"),
+        ("LOAD (0, 0, 60), {}", -5e-324, "RBL401"),
+        ("LOAD (0, 0, 60), {}", math.nan, "RBL401"),
+        ("LOAD (0, 0, {}), 1", FARTHEST_MM, ""),
+        ("LOAD (0, 0, {}), 1", FARTHEST_MM * (1.0 + 1e-12), "RBL403"),
+        ("LOAD (0, 0, {}), 1", math.nan, "RBL403"),
+        ("LOAD (0, 0, 60), 1, (0.01, 0.01, {}, 0, 0, 0)", 0.02, ""),
+        ("LOAD (0, 0, 60), 1, (0.01, 0.01, {}, 0, 0, 0)", 0.0200001, "RBL403"),
+        ("LOAD (0, 0, 60), 1, (0.01, 0.01, {}, 0, 0, 0)", math.nan, "RBL403"),
+        ("x = IN({})", 1.0, "RBL534"),
+        ("x = IN({})", 0.5, "RBL534"),
+        ("x = IN({})", math.nan, "RBL534"),
+    ],
+)
+def test_check_and_a_run_agree_at_the_limits_of_the_robot(tmp_path, text, value, code):
+    """A constant is judged by check, the same value out of a variable by the dry run."""
+    known = in_a_cell(tmp_path, f"{text.format(written(value))}\n")
+    judged = in_a_cell(tmp_path, f"v = {written(value)}\n{text.format('v')}\n")
+    expected = [code] if code else []
+    assert [item.code for item in known.diagnostics if item.severity is Severity.ERROR] == expected
+    assert [item.code for item in judged.diagnostics if item.severity is Severity.ERROR] == []
+    assert [item.code for item in rehearse(judged).refused] == expected

@@ -1,10 +1,10 @@
 import pytest
 
 import robolang.interpreter.scope as scope_module
-from robolang.core.limits import SIZE
 from robolang.interpreter.scope import WAY, Scopes
 from robolang.values.poses import Place, Shift
 from runtime.core.faults import Fault
+from runtime.core.limits import SIZE
 
 MAX_ELEMENTS = int(SIZE.high) + 1
 
