@@ -79,7 +79,7 @@ def move(effect: MoveTo, around: Surroundings) -> Command:
     acceleration = 1.0 if effect.accel_pct is None else effect.accel_pct * PERCENT
     duration = effect.time_s
     zone = effect.zone_mm * MM
-    if effect.way == "joint":
+    if effect.path == "joint":
         share = (100.0 if effect.speed_pct is None else effect.speed_pct) * PERCENT
         return MoveJoint(
             q_end=goal.q_end,
@@ -94,7 +94,7 @@ def move(effect: MoveTo, around: Surroundings) -> Command:
         )
     speed = None if effect.speed_mm_s is None else effect.speed_mm_s * MM
     wrist, held = cast("Wrist | None", effect.wrist), cast("tuple[Component, ...]", effect.held)
-    if effect.way == "arc":
+    if effect.path == "arc":
         assert effect.via is not None
         return MoveArc(
             X_via=_goal(effect.via, around).X,

@@ -331,8 +331,8 @@ def _tracked(line: LineSolver, q_end: Array, s: Array, trial: Trial) -> tuple[Ar
     """Return the joint angles (N + 1, n) of a move on a seam seen without error, and the sample of its switch."""
     seam = np.array(trial.seam)
 
-    def read(way: float, travel: Array) -> Array:
-        return np.asarray(seam * (way / line.path.length))
+    def read(distance: float, travel: Array) -> Array:
+        return np.asarray(seam * (distance / line.path.length))
 
     tracker = SeamTracker("demo", SeamLimits(filter_s=0.0), trial.period_s, read)
     calculated = CalculatedMove(line=line, s=s, period_s=trial.period_s, q_end=q_end, switch=None)

@@ -98,7 +98,7 @@ class Actions:
         values, wrist = self._options(node)
         return effects.MoveTo(
             **origin(line, node),
-            way="joint" if isinstance(node, MoveJ) else "arc" if isinstance(node, MoveC) else "line",
+            path="joint" if isinstance(node, MoveJ) else "arc" if isinstance(node, MoveC) else "line",
             target=self._target(node),
             via=self._values.place(node.via) if isinstance(node, MoveC) else None,
             wrist=None if wrist is None else _mode(wrist),

@@ -13,7 +13,7 @@ from robolang.syntax.ast import Line, Statement
 from robolang.values.poses import Frame, Place
 from runtime.core.program_line import ProgramLine
 
-Way = Literal["line", "joint", "arc"]
+PathKind = Literal["line", "joint", "arc"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,13 +53,13 @@ class SetPayload(OfStatement):
 class MoveTo(OfStatement):
     """Move the tool to a place; None where the move leaves a value open.
 
-    ``way``: straight, with all joints together, or on an arc over ``via``. ``speed_mm_s`` of the tool point and
-    ``speed_pct`` of the joints (``way`` joint), ``accel_pct``, ``time_s`` for all of the move, ``override_pct`` of
+    ``path``: straight, with all joints together, or on an arc over ``via``. ``speed_mm_s`` of the tool point and
+    ``speed_pct`` of the joints (``path`` joint), ``accel_pct``, ``time_s`` for all of the move, ``override_pct`` of
     every speed. ``zone_mm``: radius within which it blends into the next one, 0: it stops. ``wrist`` and ``held`` are
     the mode and the components of ``SetWrist`` that hold for this move; None and () when the program has given neither.
     """
 
-    way: Way = "line"
+    path: PathKind = "line"
     target: Place
     via: Place | None = None
     speed_mm_s: float | None = None

@@ -143,8 +143,8 @@ class TableTarget(Untimed):
         """Refuse a move that a table cannot hold; ``Fault`` RBL431."""
         if not isinstance(effect, MoveTo):
             return
-        if effect.way != "line" or not effect.zone_mm <= 0.0:
-            what = "does not stop at its end (ZONE)" if effect.way == "line" else "is not straight"
+        if effect.path != "line" or not effect.zone_mm <= 0.0:
+            what = "does not stop at its end (ZONE)" if effect.path == "line" else "is not straight"
             message = f"the move {what}; tables hold straight moves from rest to rest"
             raise Fault("RBL431", message, "write MOVE and FINE")
         if not isinstance(self.machine, RobotArm):

@@ -31,7 +31,7 @@ SHORTEST_TRAVEL = 1e-6
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SensorSpec:
-    """A seam sensor in SI: ``way`` (K,) m and ``values`` (K, 6) m and rad of a table; noise, loss and limits.
+    """A seam sensor in SI: ``distance`` (K,) m and ``values`` (K, 6) m and rad of a table; noise, loss and limits.
 
     ``deviation`` (6,) and ``over`` m of a ramp or sine; ``noise`` (6,) standard deviations; ``lost`` share of readings.
     """
@@ -39,7 +39,7 @@ class SensorSpec:
     kind: Kind
     deviation: Array
     over: float
-    way: Array
+    distance: Array
     values: Array
     noise: Array
     lost: float
@@ -55,7 +55,7 @@ class SensorSpec:
             kind=file.kind,
             deviation=frozen(np.array(file.deviation) * SCALE),
             over=file.over_mm * MM,
-            way=frozen(rows[:, 0] * MM),
+            distance=frozen(rows[:, 0] * MM),
             values=frozen(rows[:, 1:] * SCALE),
             noise=frozen(np.array(file.noise) * SCALE),
             lost=file.lost,
@@ -69,13 +69,13 @@ class SensorSpec:
             ),
         )
 
-    def at(self, way: float) -> Array:
-        """Return the true deviation (6,), m and rad, at a distance ``way`` m along the path; constant past a table."""
+    def at(self, distance: float) -> Array:
+        """Return the true deviation (6,), m and rad, at ``distance`` m along the path; constant past a table."""
         if self.kind == "ramp":
-            return np.asarray(self.deviation * min(1.0, way / self.over))
+            return np.asarray(self.deviation * min(1.0, distance / self.over))
         if self.kind == "sine":
-            return np.asarray(self.deviation * math.sin(2.0 * math.pi * way / self.over))
-        return np.array([np.interp(way, self.way, column) for column in self.values.T])
+            return np.asarray(self.deviation * math.sin(2.0 * math.pi * distance / self.over))
+        return np.array([np.interp(distance, self.distance, column) for column in self.values.T])
 
 
 class SeamSensor:
@@ -92,8 +92,8 @@ class SeamSensor:
         twin._random = copy.deepcopy(self._random, memo)
         return twin
 
-    def read(self, way: float, travel: Array) -> Array | None:
-        """Return the deviation (6,) read at ``way`` m along the path, m and rad in the world; None when it is lost.
+    def read(self, distance: float, travel: Array) -> Array | None:
+        """Return the deviation (6,) read at ``distance`` m along the path, m and rad in the world; None when it is lost.
 
         ``travel`` (3,) is the direction of the path; where it has none, that of the move before counts.
         """
@@ -104,7 +104,7 @@ class SeamSensor:
         noise, lost = self._random.normal(size=6) * spec.noise, self._random.random() < spec.lost
         if lost:
             return None
-        seen = spec.at(way) + noise
+        seen = spec.at(distance) + noise
         if not spec.in_line_frame:
             return seen
         R_world_line = weld_line_frame(self._travel)

@@ -64,7 +64,7 @@ class SeamTracker:
         self.name, self._limits, self._period_s, self._read = name, limits, period_s, read
         self.deviation = np.zeros(6)
         """Deviation in force, m and rad."""
-        self.way = 0.0
+        self.distance = 0.0
         """Distance along the calculated path since SEAM ON, up to the move that runs, m."""
         self.q_calculated: Array | None = None
         """Joint angles (n,) of the calculated point where the last move ended; None before the first."""
@@ -80,13 +80,13 @@ class SeamTracker:
         twin._read = copy.deepcopy(self._read)  # a bound method brings a copy of its sensor, a function is itself
         return twin
 
-    def observe(self, way: float, travel: Array) -> None:
-        """Read the sensor for this cycle, ``way`` m into the move that runs; ``Fault`` RBL524 or RBL525.
+    def observe(self, at: float, travel: Array) -> None:
+        """Read the sensor for this cycle, ``at`` m into the move that runs; ``Fault`` RBL524 or RBL525.
 
         Whatever happens, the deviation follows the last good reading for one cycle.
         """
         try:
-            self._take(self._read(self.way + way, travel))
+            self._take(self._read(self.distance + at, travel))
         finally:
             self.follow()  # also after a fault: the arm stops on a path whose deviation has no step
 
@@ -218,7 +218,7 @@ class SeamMove:
 
     def finish(self) -> None:
         """Add the length of the ended move to the tracker, whose next move begins at the calculated end of this one."""
-        self._tracker.way += self._line.path.length
+        self._tracker.distance += self._line.path.length
         self._tracker.q_calculated = self._q_calculated
 
     def row(self, n: int) -> Array:

@@ -116,8 +116,8 @@ P1 = Place(point="P1")
 BACK = Shift(kind="tool", by=(0.0, 0.0, -50.0, 0.0, 0.0, 0.0))
 
 
-def to(way="line", **values):
-    return ("MoveTo", {"way": way, "target": P1, "override_pct": 100.0, **values})
+def to(path="line", **values):
+    return ("MoveTo", {"path": path, "target": P1, "override_pct": 100.0, **values})
 
 
 @pytest.mark.parametrize(

@@ -190,4 +190,4 @@ def test_the_next_move_goes_on_where_the_sensor_was():
     run(going, tracker, len(planned))
     going.finish()
     assert ways[-1] == pytest.approx(path_of(SAME).length)
-    assert tracker.way == pytest.approx(path_of(SAME).length)
+    assert tracker.distance == pytest.approx(path_of(SAME).length)
