@@ -1,4 +1,4 @@
-"""The motion that a program will make, planned without making it: a rehearsal in the time that the plans say.
+"""The motion that a program will make, planned without making it: a rehearsal in the time of the plans.
 
 The program is executed as in a run, by the same interpreter, lowering and planner, with simulated inputs, on a clock
 that each statement moves on by what it takes: a move by its set-points, a HAND by its dwell, a DELAY by its time, all
@@ -69,7 +69,7 @@ class RehearsedMove:
     corner: Corner | None
 
     def share(self, row: int) -> float:
-        """Return how far the move has come at a row of ``q``, in % of its way."""
+        """Return how far the move has come at a row of ``q``, in % of its path."""
         return 100.0 * float(self.plan.s[min(max(row + self.first, 0), len(self.plan.s) - 1)])
 
 
@@ -87,7 +87,7 @@ class Rehearsal:
     """What a rehearsal found: ``moves`` and ``hands`` in order, ``total_us``, and the refusal that ended it.
 
     ``times_us`` and ``runs`` give by line of the file what statements that take time took, and how often they ran;
-    ``tried`` the places of all moves that were asked for, those that were refused and caught by ON ERROR among them.
+    ``reached`` the places of all moves that the program came to, with those that were refused and caught by ON ERROR.
     ``kinematics`` are those that it was planned with.
     """
 
@@ -96,7 +96,7 @@ class Rehearsal:
     times_us: dict[int, int]
     total_us: int
     refused: tuple[Diagnostic, ...]
-    tried: frozenset[Span]
+    reached: frozenset[Span]
     runs: Mapping[int, int]
     kinematics: Kinematics
 
@@ -106,7 +106,7 @@ def motion_check(project: Project, plans: PlanMemory | None = None) -> tuple[Dia
 
     ``plans`` keeps what is planned, for the run.
 
-    An error of its calculations or a WAIT that times out is none of that: it comes in the run, where it comes.
+    Runtime errors (arithmetic, WAIT timeouts) are not reported here; they occur during the run.
     """
     return tuple(item for item in rehearse(project, plans=plans).refused if lookup(item.code).prevents_run)
 
@@ -116,8 +116,8 @@ def rehearse(
 ) -> Rehearsal:
     """Plan a checked program from its first statement to its last, or to what cannot be carried out.
 
-    ``decisions`` may send conditions another way, ``plans`` may know plans already, ``most_us`` ends it earlier than
-    ``run_bounds``.
+    ``decisions`` may force conditions to another branch, ``plans`` may know plans already, ``most_us`` ends it earlier
+    than ``run_bounds``.
     """
     plans = plans or PlanMemory(project)
     most_us = run_bounds.MAX_RUN_US if most_us is None else most_us
@@ -131,14 +131,14 @@ def rehearse(
         times_us=target.times_us,
         total_us=target.time_us,
         refused=target.refused,
-        tried=frozenset(target.tried),
+        reached=frozenset(target.reached),
         runs=dict(target.runs),
         kinematics=plans.kinematics,
     )
 
 
 class _DryRun(Untimed):
-    """A rehearsal under way: a target whose time goes on at once by what the plans say."""
+    """The target of a rehearsal: its time goes on at once by the times of the plans."""
 
     def __init__(self, project: Project, plans: PlanMemory, most_us: int) -> None:
         cell = project.cell
@@ -151,7 +151,7 @@ class _DryRun(Untimed):
         self._q: Array = np.array(cell.home)
         self.moves: list[RehearsedMove] = []
         self.hands: list[RehearsedHand] = []
-        self.tried: set[Span] = set()
+        self.reached: set[Span] = set()
         self.runs: Counter[int] = Counter()
         self.times_us: dict[int, int] = {}
         self.refused: tuple[Diagnostic, ...] = ()
@@ -173,7 +173,7 @@ class _DryRun(Untimed):
     def begin(self, effect: Effect) -> None:
         """Count what takes time; a WAIT passes time cycle by cycle, but lets motion end once."""
         if isinstance(effect, MoveTo):
-            self.tried.add(effect.span)
+            self.reached.add(effect.span)
         if (
             isinstance(effect, MoveTo | SetHand)
             or isinstance(effect.node, Delay)

@@ -1,7 +1,7 @@
 """Conditions that may take another branch than they did: those that depend on inputs, time or errors.
 
-Which conditions can go either way in the cell is ``open_conditions``: those that read an input, the time or the error,
-or a name that was given such a value somewhere. What depends on numbers of the program alone goes as it went.
+``open_conditions`` returns those that read an input, the time or the error, or a name that is given such a value
+somewhere. A condition on numbers of the program alone takes the same branch in every run.
 ``robolang.interpreter.branch_oracle.Decisions`` forces them.
 """
 
@@ -42,7 +42,7 @@ class Condition:
 
 
 def open_conditions(program: Program) -> dict[Span, Condition]:
-    """Return the conditions of a program that can go either way, by place."""
+    """Return the conditions of a program that can take either branch in the cell, by place."""
     outside = _from_outside(program)
     return {
         place: Condition(place=place, line=line, wait=wait)

@@ -15,9 +15,9 @@ from runtime.robot.model.spec import OpwParameters
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LineTime:
-    """What a line of the program takes: how often it ran, its time s, its way mm, and the joint that is fastest on it,
-    by name and share of its speed limit in %; ``margin_deg``: the least distance of a joint from the ends of its
-    range; ``wrist_deg``: how far the wrist is from straight, where it is singular, on a way of the tool."""
+    """What a line of the program takes: how often it ran, its time s, the length of its paths mm, and the name of its
+    fastest joint with the share of its speed limit in %; ``margin_deg``: the least distance of a joint from the ends of
+    its range; ``wrist_deg``: how far the wrist is from straight, where it is singular, on a path of the tool."""
 
     line: int
     number: int | None

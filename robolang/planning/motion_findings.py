@@ -50,8 +50,8 @@ def findings(
 ) -> tuple[Diagnostic, ...]:
     """Return what is wrong with the motion of a program, one finding of a code for a statement.
 
-    Of ``detours`` it is what the rehearsal has not shown: errors of planning and what the moves show, with the way to
-    it. What stops a detour otherwise, such as a WAIT that times out, is what its program wants.
+    ``detours`` add what the rehearsal has not shown, errors of planning and findings on moves, with the branches that
+    lead there. Other faults that end a detour, such as a WAIT that times out, are the answer of its program.
     """
     moves = _Moves(project, rehearsal.kinematics, bounds)
     found: dict[tuple[str, Span], Diagnostic] = {}
@@ -60,21 +60,20 @@ def findings(
     for detour in detours:
         refused = (item for item in detour.rehearsal.refused if lookup(item.code).group in (Group.POINTS, Group.MOTION))
         for item in (*refused, *moves.findings(detour.rehearsal)):
-            if item.code == "RBL441":  # where the program went another way, parts may be elsewhere as well
+            if item.code == "RBL441":  # on another branch parts may lie elsewhere as well
                 continue
-            told = replace(item, message=f"{item.message} ({_way(project, detour)})")
-            found.setdefault((item.code, item.span), told)
+            placed = replace(item, message=f"{item.message} ({_branches(project, detour)})")
+            found.setdefault((item.code, item.span), placed)
     return (*found.values(), *_cycle(rehearsal, max_cycle_s))
 
 
-def _way(project: Project, detour: Detour) -> str:
-    """Return the way of a detour in words."""
+def _branches(project: Project, detour: Detour) -> str:
+    """Return the branches that lead to a detour in words."""
     source = project.source
-    said = (
-        f"if '{source.slice(place)}' in line {source.place(place.start).line} is {'true' if way else 'not true'}"
-        for place, way in detour.forced.items()
+    return " and ".join(
+        f"if '{source.slice(place)}' in line {source.place(place.start).line} is {'true' if holds else 'not true'}"
+        for place, holds in detour.forced.items()
     )
-    return " and ".join(said)
 
 
 def _cycle(rehearsal: Rehearsal, most_s: float | None) -> Found:
@@ -90,7 +89,7 @@ def _at(code: str, move: RehearsedMove, message: str, severity: Severity = Sever
 
 
 class _Moves:
-    """Checks of the moves of rehearsals; what was looked at before is not looked at again."""
+    """Checks of the moves of rehearsals; a move that was checked before is not checked again."""
 
     def __init__(self, project: Project, kinematics: Kinematics, bounds: Bounds) -> None:
         self._bounds = bounds
@@ -103,6 +102,7 @@ class _Moves:
 
     def findings(self, rehearsal: Rehearsal) -> Found:
         """Yield what the moves of a rehearsal show, those of one check after those of another."""
+        # all moves, new or not: where the parts lie depends on every move and HAND before
         yield from self._cell.follow(rehearsal)
         new = [move for move in rehearsal.moves if self._is_new(move)]
         for check in (self.folds, self.near_range, self.near_singular):
@@ -118,6 +118,7 @@ class _Moves:
         yield from _loads(self._project, self._kinematics, new)
 
     def _is_new(self, move: RehearsedMove) -> bool:
+        # rounds of a loop and detours share most moves; the payload is part of the key, since LOAD changes the findings
         load = move.payload
         key = (move.effect.span, move.q.tobytes(), load.mass, load.cog.tobytes(), load.inertia.tobytes())
         known = key in self._seen
@@ -159,9 +160,10 @@ class _Moves:
             )
 
     def near_singular(self, move: RehearsedMove) -> Found:
-        """Report a path that comes near a singular posture, where the wrist is not on a way of its own."""
+        """Report a path that comes near a singular posture, where the wrist is not on a joint curve of its own."""
         if move.plan.path is None or self._kinematics.opw is None:
             return
+        # rows of the plan, not those with blends: ``modes`` belongs to them
         follows = move.plan.modes == FOLLOWS
         near = singularities(self._kinematics.opw, move.plan.q)
         for name, values, bound, size in (
@@ -184,9 +186,9 @@ class _Moves:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoadShare:
-    """What a payload asks of an axis of the wrist (0-based) in its worst posture: its ``moment`` or ``inertia``.
+    """The ``moment`` or ``inertia`` of a payload about an axis of the wrist (0-based) in its worst posture.
 
-    ``given``: the robot file says the limit, else it is an estimate. ``move`` and ``row`` are where it is.
+    ``given``: the limit is in the robot file, else it is an estimate. ``move`` and ``row`` are where the posture is.
     """
 
     axis: int

@@ -1,9 +1,9 @@
-"""Every way that a program may take in its cell, as far as conditions from outside decide it.
+"""Every branch that a program may take in its cell, as far as conditions from outside decide it.
 
-The simulated inputs lead a rehearsal one way. From there each condition that can go the other way (``branches``) is
-sent there once, and the program rehearsed again; what is new behind it is sent its other ways in turn, until every such
-condition has gone both ways or ``MOST_DETOURS`` rehearsals are done. What a detour shows is possible in the cell as far
-as the program goes; that two conditions may exclude one another is not known here.
+The simulated inputs lead a rehearsal along some branches. Each condition on them that may take the other branch
+(``branch_forcing``) is forced to take it once, and the program is rehearsed again; conditions that are new after it are
+forced in turn, until both branches of every such condition were taken or ``MOST_DETOURS`` rehearsals are done. A detour
+is possible in the cell as far as the program decides; that two conditions may exclude one another is not known here.
 
 Plans are remembered (``plan_memory``), so the part that a detour shares with another rehearsal costs nothing.
 """
@@ -23,12 +23,12 @@ from robolang.syntax.ast import If, Moving, Statement
 MOST_DETOURS = 60
 """Most rehearsals besides the first."""
 DETOUR_US = 600_000_000
-"""Longest detour, us of simulated time: on its way inputs need not come as the cell simulates them."""
+"""Longest detour, us of simulated time: inputs need not come there as the cell simulates them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Detour:
-    """A rehearsal in which conditions were sent another way: place of each and the way it took."""
+    """A rehearsal in which conditions were forced: place of each and the result that it was given."""
 
     rehearsal: Rehearsal
     forced: Mapping[Span, bool]
@@ -44,29 +44,31 @@ class Exploration:
 
 
 def explore(project: Project) -> Exploration:
-    """Rehearse a checked program on every way that it may take."""
+    """Rehearse a checked program on every branch that it may take."""
+    # one branch at a time: all combinations are exponential, and a move depends on little but where it starts
     plans = PlanMemory(project)
     conditions = open_conditions(project.program)
     decisions = Decisions()
     first = rehearse(project, decisions=decisions, plans=plans)
-    gone: set[tuple[Span, bool]] = set()
-    known: set[tuple[Span, bool]] = set()  # gone or queued: each way is queued once, behind the fewest others
+    taken: set[tuple[Span, bool]] = set()
+    known: set[tuple[Span, bool]] = set()  # taken or queued: each branch is queued once, after the fewest others
     todo: deque[dict[Span, bool]] = deque()
     _queue(todo, {}, conditions, known, decisions)
     detours: list[Detour] = []
     while todo and len(detours) < MOST_DETOURS:
         forced = todo.popleft()
-        place, way = next(reversed(forced.items()))
-        if (place, way) in gone:
+        branch = next(reversed(forced.items()))
+        if branch in taken:  # another detour has come there since it was queued
             continue
-        gone.add((place, way))  # also where a fault keeps it from being asked
+        taken.add(branch)  # also where a fault ends the detour before the condition
+        # not patient: a WAIT for an input that never comes on this branch would last to the end of the detour
         decisions = Decisions(forced, patient=False)
         rehearsal = rehearse(project, decisions=decisions, plans=plans, most_us=DETOUR_US)
         detours.append(Detour(rehearsal=rehearsal, forced=forced))
-        gone |= {(each, taken) for each, ways in decisions.taken.items() for taken in ways}
+        taken |= _taken(decisions)
         _queue(todo, forced, conditions, known, decisions)
-    tried = first.tried.union(*(detour.rehearsal.tried for detour in detours))
-    missed = tuple(node for node in _moves(project) if node.span not in tried)
+    reached = first.reached.union(*(detour.rehearsal.reached for detour in detours))
+    missed = tuple(node for node in _moves(project) if node.span not in reached)
     return Exploration(rehearsal=first, detours=tuple(detours), missed=missed)
 
 
@@ -77,13 +79,17 @@ def _queue(
     known: set[tuple[Span, bool]],
     decisions: Decisions,
 ) -> None:
-    """Queue the ways that conditions of a rehearsal did not go and that are not known yet, behind its own."""
-    known |= {(place, way) for place, ways in decisions.taken.items() for way in ways}
+    """Queue the branches that conditions of a rehearsal did not take and that are not known yet, after its own."""
+    known |= _taken(decisions)
     for place in decisions.taken:
-        for way in (True, False) if place in conditions else ():
-            if (place, way) not in known:
-                known.add((place, way))
-                todo.append({**forced, place: way})
+        for result in (True, False) if place in conditions else ():
+            if (place, result) not in known:
+                known.add((place, result))
+                todo.append({**forced, place: result})
+
+
+def _taken(decisions: Decisions) -> set[tuple[Span, bool]]:
+    return {(place, result) for place, results in decisions.taken.items() for result in results}
 
 
 def _moves(project: Project) -> list[Moving]:

@@ -93,7 +93,7 @@ class SeamSensor:
         return twin
 
     def read(self, distance: float, travel: Array) -> Array | None:
-        """Return the deviation (6,) read at ``distance`` m along the path, m and rad in the world; None when it is lost.
+        """Return the deviation (6,) read at ``distance`` m along the path, m and rad in the world; None: lost.
 
         ``travel`` (3,) is the direction of the path; where it has none, that of the move before counts.
         """
