@@ -46,38 +46,54 @@ class _Described:
         return getattr(kind._described, self._name)
 
 
+class _Nothing:
+    """What ``Record`` itself inherits: no field."""
+
+    FIELDS: ClassVar[tuple[str, ...]] = ()
+    _declared: ClassVar[dict[str, _Default]] = {}
+
+
 class _RecordType(type):
     """Turns annotated names into slots. ``kw_only=False`` lets the values be given by position too."""
 
     def __new__(
         cls, name: str, bases: tuple[type, ...], namespace: dict[str, Any], *, kw_only: bool | None = None
     ) -> "_RecordType":
-        base: Any = bases[0] if bases else None
-        defaults = dict(base.DEFAULTS) if base else {}
-        factories = dict(base._factories) if base else {}
-        notes = dict(base.NOTES) if base else {}
-        hints = namespace.get("__annotations__", {}).items()
-        own = [field for field, hint in hints if bases and not _is_of_the_class(hint)]
-        for field in own:
-            if field not in namespace:
-                continue
-            value = namespace.pop(field)  # a slot and a value of one name exclude each other
-            given = value if type(value) is _Default else _Default(value, None, None)
-            defaults.pop(field, None)
-            factories.pop(field, None)
-            (defaults if given.factory is None else factories)[field] = given.factory or given.value
-            if given.note is not None:
-                notes[field] = given.note
-        inherited: tuple[str, ...] = base.FIELDS if base else ()
-        namespace["__slots__"] = (*namespace.get("__slots__", ()), *(field for field in own if field not in inherited))
+        base: Any = bases[0] if bases else _Nothing
+        # the annotations of Record itself are about every record, and no fields
+        own = _field_names(namespace) if bases else []
+        declared = {**base._declared, **_take_defaults(namespace, own)}
+        new = [field for field in own if field not in base.FIELDS]  # a slot that is made again would hide the first
+        namespace["__slots__"] = (*namespace.get("__slots__", ()), *new)
         if kw_only is not None:
             namespace["_kw_only"] = kw_only
         made: Any = super().__new__(cls, name, bases, namespace)
-        made.FIELDS = tuple(dict.fromkeys((*inherited, *own)))  # a field that is declared again keeps its place
-        made.NOTES, made.DEFAULTS, made._factories = notes, defaults, factories
-        made._known = frozenset(made.FIELDS)
-        made._put = tuple((field, getattr(made, field).__set__) for field in made.FIELDS)
+        made.FIELDS = (*base.FIELDS, *new)  # a field that is declared again keeps its place
+        made._declared = declared
+        _tabulate(made)
         return made  # type: ignore[no-any-return]
+
+
+def _field_names(namespace: dict[str, Any]) -> list[str]:
+    hints = namespace.get("__annotations__", {})
+    return [field for field, hint in hints.items() if not _is_of_the_class(hint)]
+
+
+def _take_defaults(namespace: dict[str, Any], fields: list[str]) -> dict[str, _Default]:
+    """Take the values of fields out of a class body: a slot and a value of one name exclude each other."""
+    values = {field: namespace.pop(field) for field in fields if field in namespace}
+    return {field: value if type(value) is _Default else _Default(value, None, None) for field, value in values.items()}
+
+
+def _tabulate(kind: Any) -> None:
+    """Give a class the tables from which its records are made, so that making one asks nothing about the class."""
+    declared = kind._declared.items()
+    kind.DEFAULTS = {field: each.value for field, each in declared if each.factory is None}
+    kind._factories = {field: each.factory for field, each in declared if each.factory is not None}
+    kind.NOTES = {field: each.note for field, each in declared if each.note is not None}
+    kind._known = frozenset(kind.FIELDS)
+    # the setters of the slots themselves: __setattr__ refuses every change, also the first
+    kind._put = tuple((field, getattr(kind, field).__set__) for field in kind.FIELDS)
 
 
 @dataclass_transform(kw_only_default=True, frozen_default=True, field_specifiers=(default,))
@@ -95,6 +111,7 @@ class Record(metaclass=_RecordType):
     NOTES: ClassVar[dict[str, Any]]
     """Notes of the fields that have one."""
 
+    _declared: ClassVar[dict[str, _Default]]
     _factories: ClassVar[dict[str, Callable[[], Any]]]
     _known: ClassVar[frozenset[str]]
     _put: ClassVar[tuple[tuple[str, Callable[[Any, Any], None]], ...]]
