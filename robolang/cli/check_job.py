@@ -33,6 +33,7 @@ from runtime.core.tomlfile import FileFault
 if TYPE_CHECKING:
     from robolang.cli.check_motion import Planned
 
+# set by GitHub Actions and GitLab CI: both match a report with files by their path inside the checkout
 _ROOTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")
 
 
@@ -56,7 +57,7 @@ class Job(Record):
 
 
 class _Outcome(Record):
-    """A program as it was read, what was found after its fixes and in its points, how often each code was fixed.
+    """A program as it was read, the findings after its fixes and in its points, how often each code was fixed.
 
     ``warnings`` are about the files of its robot, ``table`` and ``times`` are the times of its lines; ``read`` is
     False for a program that could not be read.
@@ -97,7 +98,7 @@ def watched(job: Job) -> int:
     def again() -> int:
         try:
             code = run_once(job)
-        except Fault as fault:
+        except Fault as fault:  # a configuration that is being edited is no reason to stop watching
             code = say_all(fault)
         echo("watching; Ctrl-C ends", err=True)
         return code
@@ -116,11 +117,12 @@ def run_once(job: Job) -> int:
     if job.times is not None:
         _write_times(job.times, outcomes)
     _print(job, outcomes)
+    # not `or`: --exit-zero makes findings 0, and a file that cannot be used stays 2
     return max(_say_rest(job, outcomes), _judged(job, outcomes))
 
 
 def _say_rest(job: Job, outcomes: Sequence[_Outcome]) -> int:
-    """Say on stderr what is no finding, and return the exit code of the files that cannot be used."""
+    """Print to stderr what is no finding, and return the exit code of the files that cannot be used."""
     if any(map(os.path.isdir, job.paths)):  # the count says that a folder held what the user thinks it holds
         count = sum(outcome.read for outcome in outcomes)
         echo(f"{count} program{'' if count == 1 else 's'} checked", err=True)
@@ -129,7 +131,7 @@ def _say_rest(job: Job, outcomes: Sequence[_Outcome]) -> int:
 
 
 def _check_outputs(job: Job) -> None:
-    """Try the files that are written before anything is checked; ``Fault`` RBL706."""
+    """Refuse files that cannot be written before anything is checked; ``Fault`` RBL706."""
     outputs = [path for path in (job.output, job.times) if path is not None]
     if outputs:
         from robolang.core.storage import check_writable
@@ -145,6 +147,7 @@ def _examined_all(names: Sequence[str], job: Job, settings: Settings) -> list[_O
     """
     files = CellFiles()
     outcomes = [_examined(name, job, settings, files) for name in names]
+    # all are read before the first is written: Ctrl-C while programs are checked leaves every file as it was
     if job.fixes.fix and not job.fixes.diff:
         outcomes = [_written(outcome) for outcome in outcomes]
     outcomes = [outcome.replaced(points=_points(outcome, job, settings)) for outcome in outcomes]
@@ -176,7 +179,7 @@ def _once(outcomes: Sequence[_Outcome]) -> list[_Outcome]:
 
 
 def _examined(name: str, job: Job, settings: Settings, files: CellFiles) -> _Outcome:
-    """Return what was found in one program and what its fixes make of it; nothing is written."""
+    """Return the findings in one program and the text that its fixes make; nothing is written."""
     shown = job.stdin_name if name == STANDARD_INPUT else name
     try:
         loaded = load(name, shown)
@@ -188,7 +191,7 @@ def _examined(name: str, job: Job, settings: Settings, files: CellFiles) -> _Out
     fixable = any(item.fix is not None and item.fix.safe for item in checked.diagnostics)
     if not (fixable and (job.fixes.fix or job.fixes.diff)):
         return _Outcome(checked=checked, before=loaded)
-    seen = {loaded.source.text: checked}
+    seen = {loaded.source.text: checked}  # the text as it was read, and the one that is left, are judged once
 
     def found(source: Source) -> tuple[Diagnostic, ...]:
         if source.text not in seen:
@@ -196,12 +199,12 @@ def _examined(name: str, job: Job, settings: Settings, files: CellFiles) -> _Out
         return seen[source.text].diagnostics
 
     fixed = fix_all(loaded.source, found)
-    found(fixed.source)
+    found(fixed.source)  # of the text after the last round, which is not examined where rounds run out
     return _Outcome(checked=seen[fixed.source.text], before=loaded, fixed=dict(fixed.counts))
 
 
 def _points(outcome: _Outcome, job: Job, settings: Settings) -> Checked | None:
-    """Return what was found in the points file of a program."""
+    """Return the findings in the points file of a program."""
     if outcome.before.name == STANDARD_INPUT:
         return None
     return check_points(outcome.checked, _selection(outcome.checked.source.path, job, settings))
@@ -234,6 +237,7 @@ def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
 
 def _with_plan(checked: Checked, plan: "Planned", selection: Selection) -> tuple[Diagnostic, ...]:
     """Return the findings in the text and in the motion, by place, each once."""
+    # of a text with errors the planner returns what the check of the text has found
     known = {(item.code, item.span) for item in checked.diagnostics}
     later = [item for item in plan.diagnostics if (item.code, item.span) not in known]
     found = in_order(filter(selection.keeps, add_later(checked.source, checked.diagnostics, later)))
@@ -259,10 +263,10 @@ def _written(outcome: _Outcome) -> _Outcome:
         if outcome.fixed or before.name == STANDARD_INPUT:
             store(before, after.text)
     except Fault as fault:
-        return outcome.failing(fault).replaced(fixed={})
+        return outcome.failing(fault).replaced(fixed={})  # nothing was fixed: the file is as it was
     if outcome.fixed:
-        said = ", ".join(f"{count} x {code} {lookup(code).name}" for code, count in outcome.fixed.items())
-        echo(f"{safe(after.path)}: fixed {said}", err=True)
+        listed = ", ".join(f"{count} x {code} {lookup(code).name}" for code, count in outcome.fixed.items())
+        echo(f"{safe(after.path)}: fixed {listed}", err=True)
     return outcome
 
 
@@ -272,6 +276,7 @@ def _print(job: Job, outcomes: Sequence[_Outcome]) -> None:
     if job.output is not None:
         from robolang.core.storage import write_atomic
 
+        # names of files that are not UTF-8 are in the report, and must not keep it from being written
         write_atomic(job.output, lambda stream: stream.write(text.encode("utf-8", "backslashreplace")))
         return
     # a corrected program from the standard input goes to the standard output, so its report cannot
@@ -290,7 +295,7 @@ def _report(job: Job, outcomes: Sequence[_Outcome]) -> str:
 
         return statistics.render(results, as_json=form == "json")
     text = render(form, results, _root())
-    if form in FOR_PEOPLE:
+    if form in FOR_PEOPLE:  # other programs read the rest, and the times from --times
         text += "".join(f"\n{outcome.table}" for outcome in outcomes if outcome.table)
     return text
 
@@ -305,6 +310,7 @@ def _root() -> Path:
     here = Path.cwd()
     for variable in _ROOTS:
         checkout = os.environ.get(variable)
+        # a job may work outside the checkout; then its variable says nothing about these files
         if checkout and here.is_relative_to(checkout):
             return Path(checkout)
     return here

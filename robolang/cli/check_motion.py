@@ -39,6 +39,7 @@ _COLUMNS = (
 @contextmanager
 def progress(count: int) -> Iterator[Callable[[int, str], None]]:
     """Yield a function that takes which of ``count`` programs is planned; on a terminal it shows a live line."""
+    # the name of a single program is known
     if count < 2 or sys.stderr is None or not sys.stderr.isatty():
         yield lambda number, name: None
         return
@@ -62,7 +63,7 @@ class Planned:
 
 
 def planned(program: Analysis | str, max_cycle_s: float | None, bounds: Bounds = DEFAULTS) -> Planned:
-    """Return what planning the motion of a program, or of the file of one, shows; ``Fault`` for files beside it.
+    """Return the findings in the motion of a program, or of the file of one; ``Fault`` for files beside it.
 
     What the cell makes an error of the text (a load, a tool or an input that it does not have) is among them.
     """
@@ -98,7 +99,7 @@ def _times(project: Project, explored: Exploration, rows: Sequence[LineTime]) ->
             }
             for share in shares
         ],
-        "other_ways": len(explored.detours),
+        "other_ways": len(explored.detours),  # the key is read by other programs: branches, in today's words
         "not_planned": _missed(project, explored),
         "self_collision_checked": bool(project.cell.robot.link_radii),
     }

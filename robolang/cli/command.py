@@ -27,6 +27,7 @@ class RefusedValueError(typer.BadParameter):
 
     def format_message(self) -> str:
         """Return the message as it is."""
+        # typer's own puts "Invalid value:" before a code that editors and scripts look for at the start
         return self.message
 
 
@@ -46,7 +47,7 @@ def command(function: Callable[..., None]) -> Callable[..., None]:
         try:
             made = {name: made_of(group, given) for name, group in groups.items()}
             function(**given, **made)
-        except OptionValueError as error:
+        except OptionValueError as error:  # turned here, since `quick` calls the function without typer
             raise RefusedValueError(error) from None
 
     called.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
@@ -119,6 +120,7 @@ class CodedGroup(TyperGroup):
         try:
             return super().invoke(ctx)
         except typer.BadParameter as error:
+            # only what the parser itself refused: its subclasses (ours, a missing parameter) say more than a value
             if type(error) is not typer.BadParameter or error.param is None:
                 raise
             coded = RefusedValueError(OptionValueError(error.param.opts[0], error.message.rstrip(".")))

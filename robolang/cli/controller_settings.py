@@ -16,6 +16,7 @@ Settings = dict[str, tuple[str, Any]]
 def settings_of(group: SettingsOptions) -> Settings:
     """Return the settings that were given; ``OptionValueError`` for a value or a combination that makes no sense."""
     found: Settings = {}
+    # --set first: where an option of its own gives the same key, that one is in force
     for text in group.settings or []:
         key, value = _setting(text)
         found[key] = ("--set", value)
@@ -24,6 +25,7 @@ def settings_of(group: SettingsOptions) -> Settings:
     for name, _, option, _ in group.options():
         value = getattr(group, name)
         if option.key is not None and value is not None:
+            # the choices of an option are texts, and the only number among them is this one
             found[option.key] = (option.names[0], float(value) if option.key == "servo_period_ms" else value)
     return found
 
@@ -41,9 +43,11 @@ def _setting(text: str) -> tuple[str, Any]:
     """Split ``KEY=VALUE``; the value as TOML writes it, or a bare word."""
     key, equals, value = text.partition("=")
     key, value = key.strip().removeprefix("controller."), value.strip()
+    # a second line would be a key of its own in the TOML below
     if not (key and equals and value) or "\n" in value:
         raise OptionValueError("--set", f"'{text[:60]}' is not KEY=VALUE")
     try:
         return key, tomllib.loads(f"value = {value}")["value"]
-    except (tomllib.TOMLDecodeError, RecursionError, ValueError):  # a word without quotes, such as scheduled
+    # a word without quotes, such as scheduled; brackets 1000 deep; a whole number of more digits than int takes
+    except (tomllib.TOMLDecodeError, RecursionError, ValueError):
         return key, value

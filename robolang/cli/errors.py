@@ -22,7 +22,9 @@ DIAGNOSTICS, USAGE, MOTION, STORAGE, INTERNAL = 1, 2, 3, 4, 70
 INTERRUPTED = 130
 
 _OF_CODE = {"RBL301": DIAGNOSTICS, "RBL706": STORAGE}
+# A group of two digits counts before one of one: 40x is about the text, the rest of 4xx a motion (decision 0005).
 _OF_GROUP = {"1": DIAGNOSTICS, "2": DIAGNOSTICS, "40": DIAGNOSTICS, "4": MOTION, "5": MOTION, "9": INTERNAL}
+# Errors of a device that is full or broken. Only stdout gets here with one: storage turns those of files into faults.
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 
 
@@ -82,13 +84,13 @@ def reported() -> Iterator[None]:
     try:
         with _left_with_exit_code():
             yield
-    except OptionValueError:
+    except OptionValueError:  # typer shows it, with the usage of the command
         raise
     except KeyboardInterrupt:
         raise SystemExit(INTERRUPTED) from None
     except Exception as error:
         fault = internal(error)
-        with suppress(Exception):
+        with suppress(Exception):  # stderr may be what failed; the exit code is all that is left then
             say(fault)
         raise SystemExit(INTERNAL) from None
 
@@ -101,7 +103,7 @@ def _left_with_exit_code() -> Iterator[None]:
         raise SystemExit(say_all(fault)) from None
     except KeyboardInterrupt:
         raise SystemExit(INTERRUPTED) from None
-    except BrokenPipeError:
+    except BrokenPipeError:  # before OSError, which it is one of
         _drop_output()
         raise SystemExit(0) from None  # a command whose exit code says more goes on with reader_may_leave
     except OptionValueError:
@@ -123,7 +125,7 @@ def escape_what_a_terminal_lacks() -> None:
 
 
 def internal(error: Exception) -> Fault:
-    """Return the fault that stands for a defect of robolang itself; raises the error when that is asked for."""
+    """Return the fault that stands for a defect of robolang itself; raises the error under ``ROBOLANG_DEBUG``."""
     if os.environ.get("ROBOLANG_DEBUG"):
         raise error
     kind = type(error).__name__
@@ -133,5 +135,6 @@ def internal(error: Exception) -> Fault:
 
 def _drop_output() -> None:
     """Lead the standard output nowhere, so that the interpreter does not fail at exit on what is left in it."""
+    # stdout may be None, closed, or no file at all, as in a test: then there is nothing to lead away
     with suppress(OSError, ValueError, AttributeError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

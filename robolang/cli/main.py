@@ -35,8 +35,8 @@ app = typer.Typer(
     name="robolang",
     cls=CodedGroup,
     no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
+    add_completion=False,  # it would add two options to the help of a program that is run from scripts and CI
+    pretty_exceptions_enable=False,  # errors.reported answers every exception
     help="Check, run and test programs of an industrial robot language on a simulated robot controller.",
     epilog="Exit codes: 0 done; 1 the program has errors, or the answer is no; 2 a file or an option cannot be used; "
     "3 a move was refused or ended with an alarm; 4 a file cannot be written; 70 a defect of robolang; "
@@ -58,6 +58,7 @@ _COMMANDS: dict[str, Callable[..., None]] = {
     "rules": rules.rules,
     "explain": explain.explain,
 }
+# in the order of the table, which is that of --help; `check` is here for its help and for what `quick` cannot read
 for name, function in _COMMANDS.items():
     app.command(name, cls=PlainCommand)(command(function))
 app.add_typer(config.app, name="config")

@@ -40,7 +40,7 @@ class Option:
         self.envvar: str | None = rest.pop("envvar", None)
         self.low: float | None = rest.pop("low", None)
         self.high: float | None = rest.pop("high", None)
-        if rest:
+        if rest:  # a misspelt keyword would be an option without its range
             raise TypeError(f"{names[0]}: unknown: {', '.join(rest)}")
 
 
@@ -65,6 +65,7 @@ class Group(Record):
         A group that declares a field of its base again with a type only gives it another default.
         """
         declared = {
+            # the panel of the group that declares it: a derived one may have another for its own
             name: (hint, base.PANEL)
             for base in reversed(cls.__mro__)
             if issubclass(base, Group)

@@ -6,7 +6,7 @@ import sys
 def echo(text: str | bytes = "", *, nl: bool = True, err: bool = False) -> None:
     """Print a text, or the bytes of a file, and flush; a process without that stream prints nothing."""
     stream = sys.stderr if err else sys.stdout
-    if stream is None:
+    if stream is None:  # pythonw, or a service that was started with the stream closed
         return
     if isinstance(text, bytes):
         stream.flush()  # what was printed as text comes first

@@ -16,6 +16,7 @@ from robolang.cli.errors import escape_what_a_terminal_lacks
 from robolang.cli.options import Group, Option
 from robolang.cli.usage import OptionValueError
 
+# by the name of the parameter of `check`
 _GROUPS: dict[str, type[Group]] = {
     "files": FileOptions,
     "selection": SelectionOptions,
@@ -45,7 +46,7 @@ def parsed(words: list[str]) -> dict[str, Any] | None:
     """Return the parameters of ``check``; None for words that are not plainly options and arguments."""
     known = {name: (field, kind) for field, kind, option in _options() for name in option.names}
     paths: list[str] = []
-    values = _environment()
+    values = _environment()  # first: an option that is given replaces it
     rest = iter(words)
     for word in rest:
         if word == "-" or not word.startswith("-"):
@@ -63,9 +64,10 @@ def _took(word: str, rest: Iterator[str], known: dict[str, tuple[str, Any]], val
     field, kind = known[name]
     if kind is bool:
         values[field] = True
-        return not equals
-    text = value if equals else next(rest, "-")
+        return not equals  # --fix=yes is an error, and typer says so
+    text = value if equals else next(rest, "-")  # a value that is missing looks like one that is not plain
     values[field] = [*values.get(field, []), text] if kind == list[str] | None else text
+    # "--ignore --fix" may be a value or a slip
     return not text.startswith("-")
 
 

@@ -26,6 +26,7 @@ CHANGES, BROKEN = 1, 2
 
 _MARK = b"\xef\xbb\xbf"
 _CONTEXT = 3
+# str.splitlines would also split at form feeds and at line ends of Unicode, which no line of a program ends with
 _LINE = re.compile(r"[^\r\n]*(?:\r\n?|\n)|[^\r\n]+")
 
 
@@ -54,7 +55,7 @@ def _standard_input() -> bytes:
     if sys.stdin is None:
         raise Fault("RBL702", "there is no standard input")
     try:
-        return sys.stdin.buffer.read(MAX_BYTES + 1)
+        return sys.stdin.buffer.read(MAX_BYTES + 1)  # the one more tells a text that is too long from one that fits
     except OSError as error:
         raise Fault("RBL702", f"cannot read the standard input: {error.strerror}") from None
 
@@ -138,7 +139,7 @@ def _hunks(changed: list[int], count: int) -> Iterator[tuple[int, int]]:
     """Yield the ranges of lines that are shown: the changed ones with three more on either side."""
     ranges: list[list[int]] = []
     for index in changed:
-        if ranges and index - ranges[-1][1] <= 2 * _CONTEXT + 1:
+        if ranges and index - ranges[-1][1] <= 2 * _CONTEXT + 1:  # their context would overlap or touch
             ranges[-1][1] = index
         else:
             ranges.append([index, index])
@@ -147,12 +148,13 @@ def _hunks(changed: list[int], count: int) -> Iterator[tuple[int, int]]:
 
 
 def _range(before: int, count: int) -> str:
-    """Return the place of a hunk behind ``before`` lines; of an empty one, that of the line above."""
+    """Return the place of a hunk after ``before`` lines; of an empty one, that of the line above."""
     start = before + 1 if count else before
     return str(start) if count == 1 else f"{start},{count}"
 
 
 def _body(hunk: list[tuple[str, str | None]]) -> Iterator[str]:
+    # lines that are removed come before those that take their place, as patch and diff have them
     added: list[str] = []
     for before, after in hunk:
         if before == after:
@@ -168,4 +170,4 @@ def _body(hunk: list[tuple[str, str | None]]) -> Iterator[str]:
 
 def _line(sign: str, line: str) -> str:
     missing = "" if line.endswith(("\n", "\r")) else "\\ No newline at end of file\n"
-    return f"{sign}{line.removesuffix(chr(10))}\n{missing}"
+    return f"{sign}{line.removesuffix(chr(10))}\n{missing}"  # a \r stays: patch compares the bytes of the file

@@ -15,7 +15,7 @@ from robolang.execution.result import StatementRun
 from runtime.core.program_line import named
 
 _CYCLES = 25
-"""Cycles between two updates of the progress."""
+"""Cycles between two updates of the progress: 0.2 s of the robot."""
 
 Tell = Callable[[StatementRun, int], None]
 """Shows the running statement and the simulated time in us."""

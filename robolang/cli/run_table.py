@@ -46,6 +46,7 @@ def _statements(report: dict[str, Any], width: int) -> Table:
     for heading, _, _ in _COLUMNS:
         table.add_column(heading, justify="right", no_wrap=True)
     rows = [[*lines.cells(statement, where), *_cells(statement)] for statement in statements]
+    # cut here and not by rich, which would shrink the columns of numbers too
     room, at = _room(rows, where, width), len(where)
     for row in rows:
         text = row[at]
@@ -82,6 +83,7 @@ def _facts(report: dict[str, Any]) -> list[str]:
             f"at most {dynamics['refresh_max_ms']:.1f} ms"
         )
     for name, entry in report["objects"].items():
+        # adding zero turns a rounded -0.0 into 0.0
         x, y, z, rx, ry, rz = (round(value, 3) + 0.0 for value in entry["pose_mm_deg"])
         lines.append(f"{name}: at ({x:.3f}, {y:.3f}, {z:.3f}) mm, turned ({rx:.3f}, {ry:.3f}, {rz:.3f}) deg")
     return lines

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 _OUTSIDE = "The result is calculated, but the arm cannot take this posture; give an angle in the range."
 PAYLOAD = ("mass kg", "x mm", "y mm", "z mm")
 MAX_ABS = 1e9
+"""The largest number of an option: that of a number in a file (RBL604)."""
 
 
 def numbers(text: str, *, option: str, names: tuple[str, ...]) -> tuple[float, ...]:
@@ -42,7 +43,7 @@ def posture(text: str | None, spec: "RobotSpec") -> "Array":
     """Return joint angles (n,) rad of ``--joints``; without it zero, or the nearest angle in range."""
     import numpy as np
 
-    if text is None:
+    if text is None:  # zero is outside the range of some joints, such as J4 of a Franka arm
         return np.clip(np.zeros(spec.n), spec.lower, spec.upper)
     names = tuple(f"J{i}" for i in range(1, spec.n + 1))
     return np.deg2rad(numbers(text, option="--joints", names=names))
@@ -63,7 +64,7 @@ def outside(q: "Array", lower: "Array", upper: "Array") -> "Iterator[tuple[int, 
 def warn_outside(q: "Array", lower: "Array", upper: "Array") -> None:
     """Print a warning for each angle of ``--joints`` outside its range (RBL309).
 
-    It is calculated all the same: ``kin ik`` lists such postures, and their poses are asked for.
+    It is calculated all the same: ``kin ik`` lists such postures, and ``kin fk`` must lead back from each of them.
     """
     for joint, sentence in outside(q, lower, upper):
         say_warning("RBL309", f"--joints, number {joint + 1}", sentence, _OUTSIDE)
@@ -78,6 +79,7 @@ def payload(text: str, option: str, spec: "RobotSpec", *, heavier: bool = True) 
     from runtime.robot.model.payload import declared
 
     mass, *cog = numbers(text, option=option, names=PAYLOAD)
+    # an experiment may ask what an overload does; a LOAD may not, and the rule is that of LOAD
     try:
         return declared(mass, np.array(cog) * MM, max(spec.rated_payload, mass) if heavier else spec.rated_payload)
     except Fault as fault:

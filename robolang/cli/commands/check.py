@@ -62,6 +62,7 @@ def _refuse(paths: tuple[str, ...], files: FileOptions, report: ReportOptions, m
     """Raise ``OptionValueError`` for options that cannot be, alone or together."""
     from robolang.lint.reporters import FORMS
 
+    # not as choices of the option: `quick` takes any text that stands after a name
     form = report.output_format
     if form not in FORMS:
         raise OptionValueError("--output-format", f"there is no form '{form}'; known: {', '.join(FORMS)}")
@@ -79,6 +80,7 @@ def _seconds(motion: MotionOptions) -> float | None:
         return None
     if not motion.motion:
         raise OptionValueError("--max-cycle", "it needs --motion")
+    # not float(): it takes "nan", "inf" and digits of other scripts
     found = re.fullmatch(r"([0-9]+(?:\.[0-9]*)?|\.[0-9]+) *(ms|s)?", motion.max_cycle.strip().lower())
     if found is None:
         raise OptionValueError("--max-cycle", f"'{motion.max_cycle[:20]}' is not a time such as 12.5s")

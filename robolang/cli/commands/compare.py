@@ -65,6 +65,7 @@ def compare(
                 echo(json.dumps(found, indent=2))
             else:
                 _print(program, rows)
+    # a variant that an alarm stopped is a row of the table, and still no success
     if not all(row["ok"] for row in rows):
         raise SystemExit(MOTION)
 
@@ -113,10 +114,11 @@ def _print(program: str, rows: list[dict[str, Any]]) -> None:
     console = Console()
     console.print(safe(program), style="italic", soft_wrap=True)
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
-    table.add_column("variant", no_wrap=False)
+    table.add_column("variant", no_wrap=False)  # a title may take two lines; a number that is cut is another number
     for heading, _, _ in _COLUMNS:
         table.add_column(heading, justify="right", no_wrap=True)
     for row in rows:
+        # equal rows would be taken for a result: there was no LOAD to make wrong, or no spring to lead
         title = row["title"] if row["changes"] else f"{row['title']}: changes nothing"
         table.add_row(title, *("-" if row[key] is None else form.format(row[key]) for _, key, form in _COLUMNS))
     console.print(table)
@@ -138,7 +140,7 @@ def _print_axes(console: Any, rows: list[dict[str, Any]]) -> None:
     from rich import box
     from rich.table import Table
 
-    measured = [row for row in rows if row["per_axis"]]
+    measured = [row for row in rows if row["per_axis"]]  # none without a MOVE that took time
     if not measured:
         return
     count = len(measured[0]["per_axis"]["joint_error_deg"])

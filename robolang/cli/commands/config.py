@@ -33,6 +33,7 @@ def show(program: OptionalProgram, files: CellOptions, controller: ControllerOpt
     Exit codes: 0 done; 2 a file or an option cannot be used.
     """
     settings = settings_of(controller)
+    # the text is not read, so a name that is misspelt would show the settings of the built-in cell
     if program is not None and not Path(program).exists():
         raise OptionValueError("PROG", f"there is no file '{program}'")
     with reported():
@@ -58,7 +59,7 @@ def _rows(robot: "RobotSpec", settings: "Settings") -> list[dict[str, Any]]:
     for key, item in declared().items():
         given = settings[key]
         value, origin = given.value, given.origin
-        if key.endswith("_bandwidth_rad_s"):
+        if key.endswith("_bandwidth_rad_s"):  # empty means that of the robot file: what is in force is shown
             value = in_force[key.removeprefix("servo.").partition("_")[0]].tolist()
             origin = f"robot {robot.name}" if origin == "default" else origin
         rows.append({"key": key, "value": value, "unit": item.unit, "from": origin})
@@ -83,7 +84,7 @@ def _print(robot: str, rows: list[dict[str, Any]]) -> None:
 def _shown(value: Any) -> str:
     if isinstance(value, tuple):
         return f"[{', '.join(map(_shown, value))}]" if value else "as the robot file"
-    if isinstance(value, list):
+    if isinstance(value, list):  # one number for all axes where they agree
         return _shown(value[0]) if len(set(value)) == 1 else ", ".join(map(_shown, value))
     if value is None:
         return "as the servo"  # the only open setting: the friction that supervision expects

@@ -31,15 +31,15 @@ def explain(code: _Code) -> None:
             _print(_find(code, entries))
 
 
-def _find(wanted: str, entries: "list[Code]") -> "Code":
+def _find(text: str, entries: "list[Code]") -> "Code":
     """Return the entry of a code, its number or its name, in any case; a usage error with the nearest otherwise."""
-    word = wanted.strip().upper()
+    word = text.strip().upper()
     word = f"RBL{word}" if word.isdecimal() else word
     for entry in entries:
         if word in (entry.code, entry.name.upper()):
             return entry
     near = _near(word, entries)
-    raise OptionValueError("CODE", f"there is no code '{wanted}'" + (f"; did you mean {near}?" if near else ""))
+    raise OptionValueError("CODE", f"there is no code '{text}'" + (f"; did you mean {near}?" if near else ""))
 
 
 def _near(word: str, entries: "list[Code]") -> str:
@@ -73,7 +73,7 @@ def _print_page(code: str, console: "Console") -> None:
     for heading, program in (("Example", known.example), ("Instead", known.instead)):
         console.print(f"\n{heading}:\n")
         for line in program.splitlines():
-            console.print(f"    {line}", soft_wrap=True)
+            console.print(f"    {line}", soft_wrap=True)  # a program that is wrapped is not the one to copy
     if bounds := of_rule(code):
         console.print(f"\nBounds, in [lint.{known.entry.name}] of robolang.toml:\n")
         for bound in bounds:

@@ -35,6 +35,7 @@ def fmt(paths: _Paths, output: RewriteOptions) -> None:
         if names == [STDIO]:
             run.one(STDIO)
         elif STDIO in names:
+            # its program goes to stdout, where the sentences about the files go too
             raise OptionValueError("PATH", "'-' stands alone")
         else:
             from robolang.lint.files import programs
@@ -43,7 +44,7 @@ def fmt(paths: _Paths, output: RewriteOptions) -> None:
             for name in programs(names, excludes=Settings().excludes):
                 run.one(name)
             with reader_may_leave():
-                echo(run.summary(), err=output.diff)
+                echo(run.summary(), err=output.diff)  # stdout may go on to patch
     if run.exit_code:
         raise SystemExit(run.exit_code)
 
@@ -61,6 +62,7 @@ class _Run:
 
     @property
     def exit_code(self) -> int:
+        # a file that was left alone outranks one that would change: CI must not call the rest of it formatted
         return self.failure or (CHANGES if self.changed and (self.check or self.diff) else 0)
 
     def one(self, name: str) -> None:
@@ -90,6 +92,7 @@ class _Run:
                 show(loaded, found.text)
             elif self.check and found.changed:
                 echo(safe(f"would reformat {loaded.source.path}"))
+        # a filter of an editor gives back what it has read, changed or not; a file keeps its time
         if not self.check and not self.diff and (found.changed or name == STDIO):
             store(loaded, found.text)
         self.changed += found.changed

@@ -19,6 +19,7 @@ from robolang.cli.errors import reported, say_warnings
 from robolang.cli.options import Argument, JsonOptions, Option, PlantOptions
 from robolang.cli.output import echo
 from robolang.cli.usage import OptionValueError
+from runtime.core.units import DEG
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -116,6 +117,7 @@ def _refuse_beside_payload(options: _ExperimentOptions, output: _OutputOptions) 
     """Refuse what only the identification of the arm takes: a weighing would ignore it."""
     for group, names in ((options, ("axis", "positions", "error", "carrying", "table")), (output, ("out", "date"))):
         for name in names:
+            # a default that is given in words cannot be told from one that is not, and does no harm
             if getattr(group, name) != group.DEFAULTS[name]:
                 raise OptionValueError(f"--{name}", "cannot be used with --payload")
 
@@ -135,6 +137,7 @@ def _request(subject: str, options: _ExperimentOptions) -> "Request":
         plant=cast("PlantName", options.plant),
         real=None if options.error is None else with_errors(spec, options.error),
         profile=profile,
+        # declared as a LOAD declares it, so the rated payload bounds it; `step` carries more, and declares less
         payload=hand if carrying is None else values.payload(carrying, "--carrying", spec, heavier=False),
         table=options.table or 0,
     )
@@ -167,6 +170,7 @@ def _axes(text: str, n: int) -> tuple[int, ...]:
         return tuple(range(n))
     axes = set()
     for position, part in enumerate(text.split(","), start=1):
+        # isascii: isdecimal() is true for digits of every script; [:9]: int() refuses more than 4300 of them
         if not (part.strip().isdecimal() and part.isascii() and 1 <= int(part[:9]) <= n):
             raise OptionValueError("--axis", f"'{part.strip()[:20]}' is not one of 1 to {n}, or all", position)
         axes.add(int(part) - 1)
@@ -178,7 +182,7 @@ def _progress(request: "Request") -> Iterator["Progress"]:
     """Yield the progress function: a live line on a terminal, one line per position elsewhere."""
 
     def text(axis: int, number: int, q: float) -> str:
-        return f"J{axis + 1}, position {number} of {request.places(axis)}, {q * 57.29577951308232:.1f} deg"
+        return f"J{axis + 1}, position {number} of {request.places(axis)}, {q / DEG:.1f} deg"
 
     if sys.stderr is not None and sys.stderr.isatty():
         from robolang.cli.console import Console

@@ -28,6 +28,7 @@ KG_CM2 = 1e-4
 """kg m2 of a kg cm2, in which catalogues of motors give inertia."""
 
 TICKS_DEG = 45.0
+"""Distance of the ticks of a map."""
 
 
 class _MapOptions(Group):
@@ -82,6 +83,7 @@ def _head(spec: "RobotSpec", q: "Array", carried: "Payload") -> dict[str, Any]:
 
     return {
         "robot": spec.name,
+        # 12 digits: deg to rad and back changes the last of 17
         "joints_deg": [float(f"{angle:.12g}") + 0.0 for angle in np.rad2deg(q)],
         "payload_kg": carried.mass,
     }
@@ -202,7 +204,7 @@ def _print_extremes(found: dict[str, Any]) -> None:
     over = f"over J{first} and J{second}{_with(found['payload_kg'])}"
     echo(safe(f"{found['robot']}: inertia of J{found['axis']} at the motor {over}"))
     low, high = (found[name]["motor_inertia"] for name in ("smallest", "largest"))
-    if not high - low > 1e-9 * high:
+    if not high - low > 1e-9 * high:  # rounding is no extreme at a posture
         echo(f"  {low / KG_CM2:.4g} kg cm2 everywhere: these two joints do not change it")
     for name in ("smallest", "largest") if high - low > 1e-9 * high else ():
         at = found[name]

@@ -39,7 +39,7 @@ POSE = ("x", "y", "z", "rx", "ry", "rz")
 POSE_UNITS = ("mm", "mm", "mm", "deg", "deg", "deg")
 
 MOST_TURNS = 1000
-"""As many turns are listed of a pose, at most."""
+"""The most turns that are listed of a pose: six joints of six turns each would give 46 656 of one solution."""
 
 
 class _ToolOptions(RobotOptions):
@@ -108,7 +108,7 @@ def _ik(options: _PoseOptions, as_json: bool) -> None:
     kinematics = _kinematics(options.robot)
     X_base_flange = matmul(_pose(options.pose, "--pose"), inverse(_pose(options.tool, "--tool")))
     solutions, left = _solutions_deg(kinematics, X_base_flange)
-    if as_json:
+    if as_json:  # before the refusal: an empty list is an answer, and a script reads it
         echo(json.dumps({"solutions": solutions, "complete": kinematics.closed_form, "not_listed": left}))
     if not solutions:
         _say_out_of_reach(kinematics)
@@ -143,6 +143,7 @@ def _kinematics(robot: str) -> "Kinematics":
     from runtime.robot.files.robot_file import library
     from runtime.robot.kinematics.kinematics import Kinematics
 
+    # not load_any_robot: it wants the drives that a model lacks
     if is_model(robot):
         arm = read_arm(Path(robot))  # drives are not needed to say where the tool is
         say_warnings(arm.warnings)
@@ -185,6 +186,7 @@ def _solutions_deg(kinematics: "Kinematics", X_base_flange: "Array") -> tuple[li
 
     rows, room, left = [], MOST_TURNS, 0
     for found in sorted(kinematics.solutions(X_base_flange), key=lambda s: -s.limit_margin):
+        # the best solutions use the room up first; `turn_count` counts without making them
         turns = list(islice(kinematics.other_turns(found), room))
         room, left = room - len(turns), left + kinematics.turn_count(found) - len(turns)
         rows.append(

@@ -88,11 +88,12 @@ def _deliver(loaded: "Loaded", found: "RenumberResult", output: _Output) -> None
     if output.diff:
         with reader_may_leave():
             show(loaded, found.text)
+    # a file of its own is written even if nothing changes: the next step of a script reads it
     elif not output.check and (found.changed or out == STDIO or out != loaded.name):
         store(loaded, found.text, out)
     with reader_may_leave():
         text = _summary(found, "would change" if output.dry else "changed")
-        echo(safe(f"{loaded.source.path}: {text}"), err=output.diff or out == STDIO)
+        echo(safe(f"{loaded.source.path}: {text}"), err=output.diff or out == STDIO)  # stdout has a diff or a program
 
 
 def _summary(found: "RenumberResult", changed: str) -> str:

@@ -68,6 +68,7 @@ def replay_pulses(folder: _Folder, options: _ReplayOptions, output: PlotOptions)
             from robolang.core.storage import check_writable
 
             check_writable(output.plot)
+        # the arm first: tables for another robot are refused before anything is printed or drawn
         drive = None if options.cell is None else _drive(export, options.cell)
         replays = replay(export)
         if output.plot is not None:
@@ -81,6 +82,7 @@ def replay_pulses(folder: _Folder, options: _ReplayOptions, output: PlotOptions)
             else:
                 _print(found)
         too_far = options.max_error is not None and _is_too_far(replays, options.max_error)
+    # an alarm outranks a distance: the arm has not driven the rest of the tables
     if drive is not None and drive.alarms:
         raise SystemExit(MOTION)
     if too_far:
@@ -113,7 +115,7 @@ def _is_too_far(replays: "list[MoveReplay]", max_error: float) -> bool:
     from runtime.core.faults import Fault
 
     worst = max(replays, key=lambda item: badness(item.worst_mm), default=None)
-    if worst is None or worst.worst_mm <= max_error:
+    if worst is None or worst.worst_mm <= max_error:  # in this order NaN is too far
         return False
     move = worst.move
     where = f"{named(move.line, move.number)}, {move.text}"
@@ -129,7 +131,7 @@ def _figures(folder: Path, export: "Export", replays: "list[MoveReplay]", drive:
     from runtime.pulses.exported import Marker
 
     played = iter(replays)
-    driven = iter(() if drive is None else drive.moves)
+    driven = iter(() if drive is None else drive.moves)  # fewer than replays where an alarm ended the drive
     sequence = [
         _marker(item) if isinstance(item, Marker) else _move(export, next(played), next(driven, None))
         for item in export.sequence
@@ -268,7 +270,7 @@ def _cells(row: dict[str, Any], *, real: bool) -> list[str]:
 
     head = [safe(row["text"])]
     if row["kind"] == "marker":
-        waits = f"{row['dwell_s']:.3f}" if row["dwell_s"] else ""
+        waits = f"{row['dwell_s']:.3f}" if row["dwell_s"] else ""  # a LOAD takes no time
         return [*head, "", waits, *([""] * (len(_COLUMNS) - 2 + real))]
     fastest = "-" if row["highest_channel"] is None else f"{row['highest_hz']:.0f} {row['highest_channel']}"
     cells = [

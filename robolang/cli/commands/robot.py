@@ -72,6 +72,7 @@ def show(robot: _Robot) -> None:
         from runtime.robot.files.arm_file import is_model
         from runtime.robot.files.sidecar_file import sidecar_path
 
+        # lexists: of a link that leads nowhere load_any_robot says so, where exists() would show a robot without drives
         if is_model(robot) and not os.path.lexists(sidecar_path(Path(robot))):
             worst = _show_model(robot)
         else:
@@ -218,6 +219,7 @@ def _wrist(spec: "RobotSpec") -> "Table":
     from runtime.robot.kinematics.wrist_load import WRIST_AXES, rated_inertia, rated_moment
 
     table = _table("Payload at the wrist (~: estimated from the drive)", "moment\nN m", "inertia\nkg m2")
+    # numbered before the cut: on seven axes the wrist begins at J5
     for index, axis in list(enumerate(spec.axes, start=1))[-WRIST_AXES:]:
         moment, inertia = axis.limits.rated_moment, axis.limits.rated_inertia
         table.add_row(
@@ -293,7 +295,9 @@ def _bodies(spec: "RobotSpec") -> "Table":
     for index, (axis, published) in enumerate(zip(spec.axes, spec.published, strict=True), start=1):
         used, printed = _moments(axis.body), _moments(published)
         cog = " ".join(f"{round(1000 * x, 3) + 0.0:g}" for x in axis.body.cog)
-        table.add_row(f"J{index}", f"{axis.body.mass:g}", cog, printed, used if used != printed else "the same")
+        table.add_row(
+            f"J{index}", f"{axis.body.mass:g}", cog, printed, used if used != printed else "the same"
+        )  # of a column of numbers the few that differ would not be seen
     return table
 
 

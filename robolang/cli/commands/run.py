@@ -74,6 +74,7 @@ def run(
         _check_outputs(program, output)
         from robolang.project.project import load_project
 
+        # planning a long program takes its time, and there is no session yet that a signal could stop
         with _handled(_left_before_motion):
             project = load_project(program, files.cell, files.robot, profile=controller.profile, options=settings)
             from robolang.execution.plan_memory import PlanMemory
@@ -87,6 +88,7 @@ def run(
             with reader_may_leave():
                 print_result(result.report)
         _print_alarms(project, result, warnings=output.warnings)
+    # a file that is lost or a signal says more than the alarm, which is printed in any case
     code = code or (0 if result.ok else MOTION)
     if not code and output.strict and (warned or result.warnings):
         code = DIAGNOSTICS
@@ -115,11 +117,12 @@ def _check_outputs(program: str, output: _OutputOptions) -> None:
     report, log = output.report, output.log
     if log is not None and log.suffix not in (".npz", ".mcap"):
         raise OptionValueError("--log", f"'{log}' must end in .npz or .mcap")
+    # a slip in the order of the words must not cost a program: it is there only once
     if report is not None and report.suffix in (".rbl", ".toml"):
         raise OptionValueError("--report", f"'{report}' would be a program or a cell file; name a .json file")
     from robolang.core.storage import check_writable
 
-    taken = {os.path.realpath(program)}
+    taken = {os.path.realpath(program)}  # the same file may have two names, by a link or by ./
     files = [(option, path) for option, path in (("--report", report), ("--log", log)) if path is not None]
     for option, path in files:
         if os.path.realpath(path) in taken:
@@ -139,7 +142,7 @@ def _write(result: "RunResult", output: _OutputOptions) -> int:
         (output.report, lambda path: write_json(path, result.report)),
         (output.log, lambda path: write_log(path, result.log)),
     ]
-    code = 0
+    code = 0  # a full disk takes the log, and may still take the report
     for path, write in writers:
         if path is not None:
             try:

@@ -44,7 +44,7 @@ class _StepOptions(PostureOptions):
 class _ArmOptions(PlantOptions):
     """Which arm makes the step."""
 
-    plant: str = "rigid"
+    plant: str = "rigid"  # as the published experiments, docs/servo.md
     drives: Annotated[
         str,
         Option(
@@ -77,7 +77,7 @@ def step(options: _StepOptions, arm: _ArmOptions, controller: ControllerOptions,
             check_writable(output.plot)
         try:
             result = run_step(request)
-        except ValueError as error:
+        except ValueError as error:  # an axis that the robot has not: all else was refused above
             raise OptionValueError("--axis", str(error)) from None
         found = figures(request, result)
         if output.as_json:

@@ -101,7 +101,7 @@ def _files(paths: list[str], allow_empty: bool) -> Iterator[Path | _Outcome]:
         if not files and not allow_empty:
             yield _unusable(str(path), Fault("RBL712", f"there is no test file (NAME{ENDING}) in {path}"))
         for file in files:
-            if file.absolute() not in seen:
+            if file.absolute() not in seen:  # a folder and a file in it may both be named
                 seen.add(file.absolute())
                 yield file
 
@@ -125,7 +125,7 @@ def _run(file: Path, update: bool) -> _Outcome:
         verdicts, seconds = _judged(program, expected, update)
     except Fault as fault:
         return _unusable(str(program), fault, expected)
-    except Exception as error:
+    except Exception as error:  # a defect of robolang fails this test; those after it are run
         return _unusable(str(program), internal(error), expected)
     return _Outcome(name=str(program), verdicts=verdicts, expected=expected, seconds=seconds)
 
@@ -165,6 +165,7 @@ def _tell(outcome: _Outcome) -> int:
     echo(safe(f"{'ok  ' if outcome.ok else 'FAIL'} {outcome.name}, {outcome.seconds:.3f} s"))
     for verdict in outcome.verdicts:
         if verdict.fault is not None:
+            # 2 at least: a text with errors is 1, and this is a test that was not carried out
             code = max(code, USAGE, say_all(verdict.fault))
         elif not verdict.ok or verdict.noted:
             echo(safe(f"     {outcome.line(verdict)}"))

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from runtime.cell.cell import CellSpec
 
 MOST_AMPLITUDE = 90.0
+"""Largest swing that may be given, deg; without one the exercise takes 25 deg at most (docs/weighing.md)."""
 
 
 class _PayloadOptions(PlantOptions):
@@ -90,6 +91,7 @@ def _weigh(program: str | None, files: CellOptions, options: _PayloadOptions, ou
         amplitude=None if options.amplitude is None else options.amplitude * DEG,
     )
     _note(carried(request).mass, cell)
+    # planned here as well: a refusal is printed before the promise of a motion
     _say_what_comes(request, plan_exercise(request).amplitudes)
     found = figures(request, run_weigh(request))
     if output.as_json:

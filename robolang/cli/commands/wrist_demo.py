@@ -87,6 +87,7 @@ def _computed(spec: "RobotSpec", figures: Sequence["Figure"]) -> Iterator["Shown
         try:
             yield figure, [run(spec, trial) for trial in figure.trials]
         except Fault as fault:
+            # twelve figures are computed: without its number nobody knows which was refused
             raise Fault(fault.code, f"figure {figure.number}: {fault.message}", fault.hint) from None
 
 
@@ -102,7 +103,7 @@ def _figure(figure: "Figure", runs: Sequence["Run"], out: Path | None) -> dict[s
 
 
 def _chosen(words: Sequence[str], known: Sequence["Figure"]) -> list["Figure"]:
-    """Return the figures that are asked for, in the order of the document; ``OptionValueError``."""
+    """Return the chosen figures in the order of the document; ``OptionValueError``."""
     numbers = {str(figure.number): figure for figure in known}
     for position, word in enumerate(words, start=1):
         if word not in numbers:
@@ -230,8 +231,9 @@ def _check_folder(out: Path, figures: Sequence["Figure"]) -> None:
     """Make the folder where there is none; ``Fault`` RBL706 where a file could not be written into it."""
     from robolang.core.storage import check_writable
 
-    with suppress(OSError):  # what it means is said of the first file
+    with suppress(OSError):  # check_writable reports it, at the first file
         out.mkdir(exist_ok=True)
+    # each file and not the folder alone: one of them may be there and read-only
     for name in (*map(_file, figures), "index.html"):
         check_writable(out / name)
 
