@@ -1,11 +1,11 @@
-"""Clocks: virtual time runs as fast as it can, paced time waits for the wall. The only place that knows the wall."""
+"""Clocks: virtual time runs as fast as it can, paced time waits for wall time. No other module reads the wall clock."""
 
 import time
 from typing import Protocol
 
 
 class Clock(Protocol):
-    """Told of every cycle's start; may wait."""
+    """Gets the start of every cycle, and may wait for it."""
 
     def wait_until(self, t_us: int) -> bool:
         """Wait until simulated time ``t_us`` is due; True when it was already late by more than a cycle."""
@@ -36,6 +36,7 @@ class PacedClock:
         """Sleep until ``t_us`` of wall time have passed since the first call; True when late by a period."""
         now = time.monotonic()
         if self._origin is None:
+            # not at 0: after ``restart`` simulated time goes on from where the snapshot was
             self._origin = now - t_us * 1e-6
         ahead = self._origin + t_us * 1e-6 - now
         if ahead > 0.0:

@@ -119,7 +119,7 @@ class Controller:
         ``Fault`` RBL411 where a joint would leave its range and RBL404 where it would be too fast at a servo tick;
         ``ValueError`` for rows that are not (K, n) or not finite; ``RuntimeError`` while a move runs or a seam is
         followed. Nothing has moved then. ``checked`` False leaves range and speed to the supervision, for rows that
-        come from elsewhere and are to be tried as they are.
+        come from elsewhere and are to be executed unchanged.
         """
         self._refuse_while_latched()
         self.requests.play(rows, checked)
@@ -177,6 +177,7 @@ class Controller:
         drives, requests = self.drives, self.requests
         start_us, start_tick = drives.time_us, drives.recorder.tick
         self.late_cycles += self._clock.wait_until(start_us)
+        # before the interrupt, which sends a given row in its own cycle; a computed one waits for the next interrupt
         requests.given_row()
         motion = drives.send(requests.statement, requests.wrist_mode, self.seam_deviation)
         if motion is None:
@@ -195,6 +196,7 @@ class Controller:
         computed = self.requests.next_row()
         fault = self.requests.interpolator.fault
         if computed and fault is not None and not self.alarms:
+            # the row in INA is the one that failed, while the statement is still that of the row before it
             self.requests.name_statement()
             self.alarm(fault.code, fault.message)
         self.drives.processor.begin_cycle(self.profile.interpolation_cost_us if computed else 0)
@@ -272,6 +274,7 @@ class Controller:
                 code = "RBL537" if touch.fixed else "RBL535"
                 found = Finding(code=code, message=touch.message, tick=touch.tick, warning=True)
                 self.warnings.append(self.stops.alarm_of(found, touch.place))
+        # touches are complete at the end only; the report lists warnings in the order of time
         self.warnings.sort(key=lambda alarm: alarm.tick)
 
     # snapshots ------------------------------------------------------------------------------------------------------
@@ -299,7 +302,7 @@ class Controller:
         """
         if snapshot.robot != self.spec.name:
             raise ValueError(f"the snapshot is of the robot {snapshot.robot}, not of {self.spec.name}")
-        snapshot.drives.check(self.drives)
+        snapshot.drives.check(self.drives)  # before the first write: a refusal must leave no mixture
         self.requests.restore(snapshot.requests)
         self.drives.restore(snapshot.drives)
         self.stops.restore(snapshot.stops)
@@ -325,7 +328,7 @@ class Controller:
     @override.setter
     def override(self, share: float) -> None:
         OVERRIDE.checked(share / PERCENT, OVERRIDE.high)
-        self.requests.override = min(share, 1.0)
+        self.requests.override = min(share, 1.0)  # the check lets rounding above 100 % pass
 
     @property
     def X_flange_tool(self) -> Array:
@@ -334,9 +337,7 @@ class Controller:
 
     @property
     def wrist_mode(self) -> int:
-        """Whether the wrist follows the path at the set-point in INA, or goes its own way
-        (``runtime.motion.cartesian_planner``).
-        """
+        """Whether the wrist follows the path at the set-point in INA (``runtime.motion.cartesian_planner``)."""
         return self.requests.wrist_mode
 
     @property

@@ -1,7 +1,7 @@
 """The drive train of one controller: from the set-points in INA to the plant, and back to what supervision finds.
 
 In every cycle ``send`` takes INA through fine interpolation to the servos, and ITA with it (steps 218 and 220); ``run``
-lets the servos work tick by tick, each with the plant and the dynamics task; ``judge`` and what follows it look at the
+lets the servos work tick by tick, each with the plant and the dynamics task; ``judge`` and what follows it check the
 cycle that has just run. It knows nothing of moves and stops nothing: a finding is a value.
 """
 
@@ -56,7 +56,7 @@ class DriveTrain(Stateful):
             self.areas,
             model,
             StepCosts.of_axis(profile.axis_cost_us),
-            read_angles=lambda: self.servo.alpha,
+            read_angles=lambda: self.servo.alpha,  # not the array: ``power_up`` makes a new servo
             load_mode=profile.load_mode,
             rows=None if bare else InertiaRows(spec, model, source, tables),
         )
@@ -91,8 +91,10 @@ class DriveTrain(Stateful):
         """
         self._task.fill(q, now_us)
         self.servo = ServoAxes(self._spec, self._profile.servo, self._profile.tick_s, q, self._held_inertia)
+        # after a stop the motors stand wherever they are, and a controller knows that by its encoders alone
         reference = np.array(self.servo.alpha) if detected else q
         T = np.array([cell.T for cell in self.areas.ita])
+        # the motors carry the arm from the first tick on: no sag (docs/decisions/0012)
         self.servo.motors.i[:] = T / self.servo.motors.Ktn
         self.areas.ina = np.clip(self.servo.resting_command(reference, T), self._spec.lower, self._spec.upper)
         self.servo.q_ref = reference
@@ -129,6 +131,7 @@ class DriveTrain(Stateful):
         None when a cell of ITA is not finite. The statement, the mode and the deviation (6,) are recorded.
         """
         cells = self.areas.ita
+        # one sum in place of 2 n comparisons: NaN and infinity remain in it
         if not math.isfinite(sum([cell.D + cell.T for cell in cells])):
             return None
         D = np.array([cell.D for cell in cells])
@@ -146,6 +149,7 @@ class DriveTrain(Stateful):
 
     def run(self) -> int | None:
         """Run the servo ticks of a cycle; the tick, from 0, at which the plant's state was no longer valid, or None."""
+        # the inner loop of every run: what does not change in it is looked up once
         servo, plant = self.servo, self.plant
         tick, q, step = servo.tick, plant.q, plant.step
         record, advance = self.recorder.record, self.processor.advance

@@ -68,11 +68,12 @@ class DynamicsTask(Stateful):
             load_mode,
             rows,
         )
+        # InertiaRows passes a payload on to the model: T and D carry the same one, set once
         self._loaded: ArmModel | InertiaRows = rows or model
         self._steps = (self._read, self._inertia, self._gravity, self._store)
         self._costs = (costs.read, costs.inertia, costs.gravity, costs.store)
         self._step = self._axis = self._read_us = 0
-        self._version = 1
+        self._version = 1  # 0 is that of ``fill``
         self._payload_version = -1  # of no LOAD: the first step takes what is in SDA
         self._row: Array = np.zeros(model.n)
         self._T = 0.0
@@ -110,11 +111,13 @@ class DynamicsTask(Stateful):
         return axis_row(self._model, q, axis) if self._rows is None else self._rows.row(q, axis)
 
     def _read(self, now_us: int) -> None:
+        # a copy: the servo reads its encoders again before the axis is done
         self._areas.ang[:] = self._read_angles()
         self._read_us = now_us
 
     def _inertia(self, now_us: int) -> None:
         areas = self._areas
+        # at the first step that uses it; the gravity of the axis follows with the same payload
         if self._payload_version != areas.sda_version:
             self._loaded.set_payload(areas.sda, self._load_mode)
             self._payload_version = areas.sda_version

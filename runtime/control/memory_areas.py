@@ -34,7 +34,7 @@ class AxisLoad:
     ``row`` (n,) is the axis' whole row of the mass matrix, kg m2, for a servo that couples the axes.
 
     ``read_us`` is the time of the encoder reading (ANG), ``version`` counts refreshes of this axis (0: never),
-    ``payload_version`` says which LOAD was in SDA.
+    ``payload_version`` counts the LOADs: the one that was in SDA.
     """
 
     D: float
@@ -63,6 +63,7 @@ class Areas(Stateful):
     def __init__(self, n: int, q: Array) -> None:
         self.sda: Payload = NO_PAYLOAD
         self.sda_version = 0
+        # one cell for all axes is safe: cells are frozen, and ``publish`` replaces them
         self.ita: list[AxisLoad] = [AxisLoad(D=0.0, T=0.0, read_us=0, version=0, payload_version=0)] * n
         self.ina: Array = np.array(q)
         self.ang: Array = np.array(q)
@@ -77,6 +78,7 @@ class Areas(Stateful):
     def publish(self, axis: int, load: AxisLoad, now_us: int) -> None:
         """Store a new cell of ITA (step 308) and keep count."""
         self.ita[axis] = load
+        # the first refresh ends no interval: before it the cell was that of power-up
         if self.refreshes[axis]:
             self.longest_refresh_us = max(self.longest_refresh_us, now_us - self._last_us[axis])
         else:

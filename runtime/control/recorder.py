@@ -97,6 +97,7 @@ class Recorder:
     def recent(self, ticks: int) -> Array:
         """Return at most the last ``ticks`` rows (ticks, 4 n) of (tau_cmd, tau_sat, q_fb, dq_fb), to be read only."""
         first, block = max(0, self.tick - ticks), self._block
+        # nearly always in one block, and then a view of it: this is read in every cycle
         if first >= block.tick:
             return block.ticks[first - block.tick : self.tick - block.tick, : 4 * self.n]
         gathered = np.concatenate([block.ticks[:filled] for block, filled, _ in self._filled(first)])
@@ -120,7 +121,7 @@ class Recorder:
             cycle=self.cycle,
             ticks=np.zeros((ticks, 5 * self.n)),
             commands=np.zeros((ticks, 2 * self.n)),
-            cycles=np.zeros((BLOCK_CYCLES, 4 * self.n + 10)),
+            cycles=np.zeros((BLOCK_CYCLES, 4 * self.n + 10)),  # four vectors, six of the seam, four scalars
         )
 
     def _filled(self, first: int = 0) -> list[tuple[_Block, int, int]]:
@@ -136,7 +137,7 @@ class Recorder:
     def signals(self, tool_poses: Callable[[Array], Array]) -> dict[str, Array]:
         """Return every signal by name; ``tool_poses`` maps joint angles (N, n) to poses (N, 4, 4)."""
         n, ticks = self.n, self.tick
-        filled = self._filled(-1)
+        filled = self._filled(-1)  # not 0: a run without a tick has its block as well
         cycles = np.concatenate([block.cycles[:count] for block, _, count in filled])
         cycles = np.repeat(cycles, self._ticks_per_cycle, axis=0)[:ticks]
         t_us = np.arange(ticks, dtype=np.int64) * self._tick_us
@@ -144,6 +145,7 @@ class Recorder:
         tick = np.concatenate([block.ticks[:count] for block, count, _ in filled])
         commands = np.concatenate([block.commands[:count] for block, count, _ in filled])
         q_fb = tick[:, 2 * n : 3 * n]
+        # a row has the link angle at the end of its tick; the log gives it, like all the rest, at the start
         q_link = np.concatenate([self._first_link[None], tick[:, 4 * n :]])[:ticks]
         signals = {
             "t": t_us * 1e-6,

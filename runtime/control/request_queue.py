@@ -84,6 +84,7 @@ class RequestQueue(Stateful):
             if self.interpolator.busy:
                 raise RuntimeError("a move is running")
             self._waiting = [(part.plan, command) for part, command in zip(chain.parts, tracked, strict=True)]
+        # -1: under a tracker ``start_waiting`` counts the first move too
         self._begin(tuple(statements), before=0 if tracker is None else -1)
         self.start_waiting()
         self.name_statement()
@@ -95,6 +96,7 @@ class RequestQueue(Stateful):
         self._refuse_while_busy()
         if checked:
             check_motion(self._spec, self._fine, rows)
+        # row 0 of a plan is where the arm is, and is not sent
         q = frozen(np.concatenate([self._areas.ina[None], rows]))
         self.interpolator.start(MovePlan(path=None, s=np.ones(len(q)), q=q, slowdown=None, notes=()))
         self._begin((), before=0)
@@ -112,7 +114,7 @@ class RequestQueue(Stateful):
         if self.busy:
             raise RuntimeError("a move is running")
         if self.tracker is not None:
-            raise RuntimeError("a seam is followed; given set-points know nothing of it")
+            raise RuntimeError("a seam is followed, which given set-points cannot do")
 
     def rehearse(self, q_start: Array, command: Command) -> MovePlan:
         """Return the plan of a move from q_start, without starting it."""
@@ -200,7 +202,7 @@ class RequestQueue(Stateful):
     # state ----------------------------------------------------------------------------------------------------------
 
     def snapshot(self) -> State:
-        """Return the state of the queue, with the tracker and the move under it as copies that go their own way."""
+        """Return the state of the queue, with copies of the tracker and of the move under it."""
         state = super().snapshot()
         return replace(state, values=(*state.values, *_apart(self.tracker, self.interpolator.seam)))
 

@@ -46,6 +46,7 @@ class IdleProcessor(Stateful):
 
     def begin_cycle(self, foreground_us: int) -> None:
         """Take the processor for the foreground, at the interrupt that starts a cycle."""
+        # late work is not dropped: it delays the foreground of this cycle and starves the background
         if self._busy_until_us > self.now_us:
             self.overruns += 1
         self._busy_until_us = max(self._busy_until_us, self.now_us) + foreground_us
@@ -58,6 +59,7 @@ class IdleProcessor(Stateful):
             self.now_us = start
             task.work(start)
             self._owed_us = task.cost_us
+        # paid in part: the step goes on in the next idle time, so that a step longer than a slice still ends
         if start < until_us:
             self._owed_us -= until_us - start
         self.now_us = until_us

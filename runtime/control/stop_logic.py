@@ -16,6 +16,7 @@ from runtime.supervision.finding import Finding
 LONGEST_REST_US = 500_000
 """Longest time that a stopped command waits for the arm to stand before the brakes hold it, us."""
 _RUNS_AWAY = ("RBL513", "RBL514", "RBL515")
+"""Alarms with which a controlled stop has failed: the arm is too fast, out of range or not measured."""
 _BLOCKED = ("RBL511", "RBL512", "RBL515", "RBL516")
 """Alarms of an axis that something may have stopped."""
 
@@ -69,10 +70,11 @@ class StopLogic(Stateful):
         if touches is not None and alarm.code in _BLOCKED:
             touches.blocked()
         self.alarms.append(alarm)
+        # moves that wait under a seam tracker would begin when the stop has ended the one that runs
         self._requests.wait_no_more()
         if alarm.category == 0:
             self.halt()
-        elif len(self.alarms) == 1:
+        elif len(self.alarms) == 1:  # a later alarm finds the stop under way: begun anew, it would take longer
             self._rest_us = 0
             self._requests.stop()
 
@@ -82,6 +84,7 @@ class StopLogic(Stateful):
         ``found`` is what is wrong with the cycle that has just run; only what makes the stop fail counts.
         """
         lost = self._drives.lost_track()
+        # the cause of the stop goes on while the arm slows down, and is no reason to fall into the brakes
         if found is not None and found.code in _RUNS_AWAY and found.code != self.alarms[0].code:
             self.take(found)
             self.halt()

@@ -41,6 +41,7 @@ def spring_frequencies(spec: RobotSpec, q: Array) -> Array:
     )
     W = inverse_of(motors_and_twists)[spec.n :, spec.n :]
     root_K = np.sqrt(spec.per_axis("motor", "stiffness")[elastic])
+    # W K has the eigenvalues of K^1/2 W K^1/2, which is symmetric: its solver gives real ones
     squares = symmetric_eigen(root_K[:, None] * W * root_K)[0]
     return np.sqrt(np.maximum(squares, 0.0))
 
@@ -60,4 +61,4 @@ def physics_steps(spec: RobotSpec, tick_s: float, longest_s: float) -> int:
     """Return the number of equal physics steps in a tick: none longer than ``longest_s`` s or a spring allows."""
     fastest = fastest_spring(spec)
     step = longest_s if fastest == 0.0 else min(longest_s, PHASE_PER_STEP / fastest)
-    return max(1, math.ceil(tick_s / step - 1e-9))
+    return max(1, math.ceil(tick_s / step - 1e-9))  # the ratio of two equal periods may be 1 + rounding: one step

@@ -1,7 +1,7 @@
 """The hand as bodies: how the mass a cell file states is shared out between palm and fingers.
 
 Each finger takes an eighth of the mass, at the middle of its box, and the palm the rest, at the place that makes
-the whole what the file says. The fingers move symmetrically, so mass and centre of gravity are exact at every
+the whole match the file. The fingers move symmetrically, so mass and centre of gravity are exact at every
 opening; only the moments of inertia change with it, by ``2 m_f y^2``. Moments are those of uniform boxes: an
 estimate, since no hand of this kind is published with its inertia. Frames: flange and tool, as in ``HandSpec``.
 """

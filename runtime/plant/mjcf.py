@@ -26,13 +26,13 @@ A grasp is friction between pads and part and nothing else. Two errors of the si
   accelerations that pad and part have at zero ``qacc``: a pad on a turning arm moves on an arc, a free part along a
   tangent. The relative speed u = J v then settles at J' v / b; the integrator, which steps with the new speed, adds
   (h / 2 - h) J' v to it. So the part drifts by J' v (1 / b - h / 2): 1.5 mm/s for each m/s2 with the contact time
-  constant of 4 h, whatever ``impratio`` or ``noslip`` (both were tried: they change nothing). The drift vanishes at b
+  constant of 4 h, whatever ``impratio`` or ``noslip`` (neither changes it). The drift vanishes at b
   h = 2, where u alternates undamped (its factor per step is 1 - b h); ``GRIP_DAMPING`` = 1.75 leaves a seventh of the
   drift of the stiffest ordinary contact and a factor of -0.75. tests/runtime/plant/test_plant_grasp.py measures it.
   Shorter steps would have bought the same for 20 times the cost; a weld would have been no grasp.
 
-The text is built here and never read from a user's file, so none of MJCF's own ways in (includes, plugins,
-meshes) exists (R22). MuJoCo is not imported here (``cell_model``). Read at start, no rate.
+The text is built here and never read from a user's file, so none of the files that MJCF can open (includes, plugins,
+meshes) is ever read (R22). MuJoCo is not imported here (``cell_model``). Read at start, no rate.
 """
 
 import xml.etree.ElementTree as ET
@@ -48,7 +48,7 @@ from runtime.core.units import GRAVITY
 from runtime.plant.hand import FINGERS, box_inertia, finger_body, finger_sign, palm_body, palm_box
 from runtime.robot.model.spec import AxisSpec, Body, RobotSpec
 
-# who meets whom: a geom collides where its contype meets the other's conaffinity, either way round
+# who meets whom: a geom collides where its contype meets the other's conaffinity, in either order
 ENVIRONMENT, ARM, HAND, PART = 1, 2, 4, 8
 NOTHING: tuple[int, int] = (0, 0)
 COLLIDES = {
@@ -135,6 +135,7 @@ def friction_bias(spec: RobotSpec) -> Array:
 
 
 def _options(root: ET.Element, timestep: float) -> None:
+    # the bodies of the robot file as they are: MuJoCo must neither infer nor correct mass and inertia
     ET.SubElement(
         root,
         "compiler",
@@ -261,6 +262,7 @@ def _finger(flange: ET.Element, hand: HandSpec, side: str, timestep: float) -> N
     """A finger slides along the tool's y axis; its coordinate is the distance of the pad from the tool point."""
     sign = finger_sign(side)
     width, thickness, length = (float(value) for value in hand.pad)
+    # at zero opening both bodies are at the tool point, so that the joint coordinate is the distance of the pad
     finger = _body(flange, f"finger_{side}", hand.X_flange_tool)
     _inertial(finger, finger_body(hand, side))
     ET.SubElement(

@@ -71,6 +71,7 @@ class MujocoPlant:
         self._no_warning = self._warnings()
         self._valid = True
         self._qpos[self._motors] = cell.home
+        # each finger's coordinate is half of the opening
         self._qpos[self._fingers] = cell.hand.stroke / 2.0
         self._data.qfrc_applied[self._motors] = friction_bias(spec)
         self._hang(spec.per_axis("motor", "stiffness")[self._elastic])
@@ -167,6 +168,7 @@ class MujocoPlant:
         _mj_step(self._model, self._data, self._substeps)
         if self._warnings() != self._no_warning:
             return self._stop()
+        # the number alone: the set of contacts changes with it but for rare swaps, which the call of each cycle sees
         if self._data.ncon != self._ncon:
             self._note_contacts()
         self._last_qpos[:] = self._qpos
@@ -205,6 +207,7 @@ class MujocoPlant:
         mujoco.mj_setState(self._model, data, physics, _INTEGRATION)
         for name, values in zip(_POSES, poses, strict=True):
             getattr(data, name)[:] = values
+        # contacts are no part of MuJoCo's state, but follow from the poses that were put back
         mujoco.mj_collision(self._model, data)
         self._last_qpos[:], self._last_qvel[:] = last
         data.warning.number[:], data.warning.lastinfo[:] = warnings
@@ -269,6 +272,7 @@ class MujocoPlant:
     def _note_contacts(self) -> None:
         self._ncon = self._data.ncon
         geoms = self._data.contact.geom
+        # the same few sets return for most of a run: names are looked up once for each
         key = geoms.tobytes()
         pairs = self._known_contacts.get(key)
         if pairs is None:

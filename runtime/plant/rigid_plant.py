@@ -2,7 +2,7 @@
 
     (M(q) + N^2 J) ddq = tau - h(q, dq)            integrated by semi-implicit Euler, one tick at a time
 
-Gears are rigid too, whatever the robot file says: ``q_link`` is ``q``. It runs where MuJoCo is not wanted
+Gears are rigid too, also where the robot file gives a spring: ``q_link`` is ``q``. It runs in place of MuJoCo
 (``--no-physics``) and in tests of the control loop. Its hand is exact: closing it takes the part whose centre is
 within ``REACH`` of the tool point, and the arm then carries that part's true mass; opening it leaves the part there.
 """
@@ -40,6 +40,7 @@ class RigidPlant(Stateful):
         self.q_link = self.q
         self._spec = spec
         self._cell = cell
+        # a model of its own: that of the controller carries what LOAD declared, this one what really hangs there
         self._model = ArmModel(spec, rotors=spec_rotors(spec))
         self._parts = {part.name: np.array(part.X_world_part) for part in cell.parts}
         self._closed = False
@@ -50,10 +51,11 @@ class RigidPlant(Stateful):
     def step(self, tau: Array) -> bool:
         """Advance one tick under joint torques tau (n,)."""
         ddq = self._model.acceleration(self.q, self.dq, tau)
+        # speed first, and the angle with the new speed (semi-implicit): explicit Euler would add energy in every swing
         dq = self.dq + self.tick_s * ddq
         if not np.isfinite(dq).all():
             return False
-        self.dq[:] = dq
+        self.dq[:] = dq  # in place: servo, recorder and controller hold these arrays
         self.q += self.tick_s * dq
         return True
 
@@ -66,6 +68,7 @@ class RigidPlant(Stateful):
         if closed and not self._closed:
             self._take()
         if not closed and self._holding is not None:
+            # it stays in the air: nothing falls without physics
             self._parts[self._holding] = matmul(self._X_world_tool(), self._X_tool_part)
             self._holding = None
         self._closed = closed

@@ -1,6 +1,6 @@
 """What the arm, the hand or a held part touches, how far it moves that, and whether the hand still holds its part.
 
-The plant says every 8 ms cycle which shapes have touched, by name (``Touching``), and where parts and tool are
+The plant reports every 8 ms cycle which shapes have touched, by name (``Touching``), and where parts and tool are
 (``Bodies``). From these alone follows what a program did to its cell:
 
     allowed     pads and part from HAND ON to HAND OFF; a held part on its support where it is gripped and put down;
@@ -40,7 +40,7 @@ SETTLING = 5
 GAP = 10
 """Cycles without a contact that end a touch: what slides also hops."""
 TURNED = 0.1 * DEG
-"""A smaller turn is not said, rad."""
+"""A smaller turn is not reported, rad."""
 AT_REST = 2e-6
 """Displacement in a cycle below which a part rests, m: contacts creep slower than that."""
 SLIPPED = 10e-3
@@ -72,7 +72,7 @@ class Touch:
 
     ``reach`` m is the largest displacement of a corner of the touched part, ``moved`` m and ``turned`` rad what its
     centre and its orientation had changed by then; ``slid`` m is how far a held part slid along what it touched.
-    ``blocked``: it did not give way, and the drives were stopped by it.
+    ``blocked``: it did not yield, and the drives were stopped by it.
     """
 
     by: list[str]
@@ -88,7 +88,7 @@ class Touch:
 
     @property
     def message(self) -> str:
-        """What is said of it, in mm and deg."""
+        """The touch in words, in mm and deg."""
         by, what = shape_text(self.by[0]), shape_text(self.what)
         if self.fixed:
             slid = f", along which it slid {self.slid / MM:.1f} mm" if self.by_part else ""
@@ -126,7 +126,7 @@ class Loss:
 
     @property
     def message(self) -> str:
-        """What is said of it."""
+        """The loss in words, in mm."""
         gripped = "" if self.gripped is None else f", gripped in {named(self.gripped.line, self.gripped.number)},"
         return (
             f"{self.part}{gripped} has slipped out of the hand: it is "
@@ -212,7 +212,7 @@ class Touches:
         self._bodies, self._gripped = bodies, gripped
 
     def _separate(self) -> None:
-        """Copy everything that changes in place, so that a shallow copy goes its own way."""
+        """Copy everything that changes in place, so that a shallow copy is independent."""
         touches: dict[int, Touch] = {}  # a touch that goes on is one object in records and in what is open
 
         def own(touch: Touch) -> Touch:

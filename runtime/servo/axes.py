@@ -32,12 +32,14 @@ class ServoAxes(Stateful):
 
     def __init__(self, spec: RobotSpec, options: ServoOptions, tick_s: float, q: Array, D_fixed: Array) -> None:
         self.options = options
+        # gains that are held fixed have no rows: what is fixed is the inertia of each axis alone
         self.coupled = options.coupling == "full" and options.mode == "scheduled"
         self.held_inertia = D_fixed if options.mode == "fixed" else None
         """Inertia (n,) of gains that are held fixed, kg m2; None where they follow the posture."""
         self.encoders = Encoders(encoder_resolution(spec))
         self.alpha = np.zeros(spec.n)
         self.encoders.read(q, self.alpha)
+        # from a reading, not from q: the first difference would be a part of an encoder step, and no speed
         self.law = ServoLaw(gains(spec, options), self.alpha, tick_s)
         self.beta = self.law.beta
         self.q_ref = self.alpha
@@ -57,6 +59,7 @@ class ServoAxes(Stateful):
         """
         self.law.update(D, T, self.held_inertia, rows)
         theta, beta, gamma = motion
+        # friction of the commanded speed: the sign of the detected one is noise at rest (docs/decisions/0003)
         self.law.command(theta, beta, gamma, self.friction_current(beta))
         self.q_ref = self.law.reference[-1]
 
@@ -66,6 +69,7 @@ class ServoAxes(Stateful):
 
     def friction_current(self, dq: Array) -> Array:
         """Return the current (..., n) A that overcomes the published friction at speed dq (..., n) rad/s."""
+        # tanh is 0 at rest, so that the term cannot make a resting axis creep
         coulomb = np.where(dq > 0.0, self._forward, self._backward) * np.tanh(dq / SMOOTH)
         return np.asarray((coulomb + self._viscous * dq) * (self.options.friction_compensation / self._Ktn))
 

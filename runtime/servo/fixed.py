@@ -52,19 +52,22 @@ def excesses(spec: RobotSpec, profile: Profile, X_flange_tool: Array) -> Iterato
     yield from _sampled("position_bandwidth_rad_s", Kp, np.ones(spec.n), profile.tick_s)
     yield from _sampled("velocity_bandwidth_rad_s", Kv, np.ones(spec.n), profile.tick_s)
     feeds_back = options.source == "measured" and options.spring_compensation + options.acceleration_feedforward > 0.0
+    # with D' in the gains and nothing fed back the poles are the same in every posture: no range to check
     if options.mode == "scheduled" and not feeds_back:
         return
     rotor = rotors(spec, options)
     ends = rated_range(spec, X_flange_tool)
     held = fixed_inertia(spec, options, X_flange_tool) if options.mode == "fixed" else None
+    # both shares rise or fall with D throughout: the ends of the range are the worst
     for D in ends:
         ratio = np.ones(spec.n) if held is None else (held + rotor) / (D + rotor)
         yield from _sampled("velocity_bandwidth_rad_s", Kv, ratio, profile.tick_s)
         if feeds_back:
+            # 0 on a rigid gear, whose Kc is infinite
             spring = Kv * Kp * options.spring_compensation * D / spec.per_axis("motor", "stiffness")
             key = "acceleration_feedforward" if options.spring_compensation == 0.0 else "spring_compensation"
             share = (options.acceleration_feedforward + spring) * ratio
-            for axis in np.flatnonzero(~(share < 1.0)):
+            for axis in np.flatnonzero(~(share < 1.0)):  # not ``>=``: NaN must be refused too
                 yield Excess(
                     key=key,
                     axis=int(axis),

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from runtime.robot.model.spec import RobotSpec
 
+# 1 - exp(-1e9 Ts) is 1, so that the current follows within the tick
 HUGE = 1e9
 
 
@@ -16,6 +17,7 @@ def ideal_drives(spec: RobotSpec) -> RobotSpec:
     axes = tuple(
         replace(
             axis,
+            # 2**40 counts: far finer than any error, and q in steps is still a whole number that a float holds exactly
             motor=replace(axis.motor, max_current=HUGE, encoder_counts=2**40, current_bandwidth=HUGE),
             limits=replace(axis.limits, torque=HUGE),
         )

@@ -94,6 +94,7 @@ class ServoLaw(Stateful):
         self._acceleration_gain = np.zeros(shape)
         self._windup = np.zeros(shape)
         self._gravity = np.zeros(shape)
+        # on rigid gears Kc is infinite and both terms of (6) are 0: they are left out of every cycle
         self._sags = bool(np.any(gains.KG / np.broadcast_to(gains.Kc, shape) > 0.0))
         self._sag = np.zeros(shape)
         self._lead: Array | None = None
@@ -121,9 +122,11 @@ class ServoLaw(Stateful):
         self._windup[...] = D * (g.K2 / g.Kc)
         self._gravity[...] = T * g.KT_scale / g.Ktn
         self._sag[...] = self.sag(T)
+        # the first T is that of power-up, and the command already shows its lead: nothing to follow
         if self._lead is None:
             self._lead = self._sag.copy()
         if rows is not None:
+            # the row is constant in a cycle: a tick is left with one product and one sum
             self._rows = rows
             self._coupled = (rows + self._rotor_rows) / self._Ktn_column
             self._velocity_rows = self._coupled * self._Kv_row
@@ -137,10 +140,12 @@ class ServoLaw(Stateful):
         """
         if self._sags:
             theta = theta + self._leads(len(theta))
+        # accelerations that are measured are known in the tick only (``_current_measured``)
         if self._winds and not self._measured:
             theta = theta + self._wound_up(gamma)
         self.reference = theta
         omega_ff = self._Kp * theta
+        # zeros: one row for each tick, where gravity and friction give one for the cycle
         current_ff = self._gravity + np.asarray(current) + np.zeros_like(theta)
         if not self._measured:
             omega_ff += self.gains.Kf * beta
@@ -156,7 +161,7 @@ class ServoLaw(Stateful):
         beta, work = self.beta, self._work
         subtract(alpha, self._alpha, beta)
         multiply(beta, self._per_tick, beta)
-        copyto(self._alpha, alpha)
+        copyto(self._alpha, alpha)  # a copy: the encoders write the next reading into the same array
         multiply(alpha, self._Kp, work)
         subtract(omega_ff, work, work)
         subtract(work, beta, work)
@@ -183,6 +188,7 @@ class ServoLaw(Stateful):
 
     def _through_rows(self, domega: Array) -> Array:
         """Return sum_k D'_ik Kv_k domega_k / Ktn_i of (9) for the coupled axes, in place of the second buffer."""
+        # not np.matmul: OpenBLAS adds in an order that depends on the processor (docs/decisions/0033)
         multiply(self._velocity_rows, domega[..., None, :], self._terms)
         return add.reduce(self._terms, axis=-1, out=self._extra)
 

@@ -84,6 +84,7 @@ def _read(table: Table, kind: type[Record], prefix: str) -> dict[str, Given]:
         for item in settings
         if item.key in table
     }
+    # absent keys too: a misspelt key is answered with the known ones that it resembles
     table.ask(*(item.key for item in settings))
     return found
 
@@ -111,6 +112,7 @@ def read_options(values: Mapping[str, tuple[str, Any]]) -> Layer:
                 "RBL609", f"{option}: '{key}' is not a key of the controller profile", f"known: {', '.join(settings())}"
             )
         try:
+            # by the reader of the file, so that a range is stated once; its place is the name of the option
             taken = settings()[key].read(Table(Source(option, ""), {key: value}, ()), key)
         except FileFault as fault:
             raise Fault(fault.code, f"{option}: {fault.message}", fault.hint) from None
@@ -123,6 +125,7 @@ def settle(*layers: Layer) -> Settings:
     given = {key: Given(value=item.default, origin="default") for key, item in settings().items()}
     chosen = {key: value for layer in layers for key, value in layer.items()}
     given.update(chosen)
+    # last, since a bound may depend on two keys that come from different files
     raise_all([*_measured(given, chosen), *_fixed(given, chosen)])
     return Settings(given=given, profile=_made(Profile, given))
 
@@ -175,7 +178,7 @@ def check_axes(settings: Settings, axes: int, robot: str) -> None:
     faults: list[Fault] = []
     for name in ("position", "velocity"):
         given = settings[f"servo.{name}_bandwidth_rad_s"]
-        if len(given.value) not in (0, 1, axes):
+        if len(given.value) not in (0, 1, axes):  # 0: the robot file's own
             message = f"'servo.{name}_bandwidth_rad_s' has {len(given.value)} entries; {robot} has {axes} axes"
             faults.append(given.fault("RBL613", message, "give one number for all axes or one for each"))
     raise_all(faults)
@@ -189,6 +192,7 @@ def compensation_file(settings: Settings) -> Path | None:
     given = settings["servo.compensation"]
     if not given.value:
         return None
+    # an option is typed by the user; a cell file may come from someone else and must not reach other folders
     if given.table is None:
         return Path(given.value)
     return inside(given.table, given.value, Path(given.table.source.path).parent, given.name)

@@ -24,6 +24,7 @@ WristMode = Literal["auto", "keep"]
 WristShape = Literal["smooth", "linear", "hermite"]
 PostureLaw = Literal["axis", "rpy"]
 
+# each divides the cycle of 8 ms, which must have a whole number of ticks (docs/timing.md)
 SERVO_PERIODS_MS = (0.25, 0.5, 1.0)
 
 
@@ -35,7 +36,7 @@ def _servo_period(table: Table, name: str) -> float:
 
 
 def _us(milliseconds: float) -> int:
-    return round(milliseconds * 1000)
+    return round(milliseconds * 1000)  # whole: no float accumulates time (docs/timing.md)
 
 
 def _seconds_us(seconds: float) -> int:
@@ -73,6 +74,7 @@ class ServoOptions(Record):
     position_bandwidth: tuple[float, ...] = each_axis("position_bandwidth_rad_s", "1/s")
     velocity_bandwidth: tuple[float, ...] = each_axis("velocity_bandwidth_rad_s", "1/s")
     compensation: str = text("compensation")
+    # no keys: read from the file that ``compensation`` names
     rotors: tuple[float, ...] = ()
     rotor_tables: tuple[JointTable | None, ...] = ()
     first_moments: tuple[tuple[float, ...], ...] = ()
@@ -131,9 +133,11 @@ class WristOptions(Record):
 class Profile(Record):
     """Cycle times, declared costs and options of a controller."""
 
-    period_us: int = 8000
+    period_us: int = 8000  # no key: the cycle of JPH06190750A
     tick_us: int = custom("servo_period_ms", 1.0, "ms", _servo_period, _us)
+    # 3 ms and 1 ms are declared, and no claim about a processor (docs/decisions/0006)
     interpolation_cost_us: int = number("interpolation_cost_ms", 3.0, "ms", si=_us, low=0.0, high=80.0)
+    # above 0: a dynamics task that costs nothing would never use up the idle time
     axis_cost_us: int = number("dynamics_cost_per_axis_ms", 1.0, "ms", si=_us, low=0.001, high=1000.0)
     load_mode: LoadMode = choice("load_mode", "add", "replace")
     inertia_source: InertiaSource = choice("inertia_source", "pass", "recursion", "matrix")

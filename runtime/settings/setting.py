@@ -13,7 +13,7 @@ from runtime.core.tomlfile import Table
 from runtime.core.units import DEG, MM
 
 _SI = {"ms": 1e-3, "deg": DEG, "deg/s": DEG, "mm": MM}
-"""What a number of a unit is multiplied by to be SI; of other units it is SI already."""
+"""Factor from a unit to SI; numbers of other units are SI already."""
 
 
 class _Group(Record, kw_only=False):
@@ -71,7 +71,7 @@ def each_axis(key: str, unit: str) -> Any:
 
 
 def custom(key: str, default: Any, unit: str, read: Callable[[Table, str], Any], si: Callable[[Any], Any]) -> Any:
-    """Declare a key that is read in its own way."""
+    """Declare a key with a reader and a conversion of its own."""
     return _declared(key, unit, default, read, si)
 
 
@@ -105,6 +105,7 @@ def _declared(
 
 def _scaled(unit: str) -> Callable[[float], float]:
     scale = _SI.get(unit)
+    # untouched without a scale: times 1.0 a whole number would become a float
     return (lambda value: value) if scale is None else (lambda value: value * scale)
 
 

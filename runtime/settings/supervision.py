@@ -19,11 +19,11 @@ def _share(table: Table, name: str) -> float:
 
 
 class SupervisionLimits(Record):
-    """When an arm no longer does what it was told.
+    """When an arm no longer follows its commands.
 
     ``enabled``: off, nothing but a state that is not finite stops the arm; for experiments that are wrong on purpose.
     Following error: ``following_error`` rad plus ``following_lag`` s times the commanded speed. ``saturation_s``:
-    longest time that a drive may be asked for more than it can give. ``speed_margin`` (share of the joint's speed
+    longest time that a drive may be commanded more than it can give. ``speed_margin`` (share of the joint's speed
     limit) and ``position_margin`` rad: how far beyond a limit the detected motion may be. ``collision``: unexpected
     torque, as a share of the joint's torque limit; infinite switches it off. ``stale_s``: oldest inertia and gravity
     torque in use while the arm moves. ``overruns``: late cycles in a row that stop the arm. ``payload_mismatch``:
@@ -39,10 +39,12 @@ class SupervisionLimits(Record):
     saturation_s: float = number("saturation_ms", 100.0, "ms", low=0.0, high=60_000.0)
     speed_margin: float = number("speed_margin", 0.2, low=0.0, high=10.0)
     position_margin: float = number("position_margin_deg", 1.0, "deg", low=0.0, high=90.0)
+    # 0 becomes infinite, which no residual exceeds: the checks need no case for it
     collision: float = number("collision", 0.2, si=lambda share: share or math.inf, low=0.0, high=10.0)
     stale_s: float = number("stale_dynamics_ms", 400.0, "ms", positive=True, high=60_000.0)
     overruns: int = whole("overruns", 5, low=1, high=1_000_000)
     payload_mismatch: Reaction = choice("payload_mismatch", "stop", "warn", "off")
+    # between 5 % of the rated payload, which is never to be reported, and 30 %, which always is (docs/supervision.md)
     payload_tolerance: float = number("payload_tolerance", 0.175, low=0.01, high=10.0)
     friction: float | None = custom("friction", None, "", _share, lambda share: share)
     friction_uncertainty: float = number("friction_uncertainty", 0.03, low=0.0, high=1.0)

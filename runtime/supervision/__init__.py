@@ -1,1 +1,1 @@
-"""What watches a running arm and says, in a code, that it no longer does what it was told."""
+"""What watches a running arm and reports, with a code, that it no longer follows its commands."""

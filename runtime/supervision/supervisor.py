@@ -66,7 +66,7 @@ class Supervisor(Stateful):
         self._weigh_anew()
 
     def _weigh_anew(self) -> None:
-        """Forget what earlier estimates said of another payload."""
+        """Forget the estimates of another payload."""
         self._warned, self._suspect = False, 0
 
     def restart(self, tick: int) -> None:
@@ -87,12 +87,14 @@ class Supervisor(Stateful):
 
     def _torques(self, rows: Array, tick: int) -> Finding | None:
         observer, n = self.observer, len(self._collision)
+        # tau_sat, which the motors gave, not tau_cmd: a saturated drive is no collision
         observer.update(rows[:, n : 2 * n], rows[:, 2 * n : 3 * n])
         ratio = np.abs(observer.residual) / (self._collision + 2.0 * observer.sigma)
         self._unexpected = 0 if ratio.max() <= 1.0 else self._unexpected + 1
         if self._unexpected >= CONFIRMED:
             return self._collided(int(np.argmax(ratio)), tick)
         self._since += 1
+        # weighed in motion only: at rest dry friction carries any weight within its band
         if self._since >= STRIDE and not float((self.watch.peak / self._top).max()) <= MOVING:
             self._since = 0
             observer.learn()
@@ -113,6 +115,7 @@ class Supervisor(Stateful):
     def _weigh(self, tick: int) -> Finding | None:
         observer, limits = self.observer, self._limits
         leftover = np.abs(observer.leftover)
+        # before the mass: what a contact adds to the torque falsifies the estimate as well, and LOAD would be blamed
         if math.isfinite(limits.collision) and not leftover.max() <= UNEXPLAINED:
             return self._unexplained(int(np.argmax(leftover)), tick)
         if limits.payload_mismatch == "off" or self._warned:

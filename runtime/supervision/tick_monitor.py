@@ -47,11 +47,12 @@ class Watch(Stateful):
         torque, lag, ticks, tick_s = drives.torque, drives.lag, drives.ticks, drives.tick_s
         self._n, self._limits, self._ticks, self._tick_s = spec.n, limits, ticks, tick_s
         n = spec.n
+        # a range is checked as a distance from its middle: all six checks are then |x| <= bound, one comparison
         self._centre = np.concatenate([np.zeros(2 * n), (spec.lower + spec.upper) / 2.0, np.zeros(n)])
         self._speed = spec.per_axis("limits", "speed")
         half = (spec.upper - spec.lower) / 2.0 + limits.position_margin
         most = self._speed * (1.0 + limits.speed_margin)
-        slack = 1.0 + 1e-9
+        slack = 1.0 + 1e-9  # a current at its limit gives a torque that may exceed the limit by rounding
         self._fast = drives.resolution * STEPS / tick_s
         first_limit = np.full(n, limits.following_error)
         self._bound = np.concatenate([torque * slack, torque * slack, half, most, first_limit, self._fast])
@@ -64,6 +65,7 @@ class Watch(Stateful):
         self._command = np.zeros((ticks, n))
         self._moved = -JUMP * STEPS * self._speed / self._fast
         self._hold = float(np.exp(-ticks * tick_s / _HOLD_S))
+        # a servo that lags does not move yet while its command already does
         self._longest_stand = round((STANDING_S + float(lag.max())) / tick_s)
         self._lag = limits.following_lag + lag
         self._most_saturated = limits.saturation_s / tick_s
@@ -93,6 +95,7 @@ class Watch(Stateful):
         add(self._repeated, self._command, self._repeated)
         less_equal(self._away, self._bound, self._inside)
         if logical_and.reduce(self._inside, axis=None):
+            # one cycle in which everything is inside ends what was counted; nothing is written in all the others
             if self._dirty:
                 self._saturated, self._standing, self._lost = np.zeros((3, self._n))
                 self._dirty = False
@@ -108,6 +111,7 @@ class Watch(Stateful):
         for k in range(self._ticks):
             self._saturated = np.where(inside[k, 0], 0.0, self._saturated + 1.0)
             frozen, command = ~inside[k, 5], self._command[k]
+            # a reading that stood and then catches up at once: the encoder gave the old sample again
             paused = (self._standing > 0.0) & (self._standing < self._longest_stand) & ~frozen
             lost = paused & (command > self._fast) & (away[k, 3] > CATCH_UP * command)
             self._lost += lost
@@ -163,16 +167,16 @@ class Watch(Stateful):
             ),
         )
 
-    def _saturation(self, asked: Array) -> tuple[str, int, str] | None:
+    def _saturation(self, commanded: Array) -> tuple[str, int, str] | None:
         if (self._saturated <= self._most_saturated).all():
             return None
         axis = int(np.argmax(self._saturated))
-        last, most = beside(asked[axis], self._bound[axis], form=".1f")
+        last, most = beside(commanded[axis], self._bound[axis], form=".1f")
         return (
             "RBL512",
             axis,
             (
-                f"J{axis + 1} was asked for more than its {most} N m, last for {last} N m, for "
+                f"the torque command of J{axis + 1} was above {most} N m, at last {last} N m, for "
                 f"{1e3 * self._limits.saturation_s:g} ms"
             ),
         )

@@ -68,6 +68,7 @@ class LoadModel(ArmModel):
 
     def regressor(self, q: Array) -> Array:
         """Return Y (n, 4), N m per kg and kg m of (m, m c), flange frame, for the motion last given to ``torque``."""
+        # mass and first moment only: the other six columns are of the rotational inertia, which is not estimated
         body = pin.jointBodyRegressor(self._model, self._data, self.n)[:, :4]
         jacobian = pin.computeJointJacobian(self._model, self._data, q, self.n)
         return np.asarray(matmul(jacobian.T, body, self._to_joint))
@@ -136,6 +137,7 @@ class Observer(Stateful):
         prior[0, 0] = 1.0 / self._rated**2
         for k in range(3):
             row = np.zeros(4)
+            # m c - m c_declared: the first moment about the declared centre is what is small
             row[0], row[1 + k] = -self._declared.cog[k], 1.0
             prior += np.outer(row, row) / (COG * self._rated) ** 2
         self._prior = prior
@@ -146,8 +148,10 @@ class Observer(Stateful):
         before, now, after = q[0], q[m], q[2 * m]
         speed = (after - before) / (2.0 * self._period_s)
         acceleration = (after - 2.0 * now + before) / self._period_s**2
+        # smoothed over the same 0.01 rad/s as the compensation of the servo (runtime.servo.axes.SMOOTH)
         dry = np.where(speed > 0.0, self._forward, self._backward) * np.tanh(speed / 0.01)
         friction = dry + self._viscous * speed
+        # a row has the reading at the start of its tick: the torques of 2 m ticks act between the outer readings
         self.residual = matmul(self._triangle, tau[: 2 * m]) - friction - self._model.torque(now, speed, acceleration)
         resting = np.abs(speed) < TURNING
         self.sigma = self._base + np.where(resting, self._coulomb, self._share * np.abs(friction))
@@ -158,6 +162,7 @@ class Observer(Stateful):
         Y = self._model.regressor(self._q)
         weighted = Y / (self.sigma**2)[:, None]
         self.steps += 1
+        # a plain mean at first, so that the first steps do not weigh more than their number
         share = 1.0 / min(self.steps, MEMORY)
         self._information += share * (matmul(weighted.T, Y) - self._information)
         self._moment += share * (matmul(weighted.T, self.residual) - self._moment)
