@@ -161,39 +161,40 @@ register(
         code="RBL401",
         name="payload-not-a-mass",
         meaning="The payload given to LOAD is negative or not a finite number.",
-        remedy="Give the mass of everything beyond the flange in kg, zero or more.",
+        remedy="Give the mass of everything beyond the flange in kg, 0 or more.",
         found=Stage.CELL,
         computed=True,
     ),
     Code(
         code="RBL402",
         name="payload-over-rated",
-        meaning="The declared payload is heavier than the robot is rated for.",
-        remedy="Check the mass (kg, not g); use a lighter hand or a larger robot.",
+        meaning="The declared payload is heavier than the rated payload of the robot.",
+        remedy="Check the unit (kg, not g); use a lighter hand or a larger robot.",
         found=Stage.CELL,
         computed=True,
     ),
     Code(
         code="RBL403",
         name="payload-not-physical",
-        meaning="The centre of gravity or the inertia of the payload is one that no body on this arm can have.",
-        remedy="Give the centre of gravity in mm in the flange frame; inertias must obey the triangle inequality.",
+        meaning="The centre of gravity or the inertia of the payload is not physically possible on this arm.",
+        remedy="Give the centre of gravity in mm in the flange frame; no principal moment of an inertia may exceed the "
+        "sum of the other two.",
         found=Stage.CELL,
         computed=True,
     ),
     Code(
         code="RBL404",
         name="speed-out-of-range",
-        meaning="A speed, acceleration, duration or distance of a move is not a number in its range.",
-        remedy="Give SPEED in mm/s, above 0 to the robot's; SPEED of MOVEJ, SPEEDJ, ACCEL and OVERRIDE in %, above 0 "
-        "to 100; TIME in s, above 0 to 600; the distance of APPROACH and DEPART in mm, 0 to 100000.",
+        meaning="A speed, acceleration, distance or duration is outside its range.",
+        remedy="Give SPEED in mm/s; SPEED of MOVEJ, SPEEDJ, ACCEL and OVERRIDE in %, above 0 to 100; TIME in s, above "
+        "0 to 600; the distance of APPROACH and DEPART in mm, 0 to 100000.",
         found=Stage.CELL,
         computed=True,
     ),
     Code(
         code="RBL405",
         name="dwell-out-of-range",
-        meaning="A waiting time is negative, not finite or longer than its statement allows.",
+        meaning="A waiting time is negative, not finite or too long.",
         remedy="Give the time in s: 0 to 600 for HAND, 0 to 86400 for DELAY, PULSE and TIMEOUT.",
         found=Stage.CELL,
         computed=True,
@@ -201,157 +202,160 @@ register(
     Code(
         code="RBL410",
         name="out-of-reach",
-        meaning="No joint angles of this robot put the tool at the pose.",
-        remedy="Move the point closer to the robot, or check the tool and the frame it was taught in.",
+        meaning="No joint angles of this robot bring the tool to the pose.",
+        remedy="Move the point closer to the robot, or check the tool and the frame with which it was taught.",
         found=Stage.MOTION,
     ),
     Code(
         code="RBL411",
         name="joint-limit",
-        meaning="The motion passes the range of a joint.",
+        meaning="A joint would leave its range on the move.",
         remedy="Teach a via point, choose another arm configuration, or move the work piece.",
         found=Stage.MOTION,
     ),
     Code(
         code="RBL412",
         name="wrist-singularity",
-        meaning="A straight move passes a configuration where the joints would have to turn infinitely fast, "
-        "or reaches its end only with another arm or wrist configuration.",
-        remedy="Teach a via point away from J5 = 0, or teach the end in the wrist configuration of the start.",
+        meaning="A straight move passes a singularity, where joints would have to turn infinitely fast, or its end "
+        "needs another arm or wrist configuration.",
+        remedy="Teach a via point away from J5 = 0, teach the end in the wrist configuration of the start, or allow "
+        "the wrist to change with WRIST AUTO.",
         found=Stage.MOTION,
     ),
     Code(
         code="RBL509",
         name="run-too-long",
         meaning="The run has reached the longest simulated time that is recorded.",
-        remedy="Give a loop an end and a WAIT a TIMEOUT, or split the program; log and report hold all up to here.",
+        remedy="Let each loop end and give each WAIT a TIMEOUT, or divide the program; log and report are complete up "
+        "to here.",
         endless=True,
     ),
     Code(
         code="RBL510",
         name="non-finite-state",
-        meaning="A position, speed or torque became NaN or infinite: the simulation is no longer valid.",
-        remedy="The last finite state is in the log. Check masses, contacts and gains near that moment.",
+        meaning="A position, speed or torque has become NaN or infinite, so the simulation is no longer valid.",
+        remedy="Check masses, contacts and gains near this moment; the log ends with the last finite state.",
         category=0,
     ),
     Code(
         code="RBL511",
         name="following-error",
-        meaning="An axis is further from its command than the limit for its speed.",
-        remedy="Look for a blocked axis, a drive without its torque or a wrong LOAD; the limits are in "
+        meaning="An axis is farther from its command than the limit for its speed.",
+        remedy="Check for a blocked axis, a drive without torque or a wrong LOAD; the limits are in "
         "[controller.supervision].",
     ),
     Code(
         code="RBL512",
         name="torque-saturation",
-        meaning="A drive was asked for more torque than it can give, for longer than allowed.",
+        meaning="A drive needs more torque than it can give, for longer than allowed.",
         remedy="Move slower or with less ACCEL, carry less, or check the declared payload.",
     ),
     Code(
         code="RBL513",
         name="speed-excursion",
-        meaning="An axis turns faster than its speed limit and margin allow.",
-        remedy="Look for a loop that runs away: gains, payload, encoder.",
+        meaning="An axis turns faster than its speed limit and the margin allow.",
+        remedy="Check gains, payload and encoder: a control loop may be unstable.",
     ),
     Code(
         code="RBL514",
         name="position-excursion",
         meaning="An axis is outside its range by more than the margin.",
-        remedy="Something moved the arm beyond its command: check the payload, the drive and the encoder.",
+        remedy="Check the payload, the drive and the encoder: something has moved the arm beyond its command.",
     ),
     Code(
         code="RBL515",
         name="encoder-fault",
-        meaning="The readings of an encoder cannot be those of an axis that follows its command: it jumps, skips "
-        "samples or stands still.",
-        remedy="Check the encoder, its cable and the brake of the axis. The arm stops at once, since its angles "
-        "cannot be trusted.",
+        meaning="The readings of an encoder are impossible for an axis that follows its command: they jump, have gaps "
+        "or do not change.",
+        remedy="Check the encoder, its cable and the brake of the axis. The arm stops at once, because its angles are "
+        "not reliable.",
         category=0,
     ),
     Code(
         code="RBL516",
         name="collision",
-        meaning="An axis needs another torque than the model of the arm explains, and no payload explains it: the arm "
-        "touches something, or a drive does not give its torque.",
-        remedy="Look for an obstacle, then check the drive and the brake of the axis.",
+        meaning="An axis needs a torque that neither the model of the arm nor a payload explains: the arm touches "
+        "something, or a drive does not give its torque.",
+        remedy="Check for an obstacle, then the drive and the brake of the axis.",
     ),
     Code(
         code="RBL517",
         name="payload-mismatch",
-        meaning="The torques say that the arm carries another mass than LOAD declared.",
-        remedy="Put the right LOAD after each HAND ON and HAND OFF; payload_mismatch in [controller.supervision] can "
+        meaning="The torques show that the arm carries another mass than LOAD declares.",
+        remedy="Write the right LOAD after each HAND ON and HAND OFF; payload_mismatch in [controller.supervision] can "
         "be stop, warn or off.",
     ),
     Code(
         code="RBL518",
         name="stop-failed",
-        meaning="The arm did not follow the controlled stop that answers a fault.",
-        remedy="See the alarm before this one; the arm was stopped at once.",
+        meaning="The arm did not follow the controlled stop after an alarm, and was stopped at once.",
+        remedy="See the alarm before this one.",
         category=0,
     ),
     Code(
         code="RBL520",
         name="tick-overrun",
         meaning="The work of an interpolation cycle took longer than the cycle.",
-        remedy="Lower the declared costs in the controller profile, or lengthen the cycle.",
+        remedy="Lower the declared costs in the controller profile: interpolation_cost_ms and "
+        "dynamics_cost_per_axis_ms.",
     ),
     Code(
         code="RBL521",
         name="stale-dynamics",
-        meaning="Inertia and gravity torque in use are too old, or still those of the payload before the last LOAD, "
+        meaning="The inertia and the gravity torque in use are too old, or belong to the payload before the last LOAD, "
         "while the arm moves.",
         remedy="Lower the declared costs in the controller profile, so that the dynamics task gets idle time.",
     ),
     Code(
         code="RBL523",
         name="not-in-position",
-        meaning="The arm did not come within the in-position window of the end of a move in time.",
-        remedy="Check the declared payload against the real one, and the torque limits in the report.",
+        meaning="The arm did not come into position at the end of a move within the allowed time.",
+        remedy="Compare the declared payload with the real one, and check the torque limits in the report.",
     ),
     Code(
         code="RBL524",
         name="seam-too-far",
-        meaning="A seam sensor sees the seam further from its taught place than is believed.",
-        remedy="Check the work piece and the sensor; most_mm and most_deg of the sensor bound what is followed.",
+        meaning="A seam sensor measures the seam farther from its taught place than its limits allow.",
+        remedy="Check the work piece and the sensor, or raise most_mm and most_deg of the sensor in the cell file.",
     ),
     Code(
         code="RBL525",
         name="seam-lost",
         meaning="A seam sensor has given no reading for too long.",
-        remedy="Check the sensor, or allow longer gaps with lost_ms of the sensor.",
+        remedy="Check the sensor, or raise lost_ms of the sensor in the cell file.",
     ),
     Code(
         code="RBL526",
         name="seam-not-followed",
-        meaning="The joints cannot follow where a seam sensor sees the seam: out of reach, out of range or too fast.",
-        remedy="Move slower, teach the seam nearer to where it is, or lower most_mm of the sensor.",
+        meaning="The joints cannot follow the seam that the sensor measures: out of reach, out of range or too fast.",
+        remedy="Move slower, teach the seam closer to its real place, or lower most_mm of the sensor in the cell file.",
     ),
     Code(
         code="RBL530",
         name="stopped-by-user",
         meaning="The run was stopped from outside (Ctrl-C or SIGTERM).",
-        remedy="The log and the report are complete up to the stop.",
+        remedy="Nothing is to be corrected: the log and the report are complete up to the stop.",
     ),
     Code(
         code="RBL535",
         name="part-pushed",
-        meaning="The arm, the hand or a held part has touched a part that it should not touch, and moved it by more "
-        "than 0.5 mm or was stopped by it.",
-        remedy="Keep clear of it: go there from another side, open the hand where there is room, or hold the part "
-        "elsewhere.",
+        meaning="The arm, the hand or a held part has touched another part, and has moved it by more than 0.5 mm or "
+        "was stopped by it.",
+        remedy="Keep clear of the part: move from another side, open the hand where there is space, or grip the held "
+        "part at another place.",
     ),
     Code(
         code="RBL536",
         name="part-lost",
-        meaning="A part that HAND ON gripped is no longer held, and no HAND OFF has let it go.",
-        remedy="Move with less ACCEL, grip nearer to its centre of gravity, or give the hand more grip force or "
-        "better pads in the cell file.",
+        meaning="A part that HAND ON has gripped is no longer held, although no HAND OFF has released it.",
+        remedy="Move with less ACCEL, grip closer to the centre of gravity, or give the hand more grip_force_n or "
+        "larger pads (pad_mm) in the cell file.",
     ),
     Code(
         code="RBL537",
         name="obstacle-touched",
         meaning="The arm or the hand has touched an obstacle of the cell, the floor or a link of the arm, or a held "
         "part has slid along an obstacle.",
-        remedy="Lift the part before it is moved, go there over a via point, or correct the obstacle in the cell file.",
+        remedy="Lift the part before it is moved, move over a via point, or correct the obstacle in the cell file.",
     ),
 )

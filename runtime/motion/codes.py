@@ -6,7 +6,8 @@ register(
     Code(
         code="RBL416",
         name="arc-undefined",
-        meaning="Start, via point and end of an arc define no circle: two of them coincide, or all are on one line.",
+        meaning="Start, via point and end of an arc do not define a circle: two of them coincide, or all are on one "
+        "line.",
         remedy="Teach the via point well off the straight line from start to end, or use MOVE.",
         found=Stage.MOTION,
     ),

@@ -19,12 +19,12 @@ NO_BLEND = LintRule(
     Code(
         code="RBL413",
         name="blend-at-the-end",
-        meaning="A move has a ZONE, or one is set, and no move follows that could be blended into.",
-        remedy="Give it FINE or no ZONE; the arm stops there in any case.",
+        meaning="A move has a ZONE, or a ZONE is set, but no move follows into which it could blend.",
+        remedy="Write FINE at the move, or remove the ZONE; the arm stops there in any case.",
         found=Stage.CELL,
     ),
-    why="There is no corner to cut: the arm stops there for another statement. Either a move is "
-    "missing, or whoever reads the program is led to expect a motion without a stop.",
+    why="There is no corner to round: the arm stops there for another statement. Either a move is missing, or the ZONE "
+    "makes a reader expect a motion without a stop.",
     bad="10 MOVE P1, ZONE 20\n20 HAND ON\n",
     good="10 MOVE P1\n20 HAND ON\n",
 )
@@ -32,11 +32,12 @@ LOAD_IN_BLEND = LintRule(
     Code(
         code="RBL229",
         name="load-in-blend",
-        meaning="A LOAD stands between two moves that would blend: the arm stops for it.",
-        remedy="Put the LOAD where the arm stands still, after the HAND, or end the move before it with FINE.",
+        meaning="A LOAD stands between two moves that would blend, so the arm stops for it.",
+        remedy="Move the LOAD to where the arm stands still, such as after the HAND, or end the move before it with "
+        "FINE.",
     ),
-    why="What the arm carries changes while the arm stands still, not during a move. The blend that the program asks "
-    "for does not take place, and the time that it was to save is lost.",
+    why="The load changes while the arm stands still, not during a move. The programmed blend does not take place, and "
+    "the time that it should save is lost.",
     bad="10 MOVE P1, ZONE 20\n20 LOAD (0, 0, 60), 0.8\n30 MOVE P2\n",
     good="10 LOAD (0, 0, 60), 0.8\n20 MOVE P1, ZONE 20\n30 MOVE P2\n",
     line=2,

@@ -19,11 +19,11 @@ LOAD_MISSING = LintRule(
     Code(
         code="RBL228",
         name="load-missing",
-        meaning="The hand has grasped or let go, and the arm moves on without a LOAD.",
-        remedy="Write a LOAD with what the arm now carries after the HAND.",
+        meaning="The hand closes or opens, and the arm moves on without a new LOAD.",
+        remedy="Write a LOAD with all that the arm now carries after the HAND.",
     ),
-    why="Gravity and inertia are computed from the last LOAD. With the load of the empty hand the arm sags under "
-    "the part, leaves its path, and stops for a payload that does not fit.",
+    why="The controller computes gravity and inertia from the last LOAD. With the load of the empty hand the arm sags "
+    "under the part, leaves its path, and is stopped because the payload does not match.",
     bad="10 LOAD (0, 0, 60), 0.8\n20 MOVE P1\n30 HAND ON\n40 MOVE P2\n",
     good="10 LOAD (0, 0, 60), 0.8\n20 MOVE P1\n30 HAND ON\n35 LOAD (0, 0, 95), 2.3\n40 MOVE P2\n",
     line=3,

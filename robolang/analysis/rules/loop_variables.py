@@ -12,11 +12,11 @@ SHARED = LintRule(
     Code(
         code="RBL235",
         name="loop-variable-shared",
-        meaning="A FOR counts with the variable of a FOR around it.",
-        remedy="Count the inner loop with another variable.",
+        meaning="A FOR counts with the same variable as a FOR around it.",
+        remedy="Use another variable for the inner loop.",
     ),
-    why="After the inner loop the variable has the inner loop's last value. What the outer loop then does with it, "
-    "such as going to the next place of a row, it does with a wrong number.",
+    why="After the inner loop the variable has the last value of the inner loop. The outer loop continues with this "
+    "wrong number, for example with the wrong place of a row.",
     bad="10 FOR I = 1 TO 3\n20 FOR I = 1 TO 2\n30 PRINT I\n40 NEXT\n50 NEXT\n",
     good="10 FOR I = 1 TO 3\n20 FOR K = 1 TO 2\n30 PRINT I; K\n40 NEXT\n50 NEXT\n",
     line=2,

@@ -17,11 +17,11 @@ COMMENT = LintRule(
     Code(
         code="RBL234",
         name="text-is-a-comment",
-        meaning="What seems to be a text in single quotes is a comment: PRINT shows an empty line.",
+        meaning="A text in single quotes after PRINT is a comment: PRINT shows an empty line.",
         remedy="Write the text in double quotes.",
     ),
-    why="Other languages write texts in single quotes. Here ' begins a comment, and the message that an operator "
-    "should read is not shown.",
+    why="Other languages write texts in single quotes. Here ' begins a comment, and the operator does not see the "
+    "message.",
     bad="10 PRINT 'part is missing'\n",
     good='10 PRINT "part is missing"\n',
 )

@@ -13,11 +13,11 @@ UNREACHABLE = LintRule(
     Code(
         code="RBL221",
         name="unreachable",
-        meaning="A line can never run: the one above it leaves for good, and no jump leads here.",
-        remedy="Remove it, or give it the label that a jump names.",
+        meaning="A line can never run: the program always leaves the line above, and no jump leads here.",
+        remedy="Remove the line, correct the jump above it, or jump to it by a label.",
     ),
-    why="The line looks like part of the work and never is: a condition in front of the jump has been lost, or the "
-    "line is left over.",
+    why="The line looks like part of the work but never runs: a condition before the jump was lost, or the line is "
+    "left over.",
     bad="10 *AGAIN MOVE P1\n20 GOTO *AGAIN\n30 MOVE P2\n",
     good="10 *AGAIN MOVE P1\n20 IF IN(1) THEN GOTO *AGAIN\n30 MOVE P2\n",
     line=3,
@@ -27,9 +27,9 @@ UNUSED_SUB = LintRule(
         code="RBL222",
         name="sub-unused",
         meaning="A SUB is never called.",
-        remedy="Call it, or remove it.",
+        remedy="Call the SUB, or remove it.",
     ),
-    why="Somebody wrote the steps down and the program leaves them out: a CALL is missing, or the SUB is left over.",
+    why="The steps are written down but never run: a CALL is missing, or the SUB is left over.",
     bad="10 SPEED 200\n20 END\n30 SUB PICK\n40 MOVE P1\n50 ENDSUB\n",
     good="10 SPEED 200\n15 CALL PICK\n20 END\n30 SUB PICK\n40 MOVE P1\n50 ENDSUB\n",
     line=3,

@@ -15,11 +15,11 @@ UNREAD = LintRule(
     Code(
         code="RBL225",
         name="value-unused",
-        meaning="A value is assigned and nothing reads it.",
-        remedy="Correct the name, use the value, or remove it.",
+        meaning="A name or an array gets a value, and nothing reads it.",
+        remedy="Correct the name, use the value, or remove the line.",
     ),
-    why="Mostly the name is misspelt, here or where it should be read. The program runs, and counts something that "
-    "nobody reads.",
+    why="Usually the name is misspelt, here or where its value should be read. The program runs, but the value has no "
+    "effect.",
     bad="10 COUNT = 0\n20 TOTAL = 3\n30 COUNT = COUNT + 1\n40 PRINT TOTAL\n",
     good="10 COUNT = 0\n20 TOTAL = 3\n30 COUNT = COUNT + 1\n40 PRINT TOTAL; COUNT\n",
 )

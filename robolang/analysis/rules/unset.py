@@ -15,11 +15,12 @@ SPEED_UNSET = LintRule(
     Code(
         code="RBL226",
         name="speed-unset",
-        meaning="A move runs at a speed that the program has not set, though it sets one for others.",
-        remedy="Set SPEED or SPEEDJ before the first move, or give the move a SPEED or TIME.",
+        meaning="A move runs before the program has set a speed for it, although the program sets speeds for other "
+        "moves.",
+        remedy="Set SPEED or SPEEDJ before the first move, or give the move its own SPEED or TIME.",
     ),
-    why="Whoever sets a speed for some moves has thought about it. The others run at what the robot brings along, "
-    "which is faster than most tasks want, and differs between robots.",
+    why="A program that sets a speed for some moves does so on purpose. The others run at the robot's default speed, "
+    "which is too fast for most tasks and differs between robots.",
     bad="10 MOVE P1\n20 SPEED 250\n30 MOVE P2\n",
     good="10 SPEED 250\n20 MOVE P1\n30 MOVE P2\n",
 )
@@ -27,11 +28,11 @@ TOOL_UNSET = LintRule(
     Code(
         code="RBL227",
         name="tool-unset",
-        meaning="A move runs before the program has set its TOOL.",
+        meaning="A move runs before the program has set TOOL, which it sets later.",
         remedy="Set TOOL before the first move.",
     ),
-    why="The move goes with the tool point of the hand. Once TOOL is set, as in a second round of the program, the "
-    "same line brings the arm to another place.",
+    why="The move uses the tool point of the hand. Once TOOL is set, as in a second round of the program, the same "
+    "line moves the arm to another place.",
     bad="10 MOVE P1\n20 TOOL POSE(0, 0, 180, 0, 0, 0)\n30 MOVE P2\n",
     good="10 TOOL POSE(0, 0, 180, 0, 0, 0)\n20 MOVE P1\n30 MOVE P2\n",
 )

@@ -14,12 +14,11 @@ NO_TIMEOUT = LintRule(
     Code(
         code="RBL223",
         name="wait-without-timeout",
-        meaning="A WAIT has no TIMEOUT: where its signal never comes, the program stands there for ever.",
-        remedy="Add TIMEOUT t, and GOTO or ON ERROR for what to do then.",
+        meaning="A WAIT has no TIMEOUT: if its condition never becomes true, the program waits for ever.",
+        remedy="Add TIMEOUT t, and GOTO or ON ERROR for the case that the time ends.",
     ),
-    why="A sensor fails, a plug comes loose, and the cell stands still without a word. With a TIMEOUT the program "
-    "can say which signal it misses. Where it is meant to wait without end, as for a start button, say so with "
-    "noqa.",
+    why="If a sensor fails or a plug comes loose, the cell stands still without a message. With a TIMEOUT the program "
+    "can state which signal is missing. If waiting without end is intended, as for a start button, write noqa.",
     bad="10 WAIT IN(1) = 1\n20 MOVE P1\n",
     good="10 WAIT IN(1) = 1, TIMEOUT 5\n20 MOVE P1\n",
 )
@@ -27,11 +26,11 @@ FOR_A_NUMBER = LintRule(
     Code(
         code="RBL233",
         name="wait-for-a-number",
-        meaning="The condition of a WAIT is a number that is not 0, so it is true at once.",
-        remedy="Wait for a time with DELAY, for a signal with a condition such as IN(1) = 1.",
+        meaning="The condition of a WAIT is a number other than 0, so it is true at once.",
+        remedy="Write DELAY for a pause, or a condition such as IN(1) = 1 for a signal.",
     ),
-    why="In other languages WAIT with a number is a pause. Here it waits for a condition, and every number but 0 "
-    "is true: the program goes on at once, before a valve or a gripper has moved.",
+    why="In other languages WAIT with a number is a pause. Here it waits for a condition, and every number but 0 is "
+    "true: the program continues at once, before a valve or a gripper has moved.",
     bad="10 WAIT 2\n20 MOVE P1\n",
     good="10 DELAY 2\n20 MOVE P1\n",
 )

@@ -9,21 +9,23 @@ from robolang.lint.rule import Rule
 RULES = (
     Rule(
         code="RBL410",
-        why="The arm is not that long. On a robot the move starts and stops within its path; here nothing starts.",
+        why="The arm is not long enough. Many robots start such a move and stop within its path; here the program does "
+        "not start.",
         bad="10 MOVE P1 + (900, 0, 0)\n",
         good="10 MOVE P1 + (90, 0, 0)\n",
     ),
     Rule(
         code="RBL411",
-        why="The place can be reached, but a joint would have to turn further than it can, at the end or on its path.",
+        why="The place can be reached, but a joint would have to turn farther than it can, at the end of the move or "
+        "on its path.",
         bad="10 MOVEJ JOINT(0, 60, -190, 0, 95, 0)\n20 MOVE HERE * (0, 0, 0, 0, -15, 0), WRIST KEEP\n",
         good="10 MOVEJ JOINT(0, 60, -190, 0, 95, 0)\n20 MOVE HERE * (0, 0, 0, 0, 15, 0), WRIST KEEP\n",
         line=2,
     ),
     Rule(
         code="RBL412",
-        why="On the straight line J4 would have to turn by half a turn at once. A controller finds out when it is "
-        "there, and stops with the part in its hand.",
+        why="On the straight line J4 would have to turn by half a turn at once. Many robots notice this on the path "
+        "only, and stop there with the part in the hand.",
         bad="10 MOVEJ JOINT(0, 60, -190, 20, -8, 0)\n20 MOVE JOINT(10, 60, -190, 20, 8, 0), WRIST KEEP\n",
         good="10 MOVEJ JOINT(0, 60, -190, 20, -8, 0)\n20 MOVE JOINT(10, 60, -190, 20, 8, 0), WRIST AUTO\n",
         line=2,
@@ -31,60 +33,61 @@ RULES = (
     Rule(
         code="RBL414",
         severity=Severity.WARNING,
-        why="Two blends cannot share a piece of path. The zone is made smaller without a word, and the corner is taken "
-        "closer and slower than the program says.",
+        why="Two blends cannot share a piece of path. The zone becomes smaller, and the arm passes the corner closer "
+        "and slower than the program states.",
         bad="10 MOVE P5 + (0, 0, 40), ZONE 30\n20 MOVE P5 + (100, 0, 40)\n",
         good="10 MOVE P5 + (0, 0, 40), ZONE 15\n20 MOVE P5 + (100, 0, 40)\n",
     ),
     Rule(
         code="RBL416",
-        why="Through three points in a line goes no circle, and through two that coincide go many.",
+        why="No circle passes through three points on a line, and many circles pass through two points.",
         bad="10 MOVEC P5 + (50, 0, 0), P5 + (100, 0, 0)\n",
         good="10 MOVEC P5 + (50, 20, 0), P5 + (100, 0, 0)\n",
     ),
     Rule(
         code="RBL419",
         severity=Severity.WARNING,
-        why="The tool is where it was taught, J4 and J6 half a turn away from it. The next joint move starts "
-        "from there, hoses wind up, and after some rounds an axis is at the end of its range.",
+        why="The tool is where it was taught, but J4 and J6 are half a turn away from it. The next joint move starts "
+        "from there, hoses wind up, and after some rounds an axis reaches the end of its range.",
         bad="10 MOVEJ JOINT(0, 60, -190, -30, -30, 0)\n20 MOVE JOINT(10, 60, -190, 150, 30, 180), WRIST KEEP\n",
         good="10 MOVEJ JOINT(0, 60, -190, -30, -30, 0)\n20 MOVE JOINT(10, 60, -190, -30, -30, 0), WRIST KEEP\n",
         line=2,
     ),
     Rule(
         code="RBL421",
-        why="The joints and the path are possible, and a table obstructs it. In the cell that is a broken hand.",
+        why="The joints can follow the path, but a table is in it. In the real cell the hand would break.",
         bad="10 MOVE P1 + (0, 0, -30)\n",
         good="10 MOVE P1 + (0, 0, 30)\n",
     ),
     Rule(
         code="RBL422",
         severity=Severity.WARNING,
-        why="A place taught a little beside this one, or another tool, and the move is refused. Cables and hoses do "
-        "not like the end of a range either.",
+        why="If the point is taught slightly differently, or with another tool, the move is refused. Cables and hoses "
+        "also suffer at the end of a range.",
         bad="10 MOVEJ JOINT(0, 60, -190, 0, 99.8, 0)\n",
         good="10 MOVEJ JOINT(0, 60, -190, 0, 90, 0)\n",
     ),
     Rule(
         code="RBL423",
-        why="The cycle of a line is a promise. With --max-cycle a change that breaks it fails where it is made. The "
-        "example is allowed 3 s.",
+        why="The cycle time of a line is agreed. With --max-cycle a change that exceeds it fails when it is made. The "
+        "limit of the example is 3 s.",
         bad="10 MOVE P2\n20 DELAY 5\n30 MOVE P5\n",
         good="10 MOVE P2\n20 MOVE P5\n",
     ),
     Rule(
         code="RBL424",
-        why="Ranges of single joints do not keep a folded arm out of itself. The shapes are coarse; where this is "
-        "found, a hand, a hose or a cable touches the arm for certain, and the contact stops a run with physics. "
-        "An arm whose file gives no link_radius_mm has no shapes: it is not checked, and the table says so.",
+        why="The ranges of the single joints do not keep a folded arm from touching itself. The shapes are coarse: "
+        "where this is reported, a hand, a hose or a cable touches the arm for certain, and the contact stops a run "
+        "with physics. An arm whose file gives no link_radius_mm has no shapes: it is not checked, and the table "
+        "states so.",
         bad="10 MOVEJ JOINT(-60, 210, 25, -70, 65, -75)\n",
         good="10 MOVEJ JOINT(-60, 180, 25, -70, 65, -75)\n",
     ),
     Rule(
         code="RBL425",
         severity=Severity.WARNING,
-        why="A mass below the rated one is too much for the wrist when it is far from the flange. The drive holds it "
-        "for a while, heats up and stops. Where the robot file has published ratings this is an error.",
+        why="Even a mass below the rated payload is too much for the wrist when it is far from the flange. The drive "
+        "holds it for a while, heats up and stops. If the robot file has published ratings, this is an error.",
         bad="10 LOAD (450, 0, 60), 2.4\n20 MOVEJ JOINT(0, 60, -190, 0, 60, 0)\n",
         good="10 LOAD (0, 0, 60), 2.4\n20 MOVEJ JOINT(0, 60, -190, 0, 60, 0)\n",
         line=2,
@@ -92,8 +95,8 @@ RULES = (
     Rule(
         code="RBL426",
         severity=Severity.WARNING,
-        why="What is turned resists by its inertia, which grows with the square of its distance. The wrist swings past "
-        "its end, or its drive runs out of torque. Where the robot file has published ratings this is an error.",
+        why="Inertia grows with the square of the distance from the axis. The wrist swings beyond its end position, or "
+        "its drive has not enough torque. If the robot file has published ratings, this is an error.",
         bad="10 LOAD (0, 0, 60), 2.4, (0.2, 0.2, 0.2, 0, 0, 0)\n20 MOVE P2\n",
         good="10 LOAD (0, 0, 60), 2.4, (0.02, 0.02, 0.02, 0, 0, 0)\n20 MOVE P2\n",
         line=2,
@@ -101,8 +104,8 @@ RULES = (
     Rule(
         code="RBL427",
         severity=Severity.WARNING,
-        why="Near a singular posture the joints race for a small motion of the tool: the move is slow, rough, and with "
-        "a work piece a few millimetres off it is refused.",
+        why="Near a singular posture the joints turn very fast for a small motion of the tool: the move is slow and "
+        "rough, and with a work piece a few millimetres off it is refused.",
         bad="10 MOVEJ JOINT(0, 60, -190, 0, -1.5, 0)\n20 MOVE HERE + (20, 0, 0), WRIST KEEP\n",
         good="10 MOVEJ JOINT(0, 60, -190, 0, -15, 0)\n20 MOVE HERE + (20, 0, 0), WRIST KEEP\n",
         line=2,
@@ -110,8 +113,8 @@ RULES = (
     Rule(
         code="RBL428",
         severity=Severity.WARNING,
-        why="The tool point stays on its line while the tool tilts, to end as taught. For a gripper in free air that "
-        "is welcome; with a torch, or in a bore, it is not.",
+        why="The tool point stays on its line while the tool tilts, so that the move ends as taught. For a gripper in "
+        "free air this is useful; for a torch, or in a bore, it is not.",
         bad="10 MOVEJ JOINT(0, 60, -190, 20, -8, 0)\n20 MOVE JOINT(10, 60, -190, 20, 8, 0)\n",
         good="10 MOVEJ JOINT(0, 60, -190, 20, -8, 0)\n20 MOVE JOINT(10, 60, -190, 20, 8, 0), WRIST AUTO\n",
         line=2,
@@ -119,16 +122,15 @@ RULES = (
     Rule(
         code="RBL429",
         severity=Severity.WARNING,
-        why="The cycle was reckoned with the speed in the program, and the arm does not have it. A bead or a weld laid "
-        "at another speed than programmed is another bead.",
+        why="The cycle time was calculated with the programmed speed, and the arm does not reach it. A bead or a weld "
+        "at another speed has another size.",
         bad="10 MOVE P2, TIME 0.3\n",
         good="10 MOVE P2, TIME 1.5\n",
     ),
     Rule(
         code="RBL434",
         severity=Severity.WARNING,
-        why="The arm swings round, through places that nobody thought of, for a target that is close to where the tool "
-        "stands.",
+        why="The arm swings round through places that nobody expects, although the target is close to the tool.",
         bad="10 MOVEJ JOINT(0, 80, -190, 0, 60, 0)\n20 MOVEJ P5\n",
         good="10 MOVEJ JOINT(0, 80, -190, 0, -60, 0)\n20 MOVEJ P5\n",
         line=2,
@@ -136,7 +138,7 @@ RULES = (
     Rule(
         code="RBL435",
         severity=Severity.WARNING,
-        why="The tool turns nearly once round for a small change of its angle, and hoses and cables with it.",
+        why="The tool turns almost once round for a small change of its angle, and hoses and cables turn with it.",
         bad="10 MOVEJ JOINT(0, 60, -190, 0, 60, 250)\n20 MOVEJ HERE * (0, 0, 0, 0, 0, 40)\n",
         good="10 MOVEJ JOINT(0, 60, -190, 0, 60, 200)\n20 MOVEJ HERE * (0, 0, 0, 0, 0, 40)\n",
         line=2,

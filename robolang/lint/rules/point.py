@@ -5,16 +5,16 @@ from robolang.lint.rule import Rule
 RULES = (
     Rule(
         code="RBL301",
-        why="There is nowhere to go: the name is misspelt, or nobody has taught the point yet. The program does not "
-        "run, since half a program leaves the arm somewhere in the middle.",
+        why="The arm has no target: the name is misspelt, or nobody has taught the point yet. The program does not "
+        "run, because it would leave the arm in the middle of its work.",
         bad="10 MOVE P1\n20 MOVE P12\n",
         good="10 MOVE P1\n20 MOVE P2\n",
         line=2,
     ),
     Rule(
         code="RBL302",
-        why="A link that leads nowhere says that there were points, on a drive that is not mounted or under a name "
-        "that has changed. Without the link the program would have no points, or those of the built-in cell.",
+        why="A link that leads nowhere shows that there were points: the drive is not mounted, or the file has another "
+        "name now. Without the link the program would have no points, or those of the built-in cell.",
         bad="pick.points.toml -> /mnt/taught/pick.points.toml      (nothing is there)\npick.rbl\n",
         good="schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\n",
         line=0,
@@ -22,7 +22,7 @@ RULES = (
     ),
     Rule(
         code="RBL303",
-        why="Half a points file would send the arm to half of the points. Nothing of a damaged one is used.",
+        why="Half a points file would send the arm to half of the points. Nothing of a damaged file is used.",
         bad="schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0\n",
         good="schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\n",
         line=3,
@@ -30,22 +30,22 @@ RULES = (
     ),
     Rule(
         code="RBL304",
-        why="A newer version may have written what this one would leave out or read otherwise, such as a frame. The "
-        "file is neither used nor changed.",
+        why="A newer version may have written something that this version would leave out or read differently, such as "
+        "a frame. The file is neither used nor changed.",
         bad="schema = 2\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\n",
         good="schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\n",
         points=True,
     ),
     Rule(
         code="RBL305",
-        why="Every target after it depends on the tool or the frame. With one that the cell does not have, the arm "
-        "would go somewhere that nobody has taught.",
+        why="Every target after it depends on the tool or the frame. With one that does not exist, the arm would go to "
+        "a place that nobody has taught.",
         bad="10 TOOL GRIPER\n20 MOVE P1\n",
         good="10 TOOL GRIPPER\n20 MOVE P1\n",
     ),
     Rule(
         code="RBL306",
-        why="A seam cannot be followed with a sensor that is not there; the arm would weld beside it.",
+        why="A seam cannot be followed with a sensor that does not exist; the arm would weld beside the seam.",
         bad="10 SEAM ON, LASR\n20 MOVE P1\n30 SEAM OFF\n",
         good="10 SEAM ON, LASER\n20 MOVE P1\n30 SEAM OFF\n",
     ),
@@ -60,8 +60,8 @@ RULES = (
     ),
     Rule(
         code="RBL308",
-        why="A misspelt key is not read, and the point would silently be another one: here of another tool "
-        "than it was taught with.",
+        why="A misspelt key is not read, and the point would be another one without any message: here one of another "
+        "tool than it was taught with.",
         bad='schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\ntooll = "GRIP"\n',
         good='schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\ntool = "GRIP"\n',
         line=4,
@@ -69,8 +69,8 @@ RULES = (
     ),
     Rule(
         code="RBL309",
-        why="A point half a kilometre away is a slip of the unit or of a comma. Joint angles outside of the ranges of "
-        "the robot are those of another robot, or slips as well: it can never stand there.",
+        why="A point half a kilometre away has a wrong unit or a wrong decimal point. Joint angles outside the ranges "
+        "of the robot belong to another robot or are typing errors: the arm can never stand there.",
         bad="schema = 1\n[points.P1]\npose = [450000, -150, 200, 180, 0, 90]\n",
         good="schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\n",
         line=3,
@@ -78,7 +78,7 @@ RULES = (
     ),
     Rule(
         code="RBL310",
-        why="The same joint angles are another place on another arm, and the same place may be out of its reach.",
+        why="On another arm the same joint angles are another place, and the same place may be out of reach.",
         bad='schema = 1\nrobot = "irb2400"\n[points.P1]\njoints = [0, 45, -180, 0, 45, 0]\n',
         good='schema = 1\nrobot = "puma560"\n[points.P1]\njoints = [0, 45, -180, 0, 45, 0]\n',
         line=2,
@@ -86,8 +86,8 @@ RULES = (
     ),
     Rule(
         code="RBL311",
-        why="A folder, a device, a link out of the project or bytes that are no text are not what somebody taught. "
-        "They are refused before they are read, so that a check neither waits for a pipe nor reads what is not its.",
+        why="A folder, a device, a link out of the project or bytes that are not text are not taught points. They are "
+        "refused before they are read, so that a check neither waits for a pipe nor reads a file of somebody else.",
         bad='schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\ncomment = "turned by 90\udcb0"\n',
         good='schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\ncomment = "turned by 90 deg"\n',
         shown="schema = 1\n[points.P1]\npose = [450, -150, 200, 180, 0, 90]\n"
