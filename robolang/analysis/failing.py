@@ -18,13 +18,20 @@ _HARMLESS = frozenset({*_COMPUTES, *(name for name, function in FUNCTIONS.items(
 
 def may_fail(node: Statement) -> bool:
     """Return whether a statement may end in an error that ON ERROR catches."""
-    if isinstance(node, If):
-        parts = (node.then, *(() if node.otherwise is None else (node.otherwise,)))
-        return not _harmless(node.condition) or any(may_fail(part) for part in parts)
-    if isinstance(node, Wait):
-        return not _harmless(node.condition) or (node.timeout is not None and node.target is None)
-    if isinstance(node, Unparsed):
-        return True
+    match node:
+        case If():
+            parts = [part for part in (node.then, node.otherwise) if part is not None]
+            return not _harmless(node.condition) or any(map(may_fail, parts))
+        case Wait():
+            # the end of TIMEOUT is an error only where no line takes it
+            return not _harmless(node.condition) or (node.timeout is not None and node.target is None)
+        case Unparsed():
+            return True
+        case _:
+            return _as_declared(node)
+
+
+def _as_declared(node: Statement) -> bool:
     declared = declaration(node)
     if declared.fails is Fails.OPERANDS:
         return not all(_harmless(each) for operand in declared.operands for each in _computed(node, operand))

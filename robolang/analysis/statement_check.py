@@ -7,6 +7,7 @@ may carry is judged by ``runtime.robot.model.load_rules``, as in a run.
 
 import math
 from collections.abc import Callable, Collection, Iterator
+from typing import Any
 
 from robolang.analysis.cell_symbols import CellSymbols
 from robolang.analysis.expression_check import ExpressionCheck
@@ -94,6 +95,8 @@ class StatementCheck:
                 yield from self._place(value)
             elif operand.of and isinstance(value, Name):
                 yield from self._of_cell(value, operand)
+            elif operand.role is Role.VECTOR and value is not None:
+                yield from self._vector(value, operand)
             elif operand.role in (Role.VALUE, Role.OF_CELL) and isinstance(value, Node):
                 yield from self._value(value, operand)  # type: ignore[arg-type]
 
@@ -104,6 +107,14 @@ class StatementCheck:
             yield from self._expressions.must_be(value, operand.kind)
         if operand.finite:
             yield from self._expressions.finite(value)
+
+    def _vector(self, value: Vector, operand: Operand) -> Iterator[Diagnostic]:
+        if len(value.items) != operand.size:
+            message = f"{operand.size} values stand in these parentheses, not {len(value.items)}"
+            yield Diagnostic(code="RBL220", message=message, span=value.span)
+        elif operand.kind is not None:
+            for item in value.items:
+                yield from self._expressions.must_be(item, operand.kind)
 
     def _of_cell(self, name: Name, operand: Operand) -> Iterator[Diagnostic]:
         # a pose may stand for a tool or a frame, so the name may be one of the program or of a taught point
@@ -163,20 +174,12 @@ class StatementCheck:
     # --- payload and hand --------------------------------------------------------------------------------------------
 
     def _load(self, node: Load) -> Iterator[Diagnostic]:
-        for vector, count in ((node.cog, 3), (node.inertia, 6)):
-            if vector is not None and len(vector.items) != count:
-                message = f"{count} values stand in these parentheses, not {len(vector.items)}"
-                yield Diagnostic(code="RBL220", message=message, span=vector.span)
-                return
-        for part in (*node.cog.items, *(node.inertia.items if node.inertia else ())):
-            yield from self._expressions.must_be(part, Kind.NUMBER)
-        mass, cog = fixed(node.mass), _fixed(node.cog)
-        inertia = None if node.inertia is None else _fixed(node.inertia)
+        mass, cog = fixed(node.mass), _fixed(node.cog, 3)
         if mass is not None:
             yield from _refused(mass_fault(mass, self._symbols.rated_payload), node.mass)
         if cog is not None:
             yield from _refused(centre_fault([value * MM for value in cog]), node.cog)
-        if inertia is not None and node.inertia is not None:
+        if node.inertia is not None and (inertia := _fixed(node.inertia, 6)) is not None:
             yield from _refused(inertia_fault(inertia), node.inertia)
 
     def _load_named(self, node: LoadNamed) -> Iterator[Diagnostic]:
@@ -292,26 +295,39 @@ _RULES: dict[type, Callable[..., Iterator[Diagnostic]]] = {
 
 
 def _expressions(node: Node, declared: Declaration) -> Iterator[Expression]:
-    """Yield the expressions of a statement, its options' among them; not the names that it defines or that name
-    something of the cell, nor a bare point, which ``_place`` checks."""
+    """Yield the expressions of a statement, its options' among them."""
     # an unknown name is reported at its first use only; in a move, the target's counts before the via point's
     for operand in sorted(declared.operands, key=_rank) if declared.options else declared.operands:
         value = getattr(node, operand.name)
-        if operand.role is Role.VALUE and value is not None:
-            yield from value if operand.separator else (value,)
-        elif operand.role in (Role.PLACE, Role.OF_CELL) and not isinstance(value, Name):
-            yield value
-        elif operand.role is Role.VECTOR and value is not None:
-            yield from value.items
-        elif operand.role is Role.ASSIGNED and isinstance(value, Call):
-            yield from value.arguments
-        elif operand.role is Role.OPTIONS:
+        if operand.role is Role.OPTIONS:
             for option in value:
                 yield from _expressions(option, _option(node, option))
+        elif value is not None:
+            yield from _computed(value, operand)
+
+
+def _computed(value: Any, operand: Operand) -> tuple[Expression, ...]:
+    """Return the expressions of an operand; not the names that it defines or that name something of the cell, nor a
+    bare point, which ``_place`` checks."""
+    match operand.role:
+        case Role.VALUE:
+            found = value if operand.separator else (value,)
+        case Role.VECTOR:
+            found = value.items
+        case Role.PLACE | Role.OF_CELL:
+            found = () if isinstance(value, Name) else (value,)
+        case Role.ASSIGNED:
+            found = value.arguments if isinstance(value, Call) else ()
+        case _:
+            found = ()
+    return tuple(found)
+
+
+_ORDER = {"target": 0, "via": 1, "options": 2}
 
 
 def _rank(operand: Operand) -> int:
-    return ("target", "via", "options", "distance").index(operand.name)
+    return _ORDER.get(operand.name, len(_ORDER))
 
 
 def _option(move: Node, option: Node) -> Declaration:
@@ -325,10 +341,10 @@ def _twice(word: str, place: Span, first: Span) -> Diagnostic:
     return Diagnostic(code="RBL118", message=f"{word} is given twice", span=place, related=related)
 
 
-def _fixed(node: Vector) -> list[float] | None:
-    """Return the values of a vector of numbers alone; None when one of them needs more."""
+def _fixed(node: Vector, size: int) -> list[float] | None:
+    """Return the values of a vector of so many numbers; None when one of them is not known before a run."""
     values = [value for value in map(fixed, node.items) if value is not None]
-    return values if len(values) == len(node.items) else None
+    return values if len(values) == len(node.items) == size else None
 
 
 def _refused(fault: Fault | None, place: Node) -> Iterator[Diagnostic]:

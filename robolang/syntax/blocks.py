@@ -328,11 +328,15 @@ def _seeming_word(text: str) -> str:
         return other_languages.ENDS.get(upper, "")
     word = near(upper, _WORDS, cutoff=_LIKENESS)
     if word == "IF":
-        # an IF on one line begins no block
-        return "" if upper != "IF" or _ONE_LINE.search(text) else "IF"
+        return _seeming_if(upper, text)
     if word == "CASE" and "ELSE" in text.upper():
         return "CASE ELSE"
     return "FOR" if not word and _RANGE.search(text) else word
+
+
+def _seeming_if(word: str, text: str) -> str:
+    """Return ``"IF"`` where a line begins a block: an IF on one line and a word that resembles IF begin none."""
+    return "" if word != "IF" or _ONE_LINE.search(text) else "IF"
 
 
 def _may_be_anything(statement: Statement | None) -> bool:

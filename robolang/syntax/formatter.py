@@ -114,8 +114,7 @@ def _rows(source: Source, program: Program) -> list[_Row]:
         if blank <= MAX_BLANK:
             row = _row(line, depth, width) if not (kept or blank) else None
             rows.append(row or _Row("" if blank else text, ends_group=True))
-    if blank:
-        del rows[-min(blank, MAX_BLANK) :]
+    del rows[len(rows) - min(blank, MAX_BLANK) :]  # not [-0:], which is all of them
     return rows
 
 
