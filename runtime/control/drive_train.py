@@ -24,7 +24,7 @@ from runtime.plant.touches import Loss, Touches
 from runtime.robot.model.arm_model import ArmModel
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import RobotSpec
-from runtime.servo.axes import ServoAxes, first_moments, rotors
+from runtime.servo.axes import ServoAxes, bandwidths, first_moments, rotors
 from runtime.servo.fixed import fixed_inertia
 from runtime.servo.motor import encoder_resolution, torque_limit
 from runtime.settings.profile import Profile
@@ -73,7 +73,7 @@ class DriveTrain(Stateful):
             DriveData(
                 torque=torque_limit(spec),
                 resolution=encoder_resolution(spec),
-                lag=(1.0 - profile.servo.velocity_feedforward) / spec.per_axis("bandwidths", "position"),
+                lag=(1.0 - profile.servo.velocity_feedforward) / bandwidths(spec, profile.servo)[0],
                 ticks=profile.ticks_per_cycle,
                 tick_s=profile.tick_s,
                 friction=profile.servo.friction_compensation,
