@@ -101,7 +101,7 @@ def read_cell_file(path: Path) -> CellFile:
 
 
 def read_arm_alone(path: Path) -> ArmFile | None:
-    """Return the arm of a cell file of which something else is wrong, None where the arm cannot be read either."""
+    """Return the arm of a cell file that has errors elsewhere, None where the arm cannot be read either."""
     try:
         return _arm(load_table(read_source(path)), path.parent)
     except FileFault:
@@ -113,7 +113,7 @@ def parse_cell_file(source: Source, folder: Path | None = None) -> CellFile:
 
     ``folder`` is that of the file; without one (a cell held as text) only built-in robots can be named.
     """
-    table = load_table(source, gather=True)
+    table = load_table(source, gather=True)  # gather: a user corrects all errors of a file at once
     table.integer("schema", low=SCHEMA, high=SCHEMA)
     # every part is read whatever is wrong with another one; None stands for a part with errors until ``finish``
     arm = table.attempt(lambda: _arm(table, folder))
@@ -179,6 +179,7 @@ def _home(table: Table, arm: ArmFile | None) -> Numbers:
     # without an arm, whose file may be what is wrong, any number of joints is accepted
     q_deg = table.numbers("joints_deg", None if arm is None else len(arm.limits), low=-3600.0, high=3600.0)
     table.done()
+    # not strict: without an arm there is no limit to compare with, and the error of the arm is reported instead
     for index, (angle, limits) in enumerate(zip(q_deg, arm.limits if arm else (), strict=False)):
         if not limits.lower <= angle * DEG <= limits.upper:
             table.fail(
@@ -209,6 +210,7 @@ def _part(table: Table) -> PartFile:
     part = PartFile(
         name=table.text("name"),
         size_mm=_size(table, "size_mm"),
+        # above 0: the physics cannot move a body without mass
         mass_kg=table.number("mass_kg", low=1e-4, high=HEAVIEST_KG),
         pose_mm_deg=_pose(table, "pose_mm_deg"),
         friction=table.number("friction", 0.5, positive=True, high=5.0),

@@ -50,6 +50,7 @@ class SensorSpec:
     @staticmethod
     def of(file: SensorFile) -> "SensorSpec":
         """Return the sensor that a cell file describes."""
+        # ramp and sine have no table: one row of zeros keeps the arrays two-dimensional
         rows = np.array(file.rows or ((0.0,) * 7,))
         return SensorSpec(
             kind=file.kind,
@@ -88,6 +89,7 @@ class SeamSensor:
 
     def __deepcopy__(self, memo: dict[int, object]) -> "SeamSensor":
         """Return a sensor that will give the same readings, noise and losses included."""
+        # the generator alone changes: the specification is shared, and the direction is replaced as a whole
         twin = copy.copy(self)
         twin._random = copy.deepcopy(self._random, memo)
         return twin
@@ -97,6 +99,7 @@ class SeamSensor:
 
         ``travel`` (3,) is the direction of the path; where it has none, that of the move before counts.
         """
+        # a move that turns on the spot has no direction to build the weld-line frame on
         if norm(travel) > SHORTEST_TRAVEL:
             self._travel = travel
         spec = self._spec

@@ -74,7 +74,7 @@ class StopLogic(Stateful):
         self._requests.wait_no_more()
         if alarm.category == 0:
             self.halt()
-        elif len(self.alarms) == 1:  # a later alarm finds the stop under way: begun anew, it would take longer
+        elif len(self.alarms) == 1:  # a later alarm comes during the stop, which must not begin anew
             self._rest_us = 0
             self._requests.stop()
 

@@ -183,6 +183,7 @@ def _table_lines(table: JointTable) -> list[str]:
 
 def _schema(table: Table) -> None:
     schema = table.number("schema")
+    # not by range, as elsewhere: a file of a newer program needs another message than a typing error
     if schema != SCHEMA:
         age = "newer" if schema > SCHEMA else "older"
         table.fail("RBL618", f"'schema' is {schema:g}, of {age} version; this one reads schema {SCHEMA}", key="schema")
@@ -279,6 +280,7 @@ def _check_inertias(found: Compensation, spec: RobotSpec, axes: list[Table]) -> 
             at_points = _smallest_over(entry.table, spec, axis)
             values += [("table_kg_m2", Jc, D) for Jc, D in zip(entry.table.values, at_points, strict=True)]
         for key, Jc, D in values:
+            # both conditions hold for numbers only: NaN is refused
             total = float(D + squared[axis] * Jc)
             if not (total > 0.0 and squared[axis] * Jc <= most[axis]):
                 lightest = f"which leaves J{axis + 1} {total:.3g} kg m2 at the joint where it is lightest"
@@ -303,6 +305,7 @@ def _check_moments(found: Compensation, spec: RobotSpec, axes: list[Table]) -> N
 
 def _smallest_over(table: JointTable, spec: RobotSpec, axis: int) -> list[float]:
     """Return the smallest D of the axis at each point of its table, the other joints in a few postures, kg m2."""
+    # a fixed seed: the same file must be accepted or refused in every run
     model, found = ArmModel(spec), []
     samples = np.random.default_rng(560).uniform(spec.lower, spec.upper, (_FEW, spec.n))
     for angles in product(*table.grid):

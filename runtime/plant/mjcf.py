@@ -98,6 +98,7 @@ def build_mjcf(
     controls are joint torques N m and finger forces N (positive opens).
     """
     root = ET.Element("mujoco", model=spec.name)
+    # the order of bodies and joints is relied on: CellModel counts places in the state by it
     _options(root, timestep)
     world = ET.SubElement(root, "worldbody")
     _surroundings(world, cell.obstacles if cell else ())
@@ -106,7 +107,9 @@ def build_mjcf(
     if cell is not None:
         _hand(flange, cell.hand, timestep)
     else:
-        ET.SubElement(flange, "site", name="tool", size="0.005")
+        ET.SubElement(
+            flange, "site", name="tool", size="0.005"
+        )  # X_world_tool reads it; an arm alone has it at the flange
     if payload is not None:
         _inertial(_body(flange, "payload", np.eye(4)), payload)
     for part in cell.parts if cell else ():
@@ -346,7 +349,7 @@ def _coupling(root: ET.Element, timestep: float) -> None:
         "joint",
         joint1=left,
         joint2=right,
-        polycoef="0 1 0 0 0",
+        polycoef="0 1 0 0 0",  # the coordinate of one finger is that of the other
         solref=f"{2.0 * timestep!r} 1",
         solimp=_STIFF,
     )
@@ -372,6 +375,7 @@ def _part(world: ET.Element, part: PartSpec) -> None:
 def _actuators(root: ET.Element, spec: RobotSpec, with_hand: bool) -> None:
     actuator = ET.SubElement(root, "actuator")
     names = [joint_name(index) for index in range(spec.n)]
+    # gear 1: the servo gives joint torques, so that the motor's ratio is not applied twice
     for name in [*names, *(f"finger_{side}" for side in FINGERS)] if with_hand else names:
         ET.SubElement(actuator, "motor", name=name, joint=name, gear="1")
 

@@ -73,6 +73,7 @@ class MujocoPlant:
         self._qpos[self._motors] = cell.home
         # each finger's coordinate is half of the opening
         self._qpos[self._fingers] = cell.hand.stroke / 2.0
+        # set once: MuJoCo keeps applied forces from step to step
         self._data.qfrc_applied[self._motors] = friction_bias(spec)
         self._hang(spec.per_axis("motor", "stiffness")[self._elastic])
         self._last_qpos, self._last_qvel = self._qpos.copy(), self._qvel.copy()
@@ -252,6 +253,7 @@ class MujocoPlant:
         wrench = np.zeros(6)
         for index in range(self._data.ncon):
             contact = self._data.contact[index]
+            # within a margin but not in contact: it has no constraint, and so no force
             if contact.efc_address < 0:
                 continue
             mujoco.mj_contactForce(self._model, self._data, index, wrench)

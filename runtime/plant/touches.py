@@ -244,6 +244,7 @@ class Touches:
 
     def cycle(self, tick: int, place: ProgramLine | None, pairs: frozenset[Pair]) -> Loss | None:
         """Take the contacts of the cycle from ``tick`` on and the statement that ran; a part that was lost, if any."""
+        # a new statement begins records of its own, also where the set of contacts stays the same
         if place != self._place:
             self._place, self._statement, self._pairs = place, self._statement + 1, None
         lost = None
@@ -381,6 +382,7 @@ class Touches:
 
     def _strike(self, by: str, fixed: str, tick: int) -> None:
         """Record that the arm or the hand touches what is fixed, once for a statement."""
+        # from the end: only records of this statement can be continued, and they are the last ones
         for touch in reversed(self.records):
             if touch.statement != self._statement:
                 break

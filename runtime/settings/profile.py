@@ -86,11 +86,11 @@ class WristOptions(Record):
 
     ``mode`` for moves that name none. C1 ``speed_condition``; C2 ``remaining_time`` s and ``remaining_distance`` m, 0
     for off; C3 ``range_condition``, ``look_ahead`` cycles; C4 ``deviation_condition``, ``deviation`` rad of J4 to
-    J6; C6 ``guard``. ``speed`` theta_kd of the three, rad/s, empty: the robot's limits. ``shape`` of the wrist's way
+    J6; C6 ``guard``. ``speed`` theta_kd of the three, rad/s, empty: the robot's limits. ``shape`` of the wrist's curve
     and ``width`` of its soft start. ``posture``: law of the orientation along the path. A path that ends as taught is
     slowed by up to ``posture_first`` rather than left; the tool turns at most ``most_deviation`` rad from its posture,
-    and at most ``untaught_deviation`` where a pose is taught and no angles. ``remedies``: what else is tried where the
-    document alone breaks a limit.
+    and at most ``untaught_deviation`` where a pose is taught and no angles. ``remedies``: whether other curves are
+    planned where that of the document breaks a limit.
     """
 
     mode: WristMode = choice("mode", "auto", "keep")

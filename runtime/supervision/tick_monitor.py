@@ -7,7 +7,7 @@ r"""Checks of every servo tick: following error, saturation, excursions and enco
                         by 100 encoder steps per tick, and then one that catches up, is a lost sample (two in a
                         cycle count); 24 ms without a new reading a standing encoder
 
-The speed that scales the following error is held and decays, because an axis lags behind its command, by (1 - Kf)/Kp
+The speed that scales the following error is held and decays, because an axis follows its command late, by (1 - Kf)/Kp
 where the servo has no full velocity feed-forward, and is still closing in when the command has stopped. The ticks of
 a cycle are judged together at its end, from the rows that the recorder holds anyway; a finding names the first tick
 that was over. Judging each tick by itself was rejected: it costs eight times as much, and no answer can begin before
