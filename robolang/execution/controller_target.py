@@ -162,6 +162,7 @@ class ControllerTarget:
             return True
         if controller.position_error <= profile.in_position:
             return False
+        # a warning and no alarm: dry friction can hold an axis short of its end for ever
         if motion.waited_us >= profile.settle_timeout_us:
             error, waited_s = np.degrees(controller.position_error), motion.waited_us / 1e6
             controller.warn("RBL523", f"not in position: {error:.3f} deg left after {waited_s:g} s")
@@ -185,6 +186,7 @@ class ControllerTarget:
         """Run one cycle of the controller; False when the brakes hold the arm."""
         going = self._record.controller.cycle()
         motion = self._activity
+        # after an alarm ``goes_on`` is not called: the move whose set-point was sent last is noted here
         if isinstance(motion, _Motion) and self.alarms:
             self._reach(self._record.statements[motion.first : motion.last + 1])
         return going
@@ -195,7 +197,7 @@ class ControllerTarget:
         tick, statements = self._record.controller.recorder.tick, self._record.statements
         if isinstance(activity, _Motion):
             for run in statements[activity.first : activity.last + 1]:
-                run.end_tick = run.end_tick or tick
+                run.end_tick = run.end_tick or tick  # within a chain a move has ended where the next one began
         elif activity is not None:
             statements[activity.run].end_tick = tick
 
@@ -219,7 +221,7 @@ class ControllerTarget:
 
     def acknowledge(self) -> None:
         """Release the brakes; the record keeps the alarms."""
-        alarms = list(self.alarms)
+        alarms = list(self.alarms)  # a copy, since the controller forgets them
         self._record.controller.acknowledge()
         self._record.acknowledged += alarms
 
@@ -273,6 +275,7 @@ class ControllerTarget:
             move = PlannedMove(effect=each.effect, command=each.command, plan=own, corner=corner, after=after)
             for found in self._findings.of(move):
                 if (found.code, each.effect.span) not in self._warned:
+                    # replaced and not added to: snapshots share the set
                     self._warned |= {(found.code, each.effect.span)}
                     self._record.controller.warn(found.code, found.message, found.hint, each.effect.origin)
 
@@ -310,6 +313,7 @@ class ControllerTarget:
                 "line": effect.line,
                 "number": effect.number,
                 "mass_kg": payload.mass,
+                # rounded: 15.7 mm, stored in m, comes back as 15.699999999999998
                 "cog_mm": [float(x) for x in np.round(payload.cog / MM, 9)],
             }
         )
@@ -324,6 +328,7 @@ class ControllerTarget:
         self._start(effect)
         tracker = None
         if effect.sensor is not None:
+            # a program spells names in any case, and effects have them in capitals
             spec = {name.upper(): each for name, each in self._project.cell.sensors.items()}[effect.sensor]
             read = SeamSensor(spec).read
             tracker = SeamTracker(effect.sensor, spec.limits, self._project.profile.period_s, read)

@@ -196,7 +196,7 @@ class _DryRun(Untimed):
         ):
             begins = self.time_us
             self._spend(each.effect, spent)
-            if self.time_us >= self._most_us:
+            if self.time_us >= self._most_us:  # the executor ends it there, and a run ends within this move as well
                 return
             self.moves.append(
                 RehearsedMove(

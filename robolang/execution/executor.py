@@ -155,6 +155,7 @@ class Executor:
         now = self._now
         if now.phase is _Phase.OVER:
             failed = bool(self._target.alarms) or now.fault is not None
+            # a requested stop first: on a controller it is an alarm as well (RBL530)
             return State.STOPPED if self._stop_requested else State.ALARM if failed else State.DONE
         if now.resting:
             return State.PAUSED
@@ -190,7 +191,7 @@ class Executor:
         over = now.phase is _Phase.OVER
         if now.due is not None or not (now.phase is _Phase.READY or over):
             raise RuntimeError("a statement is being carried out")
-        if over and self._state is not State.DONE:
+        if over and self._state is not State.DONE:  # after an alarm ``acknowledge`` comes first (decision 0037)
             raise RuntimeError("the program has been ended by an alarm or a stop")
         self._machine.feed(line)
         now.phase, now.fault = _Phase.READY, None
@@ -226,7 +227,7 @@ class Executor:
         self.world.restore(snapshot.world)
         self._target.restore(snapshot.target)
         now, self._stop_requested, self._halt_requested = snapshot.progress
-        self._now = replace(now)
+        self._now = replace(now)  # a copy: the snapshot can be put back again
 
     # --- cycles ------------------------------------------------------------------------------------------------------
 
@@ -280,7 +281,7 @@ class Executor:
     def _cycle(self) -> None:
         target, now = self._target, self._now
         if now.phase is _Phase.STOPPING:
-            target.brake(at_once=self._halt_requested)
+            target.brake(at_once=self._halt_requested)  # read in each cycle: a second Ctrl-C comes during the stop
         elif not target.cycle() or target.alarms:
             self._end_effects()
         elif target.time_us >= self._most_us:
@@ -385,6 +386,7 @@ class Executor:
         now = self._now
         due, now.due, now.doing = now.due, None, ()
         now.phase = _Phase.READY
+        # the moves that were kept to the end: no statement is left that could answer
         if now.request is None or isinstance(due, Done | Failed | FedEnded):
             self._fail(_failed(fault, self._target.statement))
         else:
@@ -436,6 +438,7 @@ class Executor:
                 assert_never(effect)
 
     def _cycles(self, seconds: float) -> int:
+        # rounded up, from whole us: a rounding error of calculated seconds must not cost a cycle
         return -(-round(seconds * 1e6) // self._project.profile.period_us)
 
     def _move(self, effect: MoveTo) -> None:
@@ -448,6 +451,7 @@ class Executor:
         if blends or now.chain:  # planned here, where the program can answer a refusal, and not when the chain runs
             plan = self._target.rehearse(world.q_last, command)
             world.q_last = plan.q[-1]
+            # a move that goes nowhere has one row and no room for a blend
             blends = blends and len(plan.q) > 1 and len(now.chain) + 1 < run_bounds.MAX_CHAIN
         now.chain = (*now.chain, Requested(effect=effect, command=command))
         if blends:

@@ -66,7 +66,7 @@ def payload(effect: SetPayload, cell: CellSpec) -> Payload:
         load = loads[effect.name]
         return declared(load.mass, load.cog, cell.robot.rated_payload)
     inertia = None
-    if effect.inertia_kg_m2:
+    if effect.inertia_kg_m2:  # products of inertia as elements of the tensor, with their own signs
         xx, yy, zz, xy, xz, yz = effect.inertia_kg_m2
         inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     return declared(effect.mass_kg, np.array(effect.cog_mm) * MM, cell.robot.rated_payload, inertia)
@@ -215,6 +215,7 @@ def _taught(point: Point, around: Surroundings) -> Array:
 
 
 def _shifted(X: Array, shift: Shift, cell: CellSpec) -> Array:
+    # here and not in the checker: the offset may be calculated while the program runs
     if not all(map(math.isfinite, shift.by)):
         raise Fault("RBL502", "an offset is not finite")
     if shift.kind == "tool":

@@ -95,6 +95,7 @@ class PlanFindings:
         command, start, end = move.command, move.plan.q[0], move.plan.q[-1]
         if not isinstance(command, MoveJoint) or command.q_end is not None or command.turns:
             return
+        # with taught joints or turns the point itself states the turn
         nearer = self._kinematics.nearest_turns(end, start)
         axis = int(np.argmax(np.abs(end - start) - np.abs(nearer - start)))
         if not np.abs(end - start)[axis] <= np.abs(nearer - start)[axis] + NOTICED:
@@ -145,7 +146,7 @@ class PlanFindings:
         under = f" under OVERRIDE {effect.override_pct:g}" if effect.override_pct != 100.0 else ""
         if effect.time_s is not None:
             asked_s = effect.time_s / override
-            if not takes_s <= asked_s + period_s:
+            if not takes_s <= asked_s + period_s:  # a move takes whole cycles
                 ruled = self._ruling(move)
                 takes, asked = beside(takes_s, asked_s)
                 yield PlanFinding(
@@ -155,6 +156,7 @@ class PlanFindings:
                 )
         elif effect.speed_mm_s is not None and move.plan.path is not None:
             ruled = self._ruling(move)
+            # compared by time: on most short paths the peak stays below SPEED, which is no fault (decision 0030)
             if ruled.asked_s > 0.0 and not takes_s <= max(ruled.asked_s, period_s) * SLOWED:
                 yield PlanFinding(
                     code="RBL429",
@@ -195,6 +197,7 @@ class PlanFindings:
             for plan, which in ((before, "to"), (after, "from"))
             if plan.path is not None and not plan.path.length <= 0.0
         ]
+        # for MOVEJ no length is known; 1e-9 m: a zone of exactly half the path is not more than half
         if len(paths) == 2 and not corner.radius <= 0.5 * min(paths)[0] + 1e-9:
             short, which = min(paths)
             yield PlanFinding(

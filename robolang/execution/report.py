@@ -58,7 +58,7 @@ def _events(record: RunRecord, found: list[Alarm], severity: Severity) -> list[d
 def pose_mm_deg(X: Array) -> list[float]:
     """Return [x, y, z, rx, ry, rz] in mm and deg of a pose (4, 4)."""
     values = xyzrpy_from_pose(X) / ([MM] * 3 + [DEG] * 3)
-    return [float(value) + 0.0 for value in values]
+    return [float(value) + 0.0 for value in values]  # + 0.0: no -0.0 in a report
 
 
 _MEASURED = (
@@ -72,7 +72,7 @@ _MEASURED = (
     "wrist",
     "seam",
 )
-"""What a statement that has not begun has none of."""
+"""Keys that are null for a statement that has not begun."""
 
 
 class _Measures:
@@ -92,6 +92,7 @@ def _statement(run: StatementRun, measures: _Measures, tick_us: int) -> dict[str
     if not run.begun:
         return {**_head(run), **dict.fromkeys(_MEASURED), "notes": []}
     if run.path is not None and run.end_tick > run.first_tick:
+        # a seam sensor takes the tool off the programmed path on purpose, which is no error of the servo
         deviation = float(run.path.deviation((measures.p_tool - measures.deviation[:, :3])[span]).max()) / MM
     return {
         **_head(run),

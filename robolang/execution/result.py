@@ -1,4 +1,4 @@
-"""What a run leaves behind: its statements, payloads and controller while it goes on, its result when it ends."""
+"""The record of a run: its statements, payloads and controller while it goes on, its result when it ends."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -19,7 +19,7 @@ class StatementRun:
 
     ``begun``: whether it was reached; the moves of a row that was stopped before them were not.
     ``wrist`` is what its plan did with the wrist, ``seam`` the sensor it moved under, ``lost`` the readings that this
-    one lost meanwhile; ``lamp`` what the pendant's lamp shows now: ``wrist`` while the wrist goes its own way.
+    one lost meanwhile; ``lamp`` what the pendant's lamp shows now, by ``wrist_mode`` (``controller_target.LAMPS``).
     """
 
     origin: Origin

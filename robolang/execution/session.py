@@ -35,7 +35,7 @@ class ProgramError(Exception):
 
 
 _CYCLES = 100
-"""Cycles between two looks at whether the program has ended."""
+"""Cycles between two checks whether the program has ended; a stop is taken in each cycle."""
 
 
 class Session:
@@ -107,7 +107,7 @@ class Session:
 
 
 class Replaced(TypedDict, total=False):
-    """What a run may take in place of what stands beside its program, as ``load_project`` does."""
+    """What a run may take in place of the files beside its program, as ``load_project`` does."""
 
     cell: Path | str | None
     robot: str | None
