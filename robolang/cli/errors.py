@@ -52,13 +52,10 @@ def say_warning(code: str, place: str, message: str, hint: str) -> None:
     echo(f"warning {code} {place}: {safe(message)}\n  help: {safe(hint)}", err=True)
 
 
-def say_warnings(warnings: Iterable[FileFault], said: set[str] | None = None) -> None:
-    """Print what is unlikely about a file to stderr; ``said`` keeps what was printed, for a file that is read again."""
-    printed = set() if said is None else said
-    for text in (render_fault(warning, Severity.WARNING) for warning in warnings):
-        if text not in printed:
-            printed.add(text)
-            echo(text, err=True)
+def say_warnings(warnings: Iterable[FileFault]) -> None:
+    """Print what is unlikely about files to stderr, each once: many programs may run in one cell."""
+    for text in dict.fromkeys(render_fault(warning, Severity.WARNING) for warning in warnings):
+        echo(text, err=True)
 
 
 def say_all(fault: Fault) -> int:

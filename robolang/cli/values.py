@@ -32,8 +32,8 @@ def numbers(text: str, *, option: str, names: tuple[str, ...]) -> tuple[float, .
     """Return the comma-separated finite numbers of ``text``, one for each of ``names``; ``OptionValueError``."""
     parts = text.split(",")
     if len(parts) != len(names):
-        given = "1 number is" if len(parts) == 1 else f"{len(parts)} numbers are"
-        raise OptionValueError(option, f"{len(names)} are needed ({','.join(names)}) but {given} given")
+        given = "1 is" if len(parts) == 1 else f"{len(parts)} are"
+        raise OptionValueError(option, f"{len(names)} numbers are needed ({', '.join(names)}), but {given} given")
     return tuple(
         _number(part.strip(), option, name, i) for i, (part, name) in enumerate(zip(parts, names, strict=True), start=1)
     )
@@ -97,7 +97,7 @@ def note_overload(carried: "Payload", option: str, spec: "RobotSpec") -> None:
     mass, rated = carried.mass, spec.rated_payload
     if not mass <= rated:
         shown, most = beside(mass, rated)
-        echo(f"note: {option} {shown} kg is over the rated {most} kg of {spec.name}", err=True)
+        echo(f"note: {option} {shown} kg exceeds the rated payload of {spec.name}, {most} kg", err=True)
 
 
 def _number(text: str, option: str, name: str, position: int) -> float:
@@ -112,5 +112,5 @@ def _number(text: str, option: str, name: str, position: int) -> float:
         refuse(f"is {shown!r}, not a finite number")
     if not abs(value) <= MAX_ABS:
         far, most = beside(value, MAX_ABS)
-        refuse(f"is {far}, beyond anything a robot has ({most})")
+        refuse(f"is {far}; the largest number allowed is {most}")
     return value

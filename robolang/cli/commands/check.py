@@ -65,13 +65,13 @@ def _refuse(paths: tuple[str, ...], files: FileOptions, report: ReportOptions, m
     # not as choices of the option: `quick` takes any text that stands after a name
     form = report.output_format
     if form not in FORMS:
-        raise OptionValueError("--output-format", f"there is no form '{form}'; known: {', '.join(FORMS)}")
+        raise OptionValueError("--output-format", f"'{form}' is not a form of report; known: {', '.join(FORMS)}")
     if report.statistics and form not in ("full", "concise", "json"):
-        raise OptionValueError("--statistics", f"counts cannot be printed as {form}; full, concise and json can")
+        raise OptionValueError("--statistics", f"cannot be printed as {form}; use full, concise or json")
     if motion.times is not None and not motion.motion:
-        raise OptionValueError("--times", "it needs --motion")
+        raise OptionValueError("--times", "needs --motion")
     if files.watch and "-" in paths:
-        raise OptionValueError("--watch", "the standard input cannot be watched")
+        raise OptionValueError("--watch", "cannot be used with -: the standard input does not change")
 
 
 def _seconds(motion: MotionOptions) -> float | None:
@@ -79,7 +79,7 @@ def _seconds(motion: MotionOptions) -> float | None:
     if motion.max_cycle is None:
         return None
     if not motion.motion:
-        raise OptionValueError("--max-cycle", "it needs --motion")
+        raise OptionValueError("--max-cycle", "needs --motion")
     # not float(): it takes "nan", "inf" and digits of other scripts
     found = re.fullmatch(r"([0-9]+(?:\.[0-9]*)?|\.[0-9]+) *(ms|s)?", motion.max_cycle.strip().lower())
     if found is None:

@@ -36,7 +36,7 @@ def fmt(paths: _Paths, output: RewriteOptions) -> None:
             run.one(STDIO)
         elif STDIO in names:
             # its program goes to stdout, where the sentences about the files go too
-            raise OptionValueError("PATH", "'-' stands alone")
+            raise OptionValueError("PATH", "'-' cannot be used with other paths")
         else:
             from robolang.lint.files import programs
             from robolang.lint.settings import Settings

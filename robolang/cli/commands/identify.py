@@ -2,7 +2,7 @@
 
 The argument is a robot, or a program: then its cell's robot under its cell's controller, the hand on the flange. With
 ``--payload`` what the arm carries is identified in place of the arm: ``robolang weigh``.
-Progress goes to stderr, the table to stdout. The output file is tried before the arm moves and written whole.
+Progress goes to stderr, the table to stdout. The output file is checked before the arm moves and written whole.
 """
 
 import datetime

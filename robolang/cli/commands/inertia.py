@@ -138,7 +138,7 @@ def _plane(text: str, spec: "RobotSpec") -> tuple[int, int]:
         raise OptionValueError("--map", f"2 joints are needed, such as J2,J3, but {given} given")
     first, second = (_joint(word.strip(), position, spec) for position, word in enumerate(words, start=1))
     if first == second:
-        raise OptionValueError("--map", f"is J{first + 1} again; two different joints span a map", 2)
+        raise OptionValueError("--map", f"is J{first + 1} again; a map needs two different joints", 2)
     return first, second
 
 

@@ -220,7 +220,9 @@ def _say_out_of_reach(kinematics: "Kinematics") -> None:
     from runtime.core.faults import lookup
 
     code, robot = lookup("RBL410"), kinematics.spec.title
-    meaning = code.meaning if kinematics.closed_form else "The numeric search met the pose from none of its starts."
+    meaning = (
+        code.meaning if kinematics.closed_form else "The numeric search reached the pose from no starting posture."
+    )
     echo(f"error {code.code} {code.name} --pose: {meaning} ({robot})\n  help: {code.remedy}", err=True)
 
 

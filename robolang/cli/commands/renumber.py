@@ -65,9 +65,9 @@ def renumber(program: _File, numbers: _Numbers, output: _Output) -> None:
 def _refuse(numbers: _Numbers, output: _Output) -> None:
     """Refuse options that contradict each other."""
     if numbers.remove and (numbers.start is not None or numbers.step is not None):
-        raise OptionValueError("--remove", "takes neither --start nor --step")
+        raise OptionValueError("--remove", "cannot be used with --start or --step: no number is given")
     if output.out is not None and output.dry:
-        raise OptionValueError("--out", "nothing is written with --check or --diff")
+        raise OptionValueError("--out", "cannot be used with --check or --diff: nothing is written")
 
 
 def _renumbered(loaded: "Loaded", numbers: _Numbers) -> "RenumberResult":

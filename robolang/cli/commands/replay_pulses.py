@@ -94,9 +94,9 @@ def _check_use(options: _ReplayOptions) -> None:
     if options.max_error is not None and not 0.0 <= options.max_error < math.inf:  # NaN is refused too
         raise OptionValueError("--max-error", f"{options.max_error:g} is not a distance in mm")
     if options.physics and options.cell is None:
-        raise OptionValueError("--physics", "it needs the cell of the arm, --cell FILE.toml")
+        raise OptionValueError("--physics", "needs the cell of the arm: --cell FILE.toml")
     if options.cell is not None and not options.physics:
-        raise OptionValueError("--cell", "it needs --physics")
+        raise OptionValueError("--cell", "needs --physics")
 
 
 def _drive(export: "Export", cell: str) -> "Drive":
@@ -105,7 +105,7 @@ def _drive(export: "Export", cell: str) -> "Drive":
 
     spec, settings = load_cell_and_settings(None, cell, None, None, {})
     say_warnings(spec.robot.warnings)
-    start_angles(export, spec)  # before anything is said to move
+    start_angles(export, spec)  # refuses another robot, before the line that announces the motion
     echo(f"driving {spec.robot.name}: {export.seconds:.1f} s of motion", err=True)
     return drive(export, spec, settings.profile)
 

@@ -99,7 +99,7 @@ def import_model(file: _Model, options: _SidecarOptions) -> None:
         say_warnings(arm.warnings)
         text = template(arm).encode()
         if not options.force and os.path.lexists(target):
-            raise Fault("RBL706", f"{target} is there already", "Give another name with -o, or --force to replace it.")
+            raise Fault("RBL706", f"{target} exists already", "Give another name with -o, or --force to replace it.")
         write_atomic(target, lambda stream: stream.write(text))
         gaps = text.count(b"MISSING:")
         echo(safe(f"wrote {target}: {gaps} values to fill in, marked MISSING"))

@@ -69,7 +69,7 @@ def step(options: _StepOptions, arm: _ArmOptions, controller: ControllerOptions,
         from robolang.experiments.step import step as run_step
 
         if arm.lock and arm.plant == "mujoco":
-            raise OptionValueError("--lock-others", "it needs --plant rigid")
+            raise OptionValueError("--lock-others", "needs --plant rigid")
         request = _request(options, arm, controller.profile, settings)
         if output.plot is not None:
             from robolang.core.storage import check_writable
