@@ -86,9 +86,11 @@ class _Progress:
     """All of an executor that changes, besides machine, world and target.
 
     ``request``: the effect that the program has yielded last; ``doing``: the effects that have been started; ``chain``:
-    moves that are kept, since the next one may blend into them; ``due``: what comes when these have ended.
+    moves that are kept, since the next one may blend into them; ``due``: what comes when these have ended. ``ends_us``:
+    the simulated time at which the run is too long.
     """
 
+    ends_us: int
     phase: _Phase = _Phase.READY
     request: Effect | None = None
     doing: tuple[Effect, ...] = ()
@@ -131,7 +133,7 @@ class Executor:
         self._observer = observer or Observer()
         self._most_us = run_bounds.MAX_RUN_US if most_us is None else most_us
         self._machine = Machine(project.program, self.world, project.points.names, decisions)
-        self._now = _Progress()
+        self._now = _Progress(ends_us=self._most_us)
         self._stop_requested = self._halt_requested = False
 
     # --- from outside ------------------------------------------------------------------------------------------------
@@ -201,15 +203,16 @@ class Executor:
         """Take note of the alarm that has ended the program: the servos hold the arm where it stands.
 
         The program stays ended: the move that was interrupted is not taken up, and no seam is followed. Statements can
-        be fed. ``RuntimeError`` while the program runs or the arm still stops, and when the state of the plant is no
-        longer valid.
+        be fed, and may take as long as a run. ``RuntimeError`` while the program runs or the arm still stops, and when
+        the state of the plant is no longer valid.
         """
         if self._now.phase is not _Phase.OVER:
             raise RuntimeError("the program still runs, or the arm is still stopping")
         self._target.acknowledge()
         self._machine.end()
         self.world.q_last = self._target.q  # where the brakes have left the arm, not where the move would have ended
-        self._now = _Progress(phase=_Phase.OVER)
+        # as long again: after a run that was too long (RBL509) every statement that is fed would be too late
+        self._now = _Progress(phase=_Phase.OVER, ends_us=self._target.time_us + self._most_us)
         self._stop_requested = self._halt_requested = False
 
     def snapshot(self) -> ExecutorSnapshot:
@@ -284,7 +287,7 @@ class Executor:
             target.brake(at_once=self._halt_requested)  # read in each cycle: a second Ctrl-C comes during the stop
         elif not target.cycle() or target.alarms:
             self._end_effects()
-        elif target.time_us >= self._most_us:
+        elif target.time_us >= now.ends_us:
             now.fault = self._too_long()
             target.fail(now.fault)
         self._observer.cycle_done(target.time_us)
@@ -298,7 +301,7 @@ class Executor:
         if target.alarms:
             self._observer.alarm(target.alarms[0])
             now.phase = _Phase.STOPPING
-        elif target.time_us >= self._most_us:
+        elif target.time_us >= now.ends_us:
             self._fail(self._too_long())
         elif now.phase is _Phase.BUSY:
             self._finish()
@@ -316,7 +319,7 @@ class Executor:
     def _too_long(self) -> Failed:
         statement = self._target.statement
         assert statement is not None  # something has been started
-        fault = self._machine.too_long(statement, self._most_us / 1e6)
+        fault = self._machine.too_long(statement, self._now.ends_us / 1e6)
         return _failed(fault, fault.origin)
 
     def _fail(self, fault: Failed) -> None:

@@ -5,13 +5,15 @@ import random
 import numpy as np
 import pytest
 
-from robolang.core.source import Source
+from robolang.core.source import Source, Span
+from robolang.execution import run_bounds
 from robolang.execution.executor import ENDED, State
 from robolang.execution.observer import Observer
 from robolang.execution.session import Session
 from robolang.project.project import load_project
 from robolang.syntax.parser import parse
 from tests.campaign import size
+from tests.messages import numbers
 from tests.programs.runs import ROOT
 
 PROGRAMS = sorted(ROOT.rglob("*.rbl"))
@@ -329,8 +331,28 @@ def ended_by_resume(session):
     return ended(session)
 
 
-def test_a_fault_of_a_dry_run_is_acknowledged_as_well(tmp_path):
-    """Targets without alarms end by a fault; a jump that is fed afterwards starts the program again."""
+@pytest.mark.physics
+@pytest.mark.parametrize("physics", [False, True])
+def test_after_a_run_that_was_too_long_statements_have_as_long_again(tmp_path, monkeypatch, physics):
+    monkeypatch.setattr(run_bounds, "MAX_RUN_US", 800_000)
+    session = Session(project_of(tmp_path, "X = 1\n*TOP DELAY 0.08\nGOTO *TOP\n"), physics=physics)
+    executor = session.executor
+    while executor.advance().state not in ENDED:
+        pass
+    assert (executor.status.state, executor.status.fault.code) == (State.ALARM, "RBL509")
+    executor.acknowledge()
+    began = executor.status.time_us
+    for text in ("PRINT X", "MOVE P1", "DELAY 0.04"):
+        status = carried_out(executor, text)
+        assert (status.state, status.fault) == (State.PAUSED, None)
+    late = carried_out(executor, "WAIT X = 2")
+    assert (late.state, late.fault.code, late.fault.origin.span) == (State.ALARM, "RBL509", Span(0, 10))
+    assert numbers(late.fault.message)[0] == pytest.approx((began + 800_000) / 1e6)
+    assert [alarm["code"] for alarm in session.result(0.0).report["alarms"]] == ["RBL509", "RBL509"]
+
+
+def test_a_jump_that_is_fed_after_an_alarm_takes_the_program_up_there(tmp_path):
+    """Names keep their values: at the second time line 30 divides by 1."""
     session = Session(project_of(tmp_path, "10 X = 0\n20 X = X + 1\n30 Y = 1 / (X - 1)\n"), physics=False)
     assert session.executor.advance(1000).state is State.ALARM
     session.executor.acknowledge()
