@@ -1,4 +1,4 @@
-"""Mistakes that have one cause and many places: said at the first place, the next ones as notes to it.
+"""Mistakes that have one cause and many places: reported at the first place, with the next ones as notes.
 
 A mistyped definition makes every use of the name a mistake. Listing each would hide the others, so an undefined name,
 subroutine or target of a jump is one diagnostic for a program.

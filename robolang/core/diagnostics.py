@@ -59,7 +59,7 @@ class Edit(Record):
 
 
 class Fix(Record):
-    """A correction of a diagnostic: edits that do not overlap, and a title that says what they do.
+    """A correction of a diagnostic: edits that do not overlap, and a title that states what they do.
 
     ``safe``: there is only one thing the text can have meant, so a program may apply it without asking.
     """

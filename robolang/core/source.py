@@ -140,7 +140,7 @@ def _decode(name: str, raw: bytes) -> str:
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        # With utf-8-sig the reported offset is relative to the text behind the mark.
+        # With utf-8-sig the reported offset is relative to the text after the mark.
         skipped = 3 if raw.startswith(b"\xef\xbb\xbf") else 0
         before = raw[skipped : skipped + error.start].decode("utf-8", "replace")
         _not_text(name, raw, before, f"byte {raw[skipped + error.start]:#04x} is not UTF-8 text")

@@ -163,7 +163,7 @@ def check_folder(path: Path, ours: Callable[[str], bool]) -> None:
     try:
         if path.is_symlink() or path.exists():
             if not path.is_dir() or path.is_symlink():
-                raise Fault("RBL706", f"{path} is not a folder", "Give the name of a folder, there or not.")
+                raise Fault("RBL706", f"{path} is not a folder", "Give the name of a new or of an existing folder.")
             other = sorted(item.name for item in path.iterdir() if not (item.is_file() and ours(item.name)))
             if other:
                 hint = "Give an empty or a new folder."
@@ -263,13 +263,13 @@ def _target(path: Path) -> tuple[Path, os.stat_result | None]:
     if not stat.S_ISREG(old.st_mode):
         raise Fault("RBL706", f"{path} is not an ordinary file", "Give the name of an ordinary file.")
     if not os.access(target, os.W_OK, effective_ids=os.access in os.supports_effective_ids):
-        raise Fault("RBL706", f"{path} is read-only", "Give another name, or permit writing to the file.")
+        raise Fault("RBL706", f"{path} is read-only", "Give another name, or make the file writable.")
     return target, old
 
 
 def _refuse(path: Path, error: Exception) -> NoReturn:
     missing = isinstance(error, FileNotFoundError) and not path.parent.is_dir()
-    hint = f"Make the folder {path.parent} first." if missing else ""
+    hint = f"Create the folder {path.parent} first." if missing else ""
     raise Fault("RBL706", f"cannot write {path}: {getattr(error, 'strerror', None) or error}", hint) from None
 
 

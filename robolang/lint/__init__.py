@@ -1,1 +1,1 @@
-"""The linter behind ``robolang check``: rules and their pages, selection, suppression, fixes. Imports no numerics."""
+"""The linter of ``robolang check``: rules and their pages, selection, suppression, fixes. Imports no numerics."""

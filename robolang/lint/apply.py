@@ -24,7 +24,7 @@ class Fixed(Record):
 
 
 def fix_all(source: Source, find: Callable[[Source], Iterable[Diagnostic]]) -> Fixed:
-    """Return a program with every safe fix of its findings applied; ``find`` is asked again after each round."""
+    """Return a program with every safe fix of its findings applied; ``find`` is called again after each round."""
     counts: Counter[str] = Counter()
     for _ in range(MAX_ROUNDS):
         codes, edits = _choose(find(source))
@@ -62,7 +62,7 @@ def _choose(found: Iterable[Diagnostic]) -> tuple[list[str], list[Edit]]:
 def _is_free(span: Span, taken: Sequence[Span]) -> bool:
     """Return whether a span stays clear of others, which are in order; two insertions at one place do not."""
     at = bisect_left(taken, span)
-    before, behind = taken[at - 1 : at], taken[at : at + 1]
+    before, after = taken[at - 1 : at], taken[at : at + 1]
     return all(other.end <= span.start and other.start < span.start for other in before) and all(
-        span.end <= other.start and span.start < other.start for other in behind
+        span.end <= other.start and span.start < other.start for other in after
     )

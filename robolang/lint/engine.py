@@ -74,14 +74,14 @@ def check_source(source: Source, selection: Selection | None = None, files: Cell
 def check_points(checked: Checked, selection: Selection | None = None) -> Checked | None:
     """Return what was found in the points file beside a checked program (RBL224); None: it has none, or is not read.
 
-    A program that does not parse may name points where nothing can be read: then nothing is said.
+    Nothing is reported for a program that does not parse: it may use points where nothing can be read.
     """
     analysis, where = checked.analysis, points_file(Path(checked.source.path))
     if analysis is None or not _is_whole(checked) or not os.path.lexists(where):
         return None
     try:
         store, source = load_points(where), Source(str(where), read_source(where).text)
-    except Fault:  # it has just been written to: the next check says what is wrong
+    except Fault:  # another process has just changed it: the next check reports what is wrong
         return None
     unused = _unused_points(store, named(analysis.program), source)
     found = in_order(item for item in unused if selection is None or selection.keeps(item))
@@ -104,5 +104,5 @@ def _unused(name: str, source: Source) -> Diagnostic:
         code="RBL224",
         severity=Severity.WARNING,
         span=Span(whole.start + column - 1, whole.end),
-        message=f"point {name} is taught and the program does not name it",
+        message=f"point {name} is taught, but the program does not use it",
     )

@@ -36,7 +36,9 @@ def _look_alikes(diagnostic: Diagnostic, source: Source) -> Fix | None:
     edits = tuple(_twins(source.text, diagnostic.span.start, end))
     if not edits or edits[0].span.start != diagnostic.span.start:
         return None
-    return Fix(title="retype it in ASCII" if edits[0].text else "remove the invisible character", edits=edits)
+    return Fix(
+        title="replace it with the ASCII character" if edits[0].text else "remove the invisible character", edits=edits
+    )
 
 
 def _twins(text: str, start: int, end: int) -> Iterator[Edit]:
@@ -69,7 +71,7 @@ def _line_ends(diagnostic: Diagnostic, source: Source) -> Fix | None:
     first = ends[0][1]
     name = {"\n": "LF", "\r\n": "CR LF", "\r": "CR"}[first]
     edits = tuple(Edit(span=span, text=first) for span, end in ends if end != first)
-    return Fix(title=f"end every line with {name}, as the first", edits=edits)
+    return Fix(title=f"end every line with {name}, as the first one does", edits=edits)
 
 
 def _comma(diagnostic: Diagnostic, source: Source) -> Fix | None:
@@ -96,11 +98,11 @@ def _number(diagnostic: Diagnostic, source: Source) -> Fix | None:
     if glued is None or not first or glued[2].upper() not in _STARTS:
         return None
     edit = Edit(span=Span(span.start + len(glued[1]), span.start + len(glued[1])), text=" ")
-    return Fix(title="put a space after the line number", edits=(edit,))
+    return Fix(title="add a space after the line number", edits=(edit,))
 
 
 def _repeated(diagnostic: Diagnostic, source: Source) -> Fix | None:
-    """Remove an option that says again what the first one says."""
+    """Remove an option that repeats the first one."""
     if not diagnostic.related:
         return None
     first, second = (_words(source.slice(span)) for span in (diagnostic.related[0].span, diagnostic.span))
@@ -109,7 +111,7 @@ def _repeated(diagnostic: Diagnostic, source: Source) -> Fix | None:
     if first != second or not before.endswith(","):
         return None
     start = line.start + len(before[:-1].rstrip(" \t"))
-    return Fix(title="remove the second one", edits=(Edit(span=Span(start, diagnostic.span.end), text=""),))
+    return Fix(title="remove the second option", edits=(Edit(span=Span(start, diagnostic.span.end), text=""),))
 
 
 def _words(text: str) -> list[str]:

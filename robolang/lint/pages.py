@@ -14,8 +14,8 @@ from runtime.core.faults import lookup
 _INDEX = """\
 # Rules
 
-What `robolang check` finds. `robolang rules` prints this list, `robolang explain RBL113` a page. Rules are selected,
-ignored and suppressed as [ci.md](../ci.md) says.
+What `robolang check` finds. `robolang rules` prints this list, `robolang explain RBL113` a page. How to select,
+ignore and suppress them is in [ci.md](../ci.md).
 
 These pages are generated: `python -m robolang.lint.pages`.
 

@@ -29,7 +29,7 @@ def codes() -> list[Code]:
 @cache
 def rules() -> "MappingProxyType[str, Rule]":
     """Return the rules that have a page, by code in numeric order; ``ValueError`` for a code with two."""
-    # Pages are long texts that a check without findings never shows: they are read when one is asked for.
+    # Pages are long texts that a check without findings never shows: they are imported when one is needed.
     from robolang.lint.rule import Rule
     from robolang.lint.rules import meaning, motion, planning, point, run, text
 

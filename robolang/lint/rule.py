@@ -1,4 +1,4 @@
-"""A rule: what a page of documentation says of a code beyond its name, meaning and remedy."""
+"""A rule: what a page of documentation adds to a code, beyond its name, meaning and remedy."""
 
 from dataclasses import dataclass
 
@@ -10,11 +10,11 @@ _MOST_LINES = 20
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rule:
-    """What a page says of one code.
+    """The page of one code.
 
     ``bad`` is a program that yields the code at 1-based ``line`` and nowhere else, ``good`` its correction. ``shown``
     is printed in place of a ``bad`` that cannot be: too long, or with invisible characters; a byte that is not UTF-8
-    is written as its surrogate, ``\\udcb0`` for B0. ``fix`` says what ``--fix`` does; empty: there is none.
+    is written as its surrogate, ``\\udcb0`` for B0. ``fix`` describes what ``--fix`` does; empty: there is no fix.
     The example of a code that only the motion shows runs in the built-in cell. ``points``: ``bad`` and ``good`` are the
     points file ``pick.points.toml`` beside a program; ``line`` 0: there is no such file, and ``bad`` shows the folder.
     """

@@ -1,8 +1,8 @@
-"""Which findings are reported: what files and the command line say of rules, one layer over another.
+"""Which findings are reported: the selections of files and of the command line, one layer over another.
 
 A *selector* is ``ALL``, the beginning of a code (``RBL2``, ``RBL20``), a whole code or the name of one, in any case. In
 one layer the longest selector that fits a code decides, and of two equal ones the one that ignores. A layer that
-selects starts anew: what the layers below it select and ignore is forgotten. Without any layer everything is reported.
+selects starts anew: the selections of the layers below it no longer count. Without any layer everything is reported.
 
 An error of syntax (RBL1xx with severity error) keeps a program from running whatever is selected, so it is hidden only
 by its whole code or name in ``ignore``, never by a beginning or by selecting something else.
@@ -22,7 +22,7 @@ _WHOLE = 6
 
 
 class Layer(Record):
-    """Selectors of one place, as ``selector`` returns them; ``select`` None: nothing is said of it."""
+    """Selectors of one place, as ``selector`` returns them; ``select`` None: the place selects nothing."""
 
     select: tuple[str, ...] | None = None
     extend: tuple[str, ...] = ()
@@ -78,7 +78,7 @@ def guess(text: str) -> str:
     word = text.strip()
     if word.upper().startswith(_PREFIX):
         alike = [entry.code for entry in all_codes() if entry.code.startswith(word.upper()[: _WHOLE - 1])]
-        return f"there are {', '.join(alike[:5])}{', and more' if len(alike) > 5 else ''}" if alike else ""
+        return f"similar codes: {', '.join(alike[:5])}{', and more' if len(alike) > 5 else ''}" if alike else ""
     found = near(word, (entry.name for entry in all_codes()), cutoff=0.7)
     return f"did you mean {found}?" if found else ""
 

@@ -1,7 +1,7 @@
 """Configuration: ``robolang.toml``, or ``[tool.robolang]`` of ``pyproject.toml``.
 
 The nearest folder above a program that has either file counts, and of two in one folder ``robolang.toml``; files are
-not merged. A ``pyproject.toml`` that does not speak of robolang is passed over. ::
+not merged. A ``pyproject.toml`` without a table of robolang does not count. ::
 
     exclude = ["tests/bad", "*/old"]   # from the file's folder; what is below is excluded, too
 
@@ -33,7 +33,7 @@ FILE, PYPROJECT = "robolang.toml", "pyproject.toml"
 
 
 class Configuration(Record):
-    """What a file says: of rules, and which paths below ``folder`` are passed over where a folder is searched.
+    """The contents of a file: its selection of rules, and the paths below ``folder`` that a search leaves out.
 
     ``bounds`` are the tables ``[lint.NAME]`` as they were read, checked.
     """
@@ -51,7 +51,7 @@ class Settings:
         self._found: dict[Path, Configuration] = {}
 
     def layer(self, folder: Path) -> Layer:
-        """Return what the nearest file says of rules in a folder; ``FileFault`` RBL600, RBL601, RBL61x, RBL7xx."""
+        """Return the selection of the nearest file for a folder; ``FileFault`` RBL600, RBL601, RBL61x, RBL7xx."""
         return self._nearest(Path(os.path.abspath(folder))).layer  # noqa: PTH100 - as the user sees it, not resolved
 
     def bounds(self, folder: Path) -> "Bounds":
@@ -84,7 +84,7 @@ def files_above(folder: Path) -> list[Path]:
 
 
 def _read(folder: Path) -> Configuration | None:
-    """Return what a folder's own file says; None when it has none that speaks of robolang."""
+    """Return the configuration in a folder itself; None when no file in it has one."""
     own, shared = folder / FILE, folder / PYPROJECT
     if os.path.lexists(own):
         table = _table(read_source(own))
@@ -140,7 +140,7 @@ def _selectors(table: Table, key: str) -> tuple[str, ...]:
     for item in _texts(table, key):
         chosen = selector(item)
         if chosen is None:
-            table.fail("RBL710", f"'{table.name(key)}' names '{item}', which is no rule", guess(item), key=key)
+            table.fail("RBL710", f"'{table.name(key)}' names '{item}', which is not a rule", guess(item), key=key)
         found.append(chosen)
     return tuple(found)
 

@@ -6,11 +6,11 @@
     20 MOVE P9              ' not taught yet ' noqa: RBL301
     30 REM noqa: RBL113, line-number-order
 
-The word stands right behind a ``'`` or ``REM``, in any case, and nothing but a colon and codes or names behind it. An
+The word stands right after a ``'`` or ``REM``, in any case, and only a colon and codes or names follow it. An
 error of syntax is suppressed by its whole code only. What suppresses nothing is RBL190, with a fix that removes it,
 unless its code needs the cell or the motion; what is no code is RBL191. A line may keep either by naming it.
 
-Only the last ``noqa`` of a line is looked at, so the time is linear in the text whatever stands in it.
+Only the last ``noqa`` of a line counts, so the time is linear in the text whatever it contains.
 """
 
 import re
@@ -35,7 +35,7 @@ _SHOWN = 30
 
 
 class _Named(Record):
-    """One word behind ``noqa:``; ``code`` is empty when it is no code."""
+    """One word after ``noqa:``; ``code`` is empty when it is not a code."""
 
     span: Span
     text: str
@@ -45,7 +45,7 @@ class _Named(Record):
 class _Directive(Record):
     """One ``noqa``: from its ``'`` or ``REM`` to the end of the line.
 
-    ``named`` are its codes, None when it has no colon; ``mistake`` says why it is none at all.
+    ``named`` are its codes, None when it has no colon; ``mistake``: why it has no effect.
     """
 
     span: Span
@@ -66,8 +66,8 @@ class _Directive(Record):
 def suppress(source: Source, found: Iterable[Diagnostic], *, complete: bool) -> tuple[Diagnostic, ...]:
     """Return the findings that no ``noqa`` covers, and those about the noqas themselves.
 
-    ``complete``: everything that could be found was looked for; otherwise no noqa is called unused. With an error of
-    syntax it never was.
+    ``complete``: everything was checked; otherwise no noqa is reported as unused, and neither is one in a program with
+    an error of syntax.
     """
     findings = tuple(found)
     directives = _directives(source)
@@ -85,9 +85,9 @@ def suppress(source: Source, found: Iterable[Diagnostic], *, complete: bool) -> 
 
 
 def add_later(source: Source, before: Iterable[Diagnostic], later: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """Return findings of ``suppress`` with those of a later look at the same text that no ``noqa`` covers.
+    """Return findings of ``suppress`` with later ones of the same text that no ``noqa`` covers.
 
-    A ``noqa`` without codes that was called unused before, and covers a later finding, is not unused.
+    A ``noqa`` without codes that was reported as unused before, and covers a later finding, is not unused.
     """
     directives = _directives(source)
     kept, used = _split(source, later, directives)
@@ -127,20 +127,20 @@ def _directives(source: Source) -> dict[int, _Directive]:
 
 def _directive(source: Source, line: Span, at: int, known: Mapping[str, str]) -> _Directive | None:
     """Return the directive whose word stands at an offset; None when the word is only part of a comment."""
-    behind = at + len(_WORD)
+    end = at + len(_WORD)
     begin = max(line.start, at - _NEAR_MARK)
     mark = _MARK.search(source.text[begin:at])
     if mark is None:
         return None
     span = Span(begin + mark.start(), line.end)
-    tail = source.text[behind : line.end]
+    tail = source.text[end : line.end]
     if not tail.strip():
         return _Directive(span=span)
     if _FORGOTTEN_COLON.match(tail):
         return _Directive(span=span, named=(), mistake="this noqa suppresses nothing: it has no colon before its codes")
     if not tail.lstrip().startswith(":"):
         return None
-    named = tuple(_named(item, behind, known) for item in _ITEM.finditer(tail, tail.index(":") + 1))
+    named = tuple(_named(item, end, known) for item in _ITEM.finditer(tail, tail.index(":") + 1))
     return _Directive(span=span, named=named, mistake="" if named else "this noqa names no code")
 
 
@@ -157,7 +157,12 @@ def _unknown(directive: _Directive) -> Iterator[Diagnostic]:
     for item in directive.named or ():
         if not item.code:
             shown = item.text if len(item.text) <= _SHOWN else f"{item.text[:_SHOWN]}…"
-            yield _warning(UNKNOWN, f"noqa names '{shown}', which is no code", item.span, hint=guess(item.text))
+            yield _warning(
+                UNKNOWN,
+                f"noqa names '{shown}', which is not a code",
+                item.span,
+                hint=guess(item.text),
+            )
 
 
 def _unused(directive: _Directive, used: set[str], source: Source) -> Iterator[Diagnostic]:

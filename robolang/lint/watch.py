@@ -24,13 +24,13 @@ def watch(
     rounds: int | None = None,
     sleep: Callable[[float], object] = time.sleep,
 ) -> int:
-    """Call ``check`` now and after every change, until Ctrl-C or after ``rounds`` looks; return its last answer."""
+    """Call ``check`` now and after every change, until Ctrl-C or for ``rounds`` rounds; return its last answer."""
     named = list(paths)
-    seen, code, looks = stamps(named), 0, 0
+    seen, code, done = stamps(named), 0, 0
     try:
         code = check()
-        while rounds is None or looks < rounds:
-            looks += 1
+        while rounds is None or done < rounds:
+            done += 1
             sleep(PERIOD_S)
             now = stamps(named)
             if now != seen:
@@ -45,7 +45,7 @@ def stamps(paths: Iterable[str]) -> dict[str, Stamp]:
     """Return what tells whether anything has changed that a check of these paths reads; None: not there."""
     found = [name for name in programs(paths) if name != STANDARD_INPUT and "\0" not in name]
     folders = {Path(name).parent for name in found} | {Path(name) for name in filter(os.path.isdir, paths)}
-    # files that do not exist yet are included: a cell file that appears changes what check says
+    # files that do not exist yet are included: a cell file that appears changes the findings
     files = {str(path) for folder in folders for path in (folder / "cell.toml", *files_above(folder))}
     for name in found:
         files.update((name, *_beside(name)))

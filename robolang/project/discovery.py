@@ -23,7 +23,7 @@ from runtime.settings.layers import Layer, Settings, check_axes, compensation_fi
 
 
 class Beside(Record):
-    """What stands beside a program; None where it cannot be used, which ``faults`` say, each once."""
+    """What stands beside a program; None where it cannot be used, for the reasons in ``faults``, each once."""
 
     cell: CellFile | None
     points: PointStore | None
@@ -155,7 +155,9 @@ def no_robot(name: str) -> Fault:
 def with_robot(cell: CellFile, arm: ArmFile) -> CellFile:
     """Return a cell with another robot; ``Fault`` RBL709 for one that cannot stand at home there."""
     if len(arm.limits) != len(cell.home_deg):
-        raise Fault("RBL709", f"{arm.name} has {len(arm.limits)} axes, the cell's home position {len(cell.home_deg)}")
+        raise Fault(
+            "RBL709", f"{arm.name} has {len(arm.limits)} axes, the home position of the cell has {len(cell.home_deg)}"
+        )
     for index, (angle, limits) in enumerate(zip(cell.home_deg, arm.limits, strict=True)):
         if not limits.lower <= angle * DEG <= limits.upper:
             raise Fault("RBL709", f"the cell's home position is outside the range of J{index + 1} of {arm.name}")

@@ -11,9 +11,9 @@
     turns = [0, 0, 0]                       # optional
 
 Orientation is RX RY RZ about the fixed axes. Names ignore case. Every error is a ``FileFault`` with its place and a
-code RBL30x or RBL311; the codes of the TOML reader are translated, since they speak of robot and cell files. All that
-is wrong with a file is found at once; with the facts of the cell also joints that the robot cannot have, and frames and
-tools that are not there.
+code RBL30x or RBL311; the codes of the TOML reader are translated, since those are about robot and cell files. All
+errors of a file are found at once; with the facts of the cell also joints that the robot cannot have, and frames and
+tools that do not exist.
 Teaching, which writes this file, is not here.
 """
 
@@ -123,7 +123,7 @@ def _translated(path: Path) -> Iterator[None]:
         first.others = tuple(others)
         raise first from None
     except ValueError as error:  # tomllib lets int() refuse a literal of thousands of digits
-        Source(str(path), "").fail("RBL303", f"{path} is not a file of points: {error}")
+        Source(str(path), "").fail("RBL303", f"{path} is not a points file: {error}")
 
 
 def _as_point_fault(fault: FileFault, path: Path) -> FileFault:
@@ -173,16 +173,17 @@ def _point(name: str, entry: Table, symbols: CellSymbols, others: Mapping[str, P
 
 def _check_name(name: str, entry: Table, others: Mapping[str, Point]) -> None:
     if not _NAME.fullmatch(name) or name.upper() in RESERVED:
-        entry.fail("RBL303", f"'{name}' cannot be the name of a point")
+        hint = "start the name with a letter or _, use letters, digits and _ only, and no keyword"
+        entry.fail("RBL303", f"'{name}' cannot be the name of a point", hint)
     # TOML keeps P1 and p1 apart, the language does not
     if name.upper() in others:
-        entry.fail("RBL303", f"point '{name}' is there twice: names ignore case")
+        entry.fail("RBL303", f"point '{name}' is defined twice: names ignore case")
 
 
 def _check_one_place(name: str, entry: Table) -> None:
     """Refuse a point with both 'pose' and 'joints', which might contradict each other, and one with neither."""
     if "pose" in entry and "joints" in entry:
-        entry.fail("RBL303", f"point '{name}' has 'pose' and 'joints'", "remove one of the two", key="joints")
+        entry.fail("RBL303", f"point '{name}' has both 'pose' and 'joints'", "remove one of the two", key="joints")
     if "pose" not in entry and "joints" not in entry:
         _without_place(name, entry)
 
@@ -211,7 +212,7 @@ def _pose(entry: Table) -> tuple[float, float, float, float, float, float]:
     if len(values) != 6:
         entry.fail("RBL307", f"'pose' has {len(values)} values; it needs 6: x, y, z, rx, ry, rz", key="pose")
     if not all(abs(angle) <= MAX_DEG for angle in values[3:]):
-        entry.fail("RBL309", f"an angle of 'pose' is beyond {MAX_DEG:g} deg", key="pose")
+        entry.fail("RBL309", f"an angle of 'pose' is more than {MAX_DEG:g} deg", key="pose")
     x, y, z, rx, ry, rz = values
     return x, y, z, rx, ry, rz
 
@@ -220,8 +221,8 @@ def _joints(entry: Table, symbols: CellSymbols) -> tuple[float, ...]:
     values, axes = entry.numbers("joints", None, low=-MAX_DEG, high=MAX_DEG), symbols.axes
     fits = 2 <= len(values) <= 7 if axes is None else len(values) == axes
     if not fits:
-        wanted = "2 to 7" if axes is None else str(axes)
-        entry.fail("RBL307", f"'joints' has {len(values)} values; it needs {wanted}", key="joints")
+        needed = "2 to 7" if axes is None else str(axes)
+        entry.fail("RBL307", f"'joints' has {len(values)} values; it needs {needed}", key="joints")
     beyond = beyond_range(values, symbols.limits or ())
     if beyond:
         entry.fail("RBL309", beyond, "teach the point within the range of the joint", key="joints")
@@ -234,8 +235,8 @@ def _configuration(entry: Table) -> tuple[str, ...]:
         pair = next((pair for pair in _CHOICES if word in pair), None)
         if pair is None:
             guess = near(word, [choice for pair in _CHOICES for choice in pair])
-            hint = f"did you mean {guess}?" if guess else ""
-            entry.fail("RBL308", f"'{word}' is not a configuration", hint, key="configuration")
+            hint = f"did you mean {guess}?" if guess else "write LEFTY or RIGHTY, ABOVE or BELOW, FLIP or NOFLIP"
+            entry.fail("RBL308", f"'{word}' is not a configuration word", hint, key="configuration")
         if sum(words.count(choice) for choice in pair) > 1:
             message = f"'configuration' may have only one of {pair[0]} and {pair[1]}, once"
             entry.fail("RBL303", message, key="configuration")

@@ -85,7 +85,7 @@ def load_project(
     cell file, ``robot`` a built-in robot or a robot file that replaces the cell's, ``servo`` the servo mode that
     replaces the profile's, ``profile`` a profile file whose values go over the cell's, and ``options`` single settings
     over both: dotted key to (name of the option, value). Raises ``FileFault`` or ``Fault`` for a file that cannot be
-    used; what is wrong with the program itself is in ``diagnostics``.
+    used; the errors of the program itself are in ``diagnostics``.
     """
     analysis = program if isinstance(program, Analysis) else Analysis(source=read_program(program))
     where = Path(analysis.source.path)

@@ -1,9 +1,9 @@
 """The golden log of a program: ``NAME.golden.npz``, joint angles and running line of every interpolation cycle.
 
-Two arrays, as numpy writes them: ``q`` (cycles, axes) of float32, rad, and ``line`` (cycles,) of whole numbers. Nothing
-is believed of the file: it must be a regular one, its directory must be that of two arrays, the header of each is
-matched before anything is unpacked, and no more rows are unpacked than the run has, so that memory is bounded by
-the run. numpy's own reader allocates what a header asks for. Written and read by ``robolang test``.
+Two arrays, as numpy writes them: ``q`` (cycles, axes) of float32, rad, and ``line`` (cycles,) of whole numbers. The
+file is not trusted: it must be a regular one, its directory must be that of two arrays, the header of each is matched
+before anything is unpacked, and no more rows are unpacked than the run has, so that memory is bounded by the run.
+numpy's own reader allocates what a header asks for. Written and read by ``robolang test``.
 """
 
 import os
@@ -69,7 +69,7 @@ class GoldenLog:
         if len(differs):
             at = int(differs[0])
             if near[at]:
-                return at, f"line {int(line[at])} runs and in the golden log line {int(self.line[at])}"
+                return at, f"line {int(line[at])} runs, and line {int(self.line[at])} in the golden log"
             differs_by, most = beside(float(off[at]), most_deg, form=".3g")
             return at, f"{differs_by} deg off, at most {most} deg"
         if len(q) != self.cycles:
@@ -143,7 +143,7 @@ class _Member:
 
     def __init__(self, path: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo, types: Mapping[str, type]) -> None:
         if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):  # others are unpacked without a bound
-            raise _damaged(path, f"'{info.filename}' is compressed in a manner that is not read here")
+            raise _damaged(path, f"'{info.filename}' has a compression that is not supported")
         self._path, self._name = path, info.filename
         self._stream = archive.open(info)
         start = self._stream.read(len(_MAGIC) + 2)

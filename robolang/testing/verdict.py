@@ -1,4 +1,4 @@
-"""What a finished run says to the expectations of its test file: one verdict for each.
+"""The verdicts on a finished run: one for each expectation of its test file.
 
 Every comparison is written so that NaN fails it, and so that nothing to compare fails it: an expectation that no run
 could miss is none. A difference from the golden log is named by the first line and tick at which it is too large.
@@ -33,14 +33,14 @@ _MOST_PLACES = 5
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
-    """One expectation: its name, whether it is met, what was found, and its key of ``[expect]``, ``()`` for none.
+    """One expectation: its name, whether it is met, the values compared, and its key of ``[expect]``, ``()`` for none.
 
-    ``fault`` is why it could not be compared at all; it is never met then. ``noted``: worth a line though it is met.
+    ``fault`` is why it could not be compared at all; it is never met then. ``noted``: shown although it is met.
     """
 
     name: str
     ok: bool
-    said: str
+    detail: str
     key: tuple[str, ...] = ()
     fault: Fault | None = None
     noted: bool = False
@@ -49,13 +49,13 @@ class Verdict:
 def judge(
     expected: Expectation, session: Session, report: dict[str, Any], log: dict[str, Array], update: bool = False
 ) -> list[Verdict]:
-    """Return what a finished run says to the expectations; ``update``: the golden log is written when all are met."""
+    """Return the verdicts on a finished run; ``update``: the golden log is written when all are met."""
     found = _events(expected, report["alarms"], report["warnings"], [entry["text"] for entry in report["printed"]])
     if expected.cycle_s is not None:
         low, high = expected.cycle_s
         seconds = report["sim_time_s"]
-        said = f"{seconds:.3f} s, expected {low:g} to {high:g} s"
-        found.append(Verdict(name="cycle", ok=low <= seconds <= high, said=said, key=("cycle_s",)))
+        detail = f"{seconds:.3f} s, expected {low:g} to {high:g} s"
+        found.append(Verdict(name="cycle", ok=low <= seconds <= high, detail=detail, key=("cycle_s",)))
     for key, measure, unit in _LARGEST:
         most = getattr(expected, key)
         if most is not None:
@@ -72,31 +72,33 @@ def judge(
 def judge_refused(expected: Expectation, codes: Sequence[str], why: str) -> list[Verdict]:
     """Return the verdicts of a program that does not start: its codes are what it ends with, nothing else comes."""
     alarms, *rest = _events(expected, [{"code": code} for code in codes], [], [])
-    found = [Verdict(name="alarms", ok=alarms.ok, said=f"it does not start: {why}", key=("alarms",)), *rest]
+    found = [Verdict(name="alarms", ok=alarms.ok, detail=f"the program does not start: {why}", key=("alarms",)), *rest]
     names = ("cycle_s", *(key for key, _, _ in _LARGEST), "end_pose", "golden_deg")
     keys: list[tuple[str, ...]] = [(name,) for name in names if getattr(expected, name) is not None]
     keys += [("parts", name) for name in expected.parts]
-    said = "nothing to compare, the program does not start"
-    return found + [Verdict(name=" ".join(key), ok=False, said=said, key=key) for key in keys]
+    detail = "nothing to compare, the program does not start"
+    return found + [Verdict(name=" ".join(key), ok=False, detail=detail, key=key) for key in keys]
 
 
 def _events(
     expected: Expectation, alarms: Sequence[dict[str, Any]], warnings: Sequence[dict[str, Any]], printed: list[str]
 ) -> list[Verdict]:
-    """Return the verdicts of what a run says of itself, that of the alarms first."""
+    """Return the verdicts on alarms, warnings and printed lines, that on the alarms first."""
     codes = [alarm["code"] for alarm in alarms]
-    said = f"{_listed(codes)}, expected {_listed(expected.alarms)}{_placed(alarms)}"
-    found = [Verdict(name="alarms", ok=codes == list(expected.alarms), said=said, key=("alarms",))]
+    detail = f"{_listed(codes)}, expected {_listed(expected.alarms)}{_placed(alarms)}"
+    found = [Verdict(name="alarms", ok=codes == list(expected.alarms), detail=detail, key=("alarms",))]
     codes = [warning["code"] for warning in warnings]
     if expected.warnings is not None:
-        said = f"{_listed(codes)}, expected {_listed(expected.warnings)}{_placed(warnings)}"
-        found.append(Verdict(name="warnings", ok=set(codes) == set(expected.warnings), said=said, key=("warnings",)))
+        detail = f"{_listed(codes)}, expected {_listed(expected.warnings)}{_placed(warnings)}"
+        found.append(
+            Verdict(name="warnings", ok=set(codes) == set(expected.warnings), detail=detail, key=("warnings",))
+        )
     elif codes:
-        said = f"{_listed(codes)}, neither expected nor forbidden{_placed(warnings)}"
-        found.append(Verdict(name="warnings", ok=True, said=said, key=("warnings",), noted=True))
+        detail = f"{_listed(codes)}, neither expected nor forbidden{_placed(warnings)}"
+        found.append(Verdict(name="warnings", ok=True, detail=detail, key=("warnings",), noted=True))
     if expected.printed is not None:
-        said = _first_line(printed, expected.printed)
-        found.append(Verdict(name="printed", ok=printed == list(expected.printed), said=said, key=("printed",)))
+        detail = _first_line(printed, expected.printed)
+        found.append(Verdict(name="printed", ok=printed == list(expected.printed), detail=detail, key=("printed",)))
     return found
 
 
@@ -131,12 +133,12 @@ def _largest(statements: list[dict[str, Any]], key: str, measure: str, most: flo
     rows = [(entry[measure], entry) for entry in statements if entry[measure] is not None]
     name = measure.rpartition("_")[0].replace("_", " ")
     if not rows:
-        return Verdict(name=name, ok=False, said="nothing to compare, no statement moves the arm", key=(key,))
+        return Verdict(name=name, ok=False, detail="nothing to compare, no statement moves the arm", key=(key,))
     value, entry = max(rows, key=lambda row: badness(row[0]))
     where = named(entry["line"], entry["number"])
     shown, bound = beside(value, most, form=".3f")
-    said = f"{shown} {unit} in {where}, at most {bound} {unit}"
-    return Verdict(name=name, ok=value <= most, said=said, key=(key,))
+    detail = f"{shown} {unit} in {where}, at most {bound} {unit}"
+    return Verdict(name=name, ok=value <= most, detail=detail, key=(key,))
 
 
 def _end_pose(session: Session, log: dict[str, Array]) -> Array:
@@ -158,13 +160,13 @@ def _end(expected: Expectation, X: Array) -> list[Verdict]:
         Verdict(
             name="end",
             ok=far <= most_mm,
-            said=f"{away} mm away, at most {bound_mm} mm: ({ended})",
+            detail=f"{away} mm away, at most {bound_mm} mm: ({ended})",
             key=("end_pose",),
         ),
         Verdict(
             name="end turn",
             ok=turned <= most_deg,
-            said=f"turned by {turn} deg, at most {bound_deg} deg: ({ended})",
+            detail=f"turned by {turn} deg, at most {bound_deg} deg: ({ended})",
             key=("end_pose",),
         ),
     ]
@@ -174,13 +176,10 @@ def _part(objects: dict[str, Any], name: str, place: tuple[float, ...], most: fl
     title, key = f"part {name}", ("parts", name)
     if name not in objects:
         near = f"; its parts: {', '.join(sorted(objects))}" if objects else ""
-        return Verdict(name=title, ok=False, said=f"the cell has no such part{near}", key=key)
+        return Verdict(name=title, ok=False, detail=f"the cell has no such part{near}", key=key)
     off = norm(np.array(objects[name]["pose_mm_deg"][:3]) - place)
     away, bound = beside(off, most, form=".3f")
-    return Verdict(name=title, ok=off <= most, said=f"{away} mm away, at most {bound} mm", key=key)
-
-
-# --- the golden log --------------------------------------------------------------------------------------------------
+    return Verdict(name=title, ok=off <= most, detail=f"{away} mm away, at most {bound} mm", key=key)
 
 
 def _cycles(session: Session, log: dict[str, Array]) -> tuple[Array, Array]:
@@ -193,9 +192,9 @@ def _update(expected: Expectation, session: Session, log: dict[str, Array], clea
     q, line = _cycles(session, log)
     if not (clean and np.isfinite(q).all()):
         why = "the run does not meet the other expectations" if not clean else "its angles are not finite"
-        return Verdict(name="golden", ok=False, said=f"not written, {why}", key=("golden_deg",))
+        return Verdict(name="golden", ok=False, detail=f"not written, {why}", key=("golden_deg",))
     write_golden(expected.golden, q, line)
-    return Verdict(name="golden", ok=True, said=f"written, {len(q)} cycles", key=("golden_deg",))
+    return Verdict(name="golden", ok=True, detail=f"written, {len(q)} cycles", key=("golden_deg",))
 
 
 def _golden(expected: Expectation, session: Session, log: dict[str, Array]) -> Verdict:
@@ -204,12 +203,12 @@ def _golden(expected: Expectation, session: Session, log: dict[str, Array]) -> V
         golden = read_golden(expected.golden, axes=q.shape[1], most_cycles=len(q))
     except Fault as fault:
         placed = expected.fault(fault.code, fault.message, fault.hint, "golden_deg")
-        return Verdict(name="golden", ok=False, said=fault.message, key=("golden_deg",), fault=placed)
-    at, said = golden.difference(q, line, cast("float", expected.golden_deg))
+        return Verdict(name="golden", ok=False, detail=fault.message, key=("golden_deg",), fault=placed)
+    at, detail = golden.difference(q, line, cast("float", expected.golden_deg))
     if at is not None and len(q):
         profile = session.project.profile
         tick = at * profile.ticks_per_cycle
         row = min(at, len(line) - 1)
         number = int(log["number"][:: profile.ticks_per_cycle][row])
-        said += f", first at tick {tick} ({tick * profile.tick_s:.3f} s), {named(int(line[row]), number or None)}"
-    return Verdict(name="golden", ok=at is None, said=said, key=("golden_deg",))
+        detail += f", first at tick {tick} ({tick * profile.tick_s:.3f} s), {named(int(line[row]), number or None)}"
+    return Verdict(name="golden", ok=at is None, detail=detail, key=("golden_deg",))

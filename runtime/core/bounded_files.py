@@ -43,7 +43,7 @@ class RefusedError(Exception):
 
     @property
     def reason(self) -> str:
-        """What the system says, without the path that an ``OSError`` names too."""
+        """The reason that the system gives, without the path that an ``OSError`` names too."""
         return str(getattr(self.error, "strerror", None) or self.error)
 
 

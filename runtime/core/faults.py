@@ -131,7 +131,7 @@ class Alarm(Record):
 class Fault(Exception):  # noqa: N818 - the field calls it a fault
     """A request that cannot be carried out; it has changed nothing.
 
-    ``code`` is registered, ``message`` says what is wrong with numbers and units, ``hint`` what would help. ``others``:
+    ``code`` is registered, ``message`` states what is wrong, with numbers and units, ``hint`` what helps. ``others``:
     what else is wrong, where a reader of files looks for everything at once.
     """
 

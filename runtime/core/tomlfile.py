@@ -235,7 +235,7 @@ class Table:
     def _lacking(self) -> FileFault:
         """Return the one fault that names every key which this table lacks."""
         keys = self._missing_keys()
-        # an unknown key that resembles a missing one is most likely that one, misspelt: said once, with the missing key
+        # an unknown key that resembles a missing one is most likely that one, misspelt: one fault for both
         near = {key: self._looks_like(key) for key in keys}
         hint = "; ".join(f"'{found}' looks like '{key}'" for key, found in near.items() if found)
         if len(keys) == 1:

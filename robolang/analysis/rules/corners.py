@@ -54,7 +54,7 @@ class _Corner(NamedTuple):
 
 
 class _Corners:
-    """What became of the corners: moves that blended on some branch, those that did not, and LOADs within.
+    """What happens at the corners: moves that blend on some branch, those that do not, and LOADs between.
 
     ``zones`` are the ZONEs of moves, by place of the move. ``waiting`` are, by place of a setting, moves that read the
     state of the arm, so that it comes to rest before them although the move before could blend.
@@ -112,7 +112,7 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
     yield from _waiting(corners)
     for load, span in corners.loads.items():
         related = (Related(span=span, message="the move that would blend"),)
-        message = "the arm stops for this LOAD, where the move before it would blend into the next"
+        message = "the arm stops for this LOAD; without it the move before would blend into the next one"
         yield LOAD_IN_BLEND.at(load, message, related=related)
 
 
@@ -120,20 +120,20 @@ def _lost(corners: _Corners) -> Iterator[Diagnostic]:
     """Report ZONEs of moves after which the arm stops wherever the program goes."""
     for span, stop in corners.lost.items():
         if span not in corners.used:
-            related = () if stop is None else (Related(span=stop.span, message="the arm comes to rest for this"),)
-            message = "no move follows that this one could blend into: it stops"
+            related = () if stop is None else (Related(span=stop.span, message="the arm stops for this statement"),)
+            message = "no move follows into which this one could blend: the arm stops here"
             yield NO_BLEND.at(corners.zones[span].span, message, related=related)
 
 
 def _waiting(corners: _Corners) -> Iterator[Diagnostic]:
-    """Report settings of ZONE by which no move blends, since each next one reads where the arm is."""
+    """Report settings of ZONE with which no move blends, since each next one reads the position of the arm."""
     for setting, move in corners.waiting.items():
         if setting not in corners.used:
             yield NO_BLEND.at(
                 setting,
-                "no move blends by this ZONE: the arm stops before each",
-                related=(Related(span=move.span, message="this move reads where the arm is"),),
-                hint="assign HERE to a name before these moves and write them with that name, or remove the ZONE",
+                "no move blends with this ZONE: the arm stops before each of them",
+                related=(Related(span=move.span, message="this move reads the position of the arm"),),
+                hint="assign HERE to a name before these moves and use that name in them, or remove the ZONE",
             )
 
 

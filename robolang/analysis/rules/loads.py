@@ -59,8 +59,8 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
         does = "grasps" if hand.state is HandState.ON else "opens"
         yield LOAD_MISSING.at(
             hand.span,
-            f"the hand {does} and the arm moves on without a LOAD: the controller goes on "
-            "computing with the load before",
+            f"the hand {does} and the arm moves on without a LOAD: the controller still "
+            "computes with the previous load",
             related=(Related(span=found[hand.span].span, message="the arm moves here"),),
         )
 

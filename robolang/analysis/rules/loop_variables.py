@@ -34,8 +34,8 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
         loops = (each for each in around if isinstance(each, For))
         outer = next((each for each in loops if each.variable.key == node.variable.key), None)
         if outer is not None:
-            message = f"{node.variable.text} counts a FOR around this one: its value there is lost"
-            related = (Related(span=outer.variable.span, message=f"{outer.variable.text} counts here"),)
+            message = f"{node.variable.text} is also the variable of a FOR around this one, which loses its value"
+            related = (Related(span=outer.variable.span, message=f"{outer.variable.text} is its variable here"),)
             yield SHARED.at(node.variable.span, message, related=related)
 
 

@@ -53,7 +53,7 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
         elif reached[index]:
             reported = False
         elif not reported and _acts(node):
-            yield UNREACHABLE.at(node.span, "this line can never run: nothing leads here")
+            yield UNREACHABLE.at(node.span, "this line can never run: no line leads to it")
             reported = True
 
 

@@ -42,7 +42,7 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
 
 
 def _gives(node: Statement) -> Name | None:
-    """Return the name that a statement gives a value, an array's among them; not that of a FOR, which counts."""
+    """Return the name to which a statement gives a value, or of an array; not that of a FOR, which counts."""
     if isinstance(node, Assign):
         return node.target if isinstance(node.target, Name) else None
     return node.name if isinstance(node, Const | Dim) else None

@@ -37,7 +37,7 @@ TOOL_UNSET = LintRule(
     good="10 TOOL POSE(0, 0, 180, 0, 0, 0)\n20 MOVE P1\n30 MOVE P2\n",
 )
 
-_SPEEDS = (("SPEED", False, "the robot's default"), ("SPEEDJ", True, "full speed"))
+_SPEEDS = (("SPEED", False, "the robot's default speed"), ("SPEEDJ", True, "full speed"))
 """Setting, whether it is that of joint moves, and the speed without it."""
 
 
@@ -56,8 +56,8 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
 def _speed(facts: Facts, moves: list[Moving], word: str, default: str) -> Iterator[Diagnostic]:
     unset = _before_setting(facts, word, {node.span for node in moves if not has_option(node, Speed, Time)})
     if unset:
-        more = f", and {len(unset) - 1} more moves" if len(unset) > 1 else ""
-        message = f"no {word} is set where this move runs{more}: it goes at {default}"
+        more = f" and {len(unset) - 1} other moves" if len(unset) > 1 else ""
+        message = f"{word} is not set before this move{more}: it runs at {default}"
         yield SPEED_UNSET.at(unset[0].span, message)
 
 
@@ -65,7 +65,7 @@ def _tool(facts: Facts, moves: list[Moving]) -> Iterator[Diagnostic]:
     # a program that never sets TOOL means the hand's own tool point
     unset = _before_setting(facts, "TOOL", {node.span for node in moves}) if _sets(facts, "TOOL") else []
     if unset:
-        message = "TOOL is set elsewhere but not where this move runs: it goes with the hand's own tool point"
+        message = "TOOL is set elsewhere, but not before this move: it uses the tool point of the hand"
         yield TOOL_UNSET.at(unset[0].span, message)
 
 

@@ -43,10 +43,10 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
             continue
         if value := fixed(node.condition):
             delay = f"DELAY {value:g} waits for {value:g} s" if 0.0 < value <= limits.DELAY.high else ""
-            message = f"WAIT {value:g} waits for nothing: its condition is a number that is not 0"
+            message = f"WAIT {value:g} does not wait: its condition is a number other than 0"
             yield FOR_A_NUMBER.at(node.span, message, hint=delay)
         elif node.timeout is None:
-            message = "this WAIT has no TIMEOUT: if its signal never comes, the program stands here for ever"
+            message = "this WAIT has no TIMEOUT: if its condition never becomes true, the program waits here for ever"
             yield NO_TIMEOUT.at(node.span, message)
 
 

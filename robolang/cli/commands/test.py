@@ -37,9 +37,9 @@ class _Outcome:
     def line(self, verdict: "Verdict") -> str:
         """Return a verdict with the place of the key that asks for it."""
         if self.expected is None:
-            return verdict.said
+            return verdict.detail
         line, column = self.expected.place(*verdict.key)
-        return f"{self.expected.source.path}:{line}:{column}: {verdict.name}: {verdict.said}"
+        return f"{self.expected.source.path}:{line}:{column}: {verdict.name}: {verdict.detail}"
 
 
 _Paths = Annotated[list[str] | None, Argument("[PATHS]", "Programs, test files, or folders; default: this folder.")]
@@ -109,7 +109,7 @@ def _files(paths: list[str], allow_empty: bool) -> Iterator[Path | _Outcome]:
 def _unusable(name: str, fault: "Fault", expected: "Expectation | None" = None) -> _Outcome:
     from robolang.testing.verdict import Verdict
 
-    verdict = Verdict(name="files", ok=False, said=f"{fault.code} {fault.message}", fault=fault)
+    verdict = Verdict(name="files", ok=False, detail=f"{fault.code} {fault.message}", fault=fault)
     return _Outcome(name=name, verdicts=[verdict], expected=expected)
 
 

@@ -12,7 +12,7 @@ from robolang.lint.engine import Checked
 
 FORMS = ("full", "concise", "json", "json-lines", "github", "gitlab", "junit", "sarif")
 FOR_PEOPLE = frozenset({"full", "concise"})
-"""Forms that leave out faults of files: the command line says those to stderr."""
+"""Forms that leave out faults of files: the command line prints those to stderr."""
 
 _MODULES = {"json": "json_array"}
 

@@ -27,9 +27,9 @@ def _command(item: Finding, root: Path) -> str:
         "file": relative(item.path, root),
         **_lines(item.region),
     }
-    said = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
+    listed = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
     text = f"{safe(item.path)}:{region.line}:{region.column}: {item.code} {item.message}\nhelp: {item.hint}"
-    return f"::{_COMMANDS[item.severity]} {said}::{_data(text)}"
+    return f"::{_COMMANDS[item.severity]} {listed}::{_data(text)}"
 
 
 def _lines(region: Region) -> dict[str, int]:
