@@ -327,7 +327,7 @@ def passage(q: Array, tau: Array, position: float, half: int, tick_s: float) -> 
     place = np.convolve(q[1:-1], w, "valid")
     at = int(np.argmax(place > position))
     if at == 0:
-        raise ValueError("the pass does not go by the position from below with a whole window before it")
+        raise ValueError("the pass does not reach the position from below after a whole window")
     share = (position - place[at - 1]) / (place[at] - place[at - 1])
 
     def mean(values: Array) -> float:

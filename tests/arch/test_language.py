@@ -1,7 +1,7 @@
 """Words that are not used in messages, help and pages: they have several meanings, or none that is plain.
 
-Texts of the product (strings of the code that are no docstrings) and the pages of docs/ are free of them. In docstrings
-and comments they are counted: the number of a package may only become less.
+Texts of the product (strings of the code that are no docstrings) and all pages are free of them. In docstrings and
+comments the first of them are counted: the number of a package may only become less.
 """
 
 import ast
@@ -25,18 +25,36 @@ WORDS = {
     "of X it is what": r"\b[Oo]f an? \w+ it is\b",
 }
 """What to write instead, in parentheses, and what finds the word."""
+READ = {
+    **WORDS,
+    "said, asked, wanted (declared, demanded, programmed)": r"\b(?:said|asked|wanted)\b",
+    "tried (tested, attempted)": r"\btried\b",
+    "likewise (the same, also)": r"\blikewise\b",
+    "goes by (uses)": r"\bgo(?:es)? by\b",
+    "goes over (overrides)": r"\bgo(?:es)? over (?:it|them)\b",
+    "passed over (skipped, left out)": r"\bpass(?:es|ed)? over\b",
+    "believes (computes with)": r"\bbeliev\w+",
+    "in itself (touches itself)": r"\barm (?:is |would be )?(?:in|out of) itself\b",
+    "no body has (is physically impossible)": r"\bno body (?:has|can have)\b",
+}
+"""The words that a user does not read either: held at zero in pages and in the texts of the product."""
 MEANT = re.compile(
-    r"turns-the-long-way|half way|wrist's way of|or behind it|behind (?:these gears|a gear)|`[^`]*`|\*\w+\*"
+    r"turns-the-long-way|slower-than-asked|half way|wrist's way of|or behind it|behind (?:these gears|a gear)"
+    r"|`[^`]*`|\*\w+\*"
 )
 """Where a word has its plain meaning: places in space, names of the code, and a word that is itself the subject."""
 LEFT = {"robolang": 32, "runtime": 23}
 """How often they are left in docstrings and comments; lower the number when you have reworded some."""
-PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
+PAGES = [
+    *(ROOT / page for page in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")),
+    *sorted((ROOT / ".github").rglob("*.md")),
+    *sorted((ROOT / "docs").rglob("*.md")),
+]
 
 
-def found(text: str) -> Counter[str]:
+def found(text: str, words: dict[str, str] = READ) -> Counter[str]:
     plain = MEANT.sub("", text)
-    return Counter({word: len(hits) for word, pattern in WORDS.items() if (hits := re.findall(pattern, plain))})
+    return Counter({word: len(hits) for word, pattern in words.items() if (hits := re.findall(pattern, plain))})
 
 
 @cache
@@ -80,10 +98,11 @@ def test_pages_are_plain(page):
 
 @pytest.mark.parametrize("package", LEFT)
 def test_docstrings_become_plainer(package):
-    words = sum((found(prose(source)) for _, source in code(package)), Counter())
+    words = sum((found(prose(source), WORDS) for _, source in code(package)), Counter())
     assert words.total() <= LEFT[package], words
 
 
 def test_words_are_found_and_plain_meanings_are_not():
     assert found("the way behind it, looked at as told: none of that").total() == 5
+    assert found("longer than asked; the wanted angle was tried; the option goes over it, likewise here").total() == 5
     assert found("in front of the waist (r >= 0) or behind it, half way, RBL435 turns-the-long-way") == {}
