@@ -110,7 +110,7 @@ class Signals:
         return _at(self._history.get(number, ()), now_us)
 
     def input(self, number: int, now_us: int) -> float:
-        """Return the state of an input; ``Fault`` RBL534 when the cell has none of that number."""
+        """Return the state of an input; ``Fault`` RBL534 for a number that the cell does not have."""
         spec = self._inputs.get(number)
         if spec is None:
             raise unknown_input(number, self._inputs)

@@ -92,7 +92,7 @@ class Interpolator(Stateful):
 
     def _play(self, held: "_Held", course: Array, reached: Array, passed: list[int]) -> None:
         """Hand out what is at these places of held rows, after those that have been reached, numbers ``passed``."""
-        towards = [*passed, *np.ceil(course).astype(int).tolist()]  # between two rows it is on its way to the later one
+        towards = [*passed, *np.ceil(course).astype(int).tolist()]  # between two rows it moves towards the later one
         self._rows = np.concatenate([reached, on_curve(held.rows, course)])
         self._modes = tuple([held.modes[k] for k in towards])
         self._commands = tuple([held.commands[k] for k in towards])

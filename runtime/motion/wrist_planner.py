@@ -60,7 +60,7 @@ def choose(sampled: SampledPath, command: PathMove, options: WristOptions) -> Ca
 def _request(sampled: SampledPath, q_end: Array, command: PathMove, options: WristOptions) -> WristRequest:
     """Return what a move to joint angles q_end (n,) has to keep.
 
-    Where only a pose is taught, the end may be any of its solutions, and the tool may turn by less on the way there: a
+    Where only a pose is taught, the end may be any of its solutions, and the tool may turn by less on the path there: a
     posture is not thrown away for a solution that nobody has taught (docs/decisions/0018).
     """
     taught = command.q_end is not None or bool(command.configuration or command.turns)

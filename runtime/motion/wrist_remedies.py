@@ -49,7 +49,7 @@ SHORTEST_WINDOW = 4
 
 DETOUR = "detour of the wrist"
 DETOURS = ((0, 45), (0, -45), (60, 0), (-60, 0), (0, 80), (0, -80), (60, 80), (-60, -80), (120, 80), (-120, -80))
-"""How far J4 and J5 deviate from their cubic half-way, deg, where nothing else places the main axes at all."""
+"""How far J4 and J5 deviate from their cubic at its middle, deg, where nothing else places the main axes at all."""
 
 Remedy = Callable[[WristRequest, "HeldPosture"], Iterator[Candidate]]
 

@@ -58,6 +58,7 @@ def hand_body(hand: HandSpec, opening: float | None = None) -> Body:
     """Return the whole hand as one body in the flange frame, at ``opening`` m (None: half open)."""
     y = (hand.stroke / 2.0 if opening is None else opening) / 2.0
     bodies = [palm_body(hand), *(_in_flange(hand, side, y) for side in FINGERS)]
+    # about the centre of the file, which is that of all three bodies at any opening
     inertia = sum((_about(body, hand.cog) for body in bodies), np.zeros((3, 3)))
     return Body(mass=hand.mass, cog=hand.cog, inertia=inertia)
 

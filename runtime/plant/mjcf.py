@@ -216,6 +216,7 @@ def _hinge(body: ET.Element, index: int, axis: AxisSpec, timestep: float) -> Non
         armature=repr(axis.motor.reflected_inertia),
         damping=repr(axis.motor.joint_viscous_friction),
         frictionloss=repr((forward + backward) / 2.0),
+        # two steps: MuJoCo's shortest time constant, so that dry friction holds at once
         solreffriction=f"{2.0 * timestep!r} 1",
         solimpfriction=_STIFF,
         solreflimit=f"{CONTACT_TIME * timestep!r} 1",

@@ -91,6 +91,7 @@ class Shapes:
             self._qpos[self._cell.fingers.start + index] = at
             mujoco.mj_kinematics(self._model, self._data)
             distance = mujoco.mj_geomDistance(self._model, self._data, pad, part, stroke, None)
+            # never outwards: a part that overlaps the open pad is met there
             at -= max(distance, 0.0)
             if not at >= -stroke / 2.0:
                 return None
@@ -110,6 +111,7 @@ class Shapes:
         for _ in range(ADVANCES):
             self._qpos[at + 2] = z - fallen
             mujoco.mj_kinematics(self._model, self._data)
+            # distances are cut at the last argument: a part that is further away falls too far in any case
             distance = min(
                 mujoco.mj_geomDistance(self._model, self._data, own, other, 2.0 * most + MARGIN, None)
                 for other in others

@@ -447,7 +447,7 @@ def shape_text(name: str) -> str:
 def _sorted(pairs: frozenset[Pair]) -> _Seen:
     """Sort contacts by what touches what, in a fixed order."""
     seen = _Seen()
-    for pair in sorted(pairs):
+    for pair in sorted(pairs):  # a set of names has another order in every process
         parts = [name.startswith(_PART) for name in pair]
         fixed = [is_fixed(name) for name in pair]
         if all(parts):

@@ -309,7 +309,7 @@ def library() -> tuple[str, ...]:
 
 
 def load_builtin(name: str) -> Mechanism:
-    """Return a built-in mechanism; ``KeyError`` when there is none of that name."""
+    """Return a built-in mechanism; ``KeyError`` for another name."""
     if name not in library():
         raise KeyError(name)
     return parse(Source(f"{name}.toml", _folder().joinpath(f"{name}.toml").read_text("utf-8")))

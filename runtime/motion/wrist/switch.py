@@ -183,7 +183,7 @@ class WristLaw:
 
     ``slope`` (3,) is d theta / ds of the path at the switch, where ``shape`` continues it; ``width`` in (0, 1] is the
     share of the interval in which ``smooth`` changes its slope. ``slope_return`` (3,) is that of the path to which the
-    wrist returns before the end, ``detour`` (3,) rad the distance from the cubic half-way; only ``hermite`` has these.
+    wrist returns before the end, ``detour`` (3,) rad that from the middle of the cubic; only ``hermite`` has both.
     """
 
     s_switch: float

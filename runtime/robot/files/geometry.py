@@ -9,7 +9,7 @@ which is the joint frame i followed by ``Tz(d) Tx(a) Rx(alpha)``; the last of th
 ``form = "lines"``: at the zero pose each axis is a line, given by a point on it (``origin_m``) and its ``direction``,
 both in the base frame; so is the flange. This is how data sheets and most simulation libraries describe an arm. The
 body of an axis is stated in a frame with that origin and axes parallel to the base at the zero pose. With X_base_i
-the joint frame drawn that way,
+the joint frame at the zero pose,
 
     placement_i = X_base_{i-1}^-1 X_base_i,      R_base_i = [x y z],  z = direction,  y = z x x
 

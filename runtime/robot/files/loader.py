@@ -27,7 +27,7 @@ from runtime.robot.model.spec import AxisSpec, Body, Correction, OpwParameters, 
 
 @cache
 def load_builtin(name: str) -> RobotSpec:
-    """Return a built-in robot; ``KeyError`` when there is none of that name."""
+    """Return a built-in robot; ``KeyError`` for another name."""
     return build(robot_file.builtin(name))
 
 

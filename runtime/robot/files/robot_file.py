@@ -127,7 +127,7 @@ def library() -> list[str]:
 
 @cache
 def builtin(name: str) -> RobotFile:
-    """Return the file of a built-in robot; ``KeyError`` when there is none of that name."""
+    """Return the file of a built-in robot; ``KeyError`` for another name."""
     if name not in library():
         raise KeyError(name)
     # read as any robot file, so that the library cannot hold what a user's file may not

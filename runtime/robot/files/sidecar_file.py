@@ -122,7 +122,7 @@ def read_sidecar(source: Source, model: str) -> SidecarFile:
         path=drives.path_limits(table.table("path")),
         table=table,
     )
-    table.text("flange", "")  # read by ``read_overlay``; asked for here so that it is a known key
+    table.text("flange", "")  # read by ``read_overlay``; named here so that it is a known key
     table.done()
     return found
 

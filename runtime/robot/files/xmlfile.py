@@ -2,7 +2,7 @@
 
 The text is parsed by expat with a handler for every start tag, so that each element keeps its line and column and
 every error is a ``FileFault`` at its place. Refused while reading: a document type (RBL601: with it go entities,
-which are the only way for XML to name other files or to grow without bound), more than ``MAX_DEPTH`` levels or
+the only means by which XML can name other files or to grow without bound), more than ``MAX_DEPTH`` levels or
 ``MAX_ELEMENTS`` elements (RBL612), a plugin (RBL614), a number that is not finite (RBL604) and a file name that
 leads out of the folder (RBL602). Nothing that a file names is ever opened. Standard library only.
 """

@@ -49,7 +49,7 @@ one that takes the wrist from Euler angles 'n' gives J5 >= 0, in the Python one 
 NOFLIP for J5 > 0 (softMC, WRISTCMD), so that is the rule here.
 
 Singularities. Wrist, J5 = 0: only J4 and J6 together are determined; J4 is taken from the reference, else 0.
-Shoulder, wrist centre on axis 1 (b = 0): J1 is free and is taken in the same way; with b != 0 front and back merge
+Shoulder, wrist centre on axis 1 (b = 0): J1 is free and is taken likewise; with b != 0 front and back merge
 at rho = |b| and J1 stays determined. Elbow, arm stretched or folded: ABOVE and BELOW merge. At each of them the
 pose is still met exactly. Beyond reach (rho < |b|, or d outside [|c2 - k|, c2 + k]) a branch is NaN.
 """
