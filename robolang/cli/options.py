@@ -67,10 +67,10 @@ class Group(Record):
         declared = {
             # the panel of the group that declares it: a derived one may have another for its own
             name: (hint, base.PANEL)
-            for base in reversed(cls.__mro__)
+            for base in reversed(cls.__mro__)  # the base first, so that a declaration of its own replaces that of it
             if issubclass(base, Group)
             for name, hint in base.__annotations__.items()
-            if hasattr(hint, "__metadata__")
+            if hasattr(hint, "__metadata__")  # a field that only has another default is declared by its base
         }
         for name in cls.FIELDS:
             hint, panel = declared[name]

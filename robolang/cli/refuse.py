@@ -32,5 +32,6 @@ def refuse(project: "Project", *, warnings: bool = True, plans: "PlanMemory | No
         echo(render(item, project.source), err=True)
     if refused:
         raise SystemExit(exit_code(refused[0].code))
+    # counted although not printed: --strict needs them with --quiet too
     unlikely = bool(project.cell.warnings)
     return unlikely or any(item.severity is Severity.WARNING for item in project.diagnostics)

@@ -48,7 +48,7 @@ class RunProgress(Observer):
 @contextmanager
 def shown(quiet: bool) -> Iterator[RunProgress]:
     """Yield what shows a run: what it prints, and unless ``quiet`` its progress."""
-    if quiet:
+    if quiet:  # what the program itself prints is its result, and is printed all the same
         yield RunProgress(lambda statement, time_us: None)
     elif sys.stderr is not None and sys.stderr.isatty():
         with _live_line() as tell:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(no_args_is_help=True, help="Write a program in the form of other controllers.")
 SHORTEST_MS, LONGEST_MS = 1.0, 1000.0
-LOWEST_HZ, HIGHEST_HZ = 1.0, 1e5
+LOWEST_HZ, HIGHEST_HZ = 1.0, 1e5  # the pulse outputs that the tables are made for end at 100 kHz (docs/pulses.md)
 
 
 @app.callback()
@@ -78,13 +78,16 @@ def pulses(program: Program, files: CellOptions, tables: _TableOptions, output: 
     with reported():
         from robolang.core.storage import check_folder, check_writable, write_folder
 
+        # before the program is read: planning takes the most time, and would be lost
         check_folder(output.out, written_here)
         if output.plot is not None:
             check_writable(output.plot)
         from robolang.project.project import load_project
 
         project = load_project(program, files.cell, files.robot)
-        _refuse(project)
+        _refuse(
+            project
+        )  # not cli.refuse, which plans the motion of a run: the export plans by the limits of its channels
         found = _exported(project, request)
         write_folder(output.out, {name: text.encode("utf-8") for name, text in found.files.items()}, written_here)
         if output.as_json:
@@ -120,6 +123,7 @@ def _exported(project: "Project", request: "ExportRequest") -> "Export":
 
 def written_here(name: str) -> bool:
     """Return whether a file of that name may be one of an earlier export."""
+    # a folder with any other file is left alone: it may be the user's, and the whole folder would be replaced
     return name == "manifest.json" or re.fullmatch(r"\d+_line\d+_\w+(\.f174)?\.csv", name) is not None
 
 
@@ -133,6 +137,7 @@ def _step_hz(text: str) -> int:
         shown, shortest, longest = beside(ms, SHORTEST_MS, LONGEST_MS)
         raise OptionValueError("--step", f"{shown} ms is not between {shortest} and {longest} ms")
     whole = round(1000.0 / ms)
+    # to 1e-9: 1000 / 3.3333333333 is meant as 300
     if not abs(1000.0 / ms - whole) <= 1e-9 * whole:
         near = ", ".join(f"{1000.0 / each:g}ms" for each in (whole + 1, max(whole, 1)))
         raise OptionValueError(
@@ -155,6 +160,7 @@ def _refuse(project: "Project") -> None:
 def _plain(found: "Export", out: Path) -> dict[str, Any]:
     from robolang.pulse_tables.export import MANIFEST, summary
 
+    # from the manifest: what is printed is what was written
     sequence = json.loads(found.files[MANIFEST])["sequence"]
     head = ("line", "number", "text")
     moves = [{key: entry[key] for key in head} for entry in sequence if entry["kind"] == "move"]
@@ -220,7 +226,7 @@ def _moves_table(found: "Export", moves: list[dict[str, Any]], markers: list[dic
     table = _table(*where, *headings, statement_width=26 if len(where) == 1 else 21)
     move_rows = ((*lines.cells(entry, where), *_move_row(entry)) for entry in moves)
     marker_rows = ((*lines.cells(entry, where), safe(entry["text"])) for entry in markers)
-    for item in found.sequence:
+    for item in found.sequence:  # two lists that keep their order, merged as the program has them
         table.add_row(*next(move_rows if isinstance(item, ExportedMove) else marker_rows))
     return table
 
@@ -269,5 +275,6 @@ def _plot(folder: Path, file: Path) -> None:
     from runtime.pulses.folder import read_export
     from runtime.pulses.replay import replay
 
+    # read back and not kept: a plot of what a PLC gets shows an error of the writer too
     found = read_export(folder)
     write_plot(file, found, replay(found))

@@ -222,6 +222,7 @@ def _print(request: "Request", found: dict[str, Any]) -> None:
     for heading in ("accel.\nrad/s2", *(heading for heading, _ in _COLUMNS), "error\n%"):
         table.add_column(heading, justify="right", no_wrap=True)
     for row in found["axes"]:
+        # a real robot would have no such column: nobody knows its true inertia
         off = (row["identified_kg_m2"] / row["true_kg_m2"] - 1.0) * 100.0
         figures = (f"{row[key] / _UNIT:.3f}" for _, key in _COLUMNS)
         table.add_row(f"J{row['axis']}", f"{row['acceleration_rad_s2']:.2f}", *figures, f"{off:+.2f}")
@@ -246,7 +247,7 @@ def _weights(found: dict[str, Any]) -> "Table":
         table.add_column(heading, justify="right", no_wrap=True)
     for row in found["axes"]:
         moment = found["first_moments_kg_m"][row["axis"] - 1]
-        known = "friction_nm" in row
+        known = "friction_nm" in row  # weight and friction part over three positions or more (docs/identification.md)
         table.add_row(
             f"J{row['axis']}",
             f"{row['friction_nm']:.2f}" if known else "-",

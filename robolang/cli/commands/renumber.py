@@ -64,6 +64,7 @@ def renumber(program: _File, numbers: _Numbers, output: _Output) -> None:
 
 def _refuse(numbers: _Numbers, output: _Output) -> None:
     """Refuse options that contradict each other."""
+    # None and not 10 by default: only so can it be seen that they were given
     if numbers.remove and (numbers.start is not None or numbers.step is not None):
         raise OptionValueError("--remove", "cannot be used with --start or --step: no number is given")
     if output.out is not None and output.dry:

@@ -278,7 +278,7 @@ def _loops(spec: "RobotSpec") -> "Table":
             f"J{index}",
             f"{axis.bandwidths.position:g}",
             f"{axis.bandwidths.velocity:g}",
-            f"{axis.motor.current_bandwidth / (2.0 * math.pi):g}",
+            f"{axis.motor.current_bandwidth / (2.0 * math.pi):g}",  # rad/s here, Hz in robot files
             f"{axis.motor.encoder_counts}",
         )
     return table

@@ -34,7 +34,7 @@ def _as_json(entry: "Code") -> dict[str, Any]:
     """Return a rule as plain JSON types; what only a page says is null for a rule that has none."""
     from robolang.lint.registry import rule
 
-    known = rule(entry.code)
+    known = rule(entry.code)  # None: an error of the language has a code, and no page that argues for it
     return {
         "code": entry.code,
         "name": entry.name,

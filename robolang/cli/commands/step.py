@@ -141,7 +141,7 @@ def _check_range(q: "Array", axis: int, size: float, spec: "RobotSpec") -> None:
     for joint, sentence in values.outside(q, spec.lower, spec.upper):
         raise OptionValueError("--joints", sentence, joint + 1)
     end = q.copy()
-    end[axis : axis + 1] += size
+    end[axis : axis + 1] += size  # a slice, which an axis that is not there leaves empty
     for _, sentence in values.outside(end, spec.lower, spec.upper):
         raise OptionValueError("--size", f"at the end of the step {sentence}")
 

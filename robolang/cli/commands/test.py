@@ -141,11 +141,13 @@ def _judged(program: Path, expected: "Expectation", update: bool) -> "tuple[list
 
     project = load_project(program)
     plans = PlanMemory(project)
+    # a text with errors has no motion to check
     refused = [item for item in project.diagnostics if item.severity is Severity.ERROR] or list(
         motion_check(project, plans)
     )
     if refused:
         why = "; ".join(_shown(project, item) for item in refused)
+        # not yet a failure: a test may expect that its program is refused
         return judge_refused(expected, [item.code for item in refused], why), 0.0
     session = Session(project, physics=expected.physics, plans=plans)
     result = session.run()

@@ -68,6 +68,7 @@ def weigh(program: OptionalProgram, files: CellOptions, options: _PayloadOptions
 
 def weigh_subject(subject: str, plant: str, output: JsonOptions) -> None:
     """Weigh what the arm carries in the cell of a program, or on a robot: ``robolang identify --payload``."""
+    # by the ending, as `identify` decides for everything else
     is_program = subject.lower().endswith(".rbl")
     files = CellOptions() if is_program else CellOptions(robot=subject)
     weigh(subject if is_program else None, files, _PayloadOptions(plant=plant), output)

@@ -162,6 +162,7 @@ def _print(robot: str, shown: list["Shown"], out: Path | None) -> None:
     console.print("* from the switch on; of the whole move where there is none", style="italic")
     _print_components(console, shown)
     worst = max((float(run.off_path.max()) for _, runs in shown for run in runs), key=badness)
+    # one digit: the rest of a rounding error differs from machine to machine
     console.print(f"tool point at most {worst * 1e3:.0e} mm off its path at any control point")
     if out is not None:
         console.print(safe(f"all plots: {out / 'index.html'}"), soft_wrap=True)
@@ -284,6 +285,7 @@ def _joints_svg(title: str, figure: "Figure", runs: list["Run"]) -> str:
         for k, run in enumerate(runs)
         for axis in (3, 4, 5)
     ]
+    # only a seam moves the end of a run; otherwise the runs of a figure share theirs, and one set of dots is drawn
     moved = any(run.trial.seam for run in runs)
     ends = np.concatenate([run.q_end[3:] for run in (runs if moved else runs[:1])]) / DEG
     dots = Dots(name="taught and moved end" if moved else "taught end", x=np.full(len(ends), runs[0].t[-1]), y=ends)
@@ -322,7 +324,7 @@ def _components_svg(title: str, figure: "Figure", run: "Run") -> str:
     from runtime.core.units import DEG
 
     switch = run.switch_s or 0.0
-    shown = run.t >= switch - _LEAD_S - 1e-9
+    shown = run.t >= switch - _LEAD_S - 1e-9  # a sample on the bound is shown, whichever side rounding puts it on
     curves = [
         Curve(name=name, x=run.t[shown], y=run.components[shown, k] / DEG)
         for k, name in enumerate(("tilt", "advance", "rotation"))
