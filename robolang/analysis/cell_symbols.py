@@ -1,8 +1,8 @@
 """What a program may name and what its arm may do: the facts of the cell that need no numerics.
 
-``CellSymbols.of(cell, points)`` is the only way from files to facts, and one value of it is in the ``Analysis`` that
-check, a run, the dry run and an editor share, so that they cannot disagree. A fact that is None is not known and not
-checked. Names are in capitals.
+Only ``CellSymbols.of(cell, points)`` makes facts of files. One value of it is in the ``Analysis`` that check, a run,
+the dry run and an editor share, so that they cannot disagree. A fact that is None is not known and not checked. Names
+are in capitals.
 """
 
 from collections.abc import Collection, Mapping
@@ -54,6 +54,7 @@ class CellSymbols(Record):
                 robot=arm.name,
                 limits=arm.limits,
                 rated_payload=arm.rated_payload,
+                # in mm/s as in the text: planners convert back to compare (``Limit.fault``)
                 max_speed_mm_s=arm.path.max_speed / MM,
             )
         if not isinstance(cell, CellFile):

@@ -38,6 +38,7 @@ def check(program: Program, symbols: CellSymbols = NOTHING_KNOWN, facts: Facts |
     """
     facts = Facts(program) if facts is None else facts
     structure = facts.blocks
+    # one more than is kept, so that ``in_order`` can say that there are more
     found = list(
         islice(
             chain(
@@ -64,6 +65,7 @@ def _beside(found: list[Diagnostic], more: Iterator[Diagnostic]) -> list[Diagnos
 
 
 def _statements(program: Program, structure: Structure, symbols: CellSymbols) -> Iterator[Diagnostic]:
+    # where blocks are wrong, nobody knows which SUB a line is in: each line sees all names then
     defined = Defined.of(program, {} if structure.diagnostics else structure.owner, structure.lost_subs)
     checks = StatementCheck(symbols, defined)
     found = list(islice(_each_statement(program, structure, defined, checks), MAX_DIAGNOSTICS + 1))
@@ -83,7 +85,7 @@ def _each_statement(
             message = f"operators and parentheses stand more than {MAX_LEVELS} levels inside one another"
             yield Diagnostic(code="RBL108", message=message, span=line.statement.span)
             continue
-        said: set[tuple[str, Span]] = set()  # two rules may look at one expression
+        said: set[tuple[str, Span]] = set()  # two rules may check one expression
         for found in checks.check(line.statement):
             if (found.code, found.span) not in said:
                 yield found

@@ -1,4 +1,4 @@
-"""Names of a program with the places of every definition and every use: what an editor asks for.
+"""Names of a program with the places of every definition and every use: what an editor shows.
 
 A name means one of several things: a value, an array, a SUB, a label, a line number, or something of the cell. Values
 and arrays are looked up as a run does it (``interpreter.scope``): in the SUB that the line is in, then in the main
@@ -161,7 +161,7 @@ class SymbolTable:
         index = bisect_right(self._scopes, offset, key=lambda entry: entry[0]) - 1
         here = self._scopes[index][1] if index >= 0 else None
         seen = {(_space(symbol.kind), symbol.name.upper()): symbol for symbol in self._of_cell()}
-        for scope in (None, here):
+        for scope in (None, here):  # the SUB last: its names replace those of the main program
             own = (symbol for symbol in self.symbols if symbol.definitions and symbol.scope == scope)
             seen.update({(_space(symbol.kind), symbol.name.upper()): symbol for symbol in own})
         return tuple(sorted(seen.values(), key=lambda symbol: (symbol.name.upper(), symbol.kind.value)))
@@ -204,6 +204,7 @@ class SymbolTable:
         definitions = [place for place in places if place.role.defines]
         kind = definitions[0].role.kind if definitions else key[0]
         return Symbol(
+            # uses may be spelt in other capitals
             name=(definitions or places)[0].text,
             kind=kind or key[0],
             scope=key[1],
@@ -238,6 +239,7 @@ def _places(line: Line, index: int, structure: Structure) -> Iterator[_Place]:
         yield _Place(line.label.text, name, _Role(SymbolKind.LABEL, defines=True), None)
     if line.statement is None:
         return
+    # by identity: in a(n) = n equal names have different roles
     roles: dict[int, _Role] = {}
     for node in walk(line.statement):
         roles.update(_roles(node))

@@ -66,6 +66,7 @@ class Search(Generic[Fact]):
 
     def __init__(self, edges: Edges, step: Step[Fact]) -> None:
         self._edges, self._step = edges, step
+        # one set more than there are lines: what holds where the program ends by itself
         self._before: list[set[Fact]] = [set() for _ in range(len(edges) + 1)]
         self._seen: set[tuple[int, int, Fact, int]] = set()
         self._work: list[tuple[int, int, Fact, int]] = []
@@ -81,6 +82,7 @@ class Search(Generic[Fact]):
         self._push(self._context("main", 0, first, NOTHING), 0, first, NOTHING)
         most = min(max(MAX_STEPS * len(self._before), LEAST_STEPS), MOST_STEPS)
         while self._work or self._returning:
+            # returns count as steps: of a part with many callers and exits there are more than of its lines
             if len(self._seen) + self._returned > most:
                 return None
             if self._returning:
@@ -115,6 +117,7 @@ class Search(Generic[Fact]):
         elif edge.kind == "catch":
             self._push(context, at + 1, fact, edge.to)
         elif edge.kind in ("gosub", "call"):
+            # a SUB has handlers of its own; NOTHING sends what it does not catch to the handler of its CALL
             within = handler if edge.kind == "gosub" else NOTHING
             self._enter(edge.kind, edge.to, fact, within, _Caller(context, at, handler))
         elif edge.kind == "fail":
@@ -127,6 +130,7 @@ class Search(Generic[Fact]):
         self._push(callee, line, fact, handler)
         if caller not in self._callers[callee]:
             self._callers[callee].add(caller)
+            # the part may have been searched for an earlier caller: its exits hold for this one as well
             self._returning += [(kind, caller, left) for left in self._exits[callee]]
 
     def _exit(self, context: int, left: _Exit[Fact]) -> None:
@@ -137,7 +141,7 @@ class Search(Generic[Fact]):
     def _fail(self, at: _Caller, fact: Fact) -> None:
         """Follow an error at a statement."""
         if at.handler >= 0:
-            self._enter("handler", at.handler, fact, STOPS, at)
+            self._enter("handler", at.handler, fact, STOPS, at)  # an error within a handler ends the run
         elif at.handler == NOTHING:
             self._exit(at.context, _Exit("fail", fact, NOTHING))
 

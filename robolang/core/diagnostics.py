@@ -215,6 +215,7 @@ def _columns(text: str) -> tuple[str, list[int]]:
 
 
 def _width(character: str) -> int:
+    # these are drawn over the character before them, or not at all
     if unicodedata.combining(character) or unicodedata.category(character) in ("Mn", "Me", "Cf"):
         return 0
     return 2 if unicodedata.east_asian_width(character) in "WF" else 1

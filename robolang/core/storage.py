@@ -33,7 +33,7 @@ _HERE, _RENAME_EXCHANGE = -100, 2  # AT_FDCWD and RENAME_EXCHANGE of Linux
 
 
 def check_writable(path: Path) -> None:
-    """Raise ``Fault`` RBL706 when a file of that name could not be written now; leaves nothing behind."""
+    """Raise ``Fault`` RBL706 when a file of that name could not be written now; nothing is left of it."""
     target, _ = _target(path)
     try:
         with tempfile.TemporaryFile(dir=target.parent, prefix=_PREFIX, suffix=_SUFFIX) as probe:
@@ -159,7 +159,7 @@ def _take_over(handle: int, old: os.stat_result | None) -> None:
 
 
 def check_folder(path: Path, ours: Callable[[str], bool]) -> None:
-    """Raise ``Fault`` RBL706 when ``write_folder`` could not make or replace that folder now; leaves nothing behind."""
+    """Raise ``Fault`` RBL706 when ``write_folder`` could not make or replace that folder now; nothing is left of it."""
     try:
         if path.is_symlink() or path.exists():
             if not path.is_dir() or path.is_symlink():

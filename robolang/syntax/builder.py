@@ -66,6 +66,7 @@ def _from_declaration(node: str) -> Callable[..., Any]:
         found = [part for part in parts if part is not None]
         # Lark's tokens are texts, too, and so are those of line_reader
         operands = [part for part in found if not isinstance(part, str)]
+        # not strict: optional operands that are left out are the last ones
         fields: dict[str, Any] = dict(zip(names, operands, strict=False))
         if rest:
             fields[rest] = tuple(operands[len(names) :])

@@ -59,6 +59,7 @@ class Fails(Enum):
     """It may, whatever its expressions are: a move that cannot be planned."""
 
 
+# tuples and not data classes: all of them are built at each start of ``robolang check``
 class Operand(NamedTuple):
     """An operand of a statement or of an option; ``name`` is the field of its node, ``shown`` stands for it in forms.
 
@@ -89,7 +90,7 @@ class Declaration(NamedTuple):
     """A statement, or an option of a move.
 
     ``node`` is its class in ``robolang.syntax.ast``; several statements may share one, which then has their first
-    words in ``word``. ``effect`` is the class of ``robolang.interpreter.effects`` that it asks for, empty where it has
+    words in ``word``. ``effect`` is the class of ``robolang.interpreter.effects`` that it requests, empty where it has
     none of its own; ``closes`` and ``divides`` the word of the block that it ends or divides.
     """
 
@@ -138,10 +139,11 @@ class Declaration(NamedTuple):
 
     @property
     def drains(self) -> bool:
-        """Whether all motion ends before it: it asks the robot or the cell for something, and is no move.
+        """Whether all motion ends before it: it requests something of the robot or the cell, and is no move.
 
         A statement that reads an input, the time or a pose lets motion end as well (``state_reads``).
         """
+        # moves blend into one another, and each carries the WRIST that holds for it
         return self.effect not in ("", "MoveTo", "SetWrist")
 
 
@@ -201,5 +203,6 @@ def _shown(parts: tuple[Piece, ...], shown: dict[str, str]) -> str:
         elif isinstance(part, Field):
             text += shown[part.name]
         else:
+            # the blank or comma that a bracket begins with belongs to the form, the blank before the bracket to this
             text += f" [{_shown(part, shown).lstrip(' ')}]"
     return text

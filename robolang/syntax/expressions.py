@@ -52,6 +52,7 @@ class Name(Operand):
     def __init__(self, *, text: str, parentheses: int = 0, span: Span = NOWHERE) -> None:
         self.text: Final = text
         upper = text.upper()
+        # names recur throughout a program: one text for all of them saves memory
         self.key: Final = text if upper == text else intern(upper)
         self.parentheses = parentheses
         self.span = span
@@ -187,6 +188,7 @@ class Wrist(Node):
     ) -> None:
         self.mode: Final = mode
         self.held: Final = held
+        # a node that no parser made has no places, and readers go through both together
         self.held_spans: Final = held_spans or (NOWHERE,) * len(held)
         self.span = span
 

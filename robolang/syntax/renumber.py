@@ -127,6 +127,7 @@ def _edited(
         parts += [source.text[at : span.start], new]
         at = span.end
     text = "".join([*parts, source.text[at:]])
+    # longer numbers may make the text or a line larger than the parser takes
     if (problem := outgrown(text) or _too_long(source, text)) is not None:
         return RenumberResult(text=source.text, changed=False, diagnostics=(problem, *notes))
     return RenumberResult(

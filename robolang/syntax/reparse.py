@@ -80,6 +80,7 @@ def _moved(value: Any, by: int) -> Any:
     ``replace`` would run the constructor of every node again, which takes longer.
     """
     if isinstance(value, Span):
+        # NOWHERE is no place: moved, it would become one
         return value if value is NOWHERE else Span(value.start + by, value.end + by)
     if isinstance(value, tuple):
         return tuple([_moved(each, by) for each in value])

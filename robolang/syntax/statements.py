@@ -51,6 +51,7 @@ COMPONENTS = ("TILT", "ADVANCE", "ROTATION")
 """Components of the posture that the wrist can hold."""
 _WRIST = Declaration(
     "Wrist",
+    # HOLD first: the first form whose operands have values is printed, and ``mode`` always has one
     ("WRIST HOLD {held}", "WRIST {mode}"),
     "what the wrist may do: keep the sign of J5, change it, or that with one or two components held",
     (
@@ -81,6 +82,7 @@ _MORE = (
 )
 _OF_LINES = (_SPEED, *_MORE)
 _OF_JOINTS = (_SPEED_OF_JOINTS, *_MORE)
+# the nodes of both are the same, so one of them stands for the classes of the tree
 OPTIONS = _OF_LINES
 """The options of a move; those of MOVEJ differ in the unit of SPEED."""
 
@@ -230,7 +232,7 @@ _DATA = (
             _TARGET._replace(optional=True),
         ),
         effect="Pass",
-        fails=Fails.ALWAYS,
+        fails=Fails.ALWAYS,  # by its TIMEOUT; ``failing`` knows those that cannot
     ),
     Declaration(
         "Print",
@@ -293,12 +295,13 @@ _CONTROL = (
         ("NEXT[ {variable}]",),
         "ends a FOR",
         (_name("variable", "variable", optional=True),),
-        fails=Fails.ALWAYS,
+        fails=Fails.ALWAYS,  # RBL533, where a jump has led into the block
         closes="FOR",
     ),
     _head("WHILE {value}", "repeats a block as long as the condition is true", _number("value", "condition")),
     _block("WEND", "ends a WHILE", closes="WHILE"),
     _head("SELECT {value}", "begins a block that runs one CASE, by a value", _any("value")),
+    # its values are compared while the SELECT is carried out, and RESUME takes the SELECT again
     Declaration(
         "Case", ("CASE {values}",), "divides a SELECT: these values", (_values("values", ", "),), divides="SELECT"
     ),

@@ -23,6 +23,7 @@ def explain(found: Unexpected) -> Diagnostic:
         return Diagnostic(code="RBL114", message=message, span=found.span)
     if found.kind == "MALFORMED":
         return _malformed(found)
+    # the component first: P1 of P1.X = 5 would be called an unknown instruction
     return _component(found) or _unknown(found) or _unexpected(found)
 
 

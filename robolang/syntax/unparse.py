@@ -78,6 +78,7 @@ def _is_whole(form: tuple[Piece, ...], node: ast.Node) -> bool:
 
 def _has(node: ast.Node, piece: Field) -> bool:
     value = getattr(node, piece.name)
+    # a move is whole without options
     return value is not None and (value != () or piece.name == "options")
 
 
@@ -89,6 +90,7 @@ def _filled(form: tuple[Piece, ...], node: ast.Node) -> str:
             text += piece
         elif isinstance(piece, Field):
             text += _operand(node, piece.name)
+        # CALL name() keeps its empty parentheses (docs/decisions/0029)
         elif _is_whole(piece, node) or (piece[0] == "(" and getattr(node, "parentheses", False)):
             text += _filled(piece, node)
     return text

@@ -205,7 +205,7 @@ def _more(function: Function, name: str, times: int = 1) -> Function:
 
 
 def _special(name: str, takes: str, result: Kind, help: str, apply: Callable[..., Value], **more: Any) -> Function:
-    """Return a function that takes other values than numbers, or asks something of the program or the robot.
+    """Return a function that takes other values than numbers, or reads something of the program or the robot.
 
     ``takes`` names the parameters; one that ends in $ is a text, one in capitals a pose.
     """
