@@ -5,8 +5,8 @@ keeps its line. Each run is a run like any other, in its own process when there 
 depend on how many there are. The measures compare the true links with the command that the servo received at the
 same tick:
 
-- overshoot: how far an axis goes past the commanded end of a MOVE, in percent of its last approach, that is the way
-  from where its command last turned round; axes that approach over less than ``LEAST`` are left out;
+- overshoot: how far an axis goes past the commanded end of a MOVE, in percent of its last approach, from where
+  its command last turned round; axes that approach over less than ``LEAST`` are left out;
 - settling: time after the command has ended until every axis stays within 2 % of its last approach;
 - joint and tool error, largest and root of the mean square; deviation from the straight line;
 - droop: joint error that is left when a MOVE is done. There is no integrator that would take it away.
@@ -61,7 +61,7 @@ Options = dict[str, tuple[str, Any]]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Variant:
-    """One way of carrying the program out: its settings over those in force, and what becomes of LOAD."""
+    """One variant of the run: its settings over those in force, and what becomes of LOAD."""
 
     name: str
     title: str
@@ -151,7 +151,7 @@ def compare(
     jobs: int = 1,
     done: Callable[[str], None] = lambda name: None,
 ) -> list[dict[str, Any]]:
-    """Return one row for each variant, in their order; ``done`` is told of each that is finished."""
+    """Return one row for each variant, in their order; ``done`` is called with the title of each that is finished."""
     if jobs <= 1 or len(variants) == 1:
         rows = []
         for variant in variants:
@@ -187,7 +187,7 @@ def run_variant(request: Request, variant: Variant) -> dict[str, Any]:
 
 
 def _idle(variant: Variant, same_settings: bool, loads: "_Loads") -> list[str]:
-    """Return what of a variant changes nothing in comparison with ``BASE``, in words."""
+    """Return in words which changes of a variant make no difference to ``BASE``."""
     found = []
     if same_settings and variant.settings != BASE.settings:
         found.append("these settings are in force already")
@@ -210,6 +210,7 @@ def _without_equals(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
         variant = by_name.get(row["variant"], BASE)
         parts = (variant.settings != BASE.settings) + (variant.load != "as written")
         reason = "; ".join(idle)
+        # settings that differ may still change nothing for this program: the motion decides
         if variant != BASE and len(idle) < parts and motion == motions.get(BASE.name):
             idle, reason = [""] * parts, f"the arm moves exactly as with {BASE.title}"
         nothing = variant != BASE and len(idle) == parts
@@ -252,6 +253,7 @@ class _Loads:
             return effect
         declared, rated = self._declared, self._cell.robot.rated_payload
         x, y, z = (declared.cog / MM).tolist()
+        # by its values, since a load of the cell that is named could not be changed
         return replace(effect, name="", cog_mm=(x, y, z), mass_kg=wrong_mass(declared.mass, rated))
 
 
@@ -276,6 +278,7 @@ def measures(log: dict[str, Array], X_cmd: Array, statements: list[StatementRun]
     ticks = np.concatenate([np.arange(run.first_tick, run.end_tick) for run in moves])
     joint = np.abs(log["q_cmd"][ticks] - log["q_link"][ticks]) / DEG
     p_tool = log["X_world_tool"][:, :3, 3]
+    # a sensor takes the tool off the programmed line on purpose; that is no deviation
     p_line = p_tool - log["seam_deviation"][:, :3]
     tool = np.linalg.norm(X_cmd[ticks, :3, 3] - p_tool[ticks], axis=1) / MM
     rows = [_move(run, log, p_line) for run in moves]
@@ -299,7 +302,7 @@ def measures(log: dict[str, Array], X_cmd: Array, statements: list[StatementRun]
 
 
 def _worst_overshoot(moves: list[dict[str, Any]]) -> float | None:
-    """Return the largest overshoot of moves, %; None when none of them has one."""
+    """Return the largest overshoot of moves, %; None when no move has one."""
     overshoots = [move["overshoot_pct"] for move in moves if move["overshoot_pct"] is not None]
     return max(overshoots, key=badness, default=None)
 
@@ -307,7 +310,7 @@ def _worst_overshoot(moves: list[dict[str, Any]]) -> float | None:
 def _longest_settling(moves: list[dict[str, Any]]) -> float | None:
     """Return the longest settling time of moves, s; None when one of them does not settle."""
     settled = [move["settling_s"] for move in moves]
-    return None if None in settled else max(settled)
+    return None if None in settled else max(settled)  # a largest time beside a move that never settles would mislead
 
 
 def _move(run: StatementRun, log: dict[str, Array], p_tool: Array) -> dict[str, Any]:
@@ -345,7 +348,7 @@ def last_approach(q_cmd: Array, q_link: Array, t: Array) -> tuple[float | None, 
         worst = max(worst or 0.0, past, key=badness)
         outside = np.flatnonzero(~(np.abs(q_link[stop:, axis] - end[axis]) <= BAND * abs(stroke)))
         if len(outside):
-            if outside[-1] == len(q_link) - stop - 1:
+            if outside[-1] == len(q_link) - stop - 1:  # still outside at the last tick
                 return worst, None
             settled = max(settled, float(t[stop + outside[-1] + 1] - t[stop]))
     return worst, settled

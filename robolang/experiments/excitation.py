@@ -2,8 +2,8 @@
 
 They keep the arm over the ground and, on a plant with contacts, out of itself, by the shapes that such a plant has.
 
-``plan`` is for one axis: the posture in which the others are held, the places that it passes, and the quintic way past
-them. ``plan_table`` is for the grid of postures over the joints beyond the axis, at each of which it passes one place.
+``plan`` is for one axis: the posture in which the others are held, the places that it passes, and the quintic motion
+past them. ``plan_table`` is for the grid of postures over the joints beyond the axis; at each it passes one place.
 """
 
 from collections.abc import Callable
@@ -29,7 +29,7 @@ from runtime.servo.motor import torque_limit
 from runtime.settings.profile import Profile
 
 STROKE = 0.5
-"""Way of a test motion, rad, where the range has room for it."""
+"""Length of a test motion, rad, where the range has room for it."""
 LEAST_STROKE = 0.1
 """Shorter than this an axis is not identified, rad."""
 MARGIN = 2.0 * DEG
@@ -49,7 +49,7 @@ NEAR = 0.05
 TABLE_JOINTS = (1, 2)
 """Joints over which a table is made, where they are beyond its axis: the inertia depends most on them."""
 RASTER = 25
-"""Angles of each joint at which it is looked up where a table may reach."""
+"""Angles of each joint at which it is checked where a table may reach."""
 
 LIGHTEST = 0.01
 """Mass of the hand that MuJoCo is given where nothing is carried, kg; it is declared as well."""
@@ -86,7 +86,7 @@ class Request:
 class Test:
     """The test motions of one axis: home ``q`` (n,) rad, ``positions`` (P,) rad, ``stroke`` rad, ``rows`` (K + 1,).
 
-    ``rows`` is the way from 0 to ``stroke``, a set-point every cycle.
+    ``rows`` goes from 0 to ``stroke``, a set-point every cycle.
     """
 
     axis: int
@@ -274,6 +274,7 @@ def _planned(request: Request, model: ArmModel, axis: int, q: Array, room: tuple
         np.sqrt(_PEAK_ACCELERATION * stroke / (SHARE * limits.acceleration)),
         _PEAK_SPEED * stroke / (SHARE * limits.speed),
     )
+    # slower needs less torque, and gives less acceleration to identify from: the fastest that fits is taken
     for slower in np.geomspace(1.0, LONGEST, 8):
         cycles = int(np.ceil(slower * shortest / profile.period_s))
         test = Test(
@@ -296,6 +297,7 @@ def _refusal(spec: RobotSpec, profile: Profile, model: ArmModel, test: Test) -> 
             rows[:, test.axis] = start + test.rows
             q, dq, ddq = FineInterpolator(profile.ticks_per_cycle, profile.period_s, rows[0]).expand(rows)
             tau = np.array([model.torque(*motion) for motion in zip(q, dq, ddq, strict=True)])
+            # the model has links only; the motor turns its rotor and works against friction as well
             tau += rotor * ddq + friction * np.sign(dq) + spec.per_axis("motor", "joint_viscous_friction") * dq
             for what, unit, values, least, most in (
                 ("angle", "deg", q, lower, upper),
@@ -332,7 +334,7 @@ def posture(spec: RobotSpec, model: ArmModel, axis: int, folded: Folds) -> tuple
     The posture is one near the middle of the ranges with the model's D_ii near its mean over the ranges, preferably
     such that the axis can go through its whole range.
     """
-    rng = np.random.default_rng(560)
+    rng = np.random.default_rng(560)  # a seed of its own: the same robot gets the same test motions in every run
     middle, width = 0.5 * (spec.lower + spec.upper), spec.upper - spec.lower
     mean = np.mean([axis_inertia(model, q, axis) for q in rng.uniform(spec.lower, spec.upper, (200, spec.n))])
     offsets = rng.uniform(-1.0 / 3.0, 1.0 / 3.0, (300, spec.n))
@@ -389,17 +391,18 @@ def _unfolded(spec: RobotSpec, q: Array, axis: int, room: tuple[float, float], f
         for index in range(_SCAN, end + step, step):
             row[axis] = own[index]
             if folded(row):
-                ends[-1] = index - 2 * step
+                ends[-1] = index - 2 * step  # a step off the last free angle: the touch begins between two of them
                 break
     first, last = (float(own[index]) for index in ends)
     return (first, last) if first <= last else (float(own[_SCAN]),) * 2
 
 
 def quintic(s: Array) -> Array:
-    """Return the share of its way that a test motion has gone at the share s of its duration."""
+    """Return the share of its stroke that a test motion has gone at the share s of its duration."""
     return np.asarray(s**3 * (10.0 - 15.0 * s + 6.0 * s * s))
 
 
 _SCAN = 90
+# of the quintic over a stroke and a duration of 1: its speed at s = 1/2, its acceleration at s = ``PEAK``
 _PEAK_SPEED = 1.875
 _PEAK_ACCELERATION = 10.0 / np.sqrt(3.0)

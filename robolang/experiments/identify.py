@@ -61,9 +61,9 @@ WINDOW = 0.15
 HOLD_S = 0.2
 """Rest before each pass, s."""
 PLACES = 3
-"""Fewest places of an axis that tell its weight from its friction."""
+"""Fewest places of an axis from which its weight can be separated from its friction."""
 Progress = Callable[[int, int, float], None]
-"""Told of the axis (0-based), the position's number from 1 and the position, rad, before each position; those of a
+"""Called before each position with the axis (0-based), the position's number from 1 and the position, rad; those of a
 table come last."""
 
 
@@ -100,7 +100,7 @@ class Passage:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TableResult:
-    """What came of an axis' table: ``grid`` rad of each of ``joints`` (0-based); inertias at the motor, row-major."""
+    """The result of an axis' table: ``grid`` rad of each of ``joints`` (0-based); inertias at the motor, row-major."""
 
     joints: tuple[int, ...]
     grid: tuple[tuple[float, ...], ...]
@@ -117,7 +117,7 @@ class TableResult:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AxisResult:
-    """What came of one axis; inertias kg m2 at the motor, one per position (P,) where they are arrays.
+    """The result of one axis; inertias kg m2 at the motor, one per position (P,) where they are arrays.
 
     ``true`` is what the plant really has in that posture, rotor included: a simulation knows. ``held`` (K,) N m at the
     joint are the torques without acceleration, weight and friction, in ``postures`` (K, n) rad: those of the positions,
@@ -172,6 +172,7 @@ def with_errors(spec: RobotSpec, seed: int, low: float = 0.05, high: float = 0.2
 def identify(request: Request, progress: Progress = lambda axis, number, q: None) -> list[AxisResult]:
     """Identify the axes one after the other; ``Fault`` RBL420 before anything moves, RBL5xx where a motion failed."""
     carried = _carried(request)
+    # all of them first: what cannot be identified is refused before anything moves
     tests = [plan(request, carried, axis) for axis in request.axes]
     grids = [plan_table(request, carried, test) for test in tests]
     return [_identify_axis(request, carried, *both, progress) for both in zip(tests, grids, strict=True)]
@@ -210,7 +211,7 @@ def compensation_of(request: Request, results: list[AxisResult], date: str = "")
         date=date,
         positions=request.positions,
         axes=tuple(axes),
-        payload=replace(carried, inertia=np.zeros((3, 3))),
+        payload=replace(carried, inertia=np.zeros((3, 3))),  # the file has mass and centre only
     )
 
 
@@ -277,7 +278,7 @@ class _Bench:
         servo, watched = profile.servo, replace(profile.supervision, collision=np.inf, payload_mismatch="off")
         if request.plant == "rigid":  # no gear springs there
             servo = replace(servo, spring_compensation=0.0, gravity_lead=0.0)
-        # a model that is wrong is what is looked for here: no collision and no payload can be told from it
+        # the model is wrong by what is to be identified: torques off it are neither a collision nor a payload
         profile = replace(profile, servo=servo, supervision=watched)
         known = replace(bench(request), home=first)
         real = replace(known, robot=request.real or spec)
@@ -302,10 +303,10 @@ class _Bench:
         half = round(WINDOW * len(test.rows) * controller.profile.ticks_per_cycle)
         return passage(rows[:, 2 * n + test.axis], rows[:, n + test.axis], position, half, self._tick_s)
 
-    def _play(self, way: Array, position: float, checked: bool = True) -> None:
+    def _play(self, angles: Array, position: float, checked: bool = True) -> None:
         controller, axis = self._controller, self._test.axis
-        rows = np.tile(controller.areas.ina, (len(way), 1))
-        rows[:, axis] = way
+        rows = np.tile(controller.areas.ina, (len(angles), 1))
+        rows[:, axis] = angles
         controller.play(rows, checked)
         for _ in rows:
             controller.cycle()

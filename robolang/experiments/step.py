@@ -1,4 +1,4 @@
-"""The step experiment: one axis of a robot, held at a posture with a payload, is told to be somewhere else at once.
+"""The step experiment: one axis of a robot, held at a posture with a payload, is commanded to another angle at once.
 
 The whole controller runs: cycle, dynamics task, servo of all axes, plant. Only fine interpolation is left out, so that
 the servo sees a true step (its commanded speed and acceleration stay zero), as in the experiments of docs/servo.md.
@@ -104,7 +104,7 @@ class StepRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StepResult:
-    """What came of it: angles in rad, times in s; None where the response never got there.
+    """The response of a step: angles in rad, times in s; None where it was never reached.
 
     ``t`` (N,) from the step on, ``response`` (N,) from the rest position. ``inertia`` is the true D' with the rotor,
     ``gain_inertia`` the D' in the velocity loop, kg m2.
@@ -129,6 +129,7 @@ def step(request: StepRequest) -> StepResult:
     """
     _check(request)
     robot = ideal_drives(request.robot) if request.ideal else request.robot
+    # a step is a following error of its whole size, which supervision would stop (RBL511)
     profile = replace(request.profile, supervision=replace(request.profile.supervision, enabled=False))
     if request.plant == "rigid":  # no friction there, so there is none to compensate
         profile = replace(profile, servo=replace(profile.servo, friction_compensation=0.0))
@@ -165,6 +166,7 @@ def _cell(robot: RobotSpec, request: StepRequest) -> CellSpec:
     cell = builtin_cell()
     mass = max(request.carried.mass, LIGHTEST if request.plant == "mujoco" else 0.0)
     hand = replace(cell.hand, mass=mass, cog=request.carried.cog)
+    # without obstacles, since the posture may be anywhere in the joint ranges
     return replace(cell, robot=robot, home=request.q, hand=hand, parts=(), obstacles=())
 
 
@@ -194,7 +196,7 @@ def _measure(request: StepRequest, controller: Controller, first: int) -> StepRe
     q, rest = log["q_link"][:, axis], log["q_link"][first - 1, axis]
     response = q[first:] - rest
     t = np.arange(len(response)) * tick_s
-    last = response[-round(0.1 / tick_s) :]
+    last = response[-round(0.1 / tick_s) :]  # the last 0.1 s are taken as settled
     stable = not controller.alarms and len(response) * tick_s > 0.9 * request.seconds
     stable = stable and bool(np.ptp(last) <= max(BAND * abs(size), 1e-4))  # the run was cut short, or still moves
     model = ArmModel(request.robot)

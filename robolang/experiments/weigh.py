@@ -1,4 +1,4 @@
-"""Weighing: the arm makes a short exercise about the home of its cell, and its torques say what it carries.
+"""Weighing: the arm makes a short exercise about the home of its cell, and its torques show what it carries.
 
 The whole controller runs, with no LOAD declared: cycle, dynamics task, servo, motors, plant. Only planning is left out:
 the exercise is a sum of sines, written into INA set-point by set-point. Axis i swings by
@@ -7,11 +7,11 @@ the exercise is a sum of sines, written into INA set-point by set-point. Axis i 
 
 so that every axis passes every angle in both directions, at many combinations of the others. The wrist axes swing by
 the whole amplitude, the last one by twice of it, since it turns the centre of gravity round in the torque of the one
-before; the main axes by a fifth, since they only have to turn to be believed, and the tool should stay where it is.
+before; the main axes by a fifth, which shows their dry friction and leaves the tool near its place.
 An axis that feels no weight anywhere, such as an upright waist, stands still.
 
 Range, speed and acceleration of every axis are checked over all servo ticks before anything moves. Supervision runs,
-except for its own opinion of payload and collision: there is no LOAD that could be wrong. What the torques of the
+except for its checks of payload and collision: there is no LOAD that could be wrong. What the torques of the
 exercise leave unexplained by any payload is judged afterwards instead (RBL516).
 """
 
@@ -121,36 +121,36 @@ def plan_exercise(request: WeighRequest) -> Exercise:
     """
     robot, home, profile = request.cell.robot, request.cell.home, request.profile
     unit = _shape(robot, profile.period_s)
-    wanted = _share(robot) * (AMPLITUDE if request.amplitude is None else request.amplitude)
-    if not wanted.any():
+    swings = _share(robot) * (AMPLITUDE if request.amplitude is None else request.amplitude)
+    if not swings.any():
         raise Fault("RBL411", f"no axis of {robot.name} feels the weight of what it carries")
     fine = FineInterpolator(profile.ticks_per_cycle, profile.period_s, np.zeros(robot.n))
     limits = robot.per_axis("limits", "speed"), robot.per_axis("limits", "acceleration")
     most = np.min([limit / peak for limit, peak in zip(limits, fine.peaks(unit), strict=True)], axis=0)
     room = np.minimum(robot.upper - home, home - robot.lower) - MARGIN
     if request.amplitude is None:
-        fitting = np.minimum(wanted, np.minimum(SHARE * most, room))
-        wanted = np.where(fitting >= np.minimum(LEAST, wanted), fitting, 0.0)
-        if not wanted.any():
+        fitting = np.minimum(swings, np.minimum(SHARE * most, room))
+        swings = np.where(fitting >= np.minimum(LEAST, swings), fitting, 0.0)
+        if not swings.any():
             raise Fault(
                 "RBL411",
                 f"home leaves no axis of {robot.name} {LEAST / DEG:g} deg to either side to swing",
                 "choose a home further inside the joint ranges",
             )
     else:
-        _refuse(robot, home, wanted, room, most, request.amplitude)
-    return Exercise(offsets=frozen(unit * wanted), amplitudes=frozen(wanted))
+        _refuse(robot, home, swings, room, most, request.amplitude)
+    return Exercise(offsets=frozen(unit * swings), amplitudes=frozen(swings))
 
 
-def _refuse(robot: RobotSpec, home: Array, wanted: Array, room: Array, most: Array, amplitude: float) -> None:
+def _refuse(robot: RobotSpec, home: Array, swings: Array, room: Array, most: Array, amplitude: float) -> None:
     """Raise the fault of the first axis whose swing passes a limit; the hint says which amplitude would not."""
-    moving = wanted > 0.0
-    best = amplitude * float(np.min(np.minimum(room, most)[moving] / wanted[moving])) / DEG
+    moving = swings > 0.0
+    best = amplitude * float(np.min(np.minimum(room, most)[moving] / swings[moving])) / DEG
     hint = "home is too near to the end of a joint range"
     if best >= 0.1:
         hint = f"an amplitude of {math.floor(10.0 * best) / 10.0:g} deg fits; without one each axis does what it can"
     for axis in np.flatnonzero(moving):
-        low, high, by = robot.lower[axis], robot.upper[axis], float(wanted[axis])
+        low, high, by = robot.lower[axis], robot.upper[axis], float(swings[axis])
         if not by <= room[axis]:
             end = home[axis] + by if high - home[axis] < home[axis] - low else home[axis] - by
             raise Fault(
@@ -187,7 +187,7 @@ def _shape(robot: RobotSpec, period_s: float) -> Array:
     t = np.arange(round(SECONDS / period_s) + 1) * period_s
     end = np.clip(np.minimum(t, t[-1] - t) / RAMP_S, 0.0, 1.0)
     w = end**3 * (10.0 - 15.0 * end + 6.0 * end**2)
-    k = np.resize(SWINGS, robot.n)
+    k = np.resize(SWINGS, robot.n)  # no two of seven axes alike: each meets many combinations of the others
     return np.asarray(w[:, None] * np.sin(2.0 * math.pi * k * t[:, None] / t[-1]))
 
 
@@ -201,7 +201,7 @@ def weigh(request: WeighRequest) -> WeighResult:
     robot, true = request.cell.robot, carried(request)
     plant = plant_of(_loaded(request.cell, true), profile.tick_s, physics=not rigid)
     controller = Rig.over(plant, request.cell, profile).controller
-    start = controller.areas.ina
+    start = controller.areas.ina  # the command that holds the arm against its springs, not its home angles
     _play(controller, np.zeros((round(SETTLE_S / profile.period_s), robot.n)) + start)
     first = controller.recorder.tick
     _play(controller, start + exercise.offsets)
@@ -227,7 +227,7 @@ def weigh(request: WeighRequest) -> WeighResult:
 
 
 def _profile(request: WeighRequest) -> Profile:
-    """Return the profile without the opinions on a payload that nobody has declared, and as the plant needs it."""
+    """Return the profile without the checks of a payload that nobody has declared, and as the plant needs it."""
     profile = request.profile
     watched = replace(profile.supervision, payload_mismatch="off", collision=math.inf)
     if request.plant == "mujoco":

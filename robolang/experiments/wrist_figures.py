@@ -1,7 +1,7 @@
 """The figures of CN103429397A (Kobe Steel): straight moves through a change of the wrist, computed by this controller.
 
-A *trial* is one of the moves E1 to E3 under one condition, a *run* what came of it, and a *figure* the runs that are
-drawn together. The document tells its moves by J5 alone (+65 -> -65, -10 -> +10, +10 -> -10 deg); their joint angles,
+A *trial* is one of the moves E1 to E3 under one condition, a *run* its result, and a *figure* the runs that are
+drawn together. The document gives its moves by J5 alone (+65 -> -65, -10 -> +10, +10 -> -10 deg); their joint angles,
 the robot (IRB 2400), the tool (200 mm along the flange axis), 4 s at constant speed and 10 ms are those of this
 project's acceptance experiments.
 
@@ -10,7 +10,7 @@ that the project put in its place, with frame, candidates and choice of ``runtim
 s (E2) or 1.8 s (E3), 20 ms, limits of 180, 180 and 225 deg/s. The seam of figure 11 is made up too.
 
 Nothing is planned here, so nothing is slowed, smoothed or refused; ``CartesianPlanner`` would make some of these
-moves in another way. What the document's rule alone does, good or bad, is what is to be seen. Angles rad, lengths m,
+moves differently. They show what the document's rule alone does, good or bad. Angles rad, lengths m,
 times s.
 """
 
@@ -96,11 +96,12 @@ class Figure:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Run:
-    """What came of a trial: joint angles ``q`` (N + 1, n) at times ``t`` (N + 1,); ``q_end`` (n,) where it should end.
+    """The result of a trial: joint angles ``q`` (N + 1, n) at times ``t`` (N + 1,); ``q_end`` (n,) where it should end.
 
-    ``switch`` is the sample from which the wrist goes its own way (None: it never does), ``axis`` (0-based) the one
-    that met the condition (None: no single one). ``posture`` (N + 1,): angle between the tool and its posture on the
-    path; ``components`` (N + 1, 3): the same as tilt, advance and rotation, with sign; ``off_path`` (N + 1,) m.
+    ``switch`` is the sample from which the wrist follows a joint curve of its own (None: it never does), ``axis``
+    (0-based) the one that met the condition (None: no single one). ``posture`` (N + 1,): angle between the tool and its
+    posture on the path; ``components`` (N + 1, 3): the same as tilt, advance and rotation, with sign; ``off_path``
+    (N + 1,) m.
     """
 
     trial: Trial

@@ -38,7 +38,7 @@ RAMP_S = 0.4
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrivenMove(ProgramLine):
-    """What became of a move: ``error_mm``, largest distance of the true tool point from the straight segment until the
+    """The result of a move: ``error_mm``, largest distance of the true tool point from the straight segment until the
     arm is in position; ``end_mm``, its distance from the end of it then; ``seconds`` until then.
     """
 
@@ -50,7 +50,7 @@ class DrivenMove(ProgramLine):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drive:
-    """What became of an export: its ``moves`` until an alarm, the ``alarms`` that ended it, ``warnings`` that did not.
+    """The result of an export: its ``moves`` until an alarm, the ``alarms`` that ended it, ``warnings`` that did not.
 
     ``seconds`` of simulated time; ``alarms`` and ``warnings`` have the tick at which they were raised (``tick_s``).
     """
@@ -84,7 +84,7 @@ def drive(export: Export, cell: CellSpec, profile: Profile, physics: bool = True
         raise Fault("RBL509", message, "Export the program in parts.")
     for item in export.sequence:
         if isinstance(item, Marker) and item.load is not None:
-            _payload(item.load, cell)
+            _payload(item.load, cell)  # for its fault, which must come before anything moves
     return _Arm(export, replace(cell, home=start), profile, physics).run()
 
 
@@ -170,10 +170,12 @@ class _Arm:
 
     def _hand(self, marker: Marker) -> Iterator[None]:
         self._controller.hand(marker.hand == "on")
+        # as in a run: a dwell takes whole cycles, rounded up
         for _ in range(0, round(marker.dwell_s * 1e6), self._profile.period_us):
             yield
 
     def _send(self, rows: Array) -> Iterator[None]:
+        # unchecked: tables that ask too much end in an alarm of the supervision, as on the real drives
         self._controller.play(rows, checked=False)
         for _ in rows:
             yield
@@ -206,6 +208,7 @@ class _Arm:
 
 def set_points(export: Export, move: Move, period_s: float) -> Array:
     """Return the joint set-points (K, M) rad of a move, one for each interpolation cycle, the last one its end."""
+    # less a share for rounding: tables of whole cycles must not get a set-point more
     count = int(np.ceil(move.steps * export.step_s / period_s - 1e-9))
     times = np.arange(1, count + 1, dtype=np.float64) * period_s
     return joint_values(export, positions(move, times))

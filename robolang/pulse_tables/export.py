@@ -160,6 +160,7 @@ class _Tables:
             return None
         rows = rows_of(emission.steps, start, move.pulses.count, request.step_hz)
         unit, scale = channel.unit
+        # the count first: a line in a loop makes several moves, and files then sort as they are played
         stem = f"{self._moves:02d}_line{effect.line}_{channel.joint.name}"
         where = named(effect.line, effect.number)
         comments = [
@@ -206,6 +207,7 @@ def _entry(item: ExportedMove | Marker, found: Export) -> dict[str, Any]:
         case ExportedMove():
             return {"kind": "move", **head, **_of_move(item, found)}
         case LoadMarker():
+            # rounded: 15.7 mm, stored in m, comes back as 15.699999999999998
             cog = [float(x) for x in np.round(item.payload.cog / MM, 9)]
             return {"kind": "marker", **head, "load": {"mass_kg": item.payload.mass, "cog_mm": cog}}
         case HandMarker():

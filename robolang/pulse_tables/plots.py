@@ -1,7 +1,7 @@
 """Plots of exported pulse tables as they are played: the frequency of every channel, and the path error.
 
 Both lie over the time of the whole program, markers included, with a mark where each move starts. They hold what
-``runtime.pulses.replay`` found, not what was asked for. A curve of very many points is thinned so that no peak is lost.
+``runtime.pulses.replay`` found, not what was requested. A curve of very many points is thinned so that no peak is lost.
 """
 
 from itertools import chain
@@ -46,6 +46,7 @@ def _svgs(program: str, export: Export, replays: list[MoveReplay]) -> list[str]:
         parts = [_held(start, item.frequency[:, k], export.step_s) for start, item in zip(starts, replays, strict=True)]
         rest = np.zeros(1)
         x, y = _thinned(*_joined([(rest, rest), *parts, (rest + export.seconds, rest)]))
+        # dashed where the colours begin again, so that no two channels look alike
         curves.append(Curve(name=channel.name, x=x, y=y * per_hz, dashed=k >= len(COLOURS)))
     worst = max((item.worst_mm for item in replays), key=badness, default=0.0)
     mm, per_mm = ("µm", 1e3) if worst < _MICRO_BELOW else ("mm", 1.0)

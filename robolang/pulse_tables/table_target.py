@@ -131,6 +131,7 @@ class TableTarget(Untimed):
     def fail(self, fault: Failed) -> NoReturn:
         """Refuse a program that cannot be carried out without a run."""
         found = failure(fault)
+        # ``Nowhere`` raises RBL532 for inputs, time and poses; its hint, to assign a value, would mislead here
         raise NotExportableError(replace(found, code="RBL431", hint="") if found.code == "RBL532" else found)
 
     def refuse(self, effect: Effect, fault: Fault) -> NoReturn:
@@ -184,6 +185,7 @@ class TableTarget(Untimed):
 
     def drain(self, effect: Drain) -> None:
         """Mark a WAIT."""
+        # here and not in ``wait``: a WAIT comes true at once, so only its Drain is left of it
         if isinstance(effect.node, Wait):
             self._mark(effect)
 
