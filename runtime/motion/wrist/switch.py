@@ -182,8 +182,8 @@ class WristLaw:
     """Wrist angles from ``start`` (3,) rad at path parameter ``s_switch`` to ``end`` (3,) rad at ``s_return``.
 
     ``slope`` (3,) is d theta / ds of the path at the switch, where ``shape`` continues it; ``width`` in (0, 1] is the
-    share of the interval in which ``smooth`` changes its slope. ``slope_return`` (3,) is that of the path to which the
-    wrist returns before the end, ``detour`` (3,) rad that from the middle of the cubic; only ``hermite`` has both.
+    share of the interval in which ``smooth`` changes its slope. Only ``hermite`` has the other two: ``slope_return``
+    (3,) of the path to which the wrist returns before the end, ``detour`` (3,) rad added at the middle of the cubic.
     """
 
     s_switch: float
