@@ -117,7 +117,7 @@ def _refuse_beside_payload(options: _ExperimentOptions, output: _OutputOptions) 
     """Refuse what only the identification of the arm takes: a weighing would ignore it."""
     for group, names in ((options, ("axis", "positions", "error", "carrying", "table")), (output, ("out", "date"))):
         for name in names:
-            # a default that is given in words cannot be told from one that is not, and does no harm
+            # an option that is given its default looks like one that is not given, and does no harm
             if getattr(group, name) != group.DEFAULTS[name]:
                 raise OptionValueError(f"--{name}", "cannot be used with --payload")
 
