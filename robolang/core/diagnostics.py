@@ -95,6 +95,7 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 
 def in_order(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     """Return the diagnostics by place, at most ``MAX_DIAGNOSTICS`` of them and then RBL107."""
+    # by code too, so that the order does not depend on which check comes first
     found = sorted(diagnostics, key=lambda item: (item.span, item.code))
     if len(found) <= MAX_DIAGNOSTICS:
         return tuple(found)

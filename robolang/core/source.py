@@ -150,6 +150,7 @@ def _decode(name: str, raw: bytes) -> str:
 
 
 def _not_text(name: str, raw: bytes, before: str, message: str) -> NoReturn:
+    # Windows editors that save "Unicode" write UTF-16 with this mark
     utf16 = raw[:2] in (b"\xff\xfe", b"\xfe\xff")
     hint = "the file looks like UTF-16; save it as UTF-8" if utf16 else ""
     place = Source(name, before).place(len(before))

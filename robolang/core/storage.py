@@ -99,6 +99,7 @@ def _clear(folder: Path) -> None:
 
 
 def _remove_unlocked(entry: os.DirEntry[str]) -> None:
+    # a link is not followed and a pipe not waited for: somebody may give either such a name
     handle = os.open(entry.path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
     try:
         fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -122,6 +123,7 @@ def _temporary(folder: Path) -> Iterator[tuple[int, str]]:
             if _lock(handle) and os.fstat(handle).st_nlink:
                 yield handle, name
                 return
+        # Ctrl-C as well: no temporary file is left
         except BaseException:
             with suppress(OSError):
                 os.unlink(name)  # noqa: PTH108
@@ -189,6 +191,7 @@ def write_folder(path: Path, files: Mapping[str, bytes], ours: Callable[[str], b
                     stream.flush()
                     os.fsync(stream.fileno())
             there = path.exists()
+            # mkdtemp makes a folder that only its owner may read
             made.chmod(stat.S_IMODE(path.stat().st_mode) if there else 0o777 & ~_umask())
             os.fsync(handle)
             if not there:
@@ -218,6 +221,7 @@ def _exchange(one: Path, other: Path) -> bool:
     import ctypes
 
     try:
+        # Python has no function for it; rename alone cannot replace a folder that is not empty
         call = ctypes.CDLL(None, use_errno=True).renameat2
     except (OSError, AttributeError):
         return False
@@ -274,6 +278,7 @@ def _refuse(path: Path, error: Exception) -> NoReturn:
 
 
 def _umask() -> int:
+    # there is no call that reads the mask without setting it
     mask = os.umask(0)
     os.umask(mask)
     return mask

@@ -13,6 +13,7 @@ from robolang.core.diagnostics import Diagnostic, Edit
 from robolang.core.source import Source, Span
 from runtime.core.record import Record, default
 
+# two fixes that undo each other would go on for ever
 MAX_ROUNDS = 20
 
 
@@ -52,6 +53,7 @@ def _choose(found: Iterable[Diagnostic]) -> tuple[list[str], list[Edit]]:
     taken: list[Span] = []
     for item in found:
         if item.fix is not None and item.fix.safe and all(_is_free(edit.span, taken) for edit in item.fix.edits):
+            # all edits of a fix or none: half a correction is another program
             codes.append(item.code)
             chosen += item.fix.edits
             for edit in item.fix.edits:
@@ -61,6 +63,7 @@ def _choose(found: Iterable[Diagnostic]) -> tuple[list[str], list[Edit]]:
 
 def _is_free(span: Span, taken: Sequence[Span]) -> bool:
     """Return whether a span stays clear of others, which are in order; two insertions at one place do not."""
+    # the neighbours are enough, since spans that are taken do not overlap one another
     at = bisect_left(taken, span)
     before, after = taken[at - 1 : at], taken[at : at + 1]
     return all(other.end <= span.start and other.start < span.start for other in before) and all(

@@ -66,6 +66,7 @@ def check_source(source: Source, selection: Selection | None = None, files: Cell
     """
     found = read_beside(Path(source.path), files)
     analysis = Analysis(source=source, cell=found.symbols)
+    # without its points or cell a finding may be missing, and the noqa that covers it is still needed
     diagnostics = findings(analysis, selection, complete=not found.faults)
     warnings = () if found.cell is None else found.cell.warnings
     return Checked(source=source, analysis=analysis, diagnostics=diagnostics, faults=found.faults, warnings=warnings)

@@ -35,6 +35,7 @@ def _below(folder: str, suffix: str, excludes: Excludes) -> Iterator[str]:
     for place, folders, names in os.walk(folder, onerror=lambda error: closed.append(str(error.filename))):
         # names may be no valid Path
         where = {name: os.path.normpath(os.path.join(place, name)) for name in (*folders, *names)}  # noqa: PTH118
+        # in place: os.walk descends into what is left in this very list
         folders[:] = sorted(name for name in folders if not name.startswith(".") and not excludes(where[name]))
         for name in sorted(names):
             if name.lower().endswith(suffix) and not name.startswith(".") and not excludes(where[name]):
@@ -44,4 +45,5 @@ def _below(folder: str, suffix: str, excludes: Excludes) -> Iterator[str]:
 
 def _key(name: str) -> str:
     """Return what two names of one file have in common."""
+    # realpath, so that a file and a link to it count as one; it refuses a NUL character
     return name if name == STANDARD_INPUT or "\0" in name else os.path.realpath(name)

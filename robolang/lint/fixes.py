@@ -47,11 +47,13 @@ def _twins(text: str, start: int, end: int) -> Iterator[Edit]:
     for at in range(start, end):
         character = text[at]
         twin = _twin(character)
+        # in a text the character may be meant; a typographic quote ends the text as a plain one does
         if twin is not None and (not quoted or twin == '"'):
             yield Edit(span=Span(at, at + 1), text=twin)
         seen = character if twin is None else twin
         if seen == '"':
             quoted = not quoted
+        # a comment may hold any letter
         elif not quoted and (seen == "'" or _REM.match(text, at)):
             return
 
@@ -92,6 +94,7 @@ def _number(diagnostic: Diagnostic, source: Source) -> Fix | None:
     span, text = diagnostic.span, source.slice(diagnostic.span)
     if re.fullmatch(r"[0-9]+(?:_[0-9]+)+(?:\.[0-9]*)?", text):
         return Fix(title="remove the underscores", edits=(Edit(span=span, text=text.replace("_", "")),))
+    # nine digits: the longest line number
     glued = re.fullmatch(r"([0-9]{1,9})([A-Za-z]+)", text)
     line = source.line_spans[source.place(span.start).line - 1]
     first = not source.text[line.start : span.start].strip()
@@ -120,6 +123,7 @@ def _words(text: str) -> list[str]:
 
 def _reads(line: str, at: int) -> bool:
     """Return whether a line can be read beyond the word that starts at an offset."""
+    # an error at the word itself shows that a missing comma was not the reason
     return all(found.span.start > at for found in parse(Source("", line)).diagnostics)
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from robolang.core.diagnostics import Severity
 from runtime.core.faults import Code, Stage, lookup
 
+# the correction of RBL107 has a thousand lines
 _MOST_LINES = 20
 
 

@@ -45,6 +45,7 @@ class Selection(Record):
         on = True
         for layer in self.layers:
             if layer.select is not None:
+                # a layer that selects switches off what it does not name, but never an error of syntax
                 on = whole
             chosen = _longest(code, (*(layer.select or ()), *layer.extend), whole)
             ignored = _longest(code, layer.ignore, whole)
@@ -86,4 +87,5 @@ def guess(text: str) -> str:
 def _longest(code: str, selectors: Iterable[str], whole: bool) -> int:
     fitting = [len(item) for item in selectors if code.startswith(item)]
     longest = max(fitting, default=0)
+    # ignore = RBL1 must not hide that a program cannot run; its whole code may
     return longest if longest >= _WHOLE or not whole else 0

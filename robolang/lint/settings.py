@@ -65,12 +65,14 @@ class Settings:
         whole = Path(os.path.abspath(path))  # noqa: PTH100
         nearest = self._nearest(whole.parent)
         name = whole.relative_to(nearest.folder).as_posix()
+        # fnmatch would ignore case on Windows, and a file would exclude other programs there
         return any(fnmatchcase(name, pattern.rstrip("/")) for pattern in nearest.exclude)
 
     def _nearest(self, start: Path) -> Configuration:
         for place in (start, *start.parents):
             found = self._found.get(place) or _read(place)
             if found is not None:
+                # kept for the folder of the file as well: programs in many folders below one file read it once
                 self._found[place] = self._found[start] = found
                 return found
         self._found[start] = Configuration(folder=start)
@@ -93,6 +95,7 @@ def _read(folder: Path) -> Configuration | None:
     if not os.path.lexists(shared):
         return None
     source = read_source(shared)
+    # the pyproject.toml of another tool is not judged, not even as TOML
     if "robolang" not in source.text:
         return None
     tools = _table(source).table("tool", required=False)

@@ -30,7 +30,9 @@ _NOQA = re.compile(_WORD, re.IGNORECASE)
 _MARK = re.compile(r"(?:'|(?<!\w)REM(?=[ \t]))[ \t]*+\Z", re.IGNORECASE)
 _FORGOTTEN_COLON = re.compile(r"[ \t]+RBL\d", re.IGNORECASE)
 _ITEM = re.compile(r"[^\s,]+")
+# the mark is searched in this many characters before the word, so that a line of spaces takes linear time
 _NEAR_MARK = 64
+# a word may be as long as a line, 10,000 characters
 _SHOWN = 30
 
 
@@ -76,6 +78,7 @@ def suppress(source: Source, found: Iterable[Diagnostic], *, complete: bool) -> 
     kept, used = _split(source, findings, directives)
     complete = complete and not any(map(is_syntax_error, findings))
     for line, directive in directives.items():
+        # more are never listed, and a file full of noqas would make hundreds of thousands
         if len(kept) > MAX_DIAGNOSTICS:
             break
         kept += islice(_unknown(directive), MAX_DIAGNOSTICS)
@@ -136,6 +139,7 @@ def _directive(source: Source, line: Span, at: int, known: Mapping[str, str]) ->
     tail = source.text[end : line.end]
     if not tail.strip():
         return _Directive(span=span)
+    # the author believes the finding suppressed, so this is reported and not taken for a remark
     if _FORGOTTEN_COLON.match(tail):
         return _Directive(span=span, named=(), mistake="this noqa suppresses nothing: it has no colon before its codes")
     if not tail.lstrip().startswith(":"):
@@ -173,6 +177,7 @@ def _unused(directive: _Directive, used: set[str], source: Source) -> Iterator[D
         if not used:
             yield _warning(UNUSED, "this noqa suppresses nothing", directive.span, fix=_removal(directive, source))
         return
+    # a directive is judged as a whole: one finding, whose fix keeps the codes that are needed
     left = _needed(directive.named, used)
     idle = [item for item in directive.named if item not in left]
     if not idle:

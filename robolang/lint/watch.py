@@ -62,4 +62,5 @@ def _stamp(name: str) -> Stamp:
         info = os.stat(name)  # noqa: PTH116
     except OSError:
         return None
+    # a file that is moved into place may have the time and the size of the old one
     return info.st_mtime_ns, info.st_size, info.st_ino

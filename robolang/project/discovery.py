@@ -82,6 +82,7 @@ def read_beside(
         found = (files or CellFiles()).cell(where)
         if robot is not None:
             found = with_robot(found, named_arm(robot))
+        # kept where a setting is refused below: the points are checked against the cell all the same
         facts = found
         settings = controller_settings(found, layers)
     except Fault as fault:
@@ -126,6 +127,7 @@ def taught_points(program: Path, *, builtin: bool, symbols: CellSymbols = NOTHIN
         return load_points(beside, symbols)
     if not builtin:
         return PointStore(path=str(beside))
+    # poses that were taught on the default robot; --robot may use them on another one
     return load_points(POINTS, symbols.replaced(robot=None))
 
 

@@ -219,6 +219,7 @@ def _pose(entry: Table) -> tuple[float, float, float, float, float, float]:
 
 def _joints(entry: Table, symbols: CellSymbols) -> tuple[float, ...]:
     values, axes = entry.numbers("joints", None, low=-MAX_DEG, high=MAX_DEG), symbols.axes
+    # without a cell: the numbers of axes that the kinematics has
     fits = 2 <= len(values) <= 7 if axes is None else len(values) == axes
     if not fits:
         needed = "2 to 7" if axes is None else str(axes)

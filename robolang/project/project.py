@@ -188,6 +188,7 @@ def _check_gains(robot: RobotSpec, X_flange_tool: Array, settings: Settings) -> 
         )
         key = f"servo.{excess.key}"
         culprits = (key, "servo.feedforward", "servo.fixed_at", "servo.mode", "servo_period_ms")
+        # the place of the setting that the user gave, the most specific first, not of a default
         given = next((settings[name] for name in culprits if settings[name].origin != "default"), None)
         if given is None:
             raise Fault("RBL616", message)

@@ -35,6 +35,7 @@ _HEADER = re.compile(
 )
 _MAGIC = b"\x93NUMPY\x01\x00"
 _END = struct.Struct("<4s4H2LH")  # end of the directory of a zip file without a comment
+# two arrays take some 110 bytes; zipfile reads the directory as a whole, whatever length it states
 _MOST_DIRECTORY = 4096
 _DAMAGE = (
     OSError,
@@ -117,6 +118,7 @@ def _read(path: Path, stream: IO[bytes], axes: int, most_cycles: int) -> GoldenL
         line = _Member(path, archive, members["line.npy"], _LINES)
         if q.width != axes or line.width is not None or q.rows != line.rows:
             raise _damaged(path, f"its arrays have the shapes {q.shape} and {line.shape}, not (n, {axes}) and (n,)")
+        # rows beyond the run are a difference anyway, and a file may state any number of them
         angles, lines = q.read(most_cycles), line.read(most_cycles)
     if not np.isfinite(angles).all():
         row, axis = np.argwhere(~np.isfinite(angles))[0]

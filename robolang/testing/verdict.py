@@ -64,6 +64,7 @@ def judge(
         found += _end(expected, _end_pose(session, log))
     found += [_part(report["objects"], name, place, expected.part_mm) for name, place in expected.parts.items()]
     if expected.golden_deg is not None:
+        # a golden log of a run that fails would make the failure the standard
         clean = all(verdict.ok for verdict in found)
         found.append(_update(expected, session, log, clean) if update else _golden(expected, session, log))
     return found
@@ -91,6 +92,7 @@ def _events(
     if expected.warnings is not None:
         detail = f"{_listed(codes)}, expected {_listed(expected.warnings)}{_placed(warnings)}"
         found.append(
+            # sets: a warning that is demanded may come any number of times (docs/testing.md)
             Verdict(name="warnings", ok=set(codes) == set(expected.warnings), detail=detail, key=("warnings",))
         )
     elif codes:

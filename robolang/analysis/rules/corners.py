@@ -72,11 +72,13 @@ class _Corners:
         if isinstance(node, MOVES):
             return (self._after_move(node, corner),)
         if isinstance(node, Setting) and node.word == "ZONE":
+            # ZONE 0 sets what FINE is (docs/language.md); a value that only the run knows counts as a zone
             is_set = node.value is not None and fixed(node.value) != 0.0
             return (_Corner(node.span if is_set else None, corner.move, corner.by),)
         if not _stops(node) or corner.move is None:
             return (corner,)
         if isinstance(node, Load | LoadNamed):
+            # a LOAD gets a finding of its own, RBL229, so its move is not reported as RBL413 too
             self.loads[node.span] = corner.move
         elif corner.move in self.zones:
             self.lost[corner.move] = node
@@ -119,6 +121,7 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
 def _lost(corners: _Corners) -> Iterator[Diagnostic]:
     """Report ZONEs of moves after which the arm stops wherever the program goes."""
     for span, stop in corners.lost.items():
+        # on one branch it may blend and on another stop: only a ZONE that never has an effect is reported
         if span not in corners.used:
             related = () if stop is None else (Related(span=stop.span, message="the arm stops for this statement"),)
             message = "no move follows into which this one could blend: the arm stops here"

@@ -48,6 +48,7 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
         if isinstance(node, Load | LoadNamed):
             return (_Hold(hold.closed, declared=True),)
         if isinstance(node, MOVES) and hold.pending is not None:
+            # declared from here on: one finding for a HAND, however many moves follow it
             found.setdefault(hold.pending, node)
             return (_Hold(hold.closed, declared=True),)
         return (hold,)
@@ -67,6 +68,7 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
 
 def _after_hand(node: Hand, hold: _Hold) -> _Hold:
     closes = node.state is HandState.ON
+    # a HAND that repeats the state of the hand changes nothing that the arm carries
     if closes is not hold.closed:
         return _Hold(closes, node.span)
     if not hold.declared and hold.pending is None:  # a hand that is open at the start weighs something, too

@@ -30,6 +30,7 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
         node = line.statement
         if not isinstance(node, For):
             continue
+        # the innermost first, so that the note names the loop that the variable is taken from
         around = (lines[head].statement for head in reversed(heads))
         loops = (each for each in around if isinstance(each, For))
         outer = next((each for each in loops if each.variable.key == node.variable.key), None)

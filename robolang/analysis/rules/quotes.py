@@ -35,6 +35,7 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
         if comment is None or quoted is None:
             continue
         *_, last = parts_of(line.statement)
+        # a comment in quotes after PRINT x is one that somebody wrote on purpose
         if isinstance(last, Print) and not last.items:
             hint = f'write PRINT "{quoted[1]}"' if len(quoted[1]) <= MAX_SHOWN else ""
             yield COMMENT.at(comment.span, "this is a comment, not a text: PRINT shows an empty line", hint=hint)

@@ -41,6 +41,7 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
     for node in facts.statements:
         if not isinstance(node, Wait):
             continue
+        # WAIT 0 is never true: it waits for ever, which is the finding below
         if value := fixed(node.condition):
             delay = f"DELAY {value:g} waits for {value:g} s" if 0.0 < value <= limits.DELAY.high else ""
             message = f"WAIT {value:g} does not wait: its condition is a number other than 0"

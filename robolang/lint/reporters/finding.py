@@ -91,8 +91,10 @@ def fingerprints(found: Sequence[Finding], root: Path) -> list[str]:
     seen: Counter[str] = Counter()
     marks = []
     for item in found:
+        # spaces count as one: fmt must not make all findings of a file new ones
         text = " ".join(item.line_text[_end_of_number(item.line_text) :].split())
         key = "\0".join((relative(item.path, root), item.code, text))
+        # surrogatepass: a file name that is not UTF-8 has lone surrogates, which plain UTF-8 refuses
         marks.append(hashlib.sha256(f"{key}\0{seen[key]}".encode("utf-8", "surrogatepass")).hexdigest()[:32])
         seen[key] += 1
     return marks

@@ -40,6 +40,7 @@ def _lines(region: Region) -> dict[str, int]:
 
 
 def _data(text: str) -> str:
+    # % first, or the escapes of the others would be escaped again
     return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
 
 

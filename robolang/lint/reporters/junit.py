@@ -15,6 +15,7 @@ from robolang.core.diagnostics import Severity
 from robolang.lint.engine import Checked
 from robolang.lint.reporters.finding import Finding, findings, relative
 
+# all but the characters of XML 1.0, production 2 (Char)
 _FORBIDDEN = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 

@@ -94,4 +94,5 @@ def _region(region: Region) -> dict[str, int]:
 
 
 def _uri(path: str, root: Path) -> str:
+    # surrogateescape: a file name that is not UTF-8 becomes the bytes that it has on the disk
     return quote(relative(path, root), safe="/", errors="surrogateescape")
