@@ -81,6 +81,7 @@ def check_points(checked: Checked, selection: Selection | None = None) -> Checke
     if analysis is None or not _is_whole(checked) or not os.path.lexists(where):
         return None
     try:
+        # only the names count here: values were checked with the program, in its cell
         store, source = load_points(where), Source(str(where), read_source(where).text)
     except Fault:  # another process has just changed it: the next check reports what is wrong
         return None

@@ -78,6 +78,7 @@ def guess(text: str) -> str:
     """Return what a word that is no selector, or no whole code, was probably meant to be, as a hint, or ``""``."""
     word = text.strip()
     if word.upper().startswith(_PREFIX):
+        # codes that differ in their last digit only
         alike = [entry.code for entry in all_codes() if entry.code.startswith(word.upper()[: _WHOLE - 1])]
         return f"similar codes: {', '.join(alike[:5])}{', and more' if len(alike) > 5 else ''}" if alike else ""
     found = near(word, (entry.name for entry in all_codes()), cutoff=0.7)

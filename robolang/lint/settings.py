@@ -153,6 +153,7 @@ def _table(source: Source) -> Table:
     try:
         return load_table(source)
     except FileFault as fault:
+        # the reader has one code for every error of syntax, so this one is known by its words
         if TWICE not in fault.message:
             raise
         raise _as_configuration(fault) from None

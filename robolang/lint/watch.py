@@ -43,6 +43,7 @@ def watch(
 
 def stamps(paths: Iterable[str]) -> dict[str, Stamp]:
     """Return what tells whether anything has changed that a check of these paths reads; None: not there."""
+    # a name with a NUL character is no file, and os.stat refuses it
     found = [name for name in programs(paths) if name != STANDARD_INPUT and "\0" not in name]
     folders = {Path(name).parent for name in found} | {Path(name) for name in filter(os.path.isdir, paths)}
     # files that do not exist yet are included: a cell file that appears changes the findings

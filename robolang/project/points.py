@@ -34,6 +34,7 @@ from runtime.core.tomlfile import FileFault, Source, Table, load_table, read_sou
 from runtime.robot.model.drives import beyond_range
 
 SCHEMA = 1
+# 100 m, more than any robot reaches: such a value is in another unit
 MAX_MM = 1e5
 MAX_DEG = 1e4
 MAX_TURNS = 100

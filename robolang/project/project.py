@@ -91,6 +91,7 @@ def load_project(
     where = Path(analysis.source.path)
     given = {**({} if servo is None else {"servo.mode": ("--servo", servo)}), **(options or {})}
     found = read_beside(where, cell=None if cell is None else Path(cell), robot=robot, layers=_layers(profile, given))
+    # all of them, as a check reports them; the first alone would need one run for each error
     raise_all(found.faults)
     assert found.cell is not None and found.points is not None and found.settings is not None
     spec = cells.build(found.cell)

@@ -210,6 +210,7 @@ def _golden(expected: Expectation, session: Session, log: dict[str, Array]) -> V
     if at is not None and len(q):
         profile = session.project.profile
         tick = at * profile.ticks_per_cycle
+        # where the golden log is longer, the difference is after the last line of the run
         row = min(at, len(line) - 1)
         number = int(log["number"][:: profile.ticks_per_cycle][row])
         detail += f", first at tick {tick} ({tick * profile.tick_s:.3f} s), {named(int(line[row]), number or None)}"

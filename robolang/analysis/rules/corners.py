@@ -106,6 +106,7 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
     """Report ZONEs of moves that nothing blends into, and LOADs that keep moves from blending."""
     moves = [node for node in facts.statements if isinstance(node, MOVES)]
     corners = _Corners({node.span: option for node in moves for option in node.options if isinstance(option, Zone)})
+    # None: the program is too long or too intricate to be followed, and then nothing is reported
     before = None if facts.reached is None else facts_before(facts.flow, _Corner(), corners.step)
     if before is None:
         return

@@ -36,6 +36,7 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
         read.update(reads(node))
     for key, name in given.items():
         if key not in read:
+            # guessed among the names that are read: a name that nothing reads is no help
             guess = near(key, read)
             hint = f"did you mean {guess}?" if guess else other_languages.assigned(key)
             yield UNREAD.at(name.span, f"nothing reads {name.text}", hint=hint)

@@ -48,12 +48,14 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
     all_moves = [node for node in facts.statements if isinstance(node, MOVES)]
     for word, joint, default in _SPEEDS:
         moves = [node for node in all_moves if isinstance(node, MoveJ) is joint]
+        # a program that sets no speed at all accepts the robot's default
         if _sets(facts, word) or any(has_option(node, Speed) for node in moves):
             yield from _speed(facts, moves, word, default)
     yield from _tool(facts, all_moves)
 
 
 def _speed(facts: Facts, moves: list[Moving], word: str, default: str) -> Iterator[Diagnostic]:
+    # TIME gives a move its speed, too
     unset = _before_setting(facts, word, {node.span for node in moves if not has_option(node, Speed, Time)})
     if unset:
         more = f" and {len(unset) - 1} other moves" if len(unset) > 1 else ""

@@ -136,7 +136,8 @@ RULES = (
         code="RBL231",
         severity=Severity.WARNING,
         why="MOD, * and / are evaluated from the left, as in RAPID, KAREL and C. In other languages MOD binds less "
-        "tightly, and in edition 1 of this one it bound more tightly. With parentheses every reader sees the order.",
+        "tightly, and in earlier versions of this one it bound more tightly. With parentheses every reader sees "
+        "the order.",
         bad="10 N = 4\n20 PRINT 2 * N MOD 3\n",
         good="10 N = 4\n20 PRINT (2 * N) MOD 3\n",
         line=2,
