@@ -9,6 +9,7 @@ so the cells of ITA are of different ages (docs/timing.md). It was a generator, 
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -43,13 +44,13 @@ class StepCosts:
 
 
 class DynamicsTask(Stateful):
-    """Refreshes ITA for ever, step by step; the scheduler pays ``cost_us`` before each ``work``.
+    """Refreshes ITA for ever, step by step; the scheduler pays ``cost_us``, us, before each ``work``.
 
     ``read_angles`` returns the detected angles (n,) rad. ``rows`` is where inertia comes from; None: the
     unit-acceleration pass of ``model``.
     """
 
-    VALUES = ("_step", "_axis", "_version", "_payload_version", "_read_us", "_row", "_T")
+    VALUES = ("cost_us", "_step", "_axis", "_version", "_payload_version", "_read_us", "_row", "_T")
     PARTS = ("_loaded",)
 
     def __init__(
@@ -61,32 +62,28 @@ class DynamicsTask(Stateful):
         load_mode: LoadMode = "add",
         rows: InertiaRows | None = None,
     ) -> None:
-        self._areas, self._model, self._read_angles, self._load_mode, self._rows = (
-            areas,
-            model,
-            read_angles,
-            load_mode,
-            rows,
-        )
+        self._areas, self._model, self._read_angles, self._load_mode = areas, model, read_angles, load_mode
         # InertiaRows passes a payload on to the model: T and D carry the same one, set once
         self._loaded: ArmModel | InertiaRows = rows or model
-        self._steps = (self._read, self._inertia, self._gravity, self._store)
-        self._costs = (costs.read, costs.inertia, costs.gravity, costs.store)
+        self._inertia_row: Callable[[Array, int], Array] = partial(axis_row, model) if rows is None else rows.row
+        # 21 steps in a cycle by default: each is one look-up, with the cost and the number of the next
+        self._steps = (
+            (self._read, costs.inertia, 1),
+            (self._inertia, costs.gravity, 2),
+            (self._gravity, costs.store, 3),
+            (self._store, costs.read, 0),
+        )
+        self.cost_us = costs.read
         self._step = self._axis = self._read_us = 0
         self._version = 1  # 0 is that of ``fill``
         self._payload_version = -1  # of no LOAD: the first step takes what is in SDA
         self._row: Array = np.zeros(model.n)
         self._T = 0.0
 
-    @property
-    def cost_us(self) -> int:
-        """Cost of the step that comes next, us."""
-        return self._costs[self._step]
-
     def work(self, now_us: int) -> None:
         """Carry out the step that has been paid for; it ends at ``now_us``."""
-        self._steps[self._step](now_us)
-        self._step = (self._step + 1) % len(self._steps)
+        step, self.cost_us, self._step = self._steps[self._step]
+        step(now_us)
 
     def fill(self, q: Array, now_us: int) -> None:
         """Refresh all of ITA at joint angles q (n,) rad at once.
@@ -106,9 +103,6 @@ class DynamicsTask(Stateful):
                 version=0,
                 payload_version=areas.sda_version,
             )
-
-    def _inertia_row(self, q: Array, axis: int) -> Array:
-        return axis_row(self._model, q, axis) if self._rows is None else self._rows.row(q, axis)
 
     def _read(self, now_us: int) -> None:
         # a copy: the servo reads its encoders again before the axis is done

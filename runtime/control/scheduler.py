@@ -53,13 +53,11 @@ class IdleProcessor(Stateful):
 
     def advance(self, until_us: int) -> None:
         """Let the background run in the idle time from now until ``until_us``."""
-        start, task = max(self.now_us, self._busy_until_us), self._task
-        while start + self._owed_us <= until_us:
-            start += self._owed_us
-            self.now_us = start
+        start, owed, task = max(self.now_us, self._busy_until_us), self._owed_us, self._task
+        while start + owed <= until_us:
+            start += owed
             task.work(start)
-            self._owed_us = task.cost_us
+            owed = task.cost_us
         # paid in part: the step goes on in the next idle time, so that a step longer than a slice still ends
-        if start < until_us:
-            self._owed_us -= until_us - start
+        self._owed_us = owed - max(0, until_us - start)
         self.now_us = until_us

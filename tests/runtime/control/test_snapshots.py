@@ -207,7 +207,7 @@ CONSTANT = {
     "LoadModel": "n _X_last_flange _model _weightless _data _moments _weightless_data _bare_last _zero _units "
     "_to_joint",
     "InertiaRows": "_spec _source _tables _bare row",
-    "DynamicsTask": "_areas _model _read_angles _load_mode _rows _steps _costs",
+    "DynamicsTask": "_areas _model _read_angles _load_mode _inertia_row _steps",
     "IdleProcessor": "",
     "Areas": "",
     "FineInterpolator": "ticks _weights",
