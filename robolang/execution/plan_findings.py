@@ -8,7 +8,7 @@
     RBL435   a joint move to a pose that turns a joint by more than half a turn, since the nearer angle is out of range
 
 The plan that is checked is the plan that runs: ``robolang check --motion`` reports these as findings, a run as warnings
-(docs/decisions/0030). A move that is too short to reach its SPEED is none of them.
+(docs/decisions/0030). A move that is too short to reach its SPEED is not reported.
 """
 
 from collections.abc import Iterator
@@ -91,7 +91,7 @@ class PlanFindings:
             )
 
     def long_turn(self, move: PlannedMove) -> Found:
-        """Find a joint move to a pose that turns a joint the long way round."""
+        """Find a joint move to a pose that turns a joint by the longer of two turns."""
         command, start, end = move.command, move.plan.q[0], move.plan.q[-1]
         if not isinstance(command, MoveJoint) or command.q_end is not None or command.turns:
             return

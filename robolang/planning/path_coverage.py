@@ -36,7 +36,7 @@ class Detour:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Exploration:
-    """The rehearsal by the simulated inputs, the detours, and the moves of the program that none of them reached."""
+    """The rehearsal by the simulated inputs, the detours, and the moves of the program that were never reached."""
 
     rehearsal: Rehearsal
     detours: tuple[Detour, ...]
