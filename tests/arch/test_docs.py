@@ -154,6 +154,30 @@ def test_links_lead_to_something(page):
     assert missing == []
 
 
+def headings(page: Path) -> set[str]:
+    """Return the anchors of a page: its headings in small letters, blanks as hyphens, other signs left out."""
+    titles = re.findall(r"^#+ (.+)$", prose(page), re.MULTILINE)
+    return {re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-") for title in titles}
+
+
+def lost(page: Path, text: str) -> list[str]:
+    """Return the links of a text to headings that the linked page does not have."""
+    links = [target.partition("#") for target in LINK.findall(text) if "#" in target and ":" not in target]
+    pages = [(path, (page.parent / path) if path else page, anchor) for path, _, anchor in links]
+    return [f"{path}#{anchor}" for path, linked, anchor in pages if anchor not in headings(linked)]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name)
+def test_links_lead_to_headings(page):
+    assert lost(page, prose(page)) == []
+
+
+def test_a_link_to_a_heading_that_is_gone_is_noticed():
+    page = ROOT / "docs" / "servo.md"
+    assert lost(page, "[a](#gravity) [b](timing.md#the-pipeline)") == []
+    assert lost(page, "[a](#weight) [b](timing.md#pipeline)") == ["#weight", "timing.md#pipeline"]
+
+
 def test_every_page_is_reached_from_the_readme():
     reached, todo = set(), [ROOT / "README.md"]
     while todo:
