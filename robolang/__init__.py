@@ -17,9 +17,13 @@ if TYPE_CHECKING:
 __all__ = [
     "__version__",
     *("Analysis", "Diagnostic", "Edit", "Line", "Source", "Span", "read_program"),
-    *("Executor", "ExecutorSnapshot", "State", "Status", "ENDED", "Fault"),
+    *("Executor", "ExecutorSnapshot", "State", "Status", "ENDED", "Fault", "FileFault"),
     *("Observer", "ProgramError", "Project", "RunResult", "Session", "load_project", "run"),
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
 
 
 def __getattr__(name: str) -> object:

@@ -6,13 +6,15 @@ Everything else is internal and may change. ``robolang`` imports this module whe
 from robolang.analysis.analysis import Analysis
 from robolang.core.diagnostics import Diagnostic, Edit
 from robolang.core.source import Source, Span, read_program
-from robolang.execution.executor import ENDED, Executor, ExecutorSnapshot, State, Status
+from robolang.execution.executor import Executor, ExecutorSnapshot
 from robolang.execution.observer import Observer
 from robolang.execution.result import RunResult
 from robolang.execution.session import ProgramError, Session, run
+from robolang.execution.status import ENDED, State, Status
 from robolang.project.project import Project, load_project
 from robolang.syntax.ast import Line
 from runtime.core.faults import Fault
+from runtime.core.tomlfile import FileFault
 
 __all__ = [
     "ENDED",
@@ -22,6 +24,7 @@ __all__ = [
     "Executor",
     "ExecutorSnapshot",
     "Fault",
+    "FileFault",
     "Line",
     "Observer",
     "ProgramError",

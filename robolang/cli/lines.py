@@ -14,7 +14,7 @@ def headings(rows: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:
 def cells(row: Mapping[str, Any], columns: tuple[str, ...]) -> list[str]:
     """Return the cells of a statement under ``headings``."""
     number = "" if row["number"] is None else str(row["number"])
-    return [str(row["line"]), number][: len(columns)]
+    return [str(row["line"] or ""), number][: len(columns)]
 
 
 def name(row: Mapping[str, Any]) -> str:

@@ -72,7 +72,8 @@ class Fix(Record):
 class Diagnostic(Record):
     """One problem of a program: registered code, severity, one-line message, place, what would help.
 
-    Without a hint the remedy of the code is given. ``fix`` is a correction that a tool can apply.
+    Without a hint the remedy of the code is given. ``fix`` is a correction that a tool can apply. ``source`` is the
+    text that ``span`` is in, where that is not the program's: the one of a statement that was fed.
     """
 
     code: str
@@ -82,6 +83,7 @@ class Diagnostic(Record):
     hint: str = ""
     related: tuple[Related, ...] = ()
     fix: Fix | None = None
+    source: Source | None = None
 
     def __post_init__(self) -> None:
         remedy = lookup(self.code).remedy  # KeyError: the code is not registered
@@ -109,7 +111,7 @@ def in_order(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
 def render(diagnostic: Diagnostic, source: Source) -> str:
     """Return the diagnostic as text with an excerpt of the program, without a final line end."""
     head = f"{diagnostic.severity.value} {diagnostic.code} {diagnostic.message}"
-    lines = _block(head, source, diagnostic.span)
+    lines = _block(head, diagnostic.source or source, diagnostic.span)
     for other in diagnostic.related:
         lines += [f"  {line}" for line in _block(f"note: {other.message}", source, other.span)]
     lines.append(f"  help: {safe(diagnostic.hint)}")
@@ -136,7 +138,7 @@ def to_json(diagnostic: Diagnostic, source: Source) -> dict[str, Any]:
         "severity": diagnostic.severity.value,
         "message": diagnostic.message,
         "hint": diagnostic.hint,
-        **_json_span(diagnostic.span, source),
+        **_json_span(diagnostic.span, diagnostic.source or source),
         "related": [{"message": item.message, **_json_span(item.span, source)} for item in diagnostic.related],
     }
 

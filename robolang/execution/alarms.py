@@ -7,7 +7,7 @@ The calls that led to it follow as related places.
 from itertools import groupby
 
 from robolang.core.diagnostics import Diagnostic, Related, Severity, to_json
-from robolang.core.source import Source, Span
+from robolang.core.source import Source
 from robolang.interpreter.effects import Origin
 from robolang.interpreter.events import Failed
 from runtime.core.faults import Alarm
@@ -23,7 +23,8 @@ def as_diagnostic(alarm: Alarm, severity: Severity) -> Diagnostic:
         code=alarm.code,
         severity=severity,
         message=alarm.message,
-        span=_span(alarm.statement),
+        span=_of_session(alarm.statement).span,
+        source=_of_session(alarm.statement).source,
         hint=alarm.hint,
         related=calls(alarm.calls),
     )
@@ -32,7 +33,12 @@ def as_diagnostic(alarm: Alarm, severity: Severity) -> Diagnostic:
 def failure(fault: Failed) -> Diagnostic:
     """Return a fault that the program does not catch as a diagnostic at its place."""
     return Diagnostic(
-        code=fault.code, message=fault.message, span=fault.origin.span, hint=fault.hint, related=calls(fault.calls)
+        code=fault.code,
+        message=fault.message,
+        span=fault.origin.span,
+        source=fault.origin.source,
+        hint=fault.hint,
+        related=calls(fault.calls),
     )
 
 
@@ -52,7 +58,7 @@ def calls(chain: tuple[ProgramLine, ...]) -> tuple[Related, ...]:
 
     The same call again and again is one of them, of many the first and the last are shown.
     """
-    rows = [(span, len(list(same))) for span, same in groupby(map(_span, chain))]
+    rows = [(span, len(list(same))) for span, same in groupby(_of_session(each).span for each in chain)]
     hidden = rows[SHOWN_CALLS : max(SHOWN_CALLS, len(rows) - SHOWN_CALLS)]
     if len(hidden) > 1:  # a note in place of one row saves nothing
         rows = rows[:SHOWN_CALLS] + rows[-SHOWN_CALLS:]
@@ -67,6 +73,6 @@ def _times(count: int) -> str:
     return f", {count} times within itself" if count > 1 else ""
 
 
-def _span(statement: ProgramLine | None) -> Span:
+def _of_session(statement: ProgramLine | None) -> Origin:
     assert isinstance(statement, Origin)  # a session gives the controller nothing else, and before its first cycle
-    return statement.span
+    return statement

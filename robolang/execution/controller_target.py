@@ -11,7 +11,6 @@ from typing import TypeAlias
 
 import numpy as np
 
-from robolang.core.source import Span
 from robolang.execution.observer import Observer
 from robolang.execution.plan_findings import PlanFindings, PlannedMove
 from robolang.execution.result import RunRecord, StatementRun
@@ -87,7 +86,7 @@ class TargetSnapshot:
     shown: tuple[tuple[float, str], ...]
     acknowledged: tuple[Alarm, ...]
     activity: _Activity
-    warned: frozenset[tuple[str, Span]]
+    warned: frozenset[tuple[str, Origin]]
 
 
 class ControllerTarget:
@@ -100,7 +99,7 @@ class ControllerTarget:
         """What the program reads of robot and cell."""
         self._findings = PlanFindings(record.project, kinematics)
         self._activity: _Activity = None
-        self._warned: frozenset[tuple[str, Span]] = frozenset()
+        self._warned: frozenset[tuple[str, Origin]] = frozenset()
 
     # --- time --------------------------------------------------------------------------------------------------------
 
@@ -274,10 +273,11 @@ class ControllerTarget:
         for each, own, corner, after in rows:
             move = PlannedMove(effect=each.effect, command=each.command, plan=own, corner=corner, after=after)
             for found in self._findings.of(move):
-                if (found.code, each.effect.span) not in self._warned:
+                origin = each.effect.origin
+                if (found.code, origin) not in self._warned:
                     # replaced and not added to: snapshots share the set
-                    self._warned |= {(found.code, each.effect.span)}
-                    self._record.controller.warn(found.code, found.message, found.hint, each.effect.origin)
+                    self._warned |= {(found.code, origin)}
+                    self._record.controller.warn(found.code, found.message, found.hint, origin)
 
     def _record_run(self, effect: Effect) -> StatementRun:
         tick = self._record.controller.recorder.tick
@@ -290,10 +290,12 @@ class ControllerTarget:
         self.statement = effect.origin
         statements, tick = self._record.statements, self._record.controller.recorder.tick
         goes_on = bool(statements) and isinstance(effect.node, Wait) and statements[-1].end_tick == tick
-        if not (goes_on and statements[-1].origin.span == effect.span):
+        begins = not (goes_on and statements[-1].origin == effect.origin)
+        if begins:
             self._record_run(effect)
         self._activity = _Wait(run=len(statements) - 1, cycles=cycles, grasp=grasp)
-        self._observer.run_began(statements[-1], self.time_us)
+        if begins:
+            self._observer.run_began(statements[-1], self.time_us)
         return statements[-1]
 
     def wrist(self, effect: SetWrist) -> None:
@@ -310,7 +312,7 @@ class ControllerTarget:
         self._record.payloads.append(
             {
                 "time_s": self.time_us / 1_000_000,
-                "line": effect.line,
+                "line": effect.line or None,
                 "number": effect.number,
                 "mass_kg": payload.mass,
                 # rounded: 15.7 mm, stored in m, comes back as 15.699999999999998

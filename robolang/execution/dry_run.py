@@ -17,8 +17,9 @@ from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import Span
 from robolang.execution import run_bounds
 from robolang.execution.alarms import failure
-from robolang.execution.executor import ENDED, Executor
+from robolang.execution.executor import Executor
 from robolang.execution.plan_memory import PlanMemory
+from robolang.execution.status import ENDED
 from robolang.execution.target import Requested, Untimed
 from robolang.execution.world import RobotWorld
 from robolang.interpreter.branch_oracle import Decisions

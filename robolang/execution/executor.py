@@ -11,8 +11,10 @@ from dataclasses import dataclass, replace
 from enum import Enum, auto
 from typing import Any, TypeAlias, assert_never
 
+from robolang.core.source import Source, Span
 from robolang.execution import lowering, run_bounds
 from robolang.execution.observer import Observer
+from robolang.execution.status import State, Status
 from robolang.execution.target import Requested, Target
 from robolang.execution.world import WorldSnapshot
 from robolang.interpreter.branch_oracle import Decisions
@@ -30,43 +32,20 @@ from robolang.interpreter.effects import (
     SetTool,
     SetWrist,
     Show,
+    origin_of,
 )
 from robolang.interpreter.events import Done, Event, Failed, FedEnded, LineBegun
+from robolang.interpreter.fed_line import fed_line
 from robolang.interpreter.machine import Machine
 from robolang.interpreter.snapshot import MachineSnapshot
+from robolang.interpreter.variables import Variables
 from robolang.project.project import Project
-from robolang.syntax.ast import Line, Wait
+from robolang.syntax.ast import Wait
 from runtime.core.faults import Fault
 from runtime.motion.motion_planner import tracked
 
 Alter: TypeAlias = Callable[[Effect], Effect | None]
 """Changes an effect before it is carried out, None: leaves it out (``compare``)."""
-
-
-class State(Enum):
-    """What a program does between two calls of ``advance``."""
-
-    RUNNING = "running"
-    PAUSED = "paused"
-    WAITING = "waiting"
-    STOPPED = "stopped"
-    DONE = "done"
-    ALARM = "alarm"
-
-
-ENDED = frozenset({State.STOPPED, State.DONE, State.ALARM})
-"""States from which ``advance`` does not go on."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Status:
-    """Where a program stands: ``statement`` that is carried out, simulated time, and the ``fault`` that nothing caught:
-    the one that ended the program, or the one of the statement that was fed last."""
-
-    state: State
-    statement: Origin | None
-    time_us: int
-    fault: Failed | None = None
 
 
 class _Phase(Enum):
@@ -149,8 +128,29 @@ class Executor:
     @property
     def status(self) -> Status:
         """Where the program stands now."""
-        target, now = self._target, self._now
-        return Status(state=self._state, statement=target.statement, time_us=target.time_us, fault=now.fault)
+        target = self._target
+        return Status(
+            state=self._state,
+            statement=target.statement,
+            time_us=target.time_us,
+            fault=self._now.fault,
+            alarm=next(iter(target.alarms), None),
+        )
+
+    @property
+    def origin(self) -> Origin | None:
+        """The statement that the program has come to, ahead of the motion where moves blend; None at its end."""
+        return self._machine.origin
+
+    @property
+    def calls(self) -> tuple[Origin, ...]:
+        """The CALLs and GOSUBs that have not come back, the outermost first."""
+        return self._machine.calls
+
+    @property
+    def variables(self) -> tuple[Variables, ...]:
+        """The names of the main program, then of each CALL that has not come back, the innermost last."""
+        return self._machine.variables
 
     @property
     def _state(self) -> State:
@@ -174,21 +174,26 @@ class Executor:
         self._now.resumed = self._now.pausing
 
     def stop(self) -> None:
-        """Stop the arm on its path and end the program (category 1), from the next cycle on.
+        """Stop the arm on its path and end the program (category 1), from the next cycle on; nothing when it is over.
 
         Safe to call from a signal handler.
         """
-        self._stop_requested = True
+        if self._now.phase is not _Phase.OVER:
+            self._stop_requested = True
 
     def halt(self) -> None:
-        """Stop at once and end the program (category 0); safe to call from a signal handler."""
-        self._stop_requested = self._halt_requested = True
+        """Stop at once and end the program (category 0), as ``stop`` does."""
+        if self._now.phase is not _Phase.OVER:
+            self._stop_requested = self._halt_requested = True
 
-    def feed(self, line: Line) -> None:
+    def feed(self, statement: str | Source) -> None:
         """Carry out one more statement where the program stands; when it is over, the program is paused there.
 
-        ``Fault`` for a statement that cannot stand alone, ``RuntimeError`` during a motion and after an alarm.
+        A ``Source`` has the name that messages give as its place. ``FileFault`` with that place for a text that is not
+        one statement, ``Fault`` for a statement that cannot stand alone, ``RuntimeError`` during a motion, a DELAY or a
+        WAIT, and after an alarm. Nothing has changed then.
         """
+        line = fed_line(statement if isinstance(statement, Source) else Source("fed statement", statement))
         now = self._now
         over = now.phase is _Phase.OVER
         if now.due is not None or not (now.phase is _Phase.READY or over):
@@ -247,6 +252,8 @@ class Executor:
         """Do one thing that takes no time, if there is one; else a cycle is due, or the program is over."""
         target, now = self._target, self._now
         match now.phase:
+            case _Phase.READY if self._stop_requested:
+                self._end_effects()
             case _Phase.READY:
                 self._go_on()
             case _Phase.BUSY:
@@ -296,6 +303,8 @@ class Executor:
         """End the effects whose cycles are over, or that an alarm or a stop has ended."""
         now, target = self._now, self._target
         if self._stop_requested and not target.alarms:
+            if target.statement is None:  # before the first statement: an alarm has a place
+                target.statement = self._first
             target.stop()
             now.phase = _Phase.STOPPING  # also where no cycle runs: the arm rests
         if target.alarms:
@@ -315,6 +324,13 @@ class Executor:
         for each in now.doing:
             self._observer.effect_done(each)
         now.doing = ()
+
+    @property
+    def _first(self) -> Origin:
+        """The first statement of the program, or the start of a text without one."""
+        for line in self._project.program.statements:
+            return origin_of(line, line.statement or line)
+        return Origin(line=1, span=Span(0, 0))
 
     def _too_long(self) -> Failed:
         statement = self._target.statement
@@ -373,6 +389,7 @@ class Executor:
         match due:
             case Done():
                 now.phase = _Phase.OVER
+                self._stop_requested = self._halt_requested = False  # a signal that came in the meantime is too late
             case FedEnded():
                 now.pausing = True
             case Failed():

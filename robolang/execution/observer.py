@@ -20,7 +20,7 @@ class Observer:
         """See that a statement begins to be carried out; of moves that blend each when its first set-point is sent."""
 
     def effect_done(self, effect: Effect) -> None:
-        """See that an effect has been carried out."""
+        """See that an effect has been carried out; a WAIT has one in each cycle."""
 
     def cycle_done(self, time_us: int) -> None:
         """See that an interpolation cycle has been run, up to this simulated time."""

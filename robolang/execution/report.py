@@ -126,7 +126,7 @@ def _touched(run: StatementRun, controller: Controller) -> list[dict[str, object
 
 
 def _head(run: StatementRun) -> dict[str, Any]:
-    return {"line": run.origin.line, "number": run.origin.number, "text": run.text, "begun": run.begun}
+    return {"line": run.origin.line or None, "number": run.origin.number, "text": run.text, "begun": run.begun}
 
 
 def _wrist(run: StatementRun, mode: Array, tick_us: int) -> dict[str, object] | None:

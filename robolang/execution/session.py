@@ -11,12 +11,13 @@ from robolang.core.diagnostics import Diagnostic, Severity, render
 from robolang.execution.alarms import as_diagnostic
 from robolang.execution.controller_target import ControllerTarget
 from robolang.execution.dry_run import motion_check
-from robolang.execution.executor import ENDED, Alter, Executor
+from robolang.execution.executor import Alter, Executor
 from robolang.execution.observer import Observer
 from robolang.execution.plan_memory import PlanMemory
 from robolang.execution.report import build_report
 from robolang.execution.result import RunRecord, RunResult, StatementRun
 from robolang.execution.rig import Rig
+from robolang.execution.status import ENDED
 from robolang.execution.world import RobotWorld
 from robolang.project.project import Project, load_project
 from runtime.control.clock import wall_s

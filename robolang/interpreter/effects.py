@@ -8,8 +8,10 @@ that every alarm, log row and progress line can name it.
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
-from robolang.core.source import Span
+from robolang.core.source import Source, Span
+from robolang.interpreter.fed_line import FedLine
 from robolang.syntax.ast import Line, Statement
+from robolang.syntax.tree import Node
 from robolang.values.poses import Frame, Place
 from runtime.core.program_line import ProgramLine
 
@@ -20,10 +22,12 @@ PathKind = Literal["line", "joint", "arc"]
 class Origin(ProgramLine):
     """Where an effect or a fault comes from: ``span`` is the place of the statement, or of the part of it that failed.
 
-    This is what the controller keeps with an alarm, so its place is never looked up.
+    This is what the controller keeps with an alarm, so its place is never looked up. ``source`` is the text of a
+    statement that was fed: its ``span`` is in that text, and its ``line`` is 0. None: the statement is of the program.
     """
 
     span: Span
+    source: Source | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,7 +39,7 @@ class OfStatement(Origin):
     @property
     def origin(self) -> Origin:
         """Where it comes from, without what is requested."""
-        return Origin(line=self.line, number=self.number, span=self.span)
+        return Origin(line=self.line, number=self.number, span=self.span, source=self.source)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -148,4 +152,19 @@ Effect: TypeAlias = (
 
 def origin(line: Line, node: Statement) -> dict[str, Any]:
     """Return the fields of ``OfStatement`` for a statement, or a part of one, of a line."""
-    return {"line": line.source_line, "number": line.number, "span": node.span, "node": node}
+    return {**_place(line, node), "node": node}
+
+
+def origin_of(line: Line, part: Node) -> Origin:
+    """Return where a part of a line is."""
+    return Origin(**_place(line, part))
+
+
+def _place(line: Line, part: Node) -> dict[str, Any]:
+    source = line.source if isinstance(line, FedLine) else None
+    return {
+        "line": line.source_line if source is None else 0,
+        "number": line.number,
+        "span": part.span,
+        "source": source,
+    }

@@ -7,7 +7,7 @@ from robolang.evaluation.evaluator import Evaluator, World
 from robolang.interpreter import run_limits
 from robolang.interpreter.actions import Actions
 from robolang.interpreter.branch_oracle import Decisions
-from robolang.interpreter.effects import Effect, Origin
+from robolang.interpreter.effects import Effect, Origin, origin_of
 from robolang.interpreter.positions import FED, Cursor, Suspended
 from robolang.interpreter.program_fault import ProgramFault
 from robolang.interpreter.rounds import Rounds
@@ -69,7 +69,7 @@ class RunState:
             where, most = named(line.source_line, line.number), run_limits.MAX_IDLE
             message = f"the loop that begins at {where} has gone round {most} times without a statement that takes time"
             # located at the head of the loop here, since the statement that runs is its end
-            raise ProgramFault(Fault("RBL508", message), _at(line, line.statement or line), self.calls())
+            raise ProgramFault(Fault("RBL508", message), origin_of(line, line.statement or line), self.calls())
         return to
 
     def is_true(self, condition: Expression) -> bool:
@@ -102,11 +102,11 @@ class RunState:
         """Return the part of a statement that is carried out."""
         at, part = self.cursor.part
         line = self.line(at)
-        return _at(line, part or line)
+        return origin_of(line, part or line)
 
     def calls(self) -> tuple[Origin, ...]:
         """Return the CALLs and GOSUBs that have not come back, the outermost first; not one that was fed."""
-        return tuple(_at(line, _calling(line)) for line in map(self.lines.__getitem__, self._calls()))
+        return tuple(origin_of(line, _calling(line)) for line in map(self.lines.__getitem__, self._calls()))
 
     def _calls(self) -> list[int]:
         return [back - 1 for scope in self.scopes.stack for back in (scope.back, *scope.returns) if back > 0]
@@ -117,11 +117,7 @@ class RunState:
         if loop is None:
             return None
         line = self.lines[loop[0]]
-        return _at(line, line.statement or line), loop[1]
-
-
-def _at(line: Line, part: Node) -> Origin:
-    return Origin(line=line.source_line, number=line.number, span=part.span)
+        return origin_of(line, line.statement or line), loop[1]
 
 
 def _calling(line: Line) -> Node:

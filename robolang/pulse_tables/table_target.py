@@ -15,7 +15,8 @@ from robolang.core.source import Span
 from robolang.evaluation.evaluator import Nowhere
 from robolang.execution import lowering
 from robolang.execution.alarms import failure
-from robolang.execution.executor import ENDED, Executor
+from robolang.execution.executor import Executor
+from robolang.execution.status import ENDED
 from robolang.execution.target import Requested, Untimed
 from robolang.execution.world import RobotWorld
 from robolang.interpreter.branch_oracle import Decisions

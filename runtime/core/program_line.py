@@ -11,14 +11,19 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProgramLine:
-    """A line of a program: its place in the file, from 1, and its line number, None where it has none."""
+    """A line of a program: its place in the file, from 1, and its line number, None where it has none.
+
+    ``line`` 0 is on no line of the program: a statement that was fed.
+    """
 
     line: int
     number: int | None = None
 
 
-def named(line: int, number: int | None) -> str:
-    """Return a line as messages name it; the only place that words a line and its number."""
+def named(line: int | None, number: int | None) -> str:
+    """Return a line as messages name it, 0 or None: no line of the program; the only place that words a line."""
+    if not line:
+        return "the fed statement"
     return f"line {line}" if number is None else f"line {line} (number {number})"
 
 

@@ -17,6 +17,7 @@ EXAMPLES = re.findall(r"```python\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL
 def test_the_package_offers_what_its_api_does():
     assert set(robolang.__all__) == {*api.__all__, "__version__"}
     assert all(getattr(robolang, name) is getattr(api, name) for name in api.__all__)
+    assert set(robolang.__all__) <= set(dir(robolang))  # a prompt completes them
     with pytest.raises(AttributeError):
         _ = robolang.nothing_of_this_name
 

@@ -7,11 +7,10 @@ import pytest
 
 from robolang.core.source import Source, Span
 from robolang.execution import run_bounds
-from robolang.execution.executor import ENDED, State
 from robolang.execution.observer import Observer
 from robolang.execution.session import Session
+from robolang.execution.status import ENDED, State
 from robolang.project.project import load_project
-from robolang.syntax.parser import parse
 from tests.campaign import size
 from tests.messages import numbers
 from tests.programs.runs import ROOT
@@ -26,8 +25,7 @@ def project_of(tmp_path, text):
 
 def fed(text):
     """A statement as a prompt has it."""
-    (line,) = parse(Source("prompt", text)).program.statements
-    return line
+    return Source("prompt", text)
 
 
 def log_of(session):
