@@ -22,6 +22,7 @@ class Repeats:
     def is_first(self, cause: Hashable, place: Span) -> bool:
         """Return whether a place is the first of its cause, and note it when it is another one."""
         places = self._places.setdefault(cause, [place])
+        # the first place is the diagnostic itself and no note
         if place not in places and len(places) <= MAX_NOTES:
             places.append(place)
         return place == places[0]

@@ -144,6 +144,7 @@ def _decode(name: str, raw: bytes) -> str:
         skipped = 3 if raw.startswith(b"\xef\xbb\xbf") else 0
         before = raw[skipped : skipped + error.start].decode("utf-8", "replace")
         _not_text(name, raw, before, f"byte {raw[skipped + error.start]:#04x} is not UTF-8 text")
+    # UTF-16 without its mark is valid UTF-8, full of NUL characters
     if "\0" in text:
         _not_text(name, raw, text[: text.index("\0")], "a NUL character: this is not a text file")
     return text

@@ -26,6 +26,7 @@ from runtime.core.faults import Fault
 
 _PROBE = bytes(4096)
 _PREFIX, _SUFFIX = ".robolang-", ".tmp"  # short: with the file's own name in it, one of 255 characters was not written
+# tempfile puts eight of these characters into a name: no file of anybody else is removed
 _TEMPORARY = re.compile(r"\.robolang-[a-z0-9_]{8}\.tmp")
 _UNSYNCED = (errno.EINVAL, errno.ENOTSUP)
 """Errors of file systems on which a folder cannot be flushed."""
@@ -228,6 +229,7 @@ def _exchange(one: Path, other: Path) -> bool:
     if call(_HERE, os.fsencode(one), _HERE, os.fsencode(other), _RENAME_EXCHANGE) == 0:
         return True
     number = ctypes.get_errno()
+    # an old kernel, or a file system that cannot exchange names
     if number in (errno.ENOSYS, errno.EINVAL):
         return False
     raise OSError(number, os.strerror(number), str(other))

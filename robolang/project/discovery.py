@@ -46,6 +46,7 @@ class CellFiles:
             try:
                 self._read[path] = read_cell_file(path)
             except FileFault as fault:
+                # a fault is kept as well: a cell of many programs is reported once
                 self._read[path] = fault
         found = self._read[path]
         if isinstance(found, FileFault):

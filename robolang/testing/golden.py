@@ -131,6 +131,7 @@ def _check_directory(path: Path, stream: IO[bytes]) -> None:
     size = stream.seek(0, os.SEEK_END)
     if size < _END.size:
         raise _damaged(path, "it is not a zip file")
+    # 20 bytes more: the locator of a directory of 64 bit stands before the end
     stream.seek(max(0, size - _END.size - 20))
     tail = stream.read()
     mark, _, _, _, count, length, _, _ = _END.unpack(tail[-_END.size :])
@@ -150,6 +151,7 @@ class _Member:
         self._stream = archive.open(info)
         start = self._stream.read(len(_MAGIC) + 2)
         length = int.from_bytes(start[len(_MAGIC) :], "little")
+        # numpy writes 118 bytes; the file may state up to 65535
         header = _HEADER.fullmatch(self._stream.read(length)) if length <= 1024 else None
         if not start.startswith(_MAGIC) or header is None:
             raise _damaged(path, f"'{info.filename}' has no header of an array")
