@@ -24,10 +24,19 @@ _REM = re.compile(r"(?<!\w)REM(?!\w)", re.IGNORECASE)
 def with_fix(diagnostic: Diagnostic, source: Source) -> Diagnostic:
     """Return a finding with its fix, where there is one."""
     make = _FIXES.get(diagnostic.code)
-    if make is None or diagnostic.fix is not None:
-        return diagnostic
-    fix = make(diagnostic, source)
-    return diagnostic if fix is None else diagnostic.replaced(fix=fix)
+    fix = diagnostic.fix if make is None or diagnostic.fix is not None else make(diagnostic, source)
+    line = source.line_spans[source.place(diagnostic.span.start).line - 1]
+    if fix is not None and _joins_line_ends(fix, line, source.text):
+        fix = None
+    return diagnostic if fix is diagnostic.fix else diagnostic.replaced(fix=fix)
+
+
+def _joins_line_ends(fix: Fix, line: Span, text: str) -> bool:
+    """Return whether a fix empties a line between a CR and a LF, which would become one line end, CR LF."""
+    if text[line.start - 1 : line.start] != "\r" or text[line.end : line.end + 1] != "\n":
+        return False
+    removed = sum(edit.span.end - edit.span.start for edit in fix.edits if not edit.text)
+    return removed == line.end - line.start
 
 
 def _look_alikes(diagnostic: Diagnostic, source: Source) -> Fix | None:

@@ -99,6 +99,13 @@ def test_a_finding_that_brings_its_fix_keeps_it():
     assert with_fix(item, Source("x", "1_000")).fix is own
 
 
+@pytest.mark.parametrize("emptied", ["' noqa: RBL111", "\u200b\u200b"])
+def test_a_line_between_cr_and_lf_is_not_emptied(emptied):
+    text = f"10 MOVE P1\n20 MOVE P2 ' noqa\r{emptied}\n"
+    assert fixed(text) == text
+    assert fixed(text.replace("\r", "\n")) == "10 MOVE P1\n20 MOVE P2\n\n"
+
+
 def test_edits_of_one_fix_are_in_order_and_apart():
     for text in ("МОVЕ Р1\n", "MOVE P1\r\nMOVE P2\nMOVE P3\n"):
         edits = found(text)[0].fix.edits
