@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from robolang.cli.check_options import FixOptions, ReportOptions
-from robolang.cli.errors import DIAGNOSTICS, reader_may_leave, say, say_all, say_warnings
+from robolang.cli.errors import DIAGNOSTICS, say, say_all, say_warnings
 from robolang.cli.output import echo
 from robolang.cli.rewrite import Loaded, load, store, unified
 from robolang.core.diagnostics import Diagnostic, Severity, has_errors, in_order, safe
@@ -281,8 +281,7 @@ def _print(job: Job, outcomes: Sequence[_Outcome]) -> None:
         return
     # a corrected program from the standard input goes to the standard output, so its report cannot
     corrected = job.fixes.fix and not job.fixes.diff and STANDARD_INPUT in job.paths
-    with reader_may_leave():
-        echo(text, nl=False, err=corrected)
+    echo(text, nl=False, err=corrected)
 
 
 def _report(job: Job, outcomes: Sequence[_Outcome]) -> str:

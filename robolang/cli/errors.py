@@ -1,8 +1,7 @@
 """What a user sees when something goes wrong, and the exit code that goes with it. No traceback gets past here.
 
 Exit codes: 0 clean, 1 diagnostics found, 2 usage or configuration, 3 motion fault, 4 storage, 70 internal,
-130 and 143 stopped by a signal (docs/decisions/0005). A reader that closes the pipe early (``| head``) changes none of
-them: what was meant for it is dropped.
+130 and 143 stopped by a signal (docs/decisions/0005).
 """
 
 import errno
@@ -12,7 +11,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 
-from robolang.cli.output import echo
+from robolang.cli.output import drop, echo
 from robolang.cli.usage import OptionValueError
 from robolang.core.diagnostics import Severity, render_fault, safe
 from runtime.core.faults import Fault
@@ -64,15 +63,6 @@ def say_all(fault: Fault) -> int:
 
 
 @contextmanager
-def reader_may_leave() -> Iterator[None]:
-    """Go on when nobody reads the standard output any more; what is printed from then on is dropped."""
-    try:
-        yield
-    except BrokenPipeError:
-        _drop_output()
-
-
-@contextmanager
 def reported() -> Iterator[None]:
     """Print faults to stderr and leave with their exit code.
 
@@ -100,15 +90,12 @@ def _left_with_exit_code() -> Iterator[None]:
         raise SystemExit(say_all(fault)) from None
     except KeyboardInterrupt:
         raise SystemExit(INTERRUPTED) from None
-    except BrokenPipeError:  # before OSError, which it is one of
-        _drop_output()
-        raise SystemExit(0) from None  # a command whose exit code says more goes on with reader_may_leave
     except OptionValueError:
         raise
     except OSError as error:
         if error.errno not in _FULL:
             raise SystemExit(say(internal(error))) from None
-        _drop_output()
+        drop(sys.stdout)
         message = f"cannot write the standard output: {error.strerror}"
         raise SystemExit(say(Fault("RBL706", message))) from None
     except Exception as error:
@@ -128,10 +115,3 @@ def internal(error: Exception) -> Fault:
     kind = type(error).__name__
     hint = "this is a defect of robolang; ROBOLANG_DEBUG=1 shows where it happened"
     return Fault("RBL900", f"internal error: {kind}: {error}", hint)
-
-
-def _drop_output() -> None:
-    """Lead the standard output nowhere, so that the interpreter does not fail at exit on what is left in it."""
-    # stdout may be None, closed, or no file at all, as in a test: then there is nothing to lead away
-    with suppress(OSError, ValueError, AttributeError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

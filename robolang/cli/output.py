@@ -1,6 +1,13 @@
-"""Printing on the standard output and the standard error, for every command. Imports the standard library only."""
+"""Printing on the standard output and the standard error, for every command. Imports the standard library only.
 
+A reader may close its pipe (``| head``) while a command works. What is printed from then on is dropped: the command
+does its work, writes its files and leaves with the exit code that it has without a pipe (docs/decisions/0005).
+"""
+
+import os
 import sys
+from contextlib import suppress
+from typing import TextIO
 
 
 def echo(text: str | bytes = "", *, nl: bool = True, err: bool = False) -> None:
@@ -8,10 +15,20 @@ def echo(text: str | bytes = "", *, nl: bool = True, err: bool = False) -> None:
     stream = sys.stderr if err else sys.stdout
     if stream is None:  # pythonw, or a service that was started with the stream closed
         return
-    if isinstance(text, bytes):
-        stream.flush()  # what was printed as text comes first
-        stream.buffer.write(text)
-        stream.buffer.flush()
-        return
-    stream.write(f"{text}\n" if nl else text)
-    stream.flush()
+    try:
+        if isinstance(text, bytes):
+            stream.flush()  # what was printed as text comes first
+            stream.buffer.write(text)
+            stream.buffer.flush()
+        else:
+            stream.write(f"{text}\n" if nl else text)
+            stream.flush()
+    except BrokenPipeError:
+        drop(stream)
+
+
+def drop(stream: TextIO) -> None:
+    """Lead a stream nowhere, so that the interpreter does not fail at exit on what is left in it."""
+    # a stream may be None, closed, or no file at all, as in a test: then there is nothing to lead away
+    with suppress(OSError, ValueError, AttributeError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

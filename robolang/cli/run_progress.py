@@ -7,7 +7,6 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from robolang.cli.errors import reader_may_leave
 from robolang.cli.output import echo
 from robolang.core.diagnostics import safe
 from robolang.execution.observer import Observer
@@ -41,8 +40,7 @@ class RunProgress(Observer):
 
     def printed(self, text: str) -> None:
         """Show what the program prints, as it prints it."""
-        with reader_may_leave():
-            echo(safe(text))
+        echo(safe(text))
 
 
 @contextmanager

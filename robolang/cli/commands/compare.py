@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Annotated, Any
 
 from robolang.cli.controller_settings import settings_of
-from robolang.cli.errors import MOTION, reader_may_leave, reported
+from robolang.cli.errors import MOTION, reported
 from robolang.cli.options import CellOptions, JsonOptions, Option, PhysicsOptions, Program, SettingsOptions
 from robolang.cli.output import echo
 from robolang.cli.refuse import refuse
@@ -59,12 +59,11 @@ def compare(
             request.project(variant)  # a bound of stability that only this variant breaks is found before the first run
         jobs = choice.jobs or min(2, os.cpu_count() or 1)
         rows = run_all(request, variants, jobs, _progress(len(variants)))
-        with reader_may_leave():
-            if output.as_json:
-                found = {"program": program, "physics": request.physics, "variants": rows}
-                echo(json.dumps(found, indent=2))
-            else:
-                _print(program, rows)
+        if output.as_json:
+            found = {"program": program, "physics": request.physics, "variants": rows}
+            echo(json.dumps(found, indent=2))
+        else:
+            _print(program, rows)
     # a variant that an alarm stopped is a row of the table, and still no success
     if not all(row["ok"] for row in rows):
         raise SystemExit(MOTION)

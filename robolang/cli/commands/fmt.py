@@ -8,7 +8,7 @@ Imports no numpy, pinocchio or mujoco.
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
-from robolang.cli.errors import STORAGE, reader_may_leave, reported, say
+from robolang.cli.errors import STORAGE, reported, say
 from robolang.cli.options import Argument, RewriteOptions
 from robolang.cli.output import echo
 from robolang.cli.rewrite import BROKEN, CHANGES, STDIO, broken, load, show, store
@@ -43,8 +43,7 @@ def fmt(paths: _Paths, output: RewriteOptions) -> None:
 
             for name in programs(names, excludes=Settings().excludes):
                 run.one(name)
-            with reader_may_leave():
-                echo(run.summary(), err=output.diff)  # stdout may go on to patch
+            echo(run.summary(), err=output.diff)  # stdout may go on to patch
     if run.exit_code:
         raise SystemExit(run.exit_code)
 
@@ -87,11 +86,10 @@ class _Run:
         if broken(loaded, found.diagnostics):
             self._leave(BROKEN)
             return
-        with reader_may_leave():
-            if self.diff:
-                show(loaded, found.text)
-            elif self.check and found.changed:
-                echo(safe(f"would reformat {loaded.source.path}"))
+        if self.diff:
+            show(loaded, found.text)
+        elif self.check and found.changed:
+            echo(safe(f"would reformat {loaded.source.path}"))
         # a filter of an editor gives back what it has read, changed or not; a file keeps its time
         if not self.check and not self.diff and (found.changed or name == STDIO):
             store(loaded, found.text)

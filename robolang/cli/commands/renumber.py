@@ -7,7 +7,7 @@ Imports no numpy, pinocchio or mujoco.
 
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
-from robolang.cli.errors import STORAGE, reader_may_leave, reported, say
+from robolang.cli.errors import STORAGE, reported, say
 from robolang.cli.options import Argument, Group, Option, RewriteOptions
 from robolang.cli.output import echo
 from robolang.cli.rewrite import BROKEN, CHANGES, STDIO, broken, load, show, store
@@ -87,14 +87,12 @@ def _deliver(loaded: "Loaded", found: "RenumberResult", output: _Output) -> None
 
     out = loaded.name if output.out is None else output.out
     if output.diff:
-        with reader_may_leave():
-            show(loaded, found.text)
+        show(loaded, found.text)
     # a file of its own is written even if nothing changes: the next step of a script reads it
     elif not output.check and (found.changed or out == STDIO or out != loaded.name):
         store(loaded, found.text, out)
-    with reader_may_leave():
-        text = _summary(found, "would change" if output.dry else "changed")
-        echo(safe(f"{loaded.source.path}: {text}"), err=output.diff or out == STDIO)  # stdout has a diff or a program
+    text = _summary(found, "would change" if output.dry else "changed")
+    echo(safe(f"{loaded.source.path}: {text}"), err=output.diff or out == STDIO)  # stdout has a diff or a program
 
 
 def _summary(found: "RenumberResult", changed: str) -> str:

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from robolang.cli import lines
-from robolang.cli.errors import DIAGNOSTICS, MOTION, reader_may_leave, reported, say, say_warnings
+from robolang.cli.errors import DIAGNOSTICS, MOTION, reported, say, say_warnings
 from robolang.cli.options import Argument, Group, Option, PlotOptions
 from robolang.cli.output import echo
 from robolang.cli.usage import OptionValueError
@@ -76,11 +76,10 @@ def replay_pulses(folder: _Folder, options: _ReplayOptions, output: PlotOptions)
 
             write_plot(output.plot, export, replays)
         found = _figures(folder, export, replays, drive)
-        with reader_may_leave():
-            if output.as_json:
-                echo(json.dumps(found))
-            else:
-                _print(found)
+        if output.as_json:
+            echo(json.dumps(found))
+        else:
+            _print(found)
         too_far = options.max_error is not None and _is_too_far(replays, options.max_error)
     # an alarm outranks a distance: the arm has not driven the rest of the tables
     if drive is not None and drive.alarms:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import typer
 
 from robolang.cli.command import PlainCommand, command
-from robolang.cli.errors import reader_may_leave, reported, say, say_warnings
+from robolang.cli.errors import reported, say, say_warnings
 from robolang.cli.options import ROBOT, Argument, Group, Option
 from robolang.cli.output import echo
 from robolang.core.diagnostics import safe
@@ -144,12 +144,11 @@ def _show_model(robot: str) -> int:
         f"Drives: none. 'robolang robot import' writes {sidecar_path(path).name}, to be filled in.",
         *(f"{fault.code} {fault.message}" for fault in faults),
     ]
-    with reader_may_leave():
-        console = Console()
-        console.print(safe(f"{arm.title}, {arm.n} axes; the flange is {arm.flange!r}"), "\n")
-        for table in (_model_limits(arm), _model_bodies(arm)):
-            console.print(table)
-        console.print(_bullets(lines))
+    console = Console()
+    console.print(safe(f"{arm.title}, {arm.n} axes; the flange is {arm.flange!r}"), "\n")
+    for table in (_model_limits(arm), _model_bodies(arm)):
+        console.print(table)
+    console.print(_bullets(lines))
     return max(map(say, faults), default=0)
 
 

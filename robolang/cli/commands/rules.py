@@ -3,7 +3,7 @@
 import json
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-from robolang.cli.errors import reader_may_leave, reported
+from robolang.cli.errors import reported
 from robolang.cli.options import Group, Option
 from robolang.cli.output import echo
 
@@ -23,7 +23,7 @@ def rules(output: _RulesOptions) -> None:
     """
     from robolang.lint.registry import codes
 
-    with reported(), reader_may_leave():
+    with reported():
         if output.as_json:
             echo(json.dumps([_as_json(entry) for entry in codes()], indent=2))
         else:

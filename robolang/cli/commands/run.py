@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from robolang.cli.controller_settings import settings_of
-from robolang.cli.errors import DIAGNOSTICS, MOTION, reader_may_leave, reported, say
+from robolang.cli.errors import DIAGNOSTICS, MOTION, reported, say
 from robolang.cli.options import CellOptions, Group, Option, PhysicsOptions, Program, RunControllerOptions, Strict
 from robolang.cli.output import echo
 from robolang.cli.refuse import refuse
@@ -85,8 +85,7 @@ def run(
         if not output.quiet:
             from robolang.cli.run_table import print_result
 
-            with reader_may_leave():
-                print_result(result.report)
+            print_result(result.report)
         _print_alarms(project, result, warnings=output.warnings)
     # a file that is lost or a signal says more than the alarm, which is printed in any case
     code = code or (0 if result.ok else MOTION)

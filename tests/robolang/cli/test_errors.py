@@ -4,7 +4,7 @@ import pytest
 
 import robolang.project.project  # noqa: F401 - registers its codes
 from robolang.cli import errors
-from robolang.cli.errors import exit_code, reader_may_leave, reported, say
+from robolang.cli.errors import exit_code, reported, say
 from robolang.cli.usage import OptionValueError
 from robolang.core.diagnostics import safe
 from runtime.core.faults import Fault, all_codes
@@ -113,13 +113,6 @@ def test_a_full_output_is_a_storage_fault(capsys):
     said = capsys.readouterr().err
     assert heads(said) == ["error RBL706"]
     assert "full" in said
-
-
-def test_a_reader_that_leaves_is_no_error(capsys):
-    assert left_with(BrokenPipeError(errno.EPIPE, "Broken pipe")) == 0
-    with reader_may_leave():
-        raise BrokenPipeError
-    assert capsys.readouterr().err == ""
 
 
 @pytest.mark.parametrize("error", [SystemExit(7), OptionValueError("--axis", "no")])
