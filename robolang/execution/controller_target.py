@@ -214,6 +214,16 @@ class ControllerTarget:
         """Resume the move where it rests."""
         self._record.controller.go_on()
 
+    def set_aside(self) -> _Activity:
+        """Interrupt a wait; its statement ends here, and what is left of it counts to it again when it ends."""
+        activity = self._activity
+        self.finish()
+        return activity
+
+    def take_up(self, left: _Activity) -> None:
+        """Go on with a wait."""
+        self._activity = left
+
     def stop(self) -> None:
         """Raise RBL530."""
         self._record.controller.alarm("RBL530", "the run was stopped from outside")

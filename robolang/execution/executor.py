@@ -8,12 +8,12 @@ longest run, the end at STOP, and requests that are refused: these go back to th
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from enum import Enum, auto
 from typing import Any, TypeAlias, assert_never
 
 from robolang.core.source import Source, Span
 from robolang.execution import lowering, run_bounds
 from robolang.execution.observer import Observer
+from robolang.execution.progress import Aside, End, Phase, Progress
 from robolang.execution.status import State, Status
 from robolang.execution.target import Requested, Target
 from robolang.execution.world import WorldSnapshot
@@ -48,38 +48,8 @@ Alter: TypeAlias = Callable[[Effect], Effect | None]
 """Changes an effect before it is carried out, None: leaves it out (``compare``)."""
 
 
-class _Phase(Enum):
-    READY = auto()  # the program goes on
-    BUSY = auto()  # an effect has been started
-    STOPPING = auto()  # an alarm: the arm comes to rest
-    OVER = auto()
-
-
-_End: TypeAlias = Done | Failed | FedEnded
 Setting: TypeAlias = SetPayload | SetWrist | SetSeam | SetTool | SetOutput
 """Effects that last; mypy refuses a new one that is carried out neither as one of these nor by ``_carry_out``."""
-
-
-@dataclass(slots=True, kw_only=True)
-class _Progress:
-    """All of an executor that changes, besides machine, world and target.
-
-    ``request``: the effect that the program has yielded last; ``doing``: the effects that have been started; ``chain``:
-    moves that are kept, since the next one may blend into them; ``due``: what comes when these have ended. ``ends_us``:
-    the simulated time at which the run is too long.
-    """
-
-    ends_us: int
-    phase: _Phase = _Phase.READY
-    request: Effect | None = None
-    doing: tuple[Effect, ...] = ()
-    chain: tuple[Requested, ...] = ()
-    due: Effect | _End | None = None
-    tracked: bool = False
-    pausing: bool = False
-    resting: bool = False
-    resumed: bool = False
-    fault: Failed | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -112,7 +82,7 @@ class Executor:
         self._observer = observer or Observer()
         self._most_us = run_bounds.MAX_RUN_US if most_us is None else most_us
         self._machine = Machine(project.program, self.world, project.points.names, decisions)
-        self._now = _Progress(ends_us=self._most_us)
+        self._now = Progress(ends_us=self._most_us)
         self._stop_requested = self._halt_requested = False
 
     # --- from outside ------------------------------------------------------------------------------------------------
@@ -155,18 +125,18 @@ class Executor:
     @property
     def _state(self) -> State:
         now = self._now
-        if now.phase is _Phase.OVER:
-            failed = bool(self._target.alarms) or now.fault is not None
+        if now.phase is Phase.OVER:
+            failed = bool(self._target.alarms) or (now.fault is not None and not now.fault.fed)
             # a requested stop first: on a controller it is an alarm as well (RBL530)
             return State.STOPPED if self._stop_requested else State.ALARM if failed else State.DONE
         if now.resting:
             return State.PAUSED
-        waits = now.phase is _Phase.BUSY and any(isinstance(each.node, Wait) for each in now.doing)
+        waits = now.phase is Phase.BUSY and any(isinstance(each.node, Wait) for each in now.doing)
         return State.WAITING if waits else State.RUNNING
 
     def pause(self) -> None:
         """Let the arm come to rest on its path, and the program stand; simulated time stands still from then on."""
-        self._now.pausing = self._now.phase in (_Phase.READY, _Phase.BUSY)
+        self._now.pausing = self._now.phase in (Phase.READY, Phase.BUSY)
         self._now.resumed = False
 
     def resume(self) -> None:
@@ -178,30 +148,40 @@ class Executor:
 
         Safe to call from a signal handler.
         """
-        if self._now.phase is not _Phase.OVER:
+        if self._now.phase is not Phase.OVER:
             self._stop_requested = True
 
     def halt(self) -> None:
         """Stop at once and end the program (category 0), as ``stop`` does."""
-        if self._now.phase is not _Phase.OVER:
+        if self._now.phase is not Phase.OVER:
             self._stop_requested = self._halt_requested = True
 
     def feed(self, statement: str | Source) -> None:
         """Carry out one more statement where the program stands; when it is over, the program is paused there.
 
         A ``Source`` has the name that messages give as its place. ``FileFault`` with that place for a text that is not
-        one statement, ``Fault`` for a statement that cannot stand alone, ``RuntimeError`` during a motion, a DELAY or a
-        WAIT, and after an alarm. Nothing has changed then.
+        one statement, ``Fault`` for a statement that cannot stand alone, ``RuntimeError`` while the program runs, where
+        the arm rests within a move, and after an alarm. Nothing has changed then.
         """
         line = fed_line(statement if isinstance(statement, Source) else Source("fed statement", statement))
         now = self._now
-        over = now.phase is _Phase.OVER
-        if now.due is not None or not (now.phase is _Phase.READY or over):
-            raise RuntimeError("a statement is being carried out")
+        over = now.phase is Phase.OVER
+        waits = now.phase is Phase.BUSY and now.resting
+        if waits and any(isinstance(each, MoveTo) for each in now.doing):  # the rest of its plan begins where it is
+            raise RuntimeError("the arm rests within a move; resume the move to its end first")
+        if now.due is not None or not (now.phase is Phase.READY or over or waits):
+            raise RuntimeError("a statement is being carried out; pause the program first")
         if over and self._state is not State.DONE:  # after an alarm ``acknowledge`` comes first (decision 0037)
             raise RuntimeError("the program has been ended by an alarm or a stop")
+        depth = self._machine.depth
         self._machine.feed(line)
-        now.phase, now.fault = _Phase.READY, None
+        # a wait of a fed CALL that a handler or a jump has left is not taken up
+        now.aside = tuple(each for each in now.aside if each.depth < depth)
+        if waits:
+            interrupted, left = self._target.statement, self._target.set_aside()
+            now.aside += (Aside(depth=depth, doing=now.doing, statement=interrupted, left=left),)
+            now.doing = ()
+        now.phase, now.fault = Phase.READY, None
         now.pausing = now.resting = now.resumed = False
 
     def acknowledge(self) -> None:
@@ -211,13 +191,13 @@ class Executor:
         be fed, and may take as long as a run. ``RuntimeError`` while the program runs or the arm still stops, and when
         the state of the plant is no longer valid.
         """
-        if self._now.phase is not _Phase.OVER:
+        if self._now.phase is not Phase.OVER:
             raise RuntimeError("the program still runs, or the arm is still stopping")
         self._target.acknowledge()
         self._machine.end()
         self.world.q_last = self._target.q  # where the brakes have left the arm, not where the move would have ended
         # as long again: after a run that was too long (RBL509) every statement that is fed would be too late
-        self._now = _Progress(phase=_Phase.OVER, ends_us=self._target.time_us + self._most_us)
+        self._now = Progress(phase=Phase.OVER, ends_us=self._target.time_us + self._most_us)
         self._stop_requested = self._halt_requested = False
 
     def snapshot(self) -> ExecutorSnapshot:
@@ -246,27 +226,27 @@ class Executor:
             if now.pausing and not self._interrupted():
                 return not now.resting
             if not self._went_on():
-                return now.phase is not _Phase.OVER
+                return now.phase is not Phase.OVER
 
     def _went_on(self) -> bool:
         """Do one thing that takes no time, if there is one; else a cycle is due, or the program is over."""
         target, now = self._target, self._now
         match now.phase:
-            case _Phase.READY if self._stop_requested:
+            case Phase.READY if self._stop_requested:
                 self._end_effects()
-            case _Phase.READY:
+            case Phase.READY:
                 self._go_on()
-            case _Phase.BUSY:
+            case Phase.BUSY:
                 # ``goes_on`` first: it notes what the last cycle did, also where a stop ends the effect
                 if target.goes_on() and not self._stop_requested:
                     return False
                 self._end_effects()
-            case _Phase.STOPPING:
+            case Phase.STOPPING:
                 if not target.at_rest:
                     return False
                 self._finish()
-                now.phase = _Phase.OVER
-            case _Phase.OVER:
+                now.phase = Phase.OVER
+            case Phase.OVER:
                 return False
             case _:
                 assert_never(now.phase)
@@ -275,12 +255,12 @@ class Executor:
     def _interrupted(self) -> bool:
         """Pause or go on; return whether the program goes on, else the arm comes to rest or rests (``resting``)."""
         now = self._now
-        if now.phase not in (_Phase.READY, _Phase.BUSY) or self._stop_requested:
+        if now.phase not in (Phase.READY, Phase.BUSY) or self._stop_requested:
             now.pausing = now.resting = False
-            if now.phase is _Phase.READY:
+            if now.phase is Phase.READY:
                 self._end_effects()
             return True
-        if now.due is not None and now.phase is _Phase.READY:  # in the middle of a statement
+        if now.due is not None and now.phase is Phase.READY:  # in the middle of a statement
             return True
         now.resting = self._target.hold()
         if now.resting and now.resumed:
@@ -290,7 +270,7 @@ class Executor:
 
     def _cycle(self) -> None:
         target, now = self._target, self._now
-        if now.phase is _Phase.STOPPING:
+        if now.phase is Phase.STOPPING:
             target.brake(at_once=self._halt_requested)  # read in each cycle: a second Ctrl-C comes during the stop
         elif not target.cycle() or target.alarms:
             self._end_effects()
@@ -306,15 +286,15 @@ class Executor:
             if target.statement is None:  # before the first statement: an alarm has a place
                 target.statement = self._first
             target.stop()
-            now.phase = _Phase.STOPPING  # also where no cycle runs: the arm rests
+            now.phase = Phase.STOPPING  # also where no cycle runs: the arm rests
         if target.alarms:
             self._observer.alarm(target.alarms[0])
-            now.phase = _Phase.STOPPING
+            now.phase = Phase.STOPPING
         elif target.time_us >= now.ends_us:
             self._fail(self._too_long())
-        elif now.phase is _Phase.BUSY:
+        elif now.phase is Phase.BUSY:
             self._finish()
-            now.phase = _Phase.READY
+            now.phase = Phase.READY
 
     def _finish(self) -> None:
         now = self._now
@@ -340,7 +320,7 @@ class Executor:
 
     def _fail(self, fault: Failed) -> None:
         """End with a fault that the program does not catch."""
-        self._now.fault, self._now.phase = fault, _Phase.STOPPING
+        self._now.fault, self._now.phase = fault, Phase.STOPPING
         self._target.fail(fault)
         for alarm in self._target.alarms[:1]:
             self._observer.alarm(alarm)
@@ -375,7 +355,7 @@ class Executor:
                     else:
                         self._after_motion(effect)
 
-    def _after_motion(self, due: Effect | _End) -> None:
+    def _after_motion(self, due: Effect | End) -> None:
         """Let the moves that are kept run first, if there are any."""
         self._now.due = due
         if self._now.chain:
@@ -383,29 +363,41 @@ class Executor:
         else:
             self._arrive(due)
 
-    def _arrive(self, due: Effect | _End) -> None:
+    def _arrive(self, due: Effect | End) -> None:
         now = self._now
         now.due = None
         match due:
             case Done():
-                now.phase = _Phase.OVER
+                now.phase = Phase.OVER
                 self._stop_requested = self._halt_requested = False  # a signal that came in the meantime is too late
             case FedEnded():
                 now.pausing = True
+                if not due.led:
+                    self._take_up()
             case Failed():
                 if due.fed:
                     now.fault, now.pausing = due, True
+                    self._take_up()
                 else:
                     self._target.statement = due.origin
                     self._fail(due)
             case _:
                 self._carry_out(due)
 
+    def _take_up(self) -> None:
+        """Go on with the wait that the fed statement has interrupted, if it has."""
+        now = self._now
+        if now.aside and now.aside[-1].depth == self._machine.depth:
+            *others, aside = now.aside
+            now.aside, now.phase, now.doing = tuple(others), Phase.BUSY, aside.doing
+            self._target.statement = aside.statement
+            self._target.take_up(aside.left)
+
     def _refuse(self, fault: Fault) -> None:
         """Give a request that cannot be carried out back to the program, which may catch the fault (ON ERROR)."""
         now = self._now
         due, now.due, now.doing = now.due, None, ()
-        now.phase = _Phase.READY
+        now.phase = Phase.READY
         # the moves that were kept to the end: no statement is left that could answer
         if now.request is None or isinstance(due, Done | Failed | FedEnded):
             self._fail(_failed(fault, self._target.statement))
@@ -418,7 +410,7 @@ class Executor:
     def _carry_out(self, effect: Effect) -> None:
         """Start an effect on the target, in SI."""
         target, now = self._target, self._now
-        now.phase, now.doing = _Phase.BUSY, (effect,)
+        now.phase, now.doing = Phase.BUSY, (effect,)
         match effect:
             case MoveTo():
                 self._move(effect)
@@ -429,7 +421,7 @@ class Executor:
                 target.wait(effect, max(1, self._cycles(effect.seconds)))
             case Drain():
                 target.drain(effect)
-                now.phase, now.doing = _Phase.READY, ()
+                now.phase, now.doing = Phase.READY, ()
             case Show():
                 target.show(effect)
             case Halt():
@@ -475,14 +467,14 @@ class Executor:
             blends = blends and len(plan.q) > 1 and len(now.chain) + 1 < run_bounds.MAX_CHAIN
         now.chain = (*now.chain, Requested(effect=effect, command=command))
         if blends:
-            now.phase, now.doing = _Phase.READY, ()
+            now.phase, now.doing = Phase.READY, ()
         else:
             self._start_chain()
 
     def _start_chain(self) -> None:
         now = self._now
         chain, now.chain = now.chain, ()
-        now.phase, now.doing = _Phase.BUSY, tuple(each.effect for each in chain)
+        now.phase, now.doing = Phase.BUSY, tuple(each.effect for each in chain)
         self._target.move(chain)
 
 

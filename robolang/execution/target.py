@@ -128,6 +128,12 @@ class Target(Effects, Protocol):
     def go_on(self) -> None:
         """Go on where ``hold`` has interrupted the motion."""
 
+    def set_aside(self) -> Any:
+        """Return what is left of a wait that is interrupted, for ``take_up``; nothing goes on until another effect."""
+
+    def take_up(self, left: Any) -> None:
+        """Go on with a wait that was set aside."""
+
     def stop(self) -> None:
         """Raise the alarm of a stop from outside (category 1)."""
 
@@ -174,6 +180,12 @@ class Untimed:
         return True
 
     def go_on(self) -> None:
+        """Do nothing."""
+
+    def set_aside(self) -> None:
+        """Do nothing: no wait takes cycles."""
+
+    def take_up(self, left: Any) -> None:
         """Do nothing."""
 
     def stop(self) -> None:

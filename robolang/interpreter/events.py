@@ -32,7 +32,9 @@ class Failed:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FedEnded:
-    """The statement that was fed is over; the program stands where it stood, or where the statement has led it."""
+    """The statement that was fed is over; the program stands where it stood, or where the statement has ``led`` it."""
+
+    led: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

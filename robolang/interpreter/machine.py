@@ -20,7 +20,7 @@ from robolang.evaluation.evaluator import World
 from robolang.interpreter import dispatch, run_limits, snapshot
 from robolang.interpreter.branch_oracle import Decisions
 from robolang.interpreter.effects import Drain, Origin, origin
-from robolang.interpreter.events import DONE, FED_ENDED, Event, Failed, LineBegun
+from robolang.interpreter.events import DONE, FED_ENDED, Event, Failed, FedEnded, LineBegun
 from robolang.interpreter.positions import AFTER_FED, BEGUN, DUE, FED, GIVEN, Cursor, Drained, Suspended, Waiting
 from robolang.interpreter.program_fault import ProgramFault
 from robolang.interpreter.run_state import Result, RunState
@@ -192,12 +192,11 @@ class Machine:
             run.suspended = run.suspended[:-1]  # a jump: nothing comes back to the place that was suspended
             if to != AFTER_FED:
                 run.cursor = Cursor(at=to)
-                return FED_ENDED
-        self._take_up()
-        return FED_ENDED
+                return FedEnded(led=True)
+        return FED_ENDED if self._take_up() else FedEnded(led=True)
 
-    def _take_up(self) -> None:
-        """Return to the place that was suspended with as many scopes and GOSUBs as there are now."""
+    def _take_up(self) -> bool:
+        """Return to the place that was suspended with as many scopes and GOSUBs as there are now, if there is one."""
         run = self._run
         now = len(run.scopes.stack), len(run.scopes.here.returns)
         while run.suspended:
@@ -205,8 +204,9 @@ class Machine:
             run.suspended = tuple(others)
             if (top.depth, top.returns) == now:
                 run.cursor = top.cursor.copy()
-                return
+                return True
         run.cursor = Cursor(at=len(run.lines))  # END inside of a SUB that was fed has left nothing to return to
+        return False
 
     def _forget_left(self) -> None:
         """Forget places to which nothing returns, since a jump or a handler has left the call that was fed."""
@@ -240,6 +240,11 @@ class Machine:
         """The statement, or part of one, that is due or runs; None when no line has begun, and when all is over."""
         cursor = self._run.cursor
         return None if cursor.part[1] is None else self._run.origin()
+
+    @property
+    def depth(self) -> int:
+        """How many statements have been fed, one within the other, and are not over."""
+        return len(self._run.suspended)
 
     @property
     def calls(self) -> tuple[Origin, ...]:

@@ -161,3 +161,96 @@ def test_a_snapshot_keeps_what_was_warned_of_and_acknowledged(tmp_path):
     assert session.result(0.0).alarms == ()
     executor.restore(noted)
     assert [item.code for item in session.result(0.0).alarms] == ["RBL530"]
+
+
+def paused(session, cycle):
+    session.executor.advance(cycle)
+    session.executor.pause()
+    return until(session, State.PAUSED)
+
+
+def shown(session):
+    return [text for _, text in session.record.shown]
+
+
+@pytest.mark.parametrize("wait", ["DELAY 0.4", "WAIT TIMER >= 0.4", "HAND ON, 0.4", "IF 1 THEN DELAY 0.4"])
+def test_a_wait_that_a_fed_statement_interrupts_takes_what_is_left_of_it(tmp_path, wait):
+    session = session_of(tmp_path, f"{wait}\nPRINT TIMER\n")
+    interrupted = paused(session, 20)
+    session.executor.feed("PRINT TIMER")
+    status = until(session, State.PAUSED)
+    assert (status.statement, status.time_us) == (interrupted.statement, interrupted.time_us)
+    kept = session.executor.snapshot()
+    for _ in range(2):
+        session.executor.resume()
+        assert until(session, *ENDED).state is State.DONE
+        assert shown(session) == ["0.16", "0.4"]
+        rows = session.result(0.0).report["statements"]
+        assert sum(row["duration_s"] for row in rows if row["line"] == 1) == pytest.approx(0.4)
+        session.executor.restore(kept)
+
+
+def test_a_motion_fed_within_a_delay_is_carried_out_and_the_delay_goes_on(tmp_path):
+    session = session_of(tmp_path, "DELAY 0.4\nPRINT TIMER\n")
+    began = paused(session, 20).time_us
+    session.executor.feed("MOVE P1")
+    went = until(session, State.PAUSED).time_us - began
+    assert went > 100_000
+    np.testing.assert_allclose(session.executor.world.q_last, session.controller.areas.ina)
+    session.executor.resume()
+    assert until(session, *ENDED).time_us == 400_000 + went
+    assert {0, 1} <= set(np.unique(session.result(0.0).log["line"]))
+
+
+def test_a_wait_within_a_fed_call_is_interrupted_as_well(tmp_path):
+    session = session_of(tmp_path, "DELAY 0.4\nPRINT TIMER\nEND\nSUB S()\nDELAY 0.2\nPRINT 7\nENDSUB\n")
+    paused(session, 20)
+    session.executor.feed("CALL S()")
+    paused(session, 5)
+    session.executor.feed("PRINT 8")
+    until(session, State.PAUSED)
+    session.executor.feed("X = 1 / 0")
+    assert until(session, State.PAUSED).fault.code == "RBL501"
+    session.executor.resume()
+    until(session, State.PAUSED)  # the CALL that was fed is over
+    session.executor.resume()
+    assert until(session, *ENDED).state is State.DONE
+    assert shown(session) == ["8", "7", "0.6"]
+
+
+@pytest.mark.parametrize(("text", "expected"), [("GOTO *A", ["5"]), ("END", [])])
+def test_a_fed_jump_leaves_the_wait(tmp_path, text, expected):
+    session = session_of(tmp_path, "DELAY 0.4\nPRINT 2\n*A PRINT 5\n")
+    began = paused(session, 20).time_us
+    session.executor.feed(text)
+    until(session, State.PAUSED)
+    session.executor.resume()
+    assert until(session, *ENDED).time_us == began
+    assert shown(session) == expected
+    session.executor.feed("PRINT 9")
+    assert until(session, State.PAUSED).time_us == began
+
+
+def test_a_stop_of_a_statement_fed_within_a_wait_ends_the_program(tmp_path):
+    session = session_of(tmp_path, "DELAY 0.4\nPRINT 2\n")
+    paused(session, 20)
+    session.executor.feed("MOVE P1")
+    session.executor.advance(20)
+    session.executor.stop()
+    assert until(session, *ENDED).state is State.STOPPED
+    session.executor.acknowledge()
+    session.executor.feed("PRINT 9")
+    until(session, State.PAUSED)
+    session.executor.resume()
+    assert until(session, *ENDED).state is State.DONE
+    assert shown(session) == ["9"]
+
+
+def test_nothing_is_fed_within_a_move_or_while_the_program_runs(tmp_path):
+    session = session_of(tmp_path, "MOVE P1\nDELAY 0.4\n")
+    session.executor.advance(20)
+    with pytest.raises(RuntimeError, match="pause"):
+        session.executor.feed("PRINT 1")
+    paused(session, 1)
+    with pytest.raises(RuntimeError, match="move"):
+        session.executor.feed("PRINT 1")
