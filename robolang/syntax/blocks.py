@@ -84,6 +84,7 @@ class Structure:
     def report(self, diagnostic: Diagnostic) -> None:
         """Keep a diagnostic, unless there are more of its code than are ever listed."""
         self._counts[diagnostic.code] += 1
+        # one more than are listed, so that ``in_order`` can say that there are more
         if self._counts[diagnostic.code] <= MAX_DIAGNOSTICS + 1:
             self.diagnostics.append(diagnostic)
 
@@ -91,6 +92,7 @@ class Structure:
         """Return the line that a target names; None where there is none."""
         if target.label is not None:
             return self.labels.get(target.label.key)
+        # -1 is the number of no line
         return self.numbers.get(target.number if target.number is not None else -1)
 
 
@@ -108,6 +110,7 @@ def structure_of(program: Program) -> Structure:
     """Return the tables of a program, with what is wrong in ``diagnostics``."""
     found = Structure()
     _names(program, found)
+    # before the jumps, which are judged by the blocks that it enters
     _Matcher(program, found).match()
     for index, line in enumerate(program.lines):
         for target in targets(line.statement):
@@ -230,6 +233,7 @@ class _Matcher:
         """Take a line that divides or closes a block."""
         head = _CLOSES.get(word) or _DIVIDES[word]
         if isinstance(line.statement, Unparsed):
+            # a guess ends the innermost block at most: no other block is given up for it
             if self._around.word != head:
                 return
             if word in _CLOSES:
@@ -248,9 +252,11 @@ class _Matcher:
             self._doubtful[word] -= 1
             return
         around = self._around
+        # taken away: such a line can be the head that one ENDSUB lacks, not two
         unknown, around.unknown = around.unknown, None
         if unknown is not None and head == "SUB":
             self._take_as_sub(unknown, index)
+        # SU= f(n) may be the lost head, yet has no error of its own: one must be reported here
         if unknown is None or not isinstance(self._program.lines[unknown].statement, Unparsed):
             block = self._stack[-1] if self._stack else None
             self._wrong("RBL212", f"{word} has no {head} above it", line, block)
@@ -269,6 +275,7 @@ class _Matcher:
         block = self._stack.pop()
         statement, opener = line.statement, self._program.lines[block.lines[0]].statement
         named = statement.variable if isinstance(statement, Next) else None
+        # the FOR is closed all the same, or one wrong name would be two mistakes
         if named is not None and isinstance(opener, For) and named.key != opener.variable.key:
             self._wrong("RBL212", f"NEXT {named.text} does not match FOR {opener.variable.text}", line, block)
         block.lines.append(index)
@@ -324,6 +331,7 @@ def _seeming_word(text: str) -> str:
     """Return the word by which a line with an error seems to take part in a block, or ``""``."""
     first = _FIRST.match(text)
     upper = first[1].upper() if first else ""
+    # a word that is known is not a misspelt one: END resembles WEND, EXIT resembles NEXT
     if upper in other_languages.WORDS or upper in KEYWORDS - _WORDS:
         return other_languages.ENDS.get(upper, "")
     word = near(upper, _WORDS, cutoff=_LIKENESS)
@@ -331,6 +339,7 @@ def _seeming_word(text: str) -> str:
         return _seeming_if(upper, text)
     if word == "CASE" and "ELSE" in text.upper():
         return "CASE ELSE"
+    # COUNT i = 1 TO 3: only a FOR has = and TO
     return "FOR" if not word and _RANGE.search(text) else word
 
 
@@ -360,6 +369,7 @@ def _check_jump(program: Program, found: Structure, index: int, target: Target) 
     where = found.line_of(target)
     if where is None:
         _no_target(found, target)
+    # before the blocks: a jump into a block of another SUB is one mistake
     elif found.owner.get(where) != found.owner.get(index):
         _check_sub(program, found, index, target)
     else:
@@ -370,6 +380,7 @@ def _no_target(found: Structure, target: Target) -> None:
     """Report a target that is nowhere, each once however many jumps name it."""
     name = f"*{target.label.text}" if target.label is not None else f"line number {target.number}"
     name = name if target.number != -1 else "a line number that is not whole"
+    # GOTO 1.5 and GOTO 2.5 are two mistakes, though both have -1
     cause = target.span if target.number == -1 else name.upper()
     if found.missing.is_first(cause, target.span):
         found.report(Diagnostic(code="RBL202", message=f"there is no {name} to go to", span=target.span))
@@ -393,6 +404,7 @@ def _check_entry(program: Program, found: Structure, index: int, target: Target)
     here = set(found.inside[index]) | {index}
     for head in found.inside[where]:
         statement = program.lines[head].statement
+        # a block without an end is reported already, and one whose head is a guess may be none
         if head not in here and head in found.end and isinstance(statement, For | Head):
             word = word_of(statement)
             message = f"the target is inside a {word} that the jump is not in"

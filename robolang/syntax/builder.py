@@ -71,6 +71,7 @@ def _from_declaration(node: str) -> Callable[..., Any]:
         if rest:
             fields[rest] = tuple(operands[len(names) :])
         if has_word:
+            # the kind, not the text: in capitals, however the word is written
             fields["word"] = str(found[0].type)  # type: ignore[union-attr]
         return kind(**fields, span=_over(found[0], found[-1]))
 
@@ -82,12 +83,14 @@ class _Builder:
 
     def __getattr__(self, rule: str) -> Callable[..., Any]:
         if rule not in _BY_RULE:
+            # rules that only group have no method: the tables are made by ``hasattr``
             raise AttributeError(rule)
         return _from_declaration(_BY_RULE[rule])
 
     def start(self, label: ast.Name | None, statement: ast.Statement | None, comment: Token | None) -> Parsed:
         if comment is None:
             return label, statement, None
+        # the token goes on to the end of the line, blanks included
         text, at = comment.rstrip(), span_of(comment).start
         return label, statement, ast.Comment(text=text, span=Span(at, at + len(text)))
 
@@ -171,6 +174,7 @@ class _Builder:
     def negate(self, sign: Token, operand: Expression) -> ast.Negate:
         return ast.Negate(operand=operand, span=_over(sign, operand))
 
+    # no node: +x has the value of x, and the formatter leaves the sign out
     def plus(self, sign: Token, operand: Expression) -> Expression:
         return operand
 

@@ -118,6 +118,7 @@ class Declaration(NamedTuple):
     @property
     def inner_words(self) -> tuple[str, ...]:
         """The keywords after the first one: of its options, its operands and its forms; some may be twice."""
+        # the first word of each: those that follow, as HOLD after WRIST, are choices of its operands
         of_options = [word for each in self.options for text in each.forms for word in _KEYWORD.findall(text)[:1]]
         choices = [word for each in (self, *self.options) for operand in each.operands for word in operand.words]
         of_forms = [word for text in self.forms for word in _KEYWORD.findall(text)[bool(self.keyword) :]]

@@ -58,6 +58,7 @@ class FormatResult:
 def format_source(source: Source, parsed: ParseResult | None = None) -> FormatResult:
     """Format a program; any text gives a result, nothing is raised. ``parsed``: of the source, where it is known."""
     parsed = parse(source) if parsed is None else parsed
+    # a text that is too large has not been read: its tree is empty, and would format to nothing
     if any(item.code == "RBL106" for item in parsed.diagnostics):
         return FormatResult(text=source.text, changed=False, diagnostics=parsed.diagnostics)
     rows = _rows(source, parsed.program)
@@ -109,6 +110,7 @@ def _rows(source: Source, program: Program) -> list[_Row]:
     rows: list[_Row] = []
     blocks, blank = _Blocks(), 0
     for text, line, kept in _lines(source, program):
+        # lines that are kept begin and end blocks as well
         depth = blocks.enter("" if line is None else word_of(line.statement))
         blank = 0 if kept or text.strip(" \t") else blank + 1
         if blank <= MAX_BLANK:
@@ -191,6 +193,7 @@ class _Blocks:
         """Return the depth of a line that takes part in a block with ``word``, and note what it opens and closes."""
         head = _DIVIDES.get(word)
         if head is not None and self._close(head):
+            # what was closed is the SELECT with its last CASE; it goes on, with the next CASE in it
             if head == "SELECT":
                 self._open(head)
             self._open("CASE" if head == "SELECT" else head)
@@ -231,6 +234,7 @@ def _align(rows: list[_Row]) -> None:
                 group, both = [], (len(row.code), len(row.comment))
             group.append(row)
             width, longest = both
+        # a statement without a comment does not end a group
         elif row.ends_group:
             _pad(group, width)
             group, width, longest = [], 0, 0

@@ -47,6 +47,7 @@ def nodes() -> str:
     classes = [_class(node, each) for node, each in by_node.items() if node not in _BY_HAND]
     unions = [_union("Option", options), _union("Moving", moving), _union("Statement", [*statements, "Unparsed"])]
     first = len(options) - len(_BY_HAND)
+    # Option stands before the moves, whose annotations are evaluated; Statement is quoted, since If is part of it
     parts = [_HEAD, *classes[:first], unions[0], *classes[first:], *unions[1:]]
     return "\n\n".join(parts)
 
@@ -75,6 +76,7 @@ def _class(node: str, declared: list[Declaration]) -> str:
 
 def _docstring(declared: list[Declaration]) -> list[str]:
     """Return the docstring of a class: the forms of its statements, and what it does where there is one only."""
+    # without the options of a move, which would fill three lines
     text = ", ".join(dict.fromkeys(f"``{form(each).partition(' [, SPEED')[0]}``" for each in declared))
     meaning = f": {declared[0].help}" if len(declared) == 1 else ""
     lines = textwrap.wrap(f'''"""{text}{meaning}.''', _WIDTH - len("    "))

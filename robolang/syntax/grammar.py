@@ -37,6 +37,7 @@ def line_parser() -> Lark:
 
 def made() -> Lark:
     """Return the parser made from the grammar."""
+    # basic: a token has one kind wherever it stands, since ``line_reader`` has one pattern for all places
     return Lark(
         _GRAMMAR.read_text(encoding="utf-8"), parser="lalr", lexer="basic", start=["start", "refused"], **_callbacks()
     )
@@ -54,6 +55,7 @@ def _shipped() -> Lark | None:
     table = data["parser"]["parser"]
     table["tokens"] = _by_number(table["tokens"])
     table["states"] = {state: _by_number(row) for state, row in _by_number(table["states"]).items()}
+    # a private method: the public ``Lark.load`` reads a pickle only, which may run code
     parser: Lark = Lark._load_from_dict(data, memo, **_callbacks())  # type: ignore[no-untyped-call]
     return parser
 

@@ -122,6 +122,7 @@ def unit_hint(before: str, number: str, rest: str) -> str:
 
 
 def _single_quotes(found: Unexpected) -> str | None:
+    # s$ = 'a': the quote has begun a comment where a value is missing
     quoted = _QUOTED.match(found.text) if found.kind == "COMMENT" and found.takes_value else None
     return quoted and f'\' begins a comment; write a text in double quotes: "{quote(quoted[1])}"'
 
@@ -133,11 +134,13 @@ def _label_colon(found: Unexpected) -> str | None:
 
 def _open(before: str) -> int:
     """Return how many parentheses are open at the end of a text."""
+    # a parenthesis in a text opens nothing
     plain = re.sub(r'"[^"]*"', "", before)
     return plain.count("(") - plain.count(")")
 
 
 def _decimal_comma(found: Unexpected) -> str | None:
+    # MIN(1,5): within parentheses a comma parts two values
     if _open(found.before) or found.instruction in _LISTS:
         return None
     if found.kind == "_COMMA":
@@ -149,6 +152,7 @@ def _decimal_comma(found: Unexpected) -> str | None:
 
 def _parenthesis(found: Unexpected) -> str | None:
     if found.kind == "RPAR":
+        # with a ( open, as in x = ABS(), a value is missing, and no ) is one too many
         return None if _open(found.before) else "remove this ): no ( is open"
     if "RPAR" not in found.accepts or found.takes_value:
         return None
@@ -187,6 +191,7 @@ def _sign_of_setting(found: Unexpected) -> str | None:
 def _equals(found: Unexpected) -> str | None:
     if found.text != "=":
         return None
+    # of a single = no other language is the cause
     return other_languages.sign("==") if found.before.endswith("=") else ""
 
 
@@ -216,6 +221,7 @@ def _value(found: Unexpected) -> str | None:
 def _first_word(found: Unexpected) -> str | None:
     if not found.is_first:
         return None
+    # INT i declares a variable elsewhere; INT(x) is the function of this language
     if found.word == "INT" and not found.after.lstrip().startswith(("=", "(")):
         return other_languages.instruction("VAR")
     return "IN reads an input: x = IN(1)" if found.word == "IN" else ""
@@ -337,6 +343,7 @@ def _missing_comma(found: Unexpected) -> str | None:
 
 
 def _no_value(found: Unexpected) -> str | None:
+    # nothing but the end can follow: END 5, ENDIF x
     alone = found.accepts <= END and found.before.strip().upper() in INSTRUCTIONS
     fits = alone and found.word not in INSTRUCTIONS
     return f"{found.instruction} takes no value: remove {quote(found.text)}" if fits else None

@@ -56,6 +56,7 @@ def kind_of(word: str) -> str | None:
 
 def look_alike(character: str) -> str:
     """Return the ASCII character that ``character`` can be taken for, or ``""``."""
+    # full-width letters and special blanks become ASCII by this; letters of other scripts need the table
     plain = unicodedata.normalize("NFKC", character)
     return plain if len(plain) == 1 and plain.isascii() else _FAMILIAR.get(character, "")
 
@@ -72,6 +73,7 @@ def near(word: str, choices: Iterable[str], cutoff: float = 0.6) -> str:
         return ""
     import difflib  # most programs have nothing to guess at: a check starts sooner
 
+    # sorted: a set has no order, and of p1 and P1 the same one has to be proposed in each run
     by_key = {choice.upper(): choice for choice in sorted(names)}
     found = difflib.get_close_matches(word.upper(), by_key, n=1, cutoff=cutoff)
     return by_key[found[0]] if found else ""

@@ -31,6 +31,7 @@ def parsed_by_lark(code: str, base: int) -> Parsed | Diagnostic:
                 token.type = "NAME"
         result: Parsed = session.feed_eof(token)  # type: ignore[no-untyped-call]
     except UnexpectedToken as error:
+        # not ``choices``: of an LALR table these include kinds that fail after the next reduction
         accepts: set[str] = session.accepts()  # type: ignore[no-untyped-call]
         return explain(_unexpected(error.token, accepts, code, base))
     return result

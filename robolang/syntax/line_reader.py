@@ -79,6 +79,7 @@ class LineReader:
                 return True
             origin, length, method, single, parts = self._rules[~step]
             value: Any = []
+            # a slice from -0 would be the whole list
             if length:
                 value = values[-length:]
                 del states[-length:], values[-length:]

@@ -55,6 +55,7 @@ def parse(source: Source, known: Mapping[int, ParsedLine] = _NO_LINES) -> ParseR
     ``known`` are lines of this text that have been parsed, by the offset at which they begin; they are taken as they
     are. See ``reparse``.
     """
+    # characters: the text of an editor was never bytes; those of a file are bounded where it is read
     if len(source.text) > MAX_BYTES:
         message = f"the program has {len(source.text)} characters, more than {MAX_BYTES}"
         problem = Diagnostic(code="RBL106", message=message, span=Span(0, 0))
@@ -77,6 +78,7 @@ def parse(source: Source, known: Mapping[int, ParsedLine] = _NO_LINES) -> ParseR
 
 def _mixed_line_ends(source: Source) -> list[Diagnostic]:
     first = _LINE_END.search(source.text)
+    # without CR all ends are LF: no line needs to be searched
     if first is None or "\r" not in source.text:
         return []
     other = next((end for end in _LINE_END.finditer(source.text) if end[0] != first[0]), None)

@@ -97,6 +97,7 @@ def _targets(program: Program) -> Iterator[Target]:
 
 
 def _followed(program: Program, moved: Mapping[int, str]) -> list[_Edit]:
+    # each of them is there: ``_read`` refuses a target that names no line
     return [(target.span, moved[target.number]) for target in _targets(program) if target.number is not None]
 
 

@@ -52,6 +52,7 @@ class _Move(NamedTuple):
     def of(self, line: Line, problem: Diagnostic | None) -> ParsedLine | None:
         """Return a line and its problem where the edit leaves them; None where the line must be parsed again."""
         if line.span.end <= self.edit.span.start:
+            # an insertion right at its end belongs to the line, which is longer then
             return (line, problem) if _is_line(self.now, line.source_line, line.span) else None
         if line.span.start < self.edit.span.end:
             return None
@@ -70,6 +71,7 @@ def _is_line(source: Source, row: int, span: Span) -> bool:
 
 def _moved_line(line: Line, by: int, rows: int) -> Line:
     moved: Line = _moved(line, by)
+    # not by assignment, which type checkers refuse for a Final
     object.__setattr__(moved, "source_line", line.source_line + rows)
     return moved
 

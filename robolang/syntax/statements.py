@@ -343,6 +343,7 @@ STATEMENTS = (*_MOTION, *_SETTINGS, *_DATA, *_CONTROL)
 BY_NODE: dict[str, tuple[Declaration, ...]] = {}
 """The declarations of statements and options by the class of their node."""
 for _each in (*OPTIONS, *STATEMENTS):
+    # WRIST is an option and a statement, and stands here once
     BY_NODE[_each.node] = (*BY_NODE.get(_each.node, ()), *(() if _each in BY_NODE.get(_each.node, ()) else (_each,)))
 BY_WORDS = {(each.node, each.word): each for each in STATEMENTS}
 """The declarations of statements by the class of their node and their first words."""
@@ -351,6 +352,7 @@ BY_WORDS = {(each.node, each.word): each for each in STATEMENTS}
 def declaration(node: object) -> Declaration:
     """Return the declaration of a statement or an option of the tree."""
     kind = type(node).__name__
+    # a class of several statements has a word; MOVE and others have none, nor has an option
     return BY_WORDS.get((kind, getattr(node, "word", ""))) or BY_NODE[kind][0]
 
 

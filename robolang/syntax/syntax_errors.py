@@ -78,6 +78,7 @@ def _unknown(found: Unexpected) -> Diagnostic | None:
     word = last_word(found.before)
     if not _is_after_first_name(found) or ASSIGNS.match(found.text + found.after):
         return None
+    # the word is the mistake, not the token that follows it and stopped the parser
     start = found.span.start - len(found.before) + len(found.before.rstrip(" \t")) - len(word)
     message = f"unknown instruction '{quote(word)}'"
     return Diagnostic(code="RBL112", message=message, span=Span(start, start + len(word)), hint=instruction_hint(word))

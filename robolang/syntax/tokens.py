@@ -23,6 +23,7 @@ def span_of(token: Token) -> Span:
 
 def kind(terminal: str, text: str) -> str:
     """Return the kind of a word, a number or a stray character whose pattern is that of ``terminal``."""
+    # the patterns take letters and digits of every script: a name in Cyrillic is one token, and one error
     if not text.isascii():
         return "SUSPICIOUS"
     if terminal == "NAME":

@@ -60,6 +60,7 @@ def replace(node: AnyNode, **changes: Any) -> AnyNode:
 
 def children(node: Node) -> Iterator[Node]:
     """Yield the nodes right below a node, in the order of the text."""
+    # those of the class alone: what it inherits, place and parentheses, is no node
     for name in node.__slots__:
         value = getattr(node, name)
         if isinstance(value, Node):

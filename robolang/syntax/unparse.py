@@ -144,6 +144,7 @@ def _needs_parentheses(node: Expression, lowest: int) -> bool:
 def _level(node: Expression) -> int:
     match node:
         case ast.Chain():
+            # any of the signs: those of one chain have the same level
             return _SIGNS[node.rest[0][0]]
         case ast.Not():
             return _NOT
@@ -173,6 +174,7 @@ def _not(node: ast.Not) -> list[_Piece]:
 
 
 def _call(node: ast.Call) -> list[_Piece]:
+    # a function is a word of the language, in capitals; an array keeps the spelling of its author
     word = node.name.key if node.name.key in FUNCTIONS else node.name.text
     return [word, *_list(node.arguments)] if node.arguments else [word]
 
