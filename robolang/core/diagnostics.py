@@ -143,23 +143,6 @@ def to_json(diagnostic: Diagnostic, source: Source) -> dict[str, Any]:
     }
 
 
-def fault_to_json(fault: FileFault) -> dict[str, Any]:
-    """Return a fault of a file with the keys of ``to_json``."""
-    return {
-        "code": fault.code,
-        "name": lookup(fault.code).name,
-        "severity": Severity.ERROR.value,
-        "message": fault.message,
-        "hint": fault.hint,
-        "file": fault.path,
-        "line": fault.line,
-        "column": fault.column,
-        "end_line": fault.line,
-        "end_column": fault.column,
-        "related": [],
-    }
-
-
 def safe(text: str) -> str:
     """Return text that is safe in a terminal: hidden characters replaced, tabs as one space."""
     return HIDDEN.sub("\ufffd", text).replace("\t", " ")

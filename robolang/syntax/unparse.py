@@ -41,18 +41,6 @@ _Piece: TypeAlias = str | tuple[Expression, int]
 """Text, or an expression with the lowest level that its place can hold."""
 
 
-def print_program(program: ast.Program) -> str:
-    """Return the lines of a program, each with a line end; without indentation, and blank lines are not kept."""
-    return "".join(f"{print_line(line)}\n" for line in program.lines)
-
-
-def print_line(line: ast.Line) -> str:
-    """Return one line as canonical text without a line end."""
-    number = [] if line.number is None else [str(line.number)]
-    comment = [] if line.comment is None else [line.comment.text]
-    return " ".join([*number, *filter(None, [print_code(line)]), *comment])
-
-
 def print_code(line: ast.Line) -> str:
     """Return the label and the statement of a line; ``""`` when it has neither."""
     label = [] if line.label is None else [f"*{line.label.text}"]

@@ -8,17 +8,16 @@ angles degrees in the file, SI in ``CellSpec``; a pose is ``[x, y, z, rx, ry, rz
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from types import MappingProxyType
 from typing import TypeVar
 
 import numpy as np
 
-from runtime.cell.cell_file import CellFile, parse_cell_file, read_cell_file
+from runtime.cell.cell_file import CellFile
 from runtime.cell.seam_sensor import SensorSpec
 from runtime.cell.signals import InputSpec
 from runtime.core.frames import Array, frozen, pose_from_xyzrpy
-from runtime.core.tomlfile import FileFault, Source
+from runtime.core.tomlfile import FileFault
 from runtime.core.units import DEG, MM
 from runtime.robot.files import importer, robot_file
 from runtime.robot.files.loader import load_builtin
@@ -103,16 +102,6 @@ class CellSpec:
     def warnings(self) -> tuple[FileFault, ...]:
         """Doubts about the robot (``plausibility``) and the cell."""
         return (*self.robot.warnings, *self.doubts)
-
-
-def load_cell(path: Path) -> CellSpec:
-    """Read a cell file; ``FileFault`` (RBL6xx) at the line that is wrong."""
-    return build(read_cell_file(path))
-
-
-def parse_cell(source: Source, folder: Path | None = None) -> CellSpec:
-    """Build a ``CellSpec`` from the text of a cell file; ``FileFault`` as of ``parse_cell_file``."""
-    return build(parse_cell_file(source, folder))
 
 
 def build(file: CellFile) -> CellSpec:

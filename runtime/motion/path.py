@@ -157,16 +157,11 @@ class ArcPath:
     rpy: None = None
 
     @classmethod
-    def through(cls, X_start: Array, X_via: Array, X_end: Array) -> "ArcPath":
+    def candidates(cls, X_start: Array, X_via: Array, X_end: Array) -> tuple["ArcPath", ...]:
         """Return the arc from one pose (4, 4) over the place of a second to a third; ``Fault`` RBL416.
 
-        Of several the first.
+        Twice where the tool makes a half turn, which has two directions.
         """
-        return cls.candidates(X_start, X_via, X_end)[0]
-
-    @classmethod
-    def candidates(cls, X_start: Array, X_via: Array, X_end: Array) -> tuple["ArcPath", ...]:
-        """Return the arc of ``through``: twice where the tool makes a half turn, which has two directions."""
         start, via, end = (X[:3, 3] for X in (X_start, X_via, X_end))
         _check_points(start, via, end)
         first, last = via - start, end - start

@@ -134,11 +134,6 @@ class MujocoPlant:
         return self._tick_s
 
     @property
-    def substeps(self) -> int:
-        """MuJoCo steps in one tick."""
-        return self._substeps
-
-    @property
     def q(self) -> Array:
         """True motor angles at the joint side (n,) rad: one live read-only array."""
         return self._q
@@ -152,11 +147,6 @@ class MujocoPlant:
     def q_link(self) -> Array:
         """True angles of the links (n,) rad: one live read-only array, ``q`` itself where every gear is rigid."""
         return self._q_link
-
-    @property
-    def valid(self) -> bool:
-        """False for good once the state was no longer finite or physical."""
-        return self._valid
 
     def step(self, tau: Array) -> bool:
         """Apply joint torques (n,) N m for one tick and advance; False when the state is not valid (latched).

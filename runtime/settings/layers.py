@@ -196,8 +196,3 @@ def compensation_file(settings: Settings) -> Path | None:
     if given.table is None:
         return Path(given.value)
     return inside(given.table, given.value, Path(given.table.source.path).parent, given.name)
-
-
-def parse_profile(table: Table | None) -> Profile:
-    """Return the profile of one ``[controller]`` table; ``FileFault`` RBL6xx. None gives the defaults."""
-    return settle(read_layer(table)).profile

@@ -62,7 +62,7 @@ def controls_of(project: Project) -> list[np.ndarray]:
 def bare_seconds(project: Project, controls: list[np.ndarray]) -> tuple[float, np.ndarray]:
     """Return the time of the bare loop and the joint angles (n,) it ends with."""
     plant = MujocoPlant(project.cell.robot, project.cell, project.profile.tick_s)
-    model, data, substeps = plant._model, plant._data, plant.substeps
+    model, data, substeps = plant._model, plant._data, plant._substeps
     ctrl, step = data.ctrl, mujoco.mj_step
     started = time.perf_counter()
     for row in controls:

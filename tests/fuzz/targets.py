@@ -23,11 +23,11 @@ from robolang.syntax.grammar import line_parser
 from robolang.syntax.keywords import KEYWORDS
 from robolang.syntax.parser import parse
 from robolang.testing.golden import read_golden
-from runtime.cell.cell import load_cell
 from runtime.core.faults import Fault, lookup
 from runtime.core.tomlfile import FileFault
 from runtime.robot.files.importer import read_arm
 from tests.robolang.helpers import cell_with
+from tests.runtime.from_texts import load_cell
 
 _NAME = "fuzz.rbl"
 _POINTS = ("P1", "P2", "P3")

@@ -4,8 +4,9 @@ from robolang.analysis.cell_symbols import CellSymbols
 from robolang.analysis.checker import check
 from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import Source
-from robolang.syntax.ast import Program
+from robolang.syntax.ast import Line, Program
 from robolang.syntax.parser import parse
+from robolang.syntax.unparse import print_code
 
 
 def cell_with(*, rated_payload_kg=None, inputs=None, loads=None, **names) -> CellSymbols:
@@ -16,6 +17,18 @@ def cell_with(*, rated_payload_kg=None, inputs=None, loads=None, **names) -> Cel
         loads=None if loads is None else dict.fromkeys(name.upper() for name in loads),
         **{kind: None if known is None else frozenset(map(str.upper, known)) for kind, known in names.items()},
     )
+
+
+def print_line(line: Line) -> str:
+    """One line as canonical text without a line end."""
+    number = [] if line.number is None else [str(line.number)]
+    comment = [] if line.comment is None else [line.comment.text]
+    return " ".join([*number, *filter(None, [print_code(line)]), *comment])
+
+
+def print_program(program: Program) -> str:
+    """The lines of a program as canonical text; without indentation, and blank lines are not kept."""
+    return "".join(f"{print_line(line)}\n" for line in program.lines)
 
 
 Found = list[tuple[str, int, int, int]]

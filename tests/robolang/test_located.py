@@ -16,13 +16,13 @@ from robolang.lint.engine import Checked, lint
 from robolang.lint.registry import rules
 from robolang.lint.reporters.finding import findings
 from robolang.project.points import load_points
-from runtime.cell.cell import load_cell
 from runtime.core.faults import lookup
 from runtime.core.toml_places import lines_of
 from runtime.core.tomlfile import FileFault
 from tests.campaign import size
 from tests.robolang.helpers import cell_with
 from tests.robolang.test_bad_inputs import GOLDEN, GOOD
+from tests.runtime.from_texts import load_cell
 
 ROOT = Path(__file__).parents[2]
 NUMBER = size(10_000, 2000)

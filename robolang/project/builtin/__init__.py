@@ -9,5 +9,5 @@ POINTS = _FOLDER / "points.toml"
 
 
 def cell_text() -> str:
-    """Return the text of the built-in cell file, for ``runtime.cell.cell.parse_cell``."""
+    """Return the text of the built-in cell file, for ``runtime.cell.cell_file.parse_cell_file``."""
     return (_FOLDER / "cell.toml").read_text("utf-8")

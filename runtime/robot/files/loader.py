@@ -7,13 +7,12 @@ named in the message (``corrections``). Read at start, no rate.
 
 from collections.abc import Sequence
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 
 from runtime.core.frames import Array, frozen
 from runtime.core.linear import matmul
-from runtime.core.tomlfile import FileFault, Source, Table, read_source
+from runtime.core.tomlfile import FileFault, Table
 from runtime.core.units import DEG
 from runtime.robot.files import robot_file
 from runtime.robot.files.body_plausibility import doubt_bodies, doubt_torques, offsets, weight_moment
@@ -29,16 +28,6 @@ from runtime.robot.model.spec import AxisSpec, Body, Correction, OpwParameters, 
 def load_builtin(name: str) -> RobotSpec:
     """Return a built-in robot; ``KeyError`` for another name."""
     return build(robot_file.builtin(name))
-
-
-def load_robot(path: Path) -> RobotSpec:
-    """Read a robot file; ``FileFault`` (RBL6xx) at the line that is wrong."""
-    return parse_robot(read_source(path))
-
-
-def parse_robot(source: Source) -> RobotSpec:
-    """Build a ``RobotSpec`` from the text of a robot file; ``FileFault`` at the line that is wrong."""
-    return build(robot_file.parse(source))
 
 
 def build(file: RobotFile) -> RobotSpec:

@@ -20,9 +20,9 @@ from robolang.syntax.formatter import format_source
 from robolang.syntax.parser import parse
 from robolang.syntax.renumber import renumber
 from robolang.syntax.tree import NOWHERE
-from robolang.syntax.unparse import print_program
 from tests.campaign import examples
 from tests.robolang.generator import jumping_programs, programs, texts
+from tests.robolang.helpers import print_program
 
 ENDS = st.sampled_from(["\n", "\r\n", "\r"])
 INSERTED = st.sampled_from(

@@ -11,7 +11,6 @@ from robolang.core.diagnostics import (
     Related,
     Severity,
     _excerpt,
-    fault_to_json,
     has_errors,
     in_order,
     render,
@@ -128,7 +127,7 @@ def test_json_is_plain_and_has_both_ends():
     }
 
 
-def test_a_fault_of_a_file_has_the_same_two_forms():
+def test_a_fault_of_a_file_is_rendered_like_a_diagnostic():
     fault = FileFault("RBL309", "x\x1b", "y", FilePlace("p.toml", 3, 2, " pose = 1"))
     assert render_fault(fault).splitlines() == [
         "p.toml:3:2: error RBL309 x\ufffd",
@@ -136,9 +135,6 @@ def test_a_fault_of_a_file_has_the_same_two_forms():
         "     |  ^",
         "  help: y",
     ]
-    diagnostic = to_json(only("MOV"), source("MOV"))
-    assert fault_to_json(fault).keys() == diagnostic.keys()
-    assert fault_to_json(fault)["column"] == 2
 
 
 def test_a_code_must_be_registered():

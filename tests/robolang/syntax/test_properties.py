@@ -18,13 +18,12 @@ from robolang.syntax.blocks import targets
 from robolang.syntax.formatter import format_source
 from robolang.syntax.parser import parse
 from robolang.syntax.renumber import remove_numbers, renumber
-from robolang.syntax.unparse import print_program
 from runtime.core.faults import Fault, lookup
 from runtime.core.tomlfile import FileFault
 from tests.campaign import examples
 from tests.robolang import generator
 from tests.robolang.generator import jumping_programs, programs, texts, written_badly
-from tests.robolang.helpers import cell_with, source
+from tests.robolang.helpers import cell_with, print_line, print_program, source
 from tests.robolang.running import execute
 from tests.steps import assert_linear
 
@@ -335,7 +334,7 @@ PAIRS = [outer for inner in holding(NUMBER) for outer in holding(inner)]
 def misprinted(value):
     """Whether an expression is another one once it has been printed and parsed."""
     line = ast.Line(statement=ast.Delay(seconds=value))
-    return parse(source(unparse.print_line(line))).program.lines != (line,)
+    return parse(source(print_line(line))).program.lines != (line,)
 
 
 def test_every_operator_in_every_other_keeps_its_parentheses():

@@ -5,8 +5,8 @@ import pytest
 
 from robolang.syntax import ast
 from robolang.syntax.parser import MAX_DEPTH, MAX_OPERATORS, parse
-from robolang.syntax.unparse import describe, print_code, print_expression, print_line, print_program
-from tests.robolang.helpers import only, parsed, source
+from robolang.syntax.unparse import describe, print_code, print_expression
+from tests.robolang.helpers import only, parsed, print_line, print_program, source
 
 PAGE = """\
 10 LOAD (0, 0, 60), 0.8

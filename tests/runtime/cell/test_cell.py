@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from robolang.project.builtin import cell_text
-from runtime.cell.cell import CellSpec, load_cell, parse_cell
+from runtime.cell.cell import CellSpec
 from runtime.core.frames import pose_from_xyzrpy
 from runtime.core.tomlfile import FileFault, Source
+from tests.runtime.from_texts import load_cell, parse_cell
 
 ROBOT = resources.files("runtime.robot.library").joinpath("puma560.toml").read_text("utf-8")
 

@@ -6,12 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from runtime.cell.cell import CellSpec, load_cell
+from runtime.cell.cell import CellSpec
 from runtime.core.frames import frozen
 from runtime.plant.hand import hand_body
 from runtime.robot.model.arm_model import ArmModel
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import RobotSpec
+from tests.runtime.from_texts import load_cell
 
 CELL = load_cell(Path(__file__).parents[3] / "programs" / "manutec_pick_and_place.cell.toml")
 SPEC = CELL.robot

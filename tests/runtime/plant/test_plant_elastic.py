@@ -153,16 +153,16 @@ def test_a_rigid_robot_has_no_angles_of_its_own_for_the_links():
     plant = MujocoPlant(spec, empty(spec, [0, 20, 10, 0, 40, 0]))
     assert plant.q_link is plant.q
     assert fastest_spring(spec) == 0.0
-    assert plant.substeps == 1
+    assert plant._substeps == 1
 
 
 @pytest.mark.parametrize("tick_s", [1e-3, 0.5e-3, 0.25e-3])
 def test_the_physics_step_is_a_share_of_the_springs_period(tick_s):
     plant = MujocoPlant(SPEC, empty(), tick_s)
-    assert fastest_spring(SPEC) * tick_s / plant.substeps <= PHASE_PER_STEP
-    assert plant.substeps == physics_steps(SPEC, tick_s, 1e-3)
+    assert fastest_spring(SPEC) * tick_s / plant._substeps <= PHASE_PER_STEP
+    assert plant._substeps == physics_steps(SPEC, tick_s, 1e-3)
     stiff = with_motors(SPEC, stiffness=[100.0 * axis.motor.stiffness for axis in SPEC.axes])
-    assert physics_steps(stiff, tick_s, 1e-3) >= 4 * plant.substeps
+    assert physics_steps(stiff, tick_s, 1e-3) >= 4 * plant._substeps
 
 
 def test_the_live_arrays_are_the_same_objects_and_cannot_be_written():

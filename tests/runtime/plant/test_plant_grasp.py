@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from robolang.project.builtin import cell_text
-from runtime.cell.cell import CellSpec, parse_cell
+from runtime.cell.cell import CellSpec
 from runtime.core.frames import Array, inverse, pose_from_xyzrpy, rotation_angle
 from runtime.core.tomlfile import Source
 from runtime.core.units import DEG
@@ -18,6 +18,7 @@ from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import Payload
+from tests.runtime.from_texts import parse_cell
 
 pytestmark = pytest.mark.physics
 

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from robolang.project.builtin import cell_text
-from runtime.cell.cell import parse_cell
 from runtime.core.frames import Array, frozen, pose, pose_from_xyzrpy
 from runtime.core.tomlfile import Source
 from runtime.plant.hand import hand_body
@@ -16,6 +15,7 @@ from runtime.plant.mjcf import build_mjcf
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import Body
+from tests.runtime.from_texts import parse_cell
 
 pytestmark = pytest.mark.physics
 

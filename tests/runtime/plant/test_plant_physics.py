@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from robolang.project.builtin import cell_text
-from runtime.cell.cell import parse_cell
 from runtime.core.frames import Array, pose_from_xyzrpy
 from runtime.core.tomlfile import Source
 from runtime.core.units import DEG
@@ -15,6 +14,7 @@ from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import RobotSpec
+from tests.runtime.from_texts import parse_cell
 
 pytestmark = pytest.mark.physics
 
@@ -158,7 +158,7 @@ def test_a_run_repeats_bit_for_bit_and_looking_changes_nothing() -> None:
 @pytest.mark.parametrize(("tick_s", "substeps"), [(2e-3, 2), (1e-3, 1), (0.5e-3, 1), (0.25e-3, 1)])
 def test_one_tick_is_whole_physics_steps_of_at_most_a_millisecond(tick_s: float, substeps: int) -> None:
     plant = MujocoPlant(SPEC, CELL, tick_s)
-    assert (plant.substeps, plant.tick_s) == (substeps, tick_s)
+    assert (plant._substeps, plant.tick_s) == (substeps, tick_s)
     for _ in range(10):
         plant.step(np.zeros(SPEC.n))
     assert plant._data.time == pytest.approx(10 * tick_s)

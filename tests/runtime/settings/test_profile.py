@@ -2,17 +2,18 @@ import pytest
 
 from runtime.core.tomlfile import FileFault, Source, load_table
 from runtime.core.units import DEG
-from runtime.settings.layers import parse_profile
+from runtime.settings.layers import read_layer, settle
 from runtime.settings.profile import Profile
 from tests.messages import fields
 
 
 def profile(text):
-    return parse_profile(load_table(Source("cell.toml", f"[controller]\n{text}\n")).table("controller"))
+    table = load_table(Source("cell.toml", f"[controller]\n{text}\n")).table("controller")
+    return settle(read_layer(table)).profile
 
 
 def test_no_table_and_an_empty_one_give_the_defaults():
-    assert parse_profile(None) == profile("") == Profile()
+    assert settle(read_layer(None)).profile == profile("") == Profile()
     assert (Profile().ticks_per_cycle, Profile().tick_s, Profile().period_s) == (8, 0.001, 0.008)
 
 

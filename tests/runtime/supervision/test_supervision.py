@@ -11,7 +11,7 @@ from runtime.core.units import DEG
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import Payload
-from runtime.settings.layers import parse_profile
+from runtime.settings.layers import read_layer, settle
 from runtime.settings.supervision import SupervisionLimits
 from runtime.supervision.drive_data import DriveData
 from runtime.supervision.tick_monitor import Watch
@@ -38,7 +38,7 @@ def drives(lag: np.ndarray | None = None, friction: float = 0.0) -> DriveData:
 
 def limits_of(values: dict) -> SupervisionLimits:
     table = Table(Source("x.cell.toml", ""), {"supervision": values}, ("controller",))
-    return parse_profile(table).supervision
+    return settle(read_layer(table)).profile.supervision
 
 
 def test_an_empty_table_gives_the_defaults_and_every_key_is_read():

@@ -8,7 +8,7 @@ import pytest
 
 from runtime.core.tomlfile import FileFault, Source
 from runtime.robot.files.corrections import TOKEN_INERTIA
-from runtime.robot.files.loader import load_builtin, parse_robot
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
 from runtime.robot.model.payload import Payload
@@ -16,6 +16,7 @@ from runtime.robot.model.spec import RobotSpec
 from runtime.servo.motor import torque_limit
 from tests.messages import fields
 from tests.robolang.cli.commands import PUMA
+from tests.runtime.from_texts import parse_robot
 from tests.runtime.robot.arms import DEG, Irb2400
 
 TEXT = resources.files("runtime.robot.library").joinpath("manutec_r3.toml").read_text("utf-8")

@@ -6,13 +6,14 @@ import re
 import numpy as np
 import pytest
 
-from runtime.core.tomlfile import FileFault, Source
+from runtime.core.tomlfile import FileFault, Source, read_source
 from runtime.robot.files.corrections import TOKEN_MASS
-from runtime.robot.files.loader import inertia_matrix, load_builtin, load_robot, parse_robot
+from runtime.robot.files.loader import inertia_matrix, load_builtin
 from runtime.robot.files.robot_file import library
 from runtime.robot.model.spec import inertia_defect
 from tests.messages import fields, numbers
 from tests.robolang.cli.commands import PUMA
+from tests.runtime.from_texts import parse_robot
 
 TEXT = PUMA.read_text()
 ELBOW = TEXT.index('name = "elbow"')
@@ -48,7 +49,7 @@ def test_every_robot_of_the_library_loads():
 
 
 def test_a_robot_file_gives_what_the_built_in_gives():
-    ours, theirs = load_robot(PUMA), load_builtin("puma560")
+    ours, theirs = parse_robot(read_source(PUMA)), load_builtin("puma560")
     assert ours.n == theirs.n == 6
     for a, b in zip(ours.axes, theirs.axes, strict=True):
         assert (a.name, a.motor, a.limits, a.bandwidths) == (b.name, b.motor, b.limits, b.bandwidths)
@@ -279,7 +280,7 @@ def test_the_products_of_inertia_are_the_matrix_entries():
 def test_a_file_that_is_none(tmp_path, make, code):
     make(tmp_path / "r.toml")
     with pytest.raises(FileFault) as caught:
-        load_robot(tmp_path / "r.toml")
+        parse_robot(read_source(tmp_path / "r.toml"))
     assert (caught.value.code, caught.value.path) == (code, str(tmp_path / "r.toml"))
 
 

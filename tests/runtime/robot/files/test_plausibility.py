@@ -9,12 +9,13 @@ import pytest
 from runtime.core.numerals import number_in
 from runtime.core.tomlfile import FileFault, Source
 from runtime.robot.files.importer import load_file, parse_model, read_arm, read_model
-from runtime.robot.files.loader import load_builtin, parse_robot
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.files.plausibility import LEAST_ANGLE, MOST_TURNS, Turning, doubt_turning
 from runtime.robot.files.robot_file import library
 from runtime.robot.files.sidecar import template
 from runtime.robot.files.sidecar_file import read_overlay
 from tests.messages import fields
+from tests.runtime.from_texts import parse_robot
 from tests.runtime.robot.files.test_loader import TEXT as PUMA
 from tests.runtime.robot.models import ANGLES, SEVEN, chain, fill, inertial
 
