@@ -5,7 +5,7 @@ keeps its line. Each run is a run like any other, in its own process when there 
 depend on how many there are. The measures compare the true links with the command that the servo received at the
 same tick:
 
-- overshoot: how far an axis goes past the commanded end of a MOVE, in percent of its last approach, from where
+- overshoot: how far an axis goes past the farthest place of its command, in percent of its last approach, from where
   its command last turned round; axes that approach over less than ``LEAST`` are left out;
 - settling: time after the command has ended until every axis stays within 2 % of its last approach;
 - joint and tool error, largest and root of the mean square; deviation from the straight line;
@@ -344,7 +344,10 @@ def last_approach(q_cmd: Array, q_link: Array, t: Array) -> tuple[float | None, 
         stroke = end[axis] - q_cmd[begin, axis]
         if not abs(stroke) >= LEAST:
             continue
-        past = float(((q_link[begin:, axis] - end[axis]) / stroke).max()) * 100.0
+        ahead = np.copysign(1.0, stroke)
+        # a wrist change or a blend may itself pass the end by less than ``LEAST``: that is no overshoot of the servo
+        farthest = float((ahead * q_cmd[begin:, axis]).max())
+        past = (float((ahead * q_link[begin:, axis]).max()) - farthest) / abs(stroke) * 100.0
         worst = max(worst or 0.0, past, key=badness)
         outside = np.flatnonzero(~(np.abs(q_link[stop:, axis] - end[axis]) <= BAND * abs(stroke)))
         if len(outside):

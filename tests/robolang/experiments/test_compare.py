@@ -166,6 +166,16 @@ def test_overshoot_and_settling_of_a_made_up_move():
     assert last_approach(0.0 * q_cmd, q_fb, t)[0] is None  # no axis approaches anything
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_command_that_passes_its_end_and_comes_back_is_no_overshoot(sign):
+    t = np.arange(300) * 0.01
+    q_cmd = sign * np.interp(t, [0.0, 1.0, 1.5], [0.0, 0.11, 0.1])[:, None]  # 0.57 deg past its end
+    assert last_approach(q_cmd, q_cmd, t)[0] == 0.0
+    assert last_approach(q_cmd, q_cmd + sign * 0.002, t)[0] == pytest.approx(2.0)
+    broken = np.where(np.arange(300)[:, None] == 150, np.nan, q_cmd)
+    assert np.isnan(last_approach(q_cmd, broken, t)[0])
+
+
 def test_the_command_prints_every_variant_and_says_how_far_it_is():
     shown = robolang("compare", "--no-physics", "--only", "scheduled,fixed-max", PROGRAM)
     (title,) = (variant.title for variant in variants("fixed-max"))
