@@ -1,7 +1,8 @@
 """What is known of a program without running it, as one value that everybody shares.
 
-Lint, a run, the formatter, renumber and an editor hold the same ``Analysis``. Each part is computed when it is asked
-for the first time, and kept. Nothing of it changes afterwards: an edit gives a new ``Analysis`` (``updated``).
+Lint, ``check --motion``, a run and an editor hold the same ``Analysis``. Each part is computed when it is first needed,
+and kept. Nothing of it changes afterwards: an edit gives a new ``Analysis`` (``updated``). The formatter and renumber
+need the tree alone: they take ``parsed`` from one; the commands, which have none, parse the text and import no checker.
 """
 
 from collections.abc import Mapping

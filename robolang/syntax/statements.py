@@ -1,8 +1,8 @@
 """The statements of the language, each declared once: form, operands with unit and range, options, effect, meaning.
 
 Keywords, nodes of the tree, printer, checker ranges, hints of the parser, completion and the reference in
-docs/language.md come from ``STATEMENTS`` and ``OPTIONS``. Ranges are those of ``runtime.core.limits``, referred to and
-not repeated.
+docs/language.md come from ``STATEMENTS`` and ``OPTIONS``. A range that the runtime checks too is that of
+``runtime.core.limits``, referred to and not repeated.
 """
 
 from robolang.syntax.declaration import Declaration, Fails, Operand, Role, form
