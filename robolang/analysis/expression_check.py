@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterator
 
+from robolang.analysis import kind_hints
 from robolang.analysis.cell_symbols import CellSymbols
 from robolang.analysis.symbols import Defined, hint_for
 from robolang.core.diagnostics import Diagnostic, Severity
@@ -62,7 +63,8 @@ class ExpressionCheck:
                 yield from rule(self, each)
             if isinstance(each, Vector) and id(each) not in after_pose:
                 message = "an offset (x, y, z) may only follow a pose and + or *, as in P1 + (0, 0, 50)"
-                yield Diagnostic(code="RBL217", message=message, span=each.span)
+                hint = kind_hints.pose(each) if len(each.items) == 6 else "write it after a pose, as in P1 + (0, 0, 50)"
+                yield Diagnostic(code="RBL217", message=message, span=each.span, hint=hint)
         yield from no_value(node)
 
     def finite(self, node: Expression) -> Iterator[Diagnostic]:
@@ -73,11 +75,12 @@ class ExpressionCheck:
                 code="RBL209", message=f"this expression has no value: {value:g} is not finite", span=node.span
             )
 
-    def must_be(self, node: Expression, needed: Kind) -> Iterator[Diagnostic]:
-        """Report an expression of another kind than is needed (RBL217)."""
+    def must_be(self, node: Expression, needed: Kind, hint: str = "") -> Iterator[Diagnostic]:
+        """Report an expression of another kind than is needed (RBL217); ``hint``: what to write instead."""
         kind = self.kind(node)
         if kind is not None and kind is not needed:
-            yield Diagnostic(code="RBL217", message=f"{needed} is needed here, not {kind}", span=node.span)
+            hint = hint or kind_hints.instead(needed, node, kind)
+            yield Diagnostic(code="RBL217", message=f"{needed} is needed here, not {kind}", span=node.span, hint=hint)
 
     # --- one node --------------------------------------------------------------------------------------------------
 
@@ -94,13 +97,19 @@ class ExpressionCheck:
         points = self._symbols.points
         if points is not None and node.key not in points and self._defined.is_missing(node):
             message = f"{node.text} has no value: no statement assigns it first, and it is not a taught point"
-            hint = other_languages.VALUES.get(node.key) or hint_for(node, self._known)
+            hint = other_languages.VALUES.get(node.key) or hint_for(node, self._known) or self._to_give_value(node.text)
             if self._defined.is_of_a_sub(node.key):
                 message = (
                     f"{node.text} has no value here: only a SUB assigns it, and variables of a SUB exist only inside it"
                 )
                 hint = f"give {node.text} a first value in the main program"
             yield Diagnostic(code="RBL215", message=message, span=node.span, hint=hint)
+
+    def _to_give_value(self, name: str) -> str:
+        """Return how a name gets a value; ``""``: the remedy of the code holds, since points are taught already."""
+        # a missing points file makes every point a name without a value, and RBL301 is not given for P1 + (x, y, z)
+        teach = "" if self._symbols.points else self._symbols.where_to_teach(name)
+        return teach and f"if {name} is a point: {teach}; otherwise assign it a value before this line"
 
     def _component(self, node: Component6) -> Iterator[Diagnostic]:
         if node.name.key not in COMPONENTS6:
@@ -194,13 +203,16 @@ class ExpressionCheck:
         right = self.kind(operand)
         if Kind.POSE in (left, right):
             message = f"{sign} cannot take a pose; only + or * and an offset may follow one, as in P1 + (0, 0, 50)"
-            place = node.first if left is Kind.POSE else operand
-            return Diagnostic(code="RBL217", message=message, span=place.span)
+            moved, other, kind = (node.first, operand, right) if left is Kind.POSE else (operand, node.first, left)
+            hint = kind_hints.offset(moved, sign, other, kind)
+            return Diagnostic(code="RBL217", message=message, span=moved.span, hint=hint)
         if left is not None and right is not None and left is not right:
             message = f"{sign} cannot take {left} and {right}"
-            return Diagnostic(code="RBL217", message=message, span=operand.span)
+            hint = kind_hints.instead(left, operand, right)
+            return Diagnostic(code="RBL217", message=message, span=operand.span, hint=hint)
         if left is Kind.TEXT and sign not in _OF_TEXTS:
-            return Diagnostic(code="RBL217", message=f"{sign} cannot take texts; + joins them", span=node.span)
+            message = f"{sign} cannot take texts; + joins them"
+            return Diagnostic(code="RBL217", message=message, span=node.span, hint="VAL(s$) is the number of a text")
         return None
 
     # --- kinds -------------------------------------------------------------------------------------------------------
@@ -264,7 +276,10 @@ def _offset(left: Kind | None, sign: str, operand: Vector) -> Iterator[Diagnosti
     counts = _OFFSET_COUNTS.get(sign, ())
     if left in (Kind.NUMBER, Kind.TEXT) or not counts:
         message = f"an offset may only follow a pose and + or *, not {left or 'a value'} and {sign}"
-        yield Diagnostic(code="RBL217", message=message, span=operand.span)
+        hint = (
+            kind_hints.negated(operand) if left is not Kind.NUMBER and sign == "-" else "write the pose before the sign"
+        )
+        yield Diagnostic(code="RBL217", message=message, span=operand.span, hint=hint)
     elif len(operand.items) not in counts:
         allowed = " or ".join(map(str, counts))
         message = f"an offset after {sign} has {allowed} values, not {len(operand.items)}"

@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Collection, Iterator
 from typing import Any
 
+from robolang.analysis import kind_hints
 from robolang.analysis.cell_symbols import CellSymbols
 from robolang.analysis.expression_check import ExpressionCheck
 from robolang.analysis.symbols import Defined, hint_for, names_hint, of_cell
@@ -104,9 +105,15 @@ class StatementCheck:
         if operand.limit is not None:
             yield from self._within(value, operand.limit)
         elif operand.kind is not None:
-            yield from self._expressions.must_be(value, operand.kind)
+            yield from self._expressions.must_be(value, operand.kind, self._in_place_of(value, operand))
         if operand.finite:
             yield from self._expressions.finite(value)
+
+    def _in_place_of(self, value: Expression, operand: Operand) -> str:
+        """Return what to write where a pose of the cell is needed; ``""``: as everywhere."""
+        if operand.role is not Role.OF_CELL or isinstance(value, Vector):
+            return ""
+        return kind_hints.of_cell(operand.of, getattr(self._symbols, f"{operand.of}s") or ())
 
     def _vector(self, value: Vector, operand: Operand) -> Iterator[Diagnostic]:
         if len(value.items) != operand.size:
@@ -133,7 +140,8 @@ class StatementCheck:
             return
         kind = self._expressions.kind(node)
         if kind is not None and kind is not Kind.POSE:
-            yield Diagnostic(code="RBL217", message=f"a pose is needed here, not {kind}", span=node.span)
+            hint = kind_hints.pose(node)
+            yield Diagnostic(code="RBL217", message=f"a pose is needed here, not {kind}", span=node.span, hint=hint)
 
     # --- motion ------------------------------------------------------------------------------------------------------
 
@@ -209,7 +217,11 @@ class StatementCheck:
         kind = self._expressions.kind(value)
         if kind is not None and (kind is Kind.TEXT) is not name.key.endswith("$"):
             message = f"{kind} is assigned to {name.text}; names that end in $ hold texts, and only they do"
-            yield Diagnostic(code="RBL217", message=message, span=value.span)
+            if kind is Kind.TEXT:
+                hint = f"write {name.text}$ for a text; for a number: {kind_hints.number(value)}"
+            else:
+                hint = kind_hints.instead(Kind.TEXT, value, kind)
+            yield Diagnostic(code="RBL217", message=message, span=value.span, hint=hint)
 
     def _const(self, node: Const) -> Iterator[Diagnostic]:
         first = self._defined.constant(node.name.key)
@@ -225,7 +237,8 @@ class StatementCheck:
             kind = self._expressions.kind(value)
             if selected is not None and kind is not None and kind != selected:
                 message = f"{kind} is compared with {selected} of the SELECT: they are never equal"
-                yield Diagnostic(code="RBL217", message=message, span=value.span)
+                hint = kind_hints.instead(selected, value, kind)
+                yield Diagnostic(code="RBL217", message=message, span=value.span, hint=hint)
 
     def _head(self, node: Head) -> Iterator[Diagnostic]:
         if node.word == "SELECT":

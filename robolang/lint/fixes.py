@@ -16,7 +16,7 @@ from robolang.syntax.parser import parse
 
 _NO_WIDTH = "\u200b\u200c\u200d\u2060\ufeff"
 _STARTS = INSTRUCTIONS | {"REM"}
-_FOLLOWS_COMMA = frozenset({*OPTIONS, *COMPONENTS})
+_FOLLOWS_COMMA = frozenset({*OPTIONS, *COMPONENTS, "TIMEOUT", "GOTO"})
 _LINE_END = re.compile(r"\r\n?|\n")
 _REM = re.compile(r"(?<!\w)REM(?!\w)", re.IGNORECASE)
 
@@ -86,7 +86,7 @@ def _line_ends(diagnostic: Diagnostic, source: Source) -> Fix | None:
 
 
 def _comma(diagnostic: Diagnostic, source: Source) -> Fix | None:
-    """Add a comma before an option, when the line can be read beyond it then."""
+    """Add a comma before an option or before TIMEOUT and GOTO of a WAIT, when the line can be read beyond it then."""
     at = diagnostic.span.start
     if source.slice(diagnostic.span).upper() not in _FOLLOWS_COMMA:
         return None

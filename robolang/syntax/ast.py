@@ -34,6 +34,9 @@ from robolang.syntax.tree import Node as Node
 from robolang.syntax.tree import replace as replace
 from robolang.syntax.tree import walk as walk
 
+MAX_NUMBER_DIGITS = 9
+"""Digits of the longest line number."""
+
 
 class Comment(Node):
     """A comment as written, from ``'`` or ``REM`` to the end of its line."""

@@ -20,6 +20,7 @@ from robolang.core.deduplicate import Repeats
 from robolang.core.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related
 from robolang.syntax import other_languages
 from robolang.syntax.ast import (
+    MAX_NUMBER_DIGITS,
     Assign,
     Block,
     Call,
@@ -378,11 +379,13 @@ def _check_jump(program: Program, found: Structure, index: int, target: Target) 
 
 def _no_target(found: Structure, target: Target) -> None:
     """Report a target that is nowhere, each once however many jumps name it."""
+    if target.number == -1:
+        # each by itself: GOTO 1.5 and GOTO 2.5 are two mistakes, though both have -1
+        message = f"no line has this number: a line number is a whole number of at most {MAX_NUMBER_DIGITS} digits"
+        found.report(Diagnostic(code="RBL202", message=message, span=target.span))
+        return
     name = f"*{target.label.text}" if target.label is not None else f"line number {target.number}"
-    name = name if target.number != -1 else "a line number that is not whole"
-    # GOTO 1.5 and GOTO 2.5 are two mistakes, though both have -1
-    cause = target.span if target.number == -1 else name.upper()
-    if found.missing.is_first(cause, target.span):
+    if found.missing.is_first(name.upper(), target.span):
         found.report(Diagnostic(code="RBL202", message=f"there is no {name} to go to", span=target.span))
 
 

@@ -156,8 +156,9 @@ class _Builder:
         return ast.Word(word=" ".join(word.type for word in found), span=_over(found[0], found[-1]))
 
     def line_target(self, token: Token) -> ast.Target:
-        # a number with a point or an exponent names no line: -1 is none, and the checker says so
-        return ast.Target(number=int(token) if token.isdecimal() and len(token) <= 9 else -1, span=span_of(token))
+        # a number that no line can have (a point, an exponent, too long) is -1, which the checker reports
+        possible = token.isdecimal() and len(token) <= ast.MAX_NUMBER_DIGITS
+        return ast.Target(number=int(token) if possible else -1, span=span_of(token))
 
     def label_target(self, star: Token, name: ast.Name) -> ast.Target:
         return ast.Target(label=name, span=_over(star, name))

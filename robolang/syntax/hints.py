@@ -172,6 +172,10 @@ def _bracket(found: Unexpected) -> str | None:
     if found.instruction in MOTIONS and found.head.upper().rstrip(" \t(") == found.instruction:
         joints = found.instruction == "MOVEJ"
         return f"write {found.instruction} " + ("JOINT(j1, ..., j6)" if joints else "POSE(x, y, z, rx, ry, rz)")
+    if found.takes_value and word == "=":
+        return "write POSE(x, y, z, rx, ry, rz) for a pose; DIM makes an array, whose elements have a line each"
+    if found.takes_value and word in ("+", "*"):
+        return f"write ( ) around an offset, as in P1 {word} (0, 0, 50)"
     return other_languages.assigned(word, element=True)
 
 
@@ -337,9 +341,16 @@ def _missing_comma(found: Unexpected) -> str | None:
         return None
     if found.word in COMPONENTS:
         lacks = last_word(found.before).upper() in COMPONENTS
+    elif found.instruction == "WAIT":
+        # GOTO begins an instruction too, but after a TIMEOUT it is the rest of the WAIT; without one it needs TIMEOUT
+        lacks = found.word == "TIMEOUT" or (found.word == "GOTO" and _has_timeout(found))
     else:
         lacks = found.instruction in MOTIONS and found.word in _OPTIONS
     return f"write a comma before {found.word}" if lacks else None
+
+
+def _has_timeout(found: Unexpected) -> bool:
+    return re.search(r",[ \t]*TIMEOUT\b", found.before, re.IGNORECASE) is not None
 
 
 def _no_value(found: Unexpected) -> str | None:
@@ -350,7 +361,8 @@ def _no_value(found: Unexpected) -> str | None:
 
 
 def _second_instruction(found: Unexpected) -> str | None:
-    fits = found.can_end and (found.word in INSTRUCTIONS or found.kind == "NAME")
+    begins = found.word in INSTRUCTIONS or found.kind == "NAME"
+    fits = found.can_end and begins and (found.instruction, found.word) != ("WAIT", "GOTO")
     return "write one instruction on each line" if fits else None
 
 

@@ -25,7 +25,6 @@ from runtime.core.record import Record
 MAX_LINE = 10_000
 MAX_DEPTH = 100
 MAX_OPERATORS = 1000
-MAX_NUMBER_DIGITS = 9
 
 _HEAD = re.compile(r"[ \t]*+(?:([0-9]++)(?![\w.]))?[ \t]*+")
 _STRING = re.compile(r'"[^"\r\n]*+"')
@@ -99,7 +98,7 @@ def _parse_line(text: str, span: Span, row: int) -> ParsedLine:
     if isinstance(parsed, Diagnostic):
         problem, parsed = parsed, (None, ast.Unparsed(text=code, span=_part(span, base, span.end)), None)
     line = ast.Line(
-        number=int(digits) if digits and len(digits) <= MAX_NUMBER_DIGITS else None,
+        number=int(digits) if digits and len(digits) <= ast.MAX_NUMBER_DIGITS else None,
         label=parsed[0],
         statement=parsed[1],
         comment=parsed[2],
@@ -112,11 +111,11 @@ def _parse_line(text: str, span: Span, row: int) -> ParsedLine:
 
 def _long_number(digits: str | None, span: Span) -> Diagnostic | None:
     """Return RBL114 for a line number with too many digits."""
-    if digits is None or len(digits) <= MAX_NUMBER_DIGITS:
+    if digits is None or len(digits) <= ast.MAX_NUMBER_DIGITS:
         return None
     from robolang.syntax.unexpected import quote
 
-    message = f"the line number {quote(digits)} has more than {MAX_NUMBER_DIGITS} digits"
+    message = f"the line number {quote(digits)} has more than {ast.MAX_NUMBER_DIGITS} digits"
     return Diagnostic(code="RBL114", message=message, span=span)
 
 

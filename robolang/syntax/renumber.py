@@ -15,10 +15,10 @@ from dataclasses import dataclass
 
 from robolang.core.diagnostics import Diagnostic, Related, has_errors, in_order
 from robolang.core.source import Source, Span
-from robolang.syntax.ast import Line, Program, Target
+from robolang.syntax.ast import MAX_NUMBER_DIGITS, Line, Program, Target
 from robolang.syntax.blocks import targets
 from robolang.syntax.formatter import outgrown
-from robolang.syntax.parser import MAX_LINE, MAX_NUMBER_DIGITS, ParseResult, parse
+from robolang.syntax.parser import MAX_LINE, ParseResult, parse
 from robolang.syntax.unexpected import quote
 from runtime.core.faults import Fault
 

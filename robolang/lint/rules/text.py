@@ -84,8 +84,8 @@ RULES = (
         "The program does not run.",
         bad="10 MOVE P1 SPEED 200\n",
         good="10 MOVE P1, SPEED 200\n",
-        fix="A missing comma before an option of a move is added, if the line can then be read further. Everything "
-        "else is not changed.",
+        fix="A missing comma before an option of a move or a WAIT is added, if the line can then be read further. "
+        "Everything else is not changed.",
     ),
     Rule(
         code="RBL112",

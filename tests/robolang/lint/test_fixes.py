@@ -41,6 +41,7 @@ def codes(text):
         ("MOVE P1 SPEED 20\n", "MOVE P1, SPEED 20\n"),
         ("move p1  accel 20 time 3 ' go\n", "move p1,  accel 20, time 3 ' go\n"),
         ("MOVE P1 WRIST HOLD TILT ADVANCE\n", "MOVE P1, WRIST HOLD TILT, ADVANCE\n"),
+        ("*L WAIT IN(1) TIMEOUT 5 GOTO *L\n", "*L WAIT IN(1), TIMEOUT 5, GOTO *L\n"),
         # RBL115
         ("MOVE P1, SPEED 1_000\n", "MOVE P1, SPEED 1000\n"),
         ("MOVE P1, SPEED 1_000.5\n", "MOVE P1, SPEED 1000.5\n"),

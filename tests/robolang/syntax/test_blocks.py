@@ -68,6 +68,7 @@ def test_the_tables_of_a_program_with_every_block():
     [
         ("GOTO 20", [("RBL202", 1, 6, 2)]),
         ("GOTO 10.5", [("RBL202", 1, 6, 4)]),
+        ("GOTO 5000000000", [("RBL202", 1, 6, 10)]),
         ("GOSUB *L", [("RBL202", 1, 7, 2)]),
         ("ON ERROR GOTO *L", [("RBL202", 1, 15, 2)]),
         ("WAIT 1, TIMEOUT 1, GOTO 5", [("RBL202", 1, 25, 1)]),

@@ -5,10 +5,11 @@ import pytest
 from robolang.core.diagnostics import MAX_DIAGNOSTICS, Severity
 from robolang.core.source import Span
 from robolang.syntax.ast import (
+    MAX_NUMBER_DIGITS,
     Move,
     Unparsed,
 )
-from robolang.syntax.parser import MAX_DEPTH, MAX_LINE, MAX_NUMBER_DIGITS, MAX_OPERATORS, parse
+from robolang.syntax.parser import MAX_DEPTH, MAX_LINE, MAX_OPERATORS, parse
 from tests.messages import fields
 from tests.robolang.helpers import only, parse_found, parsed, source
 
@@ -172,6 +173,9 @@ def test_bad_lines(text, found):
         ("MOVEC P1 P2", ", P1 P2", "MOVEC point, point"),
         ("WAIT x, 5", "TIMEOUT , 5", "WAIT condition [, TIMEOUT s [, GOTO "),
         ("GOTO L", "*LABEL L GOTO", "GOTO *L"),
+        ("WAIT 1, TIMEOUT 5 GOTO *L", ", 5 GOTO", "comma before GOTO"),
+        ("WAIT IN(1) TIMEOUT 5", ", TIMEOUT", "comma before TIMEOUT"),
+        ("WAIT IN(1) GOTO *L", ", GOTO", "WAIT condition [, TIMEOUT s [, GOTO line or *LABEL]]"),
         ("FOR i = 1", "TO 1", "FOR v = a TO b [STEP s]"),
         ("WHILE", "WHILE", "WHILE condition"),
         ('x = "abc', '= "', '"'),
