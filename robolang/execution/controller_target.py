@@ -141,6 +141,7 @@ class ControllerTarget:
             return self._moves_on(activity)
         if activity is None or activity.cycles == 0:
             if activity is not None and activity.grasp:
+                # noted when the dwell is over, in which the fingers close
                 holding = self._record.controller.plant.hand().holding
                 self._record.statements[activity.run].notes.append(
                     f"holds '{holding}'" if holding else "closed on nothing"
@@ -256,6 +257,7 @@ class ControllerTarget:
         """Plan moves from the commanded position and start them; ``ChainFault`` RBL4xx."""
         controller = self._record.controller
         self.statement = chain[0].effect.origin
+        # planned before it is recorded: a chain that is refused leaves no statement in the record
         plan = controller.move_chain([each.command for each in chain], [each.effect.origin for each in chain])
         runs = [self._record_run(each.effect) for each in chain]
         seam = None if self._tracker is None else self._tracker.name
@@ -396,4 +398,5 @@ class ControllerTarget:
 
 
 def _copied(run: StatementRun) -> StatementRun:
+    # notes are added to while a statement runs: a list that is shared would change the snapshot
     return replace(run, notes=list(run.notes))

@@ -322,6 +322,7 @@ class Executor:
         """End with a fault that the program does not catch."""
         self._now.fault, self._now.phase = fault, Phase.STOPPING
         self._target.fail(fault)
+        # a target without a controller (``Untimed``) has none
         for alarm in self._target.alarms[:1]:
             self._observer.alarm(alarm)
 

@@ -59,6 +59,7 @@ def six_of(X: Array) -> Six:
 def payload(effect: SetPayload, cell: CellSpec) -> Payload:
     """Return the payload of a LOAD; ``Fault`` RBL305, RBL401, RBL402 or RBL403."""
     if effect.name:
+        # effects have names in capitals, and a cell file spells them in any case
         loads = {key.upper(): value for key, value in cell.loads.items()}
         if effect.name not in loads:
             known = ", ".join(sorted(cell.loads)) or "none"
@@ -139,6 +140,7 @@ def target(point: Point, cell: CellSpec, kinematics: Kinematics) -> Array:
     return _taught(
         point,
         Surroundings(
+            # not read: the point itself is given
             points=PointStore(path=""),
             cell=cell,
             kinematics=kinematics,
@@ -209,6 +211,7 @@ def _taught(point: Point, around: Surroundings) -> Array:
     if point.frame:
         X = matmul(_named(cell.frames, point.frame, f"frame of point {point.name}"), X)
     if point.tool:
+        # the flange goes where it stood when the point was taught, and another tool ends where that puts it
         X_flange_taught = _named(cell.tools, point.tool, f"tool of point {point.name}")
         X = matmul(X, inverse(X_flange_taught), around.X_flange_tool)
     return np.asarray(X)
@@ -221,6 +224,7 @@ def _shifted(X: Array, shift: Shift, cell: CellSpec) -> Array:
     if shift.kind == "tool":
         return np.asarray(matmul(X, pose_si(shift.by)))
     found = np.array(X)
+    # an offset is a direction: of the frame only the rotation counts, not where it lies
     found[:3, 3] += matmul(_frame(shift.frame, cell)[:3, :3], np.array(shift.by[:3]) * MM)
     return found
 

@@ -175,6 +175,7 @@ class PlanFindings:
         """Find a zone that leaves no room for the blends at both ends of a move, or in which the arm stops."""
         corner, after = move.corner, move.after
         if after is None or corner is None or not corner.radius > 0.0:
+            # under a sensor ``tracked`` has taken the zone of the program out of the command
             if move.effect.zone_mm > 0.0 and not move.command.zone > 0.0:
                 yield PlanFinding(
                     code="RBL414",

@@ -12,6 +12,7 @@ from runtime.core.frames import Array
 WIDTH, HEIGHT = 640, 360
 LEFT, RIGHT, TOP, BOTTOM = 62, 16, 34, 46
 COLOURS = ("#0b6bcb", "#d1481c", "#2b8a3e", "#8a3ea8", "#b58900", "#555555")
+# five steps of the colour map viridis: its brightness rises evenly, also where colours cannot be told apart
 SHADES = ("#440154", "#3b528b", "#21918c", "#5ec962", "#fde725")
 _POINTS = 400
 _MAP_HEIGHT, _MAP_TOP, _MAP_RIGHT, _BAR = 420, 52, 104, 16  # of a map: height, margins beside its scale, its width
@@ -119,6 +120,7 @@ def as_map_svg(
         *_map_axes(view, labels, every),
         *_scale(edges, scale_label),
     ]
+    # this also keeps nanargmin from values of which none is finite, which it refuses
     if len(edges) > 2:
         parts += _extremes(view, x, y, values)
     return "\n".join([*parts, "</svg>", ""])
@@ -411,6 +413,7 @@ def _range(values: Sequence[Array]) -> tuple[float, float]:
     found = np.concatenate(values)
     found = found[np.isfinite(found)]
     low, high = (float(found.min()), float(found.max())) if len(found) else (0.0, 1.0)
+    # a level curve has no height, and the scale would divide by it
     return (low, high) if high - low > 1e-9 * max(1.0, abs(high)) else (low - 0.5, high + 0.5)
 
 

@@ -76,6 +76,7 @@ def plant_of(cell: CellSpec, tick_s: float, physics: bool, ideal: IdealArm = Rig
 def fitted(profile: Profile, physics: bool) -> Profile:
     """Return a profile whose supervision and compensation fit the plant: MuJoCo or the ideal arm."""
     known = profile.supervision.friction
+    # not given: the plant has all of the friction of the robot file, whatever the servo compensates
     friction = (1.0 if known is None else known) if physics else 0.0
     profile = replace(profile, supervision=replace(profile.supervision, friction=friction))
     if physics:

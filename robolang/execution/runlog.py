@@ -29,6 +29,7 @@ def write_log(path: Path, signals: Mapping[str, Array]) -> None:
 
 
 def _write_npz(stream: IO[bytes], signals: Mapping[str, Array]) -> None:
+    # numpy dates every entry of the archive 1980-01-01, so equal signals give equal bytes
     np.savez(stream, allow_pickle=False, **signals)
 
 
@@ -40,6 +41,7 @@ def _write_mcap(stream: IO[bytes], signals: Mapping[str, Array]) -> None:
     writer: Any = Writer(stream)  # the writer of mcap_protobuf would name the schema only with the first message
     writer.start()
     channel = writer.register_channel(CHANNEL, "protobuf", register_schema(writer, message_class))
+    # rounded: 1.025 s times 1e9 is a little less than 1,025,000,000
     times_ns = np.rint(signals["t"] * 1e9).astype(np.int64).tolist()
     for time_ns, fields in zip(times_ns, _rows(signals), strict=True):
         data = message_class(**fields).SerializeToString(deterministic=True)
@@ -50,6 +52,7 @@ def _write_mcap(stream: IO[bytes], signals: Mapping[str, Array]) -> None:
 def _rows(signals: Mapping[str, Array]) -> Iterator[dict[str, Any]]:
     """Yield the fields of each tick: a number per scalar signal, a flat list per vector or matrix."""
     columns = [
+        # not reshape(n, -1): of a log without a tick numpy cannot infer the other size
         values.tolist() if values.ndim == 1 else values.reshape(len(values), math.prod(values.shape[1:])).tolist()
         for values in signals.values()
     ]
@@ -71,6 +74,7 @@ def _message_class(signals: Mapping[str, Array]) -> Any:
             type=kind.TYPE_INT32 if values.dtype.kind == "i" else kind.TYPE_DOUBLE,
             label=kind.LABEL_OPTIONAL if values.ndim == 1 else kind.LABEL_REPEATED,
         )
+    # a pool of its own: the common one refuses a second ``Sample``, of a robot with other signals
     pool = descriptor_pool.DescriptorPool()
     pool.Add(file)
     return message_factory.GetMessageClass(pool.FindMessageTypeByName("robolang.Sample"))

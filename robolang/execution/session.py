@@ -94,6 +94,7 @@ class Session:
 
     def result(self, wall_s: float) -> RunResult:
         """Return what has become of the run so far, which took ``wall_s`` seconds of wall time."""
+        # first: the report lists the warnings
         self.controller.warn_of_touches()
         log = self.controller.recorder.signals(self.controller.tool_poses)
         report = build_report(self.record, log, wall_s)

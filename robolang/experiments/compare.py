@@ -162,6 +162,7 @@ def compare(
     with ProcessPoolExecutor(min(jobs, len(variants)), mp_context=multiprocessing.get_context("spawn")) as pool:
         futures = [pool.submit(run_variant, request, variant) for variant in variants]
         for variant, future in zip(variants, futures, strict=True):
+            # in the order of the variants and not as they end: the progress shown is the same in every run
             future.result()
             done(variant.title)
         return _without_equals([future.result() for future in futures])
@@ -336,6 +337,7 @@ def last_approach(q_cmd: Array, q_link: Array, t: Array) -> tuple[float | None, 
     when an axis is still outside at the end of the statement.
     """
     end = q_cmd[-1]
+    # not one row is at the end where it is NaN; where all are, argmin gives 0 and the modulus row 0
     standing = (np.abs(q_cmd - end) <= 1e-12).all(axis=1)
     stop = len(q_cmd) - 1 if not standing.any() else int(len(standing) - np.argmin(standing[::-1])) % len(standing)
     worst, settled = None, 0.0

@@ -132,8 +132,10 @@ def folds(request: Request) -> Folds:
     spec = request.robot
     if request.plant != "mujoco" or not spec.link_radii:
         return lambda q: False
+    # only here: it imports MuJoCo, which the ideal arm does not need
     from runtime.plant.shapes import Shapes
 
+    # the home of the built-in cell is that of another robot, which may have another number of axes
     shapes = Shapes(spec, replace(bench(request), home=0.5 * (spec.lower + spec.upper)))
     return lambda q: shapes.folded(q) is not None
 
@@ -259,6 +261,7 @@ def _planned(request: Request, model: ArmModel, axis: int, q: Array, room: tuple
     limits = spec.axes[axis].limits
     low, high = _usable(spec, axis, room)
     before = float(quintic(np.array(PEAK)))
+    # the two passes of a place reach nearly a whole stroke to either side of it (``reach`` below)
     stroke = min(STROKE, (high - low) / 2.0)
     if not stroke >= LEAST_STROKE:
         there, least = beside(max(0.0, high - low) / DEG, round(2.0 * LEAST_STROKE / DEG, 1), form=".1f")
@@ -368,6 +371,7 @@ def _room(spec: RobotSpec, q: Array, axis: int) -> tuple[float, float]:
     x, y, z, _ = np.array([*points, matmul(X, spec.X_last_flange)[:, 3]]).T
     own = np.linspace(spec.lower[axis], spec.upper[axis], 2 * _SCAN + 1)[:, None]
     c, s = np.cos(own), np.sin(own)
+    # the third row of every point's pose in the world, for all angles of the axis at once
     height = up[0] * (c * x - s * y) + up[1] * (s * x + c * y) + up[2] * z + up[3]
     low_places = np.flatnonzero(height.min(axis=1) < CLEARANCE)
     before, after = low_places[low_places <= _SCAN], low_places[low_places >= _SCAN]
@@ -402,6 +406,7 @@ def quintic(s: Array) -> Array:
     return np.asarray(s**3 * (10.0 - 15.0 * s + 6.0 * s * s))
 
 
+# steps from the middle of a range to each of its ends
 _SCAN = 90
 # of the quintic over a stroke and a duration of 1: its speed at s = 1/2, its acceleration at s = ``PEAK``
 _PEAK_SPEED = 1.875

@@ -244,6 +244,7 @@ def _at_posture(request: Request, carried: Payload, test: Test, progress: Progre
         progress(axis, number, float(position))
         found.append(tuple(bench.passage(start, float(position)) for start in test.starts(float(position))))
     J = np.array([(up.tau - down.tau) / (up.alpha - down.alpha) for up, down in found])
+    # the line through both passes at alpha = 0: what they have in common
     held = [(up.tau * down.alpha - down.tau * up.alpha) / (down.alpha - up.alpha) for up, down in found]
     postures = np.tile(test.q, (len(found), 1))
     postures[:, axis] = test.positions
@@ -325,6 +326,7 @@ def passage(q: Array, tau: Array, position: float, half: int, tick_s: float) -> 
     u = np.arange(-half, half + 1) / (half + 1.0)
     w = (1.0 - u * u) ** 3
     w /= w.sum()
+    # the weights are symmetric, so that this is the weighted mean; without the ends, which have no second difference
     place = np.convolve(q[1:-1], w, "valid")
     at = int(np.argmax(place > position))
     if at == 0:

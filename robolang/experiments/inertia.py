@@ -74,6 +74,7 @@ def at_posture(
 def over_plane(spec: RobotSpec, axis: int, joints: tuple[int, int], q: Array, payload: Payload) -> InertiaMap:
     """Return the inertia of ``axis`` on a grid over the ranges of two joints (0-based), in one call."""
     x, y = (np.linspace(spec.lower[joint], spec.upper[joint], POINTS) for joint in joints)
+    # a copy, since what broadcast_to returns can only be read
     grid = np.broadcast_to(q, (POINTS, POINTS, spec.n)).copy()
     grid[..., joints[0]], grid[..., joints[1]] = x, y[:, None]
     chain = link_chain(spec, payload)
@@ -95,6 +96,7 @@ def extremes(found: InertiaMap) -> dict[str, dict[str, Any]]:
         out[name] = {
             "link_inertia": float(found.link[row, column]),
             "motor_inertia": float(found.motor[row, column]),
+            # converted back from radians, an angle of the grid is -157.33333333333334
             "joints_deg": [float(f"{angle:.10g}") for angle in angles],
         }
     return out

@@ -198,6 +198,7 @@ def _measure(request: StepRequest, controller: Controller, first: int) -> StepRe
     t = np.arange(len(response)) * tick_s
     last = response[-round(0.1 / tick_s) :]  # the last 0.1 s are taken as settled
     stable = not controller.alarms and len(response) * tick_s > 0.9 * request.seconds
+    # at least 1e-4 rad, since a step of size 0 has no band
     stable = stable and bool(np.ptp(last) <= max(BAND * abs(size), 1e-4))  # the run was cut short, or still moves
     model = ArmModel(request.robot)
     model.set_payload(request.carried)
@@ -207,6 +208,7 @@ def _measure(request: StepRequest, controller: Controller, first: int) -> StepRe
     overshoot = settling = rise = None
     if size and stable:
         share = response / float(last.mean())
+        # not max(), which returns 0 for NaN
         overshoot = float(np.maximum(0.0, share.max() - 1.0))
         outside = np.flatnonzero(~(np.abs(share - 1.0) <= BAND))
         settling = float(outside[-1] + 1) * tick_s if len(outside) else 0.0

@@ -147,6 +147,7 @@ def _refuse(robot: RobotSpec, home: Array, swings: Array, room: Array, most: Arr
     moving = swings > 0.0
     best = amplitude * float(np.min(np.minimum(room, most)[moving] / swings[moving])) / DEG
     hint = "home is too near to the end of a joint range"
+    # below a tenth the amplitude of the hint, rounded down so that it fits itself, would be 0
     if best >= 0.1:
         hint = f"an amplitude of {math.floor(10.0 * best) / 10.0:g} deg fits; without one each axis does what it can"
     for axis in np.flatnonzero(moving):
@@ -173,6 +174,7 @@ def _share(robot: RobotSpec) -> Array:
     model = BodyModel(robot)
     felt = np.zeros(robot.n)
     zero = np.zeros(robot.n)
+    # a seed of its own: the same axes of a robot swing every time
     for q in np.random.default_rng(560).uniform(robot.lower, robot.upper, (16, robot.n)):
         model.torque(q, zero, zero)
         felt = np.maximum(felt, np.abs(model.regressor(q)).max(axis=1))
@@ -186,6 +188,7 @@ def _shape(robot: RobotSpec, period_s: float) -> Array:
     """Return the swings of all axes with amplitude 1, from rest to rest, one row for each cycle (N, n)."""
     t = np.arange(round(SECONDS / period_s) + 1) * period_s
     end = np.clip(np.minimum(t, t[-1] - t) / RAMP_S, 0.0, 1.0)
+    # the quintic again: speed and acceleration are 0 at both ends of a ramp
     w = end**3 * (10.0 - 15.0 * end + 6.0 * end**2)
     k = np.resize(SWINGS, robot.n)  # no two of seven axes alike: each meets many combinations of the others
     return np.asarray(w[:, None] * np.sin(2.0 * math.pi * k * t[:, None] / t[-1]))
@@ -303,10 +306,11 @@ def load_statement(found: WeighedPayload, rated: float) -> Declaration:
 
 
 def _rounded(value: float, sd: float, most: int) -> str:
+    # 0 has no logarithm: where nothing is uncertain all digits stay
     digits = min(most, max(0, -math.floor(math.log10(sd)))) if sd > 0.0 else most
     text = f"{value:.{digits}f}"
     text = text.rstrip("0").rstrip(".") if digits else text
-    return "0" if text == "-0" else text
+    return "0" if text == "-0" else text  # of a value a little below 0
 
 
 def as_json(request: WeighRequest, result: WeighResult) -> dict[str, Any]:

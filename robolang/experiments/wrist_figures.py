@@ -254,6 +254,7 @@ def run(robot: RobotSpec, trial: Trial) -> Run:
         q, switch, axis = *_tracked(line, q_end, s, trial), None
         seam = np.array(trial.seam)
         planned = np.stack([superposed(X, share * seam) for X, share in zip(planned, s, strict=True)])
+        # the end moves with the seam (figure 11), so the angles to end at are others of the same branch
         flange = matmul(superposed(line.path.X_end, seam), inverse(X_FLANGE_TOOL))
         q_end = line.arm.kinematics.inverse_branch(flange, line.arm.kinematics.branch_of(q_end), q_end)
     else:

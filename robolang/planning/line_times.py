@@ -62,6 +62,7 @@ def line_times(project: Project, rehearsal: Rehearsal) -> list[LineTime]:
 
 def _fastest(moves: list[RehearsedMove], limits: Array, period: float) -> tuple[str, float]:
     """Return the joint that moves fastest for its limit, ``limits`` (n,) rad/s, and its share of that in %."""
+    # a move that goes nowhere has one row and no step
     steps = np.max([np.abs(np.diff(move.q, axis=0)).max(axis=0, initial=0.0) for move in moves], axis=0)
     shares = steps / period / limits
     return f"J{int(np.argmax(shares)) + 1}", 100.0 * float(shares.max())

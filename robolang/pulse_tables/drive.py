@@ -221,6 +221,7 @@ def _driven(run: _Run, tool: Array, tick_s: float) -> DrivenMove:
         number=move.number,
         text=move.text,
         seconds=len(tool) * tick_s,
+        # an alarm before the first tick of a move leaves no row, and numpy refuses the largest of none
         error_mm=float(distances(tool, move.start, move.end).max(initial=0.0)) / MM,
         end_mm=norm(tool[-1] - move.end) / MM if len(tool) else 0.0,
     )

@@ -82,6 +82,7 @@ def _errors(export: Export, starts: list[float], replays: list[MoveReplay]) -> t
     parts = [(start + item.times, item.error_mm) for start, item in zip(starts, replays, strict=True)]
     held = [
         (np.array([until]), errors[-1:])
+        # not strict: of an export without a move only the end is left
         for until, (_, errors) in zip([*starts[1:], export.seconds], parts, strict=False)
     ]
     first = [(np.zeros(1), errors[:1]) for _, errors in parts[:1]]
@@ -127,6 +128,7 @@ def _thinned(x: Array, y: Array) -> tuple[Array, Array]:
 
 def _marks(export: Export, starts: list[float], moves: list[Move]) -> list[Mark]:
     """Return a mark where each move starts, with its line in the file where there is room before the next one."""
+    # an export without a move or a dwell lasts 0 s
     per_second = (WIDTH - LEFT - RIGHT) / max(export.seconds, 1e-9)
     marks, free = [], 0.0
     for start, move in zip(starts, moves, strict=True):

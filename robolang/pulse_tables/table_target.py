@@ -99,6 +99,7 @@ def in_tables(project: Project, machine: Machine, channels: Sequence[Channel], s
     return target
 
 
+# in this order: the refusals of ``Nowhere`` come before what ``RobotWorld`` would read
 class _Unread(Nowhere, RobotWorld):
     """The points and tools of a cell; nothing that a run alone knows can be read."""
 
@@ -172,6 +173,7 @@ class TableTarget(Untimed):
 
     def move(self, chain: Sequence[Requested]) -> None:
         """Turn a straight move into pulses."""
+        # a chain of one: ``begin`` refuses moves that blend
         (move,) = chain
         command = move.command
         assert isinstance(command, MoveLinear)  # ``begin`` accepts no other
