@@ -12,7 +12,7 @@ from runtime.core.frames import Array
 WIDTH, HEIGHT = 640, 360
 LEFT, RIGHT, TOP, BOTTOM = 62, 16, 34, 46
 COLOURS = ("#0b6bcb", "#d1481c", "#2b8a3e", "#8a3ea8", "#b58900", "#555555")
-# five steps of the colour map viridis: its brightness rises evenly, also where colours cannot be told apart
+# five steps of the colour map viridis: its brightness rises evenly, so it is read without colours as well
 SHADES = ("#440154", "#3b528b", "#21918c", "#5ec962", "#fde725")
 _POINTS = 400
 _MAP_HEIGHT, _MAP_TOP, _MAP_RIGHT, _BAR = 420, 52, 104, 16  # of a map: height, margins beside its scale, its width

@@ -14,6 +14,7 @@ from robolang.core.source import Source, Span
 from robolang.syntax.keywords import COMPONENTS, INSTRUCTIONS, OPTIONS, look_alike
 from robolang.syntax.parser import parse
 
+# zero width space, non-joiner and joiner, word joiner, byte order mark
 _NO_WIDTH = "\u200b\u200c\u200d\u2060\ufeff"
 _STARTS = INSTRUCTIONS | {"REM"}
 _FOLLOWS_COMMA = frozenset({*OPTIONS, *COMPONENTS, "TIMEOUT", "GOTO"})
@@ -79,6 +80,7 @@ def _twin(character: str) -> str | None:
 
 def _line_ends(diagnostic: Diagnostic, source: Source) -> Fix | None:
     ends = [(Span(*end.span()), end[0]) for end in _LINE_END.finditer(source.text)]
+    # there are two at least, since RBL110 is about line ends that differ
     first = ends[0][1]
     name = {"\n": "LF", "\r\n": "CR LF", "\r": "CR"}[first]
     edits = tuple(Edit(span=span, text=first) for span, end in ends if end != first)

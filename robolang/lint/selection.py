@@ -18,6 +18,7 @@ from runtime.core.record import Record
 
 ALL = "ALL"
 _PREFIX = "RBL"
+# characters of a whole code: RBL and three digits
 _WHOLE = 6
 
 

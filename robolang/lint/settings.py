@@ -75,6 +75,7 @@ class Settings:
                 # kept for the folder of the file as well: programs in many folders below one file read it once
                 self._found[place] = self._found[start] = found
                 return found
+        # an empty one is kept too: nothing stands above, so a search from below may end here
         self._found[start] = Configuration(folder=start)
         return self._found[start]
 
@@ -88,6 +89,7 @@ def files_above(folder: Path) -> list[Path]:
 def _read(folder: Path) -> Configuration | None:
     """Return the configuration in a folder itself; None when no file in it has one."""
     own, shared = folder / FILE, folder / PYPROJECT
+    # not exists: a link that leads nowhere is reported when it is read
     if os.path.lexists(own):
         table = _table(read_source(own))
         table.integer("schema", 1, low=1, high=1)

@@ -32,6 +32,7 @@ def watch(
         while rounds is None or done < rounds:
             done += 1
             sleep(PERIOD_S)
+            # before the check: what changes while it runs is seen in the next round
             now = stamps(named)
             if now != seen:
                 seen = now

@@ -76,6 +76,7 @@ def _length_mm(moves: list[RehearsedMove]) -> float | None:
 
 def _wrist_deg(opw: OpwParameters | None, moves: list[RehearsedMove]) -> float | None:
     paths = [move for move in moves if move.plan.path is not None]
+    # no closed form, no such measure of its singular postures
     if opw is None or not paths:
         return None
     return float(np.min([singularities(opw, move.q).wrist.min() for move in paths])) / DEG

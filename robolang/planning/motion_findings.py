@@ -215,6 +215,7 @@ def worst_loads(project: Project, kinematics: Kinematics, moves: Sequence[Rehear
         for what, values in (("moment", load.moment), ("inertia", load.inertia)):
             for k, row in enumerate(np.argmax(values, axis=0).tolist()):
                 value, axis = float(values[row, k]), load.first + k
+                # an empty hand loads nothing, and ``_loads`` divides by the value
                 if not value <= 0.0 and ((what, k) not in worst or not value <= worst[what, k].value):
                     given = getattr(spec.axes[axis].limits, f"rated_{what}") is not None
                     worst[what, k] = LoadShare(

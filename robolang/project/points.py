@@ -138,6 +138,7 @@ def _as_point_fault(fault: FileFault, path: Path) -> FileFault:
 
 
 def _schema(table: Table) -> None:
+    # the upper end is far: a newer schema is reported as one (RBL304), and not as out of range
     schema = table.integer("schema", low=1, high=10**6)
     if schema > SCHEMA:
         table.fail("RBL304", f"the file has schema {schema}; this version reads {SCHEMA}", key="schema")

@@ -93,6 +93,7 @@ def load_project(
     found = read_beside(where, cell=None if cell is None else Path(cell), robot=robot, layers=_layers(profile, given))
     # all of them, as a check reports them; the first alone would need one run for each error
     raise_all(found.faults)
+    # what could not be used is None and has its fault, which has been raised
     assert found.cell is not None and found.points is not None and found.settings is not None
     spec = cells.build(found.cell)
     settings = judged(spec.robot, spec.hand.X_flange_tool, found.settings)
@@ -191,6 +192,7 @@ def _check_gains(robot: RobotSpec, X_flange_tool: Array, settings: Settings) -> 
         culprits = (key, "servo.feedforward", "servo.fixed_at", "servo.mode", "servo_period_ms")
         # the place of the setting that the user gave, the most specific first, not of a default
         given = next((settings[name] for name in culprits if settings[name].origin != "default"), None)
+        # the defaults do not fit this robot: no file has a place that could be shown
         if given is None:
             raise Fault("RBL616", message)
         given.fail("RBL616", message)

@@ -64,6 +64,7 @@ class GoldenLog:
         ``q`` (cycles, axes) rad and ``line`` (cycles,) are those of the run; NaN differs from everything.
         """
         count = min(len(q), self.cycles)
+        # float32 less float32 would round the difference
         off = np.abs(q[:count].astype(np.float64) - self.q[:count]).max(axis=1, initial=0.0) / DEG
         near = off <= most_deg
         differs = np.flatnonzero(~(near & (line[:count] == self.line[:count])))
@@ -80,6 +81,7 @@ class GoldenLog:
 
 def write_golden(path: Path, q: Array, line: Array) -> None:
     """Write the joint angles (cycles, axes) rad and lines (cycles,) of a run; ``Fault`` RBL706."""
+    # with their byte order, so that they are the same on any machine: the reader takes no other
     arrays = {"q": q.astype("<f4"), "line": line.astype("<i4")}
     write_atomic(path, lambda stream: np.savez_compressed(stream, allow_pickle=False, **arrays))
 

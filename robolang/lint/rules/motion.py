@@ -15,6 +15,7 @@ RULES = (
         code="RBL402",
         why="Above the rated payload the drives do not have enough torque: the arm leaves its path and stops. Often "
         "the mass was given in grams.",
+        # the built-in robot is rated for 2.5 kg
         bad="10 LOAD (0, 0, 60), 800\n",
         good="10 LOAD (0, 0, 60), 0.8\n",
     ),

@@ -18,6 +18,7 @@ RULES = (
         code="RBL411",
         why="The place can be reached, but a joint would have to turn farther than it can, at the end of the move or "
         "on its path.",
+        # 15 deg further J5 would be at nearly 110 deg, and its range ends at 100
         bad="10 MOVEJ JOINT(0, 60, -190, 0, 95, 0)\n20 MOVE HERE * (0, 0, 0, 0, -15, 0), WRIST KEEP\n",
         good="10 MOVEJ JOINT(0, 60, -190, 0, 95, 0)\n20 MOVE HERE * (0, 0, 0, 0, 15, 0), WRIST KEEP\n",
         line=2,
@@ -56,6 +57,7 @@ RULES = (
     Rule(
         code="RBL421",
         why="The joints can follow the path, but a table is in it. In the real cell the hand would break.",
+        # P1 is 40 mm over the top of the table, and the fingers reach below the tool point
         bad="10 MOVE P1 + (0, 0, -30)\n",
         good="10 MOVE P1 + (0, 0, 30)\n",
     ),
@@ -64,6 +66,7 @@ RULES = (
         severity=Severity.WARNING,
         why="If the point is taught slightly differently, or with another tool, the move is refused. Cables and hoses "
         "also suffer at the end of a range.",
+        # J5 of the built-in robot ends at 100 deg
         bad="10 MOVEJ JOINT(0, 60, -190, 0, 99.8, 0)\n",
         good="10 MOVEJ JOINT(0, 60, -190, 0, 90, 0)\n",
     ),
@@ -139,6 +142,7 @@ RULES = (
         code="RBL435",
         severity=Severity.WARNING,
         why="The tool turns almost once round for a small change of its angle, and hoses and cables turn with it.",
+        # J6 ends at 266 deg: 290 is out of range, and -70 is the same angle
         bad="10 MOVEJ JOINT(0, 60, -190, 0, 60, 250)\n20 MOVEJ HERE * (0, 0, 0, 0, 0, 40)\n",
         good="10 MOVEJ JOINT(0, 60, -190, 0, 60, 200)\n20 MOVEJ HERE * (0, 0, 0, 0, 0, 40)\n",
         line=2,
