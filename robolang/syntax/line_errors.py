@@ -1,21 +1,20 @@
-"""Has Lark parse a line that ``line_reader`` cannot read, and says what is wrong with it.
+"""Has Lark parse a line, and says what is wrong with it.
 
-Imported for the first line with an error: Lark takes longer to import than a short program to check.
+Imported where the table of ``line_reader`` cannot be read, and by the tests that compare the two: Lark takes longer to
+import than a short program to check.
 """
 
 from typing import cast
 
-import lark
 from lark import UnexpectedToken
 
 from robolang.core.diagnostics import Diagnostic
-from robolang.core.source import Span
 from robolang.syntax.builder import Parsed
 from robolang.syntax.grammar import line_parser
 from robolang.syntax.keywords import NEW
 from robolang.syntax.syntax_errors import explain
-from robolang.syntax.tokens import Token, span_of
-from robolang.syntax.unexpected import Unexpected
+from robolang.syntax.tokens import Token
+from robolang.syntax.unexpected import unexpected
 
 
 def parsed_by_lark(code: str, base: int) -> Parsed | Diagnostic:
@@ -33,18 +32,5 @@ def parsed_by_lark(code: str, base: int) -> Parsed | Diagnostic:
     except UnexpectedToken as error:
         # not ``choices``: of an LALR table these include kinds that fail after the next reduction
         accepts: set[str] = session.accepts()  # type: ignore[no-untyped-call]
-        return explain(_unexpected(error.token, accepts, code, base))
+        return explain(unexpected(cast("Token", error.token), accepts, code, base))
     return result
-
-
-def _unexpected(found: lark.Token, accepts: set[str], code: str, base: int) -> Unexpected:
-    token = cast("Token", found)
-    if token.type in ("$END", "COMMENT"):
-        start = len(code if token.type == "$END" else code[: span_of(token).start - base])
-        end = start = len(code[:start].rstrip(" \t"))
-    else:
-        start, end = span_of(token).start - base, span_of(token).end - base
-    span = Span(base + start, base + end)
-    return Unexpected(
-        kind=token.type, text=str(token), span=span, accepts=accepts, before=code[:start], after=code[end:]
-    )

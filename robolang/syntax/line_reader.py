@@ -1,9 +1,8 @@
-"""Reads the lines that have no error: an LALR automaton over the table that Lark makes of ``grammar.lark``.
+"""Reads a line: an LALR automaton over the table that Lark makes of ``grammar.lark``.
 
-Importing Lark and giving it its table takes as long as all the rest of a check of a short program, and a line of most
-programs has no error. So this module knows nothing of errors: for a line that it cannot read it returns None, and
-``line_errors`` has Lark parse that line and say what was expected. Tests compare the two on every kind of text
-(docs/decisions/0041).
+Importing Lark and giving it its table takes as long as all the rest of a check of a short program. So lines are read
+here, and of a line with an error the token is named where it stops, with what could follow there. Tests compare both
+with Lark on every kind of text (docs/decisions/0041).
 
 ``line_table.json`` is written by ``python -m robolang.syntax.grammar``: ``pattern`` matches one token of any kind;
 ``rows`` has for each state a step for each kind of token and each rule: a state to go to, or the complement of the
@@ -20,11 +19,19 @@ from typing import Any
 from robolang.syntax.builder import Parsed, builder
 from robolang.syntax.keywords import NEW
 from robolang.syntax.tokens import CLASSIFIED, Token, kind
+from runtime.core.record import Record
 
 TABLE = Path(__file__).with_name("line_table.json")
 _END = "$END"
 
 _Rule = tuple[str, int, Callable[..., Any] | None, bool, list[int | None] | None]
+
+
+class Stopped(Record):
+    """Where a line cannot be read on: the token, and the kinds of token of which any could follow in its place."""
+
+    token: Token
+    accepts: frozenset[str]
 
 
 class LineReader:
@@ -42,15 +49,14 @@ class LineReader:
             for origin, length, method, single, parts in table["rules"]
         ]
 
-    def read(self, code: str, base: int) -> Parsed | None:
-        """Return what the rules of a line make of it, or None; ``base`` is the offset of the code in the source."""
+    def read(self, code: str, base: int) -> Parsed | Stopped:
+        """Return what the rules of a line make of it; ``base`` is the offset of the code in the source."""
         states: list[int] = [self._start]
         values: list[Any] = []
         at = 0
         while at < len(code):
             found = self._match(code, at)
-            if found is None or found.lastgroup is None:
-                return None
+            assert found is not None and found.lastgroup is not None  # OTHER is every character but a blank
             name = found.lastgroup
             if name not in self._ignored:
                 token = Token(found[0])
@@ -61,10 +67,30 @@ class LineReader:
                         name = "NAME"
                 token.type, token.start_pos, token.end_pos = name, base + at, base + found.end()
                 if not self._shift(name, token, states, values):
-                    return None
+                    return Stopped(token=token, accepts=self._accepts(states))
             at = found.end()
-        result: Parsed | None = values[-1] if self._shift(_END, None, states, values) else None
-        return result
+        if self._shift(_END, None, states, values):
+            result: Parsed = values[-1]
+            return result
+        token = Token()
+        token.type, token.start_pos, token.end_pos = _END, base + at, base + at
+        return Stopped(token=token, accepts=self._accepts(states))
+
+    def _accepts(self, states: list[int]) -> frozenset[str]:
+        """Return the kinds of token that can follow."""
+        # a row has a step for kinds that fail only after reductions too: each is gone through to its shift
+        return frozenset(name for name in self._rows[states[-1]] if name.isupper() and self._can_follow(name, states))
+
+    def _can_follow(self, name: str, states: list[int]) -> bool:
+        states = states.copy()
+        while (step := self._rows[states[-1]].get(name)) is not None and step < 0:
+            origin, length, *_ = self._rules[~step]
+            if length:
+                del states[-length:]
+            states.append(self._rows[states[-1]][origin])
+            if name == _END and states[-1] == self._end:
+                return True
+        return step is not None
 
     def _shift(self, name: str, token: Token | None, states: list[int], values: list[Any]) -> bool:
         """Reduce until the token can follow, and go there; False where it cannot. The end stops in the end state."""

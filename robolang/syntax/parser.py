@@ -18,7 +18,7 @@ from robolang.core.diagnostics import HIDDEN, MAX_DIAGNOSTICS, Diagnostic, Sever
 from robolang.core.source import MAX_BYTES, Source, Span
 from robolang.syntax import ast
 from robolang.syntax.builder import Parsed
-from robolang.syntax.line_reader import line_reader
+from robolang.syntax.line_reader import Stopped, line_reader
 from runtime.core.record import Record
 
 # bounds, so that every text is read in time and memory that are known beforehand
@@ -174,9 +174,14 @@ def _parse_statement(code: str, base: int, line: Span) -> Parsed | Diagnostic:
         text = code.rstrip()
         return None, None, ast.Comment(text=text, span=_part(line, base, base + len(text)))
     reader = line_reader()
-    read = None if reader is None else reader.read(code, base)
-    if read is not None:
-        return read
-    from robolang.syntax.line_errors import parsed_by_lark
+    if reader is None:
+        from robolang.syntax.line_errors import parsed_by_lark
 
-    return parsed_by_lark(code, base)
+        return parsed_by_lark(code, base)
+    read = reader.read(code, base)
+    if not isinstance(read, Stopped):
+        return read
+    from robolang.syntax.syntax_errors import explain
+    from robolang.syntax.unexpected import unexpected
+
+    return explain(unexpected(read.token, read.accepts, code, base))

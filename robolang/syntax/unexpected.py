@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from robolang.core.source import Span
 from robolang.syntax.keywords import INNER_WORDS, MOTIONS
+from robolang.syntax.tokens import Token, span_of
 
 END = frozenset({"$END", "COMMENT"})
 VALUE = frozenset({"NUMBER", "FUNCTION"})
@@ -69,6 +70,20 @@ class Unexpected:
     def can_end(self) -> bool:
         """Whether the statement is whole before the token."""
         return "$END" in self.accepts
+
+
+def unexpected(token: Token, accepts: Set[str], code: str, base: int) -> Unexpected:
+    """Return a token of a line with its surroundings; ``base`` is the offset of the line's ``code`` in the source."""
+    if token.type in END:
+        # the place is after the last word: blanks before a comment or the end of the line are nothing to point at
+        start = len(code if token.type == "$END" else code[: span_of(token).start - base])
+        end = start = len(code[:start].rstrip(" \t"))
+    else:
+        start, end = span_of(token).start - base, span_of(token).end - base
+    span = Span(base + start, base + end)
+    return Unexpected(
+        kind=token.type, text=str(token), span=span, accepts=accepts, before=code[:start], after=code[end:]
+    )
 
 
 def quote(text: str) -> str:

@@ -78,21 +78,22 @@ def cold(lines: int, processes: int) -> Cost:
     )
 
 
-def cold_ratio(processes: int) -> float:
-    """Return the processor time of ``robolang check`` of a program with a cell, in bare starts of Python.
+def cold_ratio(processes: int, program: Path, exit_code: int = 0) -> float:
+    """Return the processor time of ``robolang check`` of a program, in bare starts of Python.
 
     Both are the least of so many runs, in turn. The first of each is left out: it may write bytecode, and the variable
     that forbids this is not passed on, since the compiler would be measured.
     """
     kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
-    program = str(PROGRAMS / "shop" / "palletise.rbl")
-    commands = {"check": [str(COMMAND), "check", program], "bare": [sys.executable, "-c", "pass"]}
+    commands = {"check": [str(COMMAND), "check", str(program)], "bare": [sys.executable, "-c", "pass"]}
+    expected = {"check": exit_code, "bare": 0}
+    quiet = [(os.POSIX_SPAWN_OPEN, 1, os.devnull, os.O_WRONLY, 0)]
     times: dict[str, list[float]] = {name: [] for name in commands}
     for _ in range(processes + 1):
         for name, command in commands.items():
             # wait4 gives microseconds; os.times counts in hundredths of a second, half of a bare start
-            _, status, usage = os.wait4(os.posix_spawn(command[0], command, kept), 0)
-            assert status == 0, command
+            _, status, usage = os.wait4(os.posix_spawn(command[0], command, kept, file_actions=quiet), 0)
+            assert os.waitstatus_to_exitcode(status) == expected[name], command
             times[name].append(usage.ru_utime + usage.ru_stime)
     return min(times["check"][1:]) / min(times["bare"][1:])
 
@@ -138,9 +139,19 @@ def rows(smallest: bool) -> Iterator[Row]:
         form="{:.2f} s",
         values=(cold(many, processes).processor,),
     )
-    starts = cold_ratio(2 if smallest else 40)
+    starts = cold_ratio(2 if smallest else 40, PROGRAMS / "shop" / "palletise.rbl")
     yield Row(
         figure="`robolang check programs/shop/palletise.rbl`, whole process, CPU time against a bare start of Python",
+        form="{:.1f} times",
+        values=(starts,),
+        good=smallest or starts <= 5.0,
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        broken = Path(folder) / "broken.rbl"
+        broken.write_text("10 MOV P1\n")
+        starts = cold_ratio(2 if smallest else 40, broken, exit_code=1)
+    yield Row(
+        figure="the same, a program of one line with an error (`10 MOV P1`)",
         form="{:.1f} times",
         values=(starts,),
         good=smallest or starts <= 5.0,
