@@ -140,7 +140,7 @@ class Request:
         project = load_project(
             self.program, self.cell, self.robot, profile=self.profile, options={**self.options, **changed}
         )
-        # most variants are wrong on purpose: what supervision would stop is what is to be seen
+        # most variants are wrong on purpose: what supervision would stop is what is to be seen; the command says so
         watched = project.profile.supervision
         return project.with_profile(replace(project.profile, supervision=replace(watched, enabled=False)))
 

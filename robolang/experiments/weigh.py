@@ -61,8 +61,6 @@ FEELS = 1e-3
 """Torque by weight, N m per kg at 1 m, below which an axis does not feel it."""
 BELIEVED = 3.0
 """Standard uncertainties within which a mass may still be the rated one."""
-INSIDE = 0.999
-"""Share of the largest distance that is written for a centre of gravity beyond it, so that no digit passes it."""
 UNEXPLAINED = 0.05
 """Share of the torque limit that no payload may leave unexplained."""
 
@@ -269,40 +267,41 @@ def _explained(found: WeighedPayload, torque: Array) -> None:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Declaration:
-    """A LOAD that a program may declare, and what it states otherwise than it was weighed; empty: nothing."""
+    """A LOAD that a program may declare, and what it states otherwise than it was weighed; empty: nothing.
 
-    text: str
+    Without ``text`` no program may declare what was weighed: ``code`` and ``note`` are the finding.
+    """
+
+    text: str | None
     note: str = ""
+    code: str = ""
 
 
 def load_statement(found: WeighedPayload, rated: float) -> Declaration:
     """Return the LOAD to paste: kg and mm with the digits that their uncertainty leaves, at most 3 and 1 decimals.
 
     A mass over the rated one by no more than its uncertainty explains is written as the rated one. What no program may
-    declare (``runtime.robot.model.payload.declared``) is written as the nearest that one may, with a note.
+    declare (``runtime.robot.model.payload.declared``) has no LOAD but the code of that rule.
     """
     if found.cog is None or found.cog_sd is None:
         less = not found.mass >= -BELIEVED * found.mass_sd
         note = f"{found.mass:.3g} kg was weighed: the masses of the robot file are too large"
         return Declaration(text="LOAD (0, 0, 0), 0", note=note if less else "")
-    notes = []
-    mass = min(found.mass, rated)
+    # no nearest LOAD: whoever pastes one that is wrong runs with the feed-forward of another payload
     if not found.mass - rated < BELIEVED * found.mass_sd:
         weighed, most = beside(found.mass, rated, form=".4g")
-        notes.append(f"{weighed} kg was weighed and at most the rated {most} kg may be declared")
-    mass_text = _rounded(mass, found.mass_sd, 3)
+        note = f"{weighed} kg was weighed and at most the rated {most} kg may be declared"
+        return Declaration(text=None, note=note, code="RBL402")
+    mass_text = _rounded(min(found.mass, rated), found.mass_sd, 3)
     if not float(mass_text) <= rated:  # rounded up
         mass_text = f"{rated:g}"
     distance = float(np.linalg.norm(found.cog))
-    cog = found.cog
     if not distance <= MAX_COG_DISTANCE:
-        notes.append(
-            f"the centre of gravity is {distance / MM:.0f} mm from the flange and may be declared within "
-            f"{MAX_COG_DISTANCE / MM:g} mm"
-        )
-        cog = cog * (INSIDE * MAX_COG_DISTANCE / distance)
-    values = ", ".join(_rounded(c / MM, sd / MM, 1) for c, sd in zip(cog, found.cog_sd, strict=True))
-    return Declaration(text=f"LOAD ({values}), {mass_text}", note="; ".join(notes))
+        shown, most = beside(distance / MM, MAX_COG_DISTANCE / MM)
+        note = f"the centre of gravity is {shown} mm from the flange and may be declared within {most} mm"
+        return Declaration(text=None, note=note, code="RBL403")
+    values = ", ".join(_rounded(c / MM, sd / MM, 1) for c, sd in zip(found.cog, found.cog_sd, strict=True))
+    return Declaration(text=f"LOAD ({values}), {mass_text}")
 
 
 def _rounded(value: float, sd: float, most: int) -> str:
@@ -331,4 +330,5 @@ def as_json(request: WeighRequest, result: WeighResult) -> dict[str, Any]:
         "left_peak_nm": [float(x) for x in found.peak],
         "load": load.text,
         "load_note": load.note,
+        "load_code": load.code or None,
     }

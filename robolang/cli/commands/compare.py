@@ -37,8 +37,11 @@ def compare(
 ) -> None:
     """Run a program with scheduled and fixed gains, right and wrong LOADs, and compare the errors.
 
+    Supervision is off, so that wrong LOADs and gains run to the end: alarms of supervision, such as RBL517, end a run
+    of robolang run only.
+
     Exit codes: 0 all ran to the end; 1 the program has errors; 2 a file or an option cannot be used; 3 a move was
-    refused, or a run ended with an alarm.
+    refused, or a run ended with an alarm that is not one of supervision.
     """
     settings = settings_of(controller)
     with reported():
@@ -60,7 +63,7 @@ def compare(
         jobs = choice.jobs or min(2, os.cpu_count() or 1)
         rows = run_all(request, variants, jobs, _progress(len(variants)))
         if output.as_json:
-            found = {"program": program, "physics": request.physics, "variants": rows}
+            found = {"program": program, "physics": request.physics, "supervision": False, "variants": rows}
             echo(json.dumps(found, indent=2))
         else:
             _print(program, rows)
@@ -122,6 +125,8 @@ def _print(program: str, rows: list[dict[str, Any]]) -> None:
         table.add_row(title, *("-" if row[key] is None else form.format(row[key]) for _, key, form in _COLUMNS))
     console.print(table)
     _print_axes(console, rows)
+    # a program that supervision stops would otherwise seem to run well
+    console.print("Supervision is off in every row; robolang run may stop where these runs went on.", soft_wrap=True)
     for line in (line for row in rows for line in _remarks(row)):
         console.print(safe(line), soft_wrap=True)
 

@@ -4,9 +4,10 @@
 
     {"robot", "plant", "home_deg", "seconds", "amplitudes_deg", "estimated": {"mass_kg", "mass_sd_kg", "cog_mm",
      "cog_sd_mm"}, "true": {"mass_kg", "cog_mm"}, "friction_off_pct", "left_rms_nm", "left_peak_nm", "load",
-     "load_note"}
+     "load_note", "load_code"}
 
 ``load`` may be declared by a program; ``load_note`` is what it states otherwise than it was weighed, mostly empty.
+Where no program may declare what was weighed, ``load`` is null, ``load_code`` says by which rule, exit code 1.
 """
 
 import json
@@ -54,7 +55,8 @@ class _PayloadOptions(PlantOptions):
 def weigh(program: OptionalProgram, files: CellOptions, options: _PayloadOptions, output: JsonOptions) -> None:
     """Move the arm and weigh what it carries: mass, centre of gravity, and the LOAD to write.
 
-    Exit codes: 0 done; 2 a value, a cell or a robot cannot be used; 3 the motion was refused or ended with an alarm.
+    Exit codes: 0 done; 1 no program may declare what was weighed; 2 a value, a cell or a robot cannot be used; 3 the
+    motion was refused or ended with an alarm.
     """
     amplitude = options.amplitude
     if amplitude is not None and not 0.0 < amplitude <= MOST_AMPLITUDE:  # NaN is refused too
@@ -79,6 +81,7 @@ def _weigh(program: str | None, files: CellOptions, options: _PayloadOptions, ou
     from robolang.experiments.weigh import as_json as figures
     from robolang.experiments.weigh import weigh as run_weigh
     from robolang.project.project import load_cell_and_settings
+    from runtime.core.faults import Fault
     from runtime.core.units import DEG
 
     where = None if program is None else Path(program)
@@ -99,6 +102,8 @@ def _weigh(program: str | None, files: CellOptions, options: _PayloadOptions, ou
         echo(json.dumps(found))
     else:
         _print(found)
+    if found["load"] is None:
+        raise Fault(found["load_code"], f"there is no LOAD for it: {found['load_note']}")
 
 
 def _note(mass: float, cell: "CellSpec") -> None:
@@ -132,8 +137,9 @@ def _print(found: dict[str, Any]) -> None:
     else:
         for k, name in enumerate("xyz"):
             _row(f"cog {name}, mm", estimated["cog_mm"][k], estimated["cog_sd_mm"][k], true["cog_mm"][k], 2)
-    echo(f"\n{found['load']}")
-    if found["load_note"]:
+    if found["load"] is not None:
+        echo(f"\n{found['load']}")
+    if found["load"] is not None and found["load_note"]:
         echo(f"note: {found['load_note']}; the LOAD above is the nearest that a program may declare", err=True)
 
 

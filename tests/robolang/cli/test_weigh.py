@@ -6,7 +6,7 @@ import re
 import pytest
 
 from robolang.experiments import weigh as module
-from tests.messages import fields
+from tests.messages import fields, heads
 from tests.robolang.cli.commands import ROOT, flat, robolang
 from tests.robolang.helpers import checked
 
@@ -56,12 +56,15 @@ def test_the_cell_beside_the_program_counts():
     assert found["amplitudes_deg"] == pytest.approx([0, 3, 3, 15, 15, 30])
 
 
-def test_more_than_rated_is_said_and_weighed():
-    result = robolang("weigh", "--payload", "2.2,0,0,80", "--plant", "rigid")
+def test_more_than_rated_is_weighed_and_has_no_load_to_paste():
+    words = ("weigh", "--payload", "2.2,0,0,80", "--plant", "rigid")
+    result = robolang(*words, code=1)
     assert {"--payload", "3", "kg", "2.5"} <= fields(result.stderr)
+    assert heads(result.stderr) == ["error RBL402"]
     assert re.search(r"mass, .* (2\.99|3\.00)", result.stdout)
-    assert checked(result.stdout.splitlines()[-1], rated=2.5) == []
-    assert result.stdout.endswith(", 2.5\n")
+    assert "LOAD" not in result.stdout
+    found = json.loads(robolang(*words, "--json", code=1).stdout)
+    assert (found["load"], found["load_code"]) == (None, "RBL402")
 
 
 BAD = [

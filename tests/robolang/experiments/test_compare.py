@@ -10,7 +10,7 @@ from robolang.execution.session import Session
 from robolang.experiments.compare import VARIANTS, Request, compare, last_approach, wrong_mass
 from tests.campaign import some
 from tests.messages import fields
-from tests.robolang.cli.commands import ROOT, robolang
+from tests.robolang.cli.commands import ROOT, places, robolang
 
 PROGRAM = str(ROOT / "programs" / "pick_and_place.rbl")
 NAMES = ("scheduled", "diagonal", "load-omitted", "fixed-mid-load-omitted", "conventional")
@@ -209,3 +209,15 @@ def test_a_run_that_ends_with_an_alarm_is_placed_in_the_program(tmp_path):
         5,
     )
     assert [(move["line"], move["number"]) for move in row["moves"]] == [(3, 4)]
+
+
+@pytest.mark.physics
+def test_supervision_is_off_and_the_output_says_so(tmp_path):
+    """A LOAD declared 1.5 kg too light: `run` stops, `compare` goes on."""
+    program = tmp_path / "p.rbl"
+    program.write_text("LOAD (0, 0, 60), 2.3\nMOVE P2\nMOVE P1\nMOVE P2\n")
+    assert places(robolang("run", program, "--quiet", code=3).stderr)[0][2] == "RBL517"
+    words = ("compare", program, "--only", "scheduled")
+    assert "supervision" in robolang(*words).stdout.lower()
+    found = json.loads(robolang(*words, "--json").stdout)
+    assert (found["supervision"], found["variants"][0]["alarms"]) == (False, [])

@@ -198,10 +198,6 @@ def test_the_load_is_rounded_to_what_is_known():
 @pytest.mark.parametrize(
     ("changes", "rated", "noted"),
     [
-        ({"mass": 2.56}, 2.5, True),
-        ({"mass": 500.0}, 2.5, True),
-        ({"mass": math.nan}, 2.5, True),
-        ({"cog": np.array([1.9, 1.9, 0.0])}, 2.5, True),
         ({"cog": np.array([2.0, 0.0, 0.0]), "cog_sd": np.array([5.0, 5.0, 5.0])}, 2.5, False),
         ({"mass": -0.5, "cog": None, "cog_sd": None}, 2.5, True),
         ({"mass": math.nan, "cog": None, "cog_sd": None}, 2.5, True),
@@ -214,6 +210,22 @@ def test_a_load_to_paste_is_one_that_a_program_may_declare(changes, rated, noted
     x, y, z, mass = map(float, re.fullmatch(r"LOAD \((\S+), (\S+), (\S+)\), (\S+)", load.text).groups())
     declared(mass, np.array([x, y, z]) * 1e-3, rated)
     assert bool(load.note) is noted
+
+
+@pytest.mark.parametrize(
+    ("changes", "code"),
+    [
+        ({"mass": 2.56}, "RBL402"),
+        ({"mass": 500.0}, "RBL402"),
+        ({"mass": math.nan}, "RBL402"),
+        ({"cog": np.array([1.9, 1.9, 0.0])}, "RBL403"),
+        ({"cog": np.array([math.nan, 0.0, 0.0])}, "RBL403"),
+    ],
+)
+def test_what_no_program_may_declare_has_no_load_to_paste(changes, code):
+    load = load_statement(replace(WEIGHED, **changes), 2.5)
+    assert (load.text, load.code) == (None, code)
+    assert load.note
 
 
 def test_an_arm_that_feels_no_weight_is_refused(monkeypatch):
