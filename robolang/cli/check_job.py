@@ -59,13 +59,13 @@ class Job(Record):
 class _Outcome(Record):
     """A program as it was read, the findings after its fixes and in its points, how often each code was fixed.
 
-    ``warnings`` are about the files of its robot, ``table`` and ``times`` are the times of its lines; ``read`` is
-    False for a program that could not be read.
+    ``warnings`` are about the files of its robot, ``table`` and ``times`` are the times of its lines; ``whole`` is
+    False for a program that could not be read, and for one whose cell or points could not.
     """
 
     checked: Checked
     before: Loaded
-    read: bool = True
+    whole: bool = True
     points: Checked | None = None
     fixed: Mapping[str, int] = MappingProxyType({})
     table: str = ""
@@ -124,10 +124,16 @@ def run_once(job: Job) -> int:
 def _say_rest(job: Job, outcomes: Sequence[_Outcome]) -> int:
     """Print to stderr what is no finding, and return the exit code of the files that cannot be used."""
     if any(map(os.path.isdir, job.paths)):  # the count says that a folder held what the user thinks it holds
-        count = sum(outcome.read for outcome in outcomes)
-        echo(f"{count} program{'' if count == 1 else 's'} checked", err=True)
+        count = sum(outcome.whole for outcome in outcomes)
+        echo(f"{_programs(count)} checked", err=True)
+        if count < len(outcomes):
+            echo(f"{_programs(len(outcomes) - count)} not checked completely; the errors below say why", err=True)
     say_warnings(doubt for outcome in outcomes for doubt in outcome.doubts)
     return max([0, *(say(fault) for outcome in outcomes for fault in outcome.checked.faults)])
+
+
+def _programs(count: int) -> str:
+    return f"{count} program{'' if count == 1 else 's'}"
 
 
 def _check_outputs(job: Job) -> None:
@@ -185,12 +191,12 @@ def _examined(name: str, job: Job, settings: Settings, files: CellFiles) -> _Out
         loaded = load(name, shown)
     except Fault as fault:
         before = Loaded(name=name, mark=b"", source=Source(shown, ""))
-        return _Outcome(checked=Checked(source=before.source, faults=(fault,)), before=before, read=False)
+        return _Outcome(checked=Checked(source=before.source, faults=(fault,)), before=before, whole=False)
     selection = _selection(shown, job, settings)
     checked = check_source(loaded.source, selection, files)
     fixable = any(item.fix is not None and item.fix.safe for item in checked.diagnostics)
     if not (fixable and (job.fixes.fix or job.fixes.diff)):
-        return _Outcome(checked=checked, before=loaded)
+        return _Outcome(checked=checked, before=loaded, whole=not checked.faults)
     seen = {loaded.source.text: checked}  # the text as it was read, and the one that is left, are judged once
 
     def found(source: Source) -> tuple[Diagnostic, ...]:
@@ -200,7 +206,8 @@ def _examined(name: str, job: Job, settings: Settings, files: CellFiles) -> _Out
 
     fixed = fix_all(loaded.source, found)
     found(fixed.source)  # of the text after the last round, which is not examined where rounds run out
-    return _Outcome(checked=seen[fixed.source.text], before=loaded, fixed=dict(fixed.counts))
+    left = seen[fixed.source.text]
+    return _Outcome(checked=left, before=loaded, whole=not left.faults, fixed=dict(fixed.counts))
 
 
 def _points(outcome: _Outcome, job: Job, settings: Settings) -> Checked | None:

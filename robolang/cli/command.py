@@ -7,6 +7,7 @@ function, and each option of its groups in the panel of the group.
 import copy
 import functools
 import inspect
+import re
 from collections.abc import Callable, Iterator
 from typing import Annotated, Any, get_args
 
@@ -123,6 +124,18 @@ class CodedGroup(TyperGroup):
             # only what the parser itself refused: its subclasses (ours, a missing parameter) say more than a value
             if type(error) is not typer.BadParameter or error.param is None:
                 raise
-            coded = RefusedValueError(OptionValueError(error.param.opts[0], error.message.rstrip(".")))
-            coded.ctx = error.ctx
-            raise coded from None
+            raise _coded(error, OptionValueError(error.param.opts[0], error.message.rstrip("."))) from None
+        except Exception as error:
+            # typer does not export its NoSuchOption; a digit is the rest of a list with spaces: --joints 0 45 -180
+            option = getattr(error, "option_name", "")
+            if not re.fullmatch(r"-[0-9.]", option):
+                raise
+            message = "a number stands alone; numbers of one option are separated by commas, without spaces"
+            raise _coded(error, OptionValueError(option, message)) from None
+
+
+def _coded(error: Any, refused: OptionValueError) -> RefusedValueError:
+    """Return a usage error with a code in place of one of typer, for the same command."""
+    coded = RefusedValueError(refused)
+    coded.ctx = error.ctx
+    return coded

@@ -38,9 +38,9 @@ app = typer.Typer(
     add_completion=False,  # it would add two options to the help of a program that is run from scripts and CI
     pretty_exceptions_enable=False,  # errors.reported answers every exception
     help="Check, run and test programs of an industrial robot language on a simulated robot controller.",
-    epilog="Exit codes: 0 done; 1 the program has errors, or the answer is no; 2 a file or an option cannot be used; "
-    "3 a move was refused or ended with an alarm; 4 a file cannot be written; 70 a defect of robolang; "
-    "130, 143 stopped by a signal. Each command lists its own.",
+    epilog="Exit codes: 0 done; 1 the program has errors, or what was to be checked does not hold; 2 a file or an "
+    "option cannot be used; 3 a move was refused or ended with an alarm; 4 a file cannot be written; "
+    "70 a defect of robolang; 130, 143 stopped by a signal. Each command lists its own.",
 )
 _COMMANDS: dict[str, Callable[..., None]] = {
     "run": run.run,

@@ -15,6 +15,7 @@ from robolang.project.points import PointStore, load_points
 from runtime.cell.cell_file import CellFile, parse_cell_file, read_arm_alone, read_cell_file
 from runtime.core.faults import Fault
 from runtime.core.record import Record
+from runtime.core.rounding import beside
 from runtime.core.tomlfile import FileFault, Source, read_source
 from runtime.core.units import DEG
 from runtime.robot.files import robot_file
@@ -145,7 +146,7 @@ def no_robot(name: str) -> Fault:
     """Return the fault of a name that no robot has (RBL708)."""
     import difflib  # needed for a hint only
 
-    near = difflib.get_close_matches(name, robot_file.library(), n=1)
+    near = difflib.get_close_matches(name.lower(), robot_file.library(), n=1)  # all are in small letters
     guess = f"did you mean {near[0]}? " if near else ""
     return Fault(
         "RBL708",
@@ -163,7 +164,12 @@ def with_robot(cell: CellFile, arm: ArmFile) -> CellFile:
         )
     for index, (angle, limits) in enumerate(zip(cell.home_deg, arm.limits, strict=True)):
         if not limits.lower <= angle * DEG <= limits.upper:
-            raise Fault("RBL709", f"the cell's home position is outside the range of J{index + 1} of {arm.name}")
+            shown, low, high = beside(angle, limits.lower / DEG, limits.upper / DEG)
+            raise Fault(
+                "RBL709",
+                f"the home position of the cell has J{index + 1} at {shown} deg; its range on {arm.name} is {low} to "
+                f"{high} deg",
+            )
     return cell.replaced(arm=arm)
 
 

@@ -14,6 +14,7 @@ no sum of times rounds. Read by every WAIT and condition of a program, and by th
 """
 
 from collections.abc import Collection, Mapping
+from typing import Any
 
 from runtime.core.faults import Fault
 from runtime.core.limits import DELAY, INPUT, OUTPUT
@@ -22,6 +23,9 @@ from runtime.core.tomlfile import Table
 
 LONGEST_S = DELAY.high
 """The latest change of an input, s: no program can wait for a later one."""
+
+
+_PAIRS = "write changes = [[seconds, state], ...], a state as a number: 1 for ON, 0 for OFF"
 
 
 class InputSpec(Record):
@@ -44,6 +48,8 @@ def read_input(table: Table) -> InputSpec:
     # each pair as a table of its own, so that the usual getters check and name it
     changes: list[tuple[int, float]] = []
     for pair in table.raw_list("changes"):
+        if not _is_pair(pair):
+            table.fail("RBL613", f"'{table.name('changes')}' must be a list of pairs of numbers", _PAIRS, key="changes")
         row = Table(table.source, {"changes": pair}, table.keys)
         seconds, state = row.numbers("changes", 2)
         # compared in whole microseconds: two times that are one on the clock would leave the order of states open
@@ -58,6 +64,12 @@ def read_input(table: Table) -> InputSpec:
             "write changes = [[seconds, state], ...] or follows = N, the number of an output",
         )
     return InputSpec(changes=tuple(changes))
+
+
+def _is_pair(value: Any) -> bool:
+    """Return whether a value is a list of two numbers, whatever their size."""
+    numbers = isinstance(value, list) and all(isinstance(x, int | float) and not isinstance(x, bool) for x in value)
+    return numbers and len(value) == 2
 
 
 def read_inputs(tables: Mapping[str, Table]) -> dict[int, InputSpec]:

@@ -27,6 +27,8 @@ MAX_ABS = 1e9
 TWICE = "is given twice"
 """The message of a key or table that is there twice; lint gives it a code of its own."""
 
+_BARE_WORD = re.compile(r"[^=]*=\s*([A-Za-z_][\w./ -]*?)\s*(?:#.*)?")
+"""A line whose value is a word without quotes."""
 _CLASHES = ("Cannot overwrite a value", "Cannot declare", "Cannot mutate immutable", "Cannot redefine")
 """Beginnings of the messages of tomllib for a key or table that is there already; it has no error classes."""
 
@@ -113,6 +115,11 @@ def load_table(source: Source, code: str = "RBL601", *, gather: bool = False) ->
             message = f"{name} {TWICE}" + (f", first in line {first}" if first is not None else "")
             hint = "remove one of the two, or put their contents together"
         excerpt = lines[line - 1] if line <= len(lines) else ""
+        if text.startswith("Invalid value") and (word := _BARE_WORD.fullmatch(excerpt)):
+            message, hint = f"{word[1]} is no value", f'a text needs quotes: write "{word[1]}"'
+        if not source.path.lower().endswith(".toml"):  # a program, most likely, where a cell file belongs
+            message = f"{source.path} is not a TOML file: {message[:1].lower()}{message[1:]}"
+            hint = "name a file of this kind, which ends in .toml"
         raise FileFault(code, message, hint, FilePlace(source.path, line, column, excerpt)) from None
     except RecursionError:
         source.fail(code, "the file is nested too deeply")

@@ -18,6 +18,8 @@ from runtime.settings.setting import Setting, groups_of, settings_of
 
 T = TypeVar("T", bound=Record)
 
+MOST_NEAR = 4
+"""Keys in the hint for one that does not exist; more would hide the right one."""
 _IDEAL_WHEN_MEASURED = ("servo.velocity_feedforward", "servo.acceleration_feedforward")
 _FEEDS_BACK_WHEN_MEASURED = (*_IDEAL_WHEN_MEASURED, "servo.spring_compensation")
 
@@ -108,9 +110,7 @@ def read_options(values: Mapping[str, tuple[str, Any]]) -> Layer:
     layer = {}
     for key, (option, value) in values.items():
         if key not in settings():
-            raise Fault(
-                "RBL609", f"{option}: '{key}' is not a key of the controller profile", f"known: {', '.join(settings())}"
-            )
+            raise Fault("RBL609", f"{option}: '{key}' is not a key of the controller profile", _near(key))
         try:
             # by the reader of the file, so that a range is stated once; its place is the name of the option
             taken = settings()[key].read(Table(Source(option, ""), {key: value}, ()), key)
@@ -118,6 +118,18 @@ def read_options(values: Mapping[str, tuple[str, Any]]) -> Layer:
             raise Fault(fault.code, f"{option}: {fault.message}", fault.hint) from None
         layer[key] = Given(value=taken, origin=option)
     return layer
+
+
+def _near(key: str) -> str:
+    """Return a hint with the keys that one which does not exist may stand for."""
+    import difflib  # needed for a hint only
+
+    last = key.rpartition(".")[2].lower()
+    names = {known: known.rpartition(".")[2] for known in settings()}  # without the group, which all keys of it share
+    slip = difflib.get_close_matches(last, names.values(), n=1, cutoff=0.7)
+    near = [known for known, name in names.items() if last and (last in name or name in slip)]
+    guess = f"did you mean {' or '.join(near)}? " if 0 < len(near) <= MOST_NEAR else ""
+    return f"{guess}robolang config show lists the keys"
 
 
 def settle(*layers: Layer) -> Settings:

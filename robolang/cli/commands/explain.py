@@ -39,14 +39,15 @@ def _find(text: str, entries: "list[Code]") -> "Code":
         if word in (entry.code, entry.name.upper()):
             return entry
     near = _near(word, entries)
-    raise OptionValueError("CODE", f"there is no code '{text}'" + (f"; did you mean {near}?" if near else ""))
+    hint = f"did you mean {near}?" if near else "robolang explain lists them"
+    raise OptionValueError("CODE", f"there is no code '{text}'; {hint}")
 
 
 def _near(word: str, entries: "list[Code]") -> str:
-    """Return the code with the nearest number, for a code, or the nearest name, for a word; empty without one."""
+    """Return the code or the name that a misspelt word resembles most; empty without one."""
     digits = word.removeprefix("RBL")
     if digits.isascii() and digits.isdecimal() and len(digits) == 3:
-        return min(entries, key=lambda entry: abs(int(entry.code[3:]) - int(digits))).code
+        return ""  # a whole code: those with near numbers mean other things
     known = [form for entry in entries for form in (entry.code, entry.name.upper())]
     found = difflib.get_close_matches(word, known, n=1, cutoff=0.7)
     return found[0] if found and found[0].startswith("RBL") else "".join(found).lower()

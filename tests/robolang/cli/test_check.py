@@ -171,3 +171,13 @@ def test_nothing_of_the_working_folder_is_imported(folder):
     )
     assert result.returncode == 1
     assert "RBL112" in result.stdout
+
+
+@pytest.mark.parametrize("broken", ["p.cell.toml", "p.points.toml"])
+def test_a_program_whose_cell_or_points_cannot_be_read_is_not_counted_as_checked(folder, broken):
+    (folder / "some").mkdir()
+    (folder / "some" / "p.rbl").write_text("HAND OFF\n")
+    (folder / "some" / broken).write_text("schema = \n")
+    result = robolang("check", "some", code=2)
+    assert counted(result.stderr) == 0
+    assert result.stderr.splitlines()[1].startswith("1 program not checked")

@@ -67,3 +67,7 @@ def test_a_fresh_process_knows_every_code_of_the_page():
     codes = re.findall(r"^\| (RBL\d{3}) \|", page, re.M)
     assert len(codes) > 80
     assert re.findall(r"^ (RBL\d{3}) ", listed, re.M) == codes
+
+
+def test_a_whole_code_that_does_not_exist_has_no_nearest():
+    assert re.findall(r"RBL\d+", robolang("explain", "RBL999", code=2).stderr) == ["RBL703", "RBL999"]

@@ -17,7 +17,7 @@ from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
 from tests.messages import fields
 from tests.messages import numbers as numbers_of
-from tests.robolang.cli.commands import flat
+from tests.robolang.cli.commands import flat, robolang
 from tests.runtime.robot.models import SEVEN
 
 LIBRARY = Path(__file__).parents[3] / "runtime" / "robot" / "library"
@@ -223,3 +223,9 @@ def test_importing_the_commands_loads_no_numerics():
     heavy = ("numpy", "pinocchio", "mujoco", "ruckig")
     code = f"import sys, robolang.cli.commands.kin; print([m for m in {heavy} if m in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "[]\n"
+
+
+@pytest.mark.parametrize("joints", ["0 45 -180 0 45 0", "0 -.5 0 0 0 0"])
+def test_numbers_with_spaces_between_them_are_answered_with_a_code(joints):
+    assert "RBL703 -" in robolang("kin", "fk", "--joints", *joints.split(), code=2).stderr
+    assert "RBL703" not in robolang("kin", "fk", "-x", code=2).stderr

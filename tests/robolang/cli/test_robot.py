@@ -103,6 +103,10 @@ def test_long_names_and_numbers_are_folded_and_never_cut(tmp_path):
     assert all(part in shown for part in ("-1234.56", "1.48765e-05", "1.23456e-05"))
 
 
+def test_a_robot_in_capitals_is_answered_with_its_name():
+    assert "did you mean puma560?" in robolang("robot", "show", "PUMA560", code=2).stderr
+
+
 @pytest.mark.parametrize(
     ("name", "code", "said"),
     [

@@ -122,3 +122,17 @@ def test_step_prints_its_figures_and_writes_a_plot(tmp_path):
 )
 def test_step_refuses_what_it_cannot_do(words, said):
     assert set(said.split()) <= fields(flat(robolang("step", "--robot", "puma560", *words, code=2).stderr))
+
+
+@pytest.mark.parametrize(
+    ("key", "near"),
+    [
+        ("servo.gravity", {"servo.gravity_compensation", "servo.gravity_lead"}),
+        ("gravity_compensation", {"servo.gravity_compensation"}),
+        ("servo.velocity_feedforwrd", {"servo.velocity_feedforward"}),
+        ("servo.nothing", set()),
+        ("servo.", set()),
+    ],
+)
+def test_a_key_that_does_not_exist_is_answered_with_those_it_may_stand_for(key, near):
+    assert fields(robolang("config", "show", "--set", f"{key}=0", code=2).stderr) == {"RBL609", "--set", key, *near}

@@ -1,6 +1,9 @@
 """Outputs and the inputs that follow them can be taken back, pulses that still run included."""
 
-from runtime.cell.signals import InputSpec, Signals
+import pytest
+
+from runtime.cell.signals import InputSpec, Signals, read_input
+from runtime.core.tomlfile import FileFault, Source, load_table
 
 
 def test_signals_go_back_to_a_snapshot_again_and_again():
@@ -18,3 +21,18 @@ def test_signals_go_back_to_a_snapshot_again_and_again():
     other.restore(kept)
     other.set(7, 0.0, 1000)
     assert signals.output(7, 3000) == 1.0
+
+
+@pytest.mark.parametrize("changes", ['[1, "on"]', '[[1, "on"]]', "[[1]]", "[[1, 1, 1]]", "[[1, true]]", "[1]"])
+def test_changes_that_are_no_pairs_of_numbers_are_answered_with_their_form(changes):
+    with pytest.raises(FileFault) as caught:
+        read_input(load_table(Source("cell.toml", f"changes = {changes}\n")))
+    assert (caught.value.code, caught.value.line) == ("RBL613", 1)
+    assert "[[seconds, state], ...]" in caught.value.hint
+
+
+@pytest.mark.parametrize("changes", ["[[0, nan]]", "[[inf, 1]]"])
+def test_changes_that_are_not_finite_keep_their_code(changes):
+    with pytest.raises(FileFault) as caught:
+        read_input(load_table(Source("cell.toml", f"changes = {changes}\n")))
+    assert caught.value.code == "RBL604"

@@ -364,3 +364,21 @@ def test_what_follows_from_a_mistake_is_none_of_its_own():
 
 def test_without_gathering_the_first_fault_is_raised():
     assert len(fault(table("a = nan\nb = nan\n").number, "a").all) == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("a.toml", "robot = puma560  # the arm\n", {"puma560"}),
+        ("a.toml", "x = 1\nmode = fixed at mid\n", set()),
+        ("p.rbl", "MOVE P1\n", {"p.rbl", ".toml"}),
+    ],
+)
+def test_words_without_quotes_and_files_of_another_kind_are_named(name, text, said):
+    with pytest.raises(FileFault) as caught:
+        load_table(Source(name, text))
+    fault = caught.value
+    assert fault.code == "RBL601"
+    assert said <= fields(f"{fault.message} {fault.hint}")
+    assert ("TOML" in fault.message) is (name == "p.rbl")
+    assert ("quotes" in fault.hint) is (name == "a.toml")
