@@ -13,6 +13,7 @@ Excerpts are safe to print: tabs become spaces, control and direction-changing c
 characters count two columns, and a long line is cut around the place.
 """
 
+import os
 import re
 import unicodedata
 from collections.abc import Iterable
@@ -122,8 +123,9 @@ def render(diagnostic: Diagnostic, source: Source) -> str:
 
 def render_fault(fault: FileFault, severity: Severity = Severity.ERROR) -> str:
     """Return a fault of a file in the same form as ``render``."""
-    head = f"{fault.path}:{fault.line}:{fault.column}: {severity.value} {fault.code} {fault.message}"
-    lines = [safe(head)]
+    # a folder has no lines
+    place = fault.path if os.path.isdir(fault.path) else f"{fault.path}:{fault.line}:{fault.column}"  # noqa: PTH112
+    lines = [safe(f"{place}: {severity.value} {fault.code} {fault.message}")]
     if fault.excerpt:
         lines += _excerpt(fault.line, fault.excerpt, fault.column - 1, fault.column)
     lines.append(f"  help: {safe(fault.hint)}")

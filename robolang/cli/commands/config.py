@@ -11,7 +11,6 @@ from robolang.cli.controller_settings import settings_of
 from robolang.cli.errors import reported, say_warnings
 from robolang.cli.options import CellOptions, ControllerOptions, JsonOptions, OptionalProgram
 from robolang.cli.output import echo
-from robolang.cli.usage import OptionValueError
 
 if TYPE_CHECKING:
     from runtime.robot.model.spec import RobotSpec
@@ -33,10 +32,12 @@ def show(program: OptionalProgram, files: CellOptions, controller: ControllerOpt
     Exit codes: 0 done; 2 a file or an option cannot be used.
     """
     settings = settings_of(controller)
-    # the text is not read, so a name that is misspelt would show the settings of the built-in cell
-    if program is not None and not Path(program).exists():
-        raise OptionValueError("PROG", f"there is no file '{program}'")
     with reported():
+        # the text is not read, so a name that is misspelt would show the settings of the built-in cell
+        if program is not None:
+            from robolang.core.source import check_there
+
+            check_there(program)
         from robolang.project.project import load_cell_and_settings
 
         found, in_force = load_cell_and_settings(

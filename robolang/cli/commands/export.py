@@ -177,6 +177,12 @@ def _plain(found: "Export", out: Path) -> dict[str, Any]:
     }
 
 
+_LEGEND = (
+    "raised: steps raised to the lowest frequency; tables: tables for the PLC to\n"
+    "start; debt: most pulses by which a channel is ahead or late after a step"
+)
+
+
 def _print(found: "Export", out: Path) -> None:
     from robolang.cli.console import Console
     from robolang.core.diagnostics import safe
@@ -190,6 +196,7 @@ def _print(found: "Export", out: Path) -> None:
     for k, channel in enumerate(found.channels):
         by_channel.add_row(*_channel_row(channel, [entry["channels"][k] for entry in moves]))
     console.print(by_channel)
+    console.print(_LEGEND, style="italic", soft_wrap=True)
     for note in _notes(moves):
         console.print(safe(note), soft_wrap=True)
     seconds = sum(entry["seconds"] for entry in moves)

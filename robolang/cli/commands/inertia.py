@@ -194,6 +194,7 @@ def _print(found: dict[str, Any]) -> None:
     console = Console()
     console.print(table)
     beyond = "compensation" if any(row["compensation"] for row in found["axes"]) else "J"
+    console.print("D: of links and payload at the joint; N^2 J: of the rotor, N the gear ratio", style="italic")
     console.print(f"at the motor: D / N^2 + {beyond}; 1 kg cm2 = 1e-4 kg m2", style="italic")
 
 

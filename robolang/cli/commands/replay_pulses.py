@@ -220,6 +220,10 @@ def _alarm(alarm: "Alarm", tick_s: float) -> dict[str, Any]:
 _COLUMNS = ("steps", "time\n\ns", "fastest\nchannel\nHz", "error\nat row\nmm", "error\nin row\nmm", "error\nat end\nmm")
 _REAL = "error\nof arm\nmm"
 _NARROWEST, _WIDEST = 8, 40
+_LEGEND = (
+    "error: largest distance of the tool from the programmed path, at the ends of\n"
+    "rows (at row) and between them (in row); at end: distance from the end point"
+)
 
 
 def _print(found: dict[str, Any]) -> None:
@@ -234,6 +238,7 @@ def _print(found: dict[str, Any]) -> None:
         soft_wrap=True,
     )
     console.print(_table(found, console.width))
+    console.print(_LEGEND, style="italic", soft_wrap=True)
     for kind, alarms in () if physics is None else (("warning", physics["warnings"]), ("stopped", physics["alarms"])):
         for alarm in alarms:
             where = "" if alarm["line"] is None else f" at {lines.name(alarm)}"

@@ -62,9 +62,11 @@ def weigh(program: OptionalProgram, files: CellOptions, options: _PayloadOptions
     if amplitude is not None and not 0.0 < amplitude <= MOST_AMPLITUDE:  # NaN is refused too
         shown, most = beside(amplitude, MOST_AMPLITUDE)
         raise OptionValueError("--amplitude", f"{shown} is not above 0 and at most {most} deg")
-    if program is not None and not Path(program).exists():
-        raise OptionValueError("PROG", f"there is no file '{program}'")
     with reported():
+        if program is not None:
+            from robolang.core.source import check_there
+
+            check_there(program)
         _weigh(program, files, options, output)
 
 

@@ -13,7 +13,7 @@ from robolang.project.project import builtin_cell, load_project
 from runtime.dynamics.compensation import load_compensation
 from runtime.robot.files.loader import load_builtin
 from tests.campaign import some
-from tests.messages import fields
+from tests.messages import fields, heads
 from tests.robolang.cli.commands import BUILTIN, PUMA, ROOT, dry, flat, places, robolang
 
 SPEC = load_builtin("puma560")
@@ -226,7 +226,7 @@ def test_a_program_names_robot_controller_and_hand(tmp_path):
     hand = load_project(program).cell.hand
     assert (found["robot"], found["payload_kg"]) == ("manutec_r3", hand.mass)
     assert load_compensation(path, load_builtin("manutec_r3")).payload.mass == hand.mass
-    assert "RBL703 PROG" in flat(robolang("identify", tmp_path / "no.rbl", code=2).stderr)
+    assert heads(robolang("identify", tmp_path / "no.rbl", code=2).stderr) == [f"{tmp_path}/no.rbl:1:1: error RBL701"]
 
 
 def test_the_payload_is_identified_as_weigh_does(tmp_path):

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from tests.messages import fields
+from tests.messages import fields, heads
 from tests.robolang.cli.commands import BUILTIN, flat, robolang
 
 CELL = (BUILTIN / "cell.toml").read_text()
@@ -136,3 +136,16 @@ def test_step_refuses_what_it_cannot_do(words, said):
 )
 def test_a_key_that_does_not_exist_is_answered_with_those_it_may_stand_for(key, near):
     assert fields(robolang("config", "show", "--set", f"{key}=0", code=2).stderr) == {"RBL609", "--set", key, *near}
+
+
+def test_a_program_that_is_missing_has_the_code_that_a_run_gives_it(folder):
+    (folder / "near.rbl").touch()
+    for word in ("none.rbl", "near"):
+        shown, ran = (robolang(*words, folder / word, code=2).stderr for words in (("config", "show"), ("run",)))
+        assert shown == ran
+        assert heads(shown) == [f"{folder / word}:1:1: error RBL701"]
+
+
+def test_a_folder_has_no_line_and_no_column(folder):
+    assert robolang("run", folder, code=2).stderr.startswith(f"{folder}: error RBL702 ")
+    assert robolang("run", folder / "p.rbl", "--cell", folder, code=2).stderr.startswith(f"{folder}: error RBL600 ")

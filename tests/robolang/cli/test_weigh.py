@@ -75,7 +75,7 @@ BAD = [
     (["--payload", "1,0,x,0"], "RBL703 3 --payload x", 2),
     (["--payload=-1,0,0,0"], "RBL703 --payload -1 kg", 2),
     (["--payload", "1,0,0,5000"], "RBL703 --payload", 2),
-    (["nothing.rbl"], "RBL703 PROG nothing.rbl", 2),
+    (["nothing.rbl"], "RBL701 nothing.rbl", 2),
     (["--cell", "nothing.toml"], "RBL600", 2),
     (["--robot", "manutec_r3"], "RBL709 J3", 2),
     (["--robot", "manutec"], "RBL708 manutec", 2),

@@ -4,6 +4,7 @@ import pytest
 
 from runtime.cell.signals import InputSpec, Signals, read_input
 from runtime.core.tomlfile import FileFault, Source, load_table
+from tests.messages import numbers
 
 
 def test_signals_go_back_to_a_snapshot_again_and_again():
@@ -28,7 +29,7 @@ def test_changes_that_are_no_pairs_of_numbers_are_answered_with_their_form(chang
     with pytest.raises(FileFault) as caught:
         read_input(load_table(Source("cell.toml", f"changes = {changes}\n")))
     assert (caught.value.code, caught.value.line) == ("RBL613", 1)
-    assert "[[seconds, state], ...]" in caught.value.hint
+    assert numbers(caught.value.hint) == [1.0, 0.0]  # the states that may be meant by a word
 
 
 @pytest.mark.parametrize("changes", ["[[0, nan]]", "[[inf, 1]]"])
