@@ -71,6 +71,7 @@ class Analysis(Record):
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """Everything that is wrong, by place: errors of the text, then of its meaning in the cell."""
         found = self.parsed.diagnostics
+        # the tree is empty then, and would be called a program without statements (RBL201)
         if self.is_unread:
             return found
         return in_order((*found, *check(self.program, self.cell, self.facts)))
@@ -89,6 +90,7 @@ class Analysis(Record):
 
     def updated(self, edit: Edit) -> "Analysis":
         """Return the analysis of the text after an edit; only the lines that it changes are parsed."""
+        # late: only an editor needs it, and a check starts sooner without it
         from robolang.syntax.reparse import reparse
 
         text = self.source.text

@@ -68,6 +68,7 @@ def _statements(program: Program, structure: Structure, symbols: CellSymbols) ->
     # where blocks are wrong, nobody knows which SUB a line is in: each line sees all names then
     defined = Defined.of(program, {} if structure.diagnostics else structure.owner, structure.lost_subs)
     checks = StatementCheck(symbols, defined)
+    # a list: the other uses of a name, which become notes, are known at the end only
     found = list(islice(_each_statement(program, structure, defined, checks), MAX_DIAGNOSTICS + 1))
     for code in ("RBL213", "RBL215"):
         found = defined.missing.noted(found, code)
@@ -116,4 +117,5 @@ def _line_numbers(program: Program) -> Iterator[Diagnostic]:
             message = f"line number {line.number} comes after {previous}"
             yield Diagnostic(code="RBL116", severity=Severity.WARNING, message=message, span=line.number_span)
         first.setdefault(line.number, line)
+        # the one above, not the largest so far: one number that is too large is one finding
         previous = line.number

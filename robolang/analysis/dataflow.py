@@ -100,6 +100,7 @@ def _block_edges(node: Head | Block | Case | For | Next, at: int, program: Progr
     if isinstance(node, For):
         return _entered(node, _goes_round(node), at, past)
     if isinstance(node, Next):
+        # to the first line inside, not to FOR: that sets the variable and counts the rounds once
         return [Edge(node, "go", structure.after.get(at, at) + 1), Edge(node, "go", at + 1)]
     if isinstance(node, Head) and node.word == "WHILE":
         return _entered(node, bool(fixed(node.value)), at, past)

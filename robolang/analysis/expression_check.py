@@ -52,6 +52,7 @@ class ExpressionCheck:
         names_no_value: set[int] = set()  # of functions, arrays and components
         after_pose: set[int] = set()  # operands of a chain, where an offset may stand
         for each in walk(node):
+            # by identity: in a(a) equal names differ in meaning; a node comes before its parts, so in time for them
             if isinstance(each, Call | Component6):
                 names_no_value.add(id(each.name))
             elif isinstance(each, Chain):
@@ -163,6 +164,7 @@ class ExpressionCheck:
         """Report joint angles of another number than the arm has axes, and angles outside of their range."""
         axes, angles = self._symbols.axes, [fixed(item) for item in node.arguments]
         if axes is not None and len(angles) != axes:
+            # the ranges are not compared: nobody knows which angle is of which joint
             message = f"JOINT has {len(angles)} values, but the robot has {axes} axes"
             yield Diagnostic(code="RBL307", message=message, span=node.span)
             return
@@ -195,6 +197,7 @@ class ExpressionCheck:
                 continue
             problem = self._operands(node, left, sign, operand)
             if problem is not None:
+                # the first only: every further sign of "a" + 1 + 2 would be another finding of one mistake
                 yield problem
                 return
 
@@ -231,6 +234,7 @@ class ExpressionCheck:
         if node.key.endswith("$"):
             return Kind.TEXT
         taught = self._symbols.points is not None and node.key in self._symbols.points
+        # None: a name without $ holds a number or a pose, and a variable hides a taught point
         return Kind.POSE if taught and not self._defined.has_value(node.key) else None
 
     def _kind_of_chain(self, node: Chain) -> Kind | None:
@@ -293,6 +297,7 @@ def _mixed_product(node: Chain) -> Iterator[Diagnostic]:
         return
     message = "MOD, * and / have the same precedence and are computed from left to right"
     hint = ""
+    # with more signs there is more than one place for the parentheses
     if len(node.rest) == 2:
         (sign, second), last = node.rest
         hint = f"write {print_expression(Chain(first=Chain(first=node.first, rest=((sign, second),)), rest=(last,)))}"

@@ -77,6 +77,7 @@ class _Exactnesses:
         """Let a statement raise the kind of its name; return whether it did."""
         kinds = [self.of(value) for value in giving.values]
         kind = max(kinds)
+        # FOR x = 0 TO 1 STEP 0.1 adds its step in every round, and rounds each sum
         if giving.counts and kind is not Exactness.EXACT:
             kind = Exactness.ROUNDED
         if kind <= self.names.get(giving.key, Exactness.EXACT):

@@ -166,6 +166,7 @@ class StatementCheck:
         yield from self._expressions.must_be(node, Kind.NUMBER)
         value = fixed(node)
         if value is not None:
+            # SPEED of a MOVEJ and SPEEDJ are shares of the joint limits, so no speed of the tool bounds them
             most = self._symbols.max_speed_mm_s if limit is limits.SPEED else None
             yield from _refused(limit.fault(value, most), node)
 
@@ -215,6 +216,7 @@ class StatementCheck:
     def _fits(self, name: Name, value: Expression) -> Iterator[Diagnostic]:
         """Report a value of another kind than a name holds."""
         kind = self._expressions.kind(value)
+        # a text belongs under a name with $, and nothing else does
         if kind is not None and (kind is Kind.TEXT) is not name.key.endswith("$"):
             message = f"{kind} is assigned to {name.text}; names that end in $ hold texts, and only they do"
             if kind is Kind.TEXT:
@@ -225,6 +227,7 @@ class StatementCheck:
 
     def _const(self, node: Const) -> Iterator[Diagnostic]:
         first = self._defined.constant(node.name.key)
+        # the table has the first CONST of a name, which may be this one
         if first is not None and first != node.name.span:
             related = (Related(span=first, message="fixed here"),)
             message = f"{node.name.text} is a constant already"
@@ -242,6 +245,7 @@ class StatementCheck:
 
     def _head(self, node: Head) -> Iterator[Diagnostic]:
         if node.word == "SELECT":
+            # a stack: a SELECT may stand in a CASE of another, and lines come in order
             self._selected.append(self._expressions.kind(node.value))
         yield from ()
 

@@ -134,6 +134,7 @@ class SymbolTable:
             found.setdefault(self._meaning(place), []).append(place)
         self.symbols = tuple(self._symbol(key, each) for key, each in found.items())
         spans = ((span, symbol) for symbol in self.symbols for span in (*symbol.definitions, *symbol.uses))
+        # names do not overlap, so the last that begins before an offset is the only one that can hold it
         self._by_place = sorted(spans, key=lambda entry: entry[0])
 
     def at(self, offset: int) -> Symbol | None:

@@ -173,12 +173,14 @@ def values_read(node: Expression) -> Iterator[Name]:
 def seems_to_define(text: str) -> frozenset[str]:
     """Return the names, in capitals, that a statement with an error seems to give a value."""
     is_labelled = text.lstrip().startswith("*")
+    # words of texts, of comments and the name of the label define no value
     plain = _TEXTS.sub(" ", _LABEL.sub(" ", text, count=1) if is_labelled else text)
     words = frozenset(word.upper() for word in _WORD.findall(plain))
     begin = _FIRST.match(plain)
     first = begin[1].upper() if begin else ""
     if joined := _without_blank(first):
         return (words | {joined}) - RESERVED
+    # FRO i = 1 TO n: all names, since the word is lost that says which of them is defined
     if first in _DEFINING or (first not in KEYWORDS and near(first, _DEFINING)):
         return words - RESERVED
     return frozenset(found[1].upper() for found in _ASSIGNED.finditer(plain)) - RESERVED

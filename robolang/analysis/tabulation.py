@@ -15,9 +15,12 @@ from typing import Generic, Literal, NamedTuple, TypeAlias, TypeVar
 
 from robolang.syntax.ast import Statement
 
+# facts before one line: each HAND of a program may be a fact of its own
 MAX_FACTS = 64
 MAX_STEPS = 64
+# steps: 20 SUBs that call one another have few lines and many paths
 LEAST_STEPS = 60_000
+# bounds the memory, whatever the length of the program
 MOST_STEPS = 1_000_000
 
 Fact = TypeVar("Fact", bound=Hashable)

@@ -84,6 +84,7 @@ class Bounds:
         return self._given.get(bound, bound.default)
 
     def __eq__(self, other: object) -> bool:
+        # values in force: a bound that is set to its default is the same as one that is not set
         return isinstance(other, Bounds) and all(self[bound] == other[bound] for bound in BOUNDS)
 
     __hash__ = None  # type: ignore[assignment]

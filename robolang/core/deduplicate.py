@@ -25,6 +25,7 @@ class Repeats:
         # the first place is the diagnostic itself and no note
         if place not in places and len(places) <= MAX_NOTES:
             places.append(place)
+        # by place, since two checks of one expression ask for the same one
         return place == places[0]
 
     def noted(self, found: Iterable[Diagnostic], code: str) -> list[Diagnostic]:

@@ -166,6 +166,7 @@ def _block(head: str, source: Source, span: Span) -> list[str]:
     text = source.line_text(place.line)
     first = place.column - 1
     lines = [safe(f"{source.path}:{place.line}:{place.column}: {head}")]
+    # a place of several lines is marked on its first one only: the excerpt ends with that line
     return lines + (_excerpt(place.line, text, first, first + span.end - span.start) if text.strip() else [])
 
 

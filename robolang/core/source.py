@@ -129,6 +129,7 @@ def check_there(name: str) -> None:
 def _refuse(name: str, refused: RefusedError) -> NoReturn:
     """Raise the ``FileFault`` of a file that is not read."""
     error = refused.error
+    # before the size: a folder or a pipe opens without an error, too
     if refused.mode is not None:
         _fail("RBL702", f"{name} is {_kind(refused.mode)}, not a file", path=name)
     if error is None:
@@ -137,6 +138,7 @@ def _refuse(name: str, refused: RefusedError) -> NoReturn:
         _fail("RBL702", f"cannot read {name}: {refused.reason}", path=name)
     if isinstance(error, FileNotFoundError):
         _fail("RBL701", f"there is no file {name}", _neighbour(name), path=name)
+    # no file can have such a name, so it is missing, not refused
     missing = isinstance(error, ValueError) or error.errno in (errno.ENOTDIR, errno.ENAMETOOLONG)
     reason = "the name contains a NUL character" if isinstance(error, ValueError) else refused.reason
     _fail("RBL701" if missing else "RBL702", f"cannot open {name}: {reason}", path=name)

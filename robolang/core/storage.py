@@ -153,6 +153,7 @@ def _take_over(handle: int, old: os.stat_result | None) -> None:
     group = new.st_gid
     if (new.st_uid, new.st_gid) != (old.st_uid, old.st_gid):
         with suppress(PermissionError):
+            # one by one, the group first: a user may give a file to a group of their own and to no other user
             os.fchown(handle, -1, old.st_gid)
             group = old.st_gid
             os.fchown(handle, old.st_uid, -1)
@@ -236,6 +237,7 @@ def _exchange(one: Path, other: Path) -> bool:
 
 
 def _exchange_in_steps(one: Path, other: Path) -> None:
+    # not .tmp: a process that is killed in between leaves the only old copy here, which no save may remove
     aside = one.with_suffix(".old")
     other.replace(aside)
     try:
@@ -243,6 +245,7 @@ def _exchange_in_steps(one: Path, other: Path) -> None:
     except OSError:
         aside.replace(other)
         raise
+    # under the name of the temporary folder, which the caller removes
     aside.replace(one)
 
 

@@ -86,6 +86,7 @@ class Function(NamedTuple):
 
     def kind(self, index: int) -> Kind:
         """Return the kind of an argument, counted from 0."""
+        # the last parameter may be there several times: MIN(a, b, c, ...)
         return self.parameters[min(index, len(self.parameters) - 1)].kind
 
     @property
@@ -127,6 +128,7 @@ def _root(x: float) -> float:
 
 def _round(x: float, digits: float = 0.0) -> float:
     """Round half away from zero, as people do; ``round`` of Python rounds half to even."""
+    # floor raises for NAN and INF, and the caller makes RBL502 of that
     scale = 10.0 ** max(-MOST_DIGITS, min(MOST_DIGITS, math.floor(digits)))
     return math.copysign(math.floor(abs(x) * scale + 0.5) / scale, x)
 
@@ -224,6 +226,7 @@ _TABLE = (
     _of_numbers("INT", "x", "largest whole number that is not above x", math.floor, _exact),
     _more(_of_numbers("ROUND", "x", "x rounded to digits, half away from zero", _round, _of_round), "digits"),
     _of_numbers("SQR", "x", "square root", _root),
+    # not ``min`` itself, which takes a single argument for a sequence: MIN(3) is 3
     _more(_of_numbers("MIN", "x", "the smallest of the values", lambda *x: min(x), _as_arguments), "y", 99),
     _more(_of_numbers("MAX", "x", "the largest of the values", lambda *x: max(x), _as_arguments), "y", 99),
     _of_numbers("SIN", "x", "sine of an angle in degrees", lambda x: math.sin(math.radians(x))),

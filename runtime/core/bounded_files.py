@@ -18,6 +18,7 @@ def stays_inside(name: str) -> bool:
 
     A Windows path is refused on Linux too: the same file means the same on both. Links are not followed here.
     """
+    # C:x and \x have an anchor on Windows and are not absolute there, yet leave the folder
     absolute = any(kind(name).is_absolute() or kind(name).anchor for kind in (PurePosixPath, PureWindowsPath))
     return not (absolute or ".." in re.split(r"[/\\]", name) or "\0" in name)
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from runtime.core.record import Record
 
 if TYPE_CHECKING:
+    # for type checkers only: it is a data class, which a check would have to build at its start
     from runtime.core.program_line import ProgramLine
 
 

@@ -16,6 +16,7 @@ def beside(value: float, *limits: float, form: str = "g") -> tuple[str, ...]:
 
     They need so many that the texts compare as the numbers do: below, equal or above.
     """
+    # from 1e6 on ``g`` would write 1e+06, where a message shall have 1000000
     texts = (f"{value:{form}}", *(f"{limit:g}" if abs(limit) < 1e6 else f"{limit:.10g}" for limit in limits))
     digits = FEWEST_DIGITS
     while not _compare_as(texts, value, limits) and digits < MOST_DIGITS:

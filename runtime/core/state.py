@@ -58,6 +58,7 @@ class Stateful:
         for name, buffer in zip(self.BUFFERS, state.buffers, strict=True):
             getattr(self, name)[...] = buffer
         for name, value in zip(self.VALUES, state.values, strict=True):
+            # copied again: the object changes it from now on, and the state may be put back once more
             setattr(self, name, own(value))
         for name, part in zip(self.PARTS, state.parts, strict=True):
             if part is not None:
@@ -68,6 +69,7 @@ def own(value: Any) -> Any:
     """Return a value that no one else can change: a copy of an array or container that can be written, else itself."""
     if isinstance(value, np.ndarray):
         base = value.base
+        # a view that cannot be written changes with the array that it is of
         shared = value.flags.writeable or (isinstance(base, np.ndarray) and base.flags.writeable)
         return value.copy() if shared else value
     return value.copy() if isinstance(value, list | dict | set) else value

@@ -39,6 +39,7 @@ def clash(text: str, line: int) -> tuple[int, int, str, int | None]:
 def lines_of(text: str) -> list[str]:
     """Return the lines of a TOML text, split only where TOML and editors do (LF, CRLF); at least one."""
     lines = [line.removesuffix("\r") for line in text.split("\n")]
+    # a line end closes its line and begins none
     return lines[:-1] if len(lines) > 1 and not lines[-1] else lines
 
 
@@ -58,6 +59,7 @@ def _places(text: str) -> Iterator[tuple[int, int, list[str | int]]]:
 
 
 def _split(dotted: str) -> list[str]:
+    # a dot within quotes parts as well: such a key is located at the table that holds it
     return [part.strip().strip("\"'") for part in dotted.split(".")]
 
 

@@ -121,6 +121,7 @@ def load_table(source: Source, code: str = "RBL601", *, gather: bool = False) ->
             message = f"{source.path} is not a TOML file: {message[:1].lower()}{message[1:]}"
             hint = "name a file of this kind, which ends in .toml"
         raise FileFault(code, message, hint, FilePlace(source.path, line, column, excerpt)) from None
+    # tomllib reads arrays and tables within one another by recursion: [[[[ thousands of times
     except RecursionError:
         source.fail(code, "the file is nested too deeply")
     except ValueError as error:  # int() refuses a literal of thousands of digits
@@ -286,6 +287,7 @@ class Table:
         return self._noted(lambda: self._checked(key, self._take(key), low, high, positive), _within(low, high))
 
     def _checked(self, key: str, value: Any, low: float, high: float, positive: bool) -> float:
+        # true is an int in Python, and would be taken for 1
         if isinstance(value, bool) or not isinstance(value, int | float):
             self.fail("RBL613", f"'{self.name(key)}' must be a number, not {_kind(value)}", key=key)
         # compared before it is converted: an integer of thousands of digits is beyond any float
@@ -427,6 +429,7 @@ class Table:
         for key in self._data:
             if key in self._asked or _closest(key, missing):
                 continue  # reported with the missing key that it resembles: one mistake, one message
+            # keys that are not there first: one that is there is hardly what this one was meant to be
             near = _near(key, self._asked - set(self._data)) or _closest(key, self._asked)
             hint = f"did you mean '{near}'?" if near else f"known here: {', '.join(sorted(self._asked))}"
             fault = self.fault("RBL609", f"'{self.name(key)}' is not a key of this file", hint, key=key)
