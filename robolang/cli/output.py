@@ -31,4 +31,5 @@ def drop(stream: TextIO) -> None:
     """Lead a stream nowhere, so that the interpreter does not fail at exit on what is left in it."""
     # a stream may be None, closed, or no file at all, as in a test: then there is nothing to lead away
     with suppress(OSError, ValueError, AttributeError):
+        # under the stream, not in its place: Python flushes the same object when it ends
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

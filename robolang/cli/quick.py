@@ -59,6 +59,7 @@ def parsed(words: list[str]) -> dict[str, Any] | None:
 def _took(word: str, rest: Iterator[str], known: dict[str, tuple[str, Any]], values: dict[str, Any]) -> bool:
     """Add an option to the values; False for one that is unknown or has no plain value."""
     name, equals, value = word.partition("=")
+    # --help as well: it is an option of typer, and answered there
     if name not in known:
         return False
     field, kind = known[name]

@@ -83,6 +83,7 @@ def _still(loaded: Loaded) -> bool:
 
     try:
         return read_bytes(loaded.name) == loaded.mark + loaded.source.text.encode("utf-8")
+    # it is gone or cannot be read any more, which is a change as well
     except Fault:
         return False
 

@@ -57,6 +57,7 @@ def _statements(report: dict[str, Any], width: int) -> Table:
 
 def _cells(statement: dict[str, Any]) -> list[str]:
     numbers = ["" if statement[key] is None else form.format(statement[key]) for _, key, form in _COLUMNS]
+    # a move may be planned ahead and be cut off by an alarm or a stop before it
     if not statement["begun"]:
         numbers[0] = "not begun"
     return [safe(statement["text"]), *numbers]

@@ -173,6 +173,7 @@ def _fail(code: str, message: str, hint: str = "", *, path: str, place: Place | 
 
 def _neighbour(name: str) -> str:
     """Return a hint when the name only lacks its suffix."""
+    # robolang run pick: the ending is what is left out most often
     candidate = Path(f"{name}.rbl")
     return f"did you mean {candidate}?" if "\0" not in name and candidate.is_file() else ""
 

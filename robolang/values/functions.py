@@ -193,6 +193,7 @@ def _of_numbers(
     def apply(run: Context, *arguments: float) -> float:
         try:
             result = float(compute(*arguments))
+        # all of them become NaN, which is refused below: one code (RBL502) for whatever has no result
         except (ValueError, OverflowError):  # of NAN and INF, and beyond the largest float
             result = math.nan
         return finite(result, name)

@@ -32,6 +32,7 @@ class Limit(Record):
 
         A value that passes ``high`` by no more than ``ROUNDING`` is within.
         """
+        # never wider: a robot that is faster than the language allows is not run so
         top = self.high if high is None else min(high, self.high)
         most = top if high is None else top * (1.0 + ROUNDING)
         inside = (self.low < value if self.above else self.low <= value) and value <= most

@@ -49,6 +49,7 @@ class Stateful:
             owner=type(self),
             buffers=tuple([getattr(self, name).copy() for name in self.BUFFERS]),
             values=tuple([own(getattr(self, name)) for name in self.VALUES]),
+            # None is kept: a state has a place for each part that its class names
             parts=tuple([None if part is None else part.snapshot() for part in parts]),
         )
 

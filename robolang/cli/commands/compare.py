@@ -81,6 +81,7 @@ def _variants(only: str | None, known: "tuple[Variant, ...]") -> "tuple[Variant,
     if unknown:
         listed = ", ".join(item.name for item in known)
         raise OptionValueError("--only", f"'{unknown[0]}' is not a variant; known: {listed}")
+    # not in the order of the option: rows of two comparisons stand in the same places
     return tuple(item for item in known if item.name in names)
 
 

@@ -34,6 +34,7 @@ def explain(code: _Code) -> None:
 def _find(text: str, entries: "list[Code]") -> "Code":
     """Return the entry of a code, its number or its name, in any case; a usage error with the nearest otherwise."""
     word = text.strip().upper()
+    # robolang explain 412
     word = f"RBL{word}" if word.isdecimal() else word
     for entry in entries:
         if word in (entry.code, entry.name.upper()):
