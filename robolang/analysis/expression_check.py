@@ -178,7 +178,7 @@ class ExpressionCheck:
             return
         fault = INPUT.fault(number)
         if fault is None and inputs is not None and number not in inputs:
-            fault = unknown_input(int(number), inputs)
+            fault = unknown_input(int(number), inputs, self._symbols.cell_file)
         if fault is not None:
             yield Diagnostic(code=fault.code, message=fault.message, span=node.span, hint=fault.hint)
 

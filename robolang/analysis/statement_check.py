@@ -46,6 +46,7 @@ from robolang.syntax.ast import (
     Unparsed,
     Vector,
     Wrist,
+    Zone,
 )
 from robolang.syntax.declaration import Declaration, Operand, Role
 from robolang.syntax.statements import declaration
@@ -148,9 +149,8 @@ class StatementCheck:
     def _moving(self, node: Moving) -> Iterator[Diagnostic]:
         seen: dict[type, Option] = {}
         for option in node.options:
-            word = type(option).__name__.upper()
             if earlier := seen.get(type(option)):
-                yield _twice(word, option.span, earlier.span)
+                yield _twice(_shown(option, earlier), option.span, earlier.span)
             seen.setdefault(type(option), option)
             if isinstance(option, Wrist):
                 yield from self._wrist(option)
@@ -287,7 +287,8 @@ class StatementCheck:
             yield Diagnostic(code="RBL213", message=f"there is no SUB {node.name.text}", span=node.name.span, hint=hint)
         elif len(sub.parameters) != len(node.arguments):
             related = (Related(span=sub.span, message="defined here"),)
-            message = f"SUB {sub.name.text} takes {len(sub.parameters)} values, not {len(node.arguments)}"
+            count = len(sub.parameters)
+            message = f"SUB {sub.name.text} takes {count} value{'s' * (count != 1)}, not {len(node.arguments)}"
             yield Diagnostic(code="RBL214", message=message, span=node.span, related=related)
 
 
@@ -351,6 +352,13 @@ def _option(move: Node, option: Node) -> Declaration:
     """Return the declaration of an option of a move: SPEED of a MOVEJ has another range than of other moves."""
     name = type(option).__name__
     return next(each for each in declaration(move).options if each.node == name)
+
+
+def _shown(option: Option, earlier: Option) -> str:
+    """Return the word of an option that is there twice, or both words: FINE is a ZONE of 0."""
+    if isinstance(option, Zone) and isinstance(earlier, Zone) and (option.value is None) != (earlier.value is None):
+        return "the size of the blend, ZONE or FINE,"
+    return type(option).__name__.upper()
 
 
 def _twice(word: str, place: Span, first: Span) -> Diagnostic:

@@ -148,8 +148,15 @@ def _branches(project: Project, explored: Exploration) -> str:
         text += f"and {count} other branch{'es' * (count > 1)}, where inputs, time or errors decide\n"
     if explored.missed:
         missed = ", ".join(map(str, _missed(project, explored)))
-        text += f"not planned, since no branch reached them: the moves in line {missed}\n"
+        text += f"not planned, since {_why_missed(project, explored)}: the moves in line {missed}\n"
     return text
+
+
+def _why_missed(project: Project, explored: Exploration) -> str:
+    errors = sorted({project.source.place(item.span.start).line for item in explored.rehearsal.refused})
+    if not errors:
+        return "no branch reached them"
+    return f"planning ends at the error in line {', '.join(map(str, errors))} and no other branch reached them"
 
 
 def _shapes(project: Project) -> str:

@@ -71,12 +71,16 @@ def _room(rows: list[list[str]], where: tuple[str, ...], width: int) -> int:
     return min(max(width - taken, _NARROWEST), _WIDEST)
 
 
+def _counted(count: int, noun: str) -> str:
+    return f"{count} {noun}{'s' * (count != 1)}"
+
+
 def _facts(report: dict[str, Any]) -> list[str]:
     dynamics = report["dynamics"]
     lines = [
         f"{report['sim_time_s']:.3f} s simulated in {report['wall_time_s']:.2f} s "
-        f"({report['realtime_factor']:.1f} x real time), {report['cycles']} cycles of 8 ms, "
-        f"{report['overruns']} overruns"
+        f"({report['realtime_factor']:.1f} x real time), {_counted(report['cycles'], 'cycle')} of 8 ms, "
+        f"{_counted(report['overruns'], 'overrun')}"
     ]
     if report["cycles"]:
         lines.append(

@@ -323,8 +323,8 @@ register(
         code="RBL534",
         name="no-such-signal",
         meaning="The cell has no input of that number, or the number of an input or output is not from 1 to 1024.",
-        remedy="Use an input of the cell file, or add [inputs.N] to it; give a whole number from 1 to 1024 for an "
-        "output.",
+        remedy="Use an input of the cell file, or add one: [inputs.1] changes = [[0, 0], [1, 1]]; give a whole number "
+        "from 1 to 1024 for an output.",
         found=Stage.CELL,
         computed=True,
     ),

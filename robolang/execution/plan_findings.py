@@ -127,7 +127,7 @@ class PlanFindings:
                 axis = int(np.argmax(np.abs(end - command.q_end)))
                 yield PlanFinding(
                     code="RBL419",
-                    message=f"ends with J{axis + 1} at {end[axis] / DEG:.1f} deg, not at "
+                    message=f"the move ends with J{axis + 1} at {end[axis] / DEG:.1f} deg, not at "
                     f"the taught {command.q_end[axis] / DEG:.1f} deg: WRIST KEEP keeps the sign of J5",
                 )
         elif (command.configuration or command.turns) and not as_taught(self._kinematics, end, command):
@@ -135,7 +135,7 @@ class PlanFindings:
             taught = " ".join([*command.configuration, *([f"turns {list(command.turns)}"] if command.turns else [])])
             yield PlanFinding(
                 code="RBL419",
-                message=f"ends {self._kinematics.branch_of(end)} with turns {turns}, not "
+                message=f"the move ends {self._kinematics.branch_of(end)} with turns {turns}, not "
                 f"{taught} as taught: WRIST KEEP keeps the sign of J5",
             )
 
@@ -145,13 +145,14 @@ class PlanFindings:
         takes_s = (len(move.plan.q) - 1) * period_s
         under = f" under OVERRIDE {effect.override_pct:g}" if effect.override_pct != 100.0 else ""
         if effect.time_s is not None:
-            asked_s = effect.time_s / override
-            if not takes_s <= asked_s + period_s:  # a move takes whole cycles
+            programmed_s = effect.time_s / override
+            if not takes_s <= programmed_s + period_s:  # a move takes whole cycles
                 ruled = self._ruling(move)
-                takes, asked = beside(takes_s, asked_s)
+                takes, programmed = beside(takes_s, programmed_s)
                 yield PlanFinding(
                     code="RBL429",
-                    message=f"takes {takes} s, not the {asked} s of TIME {effect.time_s:g}{under}: {ruled.why}",
+                    message=f"the move takes {takes} s, not the {programmed} s of TIME "
+                    f"{effect.time_s:g}{under}: {ruled.why}",
                     hint=f"Give TIME {up(takes_s * override):g} or more; or {ruled.remedy}.",
                 )
         elif effect.speed_mm_s is not None and move.plan.path is not None:
@@ -160,7 +161,7 @@ class PlanFindings:
             if ruled.asked_s > 0.0 and not takes_s <= max(ruled.asked_s, period_s) * SLOWED:
                 yield PlanFinding(
                     code="RBL429",
-                    message=f"reaches {ruled.peak / MM:.1f} mm/s at most, not SPEED "
+                    message=f"the move reaches {ruled.peak / MM:.1f} mm/s at most, not SPEED "
                     f"{effect.speed_mm_s:g}{under}, and takes {takes_s:.3f} s instead of "
                     f"{ruled.asked_s:.3f} s: {ruled.why}",
                     hint=f"Give SPEED {down(ruled.keeps / MM):g}, which takes as long; or {ruled.remedy}."

@@ -236,8 +236,7 @@ def _loads(project: Project, kinematics: Kinematics, moves: Sequence[RehearsedMo
                 share.move,
                 f"at {share.move.share(share.row):.1f} % of the path the {share.what} of the "
                 f"payload of {share.move.payload.mass:g} kg about J{share.axis + 1} is {value} "
-                f"{share.unit}, {share.value - share.limit:.3g} more than "
-                f"{'it is rated for' if share.given else 'its drive allows by estimate'}, {limit} "
-                f"{share.unit}",
+                f"{share.unit}, {share.value - share.limit:.3g} {share.unit} above the limit of {limit} {share.unit}, "
+                f"which is {'its rating' if share.given else 'estimated from its drive'}",
                 Severity.ERROR if share.given else Severity.WARNING,
             )

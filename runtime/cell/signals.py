@@ -132,12 +132,15 @@ class Signals:
         return _at(spec.changes, now_us)
 
 
-def unknown_input(number: int, known: Collection[int]) -> Fault:
-    """Return the fault of an input that a cell with other inputs does not have."""
+def unknown_input(number: int, known: Collection[int], cell_file: str = "") -> Fault:
+    """Return the fault of an input that a cell does not have; ``cell_file``: where it can be added, if known."""
+    correct = f"give the number of an input of the cell ({', '.join(map(str, sorted(known)))}), or " if known else ""
+    where = cell_file or "the cell file, NAME.cell.toml beside the program"
     return Fault(
         "RBL534",
-        f"the cell has no input {number} (known: {', '.join(map(str, sorted(known))) or 'none'})",
-        f"write [inputs.{number}] into the cell file, or correct the number",
+        f"the cell has {f'no input {number}' if known else f'no inputs, so there is no input {number}'}",
+        f"{correct}write into {where}: [inputs.{number}] changes = [[0, 0], [1, 1]], which is 0 from the start and "
+        "1 from 1 s on",
     )
 
 

@@ -109,7 +109,8 @@ class Supervisor(Stateful):
             code="RBL516",
             tick=tick,
             axis=axis,
-            message=f"J{axis + 1} needs {torque} N m that neither motion nor payload explains, more than {bound} N m",
+            message=f"the torque of J{axis + 1} differs by {torque} N m from what its motion and payload need; "
+            f"the limit is {bound} N m",
         )
 
     def _weigh(self, tick: int) -> Finding | None:
@@ -145,8 +146,9 @@ class Supervisor(Stateful):
             code="RBL516",
             tick=tick,
             axis=axis,
-            message=f"J{axis + 1} needs {self.observer.unexplained[axis]:+.1f} N m that neither motion nor any payload "
-            f"explains, {abs(self.observer.leftover[axis]):.1f} standard deviations in the mean",
+            message=f"the torque of J{axis + 1} differs on average by {self.observer.unexplained[axis]:+.1f} N m from "
+            "what its motion needs with any payload, which is "
+            f"{abs(self.observer.leftover[axis]):.1f} times the uncertainty of this average",
         )
 
     def stale(self, oldest_us: float, payload_us: float, tick: int) -> Finding | None:

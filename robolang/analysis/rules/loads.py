@@ -31,26 +31,30 @@ LOAD_MISSING = LintRule(
 
 
 class _Hold(NamedTuple):
-    """Whether the hand is closed, the HAND since which no LOAD has come, if any, and whether one has come at all."""
+    """Whether the hand is closed, the HAND since which no LOAD has come, if any, and whether one has come at all.
+
+    ``declared`` is set by a finding too, ``loaded`` by a LOAD only.
+    """
 
     closed: bool = False
     pending: Span | None = None
     declared: bool = False
+    loaded: bool = False
 
 
 def find(facts: Facts) -> Iterator[Diagnostic]:
     """Report every HAND that changes what is held and is followed by a move before a LOAD."""
-    found: dict[Span, Moving] = {}
+    found: dict[Span, tuple[Moving, bool]] = {}
 
     def step(at: int, node: Statement, hold: _Hold) -> tuple[_Hold]:
         if isinstance(node, Hand):
             return (_after_hand(node, hold),)
         if isinstance(node, Load | LoadNamed):
-            return (_Hold(hold.closed, declared=True),)
+            return (_Hold(hold.closed, declared=True, loaded=True),)
         if isinstance(node, MOVES) and hold.pending is not None:
             # declared from here on: one finding for a HAND, however many moves follow it
-            found.setdefault(hold.pending, node)
-            return (_Hold(hold.closed, declared=True),)
+            found.setdefault(hold.pending, (node, hold.loaded))
+            return (hold._replace(pending=None, declared=True),)
         return (hold,)
 
     hands = [node for node in facts.statements if isinstance(node, Hand)]
@@ -58,11 +62,12 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
         return
     for hand in (node for node in hands if node.span in found):
         does = "grasps" if hand.state is HandState.ON else "opens"
+        move, loaded = found[hand.span]
+        computes = "the LOAD before this line" if loaded else "no load, since there is no LOAD before this line"
         yield LOAD_MISSING.at(
             hand.span,
-            f"the hand {does} and the arm moves on without a LOAD: the controller still "
-            "computes with the previous load",
-            related=(Related(span=found[hand.span].span, message="the arm moves here"),),
+            f"the hand {does} and the arm moves on without a new LOAD: the controller still computes with {computes}",
+            related=(Related(span=move.span, message="the arm moves here"),),
         )
 
 
@@ -70,9 +75,9 @@ def _after_hand(node: Hand, hold: _Hold) -> _Hold:
     closes = node.state is HandState.ON
     # a HAND that repeats the state of the hand changes nothing that the arm carries
     if closes is not hold.closed:
-        return _Hold(closes, node.span)
+        return hold._replace(closed=closes, pending=node.span, declared=False)
     if not hold.declared and hold.pending is None:  # a hand that is open at the start weighs something, too
-        return _Hold(hold.closed, node.span)
+        return hold._replace(pending=node.span)
     return hold
 
 

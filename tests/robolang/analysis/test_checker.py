@@ -1,3 +1,5 @@
+import re
+
 import numpy as np
 import pytest
 
@@ -476,6 +478,24 @@ def test_a_value_of_another_kind_is_named_as_it_must_be_written(text, written):
     found = check(parsed(f'x = 1\ns$ = "a"\n{text}\nPRINT x; s$'), cell_with(points=("P1", "P2"), tools=("GRIP",)))
     (hint,) = (item.hint for item in found if item.code == "RBL217")
     assert written in hint
+
+
+def test_a_cell_without_inputs_is_given_one_in_its_form():
+    (item,) = check(parsed("PRINT IN(1)"), cell_with(inputs=()).replaced(cell_file="a.cell.toml"))
+    assert (item.code, item.span) == ("RBL534", Span(9, 10))
+    assert "into a.cell.toml: [inputs.1] changes = [[0, 0], [1, 1]]" in item.hint
+    assert "(2, 3)" in first("PRINT IN(1)", inputs=(3, 2)).hint
+
+
+def test_fine_beside_zone_is_named_by_both_words():
+    assert {"ZONE", "FINE"} <= fields(first("MOVE P1, FINE, ZONE 5").message)
+    assert "FINE" not in first("MOVE P1, ZONE 5, ZONE 5").message
+
+
+def test_one_value_is_not_several():
+    item = first("CALL up\nEND\nSUB up(x)\nPRINT x\nENDSUB")
+    assert (item.code, item.span) == ("RBL214", Span(0, 7))
+    assert re.search(r"\b1 value\b", item.message)
 
 
 def test_a_name_without_a_value_may_be_a_point_of_a_file_that_is_missing():

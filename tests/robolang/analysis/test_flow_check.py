@@ -64,6 +64,16 @@ def test_load_missing(text, lines):
     assert found(text, "RBL228") == lines
 
 
+def test_a_load_is_called_the_one_before_only_where_there_is_one():
+    def message(text):
+        (item,) = (item for item in check(parsed(text)) if item.code == "RBL228")
+        return item.message
+
+    assert "no LOAD before" in message("HAND OFF\nMOVE P1")
+    assert "no LOAD before" in message("MOVE P1\nHAND ON\nMOVE P2\nEND\nLOAD l")
+    assert "no LOAD before" not in message("LOAD l\nHAND ON\nMOVE P1")
+
+
 def test_every_one_of_many_grasps_is_found():
     cases = "".join(f"CASE {k}\nHAND ON\n" for k in range(20))
     assert found(f"SELECT CASE x\n{cases}ENDSELECT\nMOVE P1", "RBL228") == list(range(3, 43, 2))

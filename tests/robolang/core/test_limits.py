@@ -19,6 +19,7 @@ from robolang.syntax.parser import parse
 from runtime.core import limits
 from runtime.core.faults import Fault, lookup
 from runtime.core.limits import SIZE
+from tests.messages import numbers
 from tests.robolang.helpers import source
 from tests.robolang.running import World, execute, fault, ran
 
@@ -236,3 +237,16 @@ def test_check_and_a_run_agree_at_the_limits_of_the_robot(tmp_path, text, value,
     assert [item.code for item in known.diagnostics if item.severity is Severity.ERROR] == expected
     assert [item.code for item in judged.diagnostics if item.severity is Severity.ERROR] == []
     assert [item.code for item in rehearse(judged).refused] == expected
+
+
+def test_remedies_give_the_limits_of_the_table():
+    """A number in a remedy of a range is one of the ends of a range with that code."""
+    ends: dict[str, set[float]] = {}
+    for limit in vars(limits).values():
+        if isinstance(limit, limits.Limit):
+            ends.setdefault(limit.code, set()).update((limit.low, limit.high))
+    for code in ("RBL404", "RBL405", "RBL415"):
+        assert set(numbers(lookup(code).remedy)) <= ends[code] | {0.0}
+        assert max(ends[code] - {10_000.0}) in numbers(lookup(code).remedy)
+    for code in ("RBL507", "RBL534"):
+        assert max(ends[code]) in numbers(lookup(code).remedy)

@@ -121,6 +121,13 @@ def test_the_command_says_how_many_ways_there_were(found, tmp_path):
     assert numbers(missed) == [4]
 
 
+def test_moves_after_an_error_are_not_planned_because_of_it(found, tmp_path):
+    found(f"MOVE P2\n{FAR}\nMOVE P3\nMOVE P5")
+    said = robolang("check", "--motion", tmp_path / "p.rbl", "--output-format", "concise", code=1).stdout
+    (missed,) = [line for line in said.splitlines() if line.startswith("not planned")]
+    assert numbers(missed) == [2, 3, 4]
+
+
 def test_the_table_is_written_for_other_programs(found, tmp_path):
     found("SPEED 200\nFOR i = 1 TO 3\nMOVE P2\nDELAY 0.1\nWAIT IN(2), TIMEOUT 2\nMOVE P5\nNEXT")
     robolang("check", "--motion", tmp_path / "p.rbl", "--times", tmp_path / "t.json")
