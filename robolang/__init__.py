@@ -27,7 +27,7 @@ def __dir__() -> list[str]:
 
 
 def __getattr__(name: str) -> object:
-    # parsing and checking must not pay for numpy, pinocchio and mujoco: the run is imported when it is asked for
+    # parsing and checking must not pay for numpy, pinocchio and mujoco: the run is imported at its first use
     if name in __all__ and name != "__version__":
         from robolang import api
 

@@ -1,7 +1,7 @@
 """The search of ``flow``: which facts hold before which line, contexts kept apart.
 
 A *context* is a part of the program that runs: the main program, what a GOSUB, a CALL or an error has led to. It is
-told apart by how, where and with which fact it was entered, and by the handler of errors then; it goes by a number. An
+distinguished by how, where and with which fact it was entered, and by the handler of errors then; it has a number. An
 *exit* is what leaves a context, with the fact and the handler there. RETURN leaves the last GOSUB, or else the SUB;
 ENDSUB leaves the SUB, so it goes through the GOSUBs in it; an error that no handler of the SUB takes leaves it as well.
 

@@ -174,8 +174,11 @@ def _fail(code: str, message: str, hint: str = "", *, path: str, place: Place | 
 def _neighbour(name: str) -> str:
     """Return a hint when the name only lacks its suffix."""
     # robolang run pick: the ending is what is left out most often
-    candidate = Path(f"{name}.rbl")
-    return f"did you mean {candidate}?" if "\0" not in name and candidate.is_file() else ""
+    try:
+        there = Path(f"{name}.rbl").is_file()
+    except OSError:  # a name of 255 bytes can exist, and is too long with the ending
+        there = False
+    return f"did you mean {name}.rbl?" if there else ""
 
 
 def _kind(mode: int) -> str:

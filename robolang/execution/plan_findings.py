@@ -158,12 +158,12 @@ class PlanFindings:
         elif effect.speed_mm_s is not None and move.plan.path is not None:
             ruled = self._ruling(move)
             # compared by time: on most short paths the peak stays below SPEED, which is no fault (decision 0030)
-            if ruled.asked_s > 0.0 and not takes_s <= max(ruled.asked_s, period_s) * SLOWED:
+            if ruled.programmed_s > 0.0 and not takes_s <= max(ruled.programmed_s, period_s) * SLOWED:
                 yield PlanFinding(
                     code="RBL429",
                     message=f"the move reaches {ruled.peak / MM:.1f} mm/s at most, not SPEED "
                     f"{effect.speed_mm_s:g}{under}, and takes {takes_s:.3f} s instead of "
-                    f"{ruled.asked_s:.3f} s: {ruled.why}",
+                    f"{ruled.programmed_s:.3f} s: {ruled.why}",
                     hint=f"Give SPEED {down(ruled.keeps / MM):g}, which takes as long; or {ruled.remedy}."
                     if ruled.keeps > 0.0
                     else f"Lower SPEED, or {ruled.remedy}.",

@@ -109,7 +109,7 @@ class Actions:
 
     def _target(self, node: Moving) -> Place:
         if isinstance(node, Depart):
-            # where the motion before ends is not known yet: moves may still be under way when this is evaluated
+            # where the motion before ends is not known yet: moves may still be in progress when this is evaluated
             return Place(last=True).shifted(_back(self._distance(node.distance)))
         place = self._values.place(node.target)
         return place.shifted(_back(self._distance(node.distance))) if isinstance(node, Approach) else place

@@ -16,6 +16,7 @@ RBL507), and what texts and the offsets after poses hold beyond that (``MAX_TEXT
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+import robolang.core.run_codes  # noqa: F401 - the codes raised here must be registered
 from robolang.interpreter.arrays import Array
 from robolang.values.poses import Place, Value, kind_of
 from runtime.core.faults import Fault
@@ -25,7 +26,7 @@ MAX_CELLS = 1_000_000
 """Most elements of all arrays and names with a value together."""
 MAX_TEXTS = 10_000_000
 """Most characters of all texts that names and arrays hold."""
-WAY = 32
+SHIFT = 32
 """Characters that an offset after a pose counts as."""
 
 
@@ -243,15 +244,15 @@ class Scopes:
             raise Fault(
                 "RBL506",
                 f"all texts together would have more than {MAX_TEXTS} characters; an offset after a pose counts as "
-                f"{WAY}",
+                f"{SHIFT}",
             )
         scope.cells += cells
         scope.texts += texts
 
 
 def characters(value: Value | None) -> int:
-    """Return how many characters a value holds, or as many as its ways count."""
-    return len(value) if isinstance(value, str) else WAY * len(value.shifts) if isinstance(value, Place) else 0
+    """Return how many characters a value holds, or as many as its offsets count."""
+    return len(value) if isinstance(value, str) else SHIFT * len(value.shifts) if isinstance(value, Place) else 0
 
 
 def check_kind(key: str, value: Value) -> None:

@@ -23,7 +23,7 @@ class Robot(Protocol):
     """What a function can ask of the robot and its cell."""
 
     def input(self, number: int) -> float:
-        """Return the state of an input; ``Fault`` RBL534 when the cell has none of that number."""
+        """Return the state of an input; ``Fault`` RBL534 when the cell has no input of that number."""
 
     def seconds(self) -> float:
         """Return the time since the program began, s."""

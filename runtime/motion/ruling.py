@@ -34,14 +34,14 @@ _HALVINGS = 40
 class Ruling:
     """The limit that rules a move: ``why`` in words, and ``remedy``, what would help.
 
-    ``asked_s``: the time that its programmed speed alone would take; ``peak`` m/s: the largest speed of the tool point
+    ``programmed_s``: the time that its speed alone would take; ``peak`` m/s: the largest speed of the tool point
     in the plan. ``keeps`` m/s: a speed that alone would take as long as the plan does, 0 where a joint rules, which may
     rule at that speed as well. All are 0 for a move whose tool point has no path, or hardly one.
     """
 
     why: str
     remedy: str
-    asked_s: float = 0.0
+    programmed_s: float = 0.0
     peak: float = 0.0
     keeps: float = 0.0
 
@@ -92,11 +92,11 @@ def ruling(plan: MovePlan, command: Command, spec: RobotSpec, profile: Profile) 
     # each limit is timed as if it were alone; the longest time is that of the limit that rules
     bounds = [_accelerating(times, path, moves), _turning(times, path, moves), _curving(times, path, moves)]
     rows = [(each.seconds, each.why, each.remedy) for each in bounds if each is not None]
-    asked_s = rows[0][0]
+    programmed_s = rows[0][0]
     longest_s, why, remedy = max(rows)
     slowdown = plan.slowdown
     # a joint rules where the slowing that it needed outweighs the longest of the path's own limits
-    of_joint = slowdown is not None and slowdown.factor * asked_s >= longest_s
+    of_joint = slowdown is not None and slowdown.factor * programmed_s >= longest_s
     if slowdown is not None and of_joint:
         why = _joint_limit(slowdown, spec, plan.override)
         remedy = f"move the path away from where J{slowdown.axis + 1} has to turn fast, or go there with MOVEJ"
@@ -105,7 +105,7 @@ def ruling(plan: MovePlan, command: Command, spec: RobotSpec, profile: Profile) 
     peak = float(np.diff(plan.s).max(initial=0.0)) * path.length / profile.period_s
     seconds = (len(plan.q) - 1) * profile.period_s
     keeps = 0.0 if of_joint else _slower(lambda speed: times.along(path, speed), times.speed, seconds)
-    return Ruling(why=why, remedy=remedy, asked_s=asked_s, peak=peak, keeps=keeps)
+    return Ruling(why=why, remedy=remedy, programmed_s=programmed_s, peak=peak, keeps=keeps)
 
 
 def _accelerating(times: _Times, path: Path, moves: bool) -> _Bound:

@@ -1,4 +1,4 @@
-"""The joint curves that a move through the wrist may take, in the order in which they are tried.
+"""The joint curves that a move through the wrist may take, in the order in which they are computed.
 
 A remedy is a function of the request that yields candidates; ``stages`` names them in their order. The first two are
 the method of CN103429397A (Kobe Steel); what the document leaves to chance (hazards H1 to H4, docs/wrist.md) the others
@@ -88,7 +88,7 @@ class HeldPosture:
 
 
 def stages(options: WristOptions) -> tuple[tuple[Remedy, ...], ...]:
-    """Return the remedies in their order, in stages: a later stage is tried when none before has a solution at all.
+    """Return the remedies in their order, in stages: a later stage is computed when none before has a solution at all.
 
     ``remedies = false`` in the profile is the document alone.
     """

@@ -55,32 +55,32 @@ def least_step(min_hz: float, step_s: float) -> int:
     return max(1, math.ceil(min_hz * step_s - 1e-9))
 
 
-def emit(wanted: Pulses, least: int, most: int) -> Emission:
-    """Return the emission of ``wanted`` steps (N,) pulses, each 0 or from ``least`` to ``most``; the sum is the same.
+def emit(planned: Pulses, least: int, most: int) -> Emission:
+    """Return the emission of ``planned`` steps (N,) pulses, each 0 or from ``least`` to ``most``; the sum is the same.
 
-    ``ValueError`` where a step of ``wanted`` exceeds ``most``.
+    ``ValueError`` where a step of ``planned`` exceeds ``most``.
     """
-    if len(wanted) and int(np.abs(wanted).max()) > most:
-        raise ValueError(f"a step of {int(np.abs(wanted).max())} pulses is over {most}")
-    short = (wanted != 0) & (np.abs(wanted) < least)
+    if len(planned) and int(np.abs(planned).max()) > most:
+        raise ValueError(f"a step of {int(np.abs(planned).max())} pulses is over {most}")
+    short = (planned != 0) & (np.abs(planned) < least)
     if not short.any():
-        return Emission(steps=wanted, raised=0, debt=0, settled=0, rule="none")
-    steps, raised, left = compensate(wanted, least)
+        return Emission(steps=planned, raised=0, debt=0, settled=0, rule="none")
+    steps, raised, left = compensate(planned, least)
     rule: Rule = "compensate"
-    worst = _debt(steps, wanted)
+    worst = _debt(steps, planned)
     # one step has to bear what is left: spread over several, the end of the move would be off its line for longer
     borne = left == 0 or _bearer(steps, left, least, most) is not None
     if worst > MOST_CARRIED * least or int(np.abs(steps).max()) > most or not borne:
-        steps, raised, left = hold(wanted, least, most)
+        steps, raised, left = hold(planned, least, most)
         rule = "hold"
     settled = settle(steps, -left, least, most)
-    return Emission(steps=settled, raised=raised, debt=_debt(settled, wanted), settled=left, rule=rule)
+    return Emission(steps=settled, raised=raised, debt=_debt(settled, planned), settled=left, rule=rule)
 
 
-def compensate(wanted: Pulses, least: int) -> tuple[Pulses, int, int]:
+def compensate(planned: Pulses, least: int) -> tuple[Pulses, int, int]:
     """Return the steps of S06, how many were raised, and the pulses carried at the end."""
     emitted, carried, raised = [], 0, 0
-    for d in wanted.tolist():
+    for d in planned.tolist():
         size, sign = abs(d), 1 if d > 0 else -1
         e = d
         # the four lines of the table above, in their order
@@ -96,10 +96,10 @@ def compensate(wanted: Pulses, least: int) -> tuple[Pulses, int, int]:
     return np.array(emitted, dtype=np.int64), raised, carried
 
 
-def hold(wanted: Pulses, least: int, most: int) -> tuple[Pulses, int, int]:
+def hold(planned: Pulses, least: int, most: int) -> tuple[Pulses, int, int]:
     """Return steps that stand until half of ``least`` is due, how many differ, and the pulses carried at the end."""
     emitted, due = [], 0
-    for d in wanted.tolist():
+    for d in planned.tolist():
         due += d
         size, sign = abs(due), 1 if due > 0 else -1
         # at half of dP_min standing still and one step of it are equally wrong; only more than half is worth a step
@@ -107,7 +107,7 @@ def hold(wanted: Pulses, least: int, most: int) -> tuple[Pulses, int, int]:
         due -= e
         emitted.append(e)
     steps = np.array(emitted, dtype=np.int64)
-    return steps, int((steps != wanted).sum()), -due
+    return steps, int((steps != planned).sum()), -due
 
 
 def settle(steps: Pulses, missing: int, least: int, most: int) -> Pulses:
@@ -170,9 +170,9 @@ def _pieces(pulses: int, least: int, most: int) -> list[int]:
     return [(size + (k < more)) * (1 if pulses > 0 else -1) for k in range(count)]
 
 
-def _debt(steps: Pulses, wanted: Pulses) -> int:
-    """Return the largest difference between pulses emitted and wanted, after any step."""
+def _debt(steps: Pulses, planned: Pulses) -> int:
+    """Return the largest difference between pulses emitted and planned, after any step."""
     off = np.cumsum(steps)
-    off[: len(wanted)] -= np.cumsum(wanted)
-    off[len(wanted) :] -= int(wanted.sum())
+    off[: len(planned)] -= np.cumsum(planned)
+    off[len(planned) :] -= int(planned.sum())
     return int(np.abs(off).max()) if len(off) else 0

@@ -40,7 +40,7 @@ _FITS = 0.995
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MovePulses:
-    """A move in pulses: ``steps`` of the line, ``wanted`` and ``emitted`` of each channel, ``count`` steps in all.
+    """A move in pulses: ``steps`` of the line, ``planned`` and ``emitted`` of each channel, ``count`` steps in all.
 
     ``q`` (N + 1, M) are the joint values of the line, ``start`` (M,) the positions of the channels before, pulses.
     ``points`` (N' + 1, 3) m: the tool point after each step as emitted, ``error`` (N' + 1,) m: its distance from the
@@ -51,7 +51,7 @@ class MovePulses:
     steps: EqualTimeSteps | None
     q: Array
     start: Pulses
-    wanted: Pulses
+    planned: Pulses
     emitted: tuple[Emission, ...]
     count: int
     points: Array
@@ -86,15 +86,15 @@ def plan_move(
         notes += (f"slowed {slowed:.2f} times to {steps.seconds:.3f} s: limits of {ruling}",)
     pulses = _counted(q, channels)
     # from where the channels really are, not from row 0: what an earlier move rounded is made good in the first step
-    wanted = np.diff(np.vstack([start, pulses[1:]]), axis=0)
-    if (excess := _beyond_channels(wanted, channels, step_s)) is not None:
+    planned = np.diff(np.vstack([start, pulses[1:]]), axis=0)
+    if (excess := _beyond_channels(planned, channels, step_s)) is not None:
         raise _frequency_fault(machine, curve, limits.slowed(slowed), channels, excess, override)
     line = _TimedLine(curve=curve, steps=steps, q=q, slowed=slowed, notes=notes)
     emitted = tuple(
-        emit(np.ascontiguousarray(wanted[:, k]), least_step(channel.min_hz, step_s), most_pulses(channel, step_s))
+        emit(np.ascontiguousarray(planned[:, k]), least_step(channel.min_hz, step_s), most_pulses(channel, step_s))
         for k, channel in enumerate(channels)
     )
-    return _measured(machine, channels, line, start, wanted, emitted)
+    return _measured(machine, channels, line, start, planned, emitted)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -191,13 +191,13 @@ class _Excess:
     step_s: float
 
 
-def _beyond_channels(wanted: Pulses, channels: tuple[Channel, ...], step_s: float) -> _Excess | None:
+def _beyond_channels(planned: Pulses, channels: tuple[Channel, ...], step_s: float) -> _Excess | None:
     """Return the step that exceeds the highest frequency of its channel most, None where none does."""
-    ratios = np.abs(wanted) / [most_pulses(channel, step_s) for channel in channels]
+    ratios = np.abs(planned) / [most_pulses(channel, step_s) for channel in channels]
     if ratios.max() <= 1.0:
         return None
     row, k = np.unravel_index(int(np.argmax(ratios)), ratios.shape)
-    needed_hz = int(abs(wanted[row, k])) / step_s
+    needed_hz = int(abs(planned[row, k])) / step_s
     return _Excess(channel=int(k), row=int(row), needed_hz=needed_hz, ratio=float(ratios.max()), step_s=step_s)
 
 
@@ -232,8 +232,8 @@ def _fitting(curve: LineCurve, limits: SpeedLimits, channels: tuple[Channel, ...
     while True:
         speed *= _FITS / max(ratio, 1.0)
         steps = _steps(SpeedLimits(speed=speed, acceleration=limits.acceleration, jerk=limits.jerk), excess.step_s)
-        wanted = np.abs(np.diff(_counted(curve.joints(steps.distances()), channels), axis=0))
-        ratio = float((wanted / most).max())
+        planned = np.abs(np.diff(_counted(curve.joints(steps.distances()), channels), axis=0))
+        ratio = float((planned / most).max())
         if ratio <= 1.0:
             return steps
 
@@ -243,7 +243,7 @@ def _measured(
     channels: tuple[Channel, ...],
     line: _TimedLine,
     start: Pulses,
-    wanted: Pulses,
+    planned: Pulses,
     emitted: tuple[Emission, ...],
 ) -> MovePulses:
     """Return a move with the path on which its pulses put the tool."""
@@ -261,7 +261,7 @@ def _measured(
         steps=line.steps,
         q=line.q,
         start=start,
-        wanted=wanted,
+        planned=planned,
         emitted=emitted,
         count=count,
         points=points,

@@ -34,7 +34,7 @@ def test_the_byte_order_mark_is_removed(tmp_path):
     assert read_program(path).text == "MOVE P1\r\n"
 
 
-@pytest.mark.parametrize("name", ["none.rbl", "none/none.rbl", "x" * 5000, "nul\0.rbl"])
+@pytest.mark.parametrize("name", ["none.rbl", "none/none.rbl", "x" * 253, "x" * 5000, "nul\0.rbl"])
 def test_missing(tmp_path, name):
     assert fault_of(f"{tmp_path}/{name}").code == "RBL701"
 

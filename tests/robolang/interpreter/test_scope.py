@@ -1,7 +1,7 @@
 import pytest
 
 import robolang.interpreter.scope as scope_module
-from robolang.interpreter.scope import WAY, Scopes
+from robolang.interpreter.scope import SHIFT, Scopes
 from robolang.values.poses import Place, Shift
 from runtime.core.faults import Fault
 from runtime.core.limits import SIZE
@@ -143,7 +143,7 @@ def test_all_texts_together_are_bounded(names, monkeypatch):
 
 
 def test_ways_behind_poses_count_as_text(names, monkeypatch):
-    monkeypatch.setattr(scope_module, "MAX_TEXTS", 3 * WAY)
+    monkeypatch.setattr(scope_module, "MAX_TEXTS", 3 * SHIFT)
     turn = Shift(kind="tool", by=(0.0, 0.0, 0.0, 1.0, 0.0, 0.0))
     names.make("A", 1)
     names.put("A", 0, Place(point="P1", shifts=(turn, turn)))

@@ -40,7 +40,7 @@ def test_c3_has_the_published_frequencies_and_pulses():
     """V = 100 mm/s, a = 500 mm/s2 (T0 = 0.2 s) and the pulse equivalents are those of the library's file."""
     found, _ = move()
     assert (found.steps.n, found.count) == (320, 320)
-    theta, r, z = found.wanted.T
+    theta, r, z = found.planned.T
     assert found.highest_hz(0.01) == [5300, 8500, 0]
     assert int((r == 0).sum()) == 2
     assert int((np.diff(np.sign(r[r != 0])) != 0).sum()) == 1
@@ -55,7 +55,7 @@ def test_c3_has_the_published_frequencies_and_pulses():
 
 def test_a_cartesian_machine_keeps_its_ratio_within_a_pulse():
     found, _ = move("xy", A, A + np.array([0.3, 0.15, 0.0]))
-    x, y = found.wanted.T
+    x, y = found.planned.T
     assert np.abs(x - 2 * y).max() <= 2
 
 
@@ -66,7 +66,7 @@ def test_c4_compensates_as_published(min_hz, raised, debt):
     assert [each.debt for each in found.emitted[:2]] == debt
     assert found.error.max() / MM <= 0.095 + 1e-6  # 19 pulses of 5 um; the home of the file has nine decimals
     for k, each in enumerate(found.emitted):
-        assert each.steps.sum() == found.wanted[:, k].sum()
+        assert each.steps.sum() == found.planned[:, k].sum()
         assert not ((each.steps != 0) & (np.abs(each.steps) < min_hz * 0.02)).any()
     assert (found.end == counted(found.q[-1], channels)).all()
 
@@ -160,5 +160,5 @@ def test_the_campaign_sees_a_pulse_that_is_lost(monkeypatch):
 
 
 def test_the_campaign_sees_a_step_that_is_too_short(monkeypatch):
-    monkeypatch.setattr(emission, "compensate", lambda wanted, least: (wanted, 0, 0))
+    monkeypatch.setattr(emission, "compensate", lambda planned, least: (planned, 0, 0))
     assert campaign(10, min_hz=500.0)["cylindrical"].broken["least"] > 0
