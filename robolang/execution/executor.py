@@ -165,24 +165,30 @@ class Executor:
         """
         line = fed_line(statement if isinstance(statement, Source) else Source("fed statement", statement))
         now = self._now
-        over = now.phase is Phase.OVER
-        waits = now.phase is Phase.BUSY and now.resting
-        if waits and any(isinstance(each, MoveTo) for each in now.doing):  # the rest of its plan begins where it is
-            raise RuntimeError("the arm rests within a move; resume the move to its end first")
-        if now.due is not None or not (now.phase is Phase.READY or over or waits):
-            raise RuntimeError("a statement is being carried out; pause the program first")
-        if over and self._state is not State.DONE:  # after an alarm ``acknowledge`` comes first (decision 0037)
-            raise RuntimeError("the program has been ended by an alarm or a stop")
+        interrupts = self._interrupts_a_wait()
         depth = self._machine.depth
         self._machine.feed(line)
         # a wait of a fed CALL that a handler or a jump has left is not taken up
         now.aside = tuple(each for each in now.aside if each.depth < depth)
-        if waits:
+        if interrupts:
             interrupted, left = self._target.statement, self._target.set_aside()
             now.aside += (Aside(depth=depth, doing=now.doing, statement=interrupted, left=left),)
             now.doing = ()
         now.phase, now.fault = Phase.READY, None
         now.pausing = now.resting = now.resumed = False
+
+    def _interrupts_a_wait(self) -> bool:
+        """Return whether a statement that is fed now interrupts a wait; ``RuntimeError`` where none can be fed."""
+        now = self._now
+        # after an alarm ``acknowledge`` comes first (decision 0037)
+        if now.phase is Phase.OVER and self._state is not State.DONE:
+            raise RuntimeError("the program has been ended by an alarm or a stop")
+        waits = now.phase is Phase.BUSY and now.resting
+        if waits and any(isinstance(each, MoveTo) for each in now.doing):  # the rest of its plan begins where it is
+            raise RuntimeError("the arm rests within a move; resume the move to its end first")
+        if now.due is not None or not (waits or now.phase in (Phase.READY, Phase.OVER)):
+            raise RuntimeError("a statement is being carried out; pause the program first")
+        return waits
 
     def acknowledge(self) -> None:
         """Take note of the alarm that has ended the program: the servos hold the arm where it stands.
