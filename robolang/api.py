@@ -16,6 +16,7 @@ from robolang.syntax.ast import Line
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault
 
+# ``robolang/__init__`` has these names as well: to read them here it would import numpy and the run
 __all__ = [
     "ENDED",
     "Analysis",

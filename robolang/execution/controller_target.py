@@ -264,6 +264,7 @@ class ControllerTarget:
         for run, part in zip(runs, plan.parts, strict=True):
             run.path, run.notes = part.path, [*run.notes, *part.notes]
             run.planned_s = part.planned_s
+            # a move has begun when its first set-point is sent (``_reach``)
             run.wrist, run.seam, run.begun = part.wrist, seam, False
         self._warn(chain, plan)
         last = len(self._record.statements) - 1
@@ -324,6 +325,7 @@ class ControllerTarget:
         self._record.payloads.append(
             {
                 "time_s": self.time_us / 1_000_000,
+                # 0: a statement that was fed, which is in no line of the file
                 "line": effect.line or None,
                 "number": effect.number,
                 "mass_kg": payload.mass,

@@ -174,6 +174,7 @@ class _DryRun(Untimed):
     def begin(self, effect: Effect) -> None:
         """Count what takes time; a WAIT passes time cycle by cycle, but lets motion end once."""
         if isinstance(effect, MoveTo):
+            # before it is planned: a move that is refused has been reached too
             self.reached.add(effect.span)
         if (
             isinstance(effect, MoveTo | SetHand)

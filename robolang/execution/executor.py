@@ -154,6 +154,7 @@ class Executor:
     def halt(self) -> None:
         """Stop at once and end the program (category 0), as ``stop`` does."""
         if self._now.phase is not Phase.OVER:
+            # a stop as well: only ``brake`` makes a difference between the two
             self._stop_requested = self._halt_requested = True
 
     def feed(self, statement: str | Source) -> None:
@@ -212,6 +213,7 @@ class Executor:
             machine=self._machine.snapshot(),
             world=self.world.snapshot(),
             target=self._target.snapshot(),
+            # a copy, since the run goes on in this one
             progress=(replace(self._now), self._stop_requested, self._halt_requested),
         )
 

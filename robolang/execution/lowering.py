@@ -94,6 +94,7 @@ def move(effect: MoveTo, around: Surroundings) -> Command:
             override=override,
         )
     speed = None if effect.speed_mm_s is None else effect.speed_mm_s * MM
+    # the parser admits no other words, and effects have them as plain texts
     wrist, held = cast("Wrist | None", effect.wrist), cast("tuple[Component, ...]", effect.held)
     if effect.path == "arc":
         assert effect.via is not None

@@ -145,6 +145,7 @@ class PlanFindings:
         takes_s = (len(move.plan.q) - 1) * period_s
         under = f" under OVERRIDE {effect.override_pct:g}" if effect.override_pct != 100.0 else ""
         if effect.time_s is not None:
+            # under OVERRIDE 50 a TIME of 2 s is to take 4 s
             programmed_s = effect.time_s / override
             if not takes_s <= programmed_s + period_s:  # a move takes whole cycles
                 ruled = self._ruling(move)

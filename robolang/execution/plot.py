@@ -307,6 +307,7 @@ def _band(view: _MapView, values: Array, edge: float, colour: str) -> str:
     level = edge - 1e-9 * abs(edge)  # rounding can leave the smallest value a little below the first edge
     runs = []
     for row, above in enumerate(values >= level):
+        # with nothing before and after a row, changes come in pairs: where a run begins and where it ends
         change = np.flatnonzero(np.diff(np.concatenate([[False], above, [False]]))).tolist()
         for first, end in zip(change[::2], change[1::2], strict=True):
             left, right = (f"{view.x(_crossing(view.columns, values[row], k, level)):.1f}" for k in (first, end))
@@ -422,6 +423,7 @@ def _ticks(bounds: tuple[float, float]) -> list[float]:
     low, high = bounds
     raw = (high - low) / 5.0
     base = 10.0 ** np.floor(np.log10(raw))
+    # the last step always fits, since base is the power of ten below raw
     size = float(next(step * base for step in (1.0, 2.0, 2.5, 5.0, 10.0) if step * base >= raw))
     first, last = int(np.floor(low / size + 1e-9)), int(np.ceil(high / size - 1e-9))
     return [round(k * size, 10) + 0.0 for k in range(first, last + 1)]

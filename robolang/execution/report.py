@@ -126,6 +126,7 @@ def _touched(run: StatementRun, controller: Controller) -> list[dict[str, object
 
 
 def _head(run: StatementRun) -> dict[str, Any]:
+    # line 0: a statement that was fed, which is in no line of the file
     return {"line": run.origin.line or None, "number": run.origin.number, "text": run.text, "begun": run.begun}
 
 

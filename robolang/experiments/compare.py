@@ -75,6 +75,7 @@ VARIANTS = (
         Variant(
             name=f"fixed-{at}",
             title=f"gains fixed at {at}",
+            # fixed gains refuse the coupling "full", which the profile in force may have
             settings={"servo.mode": "fixed", "servo.fixed_at": at, "servo.coupling": "diagonal"},
         )
         for at in ("min", "mid", "max")
@@ -136,6 +137,7 @@ class Request:
 
     def project(self, variant: Variant) -> Project:
         """Read the project with the settings of a variant over all others."""
+        # the name stands where that of an option would, for the place of a fault
         changed = {key: (f"variant {variant.name}", value) for key, value in variant.settings.items()}
         project = load_project(
             self.program, self.cell, self.robot, profile=self.profile, options={**self.options, **changed}
@@ -208,6 +210,7 @@ def _without_equals(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     found = []
     for row in rows:
         motion, idle = row.pop("motion"), row.pop("idle")
+        # a variant that is not in VARIANTS keeps its figures, as BASE does
         variant = by_name.get(row["variant"], BASE)
         parts = (variant.settings != BASE.settings) + (variant.load != "as written")
         reason = "; ".join(idle)

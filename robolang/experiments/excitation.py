@@ -226,6 +226,7 @@ def _table_test(postures: _Postures, model: ArmModel, angles: tuple[float, ...])
 
 
 def _table_joints(request: Request, axis: int) -> tuple[int, ...]:
+    # the inertia about an axis depends on the joints beyond it alone
     return tuple(j for j in TABLE_JOINTS if axis < j < request.robot.n) if request.table else ()
 
 
@@ -241,6 +242,7 @@ def _largest(fits: Array) -> list[tuple[int, int]]:
             for start, end in edges.reshape(-1, 2).tolist():
                 if (last - first + 1) * (end - start) > best:
                     best, found = (last - first + 1) * (end - start), [(first, last), (start, end - 1)]
+    # of one joint the plane has a single column, whose span is not needed
     return found[: fits.ndim]
 
 
@@ -374,6 +376,7 @@ def _room(spec: RobotSpec, q: Array, axis: int) -> tuple[float, float]:
     # the third row of every point's pose in the world, for all angles of the axis at once
     height = up[0] * (c * x - s * y) + up[1] * (s * x + c * y) + up[2] * z + up[3]
     low_places = np.flatnonzero(height.min(axis=1) < CLEARANCE)
+    # a middle that is low itself is in both: ``first`` is then over ``last``, and there is no room
     before, after = low_places[low_places <= _SCAN], low_places[low_places >= _SCAN]
     first = int(before.max()) + 1 if len(before) else 0
     last = int(after.min()) - 1 if len(after) else 2 * _SCAN

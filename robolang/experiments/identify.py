@@ -70,6 +70,7 @@ table come last."""
 class RubbingPlant(RigidPlant):
     """The ideal arm with the friction of the robot file: viscous, and Coulomb friction by direction."""
 
+    # the speed of the tick before is part of a snapshot of the arm
     VALUES = (*RigidPlant.VALUES, "_dq_before")
     REST = 0.05
     """Speed over which Coulomb friction changes its sign, rad/s: below the speed of every test."""
@@ -257,6 +258,7 @@ def _at_posture(request: Request, carried: Payload, test: Test, progress: Progre
         speed=np.array([0.5 * (up.speed + down.speed) for up, down in found]),
         identified=J / squared,
         model=_inertia(spec, carried, test.q, axis) / squared,
+        # the rotor as well: it is in what is identified at the motor
         true=_inertia(real, carried, test.q, axis) / squared + real.axes[axis].motor.rotor_inertia,
         postures=postures,
         held=np.array(held),
@@ -298,6 +300,7 @@ class _Bench:
         # unchecked: off the command that holds an elastic arm the approach may take one cycle, too fast for a plan
         self._play(np.concatenate([approach, rest]), position, checked=False)
         first = controller.recorder.tick
+        # the last one twice more: the fine interpolator needs two cycles to play what it has and come to rest
         self._play(start + np.concatenate([test.rows[1:], test.rows[-1:], test.rows[-1:]]), position)
         rows = controller.recorder.recent(controller.recorder.tick - first)
         n = controller.spec.n
@@ -354,6 +357,7 @@ def _carried(request: Request) -> Payload:
 
 def _contacts(plant: Plant) -> Iterator[tuple[str, str]]:
     """Yield the names of what touches on a plant that has contacts."""
+    # the ideal arm has no contacts
     contacts: Any = getattr(plant, "contacts", None)
     for touch in contacts() if contacts is not None else ():
         yield touch.names

@@ -204,6 +204,7 @@ def _measure(request: StepRequest, controller: Controller, first: int) -> StepRe
     model.set_payload(request.carried)
     rotor = float(spec_rotors(request.robot)[axis])
     held = controller.servo.held_inertia
+    # None: the gains follow the posture, and use D of the tick before the step
     used = log["D"][first - 1, axis] if held is None else held[axis]
     overshoot = settling = rise = None
     if size and stable:

@@ -210,6 +210,7 @@ def weigh(request: WeighRequest) -> WeighResult:
     watched = profile.supervision
     known = Knowledge(
         torque=torque_limit(robot),
+        # the ideal arm has no friction
         friction=0.0 if rigid else 1.0 if watched.friction is None else watched.friction,
         springs=not rigid,
         friction_uncertainty=watched.friction_uncertainty,

@@ -336,6 +336,7 @@ def _tracked(line: LineSolver, q_end: Array, s: Array, trial: Trial) -> tuple[Ar
     def read(distance: float, travel: Array) -> Array:
         return np.asarray(seam * (distance / line.path.length))
 
+    # not filtered: this sensor shows the seam without delay
     tracker = SeamTracker("demo", SeamLimits(filter_s=0.0), trial.period_s, read)
     calculated = CalculatedMove(line=line, s=s, period_s=trial.period_s, q_end=q_end, switch=None)
     move = SeamMove(calculated, line.q_start, tracker, trial.options)

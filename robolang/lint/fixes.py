@@ -109,6 +109,7 @@ def _number(diagnostic: Diagnostic, source: Source) -> Fix | None:
     glued = re.fullmatch(r"([0-9]{1,9})([A-Za-z]+)", text)
     line = source.line_spans[source.place(span.start).line - 1]
     first = not source.text[line.start : span.start].strip()
+    # 10MOVE is a number and an instruction, 800mm is not
     if glued is None or not first or glued[2].upper() not in _STARTS:
         return None
     edit = Edit(span=Span(span.start + len(glued[1]), span.start + len(glued[1])), text=" ")

@@ -64,6 +64,7 @@ def selector(text: str) -> str | None:
     """Return a selector as ``Layer`` takes it, the beginning of codes; None when it fits no code."""
     word = text.strip().upper()
     if word == ALL:
+        # every code begins with it
         return _PREFIX
     if word.startswith(_PREFIX) and any(entry.code.startswith(word) for entry in all_codes()):
         return word

@@ -122,6 +122,7 @@ def _directives(source: Source) -> dict[int, _Directive]:
     """Return the directive of each line that has one."""
     last: dict[int, int] = {}
     for word in _NOQA.finditer(source.text):
+        # a later word of a line takes the place of an earlier one
         last[source.place(word.start()).line] = word.start()
     known = words()
     found = ((line, _directive(source, source.line_spans[line - 1], at, known)) for line, at in last.items())

@@ -100,6 +100,7 @@ def _from_outside(program: Program) -> frozenset[str]:
     found: set[str] = set()
     while todo:
         name = todo.pop()
+        # A = B and B = A lead to one another
         if name not in found:
             found.add(name)
             todo += into.get(name, ())

@@ -209,6 +209,7 @@ class CellTouches:
         """Return pairs with what moves first: a carried part, then a shape of the arm, then the others."""
 
         def rank(name: str) -> tuple[bool, bool, bool]:
+            # False sorts first: what is held, the arm, what is fixed, lying parts
             return name.removeprefix(_PART) not in scene.held, name.startswith(_PART), is_fixed(name)
 
         return [(a, b) if rank(a) <= rank(b) else (b, a) for a, b in self.shapes.pairs_of(meeting)]

@@ -226,6 +226,7 @@ def _joints(entry: Table, symbols: CellSymbols) -> tuple[float, ...]:
     if not fits:
         needed = "2 to 7" if axes is None else str(axes)
         entry.fail("RBL307", f"'joints' has {len(values)} values; it needs {needed}", key="joints")
+    # without a cell no limits are known, and nothing is compared
     beyond = beyond_range(values, symbols.limits or ())
     if beyond:
         entry.fail("RBL309", beyond, "teach the point within the range of the joint", key="joints")

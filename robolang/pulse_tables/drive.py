@@ -135,6 +135,7 @@ class _Arm:
         for item in self._export.sequence:
             controller.statement = ProgramLine(line=item.line, number=item.number)
             if isinstance(item, Move):
+                # only before the first move: each of the others begins where the arm has come to rest
                 if not self._runs and not self._cycles(self._approach(item)):
                     break
                 done = self._cycles(self._move(item))

@@ -107,6 +107,7 @@ def equipment(project: Project, request: ExportRequest) -> tuple[Machine, tuple[
     if file is not None and file.mechanism:
         machine_name = file.mechanism
     machine: Machine
+    # the path is one beside the channel file
     if machine_name.endswith(".toml") and file is not None:
         found = mechanism.load_file(file.mechanism_path())
         machine, pulse = found, found.pulse

@@ -44,10 +44,12 @@ def _svgs(program: str, export: Export, replays: list[MoveReplay]) -> list[str]:
     curves = []
     for k, channel in enumerate(export.channels):
         parts = [_held(start, item.frequency[:, k], export.step_s) for start, item in zip(starts, replays, strict=True)]
+        # at 0 Hz from the start of the program to its end, markers before and after the moves included
         rest = np.zeros(1)
         x, y = _thinned(*_joined([(rest, rest), *parts, (rest + export.seconds, rest)]))
         # dashed where the colours begin again, so that no two channels look alike
         curves.append(Curve(name=channel.name, x=x, y=y * per_hz, dashed=k >= len(COLOURS)))
+    # NaN is worse than every number
     worst = max((item.worst_mm for item in replays), key=badness, default=0.0)
     mm, per_mm = ("µm", 1e3) if worst < _MICRO_BELOW else ("mm", 1.0)
     x, y = _thinned(*_errors(export, starts, replays))
@@ -118,6 +120,7 @@ def _thinned(x: Array, y: Array) -> tuple[Array, Array]:
     if len(x) <= 4 * _BUCKETS:
         return x, y
     share = (x - x[0]) / max(float(x[-1] - x[0]), 1e-9)
+    # the last point has share 1 and belongs to the last part
     bucket = np.minimum(share * _BUCKETS, _BUCKETS - 1).astype(np.int64)
     kept: set[int] = set()
     for part in np.split(np.arange(len(x)), np.flatnonzero(np.diff(bucket)) + 1):

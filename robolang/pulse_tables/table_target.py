@@ -122,6 +122,7 @@ class TableTarget(Untimed):
         """Where the channels stand before the first move, pulses."""
         self.sequence: list[TableMove | Marker] = []
         kinematics = machine.kinematics if isinstance(machine, RobotArm) else Kinematics(project.cell.robot)
+        # no clock: to read the time is refused
         self.world = _Unread(project.points, project.cell, kinematics, lambda: 0)
         self.world.q_last = self.q
 

@@ -14,6 +14,7 @@ def render(results: Sequence[Checked], *, as_json: bool) -> str:
     found = findings(results)
     counts = Counter(item.code for item in found)
     fixable = Counter(item.code for item in found if item.fix is not None and item.fix.safe)
+    # equal counts by code, so that equal results give equal texts
     order = sorted(counts, key=lambda code: (-counts[code], code))
     if as_json:
         rows = [
