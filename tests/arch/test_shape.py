@@ -20,9 +20,9 @@ COMPLEX = 10
 MANY = 6
 """More arguments than this are hard to call rightly; ``self`` and ``cls`` do not count."""
 LONG = 500
-MOST_COMPLEX_PCT, MOST_MANY_PCT, MOST_LONG = 2.0, 0.5, 0
-LEAST_COMMENTS = 2.78
-"""Lines of 100; today's value, which may only become larger: the aim is 3."""
+MOST_COMPLEX_PCT, MOST_MANY_PCT, MOST_LONG = 0.5, 0.1, 0
+LEAST_COMMENTS = 3.0
+"""Lines of 100, in robolang and runtime together."""
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
