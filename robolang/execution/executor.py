@@ -240,8 +240,6 @@ class Executor:
         """Do one thing that takes no time, if there is one; else a cycle is due, or the program is over."""
         target, now = self._target, self._now
         match now.phase:
-            case Phase.READY if self._stop_requested:
-                self._end_effects()
             case Phase.READY:
                 self._go_on()
             case Phase.BUSY:
@@ -419,6 +417,10 @@ class Executor:
     def _carry_out(self, effect: Effect) -> None:
         """Start an effect on the target, in SI."""
         target, now = self._target, self._now
+        if self._stop_requested and not isinstance(effect, MoveTo):  # a move is planned, and stopped before it begins
+            target.statement = target.statement or effect.origin
+            self._end_effects()
+            return
         now.phase, now.doing = Phase.BUSY, (effect,)
         match effect:
             case MoveTo():
