@@ -1,0 +1,1 @@
+"""The prompt ``robolang repl``: commands, screen, keys and scripts."""

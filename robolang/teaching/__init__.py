@@ -1,0 +1,1 @@
+"""Jogging and teaching: what the prompt, a page and an editor share."""
