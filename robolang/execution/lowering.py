@@ -126,9 +126,22 @@ def move(effect: MoveTo, around: Surroundings) -> Command:
     )
 
 
+def joint_move(place: Place, around: Surroundings) -> MoveJoint:
+    """Return the command of ``MOVEJ`` to a place, without options; ``Fault`` as of ``move``."""
+    goal = _goal(place, around)
+    return MoveJoint(q_end=goal.q_end, X_world_tool=goal.X, configuration=goal.configuration, turns=goal.turns)
+
+
 def components(place: Place, frame: Frame, around: Surroundings) -> Six:
     """Return a place in a frame, mm and deg; ``Fault`` as of ``move``."""
-    return six_of(matmul(inverse(_frame(frame, around.cell)), _goal(place, around).X))
+    return six_of(matmul(inverse(frame_pose(frame, around.cell)), _goal(place, around).X))
+
+
+def frame_pose(frame: Frame, cell: CellSpec) -> Array:
+    """Return X_world_frame (4, 4) of a FRAME: a frame of the cell or a pose; ``Fault`` RBL305."""
+    if isinstance(frame, str):
+        return _named(cell.frames, frame, "frame") if frame else np.eye(4)
+    return pose_si(frame)
 
 
 def tool(choice: Frame, cell: CellSpec) -> Array:
@@ -189,7 +202,7 @@ def _base(place: Place, around: Surroundings) -> _Goal:
     if place.last:
         return _Goal(X=_forward(around.q_last, around))
     assert place.pose is not None
-    return _Goal(X=matmul(_frame(place.frame, around.cell), pose_si(place.pose)))
+    return _Goal(X=matmul(frame_pose(place.frame, around.cell), pose_si(place.pose)))
 
 
 def _forward(q: Array, around: Surroundings) -> Array:
@@ -226,14 +239,8 @@ def _shifted(X: Array, shift: Shift, cell: CellSpec) -> Array:
         return np.asarray(matmul(X, pose_si(shift.by)))
     found = np.array(X)
     # an offset is a direction: of the frame only the rotation counts, not where it lies
-    found[:3, 3] += matmul(_frame(shift.frame, cell)[:3, :3], np.array(shift.by[:3]) * MM)
+    found[:3, 3] += matmul(frame_pose(shift.frame, cell)[:3, :3], np.array(shift.by[:3]) * MM)
     return found
-
-
-def _frame(frame: Frame, cell: CellSpec) -> Array:
-    if isinstance(frame, str):
-        return _named(cell.frames, frame, "frame") if frame else np.eye(4)
-    return pose_si(frame)
 
 
 def _named(table: Mapping[str, Array], name: str, what: str) -> Array:

@@ -38,6 +38,7 @@ SCHEMA = 1
 MAX_MM = 1e5
 MAX_DEG = 1e4
 MAX_TURNS = 100
+NAME_HINT = "start the name with a letter or _, use letters, digits and _ only, and no keyword"
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _CHOICES = (("LEFTY", "RIGHTY"), ("ABOVE", "BELOW"), ("FLIP", "NOFLIP"))
@@ -80,6 +81,11 @@ class PointStore(Record):
     def get(self, name: str) -> Point | None:
         """Return a point by its name in any case; None when it is not taught."""
         return self.points.get(name.upper())
+
+
+def can_be_name(name: str) -> bool:
+    """Return whether a program can name a point so."""
+    return _NAME.fullmatch(name) is not None and name.upper() not in RESERVED
 
 
 def load_points(path: Path | str, symbols: CellSymbols = NOTHING_KNOWN) -> PointStore:
@@ -174,9 +180,8 @@ def _point(name: str, entry: Table, symbols: CellSymbols, others: Mapping[str, P
 
 
 def _check_name(name: str, entry: Table, others: Mapping[str, Point]) -> None:
-    if not _NAME.fullmatch(name) or name.upper() in RESERVED:
-        hint = "start the name with a letter or _, use letters, digits and _ only, and no keyword"
-        entry.fail("RBL303", f"'{name}' cannot be the name of a point", hint)
+    if not can_be_name(name):
+        entry.fail("RBL303", f"'{name}' cannot be the name of a point", NAME_HINT)
     # TOML keeps P1 and p1 apart, the language does not
     if name.upper() in others:
         entry.fail("RBL303", f"point '{name}' is defined twice: names ignore case")
