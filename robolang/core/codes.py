@@ -10,7 +10,7 @@ import runtime.core.tomlfile
 import runtime.motion.codes
 import runtime.pulses.codes
 import runtime.robot.files.codes  # noqa: F401
-from runtime.core.faults import Code, register
+from runtime.core.faults import Code, Stage, register
 
 register(
     Code(
@@ -200,6 +200,13 @@ register(
         remedy="Use the robot that the points file names, or teach the points again on this one.",
     ),
     Code(
+        code="RBL312",
+        name="not-saved",
+        meaning="A program, its points file or its cell file could not be saved; on the disk it is as it was before.",
+        remedy="Free space on the disk or correct the permissions, and save again, or save it under another name.",
+        found=Stage.RUN,
+    ),
+    Code(
         code="RBL420",
         name="test-motion-refused",
         meaning="A test motion of identification would exceed the range, the speed, the acceleration or the torque of "
@@ -274,6 +281,36 @@ register(
         name="no-programs",
         meaning="The folders given to robolang check have no program (*.rbl), so nothing was checked.",
         remedy="Name a folder with programs, or allow this with --allow-empty.",
+    ),
+    Code(
+        code="RBL714",
+        name="changed-on-disk",
+        meaning="A file that is edited has been changed on the disk by somebody else since it was read.",
+        remedy="Compare both changes; then save under another name, or force the save, which replaces theirs.",
+    ),
+    Code(
+        code="RBL715",
+        name="nothing-to-undo",
+        meaning="There is no change that could be taken back or made again.",
+        remedy="Continue; what was saved can be changed again.",
+    ),
+    Code(
+        code="RBL716",
+        name="program-unnamed",
+        meaning="The program has no name yet, so there is no file to save it in.",
+        remedy="Save it under a name.",
+    ),
+    Code(
+        code="RBL717",
+        name="no-such-line",
+        meaning="A line is to be changed or deleted that the program does not have, or a text is not one line.",
+        remedy="List the program, and name a line of it.",
+    ),
+    Code(
+        code="RBL718",
+        name="name-not-free",
+        meaning="A name for a point, frame, tool or load is taken, reserved or no name, or it is one of the program.",
+        remedy="Choose another name of letters, digits and _.",
     ),
     Code(
         code="RBL900",

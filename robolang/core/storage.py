@@ -67,6 +67,36 @@ def write_atomic(path: Path, write: Callable[[IO[bytes]], object]) -> None:
         _refuse(path, error)
 
 
+def remove(path: Path) -> None:
+    """Remove a file, and flush its folder to the disk; ``Fault`` RBL706. One that is not there is no error."""
+    target, old = _target(path)
+    try:
+        with _folder(target.parent) as flush:
+            if old is not None:
+                os.unlink(target)  # noqa: PTH108 - one call of the system, as the tests count them
+                flush()
+    except OSError as error:
+        _refuse(path, error)
+
+
+@contextmanager
+def only_one(folder: Path) -> Iterator[None]:
+    """Hold the lock of a folder, so that of those who take it one at a time compares and saves.
+
+    A process that is killed holds it no more. In a folder that is not there, cannot be read or has no locks nothing is
+    held, and what is then written there says why it cannot be.
+    """
+    handle = None
+    try:
+        with suppress(OSError):
+            handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        if handle is not None:
+            os.close(handle)
+
+
 @contextmanager
 def _folder(folder: Path) -> Iterator[Callable[[], None]]:
     """Remove what killed processes left in a folder; yield what flushes the folder to the disk."""

@@ -6,12 +6,15 @@ not passed over. ``check`` and a run read these files here, so what one refuses 
 """
 
 import os
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
+from types import MappingProxyType
 
+from robolang.analysis.analysis import Analysis
 from robolang.analysis.cell_symbols import NOTHING_KNOWN, CellSymbols
 from robolang.project.builtin import POINTS, cell_text
-from robolang.project.points import PointStore, load_points
+from robolang.project.points import PointStore, load_points, read_points
 from runtime.cell.cell_file import CellFile, parse_cell_file, read_arm_alone, read_cell_file
 from runtime.core.faults import Fault
 from runtime.core.record import Record
@@ -33,11 +36,34 @@ class Beside(Record):
     faults: tuple[Fault, ...]
 
 
-class CellFiles:
-    """Cell files, each read once: many programs of a folder run in one cell."""
+Texts = Mapping[Path, str | None]
+"""Files as somebody types them, in place of those on the disk; None: not there, whatever the disk has."""
+_ON_DISK: Texts = MappingProxyType({})
 
-    def __init__(self) -> None:
+
+class Typed(Record):
+    """A program that somebody edits, with the files beside it as they are typed; none of them need be on the disk."""
+
+    analysis: Analysis
+    texts: Texts = _ON_DISK
+    cell: Path | None = None
+
+
+class CellFiles:
+    """Cell files, each read once: many programs of a folder run in one cell. ``texts`` hide the files on the disk."""
+
+    def __init__(self, texts: Texts = _ON_DISK) -> None:
         self._read: dict[Path, CellFile | FileFault] = {}
+        self._texts = texts
+
+    def has(self, path: Path) -> bool:
+        """Return whether a file is there, a link that leads nowhere among them."""
+        return self._texts[path] is not None if path in self._texts else os.path.lexists(path)
+
+    def typed(self, path: Path) -> Source | None:
+        """Return a file as it is typed; None where the one on the disk counts."""
+        text = self._texts.get(path)
+        return None if text is None else Source(str(path), text)
 
     def cell(self, path: Path | None) -> CellFile:
         """Return a cell, the built-in one for None; ``FileFault`` RBL6xx."""
@@ -45,7 +71,8 @@ class CellFiles:
             return builtin_cell_file()
         if path not in self._read:
             try:
-                self._read[path] = read_cell_file(path)
+                typed = self.typed(path)
+                self._read[path] = read_cell_file(path) if typed is None else parse_cell_file(typed, path.parent)
             except FileFault as fault:
                 # a fault is kept as well: a cell of many programs is reported once
                 self._read[path] = fault
@@ -75,13 +102,14 @@ def read_beside(
     of the cell's, ``layers`` are settings over the cell's. What is wrong is in ``faults``.
     """
     faults: list[Fault] = []
-    where = cell_beside(program) if cell is None else cell
+    files = files or CellFiles()
+    where = cell_beside(program, files) if cell is None else cell
     found: CellFile | None = None
     settings: Settings | None = None
     points: PointStore | None = None
     facts: CellFile | ArmFile | None = None
     try:
-        found = (files or CellFiles()).cell(where)
+        found = files.cell(where)
         if robot is not None:
             found = with_robot(found, named_arm(robot))
         # kept where a setting is refused below: the points are checked against the cell all the same
@@ -90,10 +118,11 @@ def read_beside(
     except Fault as fault:
         faults += fault.all
         if found is None:
-            facts = _arm_alone(where, robot)
+            facts = _arm_alone(where, robot, files)
     cell_file = "" if where is None else str(where)  # nothing can be added to the built-in cell
     try:
-        points = taught_points(program, builtin=where is None, symbols=CellSymbols.of(facts, cell_file=cell_file))
+        symbols = CellSymbols.of(facts, cell_file=cell_file)
+        points = taught_points(program, builtin=where is None, symbols=symbols, files=files)
     except Fault as fault:
         faults += fault.all
     names = None if points is None else points.names
@@ -101,15 +130,20 @@ def read_beside(
     return Beside(cell=found, points=points, settings=settings, symbols=symbols, faults=tuple(faults))
 
 
-def _arm_alone(cell: Path | None, robot: str | None) -> ArmFile | None:
+def _arm_alone(cell: Path | None, robot: str | None, files: CellFiles) -> ArmFile | None:
     """Return the robot of a cell that cannot be used, so that a points file is checked all the same."""
-    return None if cell is None or robot is not None else read_arm_alone(cell)
+    return None if cell is None or robot is not None else read_arm_alone(cell, files.typed(cell))
 
 
-def cell_beside(program: Path) -> Path | None:
+def own_cell(program: Path) -> Path:
+    """Return where the cell file of a program alone stands, or would."""
+    return program.with_suffix(".cell.toml")
+
+
+def cell_beside(program: Path, files: CellFiles | None = None) -> Path | None:
     """Return the cell file of a program; None when it has none and runs in the built-in cell."""
-    for candidate in (program.with_suffix(".cell.toml"), program.with_name("cell.toml")):
-        if os.path.lexists(candidate):
+    for candidate in (own_cell(program), program.with_name("cell.toml")):
+        if (files or CellFiles()).has(candidate):
             return candidate
     return None
 
@@ -119,14 +153,17 @@ def points_file(program: Path) -> Path:
     return program.with_suffix(".points.toml")
 
 
-def taught_points(program: Path, *, builtin: bool, symbols: CellSymbols = NOTHING_KNOWN) -> PointStore:
+def taught_points(
+    program: Path, *, builtin: bool, symbols: CellSymbols = NOTHING_KNOWN, files: CellFiles | None = None
+) -> PointStore:
     """Return the points of a program; ``FileFault`` RBL30x or RBL311 for a file that cannot be used.
 
     ``builtin``: without a file of its own it has the built-in points, not none; ``symbols`` as for ``load_points``.
     """
-    beside = points_file(program)
-    if os.path.lexists(beside):
-        return load_points(beside, symbols)
+    beside, files = points_file(program), files or CellFiles()
+    if files.has(beside):
+        typed = files.typed(beside)
+        return load_points(beside, symbols) if typed is None else read_points(typed, symbols)
     if not builtin:
         return PointStore(path=str(beside))
     # poses that were taught on the default robot; --robot may use them on another one

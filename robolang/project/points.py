@@ -95,16 +95,23 @@ def load_points(path: Path | str, symbols: CellSymbols = NOTHING_KNOWN) -> Point
     or tool unknown, RBL307 wrong count, RBL308 unknown key or word, RBL309 value out of range, RBL310 other robot,
     RBL311 not a regular file of this folder.
     """
-    where = Path(path)
-    with _translated(where):
-        table = load_table(_source(where), gather=True)
+    return read_points(points_source(Path(path)), symbols)
+
+
+def read_points(source: Source, symbols: CellSymbols = NOTHING_KNOWN) -> PointStore:
+    """Read the text of a points file; ``FileFault`` as ``load_points`` for what is wrong in the text."""
+    with _translated(Path(source.path)):
+        if not source.text.strip():
+            source.fail("RBL303", f"{source.path} is empty")
+        table = load_table(source, gather=True)
         _schema(table)
         store = _store(table, symbols)
         table.finish()
     return store
 
 
-def _source(path: Path) -> Source:
+def points_source(path: Path) -> Source:
+    """Return the text of a points file, whatever is in it; ``FileFault`` RBL302, RBL311."""
     nowhere = Source(str(path), "")
     try:
         target = resolved_inside(path, path.parent, strict=True)
@@ -114,10 +121,7 @@ def _source(path: Path) -> Source:
         nowhere.fail("RBL311", f"cannot open {path}: {getattr(error, 'strerror', None) or error}")
     if target is None:
         nowhere.fail("RBL311", f"{path} is a link to a file outside its folder")
-    source = read_source(path, "RBL311")
-    if not source.text.strip():
-        source.fail("RBL303", f"{path} is empty")
-    return source
+    return read_source(path, "RBL311")
 
 
 @contextmanager

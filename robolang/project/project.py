@@ -13,7 +13,7 @@ from robolang.analysis.analysis import Analysis
 from robolang.core.diagnostics import Diagnostic, has_errors
 from robolang.core.source import Source, read_program
 from robolang.project import discovery
-from robolang.project.discovery import CellFiles, controller_settings, read_beside
+from robolang.project.discovery import CellFiles, Typed, controller_settings, read_beside
 from robolang.project.points import PointStore
 from robolang.syntax.ast import Program
 from runtime.cell import cell as cells
@@ -72,7 +72,7 @@ class Project:
 
 
 def load_project(
-    program: Path | str | Analysis,
+    program: Path | str | Analysis | Typed,
     cell: Path | str | None = None,
     robot: str | None = None,
     servo: ServoMode | None = None,
@@ -81,16 +81,18 @@ def load_project(
 ) -> Project:
     """Read a program and the files beside it.
 
-    ``program`` is its path, or an analysis of its text, which is then neither read nor parsed again. ``cell`` names a
-    cell file, ``robot`` a built-in robot or a robot file that replaces the cell's, ``servo`` the servo mode that
-    replaces the profile's, ``profile`` a profile file whose values go over the cell's, and ``options`` single settings
-    over both: dotted key to (name of the option, value). Raises ``FileFault`` or ``Fault`` for a file that cannot be
-    used; the errors of the program itself are in ``diagnostics``.
+    ``program`` is its path, or an analysis of its text, which is then neither read nor parsed again, or what somebody
+    types, with texts in place of the files beside it. ``cell`` names a cell file, ``robot`` a built-in robot or a robot
+    file that replaces the cell's, ``servo`` the servo mode that replaces the profile's, ``profile`` a profile file with
+    values that replace the cell's, and ``options`` single settings that replace both: dotted key to (name of the
+    option, value). Raises ``FileFault`` or ``Fault`` for a file that cannot be used; the errors of the program itself
+    are in ``diagnostics``.
     """
-    analysis = program if isinstance(program, Analysis) else Analysis(source=read_program(program))
-    where = Path(analysis.source.path)
+    typed = _typed(program)
+    analysis, where = typed.analysis, Path(typed.analysis.source.path)
     given = {**({} if servo is None else {"servo.mode": ("--servo", servo)}), **(options or {})}
-    found = read_beside(where, cell=None if cell is None else Path(cell), robot=robot, layers=_layers(profile, given))
+    files, cell = CellFiles(typed.texts), typed.cell if cell is None else Path(cell)
+    found = read_beside(where, files, cell=cell, robot=robot, layers=_layers(profile, given))
     # all of them, as a check reports them; the first alone would need one run for each error
     raise_all(found.faults)
     # what could not be used is None and has its fault, which has been raised
@@ -105,6 +107,12 @@ def load_project(
         points=found.points,
         settings=settings,
     )
+
+
+def _typed(program: Path | str | Analysis | Typed) -> Typed:
+    if isinstance(program, Typed):
+        return program
+    return Typed(analysis=program if isinstance(program, Analysis) else Analysis(source=read_program(program)))
 
 
 def load_any_robot(name: str) -> RobotSpec:

@@ -100,10 +100,13 @@ def read_cell_file(path: Path) -> CellFile:
     return parse_cell_file(read_source(path), path.parent)
 
 
-def read_arm_alone(path: Path) -> ArmFile | None:
-    """Return the arm of a cell file that has errors elsewhere, None where the arm cannot be read either."""
+def read_arm_alone(path: Path, source: Source | None = None) -> ArmFile | None:
+    """Return the arm of a cell file that has errors elsewhere, None where the arm cannot be read either.
+
+    ``source``: the text, where it is known.
+    """
     try:
-        return _arm(load_table(read_source(path)), path.parent)
+        return _arm(load_table(source or read_source(path)), path.parent)
     except FileFault:
         return None
 

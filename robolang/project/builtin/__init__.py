@@ -11,3 +11,8 @@ POINTS = _FOLDER / "points.toml"
 def cell_text() -> str:
     """Return the text of the built-in cell file, for ``runtime.cell.cell_file.parse_cell_file``."""
     return (_FOLDER / "cell.toml").read_text("utf-8")
+
+
+def points_text() -> str:
+    """Return the text of the built-in points, for ``robolang.project.points.read_points``."""
+    return POINTS.read_text("utf-8")

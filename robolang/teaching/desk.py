@@ -1,0 +1,182 @@
+"""The documents of a session: what was changed, taken back and saved. The only part of the documents with a state."""
+
+import os
+from bisect import bisect_left
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import robolang.core.codes  # noqa: F401 - the codes raised here must be registered
+from robolang.analysis.analysis import Analysis
+from robolang.core.diagnostics import Edit
+from robolang.core.source import Span
+from robolang.project.builtin import cell_text, points_text
+from robolang.project.discovery import Texts, Typed, cell_beside, own_cell
+from robolang.teaching.documents import Documents
+from robolang.teaching.line_map import LineMap, lines_between
+from robolang.teaching.saving import SaveFault, as_saved, unified, write
+from runtime.core.faults import Fault
+
+MOST_STEPS = 200
+"""So many changes can be taken back."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Step:
+    """The documents before a change, or after one that was taken back, and what the change was."""
+
+    documents: Documents
+    what: str
+
+
+class Desk:
+    """Documents that are edited; ``analysis`` is of the program in them, and follows every change."""
+
+    def __init__(self, documents: Documents) -> None:
+        self._documents = documents
+        self._disk: Texts = documents.texts if documents.named else {}
+        self._past: deque[_Step] = deque(maxlen=MOST_STEPS)
+        self._future: list[_Step] = []
+        self.analysis = Analysis(source=documents.source)
+        self.lines = LineMap()
+        """How the lines of the program moved in the last change, undo, redo or save."""
+
+    @property
+    def documents(self) -> Documents:
+        """The documents as they are now."""
+        return self._documents
+
+    @property
+    def typed(self) -> Typed:
+        """What ``load_project`` takes, with the analysis that is known."""
+        return self._documents.typed(self.analysis)
+
+    @property
+    def unsaved(self) -> tuple[Path, ...]:
+        """The files whose text differs from what was last read or saved, in the order of saving."""
+        return tuple(self._changed(self._documents))
+
+    def change(self, new: Documents, what: str) -> None:
+        """Put new documents in place of the old; ``what`` names the change where it is taken back."""
+        if new == self._documents:
+            return
+        self._past.append(_Step(documents=self._documents, what=what))
+        self._future.clear()
+        self._put(new)
+
+    def undo(self) -> str:
+        """Take the last change back and return what it was; ``Fault`` RBL715."""
+        if not self._past:
+            raise Fault("RBL715", "there is no change to take back")
+        step = self._past.pop()
+        self._future.append(_Step(documents=self._documents, what=step.what))
+        self._put(step.documents)
+        return step.what
+
+    def redo(self) -> str:
+        """Make the change that was last taken back again and return what it was; ``Fault`` RBL715."""
+        if not self._future:
+            raise Fault("RBL715", "there is no change that was taken back")
+        step = self._future.pop()
+        self._past.append(_Step(documents=self._documents, what=step.what))
+        self._put(step.documents)
+        return step.what
+
+    def diff(self) -> str:
+        """Return a unified diff from the files as they were last read or saved; empty when nothing is unsaved."""
+        texts = self._documents.texts
+        return "".join(unified(path, self._disk.get(path), texts[path]) for path in self.unsaved)
+
+    def save(self, *, force: bool = False) -> tuple[Path, ...]:
+        """Write what is unsaved, the program through the formatter, and return the files that were written.
+
+        Raises ``Fault`` RBL716 for a program without a name, ``ConflictFault`` RBL714 with nothing written where
+        somebody else changed a file (``force`` overwrites it), ``SaveFault`` RBL312 where a file cannot be written; the
+        documents are then unsaved as before, those of the files that were written excepted.
+        """
+        if not self._documents.named:
+            raise Fault("RBL716", "the program has no name yet")
+        new = self._documents
+        if new.path in self.unsaved:
+            new = as_saved(new, self.analysis)
+        files = self._changed(new)
+        try:
+            write(files, self._disk, force=force)
+        except SaveFault as fault:
+            self._disk = {**self._disk, **{path: files[path] for path in fault.saved}}
+            raise
+        self._put(new)
+        self._disk = new.texts
+        return tuple(files)
+
+    def save_as(self, path: Path, *, force: bool = False) -> tuple[Path, ...]:
+        """Give the program another name, write it there with its points and its cell, and return the files.
+
+        A name without an ending gets ``.rbl``. A cell file that the new program finds beside it is not copied. Raises
+        ``Fault`` RBL706 where one of the files is there already, unless ``force``, and as ``save``; the documents then
+        have their old name.
+        """
+        move = _mover(self._documents, path if path.suffix else path.with_suffix(".rbl"))
+        new = move(self._documents)
+        there = [file for file in new.texts if file not in self._documents.texts and os.path.lexists(file)]
+        if there and not force:
+            raise Fault("RBL706", f"{there[0]} is there already", "Give another name.")
+        before = self._documents, self._disk, self.analysis
+        self._disk = {file: self._disk.get(file) for file in new.texts}
+        self._put(new)
+        try:
+            files = self.save(force=force)
+        except Fault:
+            self._documents, self._disk, self.analysis = before
+            raise
+        self._past = deque((replace(step, documents=move(step.documents)) for step in self._past), self._past.maxlen)
+        self._future = [replace(step, documents=move(step.documents)) for step in self._future]
+        return files
+
+    def _changed(self, documents: Documents) -> Texts:
+        """Return the texts that differ from the disk; nothing is lost with a program that is empty and has no name."""
+        nothing = (None,) if documents.named else (None, "")
+        return {
+            path: text
+            for path, text in documents.texts.items()
+            if text != self._disk.get(path) and (text not in nothing or self._disk.get(path) is not None)
+        }
+
+    def _put(self, new: Documents) -> None:
+        old = self._documents
+        self._documents, self.lines = new, lines_between(old.program, new.program)
+        if new.path != old.path:
+            self.analysis = Analysis(source=new.source)
+        elif new.program != old.program:
+            self.analysis = self.analysis.updated(_difference(old.program, new.program))
+
+
+def _mover(documents: Documents, path: Path) -> Callable[[Documents], Documents]:
+    """Return what gives documents, also those of the history, the name of another program; it runs in the same cell."""
+    beside = cell_beside(path)
+    cell_path = documents.cell_path
+    if cell_path == own_cell(documents.path) or (cell_path == documents.path.with_name("cell.toml") != beside):
+        cell_path = own_cell(path)
+
+    def move(old: Documents) -> Documents:
+        new = replace(old, path=path, cell_path=cell_path, named=True)
+        if old.cell is None and beside is not None:
+            # the folder has a cell of its own, and a program that has none would run in that one
+            new = replace(new, cell=cell_text(), points=points_text() if old.points is None else old.points)
+        return new
+
+    return move
+
+
+def _difference(old: str, new: str) -> Edit:
+    """Return the one edit that makes a text of another."""
+    shortest = min(len(old), len(new))
+    start = _most(shortest, lambda count: old[:count] == new[:count])
+    same = _most(shortest - start, lambda count: old[len(old) - count :] == new[len(new) - count :])
+    return Edit(span=Span(start, len(old) - same), text=new[start : len(new) - same])
+
+
+def _most(limit: int, holds: Callable[[int], bool]) -> int:
+    """Return the largest count up to ``limit`` for which something holds, where it holds for every smaller one."""
+    return bisect_left(range(limit), True, key=lambda count: not holds(count + 1))
