@@ -3,7 +3,7 @@
 import os
 from bisect import bisect_left
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -15,7 +15,8 @@ from robolang.project.builtin import cell_text, points_text
 from robolang.project.discovery import Texts, Typed, cell_beside, own_cell
 from robolang.teaching.documents import Documents
 from robolang.teaching.line_map import LineMap, lines_between
-from robolang.teaching.saving import SaveFault, as_saved, unified, write
+from robolang.teaching.merging import Merge, merge_of
+from robolang.teaching.saving import SaveFault, alone, as_saved, check, unified, write
 from runtime.core.faults import Fault
 
 MOST_STEPS = 200
@@ -33,14 +34,17 @@ class _Step:
 class Desk:
     """Documents that are edited; ``analysis`` is of the program in them, and follows every change."""
 
-    def __init__(self, documents: Documents) -> None:
+    def __init__(self, documents: Documents, read: Texts | None = None) -> None:
+        """``read``: the texts that the files had when they were read; None: those of the documents."""
         self._documents = documents
-        self._disk: Texts = documents.texts if documents.named else {}
+        self._disk: Texts = (documents.texts if documents.named else {}) if read is None else read
         self._past: deque[_Step] = deque(maxlen=MOST_STEPS)
         self._future: list[_Step] = []
         self.analysis = Analysis(source=documents.source)
         self.lines = LineMap()
         """How the lines of the program moved in the last change, undo, redo or save."""
+        self.taken_over: tuple[str, ...] = ()
+        """The points that somebody else changed in the file, and that the last save found there and kept."""
 
     @property
     def documents(self) -> Documents:
@@ -93,22 +97,44 @@ class Desk:
 
         Raises ``Fault`` RBL716 for a program without a name, ``ConflictFault`` RBL714 with nothing written where
         somebody else changed a file (``force`` overwrites it), ``SaveFault`` RBL312 where a file cannot be written; the
-        documents are then unsaved as before, those of the files that were written excepted.
+        documents are then unsaved as before, those of the files that were written excepted. Points that somebody else
+        changed and that were not changed here are taken over.
         """
         if not self._documents.named:
             raise Fault("RBL716", "the program has no name yet")
         new = self._documents
         if new.path in self.unsaved:
             new = as_saved(new, self.analysis)
-        files = self._changed(new)
-        try:
-            write(files, self._disk, force=force)
-        except SaveFault as fault:
-            self._disk = {**self._disk, **{path: files[path] for path in fault.saved}}
-            raise
-        self._put(new)
-        self._disk = new.texts
-        return tuple(files)
+        self.lines, self.taken_over = LineMap(), ()
+        merge = None
+        saved: tuple[Path, ...] = ()
+        with alone(self._changed(new)):
+            if not force and (merge := merge_of(new, self._disk.get(new.points_path))) is not None:
+                new = replace(new, points=merge.of(new.points) or new.points)
+            files = self._changed(new)
+            if not force:
+                check(files, self._disk if merge is None else {**self._disk, new.points_path: merge.theirs})
+            try:
+                write(files)
+                saved = tuple(files)
+            except SaveFault as fault:
+                saved = fault.saved
+                raise
+            finally:
+                self._settle(new, saved, merge)
+        return saved
+
+    def _settle(self, new: Documents, saved: tuple[Path, ...], merge: Merge | None) -> None:
+        """Take over what a save has made of the documents, in the files that were written."""
+        self._disk = {**self._disk, **{path: new.texts[path] for path in saved}}
+        if merge is not None and new.points_path in saved:
+            # also in the history: an undo must not remove what somebody else taught
+            self._past = deque(reversed(_rebased(reversed(self._past), merge)), self._past.maxlen)
+            self._future = list(reversed(_rebased(reversed(self._future), merge)))
+            self._put(replace(self._documents, points=new.points))
+            self.taken_over = merge.changed
+        if new.path in saved:
+            self._put(replace(self._documents, program=new.program))
 
     def save_as(self, path: Path, *, force: bool = False) -> tuple[Path, ...]:
         """Give the program another name, write it there with its points and its cell, and return the files.
@@ -150,6 +176,17 @@ class Desk:
             self.analysis = Analysis(source=new.source)
         elif new.program != old.program:
             self.analysis = self.analysis.updated(_difference(old.program, new.program))
+
+
+def _rebased(steps: Iterable[_Step], merge: Merge) -> list[_Step]:
+    """Return steps, the nearest first, on what somebody else made of the points file, as far as this can be done."""
+    found = []
+    for step in steps:
+        points = merge.of(step.documents.points)
+        if points is None:
+            break
+        found.append(replace(step, documents=replace(step.documents, points=points)))
+    return found
 
 
 def _mover(documents: Documents, path: Path) -> Callable[[Documents], Documents]:

@@ -29,15 +29,15 @@ def set_point(documents: Documents, point: Point, robot: str = "") -> Documents:
     A new point comes after the last one. ``robot``: on which it is taught, for a file that is written anew.
     ``Fault`` RBL718: no name for a point, or a variable of the program has it; ``FileFault`` RBL30x.
     """
-    text = _text(documents, robot)
+    text = text_of(documents, robot)
     if read_points(_source(documents, text)).get(point.name) is None:
         check_free(documents, point.name)
-    return _with(documents, set_table(text, GROUP, point.name, _values(point)))
+    return _with(documents, set_table(text, GROUP, point.name, point_values(point)))
 
 
 def remove_point(documents: Documents, name: str) -> Documents:
     """Remove a point; ``Fault`` RBL301, ``FileFault`` RBL30x."""
-    text = _text(documents)
+    text = text_of(documents)
     return _with(documents, remove_table(text, GROUP, _point(documents, text, name).name))
 
 
@@ -46,7 +46,7 @@ def copy_point(documents: Documents, name: str, new: str, pose: Pose | None = No
 
     ``Fault`` RBL301: there is no such point; RBL718: the new name is not free.
     """
-    point = _point(documents, _text(documents), name)
+    point = _point(documents, text_of(documents), name)
     check_not_taken(taught(documents).get(new), new)
     if pose is not None:
         point = point.replaced(pose=pose, joints=None)
@@ -55,13 +55,13 @@ def copy_point(documents: Documents, name: str, new: str, pose: Pose | None = No
 
 def rename_in_points(documents: Documents, name: str, new: str) -> Documents:
     """Give a point another name in the points file alone; see ``renaming`` for all files."""
-    text = _text(documents)
+    text = text_of(documents)
     return _with(documents, rename_table(text, GROUP, _point(documents, text, name).name, new))
 
 
 def taught(documents: Documents) -> PointStore:
     """Return the points of documents, the built-in ones where these count; ``FileFault`` RBL30x."""
-    return read_points(_source(documents, _text(documents)))
+    return read_points(_source(documents, text_of(documents)))
 
 
 def _point(documents: Documents, text: str, name: str) -> Point:
@@ -71,7 +71,7 @@ def _point(documents: Documents, text: str, name: str) -> Point:
     return found
 
 
-def _text(documents: Documents, robot: str = "") -> str:
+def text_of(documents: Documents, robot: str = "") -> str:
     """Return the text of the points file, or of the one that is written with the first change."""
     if documents.points is not None:
         return documents.points
@@ -91,7 +91,8 @@ def _with(documents: Documents, text: str) -> Documents:
     return replace(documents, points=text)
 
 
-def _values(point: Point) -> Values:
+def point_values(point: Point) -> Values:
+    """Return a point as its keys are written; what it does not have is None."""
     return {
         "pose": None if point.pose is None else pose_text(point.pose),
         "joints": None if point.joints is None else numbers(number(each, DEG_DIGITS) for each in point.joints),

@@ -1,8 +1,9 @@
 """Writing documents to the disk: each file whole or not at all, and none over what somebody else wrote meanwhile."""
 
 import difflib
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -44,22 +45,26 @@ def as_saved(documents: Documents, analysis: Analysis) -> Documents:
     return documents if has_errors(formatted.diagnostics) else replace(documents, program=formatted.text)
 
 
-def write(new: Texts, read: Texts, *, force: bool = False) -> None:
-    """Write files in their order, None: remove it; ``read`` are the texts as they were last read or saved.
-
-    Raises ``ConflictFault`` before anything is written, unless ``force``; ``SaveFault`` where a file cannot be written.
-    """
+@contextmanager
+def alone(files: Iterable[Path]) -> Iterator[None]:
+    """Let nobody else who uses this function save into the folders of files."""
     with ExitStack() as stack:
-        for folder in sorted({path.resolve().parent for path in new}):
-            stack.enter_context(only_one(folder))  # between the comparison and the last file nobody else saves
-        for path, text in new.items():
-            there = text_on_disk(path)
-            if not force and there not in (read.get(path), text):
-                raise conflict(path, read.get(path), there, text)
-        _write_all(new)
+        # in one order: two saves never wait for each other
+        for folder in sorted({os.path.dirname(os.path.realpath(path)) for path in files}):  # noqa: PTH120
+            stack.enter_context(only_one(Path(folder)))
+        yield
 
 
-def _write_all(new: Texts) -> None:
+def check(new: Texts, read: Texts) -> None:
+    """Raise ``ConflictFault`` where a file is not what was last read or saved, and not what is to be written either."""
+    for path, text in new.items():
+        there = text_on_disk(path)
+        if there not in (read.get(path), text):
+            raise ConflictFault(path, unified(path, read.get(path), there), unified(path, read.get(path), text))
+
+
+def write(new: Texts) -> None:
+    """Write files in their order, None: remove it; ``SaveFault`` at the first that cannot be written."""
     files = list(new)
     for index, path in enumerate(files):
         try:
@@ -72,13 +77,11 @@ def _write(path: Path, text: str | None) -> None:
     if text is None:
         remove(path)
         return
-    data = (_MARK if _raw(path).startswith(_MARK) else b"") + text.encode("utf-8")
+    try:
+        data = (_MARK if _raw(path).startswith(_MARK) else b"") + text.encode("utf-8")
+    except UnicodeEncodeError as error:  # half of a character, from a terminal that is not UTF-8
+        raise Fault("RBL104", f"{path}: character {error.start + 1} cannot be written as UTF-8") from None
     write_atomic(path, lambda stream: stream.write(data))
-
-
-def conflict(path: Path, read: str | None, theirs: str | None, ours: str | None) -> ConflictFault:
-    """Return the fault of a file that was changed on the disk and here."""
-    return ConflictFault(path, unified(path, read, theirs), unified(path, read, ours))
 
 
 def text_on_disk(path: Path) -> str | None:

@@ -1,17 +1,16 @@
 import pytest
 
-from robolang.project.points import Point, load_points
+from robolang.project.points import load_points
 from robolang.project.project import load_project
 from robolang.teaching.cell_document import set_frame, set_load, set_tool
 from robolang.teaching.desk import Desk
 from robolang.teaching.documents import load_documents
-from robolang.teaching.points_document import remove_point, set_point
+from robolang.teaching.points_document import remove_point
 from robolang.teaching.program_document import insert_line, put_line
 from robolang.teaching.renaming import rename_point
-from runtime.core.faults import Fault
 from tests.robolang.cli.commands import BUILTIN
+from tests.robolang.teaching.desks import POSE, PROGRAM, desk, put, refused, teach
 
-POSE = (450.0, -150.0, 840.0, 180.0, 0.0, 180.0)
 CELL = (BUILTIN / "cell.toml").read_text()
 
 
@@ -19,23 +18,8 @@ CELL = (BUILTIN / "cell.toml").read_text()
 def program(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     path = tmp_path / "P.rbl"
-    path.write_text("10 LOAD (0, 0, 60), 0.8\n20 MOVE P1\n")
+    path.write_text(PROGRAM)
     return path
-
-
-def desk(program):
-    return Desk(load_documents(program))
-
-
-def refused(code, call, *args, **options):
-    with pytest.raises(Fault) as caught:
-        call(*args, **options)
-    assert caught.value.code == code
-    return caught.value
-
-
-def teach(the_desk, name, pose=POSE):
-    the_desk.change(set_point(the_desk.documents, Point(name=name, pose=pose)), f"teach {name}")
 
 
 def test_what_is_typed_is_checked_as_if_it_were_saved(program):
@@ -45,7 +29,7 @@ def test_what_is_typed_is_checked_as_if_it_were_saved(program):
     one.change(set_tool(one.documents, "long", (0, 0, 200, 0, 0, 0)), "teachtool long")
     one.change(set_load(one.documents, "box", 1.25, (0, 0, 60)), "weigh")
     for line in ("20", "30 FRAME pallet", "40 TOOL long", "50 LOAD box", "60 MOVE P9"):
-        one.change(put_line(one.documents, line)[0], line)
+        put(one, line)
     typed = load_project(one.typed)
     assert sorted(path.name for path in program.parent.iterdir()) == ["P.rbl"]
     assert [path.name for path in one.save()] == ["P.points.toml", "P.cell.toml", "P.rbl"]
@@ -105,7 +89,7 @@ def test_changes_are_taken_back_and_made_again(program):
 def test_the_analysis_follows_every_change(program):
     one = desk(program)
     for line in ("15 DELAY 1", "20", "12 x = 1", "15 DELAY x"):
-        one.change(put_line(one.documents, line)[0], line)
+        put(one, line)
         assert one.analysis.source == one.documents.source
         assert one.analysis.program == Desk(one.documents).analysis.program
     one.undo()
