@@ -11,7 +11,7 @@ number of a rule; ``rules`` are ``[origin, length, method, single, parts]``, see
 
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -75,6 +75,30 @@ class LineReader:
         token = Token()
         token.type, token.start_pos, token.end_pos = _END, base + at, base + at
         return Stopped(token=token, accepts=self._accepts(states))
+
+    def tokens(self, code: str) -> Iterator[Token]:
+        """Yield the tokens of any text of one line, whether they make a statement or not, for colours."""
+        at = 0
+        while at < len(code):
+            found = self._match(code, at)
+            # the pattern takes every character, see read
+            assert found is not None and found.lastgroup is not None
+            name = found.lastgroup
+            if name not in self._ignored:
+                token = Token(found[0])
+                token.type = kind(name, token) if name in CLASSIFIED else name
+                token.start_pos, token.end_pos = at, found.end()
+                yield token
+            at = found.end()
+
+    def following(self, code: str) -> frozenset[str]:
+        """Return the kinds of token of which one can stand after a text; none where the text has an error."""
+        probe = f"{code} ?"
+        # no rule takes this sign, so reading stops at it, if not before
+        read = self.read(probe, 0)
+        if isinstance(read, Stopped) and read.token.end_pos == len(probe):
+            return read.accepts
+        return frozenset()
 
     def _accepts(self, states: list[int]) -> frozenset[str]:
         """Return the kinds of token that can follow."""
