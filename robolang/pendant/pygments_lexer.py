@@ -26,7 +26,7 @@ _OF_MARKS = {
 }
 
 
-class RobolangLexer(Lexer):
+class RobolangLexer(Lexer):  # type: ignore[misc] # Pygments has no types
     """Programs of robolang (.rbl)."""
 
     name = "Robolang"

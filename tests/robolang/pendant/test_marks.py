@@ -64,7 +64,7 @@ def test_any_line_has_parts_in_order_and_nothing_is_lost(line):
         assert not line[at : part.start].strip(" \t")
         at = part.end
     assert not line[at:].strip(" \t")
-    assert "".join(text for _, text in coloured(line, NAMES, COMMANDS)) == line
+    assert "".join(fragment[1] for fragment in coloured(line, NAMES, COMMANDS)) == line
 
 
 def test_a_line_that_is_too_long_to_be_read_has_no_colours():
