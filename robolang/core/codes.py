@@ -313,6 +313,12 @@ register(
         remedy="Choose another name of letters, digits and _.",
     ),
     Code(
+        code="RBL719",
+        name="recovery-damaged",
+        meaning="A recovery file, which has the unsaved changes of a prompt, is damaged or of a newer version.",
+        remedy="Keep a copy of it if its content matters; then discard it.",
+    ),
+    Code(
         code="RBL900",
         name="internal-error",
         meaning="robolang has an internal error; the program is not the cause.",

@@ -43,11 +43,11 @@ def check_writable(path: Path) -> None:
         _refuse(path, error)
 
 
-def write_atomic(path: Path, write: Callable[[IO[bytes]], object]) -> None:
+def write_atomic(path: Path, write: Callable[[IO[bytes]], object], *, private: bool = False) -> None:
     """Write a file with ``write(stream)``, then give it its name; ``Fault`` RBL706, with the old file untouched.
 
     A file that is there keeps its mode, and its owner where this user may give files away; a further name of it, a hard
-    link, keeps the old contents.
+    link, keeps the old contents. ``private``: a new file is for its owner alone.
     """
     target, old = _target(path)
     renamed = False
@@ -55,7 +55,8 @@ def write_atomic(path: Path, write: Callable[[IO[bytes]], object]) -> None:
         with _folder(target.parent) as flush, _temporary(target.parent) as (handle, temporary):
             with os.fdopen(handle, "wb", closefd=False) as stream:
                 write(stream)
-            _take_over(handle, old)
+            if old is not None or not private:
+                _take_over(handle, old)
             os.fsync(handle)
             os.replace(temporary, target)  # noqa: PTH105 - one call of the system, as the tests count them
             renamed = True

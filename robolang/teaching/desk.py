@@ -57,6 +57,11 @@ class Desk:
         return self._documents.typed(self.analysis)
 
     @property
+    def read(self) -> Texts:
+        """The texts of the files as they were last read or saved; a file that was not there is not among them."""
+        return {path: text for path, text in self._disk.items() if text is not None}
+
+    @property
     def unsaved(self) -> tuple[Path, ...]:
         """The files whose text differs from what was last read or saved, in the order of saving."""
         return tuple(self._changed(self._documents))
