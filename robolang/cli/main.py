@@ -20,6 +20,7 @@ from robolang.cli.commands import (
     inertia,
     kin,
     renumber,
+    repl,
     replay_pulses,
     robot,
     rules,
@@ -44,6 +45,7 @@ app = typer.Typer(
 )
 _COMMANDS: dict[str, Callable[..., None]] = {
     "run": run.run,
+    "repl": repl.repl,
     "compare": compare.compare,
     "step": step.step,
     "inertia": inertia.inertia,

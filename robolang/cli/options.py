@@ -231,6 +231,12 @@ class PhysicsOptions(Group):
     no_physics: Annotated[bool, Option("--no-physics", help="Move an ideal arm instead of the arm of MuJoCo.")] = False
 
 
+class SimulationOptions(PhysicsOptions):
+    """Which arm moves, and how fast."""
+
+    realtime: Annotated[bool, Option("--realtime", help="Run no faster than real time.")] = False
+
+
 class JsonOptions(Group):
     """How a command prints its result."""
 

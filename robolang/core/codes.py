@@ -5,6 +5,7 @@ brings in no numerics, so ``robolang check``, ``explain`` and the documentation 
 code keeps its number and its meaning for ever; a message may be reworded. Called once, at import.
 """
 
+import robolang.core.pendant_codes
 import robolang.core.run_codes  # noqa: F401 - registers 2xx, 50x and 53x
 import runtime.core.tomlfile
 import runtime.motion.codes

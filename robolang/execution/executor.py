@@ -41,6 +41,7 @@ from robolang.interpreter.snapshot import MachineSnapshot
 from robolang.interpreter.variables import Variables
 from robolang.project.project import Project
 from robolang.syntax.ast import Wait
+from robolang.values.poses import Frame
 from runtime.core.faults import Fault
 from runtime.motion.motion_planner import tracked
 
@@ -48,7 +49,7 @@ Alter: TypeAlias = Callable[[Effect], Effect | None]
 """Changes an effect before it is carried out, None: leaves it out (``compare``)."""
 
 
-Setting: TypeAlias = SetPayload | SetWrist | SetSeam | SetTool | SetOutput
+Lasting: TypeAlias = SetPayload | SetWrist | SetSeam | SetTool | SetOutput
 """Effects that last; mypy refuses a new one that is carried out neither as one of these nor by ``_carry_out``."""
 
 
@@ -121,6 +122,11 @@ class Executor:
     def variables(self) -> tuple[Variables, ...]:
         """The names of the main program, then of each CALL that has not come back, the innermost last."""
         return self._machine.variables
+
+    @property
+    def frame(self) -> Frame:
+        """The frame that FRAME has set: its key in the cell, its pose in the world, or "", the world."""
+        return self._machine.frame
 
     @property
     def _state(self) -> State:
@@ -440,7 +446,7 @@ class Executor:
             case _:
                 self._set(effect)
 
-    def _set(self, effect: Setting) -> None:
+    def _set(self, effect: Lasting) -> None:
         """Change what holds for the statements that follow, from now on."""
         target, cell = self._target, self._project.cell
         match effect:
@@ -452,7 +458,7 @@ class Executor:
                 target.seam(effect)
                 self._now.tracked = effect.sensor is not None
             case SetTool():
-                self.world.X_flange_tool = lowering.tool(effect.tool, cell)
+                self.world.tool, self.world.X_flange_tool = effect.tool, lowering.tool(effect.tool, cell)
                 target.tool(effect, self.world.X_flange_tool)
             case SetOutput():
                 self.world.set_output(effect.output, effect.value, effect.seconds)

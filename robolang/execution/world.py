@@ -14,7 +14,7 @@ from robolang.execution.lowering import Surroundings
 from robolang.project.points import PointStore
 from robolang.values.poses import Frame, Place, Six
 from runtime.cell.cell import CellSpec
-from runtime.cell.signals import History, Signals
+from runtime.cell.signals import Signals, SignalsSnapshot
 from runtime.core.frames import Array
 from runtime.core.linear import matmul
 from runtime.robot.kinematics.kinematics import Kinematics
@@ -25,8 +25,9 @@ class WorldSnapshot:
     """A ``RobotWorld`` as it was: where motion ended, the tool in use, the outputs."""
 
     q_last: Array
+    tool: Frame
     X_flange_tool: Array
-    signals: History
+    signals: SignalsSnapshot
 
 
 class RobotWorld:
@@ -36,6 +37,8 @@ class RobotWorld:
         self._points, self._cell, self._kinematics, self._now_us = points, cell, kinematics, now_us
         self.signals = Signals(cell.inputs)
         self.q_last: Array = np.array(cell.home)
+        self.tool: Frame = ""
+        """The tool in use as TOOL has named it: by its key in the cell or by its pose; "" is the tool of the hand."""
         self.X_flange_tool: Array = cell.hand.X_flange_tool
 
     @property
@@ -52,12 +55,16 @@ class RobotWorld:
     def snapshot(self) -> WorldSnapshot:
         """Return the state of the world; its clock is not part of it."""
         return WorldSnapshot(
-            q_last=np.array(self.q_last), X_flange_tool=self.X_flange_tool, signals=self.signals.snapshot()
+            q_last=np.array(self.q_last),
+            tool=self.tool,
+            X_flange_tool=self.X_flange_tool,
+            signals=self.signals.snapshot(),
         )
 
     def restore(self, snapshot: WorldSnapshot) -> None:
         """Go back, or on, to a snapshot."""
-        self.q_last, self.X_flange_tool = np.array(snapshot.q_last), snapshot.X_flange_tool
+        self.q_last = np.array(snapshot.q_last)
+        self.tool, self.X_flange_tool = snapshot.tool, snapshot.X_flange_tool
         self.signals.restore(snapshot.signals)
 
     def input(self, number: int) -> float:

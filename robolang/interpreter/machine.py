@@ -28,6 +28,7 @@ from robolang.interpreter.snapshot import MachineSnapshot
 from robolang.interpreter.variables import Variables, variables_of
 from robolang.syntax.ast import Case, For, Line, Next, Program, Statement, Sub, Unparsed
 from robolang.syntax.blocks import word_of
+from robolang.values.poses import Frame
 from runtime.core.faults import Fault
 
 _Ready: TypeAlias = tuple[Statement, Callable[..., Result], bool, LineBegun]
@@ -245,6 +246,11 @@ class Machine:
     def depth(self) -> int:
         """How many statements have been fed, one within the other, and are not over."""
         return len(self._run.suspended)
+
+    @property
+    def frame(self) -> Frame:
+        """The frame in force."""
+        return self._run.values.frame
 
     @property
     def calls(self) -> tuple[Origin, ...]:

@@ -89,8 +89,11 @@ def _numbered(name: str, table: Table) -> InputSpec:
     return read_input(table)
 
 
-History = Mapping[int, tuple[tuple[int, float], ...]]
-"""Of each output that was set: the times, us, from which it has its states."""
+class SignalsSnapshot(Record):
+    """Signals as they were: of each output that was set the times, us, from which it has its states; forced inputs."""
+
+    outputs: Mapping[int, tuple[tuple[int, float], ...]]
+    forced: Mapping[int, float]
 
 
 class Signals:
@@ -99,14 +102,30 @@ class Signals:
     def __init__(self, inputs: Mapping[int, InputSpec]) -> None:
         self._inputs = inputs
         self._history: dict[int, list[tuple[int, float]]] = {}
+        self._forced: dict[int, float] = {}
 
-    def snapshot(self) -> History:
-        """Return what the outputs have been so far and will be by themselves."""
-        return {output: tuple(rows) for output, rows in self._history.items()}
+    def snapshot(self) -> SignalsSnapshot:
+        """Return what the outputs have been so far and will be by themselves, and which inputs are forced."""
+        outputs = {output: tuple(rows) for output, rows in self._history.items()}
+        return SignalsSnapshot(outputs=outputs, forced=self._forced.copy())
 
-    def restore(self, history: History) -> None:
+    def restore(self, snapshot: SignalsSnapshot) -> None:
         """Go back, or on, to a snapshot."""
-        self._history = {output: list(rows) for output, rows in history.items()}
+        self._history = {output: list(rows) for output, rows in snapshot.outputs.items()}
+        self._forced = dict(snapshot.forced)
+
+    @property
+    def forced(self) -> Mapping[int, float]:
+        """The inputs that an operator holds in a state, whatever the cell file says."""
+        return self._forced
+
+    def force(self, number: int, state: float | None) -> None:
+        """Hold an input in a state from now on; None: the cell file decides again. ``Fault`` RBL534."""
+        if number not in self._inputs:
+            raise unknown_input(number, self._inputs)
+        self._forced.pop(number, None)
+        if state is not None:
+            self._forced[number] = state
 
     def set(self, output: int, value: float, now_us: int, off_us: int | None = None) -> None:
         """Set an output from ``now_us`` on, and back to 0 at ``off_us``."""
@@ -126,6 +145,8 @@ class Signals:
         spec = self._inputs.get(number)
         if spec is None:
             raise unknown_input(number, self._inputs)
+        if number in self._forced:
+            return self._forced[number]
         if spec.follows is not None:
             # the whole history is kept: a delay may reach back further than the last change
             return _at(self._history.get(spec.follows, ()), now_us - spec.delay_us)

@@ -30,6 +30,7 @@ class Group(Enum):
     RUN = "5"
     FILES = "6"
     COMMAND = "7"
+    PROMPT = "8"
     INTERNAL = "9"
 
 

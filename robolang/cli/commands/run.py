@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from robolang.cli.controller_settings import settings_of
 from robolang.cli.errors import DIAGNOSTICS, MOTION, reported, say
-from robolang.cli.options import CellOptions, Group, Option, PhysicsOptions, Program, RunControllerOptions, Strict
+from robolang.cli.options import CellOptions, Group, Option, Program, RunControllerOptions, SimulationOptions, Strict
 from robolang.cli.output import echo
 from robolang.cli.refuse import refuse
 from robolang.cli.usage import OptionValueError
@@ -29,12 +29,6 @@ if TYPE_CHECKING:
 
 _MOST_SHOWN = 3
 """Warnings of one code that are printed for one statement; a loop may raise thousands. The report has all."""
-
-
-class _SimulationOptions(PhysicsOptions):
-    """Which arm moves, and how fast."""
-
-    realtime: Annotated[bool, Option("--realtime", help="Run no faster than real time.")] = False
 
 
 class _OutputOptions(Group):
@@ -61,7 +55,7 @@ def run(
     program: Program,
     files: CellOptions,
     controller: RunControllerOptions,
-    simulation: _SimulationOptions,
+    simulation: SimulationOptions,
     output: _OutputOptions,
 ) -> None:
     """Run a program on the controller and the simulated arm.
@@ -96,7 +90,7 @@ def run(
 
 
 def _run(
-    project: "Project", plans: "PlanMemory", simulation: _SimulationOptions, output: _OutputOptions
+    project: "Project", plans: "PlanMemory", simulation: SimulationOptions, output: _OutputOptions
 ) -> "tuple[RunResult, int]":
     """Run the program and write its files; return the result, and the exit code of a file or a signal, or 0."""
     from robolang.cli.run_progress import shown

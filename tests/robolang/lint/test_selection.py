@@ -29,7 +29,7 @@ def keeps(code, *layers, severity=ERROR):
         ("point-undefined", "RBL301"),
         ("Point-Undefined", "RBL301"),
         ("RBL399", None),
-        ("RBL8", None),
+        ("RBL0", None),
         ("301", None),
         ("", None),
         ("point", None),

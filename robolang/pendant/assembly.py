@@ -1,0 +1,6 @@
+"""All commands of the prompt."""
+
+from robolang.pendant.command import Commands
+from robolang.pendant.commands import editing, running, session, showing, teaching
+
+COMMANDS = Commands((*editing.COMMANDS, *session.COMMANDS, *showing.COMMANDS, *teaching.COMMANDS, *running.COMMANDS))

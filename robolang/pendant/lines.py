@@ -1,0 +1,39 @@
+"""Lines of the program as they are named at the prompt: by line number, by label, else by the line of the file."""
+
+from robolang.analysis.analysis import Analysis
+from robolang.pendant.failure import failure
+from robolang.syntax.ast import Line, Program
+from robolang.syntax.keywords import near
+
+
+def has_numbers(program: Program) -> bool:
+    """Return whether lines of a program have line numbers, so that a number at the prompt means one of them."""
+    return any(line.number is not None for line in program.lines)
+
+
+def line_of(analysis: Analysis, word: str) -> Line:
+    """Return the line that a word names; ``Failure`` RBL803 where there is none."""
+    program = analysis.program
+    label = word.removeprefix("*").upper()
+    numbered = has_numbers(program)
+    for line in program.lines:
+        # never both: in a numbered program 30 is line number 30, wherever that stands in the file
+        place = line.number if numbered else line.source_line
+        if (word.isdigit() and place == int(word[:9])) or (line.label is not None and line.label.key == label):
+            return line
+    raise failure("RBL803", f"the program has no line {word}", _hint(program, word, numbered))
+
+
+def _hint(program: Program, word: str, numbered: bool) -> str:
+    if word.isdigit():
+        rows = [line.number if numbered else line.source_line for line in program.lines]
+        known = [row for row in rows if row is not None]
+        if not known:
+            return "the program has no lines"
+        # the nearest one is the line that was meant more often than one of similar digits
+        nearest = min(known, key=lambda row: abs(row - int(word[:9])))
+        what = "line number" if numbered else "line of the file"
+        return f"the nearest {what} is {nearest}; list shows the program"
+    labels = [line.label.text for line in program.lines if line.label is not None]
+    guess = near(word.removeprefix("*"), labels)
+    return f"did you mean *{guess}?" if guess else "list shows the program"

@@ -1,0 +1,159 @@
+"""The live controller of a prompt: its session, and how long it is driven.
+
+Simulated time passes only while something is carried out. Between two lines of the prompt the program is paused or
+over, the arm is at rest, and statements can be fed.
+"""
+
+import numpy as np
+
+from robolang.core.diagnostics import Severity, render
+from robolang.core.source import Source
+from robolang.execution.alarms import as_diagnostic
+from robolang.execution.alarms import failure as fault_of
+from robolang.execution.lowering import Surroundings
+from robolang.execution.observer import Observer
+from robolang.execution.result import StatementRun
+from robolang.execution.session import Session
+from robolang.execution.status import State, Status
+from robolang.pendant.arm import ArmView, view
+from robolang.pendant.failure import failure, of_diagnostics
+from robolang.pendant.interrupts import Interrupt, Interrupts
+from robolang.pendant.output import Output
+from robolang.pendant.reading import NAME
+from robolang.project.project import Project
+from robolang.syntax.ast import Line
+from runtime.control.controller import Controller
+from runtime.core.frames import Array
+from runtime.core.program_line import named
+from runtime.core.units import DEG
+
+
+class Watching(Observer):
+    """Shows what a program prints and which statement runs."""
+
+    def __init__(self, output: Output) -> None:
+        self._output = output
+
+    def run_began(self, run: StatementRun, time_us: int) -> None:
+        """Show the statement that begins."""
+        where = named(run.origin.line, run.origin.number) if run.origin.line else "prompt"
+        self._output.progress(f"{time_us / 1e6:.3f} s  {where}  {run.text}")
+
+    def printed(self, text: str) -> None:
+        """Show a line of PRINT."""
+        self._output.line(text)
+
+
+_STANDING = frozenset({State.PAUSED, State.DONE, State.STOPPED, State.ALARM})
+
+
+class Live:
+    """A session at a prompt. ``drive`` is the only place where simulated time passes."""
+
+    def __init__(
+        self, project: Project, output: Output, interrupts: Interrupts, *, physics: bool, realtime: bool
+    ) -> None:
+        self.project = project
+        self._output, self._interrupts = output, interrupts
+        self.session = Session(project, physics=physics, realtime=realtime, observer=Watching(output))
+        self.executor = self.session.executor
+        self.executor.pause()  # a program that is opened stands before its first statement
+        # the pause takes effect in the next cycle, of which none is run
+        self.executor.advance()
+        self._warned = 0
+
+    @property
+    def controller(self) -> Controller:
+        """The controller."""
+        return self.session.controller
+
+    @property
+    def q(self) -> Array:
+        """Commanded joint angles (n,) rad."""
+        return np.array(self.controller.areas.ina)
+
+    @property
+    def around(self) -> Surroundings:
+        """What a place depends on now."""
+        return self.executor.world.around
+
+    @property
+    def arm(self) -> ArmView:
+        """Where the arm is."""
+        return view(self.project, self.controller, self.executor)
+
+    @property
+    def home_deg(self) -> tuple[float, ...]:
+        """The home position of the cell, deg."""
+        return tuple(float(value) for value in np.asarray(self.project.cell.home) / DEG)
+
+    @property
+    def seconds(self) -> float:
+        """Simulated time, s."""
+        return self.executor.status.time_us / 1e6
+
+    @property
+    def current(self) -> Line | None:
+        """The line whose statement comes next or is interrupted; None when the program is over."""
+        if self.executor.status.state is not State.PAUSED:
+            return None
+        # None before the first statement has begun
+        origin = self.executor.origin
+        lines = self.project.program.statements
+        if origin is None:
+            return next(iter(lines), None)
+        return next((line for line in lines if line.source_line == origin.line), None)
+
+    def refuse_latched(self) -> None:
+        """Raise ``Failure`` RBL804 while an alarm is latched: nothing moves before it is acknowledged."""
+        alarm = self.executor.status.alarm
+        if alarm is not None:
+            raise failure("RBL804", f"{alarm.code} is latched: {alarm.message}")
+
+    def feed(self, text: str) -> None:
+        """Carry statements out where the program stands; ``Failure`` when one of them fails."""
+        self.executor.feed(Source(NAME, text))
+        self.drive()
+
+    def go_on(self) -> None:
+        """Let the program go on from where it stands; ``Failure`` RBL806 when it is over."""
+        if self.executor.status.state is not State.PAUSED:
+            raise failure("RBL806", "the program has ended")
+        self.executor.resume()
+        self.drive()
+
+    def limit_speed(self, limited: bool) -> None:
+        """Keep tool and flange under 250 mm/s in all that is planned from now on, or not."""
+
+    def drive(self) -> Status:
+        """Let the program, or what was fed, go on until it stands; ``Failure`` for what went wrong meanwhile."""
+        with self._interrupts.watched():
+            # cycle by cycle: a request to stop is seen within 8 ms of the robot (R06)
+            while (status := self.executor.advance()).state not in _STANDING:
+                self._obey(self._interrupts.take())
+        self._show_warnings()
+        self._judge(status)
+        return status
+
+    def _obey(self, request: Interrupt | None) -> None:
+        if request is Interrupt.STOP:
+            self.executor.pause()
+        elif request is Interrupt.HALT:
+            self.executor.halt()
+
+    def _show_warnings(self) -> None:
+        # the controller keeps all of them for the report; each is shown once
+        new = self.controller.warnings[self._warned :]
+        self._warned += len(new)
+        for warning in new:
+            self._output.problem(render(as_diagnostic(warning, Severity.WARNING), self.project.source))
+
+    def _judge(self, status: Status) -> None:
+        """Raise what a drive ended with, unless it is an end that was requested."""
+        # the alarm first: a fault that the program does not catch is latched as one too
+        if status.alarm is not None:
+            at = f"at {status.alarm.tick * self.project.profile.tick_s:.3f} s: "
+            item = as_diagnostic(status.alarm, Severity.ERROR)
+            raise of_diagnostics([item.replaced(message=at + item.message)], self.project.source)
+        if status.fault is not None:
+            raise of_diagnostics([fault_of(status.fault)], self.project.source)

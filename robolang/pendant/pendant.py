@@ -1,0 +1,291 @@
+"""The prompt as an object: what is edited, what runs, and what a typed line does. Faces give it lines and show results.
+
+A ``Pendant`` is light to make: the controller, and with it numerics and physics, is built when a line first needs it.
+"""
+
+from dataclasses import dataclass, replace
+from enum import Enum
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import robolang.core.codes  # noqa: F401 - the codes raised here must be registered
+from robolang.analysis.analysis import Analysis
+from robolang.core.diagnostics import Diagnostic, has_errors
+from robolang.core.source import Source
+from robolang.pendant.checking import errors_of
+from robolang.pendant.command import Commands
+from robolang.pendant.failure import Failure, failure, of_diagnostics, of_fault
+from robolang.pendant.interrupts import Interrupts
+from robolang.pendant.lines import has_numbers, line_of
+from robolang.pendant.numbers import pose_text
+from robolang.pendant.output import Output
+from robolang.pendant.reading import Blank, CommandLine, LineEdit, Statements, Value, first_word, read
+from robolang.syntax.keywords import near
+from robolang.teaching.desk import Desk
+from robolang.teaching.documents import Documents
+from robolang.teaching.program_document import put_line
+from runtime.core.faults import Fault
+
+if TYPE_CHECKING:
+    from robolang.pendant.live import Live
+    from robolang.project.points import Point
+    from robolang.project.project import Project
+    from robolang.syntax.ast import Line
+
+
+def _key(item: Diagnostic) -> tuple[str, str]:
+    # not by place: an edit above moves it
+    return item.code, item.message
+
+
+class Mode(Enum):
+    """MANUAL: tool and flange stay under 250 mm/s. AUTO: moves have their programmed speeds."""
+
+    MANUAL = "MANUAL"
+    AUTO = "AUTO"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Choice:
+    """What the command line chooses: cell file, robot, physics or the ideal arm, wall time or as fast as it goes."""
+
+    cell: Path | None = None
+    robot: str | None = None
+    physics: bool = True
+    realtime: bool = False
+
+
+class Pendant:
+    """A session of the prompt. ``do`` carries out one line, or the lines of one block."""
+
+    def __init__(
+        self, desk: Desk, choice: Choice, output: Output, *, commands: Commands, interrupts: Interrupts, scripted: bool
+    ) -> None:
+        self.desk, self.choice, self.output = desk, choice, output
+        self.commands, self.interrupts, self.scripted = commands, interrupts, scripted
+        self.mode = Mode.MANUAL
+        # in a script nobody's hand can come near the keys
+        self.armed = scripted
+        """Whether keys move the arm; commands do in any case."""
+        self.ended = False
+        """Whether ``quit`` has been carried out."""
+
+    def do(self, text: str) -> None:
+        """Carry out what was typed; ``Failure`` for what cannot be done, with everything to show."""
+        try:
+            self._do(text)
+        except Fault as fault:
+            raise of_fault(fault) from None
+
+    def _do(self, text: str) -> None:
+        match read(text, self.commands):
+            case Blank():
+                pass
+            case CommandLine(command, rest):
+                command.do(self, rest)
+            case LineEdit(number, line):
+                self.put_line(number, line)
+            case Value(expression):
+                self.show_value(expression)
+            case Statements(statements):
+                self.carry_out(statements)
+
+    # --- statements ---------------------------------------------------------------------------------------------------
+
+    def carry_out(self, text: str) -> None:
+        """Check statements and carry them out on the live controller."""
+        live = self.live
+        found = errors_of(text, self.project.analysis, live.executor.variables)
+        if has_errors(found):
+            raise self._with_command(text, of_diagnostics(found, self.desk.documents.source))
+        live.refuse_latched()
+        # a statement that moves nothing, such as LOAD, is answered by silence, as in any shell
+        before = live.q
+        live.feed(text)
+        if (live.q != before).any():
+            self.output.line(f"{live.seconds:.3f} s  {pose_text(live.arm.tool_in_frame)}")
+
+    def _with_command(self, text: str, error: Failure) -> Failure:
+        """Add the command that was probably meant to the errors of a text."""
+        # the language answers first, since far more is typed wrong in a statement than in a command
+        guess = self.commands.near(first_word(text))
+        return Failure(error.codes, f"{error.text}\n  command: did you mean {guess}?") if guess else error
+
+    def show_value(self, text: str) -> None:
+        """Show the value of an expression."""
+        self.carry_out(f"PRINT {text}")
+
+    # --- the program --------------------------------------------------------------------------------------------------
+
+    def run(self) -> None:
+        """Let the program go on from where it stands, to its end, a stop or an alarm."""
+        live = self.live
+        self.refuse_errors()
+        live.refuse_latched()
+        live.go_on()
+        self.output.line(self.standing)
+
+    def refuse_errors(self) -> None:
+        """Raise ``Failure`` with the errors of the program, if it has any."""
+        if not self.project.ok:
+            raise of_diagnostics(self.project.diagnostics, self.project.source)
+
+    @property
+    def standing(self) -> str:
+        """Where the program stands, as a line of text."""
+        line = self.current
+        at = f"at {self.live.seconds:.3f} s"
+        if line is None:
+            return f"the program has ended {at}"
+        return f"{at}, next: {self.desk.analysis.source.line_text(line.source_line).strip()}"
+
+    @property
+    def current(self) -> "Line | None":
+        """The line whose statement comes next, or is interrupted; None: the program is over."""
+        if "live" not in self.__dict__:
+            return next(iter(self.desk.analysis.program.statements), None)
+        return self.live.current
+
+    @property
+    def rows(self) -> int:
+        """How many lines the text of the program has."""
+        spans = self.desk.analysis.source.line_spans
+        return len(spans) - (spans[-1].start == spans[-1].end)
+
+    @property
+    def has_numbers(self) -> bool:
+        """Whether lines of the program have line numbers."""
+        return has_numbers(self.desk.analysis.program)
+
+    def line_of(self, word: str) -> "Line":
+        """Return the line of the program that a word names; ``Failure`` RBL803."""
+        return line_of(self.desk.analysis, word)
+
+    def point(self, name: str) -> "Point":
+        """Return a taught point; ``Failure`` RBL301 for a name that none has."""
+        points = self.project.points
+        found = points.get(name)
+        if found is None:
+            guess = near(name, points.points)
+            hint = f"did you mean {points.points[guess].name}?" if guess else "points lists them; teach makes one."
+            raise failure("RBL301", f"point {name} is not taught", hint)
+        return found
+
+    # --- the end ------------------------------------------------------------------------------------------------------
+
+    def leave(self) -> None:
+        """End the prompt; with unsaved changes after a question, and a script fails (RBL805)."""
+        # not the question of a script, which nobody answers: a job in CI must not lose points silently
+        unsaved = ", ".join(str(path) for path in self.desk.unsaved)
+        if unsaved and self.scripted:
+            raise failure("RBL805", f"these files have unsaved changes: {unsaved}")
+        if not unsaved or self.output.ask(f"{unsaved}: leave without saving?"):
+            self.ended = True
+
+    # --- documents ----------------------------------------------------------------------------------------------------
+
+    def put_line(self, number: int, text: str) -> None:
+        """Put a line into the program by its number; without a text delete it."""
+        edited, _ = put_line(self.desk.documents, f"{number} {text}".rstrip(), self.desk.analysis)
+        self.edit(edited, f"line {number}" if text else f"delete line {number}")
+
+    def edit(self, new: Documents, what: str) -> None:
+        """Change the program, and show the errors that it then has."""
+        # only what is new: an error that is known already need not be shown after every line
+        before = {_key(item) for item in self.desk.analysis.diagnostics}
+        self.change(new, what)
+        found = [item for item in self.project.diagnostics if _key(item) not in before]
+        if found:
+            self.output.problem(of_diagnostics(found, self.project.source).text)
+
+    def change(self, new: Documents, what: str) -> None:
+        """Put changed documents in place of the present ones, and let the controller go on with them."""
+        self.desk.change(new, what)
+        try:
+            self.follow()
+        except (Fault, Failure):
+            # documents that cannot be used are not kept: the next line would fail for the same reason
+            self.desk.undo()
+            self.__dict__.pop("project", None)
+            raise
+
+    def undo(self) -> str:
+        """Take the last change of the documents back; return what it was."""
+        what = self.desk.undo()
+        self.follow()
+        return what
+
+    def redo(self) -> str:
+        """Make the change that was taken back last again; return what it was."""
+        what = self.desk.redo()
+        self.follow()
+        return what
+
+    def save(self, path: Path | None = None) -> tuple[Path, ...]:
+        """Write what is unsaved, under another name where one is given; return the files."""
+        files = self.desk.save() if path is None else self.desk.save_as(path)
+        self.follow()
+        return files
+
+    def open(self, documents: Documents) -> None:
+        """Work on other documents, in the start state of their cell."""
+        self.desk = Desk(documents)
+        self.start_again()
+
+    def check(self) -> None:
+        """Raise ``Failure`` with the errors of the program and of the motion that it will make from the start state."""
+        # late, as all that imports numerics: the prompt is there before it
+        from robolang.execution.dry_run import motion_check
+
+        self.refuse_errors()
+        refused = motion_check(self.project)
+        if refused:
+            raise of_diagnostics(refused, self.project.source)
+
+    def follow(self) -> None:
+        """Let the controller go on with the documents as they are now."""
+        self.start_again()
+
+    # --- the controller -----------------------------------------------------------------------------------------------
+
+    @cached_property
+    def project(self) -> "Project":
+        """The documents, read as a program with its points and its cell; ``Fault`` for one that cannot be used."""
+        from robolang.project.project import load_project
+
+        return load_project(self.desk.typed, robot=self.choice.robot)
+
+    # built once, when a line first needs it: numerics and physics take a second to import
+    @cached_property
+    def live(self) -> "Live":
+        """The controller with the program, in the start state of the cell."""
+        from robolang.pendant.live import Live
+
+        project = self.project
+        if not project.ok:  # the arm can be jogged and points be taught all the same, with no program to run
+            project = replace(project, analysis=Analysis(source=Source(project.source.path, "")), diagnostics=())
+        live = Live(project, self.output, self.interrupts, physics=self.choice.physics, realtime=self.choice.realtime)
+        self._apply_mode(live)
+        return live
+
+    def start_again(self) -> None:
+        """Forget the controller: the next use finds the cell in its start state."""
+        self.__dict__.pop("live", None)
+        self.__dict__.pop("project", None)
+
+    def to_auto(self) -> None:
+        """Choose AUTO, and say so where it was not chosen."""
+        if self.mode is not Mode.AUTO:
+            self.switch(Mode.AUTO)
+            self.output.line("AUTO")
+
+    def switch(self, mode: Mode) -> None:
+        """Choose MANUAL or AUTO."""
+        self.mode = mode
+        if "live" in self.__dict__:
+            self._apply_mode(self.live)
+
+    def _apply_mode(self, live: "Live") -> None:
+        # set at once, since the controller keeps it for everything that is planned from then on
+        live.limit_speed(self.mode is Mode.MANUAL)

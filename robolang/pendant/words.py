@@ -1,0 +1,55 @@
+"""Words and numbers after the word of a command, read with errors that say what was expected."""
+
+import math
+from typing import TYPE_CHECKING
+
+from robolang.pendant.failure import Failure, failure
+
+if TYPE_CHECKING:
+    from robolang.pendant.pendant import Pendant
+
+
+def misused(form: str, message: str) -> Failure:
+    """Return the failure of a command that was not typed in its form (RBL802)."""
+    return failure("RBL802", message, f"The form is: {form}")
+
+
+def nothing(rest: str, form: str) -> None:
+    """Refuse text after a command that takes none."""
+    if rest:
+        raise misused(form, f"nothing may follow this command, found '{rest}'")
+
+
+def number(text: str, form: str, what: str) -> float:
+    """Return a finite number; ``Failure`` RBL802 names what it is the number of."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise misused(form, f"'{text}' is not a number for {what}")
+    return value
+
+
+def whole(text: str, form: str, what: str, low: int, high: int) -> int:
+    """Return a whole number from ``low`` to ``high``; ``Failure`` RBL802."""
+    # twelve digits: int() of a text of thousands would take long, or refuse
+    if not text.isascii() or not text.isdigit() or not low <= int(text[:12]) <= high:
+        raise misused(form, f"'{text}' is not a whole number from {low} to {high} for {what}")
+    return int(text)
+
+
+def agreed(rest: str) -> tuple[str, bool]:
+    """Return the text without ``--yes`` at its end, and whether that was there."""
+    words = rest.rsplit(maxsplit=1)
+    if words and words[-1] == "--yes":
+        return rest[: rest.rindex("--yes")].rstrip(), True
+    return rest, False
+
+
+def refuse_unanswered(pendant: "Pendant", question: str, yes: bool) -> None:
+    """Ask whether to go on; ``Failure`` RBL807 after a no, and in a script without ``--yes``."""
+    if yes or pendant.output.ask(question):
+        return
+    hint = "Add --yes to the line." if pendant.scripted else "Nothing has changed."
+    raise failure("RBL807", f"not confirmed: {question}", hint)
