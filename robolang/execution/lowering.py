@@ -128,7 +128,18 @@ def move(effect: MoveTo, around: Surroundings) -> Command:
 
 def joint_move(place: Place, around: Surroundings) -> MoveJoint:
     """Return the command of ``MOVEJ`` to a place, without options; ``Fault`` as of ``move``."""
-    goal = _goal(place, around)
+    return _joint_move(_goal(place, around))
+
+
+def point_move(point: Point, around: Surroundings, X: Array | None = None) -> MoveJoint:
+    """Return the command of ``MOVEJ`` to a taught point, in the store of ``around`` or not; ``Fault`` RBL305, RBL307.
+
+    X (4, 4): its pose in its frame, where that has been computed for many points at once.
+    """
+    return _joint_move(_at_point(point, around, X))
+
+
+def _joint_move(goal: "_Goal") -> MoveJoint:
     return MoveJoint(q_end=goal.q_end, X_world_tool=goal.X, configuration=goal.configuration, turns=goal.turns)
 
 
@@ -189,8 +200,7 @@ def _base(place: Place, around: Surroundings) -> _Goal:
         point = around.points.get(place.point)
         if point is None:
             raise Fault("RBL301", f"point {place.point} is not taught in {around.points.path}")
-        joints = None if point.joints is None else np.array(point.joints) * DEG
-        return _Goal(X=_taught(point, around), q_end=joints, configuration=point.configuration, turns=point.turns)
+        return _at_point(point, around)
     if place.joints is not None:
         if len(place.joints) != around.cell.robot.n:
             raise Fault("RBL307", f"JOINT has {len(place.joints)} values, the robot {around.cell.robot.n} axes")
@@ -209,8 +219,13 @@ def _forward(q: Array, around: Surroundings) -> Array:
     return np.asarray(matmul(around.kinematics.forward(q), around.X_flange_tool))
 
 
-def _taught(point: Point, around: Surroundings) -> Array:
-    """Return X_world_tool of a taught point.
+def _at_point(point: Point, around: Surroundings, X: Array | None = None) -> _Goal:
+    joints = None if point.joints is None else np.array(point.joints) * DEG
+    return _Goal(X=_taught(point, around, X), q_end=joints, configuration=point.configuration, turns=point.turns)
+
+
+def _taught(point: Point, around: Surroundings, X: Array | None = None) -> Array:
+    """Return X_world_tool of a taught point; X: its pose, where it is known.
 
     A pose stands in its frame (the world without one) and belongs to the tool it was taught with; joint angles give
     the pose of the tool in use, and are where the move ends.
@@ -221,7 +236,7 @@ def _taught(point: Point, around: Surroundings) -> Array:
             raise Fault("RBL307", f"point {point.name} has {len(point.joints)} joints, the robot {cell.robot.n}")
         return _forward(np.array(point.joints) * DEG, around)
     assert point.pose is not None  # the store admits exactly one of the two
-    X = pose_si(point.pose)
+    X = pose_si(point.pose) if X is None else X
     if point.frame:
         X = matmul(_named(cell.frames, point.frame, f"frame of point {point.name}"), X)
     if point.tool:

@@ -38,6 +38,7 @@ def copied(
     """
     if not can_be_name(name):
         raise Fault("RBL303", f"'{name}' cannot be the name of a point", NAME_HINT)
+    # the point may not be in the store: it has been taught since that was read
     around = replace(around, points=PointStore(path=around.points.path, points=_with(old, around.points)))
     place = _place(f"{old.name} {offset}".strip(), around, frame, world or Nowhere())
     copy = old.replaced(name=name)

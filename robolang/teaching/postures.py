@@ -1,12 +1,10 @@
 """The joint angles at which a place of the tool is reached, as ``MOVEJ`` there finds them. Angles rad, lengths m."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from robolang.execution import lowering
 from robolang.execution.lowering import Surroundings
-from robolang.project.points import Point, PointStore
+from robolang.project.points import Point
 from robolang.values.poses import Place
 from runtime.core.frames import Array
 from runtime.core.linear import matmul
@@ -14,30 +12,29 @@ from runtime.motion.joint_planner import JointPlanner
 from runtime.settings.profile import Profile
 
 
+def joint_planner(around: Surroundings) -> JointPlanner:
+    """Return what finds the end of ``MOVEJ``."""
+    # the profile decides how fast a move is, and not where it ends
+    return JointPlanner(around.cell.robot, around.kinematics, Profile())
+
+
 def reached(place: Place, around: Surroundings, q: Array) -> Array:
     """Return the joint angles (n,) at which ``MOVEJ`` to a place ends, from q (n,).
 
     ``Fault`` as of the move: RBL30x for what the cell does not have, RBL410, RBL411 or RBL412 where it is not reached.
     """
-    # the profile decides how fast a move is, and not where it ends
-    planner = JointPlanner(around.cell.robot, around.kinematics, Profile())
-    return planner.end(q, lowering.joint_move(place, around), around.X_flange_tool)
+    return joint_planner(around).end(q, lowering.joint_move(place, around), around.X_flange_tool)
 
 
 def reached_point(point: Point, around: Surroundings, q: Array) -> Array:
     """Return the joint angles (n,) at which ``MOVEJ`` to a taught point ends, from q (n,); ``Fault`` as ``reached``."""
-    return reached(Place(point=point.name.upper()), with_point(around, point), q)
-
-
-def with_point(around: Surroundings, point: Point) -> Surroundings:
-    """Return the same surroundings with one taught point only."""
-    return replace(around, points=PointStore(path=around.points.path, points={point.name.upper(): point}))
+    return joint_planner(around).end(q, lowering.point_move(point, around), around.X_flange_tool)
 
 
 def taught_place(point: Point, around: Surroundings) -> Array:
     """Return X_world_tool (4, 4) of a taught point for the tool in use; ``Fault`` RBL305, RBL307."""
-    place = lowering.joint_move(Place(point=point.name.upper()), with_point(around, point)).X_world_tool
-    assert place is not None  # a place has a pose, joints or not
+    place = lowering.point_move(point, around).X_world_tool
+    assert place is not None  # a point has a pose, taught as joints or not
     return place
 
 

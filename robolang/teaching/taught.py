@@ -59,7 +59,7 @@ def taught_point(
     _check_name(name)
     _check_joints(q, around.cell.robot)
     named, notes = (old.frame, ()) if old is not None and old.pose is not None else _named_frame(frame, around)
-    kind = as_ or (_kind(old) if old is not None else "pose" if named else "joints")
+    kind = as_ or (kind_of(old) if old is not None else "pose" if named else "joints")
     comment = "" if old is None else old.comment
     if kind == "joints":
         joints = rounded_joints(q, around.cell.robot)
@@ -74,7 +74,8 @@ def taught_point(
     return _as_pose(point, q, around, notes)
 
 
-def _kind(point: Point) -> Kind:
+def kind_of(point: Point) -> Kind:
+    """Return how a point is taught."""
     return "joints" if point.pose is None else "pose"
 
 
@@ -125,6 +126,7 @@ def _configuration(q: Array, around: Surroundings) -> tuple[str, ...]:
 
 def _turns(q: Array, robot: RobotSpec) -> tuple[int, ...]:
     """Return the whole turns of the joints, as far as one has a range in which an angle comes twice."""
+    # of other joints the range decides, and a number that says the same is only more to read
     several = np.flatnonzero(robot.upper - robot.lower >= TURN)
     count = int(several[-1]) + 1 if len(several) else 0
     return tuple(int(turns) for turns in np.round(q / TURN)[:count])
@@ -138,6 +140,7 @@ def rounded(pose: Six, decimals: int = DECIMALS) -> Six:
 
 def rounded_joints(q: Array, robot: RobotSpec) -> tuple[float, ...]:
     """Return joint angles q (n,) rad in deg with the decimals of a point, none of them rounded out of its range."""
+    # an end of a range may have more decimals than a point
     scale = 10.0**DECIMALS
     least, most = np.ceil(robot.lower / DEG * scale) / scale, np.floor(robot.upper / DEG * scale) / scale
     nearest = np.round(q / DEG, DECIMALS)

@@ -37,6 +37,7 @@ def change(old: Point, new: Point, q: Array, around: Surroundings) -> TouchUp:
 
     ``Fault`` RBL305 or RBL307 where one of them has a frame, a tool or a number of joints that the cell has not.
     """
+    # both in the frame of the new point: an old one may have stood in another frame
     X_frame_world = inverse(lowering.frame_pose(new.frame, around.cell))
     X_old = matmul(X_frame_world, taught_place(old, around))
     X_new = matmul(X_frame_world, tool_place(q, around))
@@ -66,4 +67,5 @@ def _turned(
 
 def _between(X_old: Array, X_new: Array) -> Six:
     """Return the translation and the rotation, about the fixed axes, from one pose to another."""
+    # the rotation on the left: about the axes of the frame, as a jog of RX, RY or RZ in it turns the tool
     return lowering.six_of(pose(X_new[:3, 3] - X_old[:3, 3], matmul(X_new[:3, :3], X_old[:3, :3].T)))

@@ -112,20 +112,27 @@ class JointPlanner:
             self._check_end(q_end)
             return q_end
         assert command.X_world_tool is not None  # a command has at least one of the two
-        found = self._solutions(matmul(command.X_world_tool, inverse(X_flange_tool)), q_start, command)
+        X_world_flange = matmul(command.X_world_tool, inverse(X_flange_tool))
+        return self.choose(self._kinematics.solutions(X_world_flange, q_start), q_start, command)
+
+    def choose(self, solutions: Sequence[Solution], q_start: Array, command: MoveJoint) -> Array:
+        """Return the one of the solutions of its pose at which a move from q_start (n,) ends; ``Fault`` as ``end``.
+
+        Called by ``end``, and where many poses are solved at once.
+        """
+        found = self._as_taught(solutions, q_start, command)
         # a change of configuration sweeps the whole arm through the cell: only where nothing else is in the ranges
         kept = [q for q in found if not changed(self._kinematics, q_start, q, command)]
         times = [float((np.abs(q - q_start) / self._pace.speed).max()) for q in kept or found]
         soonest = min(times) + SAME_TIME_S
         return next(q for q, time in zip(kept or found, times, strict=True) if time <= soonest)
 
-    def _solutions(self, X_world_flange: Array, q_start: Array, command: MoveJoint) -> list[Array]:
+    def _as_taught(self, solutions: Sequence[Solution], q_start: Array, command: MoveJoint) -> list[Array]:
         """Return the solutions (n,) as the point is taught, in the ranges; ``Fault`` RBL410, 411 or 412 for none."""
         kinematics = self._kinematics
-        solutions = kinematics.solutions(X_world_flange, q_start)
         if not solutions:
             raise Fault("RBL410", f"{_point(command)} is out of reach of {self._spec.name}")
-        found = [turned(kinematics, each.q, command.turns[: kinematics.n], q_start) for each in solutions]
+        found = turned(kinematics, np.array([each.q for each in solutions]), command.turns[: kinematics.n], q_start)
         fitting = [q for q in found if as_taught(kinematics, q, command)]
         if not fitting:
             raise _in_no_configuration(command, solutions)

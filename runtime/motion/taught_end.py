@@ -80,18 +80,20 @@ def _others(line: LineSolver, command: PathMove) -> list[Array]:
 
 
 def turned(kinematics: Kinematics, q: Array, turns: tuple[int, ...], near: Array) -> Array:
-    """Return joint angles (n,) rad with the whole turns that a point is taught with, one number a joint.
+    """Return joint angles (..., n) rad with the whole turns that a point is taught with, one number a joint.
 
     180 and -180 deg are the same angle with the same number of turns: the one nearer to ``near`` (n,) is taken.
     """
+    if not turns:
+        return q
     # joints without taught turns count from 0 here and are put back at the end
-    middle = 2.0 * np.pi * np.array([*turns, *[0] * (len(q) - len(turns))])
+    middle = 2.0 * np.pi * np.array([*turns, *[0] * (q.shape[-1] - len(turns))])
     within = Kinematics.nearest_turns(q, middle)
     half = is_half_turn(within - middle)
     either = kinematics.freer_half_turn(Kinematics.nearest_turns(q, near), near)
     sides = np.sort([within, within - np.copysign(2.0 * np.pi, within - middle)], axis=0)
     within = np.where(half, np.clip(either, *sides), within)
-    return np.concatenate([within[: len(turns)], q[len(turns) :]])
+    return np.concatenate([within[..., : len(turns)], q[..., len(turns) :]], axis=-1)
 
 
 def as_taught(kinematics: Kinematics, q: Array, command: PathMove | MoveJoint) -> bool:

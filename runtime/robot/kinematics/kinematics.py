@@ -123,13 +123,32 @@ class Kinematics:
         params = self._opw
         if params is None:
             return self._numeric_solutions(self._start(near), X_base_flange)
-        # into the ranges before merging: branches that merge may lie whole turns apart
-        found: list[Solution] = []
-        rows = self._into_range(opw.inverse(params, X_base_flange, near), near)
-        for branch, q in zip(BRANCHES, rows, strict=True):
-            if np.isnan(q).any() or any(np.max(np.abs(opw.wrapped(q - s.q))) < SAME_ANGLES for s in found):
-                continue
-            found.append(Solution(q=frozen(q), branch=branch, limit_margin=float(self.limit_margin(q))))
+        return self._distinct(self._into_range(opw.inverse(params, X_base_flange, near), near)[None])[0]
+
+    def solutions_each(self, X_base_flange: Array, near: ArrayLike | None = None) -> list[list[Solution]]:
+        """Return the ``solutions`` of poses (N, 4, 4), all solved at once where the arm has a closed form."""
+        if self._opw is None:
+            return [self.solutions(X, near) for X in X_base_flange]
+        return self._distinct(self._into_range(opw.inverse(self._opw, X_base_flange, near), near))
+
+    def _distinct(self, rows: Array) -> list[list[Solution]]:
+        """Return the solutions of rows (N, 8, 6) rad inside the ranges, one for each branch, those that exist."""
+        # inside the ranges before merging: branches that merge may lie whole turns apart
+        apart: Array = np.abs(opw.wrapped(rows[:, :, None] - rows[:, None])).max(axis=-1)
+        exists, same = np.asarray(~np.isnan(rows).any(axis=-1)), np.asarray(apart < SAME_ANGLES)
+        margins = self.limit_margin(rows)
+        found: list[list[Solution]] = []
+        for row in range(len(rows)):
+            kept: list[int] = []
+            for branch in np.flatnonzero(exists[row]).tolist():
+                if not same[row, branch, kept].any():
+                    kept.append(branch)
+            found.append(
+                [
+                    Solution(q=frozen(rows[row, b]), branch=BRANCHES[b], limit_margin=float(margins[row, b]))
+                    for b in kept
+                ]
+            )
         return found
 
     def other_turns(self, solution: Solution) -> Iterator[Solution]:

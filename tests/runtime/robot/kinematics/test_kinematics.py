@@ -224,3 +224,18 @@ def test_without_its_closed_form_in_the_file_the_arm_is_the_same(puma):
     assert bare.branch_of(q) == own.branch_of(q)
     for found, known in zip(bare.solutions(own.forward(q)), own.solutions(own.forward(q)), strict=True):
         np.testing.assert_allclose(found.q, known.q, atol=1e-9)
+
+
+def test_poses_that_are_solved_at_once_have_the_solutions_of_each(kinematics):
+    q = within_limits(kinematics.spec, 11, 40)
+    q[:10, 4] = 0.0  # branches that merge at the singularity of the wrist
+    X = kinematics.forward(q)
+    X[-1, :3, 3] += 50.0  # out of reach
+    found = kinematics.solutions_each(X, q[0])
+    assert len(found) == len(X)
+    for pose_found, X_one in zip(found, X, strict=True):
+        one = kinematics.solutions(X_one, q[0])
+        assert [each.branch for each in pose_found] == [each.branch for each in one]
+        np.testing.assert_allclose([each.q for each in pose_found], [each.q for each in one], rtol=0, atol=1e-12)
+    assert found[-1] == []
+    assert all(len(each) < 8 for each in found[:10])
