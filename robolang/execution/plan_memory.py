@@ -1,4 +1,4 @@
-"""Plans remembered by what they depend on: start, command, tool and override; chains by their plans and zones.
+"""Plans remembered by what they depend on: start, command, tool, override, speed cap; chains by plans and zones.
 
 The plan that was checked is the plan that runs: dry run, ``Controller.rehearse`` and ``move_chain`` share one
 memory, so a move that starts from bit-identical conditions gets the plan, or the refusal, that it got before.
@@ -27,12 +27,19 @@ class PlanMemory(MotionPlanner):
         self._plans: dict[tuple[object, ...], MovePlan | Fault] = {}
         self._chains: dict[tuple[object, ...], ChainPlan] = {}
 
-    def plan(self, q_start: Array, command: Command, X_flange_tool: Array, override: float = 1.0) -> MovePlan:
+    def plan(
+        self,
+        q_start: Array,
+        command: Command,
+        X_flange_tool: Array,
+        override: float = 1.0,
+        cap: float | None = None,
+    ) -> MovePlan:
         """Return the plan of one move, as ``MotionPlanner.plan`` does."""
-        key = (q_start.tobytes(), *_key(command), X_flange_tool.tobytes(), override)
+        key = (q_start.tobytes(), *_key(command), X_flange_tool.tobytes(), override, cap)
         if key not in self._plans:
             try:
-                self._plans[key] = super().plan(q_start, command, X_flange_tool, override)
+                self._plans[key] = super().plan(q_start, command, X_flange_tool, override, cap)
             except Fault as fault:
                 self._plans[key] = fault
         found = self._plans[key]
@@ -40,11 +47,18 @@ class PlanMemory(MotionPlanner):
             raise Fault(found.code, found.message, found.hint)
         return found
 
-    def join(self, plans: Sequence[MovePlan], zones: Sequence[float], X_flange_tool: Array) -> ChainPlan:
+    def join(
+        self, plans: Sequence[MovePlan], zones: Sequence[float], X_flange_tool: Array, cap: float | None = None
+    ) -> ChainPlan:
         """Return moves blended in their zones, as ``MotionPlanner.join`` does."""
-        key = (*(id(plan) for plan in plans), *zones, X_flange_tool.tobytes())  # plans are kept, so ids stay theirs
+        key = (
+            *(id(plan) for plan in plans),
+            *zones,
+            X_flange_tool.tobytes(),
+            cap,
+        )  # plans are kept, so ids stay theirs
         if key not in self._chains:
-            self._chains[key] = super().join(plans, zones, X_flange_tool)
+            self._chains[key] = super().join(plans, zones, X_flange_tool, cap)
         return self._chains[key]
 
 

@@ -16,6 +16,7 @@ latched ``Alarm`` and stops the arm by its category (docs/supervision.md): 1 on 
 the brakes; 0 at once. From then on ``cycle`` does nothing and returns False, until the alarm is acknowledged.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -119,7 +120,7 @@ class Controller:
         ``Fault`` RBL411 where a joint would leave its range and RBL404 where it would be too fast at a servo tick;
         ``ValueError`` for rows that are not (K, n) or not finite; ``RuntimeError`` while a move runs or a seam is
         followed. Nothing has moved then. ``checked`` False leaves range and speed to the supervision, for rows that
-        come from elsewhere and are to be executed unchanged.
+        come from elsewhere and are to be executed unchanged; ``speed_cap`` holds for them as well (RBL404).
         """
         self._refuse_while_latched()
         self.requests.play(rows, checked)
@@ -128,7 +129,7 @@ class Controller:
         """Set the reference to q (n,) rad at once, without interpolation and speed: the step of a step response.
 
         It is held exactly until another request moves. ``RuntimeError`` while a move runs, ``Fault`` RBL411 outside the
-        joint ranges.
+        joint ranges and RBL404 under a speed cap.
         """
         self._refuse_while_latched()
         self.requests.jump(q)
@@ -329,6 +330,20 @@ class Controller:
     def override(self, share: float) -> None:
         OVERRIDE.checked(share / PERCENT, OVERRIDE.high)
         self.requests.override = min(share, 1.0)  # the check lets rounding above 100 % pass
+
+    @property
+    def speed_cap(self) -> float | None:
+        """Cap on the speed of tool point and flange, m/s, for what is planned or given from now on; None: no cap.
+
+        In MANUAL ``runtime.motion.speed_cap.MANUAL_SPEED``. Commands keep a margin below it for the motion of the arm.
+        """
+        return self.requests.speed_cap
+
+    @speed_cap.setter
+    def speed_cap(self, most: float | None) -> None:
+        if most is not None and not 0.0 < most < math.inf:
+            raise ValueError(f"a speed cap of {most} m/s is not above 0")
+        self.requests.speed_cap = most
 
     @property
     def X_flange_tool(self) -> Array:

@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from runtime.control.memory_areas import Areas
+from runtime.core.faults import Fault
 from runtime.core.frames import Array, frozen
 from runtime.core.program_line import ProgramLine
 from runtime.core.state import State, Stateful
@@ -21,6 +22,7 @@ from runtime.motion.given_rows import as_rows, check_motion, check_range
 from runtime.motion.interpolator import Interpolator
 from runtime.motion.motion_planner import ChainPlan, MotionPlanner, tracked_row
 from runtime.motion.seam import SeamMove, SeamTracker
+from runtime.motion.speed_cap import SpeedCap
 from runtime.motion.stop import pause_course, resume_course, stopping_rows
 from runtime.robot.model.spec import RobotSpec
 
@@ -31,6 +33,7 @@ class RequestQueue(Stateful):
     VALUES = (
         "statement",
         "override",
+        "speed_cap",
         "X_flange_tool",
         "wrist_mode",
         "_waiting",
@@ -54,6 +57,8 @@ class RequestQueue(Stateful):
         """Statement that runs; None: none does."""
         self.override = 1.0
         """Share in (0, 1] of every speed."""
+        self.speed_cap: float | None = None
+        """Cap on the speed of tool point and flange, m/s; None: there is none."""
         self.X_flange_tool = X_flange_tool
         """Tool whose point moves (4, 4)."""
         self.wrist_mode = FOLLOWS
@@ -76,11 +81,12 @@ class RequestQueue(Stateful):
         tracker = self.tracker
         if tracker is None:
             here = np.array(self._areas.ina)
-            chain = self.planner.chain(here, commands, self.X_flange_tool, self.override)
+            chain = self.planner.chain(here, commands, self.X_flange_tool, self.override, self.speed_cap)
             self.interpolator.start(chain)
         else:
             tracked = tracked_row(commands)
-            chain = self.planner.chain(self._calculated(tracker), tracked, self.X_flange_tool, self.override)
+            start = self._calculated(tracker)
+            chain = self.planner.chain(start, tracked, self.X_flange_tool, self.override, self.speed_cap)
             if self.interpolator.busy:
                 raise RuntimeError("a move is running")
             self._waiting = [(part.plan, command) for part, command in zip(chain.parts, tracked, strict=True)]
@@ -96,6 +102,8 @@ class RequestQueue(Stateful):
         self._refuse_while_busy()
         if checked:
             check_motion(self._spec, self._fine, rows)
+        if self.speed_cap is not None:  # whatever the caller answers for: in MANUAL it is a person who stands there
+            self._cap(self.speed_cap).check(self._fine.after(rows))
         # row 0 of a plan is where the arm is, and is not sent
         q = frozen(np.concatenate([self._areas.ina[None], rows]))
         self.interpolator.start(MovePlan(path=None, s=np.ones(len(q)), q=q, slowdown=None, notes=()))
@@ -107,8 +115,14 @@ class RequestQueue(Stateful):
         rows = as_rows(self._spec, np.array([q]))
         self._refuse_while_busy()
         check_range(self._spec, rows)
+        if self.speed_cap is not None:
+            raise Fault("RBL404", "a step of the reference has no bounded speed", "Switch to AUTO for a step response.")
         self._areas.ina = rows[0]
         self._fine.jump(rows[0])
+
+    def _cap(self, most: float) -> SpeedCap:
+        kinematics = self.planner.kinematics
+        return SpeedCap(most=most, kinematics=kinematics, fine=self._fine, X_flange_tool=self.X_flange_tool)
 
     def _refuse_while_busy(self) -> None:
         if self.busy:
@@ -120,7 +134,7 @@ class RequestQueue(Stateful):
         """Return the plan of a move from q_start, without starting it."""
         if isinstance(command, MoveLinear) and self.tracker is not None:
             command = replace(command, tracked=True)
-        return self.planner.plan(q_start, command, self.X_flange_tool, self.override)
+        return self.planner.plan(q_start, command, self.X_flange_tool, self.override, self.speed_cap)
 
     def seam(self, tracker: SeamTracker | None) -> None:
         """Let the moves that follow go under a tracker; None ends that."""

@@ -30,6 +30,7 @@ import numpy as np
 from runtime.core.frames import Array, rotation_angles
 from runtime.core.linear import matmul
 from runtime.motion.path_ik import RANGE_TOLERANCE, Arm
+from runtime.motion.speed_cap import SpeedCap
 from runtime.motion.time_scaling import Pace
 
 _SLACK = 1.0 + 1e-9
@@ -98,12 +99,13 @@ def overlapped(a: Array, b: Array, m: int) -> Array:
 class BlendLimits:
     """What a blend may do: the joints' limits of ``pace``, and what the tool may in any case.
 
-    ``acceleration`` m/s2 of the tool point, ``turning`` rad/s of the tool.
+    ``acceleration`` m/s2 of the tool point, ``turning`` rad/s of the tool; ``cap`` on its speed and the flange's.
     """
 
     pace: Pace
     acceleration: float
     turning: float
+    cap: SpeedCap | None = None
 
     def of_tool(self) -> _Tool:
         """Return the limits of the tool per cycle; its speed is bounded by the moves alone."""
@@ -135,6 +137,8 @@ def blend(
     def holds(m: int) -> bool:
         rows = _around(a, b, m)
         if not _joints_hold(rows, arm, limits.pace):
+            return False
+        if limits.cap is not None and not limits.cap.kept(arm.fine.within(rows)):
             return False
         X = _poses(arm, rows)
         # the two rows on either side lie on the paths of a and b: they count for the speed, not for the zone

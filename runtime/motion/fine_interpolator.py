@@ -162,8 +162,11 @@ class FineInterpolator(Stateful):
 
         The last one is held until the command stands there. As ``expand``, but continuing a motion.
         """
-        padded = np.concatenate([setpoints, setpoints[-1:], setpoints[-1:]])
-        segments = len(padded) - 3
-        windows = np.stack([padded[k : k + segments] for k in range(4)], axis=1)
+        return self.within(np.concatenate([setpoints, setpoints[-1:], setpoints[-1:]]))
+
+    def within(self, setpoints: Array) -> Array:
+        """Return (3, (N - 3) * ticks, n) from the second of set-points (N, n) to the last but one, within a motion."""
+        segments = len(setpoints) - 3
+        windows = np.stack([setpoints[k : k + segments] for k in range(4)], axis=1)
         out = matmul(self._weights, windows).reshape(segments, 3, self.ticks, -1)
         return np.asarray(np.moveaxis(out, 1, 0).reshape(3, segments * self.ticks, -1))

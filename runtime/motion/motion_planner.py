@@ -5,6 +5,8 @@ move by move as if each stopped, so what is refused does not depend on zones; th
 corner to the last (``blend``) into one sequence of rows. Without zones the rows are those of the plans to the last bit.
 Where two moves have different overrides, the smaller one holds while both run.
 
+Under a speed cap (``speed_cap``) a move takes the override at which it keeps the cap, and a blend keeps it too.
+
 A row in the middle of a blend belongs to both moves; in the log and for the lamp it counts as the first of them up to
 the middle, then as the second.
 
@@ -19,16 +21,23 @@ from numpy.typing import NDArray
 
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, frozen
+from runtime.core.units import MM, PERCENT
 from runtime.motion.blend import BlendLimits, Corner, blend
 from runtime.motion.cartesian_planner import CartesianPlanner, MovePlan, WristChange
 from runtime.motion.commands import Command, MoveJoint, MoveLinear
 from runtime.motion.joint_planner import JointPlanner
 from runtime.motion.path import Path
 from runtime.motion.path_ik import Arm
+from runtime.motion.speed_cap import PLANNED, SpeedCap
 from runtime.motion.time_scaling import Pace
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import Profile
+
+_CAPPINGS = 60
+"""Overrides that are tried for a move under a cap, at most."""
+_UNDER = 1.0 - 1e-3
+"""Share of the cap that the next override aims at, so that a few of them are enough."""
 
 
 class ChainFault(Fault):
@@ -125,33 +134,73 @@ class MotionPlanner:
         self._spec = spec
         self._pace = Pace.of(spec, profile)
 
-    def plan(self, q_start: Array, command: Command, X_flange_tool: Array, override: float = 1.0) -> MovePlan:
+    def plan(
+        self,
+        q_start: Array,
+        command: Command,
+        X_flange_tool: Array,
+        override: float = 1.0,
+        cap: float | None = None,
+    ) -> MovePlan:
         """Return the plan of one move from joint angles q_start (n,) rad; ``Fault`` RBL404, 410, 411, 412 or 416.
 
         ``X_flange_tool`` (4, 4) is the tool whose point moves, ``override`` in (0, 1] a share of every speed
-        beside the command's own.
+        beside the command's own, ``cap`` m/s what tool point and flange may have at most, None: any speed.
         """
+        full = self._plan(q_start, command, X_flange_tool, override)
+        return full if cap is None else self._capped(full, q_start, command, self._cap(cap, X_flange_tool))
+
+    def _plan(self, q_start: Array, command: Command, X_flange_tool: Array, override: float) -> MovePlan:
         if isinstance(command, MoveJoint):
             return self.joints.plan(q_start, command, X_flange_tool, override)
         return self.lines.plan(q_start, command, X_flange_tool, override)
 
+    def _cap(self, most: float, X_flange_tool: Array) -> SpeedCap:
+        return SpeedCap(most=most, kinematics=self.kinematics, fine=self._pace.fine, X_flange_tool=X_flange_tool)
+
+    def _capped(self, plan: MovePlan, q_start: Array, command: Command, cap: SpeedCap) -> MovePlan:
+        """Return a plan at the override, up to its own, at which it keeps a cap; ``Fault`` RBL404 where none is found.
+
+        The speed falls in proportion to the override where the move cruises, and later where it is too short for that.
+        """
+        share = 1.0
+        for _ in range(_CAPPINGS):
+            ratio = cap.ratio(cap.fine.expand(plan.q))
+            if ratio <= 1.0:
+                break
+            share *= _UNDER / ratio
+            plan = self._plan(q_start, command, cap.X_flange_tool, plan.override / command.override * _UNDER / ratio)
+        else:
+            raise Fault("RBL404", f"no speed of the move keeps below {cap.most * PLANNED / MM:g} mm/s")
+        if share == 1.0:
+            return plan
+        note = f"runs at {share / PERCENT:.3g} % of its speeds, to keep below {cap.most / MM:g} mm/s"
+        return replace(plan, notes=(*plan.notes, note))
+
     def chain(
-        self, q_start: Array, commands: Sequence[Command], X_flange_tool: Array, override: float = 1.0
+        self,
+        q_start: Array,
+        commands: Sequence[Command],
+        X_flange_tool: Array,
+        override: float = 1.0,
+        cap: float | None = None,
     ) -> ChainPlan:
         """Return the plan of a chain of moves from q_start (n,) rad; ``ChainFault`` names the first that is refused."""
         plans: list[MovePlan] = []
         # each from the end of the plan before, not from its taught end: under KEEP the two may differ
         for index, command in enumerate(commands):
             try:
-                plans.append(self.plan(plans[-1].q[-1] if plans else q_start, command, X_flange_tool, override))
+                plans.append(self.plan(plans[-1].q[-1] if plans else q_start, command, X_flange_tool, override, cap))
             except Fault as fault:
                 raise ChainFault(fault, index) from None
-        return self.join(plans, [command.zone for command in commands], X_flange_tool)
+        return self.join(plans, [command.zone for command in commands], X_flange_tool, cap)
 
-    def join(self, plans: Sequence[MovePlan], zones: Sequence[float], X_flange_tool: Array) -> ChainPlan:
+    def join(
+        self, plans: Sequence[MovePlan], zones: Sequence[float], X_flange_tool: Array, cap: float | None = None
+    ) -> ChainPlan:
         """Return moves, each planned from the end of the one before, blended in the zones (m) at their ends.
 
-        The last one stops, whatever its zone is.
+        The last one stops, whatever its zone is. ``cap`` m/s is that of ``plan``, which the blends keep as well.
         """
         if not plans:
             raise ValueError("a chain has at least one move")
@@ -168,6 +217,7 @@ class MotionPlanner:
                 pace=self._pace.overridden(override),
                 acceleration=self._spec.path.acceleration * max(before.acceleration, after.acceleration),
                 turning=self._spec.path.rotation_speed * override,
+                cap=None if cap is None else self._cap(cap, X_flange_tool),
             )
             q, corner = blend(q, after.q, halves, zone, arm, limits)
             middle = end - corner.cycles + corner.cycles // 2

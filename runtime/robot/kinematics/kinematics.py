@@ -92,10 +92,14 @@ class Kinematics:
 
     def jacobian(self, q: ArrayLike) -> Array:
         """Return the Jacobian (..., 6, n): rows 0-2 velocity of the flange origin m/s per rad/s, 3-5 angular."""
+        return self.jacobian_and_rotation(q)[0]
+
+    def jacobian_and_rotation(self, q: ArrayLike) -> tuple[Array, Array]:
+        """Return the Jacobian (..., 6, n) and the rotation (..., 3, 3) of the flange at joint angles (..., n) rad."""
         frames = list(self._axis_frames(np.asarray(q, dtype=np.float64)))
-        p_flange = matmul(frames[-1], self.spec.X_last_flange)[..., :3, 3]
-        columns = [_twist(X, p_flange) for X in frames]
-        return np.stack(columns, axis=-1)
+        X_base_flange = matmul(frames[-1], self.spec.X_last_flange)
+        columns = [_twist(X, X_base_flange[..., :3, 3]) for X in frames]
+        return np.stack(columns, axis=-1), X_base_flange[..., :3, :3]
 
     def inverse_branch(self, X_base_flange: Array, branch: Branch, near: ArrayLike | None = None) -> Array:
         """Return the joint angles (..., n) rad of one branch for poses (..., 4, 4); NaN where it does not exist.
