@@ -28,7 +28,7 @@ from runtime.motion.commands import Command, MoveJoint, MoveLinear
 from runtime.motion.joint_planner import JointPlanner
 from runtime.motion.path import Path
 from runtime.motion.path_ik import Arm
-from runtime.motion.speed_cap import PLANNED, SpeedCap
+from runtime.motion.speed_cap import GAINED_S, PLANNED, SpeedCap
 from runtime.motion.time_scaling import Pace
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.spec import RobotSpec
@@ -147,8 +147,8 @@ class MotionPlanner:
         ``X_flange_tool`` (4, 4) is the tool whose point moves, ``override`` in (0, 1] a share of every speed
         beside the command's own, ``cap`` m/s what tool point and flange may have at most, None: any speed.
         """
-        full = self._plan(q_start, command, X_flange_tool, override)
-        return full if cap is None else self._capped(full, q_start, command, self._cap(cap, X_flange_tool))
+        plan = self._plan(q_start, command, X_flange_tool, override)
+        return plan if cap is None else self._capped(plan, q_start, command, self._cap(cap, X_flange_tool))
 
     def _plan(self, q_start: Array, command: Command, X_flange_tool: Array, override: float) -> MovePlan:
         if isinstance(command, MoveJoint):
@@ -163,19 +163,32 @@ class MotionPlanner:
 
         The speed falls in proportion to the override where the move cruises, and later where it is too short for that.
         """
-        share = 1.0
+        command = self._eased(plan, command, cap)
+        share, override = 1.0, plan.override / command.override
+        if command.acceleration != plan.acceleration:
+            plan = self._plan(q_start, command, cap.X_flange_tool, override)
         for _ in range(_CAPPINGS):
             ratio = cap.ratio(cap.fine.expand(plan.q))
             if ratio <= 1.0:
                 break
             share *= _UNDER / ratio
-            plan = self._plan(q_start, command, cap.X_flange_tool, plan.override / command.override * _UNDER / ratio)
+            plan = self._plan(q_start, command, cap.X_flange_tool, override * share)
         else:
             raise Fault("RBL404", f"no speed of the move keeps below {cap.most * PLANNED / MM:g} mm/s")
         if share == 1.0:
             return plan
         note = f"runs at {share / PERCENT:.3g} % of its speeds, to keep below {cap.most / MM:g} mm/s"
         return replace(plan, notes=(*plan.notes, note))
+
+    def _eased(self, plan: MovePlan, command: Command, cap: SpeedCap) -> Command:
+        """Return a command that does not gain the speed of a cap too fast."""
+        if len(plan.q) == 1:
+            return command
+        if isinstance(command, MoveJoint):
+            easing = cap.easing(cap.fine.expand(plan.q))
+        else:
+            easing = min(1.0, cap.most / GAINED_S / (self._spec.path.acceleration * command.acceleration))
+        return command if easing == 1.0 else replace(command, acceleration=command.acceleration * easing)
 
     def chain(
         self,

@@ -1,8 +1,9 @@
 """The cap on the speed of the arm in MANUAL: neither tool point nor flange passes it, at any servo tick.
 
-A planned move under a cap takes the override at which it keeps below (``MotionPlanner.plan``): its path, its
-accelerations and what is refused stay those of the full speed. Commands keep to ``PLANNED`` of the cap, since the arm
-swings about its command: what is left is for the detected motion (docs/decisions/0044).
+A planned move under a cap takes the override at which it keeps below (``MotionPlanner.plan``); what is refused stays
+what is refused at full speed. Gear springs let the arm swing about its command, the more the faster it gains speed: so
+a move takes ``GAINED_S`` at least to gain the cap, and commands keep to ``PLANNED`` of it. What is left is for the
+swing of the links (docs/decisions/0044).
 
 With J the Jacobian of the flange and r the place of the tool point in its frame, turned into the base frame:
 
@@ -26,8 +27,11 @@ from runtime.robot.kinematics.kinematics import Kinematics
 MANUAL_SPEED = 0.25
 """Cap of MANUAL, m/s: the reduced speed of ISO 10218-1, for tool point and flange."""
 
-PLANNED = 0.92
+PLANNED = 0.95
 """Share of a cap that commands keep to."""
+
+GAINED_S = 0.25
+"""Time in which a move under a cap gains it, at least, s."""
 
 POINTS = ("tool point", "flange")
 """What is held to a cap, in the order of ``speeds``."""
@@ -61,6 +65,11 @@ class SpeedCap:
         """
         fastest = speeds(self.kinematics, motion[0], motion[1], self.X_flange_tool)
         return float(fastest.max()) / (self.most * PLANNED)
+
+    def easing(self, motion: Array) -> float:
+        """Return the share, up to 1, of the joint accelerations of a motion (3, ticks, n) that gains the cap slowly."""
+        hardest = float(speeds(self.kinematics, motion[0], motion[2], self.X_flange_tool).max())
+        return min(1.0, self.most / GAINED_S / hardest) if hardest > 0.0 else 1.0
 
     def kept(self, motion: Array) -> bool:
         """Return whether a motion (3, ticks, n) keeps to the planned share of the cap."""
