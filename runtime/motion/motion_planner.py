@@ -28,7 +28,7 @@ from runtime.motion.commands import Command, MoveJoint, MoveLinear
 from runtime.motion.joint_planner import JointPlanner
 from runtime.motion.path import Path
 from runtime.motion.path_ik import Arm
-from runtime.motion.speed_cap import GAINED_S, PLANNED, SpeedCap
+from runtime.motion.speed_cap import PLANNED, SpeedCap
 from runtime.motion.time_scaling import Pace
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.spec import RobotSpec
@@ -187,7 +187,7 @@ class MotionPlanner:
         if isinstance(command, MoveJoint):
             easing = cap.easing(cap.fine.expand(plan.q))
         else:
-            easing = min(1.0, cap.most / GAINED_S / (self._spec.path.acceleration * command.acceleration))
+            easing = cap.gaining(self._spec.path.acceleration * command.acceleration)
         return command if easing == 1.0 else replace(command, acceleration=command.acceleration * easing)
 
     def chain(

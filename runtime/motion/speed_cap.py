@@ -68,8 +68,12 @@ class SpeedCap:
 
     def easing(self, motion: Array) -> float:
         """Return the share, up to 1, of the joint accelerations of a motion (3, ticks, n) that gains the cap slowly."""
-        hardest = float(speeds(self.kinematics, motion[0], motion[2], self.X_flange_tool).max())
-        return min(1.0, self.most / GAINED_S / hardest) if hardest > 0.0 else 1.0
+        return self.gaining(float(speeds(self.kinematics, motion[0], motion[2], self.X_flange_tool).max()))
+
+    def gaining(self, acceleration: float) -> float:
+        """Return the share, up to 1, of an acceleration, m/s2, that gains the cap slowly."""
+        slow = self.most / GAINED_S
+        return slow / acceleration if not acceleration <= slow else 1.0
 
     def kept(self, motion: Array) -> bool:
         """Return whether a motion (3, ticks, n) keeps to the planned share of the cap."""

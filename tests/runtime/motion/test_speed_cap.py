@@ -10,6 +10,7 @@ from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.motion_planner import ChainFault
 from runtime.motion.speed_cap import MANUAL_SPEED, PLANNED, SpeedCap, speeds
 from tests.campaign import size
+from tests.messages import fields
 from tests.runtime.motion.motions import ROBOTS, TOOL, bench, limits_broken, random_chain
 
 FINE = FineInterpolator(8, 8e-3, np.zeros(6))
@@ -57,7 +58,6 @@ def test_without_a_cap_and_under_one_that_is_not_passed_the_rows_are_the_same_by
     start, commands = random_chain(robot, np.random.default_rng(5), 3)
     full = robot.planner.chain(start, commands, TOOL)
     assert robot.planner.chain(start, commands, TOOL, cap=100.0).q.tobytes() == full.q.tobytes()
-    assert all("runs at" not in note for note in full.notes)
 
 
 def test_the_flange_rules_where_the_tool_turns_about_its_point():
@@ -70,8 +70,7 @@ def test_the_flange_rules_where_the_tool_turns_about_its_point():
     assert fastest(robot, full.q, far)[1] > 0.1
     tool, flange = fastest(robot, capped.q, far)
     assert tool < 1e-4 and 0.08 < flange <= 0.1 * PLANNED
-    (note,) = [note for note in capped.notes if "runs at" in note]
-    assert "below 100 mm/s" in note
+    assert full.notes == () and fields(capped.notes[-1]) >= {"100", "mm/s"}
 
 
 def test_a_programmed_time_grows_and_a_move_to_where_the_arm_is_stays_nothing():
@@ -100,6 +99,6 @@ def test_a_motion_over_the_cap_is_refused_with_its_numbers(speed):
     dq *= 0.25 * speed / speeds(robot.kinematics, q, dq, TOOL).max()
     motion = np.stack([q, dq, dq])
     assert not cap.kept(motion)
-    with pytest.raises(Fault, match=r"mm/s and may move at 237\.5 mm/s") as refused:
+    with pytest.raises(Fault) as refused:
         cap.check(motion)
-    assert refused.value.code == "RBL404"
+    assert refused.value.code == "RBL404" and fields(refused.value.message) >= {"237.5", "mm/s"}
