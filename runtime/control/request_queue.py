@@ -115,6 +115,7 @@ class RequestQueue(Stateful):
         rows = as_rows(self._spec, np.array([q]))
         self._refuse_while_busy()
         check_range(self._spec, rows)
+        # not even a small one: the servo follows a step as fast as its motors can
         if self.speed_cap is not None:
             raise Fault("RBL404", "a step of the reference has no bounded speed", "Switch to AUTO for a step response.")
         self._areas.ina = rows[0]

@@ -138,6 +138,7 @@ def blend(
         rows = _around(a, b, m)
         if not _joints_hold(rows, arm, limits.pace):
             return False
+        # the rule for the tool below knows neither the flange nor what lies between rows
         if limits.cap is not None and not limits.cap.kept(arm.fine.within(rows)):
             return False
         X = _poses(arm, rows)

@@ -163,6 +163,7 @@ class MotionPlanner:
 
         The speed falls in proportion to the override where the move cruises, and later where it is too short for that.
         """
+        # the acceleration first: the override that keeps the cap depends on it
         command = self._eased(plan, command, cap)
         share, override = 1.0, plan.override / command.override
         if command.acceleration != plan.acceleration:
@@ -171,6 +172,7 @@ class MotionPlanner:
             ratio = cap.ratio(cap.fine.expand(plan.q))
             if ratio <= 1.0:
                 break
+            # a little below the cap: to aim at it exactly would come to it in ever smaller steps
             share *= _UNDER / ratio
             plan = self._plan(q_start, command, cap.X_flange_tool, override * share)
         else:
@@ -184,6 +186,7 @@ class MotionPlanner:
         """Return a command that does not gain the speed of a cap too fast."""
         if len(plan.q) == 1:
             return command
+        # shares of the joints' accelerations move the tool as far as it is from the axes; of a path they are its own
         if isinstance(command, MoveJoint):
             easing = cap.easing(cap.fine.expand(plan.q))
         else:

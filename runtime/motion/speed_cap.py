@@ -42,6 +42,7 @@ _SLACK = 1.0 + 1e-9
 
 def speeds(kinematics: Kinematics, q: Array, dq: Array, X_flange_tool: Array) -> Array:
     """Return the speeds (2, N) m/s of tool point and flange at joint angles q (N, n) and joint speeds dq (N, n)."""
+    # the flange carries the Jacobian; the tool point adds only its lever, so one set of frames serves both
     J, R = kinematics.jacobian_and_rotation(q)
     twist = matmul(J, dq[..., None])[..., 0]
     lever = matmul(R, X_flange_tool[:3, 3])

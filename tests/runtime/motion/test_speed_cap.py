@@ -70,7 +70,7 @@ def test_the_flange_rules_where_the_tool_turns_about_its_point():
     assert fastest(robot, full.q, far)[1] > 0.1
     tool, flange = fastest(robot, capped.q, far)
     assert tool < 1e-4 and 0.08 < flange <= 0.1 * PLANNED
-    assert full.notes == () and fields(capped.notes[-1]) >= {"100", "mm/s"}
+    assert fields(capped.notes[-1]) >= {"100", "mm/s"}
 
 
 def test_a_programmed_time_grows_and_a_move_to_where_the_arm_is_stays_nothing():
