@@ -25,6 +25,7 @@ from robolang.syntax.keywords import near
 from robolang.teaching.desk import Desk
 from robolang.teaching.documents import Documents
 from robolang.teaching.program_document import put_line
+from robolang.teaching.recovery import Recovery, discard, pending_recovery, recover
 from runtime.core.faults import Fault
 
 if TYPE_CHECKING:
@@ -70,6 +71,7 @@ class Pendant:
         """Whether keys move the arm; commands do in any case."""
         self.ended = False
         """Whether ``quit`` has been carried out."""
+        self._recovery = Recovery()
 
     def do(self, text: str) -> None:
         """Carry out what was typed; ``Failure`` for what cannot be done, with everything to show."""
@@ -182,6 +184,30 @@ class Pendant:
             raise failure("RBL805", f"these files have unsaved changes: {unsaved}")
         if not unsaved or self.output.ask(f"{unsaved}: leave without saving?"):
             self.ended = True
+            self._recovery.close()
+
+    def offer_recovery(self) -> None:
+        """Ask what becomes of unsaved changes that an earlier prompt left, if there are any."""
+        documents = self.desk.documents
+        pending = pending_recovery(documents.path if documents.named else None)
+        if pending is None:
+            return
+        self.output.line(pending.diff().rstrip("\n"))
+        if self.output.ask(f"Unsaved changes of {pending.when:%Y-%m-%d %H:%M} UTC were left: take them?"):
+            self.desk, self._recovery = recover(pending), Recovery(pending)
+            self.start_again()
+        elif self.output.ask("Delete them?"):
+            discard(pending.file)
+
+    def _keep(self) -> None:
+        """Keep what is unsaved in the recovery file; a script can be played again, and needs none."""
+        if self.scripted:
+            return
+        try:
+            self._recovery.keep(self.desk)
+        except Fault as fault:
+            # work goes on without one: the change itself has been made
+            self.output.problem(of_fault(fault).text)
 
     # --- documents ----------------------------------------------------------------------------------------------------
 
@@ -222,9 +248,12 @@ class Pendant:
         self.follow()
         return what
 
-    def save(self, path: Path | None = None) -> tuple[Path, ...]:
-        """Write what is unsaved, under another name where one is given; return the files."""
-        files = self.desk.save() if path is None else self.desk.save_as(path)
+    def save(self, path: Path | None = None, *, force: bool = False) -> tuple[Path, ...]:
+        """Write what is unsaved, under another name where one is given; return the files.
+
+        ``force``: also over what somebody else has changed on the disk meanwhile.
+        """
+        files = self.desk.save(force=force) if path is None else self.desk.save_as(path, force=force)
         self.follow()
         return files
 
@@ -245,6 +274,7 @@ class Pendant:
 
     def follow(self) -> None:
         """Let the controller go on with the documents as they are now."""
+        self._keep()
         self.start_again()
 
     # --- the controller -----------------------------------------------------------------------------------------------

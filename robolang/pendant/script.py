@@ -33,7 +33,19 @@ def play(lines: Iterable[str], pendant: Pendant, *, keep_going: bool = False) ->
             if not keep_going:
                 break
         if pendant.ended or pendant.interrupts.lost:
-            break
+            return played
+    if keep_going or not played.codes:
+        played = _left(pendant, played)
+    return played
+
+
+def _left(pendant: Pendant, played: Played) -> Played:
+    """End a script that has no quit at its end: it fails all the same where something is unsaved."""
+    try:
+        pendant.leave()
+    except Failure as error:
+        pendant.output.problem(error.text)
+        return played if played.codes else Played(error.codes)
     return played
 
 

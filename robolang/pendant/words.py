@@ -39,11 +39,11 @@ def whole(text: str, form: str, what: str, low: int, high: int) -> int:
     return int(text)
 
 
-def agreed(rest: str) -> tuple[str, bool]:
-    """Return the text without ``--yes`` at its end, and whether that was there."""
+def without_flag(rest: str, flag: str) -> tuple[str, bool]:
+    """Return the text without a flag such as ``--yes`` at its end, and whether that was there."""
     words = rest.rsplit(maxsplit=1)
-    if words and words[-1] == "--yes":
-        return rest[: rest.rindex("--yes")].rstrip(), True
+    if words and words[-1] == flag:
+        return rest[: rest.rindex(flag)].rstrip(), True
     return rest, False
 
 

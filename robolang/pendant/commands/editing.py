@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING
 
 from robolang.pendant.command import Command, Group, Offer
 from robolang.pendant.failure import failure
-from robolang.pendant.words import misused, nothing
+from robolang.pendant.words import misused, nothing, without_flag
 from robolang.teaching.documents import load_documents
 from robolang.teaching.program_document import change_line, delete_line, insert_line
+from robolang.teaching.saving import ConflictFault
 
 if TYPE_CHECKING:
     from robolang.pendant.pendant import Pendant
 
+_SAVE = "save [as NAME] [--force]"
 _INSERT, _EDIT = "insert LINE: TEXT", "edit LINE: TEXT"
 
 
@@ -67,13 +69,17 @@ def _diff(pendant: "Pendant", rest: str) -> None:
 
 
 def _save(pendant: "Pendant", rest: str) -> None:
+    rest, force = without_flag(rest, "--force")
     word, _, name = rest.partition(" ")
-    if word.lower() == "as" and name.strip():
-        files = pendant.save(_program_path(name.strip()))
-    elif rest:
-        raise misused("save [as NAME]", f"found '{rest}'")
-    else:
-        files = pendant.save()
+    path = _program_path(name.strip()) if word.lower() == "as" and name.strip() else None
+    if rest and path is None:
+        raise misused(_SAVE, f"found '{rest}'")
+    try:
+        files = pendant.save(path, force=force)
+    except ConflictFault as fault:
+        # both changes: whoever decides must see what would be lost
+        pendant.output.line(f"changed on the disk:\n{fault.theirs}changed here:\n{fault.ours}".rstrip("\n"))
+        raise
     pendant.output.line("saved: " + ", ".join(map(str, files)) if files else "nothing is unsaved")
 
 
@@ -148,11 +154,11 @@ COMMANDS = (
     ),
     Command(
         word="save",
-        form="save [as NAME]",
+        form=_SAVE,
         help="Write program, points and cell; the program in its layout.",
         group=Group.EDIT,
         do=_save,
-        words=("as",),
+        words=("as", "--force"),
         offers=(Offer.FILE,),
         needs_arm=False,
     ),

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, cast
 from robolang.pendant.command import Command, Group, Offer
 from robolang.pendant.failure import failure
 from robolang.pendant.output import Column, Table
-from robolang.pendant.words import agreed, misused, refuse_unanswered
+from robolang.pendant.words import misused, nothing, refuse_unanswered, without_flag
 
 if TYPE_CHECKING:
     from robolang.pendant.pendant import Pendant
@@ -17,7 +17,7 @@ _GO, _COPY, _RENAME = "go NAME [straight]", "copy NAME NEW [+ (x, y, z)]", "rena
 
 
 def _teach(pendant: "Pendant", rest: str) -> None:
-    rest, yes = agreed(rest)
+    rest, yes = without_flag(rest, "--yes")
     words = rest.split()
     if not 1 <= len(words) <= 2 or words[1:] not in ([], ["joints"], ["pose"]):
         raise misused(_TEACH, f"a name is expected, found '{rest}'")
@@ -26,7 +26,7 @@ def _teach(pendant: "Pendant", rest: str) -> None:
 
 
 def _touchup(pendant: "Pendant", rest: str) -> None:
-    rest, yes = agreed(rest)
+    rest, yes = without_flag(rest, "--yes")
     if len(rest.split()) != 1:
         raise misused(_TOUCHUP, f"the name of a point is expected, found '{rest}'")
     # a slip of the name must not make a new point: teach does that
@@ -91,6 +91,38 @@ def _show_change(pendant: "Pendant", old: "Point", new: "Point") -> None:
         pendant.output.line(f"the configuration changes: {before} to {after}")
     if found.unreached is not None:
         pendant.output.line(f"the old point is not reached: {found.unreached.code} {found.unreached.message}")
+
+
+def _points(pendant: "Pendant", rest: str) -> None:
+    nothing(rest, "points")
+    from robolang.teaching.point_table import point_table
+
+    live = pendant.live
+    found = point_table(live.around, live.q, pendant.desk.analysis)
+    if not found:
+        pendant.output.line("no point is taught")
+        return
+    columns = (
+        Column(heading="point"),
+        Column(heading="kind"),
+        Column(heading="frame"),
+        Column(heading="tool"),
+        Column(heading="configuration"),
+        Column(heading="to the limit", unit="deg", number=True),
+        Column(heading="reached now"),
+        Column(heading="used in lines"),
+        Column(heading="comment"),
+    )
+    rows = []
+    for row in found:
+        margin = "" if row.posture is None else f"{row.posture.limit.margin:.1f}"
+        reached = "yes" if row.fault is None else f"no: {row.fault.code}"
+        lines = ", ".join(map(str, row.lines))
+        point = row.point
+        rows.append(
+            (point.name, row.kind, point.frame, point.tool, row.configuration, margin, reached, lines, point.comment)
+        )
+    pendant.output.table(Table(columns=columns, rows=tuple(rows)))
 
 
 def _go(pendant: "Pendant", rest: str) -> None:
@@ -162,6 +194,13 @@ COMMANDS = (
         do=_touchup,
         offers=(Offer.POINT,),
         words=("--yes",),
+    ),
+    Command(
+        word="points",
+        form="points",
+        help="Show the points: where they are used, and whether the arm reaches them.",
+        group=Group.TEACH,
+        do=_points,
     ),
     Command(
         word="go",

@@ -1,0 +1,186 @@
+"""Scripts of the prompt: what a session without a terminal carries out, shows, and ends with."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.robolang.pendant.prompting import played, prompt
+
+PICK = Path("programs/pick_and_place.rbl")
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    """Work in an empty folder; programs of the repository by their absolute path."""
+    root = Path.cwd()
+    monkeypatch.chdir(tmp_path)
+    return root
+
+
+def test_statements_move_the_live_arm_and_expressions_show_values(folder):
+    codes, results, problems = played("LOAD (0, 0, 60), 0.8\nMOVE P2\nHERE.Z\nx = 2\nx * 3\n", folder / PICK)
+    assert (codes, problems) == ((), "")
+    assert results.splitlines()[-3:] == ["> x = 2", "> x * 3", "6"]
+    assert "840" in results.splitlines()
+
+
+@pytest.mark.parametrize(
+    "line, code, column",
+    [
+        ("MOVE P99", "RBL301", 6),
+        ("MOV P1", "RBL112", 1),
+        ("GOTO 999", "RBL202", 6),
+        ("CALL nothing(1)", "RBL213", 6),
+        ("PRINT nobody", "RBL215", 7),
+        ("SPEED -5", "RBL404", 7),
+        ("MOVE P1 + (0, 0, 9000)", "RBL410", 1),
+        ("1 / 0", "RBL209", 7),
+    ],
+)
+def test_a_statement_with_an_error_is_placed_and_changes_nothing(folder, line, code, column):
+    codes, results, problems = played(f"{line}\npos\n", folder / PICK)
+    assert codes == (code,)
+    assert f"prompt:1:{column}: error {code}" in problems
+    assert "joint" not in results  # the script ends at the first error
+
+
+def test_a_script_goes_on_where_it_shall_and_keeps_the_first_code(folder):
+    codes, results, _ = played("MOVE P99\nSPEED -5\n2 + 3\n", folder / PICK, keep_going=True)
+    assert codes == ("RBL301",)
+    assert results.splitlines()[-1] == "5"
+
+
+def test_names_of_the_prompt_are_known_to_the_check(folder):
+    codes, _, problems = played('x = 3\ns$ = "a"\np = HERE\nDIM a(3)\na(2) = x\nMOVE p\ns$ ; a(2)\n', folder / PICK)
+    assert (codes, "error" in problems) == ((), False)
+
+
+def test_a_constant_of_the_prompt_stays(folder):
+    assert played("CONST k = 3\nk = 4\n", folder / PICK)[0] == ("RBL216",)
+
+
+@pytest.mark.parametrize(
+    "line, code",
+    [
+        ("pos 3", "RBL802"),
+        ("list 61", "RBL803"),
+        ("list 10 20 30", "RBL802"),
+        ("in 1 on", "RBL534"),
+        ("in 1 maybe", "RBL802"),
+        ("help nowhere", "RBL801"),
+        ("teach", "RBL802"),
+        ("teach MOVE", "RBL303"),
+        ("touchup P99", "RBL301"),
+        ("touchup P1", "RBL807"),
+        ("go P99", "RBL301"),
+        ("copy P1 P2", "RBL808"),
+        ("rename P1", "RBL802"),
+        ("undo", "RBL715"),
+        ("redo", "RBL715"),
+        ("edit 60", "RBL802"),
+        ("insert nowhere: MOVE P1", "RBL803"),
+        ("65", "RBL717"),
+        ("open nowhere.rbl", "RBL701"),
+        ("save as", "RBL802"),
+    ],
+)
+def test_a_command_that_cannot_be_carried_out_has_a_code(folder, line, code):
+    codes, _, problems = played(f"{line}\n", folder / PICK)
+    assert codes == (code,)
+    assert code in problems and "help:" in problems
+
+
+def test_an_unknown_command_names_the_one_that_was_meant(folder):
+    codes, _, problems = played("tech P7\n", folder / PICK)
+    assert codes == ("RBL112",) and "teach" in problems
+
+
+def test_the_program_is_written_at_the_prompt(folder, tmp_path):
+    codes, results, problems = played(
+        "10 load (0,0,60), 0.8\n30 MOVE P2\n20 move P1\n25 DELAY 1\n25\nlist\nsave as mine\n"
+    )
+    assert (codes, problems) == ((), "")
+    assert (tmp_path / "mine.rbl").read_text() == "10 LOAD (0, 0, 60), 0.8\n20 MOVE P1\n30 MOVE P2\n"
+    assert "mine.rbl" in results
+
+
+def test_lines_without_numbers_are_edited_by_their_place(folder, tmp_path):
+    lines = "insert end: MOVE P1\ninsert end: MOVE P3\ninsert 2: MOVE P2\nedit 1: MOVE P5\nedit 3:\nsave as mine\n"
+    assert played(lines)[0] == ()
+    assert (tmp_path / "mine.rbl").read_text() == "MOVE P5\nMOVE P2\n"
+
+
+def test_errors_of_an_edit_are_shown_at_once_and_keep_the_program_from_running(folder):
+    codes, _, problems = played("10 MOVE P7\nrun\n")
+    assert codes == ("RBL301",)
+    assert problems.count("RBL301") == 2
+
+
+def test_a_script_that_ends_with_unsaved_changes_fails(folder):
+    assert played("10 MOVE P1\n")[0] == ("RBL805",)
+    assert played("10 MOVE P1\nquit\n")[0] == ("RBL805",)
+    assert played("10 MOVE P1\nundo\n")[0] == ()
+
+
+def test_points_are_taught_and_saved_beside_the_program(folder, tmp_path):
+    codes, _, _ = played(
+        "insert end: MOVE P7\ninsert end: MOVE P1\nMOVE P2\nteach P7\ncopy P7 P8 + (0, 0, 50)\nsave as mine\n"
+    )
+    assert codes == ()
+    codes, results, _ = played("P8.Z - P7.Z\nrename P7 ABOVE\nlist\ndel P8\nundo\nsave\n", tmp_path / "mine.rbl")
+    assert codes == ()
+    # joints of three decimals: some micrometres
+    assert abs(float(results.splitlines()[1]) - 50.0) < 0.01
+    assert (tmp_path / "mine.rbl").read_text().startswith("MOVE ABOVE\n")
+
+
+def test_a_touch_up_shows_the_change_and_replaces_the_point(folder, tmp_path):
+    played("insert end: MOVE P1\nteach P7\nsave as mine\n")
+    session = prompt(tmp_path / "mine.rbl")
+    session.do("MOVE P7 + (0, 0, -40)")
+    shown = session.do("touchup P7 --yes")
+    assert "40.000 mm, 0.000 deg" in shown and "-40.000" in shown
+    assert session.pendant.desk.unsaved
+
+
+def test_a_program_runs_on_from_the_state_of_the_prompt(folder):
+    codes, results, _ = played("run\nrun\n", folder / PICK)
+    assert codes == ("RBL806",)
+    assert "AUTO" in results
+
+
+def test_again_brings_the_start_state_back(folder):
+    session = prompt(folder / PICK)
+    start = session.do("pos")
+    session.do("MOVE P1", "again")
+    assert session.do("pos") == start
+
+
+def test_an_alarm_is_acknowledged_before_anything_moves(folder, tmp_path):
+    (tmp_path / "bad.rbl").write_text("x = 1\nFOR i = 0 TO 3\nx = x / (3 - i)\nNEXT\n")
+    codes, results, problems = played("run\nMOVE P1\nreset\nMOVE P1\n", tmp_path / "bad.rbl", keep_going=True)
+    assert codes == ("RBL501",)
+    assert problems.count("RBL804") == 1
+    assert "RBL501 is acknowledged" in results
+    assert "X 480.000" in results.splitlines()[-1]
+
+
+def test_an_input_is_forced_and_given_back(folder, tmp_path):
+    (tmp_path / "p.rbl").write_text("MOVE P1\n")
+    session = prompt(tmp_path / "p.rbl", cell=folder / "programs/shop/cell.toml")
+    number = min(session.pendant.project.cell.inputs)
+    before = session.do(f"IN({number})")
+    session.do(f"in {number} on")
+    assert session.do(f"IN({number})") == "1\n"
+    session.do(f"in {number} off")
+    assert session.do(f"IN({number})") == "0\n"
+    session.do(f"in {number} auto")
+    assert session.do(f"IN({number})") == before
+
+
+def test_every_command_is_explained(folder):
+    session = prompt()
+    listed = session.do("help")
+    for command in session.pendant.commands:
+        assert command.form in listed and command.help in listed
+        assert command.help in session.do(f"help {command.word}")
