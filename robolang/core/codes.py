@@ -208,6 +208,29 @@ register(
         found=Stage.RUN,
     ),
     Code(
+        code="RBL313",
+        name="frame-not-determined",
+        meaning="Two of the three points of a frame are too near to each other, or the points lie nearly on one line.",
+        remedy="Teach the points further apart: the origin, a point on the X axis, and one on the side of the Y axis.",
+        found=Stage.RUN,
+    ),
+    Code(
+        code="RBL314",
+        name="tool-not-determined",
+        meaning="The touches do not determine the tip of a tool: there are too few, or the flange has nearly the same "
+        "orientation in all of them.",
+        remedy="Touch one fixed tip 4 times or more, from directions that differ by 30 deg or more, tilted to more "
+        "than one side.",
+        found=Stage.RUN,
+    ),
+    Code(
+        code="RBL315",
+        name="touches-apart",
+        meaning="The touches of a tool do not meet in one tip.",
+        remedy="Teach the touch that the message names again, and see that the fixed tip does not move.",
+        found=Stage.RUN,
+    ),
+    Code(
         code="RBL420",
         name="test-motion-refused",
         meaning="A test motion of identification would exceed the range, the speed, the acceleration or the torque of "
