@@ -26,6 +26,7 @@ from runtime.control.controller import Controller
 from runtime.core.frames import Array
 from runtime.core.program_line import named
 from runtime.core.units import DEG
+from runtime.motion.speed_cap import MANUAL_SPEED
 
 
 class Watching(Observer):
@@ -124,6 +125,7 @@ class Live:
 
     def limit_speed(self, limited: bool) -> None:
         """Keep tool and flange under 250 mm/s in all that is planned from now on, or not."""
+        self.controller.speed_cap = MANUAL_SPEED if limited else None
 
     def drive(self) -> Status:
         """Let the program, or what was fed, go on until it stands; ``Failure`` for what went wrong meanwhile."""

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.robolang.pendant.prompting import played, prompt
@@ -163,6 +164,19 @@ def test_an_alarm_is_acknowledged_before_anything_moves(folder, tmp_path):
     assert problems.count("RBL804") == 1
     assert "RBL501 is acknowledged" in results
     assert "X 480.000" in results.splitlines()[-1]
+
+
+def test_manual_is_slow_and_auto_has_the_programmed_speed(folder):
+    seconds = {}
+    for mode in ("manual", "auto"):
+        session = prompt(folder / PICK)
+        session.do(mode, "MOVE P1 + (0, 0, 50), SPEED 900")
+        seconds[mode] = session.pendant.live.seconds
+        q, period = session.pendant.live.session.result(0.0).log["q_cmd"], session.pendant.project.profile.tick_s
+        poses = session.pendant.live.controller.tool_poses(q)
+        fastest = np.linalg.norm(np.diff(poses[:, :3, 3], axis=0), axis=1).max() / period
+        assert bool(fastest <= 0.25) is (mode == "manual")
+    assert seconds["manual"] > seconds["auto"]
 
 
 def test_an_input_is_forced_and_given_back(folder, tmp_path):
