@@ -37,6 +37,23 @@ AT_REST = 0.01
 """Detected joint speed below which an arm that has stopped is held by its brakes, rad/s."""
 
 
+def drive_data(spec: RobotSpec, profile: Profile) -> DriveData:
+    """Return what supervision knows of the drives of a robot under a profile."""
+    return DriveData(
+        torque=torque_limit(spec),
+        resolution=encoder_resolution(spec),
+        lag=(1.0 - profile.servo.velocity_feedforward) / bandwidths(spec, profile.servo)[0],
+        ticks=profile.ticks_per_cycle,
+        tick_s=profile.tick_s,
+        friction=profile.servo.friction_compensation,
+    )
+
+
+def load_model(spec: RobotSpec, profile: Profile) -> LoadModel:
+    """Return the arm by which torques are judged, with what an identification has found of it."""
+    return LoadModel(spec, rotors(spec, profile.servo), first_moments(spec, profile.servo))
+
+
 class DriveTrain(Stateful):
     """Areas, fine interpolation, servo, dynamics task, plant, recorder and supervision of n axes."""
 
@@ -67,19 +84,7 @@ class DriveTrain(Stateful):
         self.recorder = Recorder(spec.n, profile.ticks_per_cycle, profile.tick_us, plant.q_link)
         self.fine = FineInterpolator(profile.ticks_per_cycle, profile.period_s, q)
         self.power_up(q, 0)
-        self.supervisor = Supervisor(
-            spec,
-            profile.supervision,
-            DriveData(
-                torque=torque_limit(spec),
-                resolution=encoder_resolution(spec),
-                lag=(1.0 - profile.servo.velocity_feedforward) / bandwidths(spec, profile.servo)[0],
-                ticks=profile.ticks_per_cycle,
-                tick_s=profile.tick_s,
-                friction=profile.servo.friction_compensation,
-            ),
-            LoadModel(spec, rotors(spec, profile.servo), moments),
-        )
+        self.supervisor = Supervisor(spec, profile.supervision, drive_data(spec, profile), load_model(spec, profile))
         self.touches = None if plant.bodies is None else Touches(plant.bodies, plant.gripped)
         """What the arm, the hand and held parts touch; None where the plant knows no contacts."""
         self._loaded_us = self._overruns = 0
