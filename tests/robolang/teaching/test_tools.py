@@ -94,10 +94,11 @@ def test_orientations_that_are_too_alike(tilt, refused):
     assert caught.value.code == "RBL314"
 
 
-def test_too_few_touches():
+@pytest.mark.parametrize("count", [0, 1, 2])
+def test_too_few_touches(count):
     rng = np.random.default_rng(1)
     with pytest.raises(Fault) as caught:
-        tool_tip(touches(tilted(2, rng), rng))
+        tool_tip(touches(tilted(max(count, 1), rng), rng)[:count])
     assert caught.value.code == "RBL314"
 
 
@@ -114,6 +115,20 @@ def test_the_touch_that_does_not_fit_is_named(bad):
     assert f"T{bad + 1} " in caught.value.message
     # without it the rest agrees
     assert tool_tip([each for each in given if each is not given[bad]]).tip == pytest.approx(TIP, abs=1.5)
+
+
+def test_an_outlier_that_pulls_the_tip_towards_itself_is_named():
+    rng = np.random.default_rng(2)
+    # one touch is tilted far more than the others, so the tip follows it: T4 is left farther away
+    R = turned([[18, 0, 19], [-17, 4, -5], [12, -13, 15], [2, 16, -1], [-18, 66, 60]])
+    given = touches(R, rng)
+    X = np.array(given[4].X)
+    X[:3, 3] += np.array([2.0, -5.0, 9.0]) * 1e-3
+    given[4] = Touch(name="T5", X=X)
+    with pytest.raises(Fault) as caught:
+        tool_tip(given, most_apart=1.0)
+    assert caught.value.code == "RBL315"
+    assert "T5 " in caught.value.message
 
 
 def test_of_three_touches_that_do_not_meet_one_is_named():
