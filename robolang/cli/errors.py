@@ -20,7 +20,14 @@ from runtime.core.tomlfile import FileFault
 DIAGNOSTICS, USAGE, MOTION, STORAGE, INTERNAL = 1, 2, 3, 4, 70
 INTERRUPTED = 130
 
-_OF_CODE = {"RBL301": DIAGNOSTICS, "RBL706": STORAGE, "RBL804": MOTION, "RBL805": DIAGNOSTICS, "RBL806": MOTION}
+_OF_CODE = {
+    "RBL301": DIAGNOSTICS,
+    "RBL312": STORAGE,
+    "RBL706": STORAGE,
+    "RBL804": MOTION,
+    "RBL805": DIAGNOSTICS,
+    "RBL806": MOTION,
+}
 # A group of two digits counts before one of one: 40x is about the text, the rest of 4xx a motion (decision 0005).
 _OF_GROUP = {"1": DIAGNOSTICS, "2": DIAGNOSTICS, "40": DIAGNOSTICS, "4": MOTION, "5": MOTION, "9": INTERNAL}
 # Errors of a device that is full or broken. Only stdout gets here with one: storage turns those of files into faults.

@@ -1,6 +1,15 @@
 """All commands of the prompt."""
 
 from robolang.pendant.command import Commands
-from robolang.pendant.commands import editing, running, session, showing, teaching
+from robolang.pendant.commands import editing, measuring, running, session, showing, teaching
 
-COMMANDS = Commands((*editing.COMMANDS, *session.COMMANDS, *showing.COMMANDS, *teaching.COMMANDS, *running.COMMANDS))
+COMMANDS = Commands(
+    (
+        *editing.COMMANDS,
+        *session.COMMANDS,
+        *showing.COMMANDS,
+        *teaching.COMMANDS,
+        *measuring.COMMANDS,
+        *running.COMMANDS,
+    )
+)

@@ -1,5 +1,7 @@
 """Scripts of the prompt: what a session without a terminal carries out, shows, and ends with."""
 
+import re
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -198,3 +200,39 @@ def test_every_command_is_explained(folder):
     for command in session.pendant.commands:
         assert command.form in listed and command.help in listed
         assert command.help in session.do(f"help {command.word}")
+
+
+TAUGHT = """
+MOVE P2
+teach A
+MOVE P2 + (100, 0, 0)
+teach B
+MOVE P2 + (20, 50, 0)
+teach C
+"""
+
+
+def test_a_frame_is_measured_and_at_once_in_use(folder):
+    session = prompt()
+    session.do(*TAUGHT.split("\n"))
+    shown = session.do("teachframe pallet A B C")
+    numbers = [float(each) for each in re.findall(r"-?\d+\.\d+", shown)]
+    # points taught as joints have three decimals of a degree
+    assert np.abs(np.array(numbers) - [480.0, 0.0, 840.0, 0.0, 0.0, 0.0]).max() < 0.02
+    session.do("FRAME pallet", "MOVE POSE(10, 20, 0, 180, 0, -135)")
+    session.do("FRAME WORLD")
+    assert abs(float(session.do("HERE.X")) - 490.0) < 0.02
+    codes, _, _ = played(TAUGHT + "teachframe pallet A B B\n")
+    assert codes == ("RBL313",)
+    codes, _, _ = played(TAUGHT + "teachframe pallet A B C\nteachframe pallet B A C\n")
+    assert codes == ("RBL807",)
+
+
+def test_a_tool_is_measured_by_touches_of_one_tip(folder, tmp_path):
+    turns = [(180, 0, -135), (150, 0, -135), (180, 30, -135), (180, 0, -90)]
+    lines = [f"MOVE POSE(480, 0, 700, {rx}, {ry}, {rz})\nteach T{i} joints" for i, (rx, ry, rz) in enumerate(turns)]
+    codes, _results, _problems = played("\n".join(lines) + "\nteachtool probe T0 T1 T2 T3\nsave as mine\n")
+    assert codes == ()
+    cell = tomllib.loads((tmp_path / "mine.cell.toml").read_text())
+    hand = prompt().pendant.project.cell.hand.X_flange_tool[:3, 3] * 1000.0
+    assert np.abs(np.array(cell["tools"]["probe"]["pose_mm_deg"][:3]) - hand).max() < 0.05
