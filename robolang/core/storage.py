@@ -95,7 +95,11 @@ def only_one(folder: Path) -> Iterator[None]:
         yield
     finally:
         if handle is not None:
-            os.close(handle)
+            # each in its own block: the lock ends with either of them, and what was saved is saved
+            with suppress(OSError):
+                fcntl.flock(handle, fcntl.LOCK_UN)
+            with suppress(OSError):
+                os.close(handle)
 
 
 @contextmanager

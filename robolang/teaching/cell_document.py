@@ -12,7 +12,16 @@ from robolang.project.builtin import cell_text, points_text
 from robolang.teaching.documents import Documents
 from robolang.teaching.names import check_word
 from robolang.teaching.points_document import pose_text, taught
-from robolang.teaching.toml_text import Values, number, numbers, remove_table, rename_table, set_table, spelling
+from robolang.teaching.toml_text import (
+    Values,
+    check_form,
+    number,
+    numbers,
+    remove_table,
+    rename_table,
+    set_table,
+    spelling,
+)
 from runtime.cell.cell_file import CellFile, parse_cell_file
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import Source
@@ -59,12 +68,18 @@ def cell_of(documents: Documents) -> CellFile:
 
 def _set(documents: Documents, group: str, name: str, values: Values) -> Documents:
     check_word(name)
-    cell_of(documents)
+    _check(documents, group)
     return _with(documents, set_table(_text(documents), group, name, values))
 
 
-def _present(documents: Documents, group: str, name: str) -> str:
+def _check(documents: Documents, group: str) -> None:
+    """Raise ``FileFault`` RBL6xx for a cell file that is damaged, or in which the group cannot be edited."""
     cell_of(documents)
+    check_form(_source(documents, _text(documents)), group, "RBL601")
+
+
+def _present(documents: Documents, group: str, name: str) -> str:
+    _check(documents, group)
     text = _text(documents)
     if spelling(text, group, name) is None:
         raise Fault("RBL305", f"the cell has no {group[:-1]} {name}", "Name one that the cell file defines.")

@@ -12,7 +12,16 @@ from robolang.project.builtin import points_text
 from robolang.project.points import Point, PointStore, read_points
 from robolang.teaching.documents import Documents
 from robolang.teaching.names import check_free, check_not_taken
-from robolang.teaching.toml_text import Values, number, numbers, quoted, remove_table, rename_table, set_table
+from robolang.teaching.toml_text import (
+    Values,
+    check_form,
+    number,
+    numbers,
+    quoted,
+    remove_table,
+    rename_table,
+    set_table,
+)
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import Source
 
@@ -74,6 +83,7 @@ def _point(documents: Documents, text: str, name: str) -> Point:
 def text_of(documents: Documents, robot: str = "") -> str:
     """Return the text of the points file, or of the one that is written with the first change."""
     if documents.points is not None:
+        check_form(_source(documents, documents.points), GROUP, "RBL303")
         return documents.points
     if documents.cell is not None:
         return f"schema = 1\n{f'robot = {quoted(robot)}' + chr(10) if robot else ''}"

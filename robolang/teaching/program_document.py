@@ -125,9 +125,11 @@ def _place(lines: tuple[Line, ...], number: int) -> int:
     higher = next((at for each, at in numbered if each > number and at > lower), None)
     if higher is None:
         return lines[-1].source_line + 1
-    while higher and _belongs_below(lines[higher - 1], lines[higher]):
-        higher -= 1
-    return lines[higher].source_line
+    above = higher
+    while above and _belongs_below(lines[above - 1], lines[above]):
+        above -= 1
+    # a comment at the top is about the program
+    return lines[above or higher].source_line
 
 
 def _belongs_below(line: Line, below: Line) -> bool:

@@ -1,18 +1,20 @@
 """Tables ``[group.NAME]`` of a TOML text, set, removed and renamed, with every other byte of the text as it was.
 
 A table with a header of its own is cut out, edited by tomlkit and put back, so what stands around it cannot change. One
-in another form (inline, or with dotted keys) is edited by tomlkit in the whole text. The text must be TOML.
+in another form (``NAME = {...}``, ``NAME.key = ...``) becomes one line when it is set. The text must be TOML, and not
+have the whole group as one value (``check_form``).
 """
 
 import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import pairwise
 from typing import Any, NamedTuple
 
-import tomlkit
+from runtime.core.tomlfile import Source
 
 Values = Mapping[str, str | None]
-"""TOML values by key as they are written; None: the key is removed. Other keys stay."""
+"""All keys that a table may have, with TOML values as they are written; None: the key is removed."""
 
 _TOKEN = re.compile(
     r"""
@@ -20,14 +22,21 @@ _TOKEN = re.compile(
     """,
     re.VERBOSE | re.DOTALL,
 )
+_PART = re.compile(r"""(?:"(?:\\.|[^"\\\n])*"|'[^'\n]*'|[A-Za-z0-9_-]+)""")
+_KEY = re.compile(rf"[ \t]*\[{{0,2}}[ \t]*{_PART.pattern}(?:[ \t]*\.[ \t]*{_PART.pattern})*")
 
 
 class _Row(NamedTuple):
-    """A statement with its line end, a line of its own for a comment, or a blank line."""
+    """A statement with its line end, a line of its own for a comment, or a blank line.
+
+    ``path``: the key path of a statement; ``parts``: the places of those of its names that are written in it, the last.
+    """
 
     start: int
     end: int
     text: str
+    path: tuple[str, ...]
+    parts: tuple[tuple[int, int], ...]
 
     @property
     def is_header(self) -> bool:
@@ -39,7 +48,8 @@ class _Row(NamedTuple):
 
 
 class _Block(NamedTuple):
-    """A table from its header to its last key: the place, its key path, and where comments right above it begin."""
+    """A table from its header to its last key or the comment right below: the place, its key path, and where comments
+    right above it begin."""
 
     start: int
     end: int
@@ -47,8 +57,15 @@ class _Block(NamedTuple):
     above: int
 
 
+def check_form(source: Source, group: str, code: str) -> None:
+    """Raise ``FileFault`` with a code where a group is one value, ``group = {...}``, which is not edited."""
+    if any(row.path == (group,) and not row.is_header for row in _rows(source.text)):
+        message = f"'{group}' is written as one value, in which nothing can be changed"
+        source.fail(code, message, f"write a table for each of them, as in [{group}.NAME]", keys=(group,))
+
+
 def set_table(text: str, group: str, name: str, values: Values) -> str:
-    """Return a text with keys of ``[group.NAME]`` set; a new table comes after the last one of the group.
+    """Return a text with ``[group.NAME]`` set; a new table comes after the last one of the group.
 
     Names ignore case; one that is there keeps its spelling.
     """
@@ -57,11 +74,16 @@ def set_table(text: str, group: str, name: str, values: Values) -> str:
         return _appended(text, group, name, values)
     block = _find(text, group, written)
     if block is None:
-        document: Any = tomlkit.parse(text)
-        _assign(document[group][written], values)
-        return tomlkit.dumps(document)
+        return _set_loose(text, group, written, values)
+    import tomlkit  # late: nothing is edited at the start of a prompt
+
     part: Any = tomlkit.parse(text[block.start : block.end])
-    _assign(part[group][written], values)
+    table = part[group][written]
+    for key, value in values.items():
+        if value is not None:
+            table[key] = tomlkit.value(value)
+        elif key in table:
+            del table[key]
     return f"{text[: block.start]}{_ends_as(tomlkit.dumps(part), text)}{text[block.end :]}"
 
 
@@ -71,9 +93,7 @@ def remove_table(text: str, group: str, name: str) -> str:
     assert written is not None
     block = _find(text, group, written)
     if block is None:
-        document: Any = tomlkit.parse(text)
-        del document[group][written]
-        return tomlkit.dumps(document)
+        return _replaced(text, [(row.start, row.end, "") for row in _of(text, group, written)])
     before, after = text[: block.above], text[block.end :]
     # one of the blank lines around it goes too: those of its neighbours stay as many as they were
     if not after.strip():
@@ -87,20 +107,7 @@ def remove_table(text: str, group: str, name: str) -> str:
 def rename_table(text: str, group: str, name: str, new: str) -> str:
     """Return a text in which ``[group.NAME]``, which must be there, has another name."""
     written = spelling(text, group, name)
-    assert written is not None
-    block = _find(text, group, written)
-    if block is None:
-        document: Any = tomlkit.parse(text)
-        table = document[group]
-        # tomlkit cannot rename a key in its place: all tables of this form are put anew, in their order
-        for key, value in list(table.items()):
-            del table[key]
-            table[new if key == written else key] = value
-        return tomlkit.dumps(document)
-    header = text[block.start : text.index("]", block.start)]
-    place = header.rindex(written)
-    start = block.start + place
-    return f"{text[:start]}{new}{text[start + len(written) :]}"
+    return _replaced(text, [(*_name_in(row), new) for row in _of(text, group, written) if _writes_name(row)])
 
 
 def spelling(text: str, group: str, name: str) -> str | None:
@@ -111,8 +118,9 @@ def spelling(text: str, group: str, name: str) -> str | None:
 
 def number(value: float, digits: int) -> str:
     """Return a number with at most so many decimals, as short as it is exact to them; never ``-0``."""
-    rounded = round(value, digits) + 0.0
-    return str(int(rounded)) if rounded == int(rounded) else repr(rounded)
+    rounded = round(float(value), digits) + 0.0
+    # one that is not finite is a value of TOML as well, and refused where the text is read
+    return str(int(rounded)) if rounded.is_integer() else repr(rounded)
 
 
 def numbers(values: Iterable[str]) -> str:
@@ -122,15 +130,9 @@ def numbers(values: Iterable[str]) -> str:
 
 def quoted(text: str) -> str:
     """Return a text as it is written."""
+    import tomlkit
+
     return tomlkit.item(text).as_string()
-
-
-def _assign(table: Any, values: Values) -> None:
-    for key, value in values.items():
-        if value is not None:
-            table[key] = tomlkit.value(value)
-        elif key in table:
-            del table[key]
 
 
 def _appended(text: str, group: str, name: str, values: Values) -> str:
@@ -145,6 +147,40 @@ def _appended(text: str, group: str, name: str, values: Values) -> str:
     return f"{before}{blank}{''.join(f'{row}{end}' for row in rows)}{after}"
 
 
+def _set_loose(text: str, group: str, written: str, values: Values) -> str:
+    """Return a text in which a table without a header is one line, where its first key was."""
+    first, *others = _of(text, group, written)
+    _, end = _name_in(first)
+    inside = ", ".join(f"{key} = {value}" for key, value in values.items() if value is not None)
+    whole = text[first.start : first.end]
+    row = f"{text[first.start : end]} = {{{inside}}}{whole[len(whole.rstrip()) :]}"
+    return _replaced(text, [(first.start, first.end, row), *((other.start, other.end, "") for other in others)])
+
+
+# --- where the tables are --------------------------------------------------------------------------------------------
+
+
+def _of(text: str, group: str, written: str | None) -> list[_Row]:
+    """Return the statements of a table, its header among them."""
+    return [row for row in _rows(text) if row.path[:2] == (group, written)]
+
+
+def _writes_name(row: _Row) -> bool:
+    return len(row.path) - len(row.parts) < 2
+
+
+def _name_in(row: _Row) -> tuple[int, int]:
+    """Return the place of the second name of a key path."""
+    return row.parts[1 - len(row.path)]
+
+
+def _replaced(text: str, edits: list[tuple[int, int, str]]) -> str:
+    """Return a text with edits made that do not overlap: what stands from start to end becomes another text."""
+    for start, end, new in sorted(edits, reverse=True):
+        text = f"{text[:start]}{new}{text[end:]}"
+    return text
+
+
 def _find(text: str, group: str, written: str) -> _Block | None:
     return next((block for block in _blocks(text) if block.path == (group, written)), None)
 
@@ -152,42 +188,52 @@ def _find(text: str, group: str, written: str) -> _Block | None:
 def _blocks(text: str) -> Iterator[_Block]:
     """Yield the tables that have a header."""
     rows = list(_rows(text))
-    for index, row in enumerate(rows):
-        if not row.is_header:
-            continue
-        own = [row]
-        for following in rows[index + 1 :]:
-            if following.is_header:
-                break
-            own.append(following)
-        while own[-1].is_comment or not own[-1].text:
-            own.pop()
-        first = index
-        while first and rows[first - 1].is_comment:
-            first -= 1
+    headers = [index for index, row in enumerate(rows) if row.is_header]
+    for index, following in pairwise([*headers, len(rows)]):
+        last = max(at for at in range(index, following) if rows[at].path)
+        comments = _comments(rows, range(last + 1, following))
+        # a comment right below the last key, unless it is right above the next header
+        if last + comments + 1 < following or following == len(rows):
+            last += comments
+        above = index - _comments(rows, range(index - 1, -1, -1))
         # comments at the top of a file are about the file
-        above = rows[first].start if first else row.start
-        yield _Block(row.start, own[-1].end, _path(row.text), above)
+        start = rows[above].start if above else rows[index].start
+        yield _Block(rows[index].start, rows[last].end, rows[index].path, start)
 
 
-def _path(header: str) -> tuple[str, ...]:
-    found, path = tomllib.loads(header), []
-    while isinstance(found, dict) and found:
-        path += list(found)
-        found = found[path[-1]]
-    return tuple(path)
+def _comments(rows: list[_Row], places: range) -> int:
+    """Return how many rows are comments, from the first place on without a gap."""
+    return next((count for count, at in enumerate(places) if not rows[at].is_comment), len(places))
 
 
 def _rows(text: str) -> Iterator[_Row]:
+    table: tuple[str, ...] = ()
     start = depth = 0
-    for token in _TOKEN.finditer(text):
-        sign = token[0]
+    ends = [*_TOKEN.finditer(text), None]
+    for token in ends:
+        sign = "\n" if token is None else token[0]
         depth += (sign in "[{") - (sign in "]}") if len(sign) == 1 else 0
-        if sign == "\n" and not depth:
-            yield _Row(start, token.end(), text[start : token.end()].strip())
-            start = token.end()
-    if start < len(text):
-        yield _Row(start, len(text), text[start:].strip())
+        end = len(text) if token is None else token.end()
+        if sign != "\n" or depth or start == end:
+            continue
+        row = _row(text, start, end, table)
+        table = row.path if row.is_header else table
+        yield row
+        start = end
+
+
+def _row(text: str, start: int, end: int, table: tuple[str, ...]) -> _Row:
+    key, whole = _KEY.match(text, start), text[start:end].strip()
+    if key is None:
+        return _Row(start, end, whole, (), ())
+    parts = tuple(part.span() for part in _PART.finditer(text, *key.span()))
+    written = tuple(_decoded(text[slice(*part)]) for part in parts)
+    return _Row(start, end, whole, written if whole.startswith("[") else (*table, *written), parts)
+
+
+def _decoded(part: str) -> str:
+    """Return the name that is written in a part of a key."""
+    return next(iter(tomllib.loads(f"{part} = 0"))) if part[0] in "\"'" else part
 
 
 def _line_end(text: str) -> str:

@@ -1,6 +1,6 @@
 import errno
 import os
-import stat
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -10,6 +10,8 @@ from robolang.teaching.cell_document import set_frame
 from robolang.teaching.points_document import taught
 from robolang.teaching.renaming import rename_point
 from robolang.teaching.saving import ConflictFault, SaveFault
+from tests.robolang.core.test_saves import stepped
+from tests.robolang.core.test_storage import ordinary_user
 from tests.robolang.teaching.desks import POINTS, POSE, PROGRAM, desk, put, refused, remove, teach
 
 
@@ -255,43 +257,43 @@ def test_a_merge_whose_program_cannot_be_written_loses_no_point(program, points,
     assert load_points(points).names == {"P1", "P2", "A1", "A2", "B1"}
 
 
-@pytest.mark.parametrize("what", ["folder gone", "a folder", "a pipe", "read-only file"])
+@pytest.mark.parametrize("what", ["folder gone", "a folder", "a pipe"])
 def test_what_cannot_be_written_leaves_the_desk_usable(program, points, what):
     one = three(program)
     if what == "folder gone":
         moved = program.parent.with_name("moved")
         program.parent.rename(moved)
-    elif what == "read-only file":
-        points.chmod(0o444)
-        if os.access(points, os.W_OK):
-            pytest.skip("this user may write to any file")
     else:
         points.unlink()
         points.mkdir() if what == "a folder" else os.mkfifo(points)
     before = one.documents
-    fault = refused("RBL312" if what == "read-only file" else "RBL714", one.save)
+    fault = refused("RBL714", one.save)
     assert fault.message
     assert one.documents == before
     refused("RBL312", one.save, force=True)
     if what == "folder gone":
         moved.rename(program.parent)
-    elif what == "read-only file":
-        points.chmod(0o644)
     else:
         points.rmdir() if what == "a folder" else points.unlink()
     one.save(force=True)
     assert "A1" in load_points(points).names
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="root may write to any folder")
-def test_a_read_only_folder(program, points):
-    one = three(program)
-    program.parent.chmod(stat.S_IRUSR | stat.S_IXUSR)
-    try:
-        refused("RBL312", one.save)
-    finally:
-        program.parent.chmod(0o755)
-    assert points.read_text() == POINTS
+@pytest.mark.parametrize("what", ["folder", "file"])
+def test_what_is_read_only_stays_as_it_is(what):
+    # not in the folder of the test, which is root's alone
+    with ordinary_user(), tempfile.TemporaryDirectory() as folder:
+        program, points = Path(folder) / "P.rbl", Path(folder) / "P.points.toml"
+        program.write_text(PROGRAM)
+        points.write_text(POINTS)
+        one = three(program)
+        bad = program.parent if what == "folder" else points
+        bad.chmod(0o555)
+        fault = refused("RBL312", one.save)
+        assert fault.saved == ()
+        assert (points.read_text(), program.read_text()) == (POINTS, PROGRAM)
+        bad.chmod(0o755)
+        assert len(one.save()) == 3
 
 
 def test_a_link_outside_is_refused_and_one_inside_stays(program, points, tmp_path_factory):
@@ -308,3 +310,50 @@ def test_a_link_outside_is_refused_and_one_inside_stays(program, points, tmp_pat
     points.unlink()
     points.symlink_to(outside)
     refused("RBL311", desk, program)
+
+
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EIO])
+def test_every_call_of_a_save_that_fails_leaves_old_files_and_a_usable_desk(program, points, number):
+    cell = program.with_suffix(".cell.toml")
+    old = {points: POINTS, cell: None, program: PROGRAM}
+
+    def reset():
+        cell.unlink(missing_ok=True)
+        points.write_text(POINTS)
+        program.write_text(PROGRAM)
+        return three(program)
+
+    def there():
+        return {path: path.read_text() if path.exists() else None for path in old}
+
+    one = reset()
+    with pytest.MonkeyPatch.context() as patch:
+        steps = stepped(patch, lambda count, when: None)
+        one.save()
+    new, names = there(), list(steps)
+    failed = set()
+    for step in range(1, len(names) + 1):
+
+        def fail(count, when, step=step):
+            if count == step and when == "before":
+                raise OSError(number, os.strerror(number))
+
+        one = reset()
+        before = one.documents
+        with pytest.MonkeyPatch.context() as patch:
+            stepped(patch, fail)
+            try:
+                one.save()
+                saved = tuple(old)
+            except SaveFault as fault:
+                saved = fault.saved
+                assert (*fault.saved, *fault.unsaved) == tuple(old)
+                assert one.unsaved == fault.unsaved
+                assert one.documents == before
+                failed.add(names[step - 1])
+        for path, text in there().items():
+            assert text == new[path] if path in saved else text in (old[path], new[path])
+        one.save()
+        assert there() == new
+        assert sorted(path.name for path in program.parent.iterdir()) == sorted(path.name for path in old)
+    assert {"mkstemp", "write", "fsync", "replace"} <= failed
