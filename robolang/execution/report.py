@@ -87,17 +87,19 @@ class _Measures:
 
 
 def _statement(run: StatementRun, measures: _Measures, tick_us: int) -> dict[str, Any]:
-    span = slice(run.first_tick, run.end_tick)
+    # a statement that still goes on has no end yet: what it has done so far is measured
+    end = run.end_tick if run.end_tick >= run.first_tick else len(measures.tool_mm)
+    span = slice(run.first_tick, end)
     deviation = None
     if not run.begun:
         return {**_head(run), **dict.fromkeys(_MEASURED), "notes": []}
-    if run.path is not None and run.end_tick > run.first_tick:
+    if run.path is not None and end > run.first_tick:
         # a seam sensor takes the tool off the programmed path on purpose, which is no error of the servo
         deviation = float(run.path.deviation((measures.p_tool - measures.deviation[:, :3])[span]).max()) / MM
     return {
         **_head(run),
         "start_s": run.first_tick * tick_us / 1_000_000,
-        "duration_s": (run.end_tick - run.first_tick) * tick_us / 1_000_000,
+        "duration_s": (end - run.first_tick) * tick_us / 1_000_000,
         "planned_s": run.planned_s,
         "joint_error_deg": _largest(measures.joint_deg[span]),
         "tool_error_mm": _largest(measures.tool_mm[span]),

@@ -93,7 +93,9 @@ class Session:
         return self.result(wall_s() - started)
 
     def result(self, wall_s: float) -> RunResult:
-        """Return what has become of the run so far, which took ``wall_s`` seconds of wall time."""
+        """Return what has become of the run so far, which took ``wall_s`` seconds of wall time; the run may go on."""
+        # touches are complete at the end of a run: those up to now are in the result, and not kept
+        before = list(self.controller.warnings)
         # first: the report lists the warnings
         self.controller.warn_of_touches()
         log = self.controller.recorder.signals(self.controller.tool_poses)
@@ -105,6 +107,7 @@ class Session:
                 (self.controller.warnings, Severity.WARNING),
             )
         )
+        self.controller.warnings[:] = before
         return RunResult(ok=not alarms, alarms=alarms, warnings=warnings, report=report, log=log)
 
 

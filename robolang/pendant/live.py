@@ -22,6 +22,7 @@ from robolang.pendant.output import Output
 from robolang.pendant.reading import NAME
 from robolang.project.project import Project
 from robolang.syntax.ast import Line
+from runtime.control.clock import wall_s
 from runtime.control.controller import Controller
 from runtime.core.frames import Array
 from runtime.core.program_line import named
@@ -62,6 +63,8 @@ class Live:
         # the pause takes effect in the next cycle, of which none is run
         self.executor.advance()
         self._warned = 0
+        self.wall_s = 0.0
+        """Wall time for which the arm was driven, s."""
 
     @property
     def controller(self) -> Controller:
@@ -129,10 +132,12 @@ class Live:
 
     def drive(self) -> Status:
         """Let the program, or what was fed, go on until it stands; ``Failure`` for what went wrong meanwhile."""
+        started = wall_s()
         with self._interrupts.watched():
             # cycle by cycle: a request to stop is seen within 8 ms of the robot (R06)
             while (status := self.executor.advance()).state not in _STANDING:
                 self._obey(self._interrupts.take())
+        self.wall_s += wall_s() - started
         self._show_warnings()
         self._judge(status)
         return status
