@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = [
     "__version__",
     *("Analysis", "Diagnostic", "Edit", "Line", "Source", "Span", "read_program"),
-    *("Executor", "ExecutorSnapshot", "State", "Status", "ENDED", "Fault", "FileFault"),
+    *("Executor", "ExecutorSnapshot", "State", "Status", "Timeline", "ENDED", "Fault", "FileFault"),
     *("Observer", "ProgramError", "Project", "RunResult", "Session", "load_project", "run"),
 ]
 

@@ -11,6 +11,7 @@ from robolang.execution.observer import Observer
 from robolang.execution.result import RunResult
 from robolang.execution.session import ProgramError, Session, run
 from robolang.execution.status import ENDED, State, Status
+from robolang.execution.timeline import Timeline
 from robolang.project.project import Project, load_project
 from robolang.syntax.ast import Line
 from runtime.core.faults import Fault
@@ -36,6 +37,7 @@ __all__ = [
     "Span",
     "State",
     "Status",
+    "Timeline",
     "load_project",
     "read_program",
     "run",

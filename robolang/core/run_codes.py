@@ -7,6 +7,42 @@ from runtime.core.faults import Code, Stage, register
 
 register(
     Code(
+        code="RBL540",
+        name="arm-displaced",
+        meaning="A motion that was interrupted is to go on, and the arm is not where it has left its path.",
+        remedy="Let the arm return to its path first (continue), or begin the statement again from where the arm is.",
+    ),
+    Code(
+        code="RBL541",
+        name="too-far-to-return",
+        meaning="The arm is too far from the path that it has left, so that it does not return by itself.",
+        remedy="Jog the arm closer to where its path was left; the message states how far that is.",
+    ),
+    Code(
+        code="RBL542",
+        name="nothing-to-begin-again",
+        meaning="No statement of the program is interrupted, so that none can be begun again.",
+        remedy="Acknowledge the alarm first; after the end of a program, start it anew.",
+    ),
+    Code(
+        code="RBL543",
+        name="line-in-use",
+        meaning="An edit of a program that stands removes or changes a line that the program is inside of.",
+        remedy="Keep the line, or let the program leave it first; the message names the line.",
+    ),
+    Code(
+        code="RBL544",
+        name="seam-followed",
+        meaning="The arm follows a seam sensor, and cannot be moved by hand meanwhile.",
+        remedy="Switch the sensor off with SEAM OFF; SEAM ON follows it again.",
+    ),
+    Code(
+        code="RBL545",
+        name="no-earlier-place",
+        meaning="The program is to be taken back by more places than are known.",
+        remedy="Go back by fewer; places are known from the start of the session on, and the oldest are forgotten.",
+    ),
+    Code(
         code="RBL202",
         name="target-undefined",
         meaning="A jump leads to a line number or a label that does not exist.",

@@ -14,6 +14,7 @@ import numpy as np
 from robolang.execution.observer import Observer
 from robolang.execution.plan_findings import PlanFindings, PlannedMove
 from robolang.execution.result import RunRecord, StatementRun
+from robolang.execution.tape import Tape, Taped
 from robolang.execution.target import Requested
 from robolang.execution.world import RobotWorld
 from robolang.interpreter.effects import (
@@ -35,6 +36,7 @@ from robolang.syntax.ast import Wait
 from robolang.syntax.unparse import describe
 from runtime.cell.seam_sensor import SeamSensor
 from runtime.control.controller import ControllerSnapshot
+from runtime.control.request_queue import SetAside
 from runtime.core.faults import Alarm, Fault
 from runtime.core.frames import Array
 from runtime.core.units import MM
@@ -53,7 +55,8 @@ LAMPS = ("", "WRIST", "WRIST HOLD")
 class _Motion:
     """Moves that are carried out: numbers ``first`` to ``last`` of the record; readings that were ``lost`` before them.
 
-    ``sent``: whether a cycle has been run; ``waited_us`` for the arm to come into position.
+    ``sent``: whether a cycle has been run; ``waited_us`` for the arm to come into position; ``skipped``: moves of the
+    chain that had been carried out when it was interrupted.
     """
 
     first: int
@@ -61,6 +64,7 @@ class _Motion:
     lost: int
     sent: bool = False
     waited_us: int = 0
+    skipped: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,7 +77,18 @@ class _Wait:
     grasp: bool = False
 
 
+_NOBODY = Observer()
+
 _Activity: TypeAlias = _Motion | _Wait | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Left:
+    """What is left of an activity that is interrupted; of a motion also its set-points and the rows of its moves."""
+
+    activity: _Activity
+    motion: SetAside | None = None
+    rest: tuple[StatementRun, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,9 +96,9 @@ class TargetSnapshot:
     """Controller, plant and record at one moment; nothing changes it."""
 
     controller: ControllerSnapshot
-    statements: tuple[StatementRun, ...]
-    payloads: tuple[dict[str, object], ...]
-    shown: tuple[tuple[float, str], ...]
+    statements: Taped[StatementRun]
+    payloads: Taped[dict[str, object]]
+    shown: Taped[tuple[float, str]]
     acknowledged: tuple[Alarm, ...]
     activity: _Activity
     warned: frozenset[tuple[str, Origin]]
@@ -98,6 +113,8 @@ class ControllerTarget:
         self.world = RobotWorld(record.project.points, record.project.cell, kinematics, lambda: self.time_us)
         """What the program reads of robot and cell."""
         self._findings = PlanFindings(record.project, kinematics)
+        self._statements = Tape(record.statements, _copied)
+        self._payloads, self._shown = Tape(record.payloads), Tape(record.shown)
         self._activity: _Activity = None
         self._warned: frozenset[tuple[str, Origin]] = frozenset()
 
@@ -133,6 +150,24 @@ class ControllerTarget:
     def q(self) -> Array:
         """Commanded joint angles (n,) rad."""
         return np.array(self._record.controller.areas.ina)
+
+    @property
+    def move_reached(self) -> int:
+        """Which move of the chain the set-point in force belongs to, from 0."""
+        return self._record.controller.chain_index
+
+    @property
+    def silent(self) -> bool:
+        """Whether cycles of the past are run once more: no observer sees them, and no clock paces them."""
+        return not self._record.controller.paced
+
+    @silent.setter
+    def silent(self, silent: bool) -> None:
+        self._record.controller.paced = not silent
+
+    @property
+    def _seen(self) -> Observer:
+        return _NOBODY if self.silent else self._observer
 
     def goes_on(self) -> bool:
         """Return whether the statement needs another cycle."""
@@ -172,14 +207,16 @@ class ControllerTarget:
 
     def _reach(self, runs: list[StatementRun]) -> StatementRun:
         """Return the move of a chain whose set-point is sent next; it begins when the one before it ends."""
-        tick, at = self._record.controller.recorder.tick, self._record.controller.chain_index
+        motion = self._activity
+        assert isinstance(motion, _Motion)
+        tick, at = self._record.controller.recorder.tick, self.move_reached - motion.skipped
         runs[0].begun = tick > runs[0].first_tick
         if not runs[at].begun and runs[0].begun:
             for before, run in pairwise(runs[: at + 1]):
                 if not run.begun:
                     before.end_tick = run.first_tick = tick
                     run.begun = True
-            self._observer.run_began(runs[at], self.time_us)
+            self._seen.run_began(runs[at], self.time_us)
         return runs[at]
 
     def cycle(self) -> bool:
@@ -215,15 +252,56 @@ class ControllerTarget:
         """Resume the move where it rests."""
         self._record.controller.go_on()
 
-    def set_aside(self) -> _Activity:
-        """Interrupt a wait; its statement ends here, and what is left of it counts to it again when it ends."""
-        activity = self._activity
-        self.finish()
-        return activity
+    def set_aside(self) -> _Left:
+        """Interrupt a wait or a motion; its statement ends here.
 
-    def take_up(self, left: _Activity) -> None:
-        """Go on with a wait."""
-        self._activity = left
+        What is left of a wait counts to it again when it ends; what is left of a motion is recorded as another one.
+        """
+        activity, statements = self._activity, self._record.statements
+        if not isinstance(activity, _Motion):
+            self.finish()
+            return _Left(activity=activity)
+        motion = self._record.controller.set_aside()
+        self._activity = None
+        if motion.ended:  # it has only to come into position
+            return _Left(activity=activity, motion=motion)
+        at = activity.first + self.move_reached - activity.skipped
+        rest = tuple(statements[at:])
+        rest[0].end_tick = self._record.controller.recorder.tick
+        # moves that have not begun come after what is done meanwhile
+        del statements[at + rest[0].begun :]
+        return _Left(activity=activity, motion=motion, rest=tuple(map(_copied, rest)))
+
+    def take_up(self, left: _Left) -> None:
+        """Go on with a wait, or with a motion, which rests until ``go_on``."""
+        activity, statements = left.activity, self._record.statements
+        if left.motion is not None:
+            self._record.controller.take_up(left.motion)
+        if left.rest and isinstance(activity, _Motion):
+            tick, first = self._record.controller.recorder.tick, len(statements)
+            # rows of their own: what was measured meanwhile is not of these moves
+            statements += [replace(_copied(run), first_tick=tick, end_tick=0, begun=False) for run in left.rest]
+            activity = replace(activity, first=first, last=len(statements) - 1, skipped=self.move_reached)
+        elif isinstance(activity, _Wait):
+            self._statements.change(activity.run)
+        self._activity = activity
+
+    def play(self, rows: Array, origin: Origin, text: str) -> None:
+        """Start given set-points; ``Fault`` RBL404, 411, 544, and nothing is recorded."""
+        controller = self._record.controller
+        if controller.tracker is not None:
+            raise Fault("RBL544", f"the arm follows the seam sensor {controller.tracker.name}")
+        controller.play(rows)
+        self.statement = origin
+        run = StatementRun(origin=origin, text=text, first_tick=controller.recorder.tick, begun=False)
+        self._record.statements.append(run)
+        last = len(self._record.statements) - 1
+        self._activity = _Motion(first=last, last=last, lost=self._lost)
+        self._seen.run_began(run, self.time_us)
+
+    def abandon(self) -> None:
+        """Forget what is left of the set-points."""
+        self._record.controller.set_aside()
 
     def stop(self) -> None:
         """Raise RBL530."""
@@ -269,7 +347,7 @@ class ControllerTarget:
         self._warn(chain, plan)
         last = len(self._record.statements) - 1
         self._activity = _Motion(first=last + 1 - len(runs), last=last, lost=self._lost)
-        self._observer.run_began(runs[0], self.time_us)
+        self._seen.run_began(runs[0], self.time_us)
 
     @property
     def _tracker(self) -> SeamTracker | None:
@@ -308,7 +386,7 @@ class ControllerTarget:
             self._record_run(effect)
         self._activity = _Wait(run=len(statements) - 1, cycles=cycles, grasp=grasp)
         if begins:
-            self._observer.run_began(statements[-1], self.time_us)
+            self._seen.run_began(statements[-1], self.time_us)
         return statements[-1]
 
     def wrist(self, effect: SetWrist) -> None:
@@ -367,7 +445,7 @@ class ControllerTarget:
         """Keep what PRINT shows."""
         self._start(effect)
         self._record.shown.append((self.time_us / 1_000_000, effect.text))
-        self._observer.printed(effect.text)
+        self._seen.printed(effect.text)
 
     def halt(self, effect: Halt) -> None:
         """Note STOP or PAUSE in the record."""
@@ -376,14 +454,21 @@ class ControllerTarget:
 
     # --- snapshots ---------------------------------------------------------------------------------------------------
 
+    @property
+    def _settled(self) -> int:
+        """How many statements of the record do not change any more."""
+        activity, last = self._activity, len(self._record.statements) - 1  # the last one may be a WAIT that goes on
+        first = last if activity is None else activity.first if isinstance(activity, _Motion) else activity.run
+        return max(0, min(first, last))
+
     def snapshot(self) -> TargetSnapshot:
         """Return controller, plant and record as a value."""
         record = self._record
         return TargetSnapshot(
             controller=record.controller.snapshot(),
-            statements=tuple(map(_copied, record.statements)),
-            payloads=tuple(record.payloads),
-            shown=tuple(record.shown),
+            statements=self._statements.snapshot(self._settled),
+            payloads=self._payloads.snapshot(len(record.payloads)),
+            shown=self._shown.snapshot(len(record.shown)),
             acknowledged=tuple(record.acknowledged),
             activity=self._activity,
             warned=self._warned,
@@ -393,8 +478,9 @@ class ControllerTarget:
         """Put a snapshot back."""
         record = self._record
         record.controller.restore(snapshot.controller)
-        record.statements[:] = map(_copied, snapshot.statements)
-        record.payloads[:], record.shown[:] = snapshot.payloads, snapshot.shown
+        self._statements.restore(snapshot.statements)
+        self._payloads.restore(snapshot.payloads)
+        self._shown.restore(snapshot.shown)
         record.acknowledged[:] = snapshot.acknowledged
         self._activity, self._warned = snapshot.activity, snapshot.warned
 

@@ -5,8 +5,11 @@ from enum import Enum, auto
 from typing import Any, TypeAlias
 
 from robolang.execution.target import Requested
-from robolang.interpreter.effects import Effect, Origin
-from robolang.interpreter.events import Done, Failed, FedEnded
+from robolang.interpreter.effects import Effect, MoveTo, Origin
+from robolang.interpreter.events import Done, Failed, FedEnded, LineBegun
+from robolang.interpreter.positions import Suspended
+from robolang.interpreter.snapshot import MachineSnapshot
+from runtime.core.frames import Array
 
 
 class Phase(Enum):
@@ -18,20 +21,37 @@ class Phase(Enum):
     OVER = auto()
 
 
-End: TypeAlias = Done | Failed | FedEnded
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlayEnded:
+    """Set-points that were given have been sent: the program stands where it stood."""
+
+
+End: TypeAlias = Done | Failed | FedEnded | LineBegun | PlayEnded
+"""What comes after motion besides effects; ``LineBegun``: the program is paused before that statement."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Aside:
-    """A DELAY, a WAIT or the dwell of a HAND that a fed statement interrupts: what is ``left`` of it on the target.
+    """What a statement that is fed, or set-points that are played, interrupt: a wait, or a motion at rest on its path.
 
-    ``depth``: of the machine, when it is taken up again.
+    ``left`` of it on the target, ``depth`` of the machine when it is taken up again; of a motion ``q`` (n,) rad, where
+    its path was left, and ``again``, the machine at the statement that moved (``Progress.again``).
     """
 
     depth: int
     doing: tuple[Effect, ...]
+    request: Effect | None
+    due: Effect | End | None
     statement: Origin | None
     left: Any
+    q: Array
+    places: tuple[MachineSnapshot, ...]
+    again: MachineSnapshot | None
+
+    @property
+    def is_motion(self) -> bool:
+        """Whether it is a motion, which is resumed only where its path was left."""
+        return any(isinstance(each, MoveTo) for each in self.doing)
 
 
 @dataclass(slots=True, kw_only=True)
@@ -39,9 +59,13 @@ class Progress:
     """All of an executor that changes, besides machine, world and target.
 
     ``request``: the effect that the program has yielded last; ``doing``: the effects that have been started; ``chain``:
-    moves that are kept, since the next one may blend into them; ``due``: what comes when these have ended; ``aside``:
-    waits that statements which are fed interrupt, the innermost last. ``ends_us``: the simulated time at which the run
-    is too long.
+    moves that are kept, since the next one may blend into them; ``places``: the machine at each of these, or of those
+    that are being done; ``due``: what comes when these have ended; ``aside``: what is interrupted, the innermost last;
+    ``playing``: set-points that were given are being sent. ``ends_us``: the simulated time at which the run is too
+    long.
+
+    ``again``: the machine at the statement that an alarm has interrupted, None: where it is; ``failed``: that place,
+    once the alarm has been acknowledged.
     """
 
     ends_us: int
@@ -49,10 +73,21 @@ class Progress:
     request: Effect | None = None
     doing: tuple[Effect, ...] = ()
     chain: tuple[Requested, ...] = ()
+    places: tuple[MachineSnapshot, ...] = ()
     due: Effect | End | None = None
     aside: tuple[Aside, ...] = ()
+    playing: bool = False
     tracked: bool = False
     pausing: bool = False
     resting: bool = False
     resumed: bool = False
+    stop_requested: bool = False
+    halt_requested: bool = False
     fault: Failed | None = None
+    again: MachineSnapshot | None = None
+    failed: Suspended | None = None
+
+    @property
+    def moves(self) -> bool:
+        """Whether what has been started is a move of the program."""
+        return any(isinstance(each, MoveTo) for each in self.doing)

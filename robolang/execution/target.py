@@ -110,6 +110,13 @@ class Target(Effects, Protocol):
     def q(self) -> Array:
         """Joint angles (n,) rad at which motion has ended: where the next move begins."""
 
+    @property
+    def move_reached(self) -> int:
+        """Which of the moves that were started last has been reached, from 0."""
+
+    silent: bool
+    """Whether cycles of the past are run once more: neither seen by an observer nor paced."""
+
     def goes_on(self) -> bool:
         """Return whether the effect that was started needs another cycle; called before each and after the last."""
 
@@ -129,10 +136,16 @@ class Target(Effects, Protocol):
         """Go on where ``hold`` has interrupted the motion."""
 
     def set_aside(self) -> Any:
-        """Return what is left of a wait that is interrupted, for ``take_up``; nothing goes on until another effect."""
+        """Return what is left of a wait, or of a motion at rest, for ``take_up``; then nothing goes on by itself."""
 
     def take_up(self, left: Any) -> None:
-        """Go on with a wait that was set aside."""
+        """Go on with what was set aside; a motion rests until ``go_on``."""
+
+    def play(self, rows: Array, origin: Origin, text: str) -> None:
+        """Start joint set-points (K, n) rad, one a cycle, as a statement of its own; ``Fault`` RBL404, 411 or 544."""
+
+    def abandon(self) -> None:
+        """Forget what is left of the set-points that rest; ``finish`` comes next."""
 
     def stop(self) -> None:
         """Raise the alarm of a stop from outside (category 1)."""
@@ -160,6 +173,8 @@ class Untimed:
     time_us = 0
     alarms: Sequence[Alarm] = ()
     at_rest = True
+    move_reached = 0
+    silent = False
 
     def goes_on(self) -> bool:
         """Return False: nothing goes on."""
@@ -187,6 +202,13 @@ class Untimed:
 
     def take_up(self, left: Any) -> None:
         """Do nothing."""
+
+    def play(self, rows: Array, origin: Origin, text: str) -> None:
+        """Refuse: there is no arm to move."""
+        raise RuntimeError("set-points are played on a controller only")
+
+    def abandon(self) -> None:
+        """Do nothing: nothing moves."""
 
     def stop(self) -> None:
         """Do nothing: the executor takes no further effect."""

@@ -52,6 +52,14 @@ class RobotWorld:
             X_flange_tool=self.X_flange_tool,
         )
 
+    def flange_pose(self, q: Array) -> Array:
+        """Return X_world_flange (..., 4, 4) at joint angles q (..., n) rad."""
+        return self._kinematics.forward(q)
+
+    def tool_pose(self, q: Array) -> Array:
+        """Return X_world_tool (..., 4, 4) at joint angles q (..., n) rad."""
+        return np.asarray(matmul(self.flange_pose(q), self.X_flange_tool))
+
     def snapshot(self) -> WorldSnapshot:
         """Return the state of the world; its clock is not part of it."""
         return WorldSnapshot(
@@ -77,7 +85,7 @@ class RobotWorld:
 
     def here(self) -> Six:
         """Return where the tool is commanded to be, mm and deg in the world."""
-        return lowering.six_of(matmul(self._kinematics.forward(self.q_last), self.X_flange_tool))
+        return lowering.six_of(self.tool_pose(self.q_last))
 
     def components(self, place: Place, frame: Frame) -> Six:
         """Return a place in a frame, mm and deg."""

@@ -166,6 +166,16 @@ class Machine:
         Raises ``Fault`` RBL211 or RBL212 for a statement that begins, divides or ends a block, and ``ValueError`` for
         a line without a statement or with an error.
         """
+        node = self.check_fed(line)
+        run = self._run
+        self._forget_left()
+        scopes = run.scopes
+        run.suspended += (Suspended(run.cursor, len(scopes.stack), len(scopes.here.returns)),)
+        # the old cursor is never written again: snapshots share it with the entry above
+        run.cursor = Cursor(at=FED, fed=line, part=(FED, node))
+
+    def check_fed(self, line: Line) -> Statement:
+        """Return the statement of a line that can be fed; raises as ``feed`` does."""
         node = line.statement
         if node is None:
             raise ValueError("a line without a statement cannot be fed")
@@ -173,13 +183,8 @@ class Machine:
             raise Fault("RBL211", f"{word_of(node)} begins a block, which a single statement cannot")
         if isinstance(node, Next | Case) or word_of(node):
             raise Fault("RBL212", f"{word_of(node)} belongs to a block, of which a single statement is not a part")
-        run = self._run
-        self._forget_left()
-        _ready(line)  # refuses a statement with an error before anything is changed
-        scopes = run.scopes
-        run.suspended += (Suspended(run.cursor, len(scopes.stack), len(scopes.here.returns)),)
-        # the old cursor is never written again: snapshots share it with the entry above
-        run.cursor = Cursor(at=FED, fed=line, part=(FED, node))
+        _ready(line)  # refuses a statement with an error
+        return node
 
     def _go_on_fed(self, to: int, *, jumps: bool) -> Event:
         """Begin the statement that was fed, or end it; ``jumps``: it has led to line ``to`` itself."""
@@ -219,9 +224,35 @@ class Machine:
                 kept.append(top)
             run.suspended = tuple(kept)
 
-    def end(self) -> None:
-        """End the program where it stands: of its own nothing comes any more; what is fed is carried out."""
-        self._run.cursor, self._run.suspended = Cursor(at=len(self._run.lines), ended=DONE), ()
+    def end(self) -> Suspended:
+        """End the program where it stands: of its own nothing comes any more; what is fed is carried out.
+
+        Returns the place of its statement that was carried out, for ``begin_again``; what was fed there is given up.
+        """
+        run = self._run
+        place = Suspended(run.cursor, len(run.scopes.stack), len(run.scopes.here.returns))
+        if run.suspended:
+            place = run.suspended[0]
+            run.scopes.unwind(place.depth, place.returns)
+        run.cursor, run.suspended = Cursor(at=len(run.lines), ended=DONE), ()
+        return place
+
+    def begin_again(self, place: Suspended) -> bool:
+        """Go back to a place that ``end`` has returned, before its statement; False where its call has been left."""
+        run = self._run
+        if (len(run.scopes.stack), len(run.scopes.here.returns)) != (place.depth, place.returns):
+            return False
+        at = place.cursor.at
+        if place.cursor.position is DUE or at >= len(run.lines):
+            run.cursor = Cursor(at=at)
+        else:
+            run.cursor = Cursor(at=at, position=BEGUN, part=(at, self._ready_of(at)[0]))
+        return True
+
+    def stands_at(self, state: MachineSnapshot) -> bool:
+        """Return whether nothing has been carried out since a state."""
+        run = self._run
+        return state.steps == run.steps and state.cursor.at == run.cursor.at
 
     # --- state -------------------------------------------------------------------------------------------------------
 

@@ -26,7 +26,7 @@ from runtime.control.clock import Clock, VirtualClock
 from runtime.control.drive_train import DriveTrain
 from runtime.control.memory_areas import Areas
 from runtime.control.recorder import Recorder
-from runtime.control.request_queue import RequestQueue
+from runtime.control.request_queue import RequestQueue, SetAside
 from runtime.control.scheduler import IdleProcessor
 from runtime.control.stop_logic import StopLogic
 from runtime.core.faults import Alarm
@@ -89,6 +89,8 @@ class Controller:
         """Cycles that started late against the wall clock (only when paced)."""
         self._clock = clock or VirtualClock()
         self._no_deviation = np.zeros(6)
+        self.paced = True
+        """Whether cycles keep the time of the clock; False while cycles of the past are run once more."""
 
     # requests -------------------------------------------------------------------------------------------------------
 
@@ -177,7 +179,8 @@ class Controller:
             return False
         drives, requests = self.drives, self.requests
         start_us, start_tick = drives.time_us, drives.recorder.tick
-        self.late_cycles += self._clock.wait_until(start_us)
+        if self.paced:
+            self.late_cycles += self._clock.wait_until(start_us)
         # before the interrupt, which sends a given row in its own cycle; a computed one waits for the next interrupt
         requests.given_row()
         motion = drives.send(requests.statement, requests.wrist_mode, self.seam_deviation)
@@ -244,6 +247,18 @@ class Controller:
     def go_on(self) -> None:
         """Resume the motion that ``hold`` has brought to rest; the rest of the path is that of the plan."""
         self.requests.go_on()
+
+    def set_aside(self) -> SetAside:
+        """Forget the motion that ``hold`` has brought to rest, so that the arm can be moved; return it for ``take_up``.
+
+        ``RuntimeError`` while it still moves.
+        """
+        return self.requests.set_aside()
+
+    def take_up(self, left: SetAside) -> None:
+        """Put a motion back that was set aside; ``go_on`` resumes it. The arm has to be where its path was left."""
+        self._refuse_while_latched()
+        self.requests.take_up(left)
 
     def halt(self) -> None:
         """Stop at once (category 0): the brakes hold the arm from this tick on."""

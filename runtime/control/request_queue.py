@@ -6,7 +6,7 @@ next one; one that is *given* (``play``) is there already, costs nothing, and is
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,6 +25,18 @@ from runtime.motion.seam import SeamMove, SeamTracker
 from runtime.motion.speed_cap import SpeedCap
 from runtime.motion.stop import pause_course, resume_course, stopping_rows
 from runtime.robot.model.spec import RobotSpec
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SetAside:
+    """A motion that rests on its path while the arm does something else; ``ended``: no set-point of it is left."""
+
+    ended: bool
+    interpolator: State
+    before: int
+    statements: tuple[ProgramLine, ...]
+    given: bool
+    wrist_mode: int
 
 
 class RequestQueue(Stateful):
@@ -213,6 +225,30 @@ class RequestQueue(Stateful):
         self.interpolator.drop()
         self._waiting = []
         self.wrist_mode = FOLLOWS
+
+    def set_aside(self) -> SetAside:
+        """Return the motion that rests, for ``take_up``, and forget it; ``RuntimeError`` while it moves."""
+        if self.busy:
+            raise RuntimeError("a move is running")
+        left = SetAside(
+            ended=not self.interpolator.is_held,
+            interpolator=self.interpolator.snapshot(),
+            before=self._before,
+            statements=self._statements,
+            given=self._given,
+            wrist_mode=self.wrist_mode,
+        )
+        self.drop()
+        return left
+
+    def take_up(self, left: SetAside) -> None:
+        """Put a motion back that was set aside; it rests, until ``go_on``. ``RuntimeError`` while another one moves."""
+        if self.busy:
+            raise RuntimeError("a move is running")
+        self.interpolator.restore(left.interpolator)
+        # which move of which row: log and record name statements by these
+        self._before, self._statements, self._given = left.before, left.statements, left.given
+        self.wrist_mode = left.wrist_mode
 
     # state ----------------------------------------------------------------------------------------------------------
 

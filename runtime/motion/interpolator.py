@@ -108,6 +108,11 @@ class Interpolator(Stateful):
         return self._commands[self._n] if self._commands else 0
 
     @property
+    def is_held(self) -> bool:
+        """Whether ``hold`` has interrupted a move."""
+        return self._held is not None
+
+    @property
     def busy(self) -> bool:
         """Whether set-points are left to send (step 222)."""
         return self._rows is not None and self._n + 1 < len(self._rows)

@@ -36,4 +36,4 @@ def test_the_examples_of_the_page_do_what_they_say(monkeypatch, number):
 
 
 def test_the_page_has_examples():
-    assert len(EXAMPLES) == 3
+    assert len(EXAMPLES) == 5

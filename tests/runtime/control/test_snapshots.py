@@ -268,6 +268,7 @@ def test_the_controller_itself_has_no_state_but_late_cycles():
         "profile",
         "kinematics",
         "_clock",
+        "paced",
         "_no_deviation",
     }
 
