@@ -4,17 +4,21 @@ Simulated time passes only while something is carried out. Between two lines of 
 over, the arm is at rest, and statements can be fed.
 """
 
+import math
+
 import numpy as np
 
 from robolang.core.diagnostics import Severity, render
 from robolang.core.source import Source
 from robolang.execution.alarms import as_diagnostic
 from robolang.execution.alarms import failure as fault_of
+from robolang.execution.engine import StopsBefore
 from robolang.execution.lowering import Surroundings
 from robolang.execution.observer import Observer
 from robolang.execution.result import StatementRun
 from robolang.execution.session import Session
 from robolang.execution.status import State, Status
+from robolang.execution.timeline import Timeline
 from robolang.pendant.arm import ArmView, view
 from robolang.pendant.failure import failure, of_diagnostics
 from robolang.pendant.interrupts import Interrupt, Interrupts
@@ -59,9 +63,11 @@ class Live:
         self._output, self._interrupts = output, interrupts
         self.session = Session(project, physics=physics, realtime=realtime, observer=Watching(output))
         self.executor = self.session.executor
-        self.executor.pause()  # a program that is opened stands before its first statement
-        # the pause takes effect in the next cycle, of which none is run
+        # a program that is opened stands before its first statement
+        self.executor.stops_before = lambda due: True
         self.executor.advance()
+        self.executor.stops_before = None
+        self.timeline = Timeline(self.executor)
         self._warned = 0
         self.wall_s = 0.0
         """Wall time for which the arm was driven, s."""
@@ -119,24 +125,48 @@ class Live:
         self.executor.feed(Source(NAME, text))
         self.drive()
 
-    def go_on(self) -> None:
-        """Let the program go on from where it stands; ``Failure`` RBL806 when it is over."""
+    def go_on(self, stops_before: StopsBefore | None = None, seconds: float = math.inf) -> Status:
+        """Let the program go on from where it stands until a statement that ``stops_before`` names, or its end.
+
+        ``Failure`` RBL806 when it is over; ``Fault`` RBL540 where the arm has left the path of an interrupted motion.
+        """
         if self.executor.status.state is not State.PAUSED:
             raise failure("RBL806", "the program has ended")
-        self.executor.resume()
-        self.drive()
+        self.executor.stops_before = stops_before
+        try:
+            self.executor.resume()
+            return self.drive(seconds)
+        finally:
+            # what is fed at the prompt is not to be stopped by the breakpoints of a run
+            self.executor.stops_before = None
+
+    def take_up(self) -> None:
+        """Put the program back where it was interrupted: the arm on its path, or before the statement of an alarm.
+
+        ``Fault`` RBL541 where the arm is too far from the path, RBL542 where nothing was interrupted.
+        """
+        executor = self.executor
+        if executor.displaced is not None:
+            if executor.regain():
+                self.drive()
+        elif executor.status.state is not State.PAUSED:
+            executor.begin_again()
 
     def limit_speed(self, limited: bool) -> None:
         """Keep tool and flange under 250 mm/s in all that is planned from now on, or not."""
         self.controller.speed_cap = MANUAL_SPEED if limited else None
 
-    def drive(self) -> Status:
-        """Let the program, or what was fed, go on until it stands; ``Failure`` for what went wrong meanwhile."""
+    def drive(self, seconds: float = math.inf) -> Status:
+        """Let the program, or what was fed, go on until it stands; ``Failure`` for what went wrong meanwhile.
+
+        After ``seconds`` of simulated time it is paused on its path.
+        """
+        ends_us = self.executor.time_us + seconds * 1e6
         started = wall_s()
         with self._interrupts.watched():
             # cycle by cycle: a request to stop is seen within 8 ms of the robot (R06)
             while (status := self.executor.advance()).state not in _STANDING:
-                self._obey(self._interrupts.take())
+                self._obey(Interrupt.STOP if status.time_us >= ends_us else self._interrupts.take())
         self.wall_s += wall_s() - started
         self._show_warnings()
         self._judge(status)

@@ -3,6 +3,7 @@
 A ``Pendant`` is light to make: the controller, and with it numerics and physics, is built when a line first needs it.
 """
 
+import math
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
@@ -29,6 +30,8 @@ from robolang.teaching.recovery import Recovery, discard, pending_recovery, reco
 from runtime.core.faults import Fault
 
 if TYPE_CHECKING:
+    from robolang.execution.engine import StopsBefore
+    from robolang.interpreter.effects import Origin
     from robolang.pendant.live import Live
     from robolang.project.points import Point
     from robolang.project.project import Project
@@ -120,13 +123,36 @@ class Pendant:
 
     # --- the program --------------------------------------------------------------------------------------------------
 
-    def run(self) -> None:
-        """Let the program go on from where it stands, to its end, a stop or an alarm."""
-        live = self.live
+    def run(self, stops_before: "StopsBefore | None" = None, seconds: float = math.inf) -> None:
+        """Let the program go on from where it stands, to a statement that ``stops_before`` names, a stop or its end."""
         self.refuse_errors()
-        live.refuse_latched()
-        live.go_on()
+        self.live.refuse_latched()
+        self.to_auto()
+        self.live.go_on(stops_before, seconds)
         self.output.line(self.standing)
+
+    def take_up(self) -> None:
+        """Bring the arm back to its interrupted path, or the program before the interrupted statement, and go on."""
+        self.refuse_errors()
+        self.live.refuse_latched()
+        self.to_auto()
+        self.live.take_up()
+        self.run()
+
+    def back(self, steps: int) -> None:
+        """Take back so many statements, jogs and lines of the prompt."""
+        live = self.live
+        mark = live.timeline.back(steps)
+        # the cap is part of the state, and went back too
+        live.limit_speed(self.mode is Mode.MANUAL)
+        self.output.line(f"back before: {mark.label or self.text_of(mark.origin)}")
+        self.output.line(self.standing)
+
+    def text_of(self, origin: "Origin | None") -> str:
+        """Return the line of the program that an origin is in."""
+        if origin is None:
+            return "the first statement"
+        return self.desk.analysis.source.line_text(origin.line).strip()
 
     def refuse_errors(self) -> None:
         """Raise ``Failure`` with the errors of the program, if it has any."""
@@ -140,7 +166,9 @@ class Pendant:
         at = f"at {self.live.seconds:.3f} s"
         if line is None:
             return f"the program has ended {at}"
-        return f"{at}, next: {self.desk.analysis.source.line_text(line.source_line).strip()}"
+        # a motion that is held has begun, and what is typed meanwhile comes before its rest
+        word = "next" if self.live.executor.displaced is None else "held in"
+        return f"{at}, {word}: {self.desk.analysis.source.line_text(line.source_line).strip()}"
 
     @property
     def current(self) -> "Line | None":

@@ -3,16 +3,57 @@
 from typing import TYPE_CHECKING
 
 from robolang.pendant.command import Command, Group
-from robolang.pendant.words import nothing
+from robolang.pendant.words import misused, nothing, number, whole
+from runtime.core.program_line import named
 
 if TYPE_CHECKING:
     from robolang.pendant.pendant import Pendant
 
+_RUN = "run [for SECONDS]"
+
 
 def _run(pendant: "Pendant", rest: str) -> None:
-    nothing(rest, "run")
-    pendant.to_auto()
-    pendant.run()
+    words = rest.split()
+    if not words:
+        pendant.run()
+        return
+    if len(words) != 2 or words[0].lower() != "for":
+        raise misused(_RUN, f"found '{rest}'")
+    seconds = number(words[1], _RUN, "the seconds")
+    if not seconds > 0.0:
+        raise misused(_RUN, f"the seconds are {seconds:g} and must be positive")
+    pendant.run(seconds=seconds)
+
+
+def _continue(pendant: "Pendant", rest: str) -> None:
+    nothing(rest, "continue")
+    pendant.take_up()
+
+
+def _hold(pendant: "Pendant", rest: str) -> None:
+    nothing(rest, "hold")
+    far = pendant.live.executor.displaced
+    if far is None:
+        pendant.output.line("no motion is interrupted")
+    elif far.is_away:
+        pendant.output.line(f"a motion is held; the arm is {far} away from its path")
+    else:
+        pendant.output.line("a motion is held on its path")
+
+
+def _back(pendant: "Pendant", rest: str) -> None:
+    pendant.back(whole(rest, "back [N]", "the statements", 1, 100_000) if rest else 1)
+
+
+def _where(pendant: "Pendant", rest: str) -> None:
+    nothing(rest, "where")
+    live = pendant.live
+    pendant.output.line(pendant.standing)
+    for call in reversed(live.executor.calls):
+        pendant.output.line(f"called from {named(call.line, call.number)}: {pendant.text_of(call)}")
+    far = live.executor.displaced
+    if far is not None and far.is_away:
+        pendant.output.line(f"a motion is held; the arm is {far} away from its path")
 
 
 def _again(pendant: "Pendant", rest: str) -> None:
@@ -41,12 +82,45 @@ def _home(pendant: "Pendant", rest: str) -> None:
 COMMANDS = (
     Command(
         word="run",
-        form="run",
+        form=_RUN,
         help="Run the program from the statement where it stands.",
         group=Group.RUN,
         do=_run,
-        more="It runs in AUTO, with its programmed speeds, to its end, a breakpoint or an alarm. Ctrl-C, Esc and Space "
-        "stop it on its path; continue goes on.",
+        more="It runs in AUTO, with its programmed speeds, to its end, a breakpoint or an alarm. Ctrl-C, Esc and\n"
+        "Space stop it on its path; continue goes on. run for 2.5 stops it after 2.5 s of simulated time.",
+        words=("for",),
+    ),
+    Command(
+        word="continue",
+        form="continue",
+        help="Go on with what was interrupted: from its path, or with its statement.",
+        group=Group.RUN,
+        do=_continue,
+        more="The arm first returns slowly to the path that it has left, from 50 mm and 10 deg in a joint at most.\n"
+        "After an alarm and reset the interrupted statement begins again, from where the arm stands.",
+    ),
+    Command(
+        word="hold",
+        form="hold",
+        help="Show whether a motion is held, and how far the arm is from its path.",
+        group=Group.RUN,
+        do=_hold,
+        more="While the arm moves, Ctrl-C, Esc and Space hold it on its path.",
+    ),
+    Command(
+        word="back",
+        form="back [N]",
+        help="Take back the last N statements, jogs or lines of the prompt.",
+        group=Group.RUN,
+        do=_back,
+        more="Arm, physics, signals, names, time and log are as they were then.",
+    ),
+    Command(
+        word="where",
+        form="where",
+        help="Show where the program stands, and the calls that led there.",
+        group=Group.SHOW,
+        do=_where,
     ),
     Command(
         word="again",

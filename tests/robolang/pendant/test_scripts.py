@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.robolang.pendant.prompting import played, prompt
+from robolang.pendant.failure import Failure
+from tests.robolang.pendant.prompting import Requests, played, prompt
 
 PICK = Path("programs/pick_and_place.rbl")
 
@@ -150,6 +151,58 @@ def test_a_program_runs_on_from_the_state_of_the_prompt(folder):
     codes, results, _ = played("run\nrun\n", folder / PICK)
     assert codes == ("RBL806",)
     assert "AUTO" in results
+
+
+def test_a_stop_is_continued_from_its_path(folder):
+    session = prompt(folder / PICK)
+    session.do("run")
+    whole = session.pendant.live.session.result(0.0).log
+    held = prompt(folder / PICK)
+    held.do("run for 1")
+    assert "on its path" in held.do("hold")
+    held.do("MOVE HERE + (0, 0, 5)")
+    with pytest.raises(Failure, match="RBL540"):
+        held.do("run")
+    assert "5.0 mm" in held.do("where")
+    held.do("continue")
+    assert np.array_equal(held.pendant.live.session.result(0.0).log["q_cmd"][-1], whole["q_cmd"][-1])
+
+
+def test_an_arm_that_is_far_from_its_path_is_not_brought_back_by_itself(folder):
+    session = prompt(folder / PICK)
+    session.do("run for 1", "MOVE P5 + (0, 50, 0)")
+    before = session.do("pos")
+    with pytest.raises(Failure, match="RBL541"):
+        session.do("continue")
+    assert session.do("pos") == before
+
+
+def test_an_interrupted_statement_begins_again_after_an_alarm(folder):
+    session = prompt(folder / PICK, interrupts=Requests(halt=100))
+    with pytest.raises(Failure, match="RBL530"):
+        session.do("run")
+    with pytest.raises(Failure, match="RBL804"):
+        session.do("continue")
+    with pytest.raises(Failure, match="RBL804"):
+        session.do("MOVE P1")
+    session.do("reset", "continue")
+    assert "ended" in session.do("where")
+
+
+def test_statements_and_lines_are_taken_back(folder):
+    session = prompt(folder / PICK)
+    start = session.do("pos")
+    session.do("MOVE P2", "x = 3", "run")
+    assert "110 MOVE P5" in session.do("back")
+    assert "90  LOAD" in session.do("back 2")
+    with pytest.raises(Failure, match="RBL545"):
+        session.do("back 1000")
+    session.do("back 10")
+    assert session.do("pos") == start
+    assert session.do("vars") == "no name has a value\n"
+    for wrong in ("back 0", "back x", "back -1"):
+        with pytest.raises(Failure, match="RBL802"):
+            session.do(wrong)
 
 
 def test_again_brings_the_start_state_back(folder):
