@@ -6,7 +6,6 @@ A ``Pendant`` is light to make: the controller, and with it numerics and physics
 import math
 from dataclasses import dataclass, replace
 from enum import Enum
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -75,6 +74,8 @@ class Pendant:
         self.ended = False
         """Whether ``quit`` has been carried out."""
         self._recovery = Recovery()
+        self._project: Project | None = None
+        self._live: Live | None = None
 
     def do(self, text: str) -> None:
         """Carry out what was typed; ``Failure`` for what cannot be done, with everything to show."""
@@ -173,9 +174,9 @@ class Pendant:
     @property
     def current(self) -> "Line | None":
         """The line whose statement comes next, or is interrupted; None: the program is over."""
-        if "live" not in self.__dict__:
+        if self._live is None:
             return next(iter(self.desk.analysis.program.statements), None)
-        return self.live.current
+        return self._live.current
 
     @property
     def rows(self) -> int:
@@ -261,7 +262,7 @@ class Pendant:
         except (Fault, Failure):
             # documents that cannot be used are not kept: the next line would fail for the same reason
             self.desk.undo()
-            self.__dict__.pop("project", None)
+            self._project = None
             raise
 
     def undo(self) -> str:
@@ -307,30 +308,32 @@ class Pendant:
 
     # --- the controller -----------------------------------------------------------------------------------------------
 
-    @cached_property
+    @property
     def project(self) -> "Project":
         """The documents, read as a program with its points and its cell; ``Fault`` for one that cannot be used."""
-        from robolang.project.project import load_project
+        if self._project is None:
+            from robolang.project.project import load_project
 
-        return load_project(self.desk.typed, robot=self.choice.robot)
+            self._project = load_project(self.desk.typed, robot=self.choice.robot)
+        return self._project
 
-    # built once, when a line first needs it: numerics and physics take a second to import
-    @cached_property
+    @property
     def live(self) -> "Live":
-        """The controller with the program, in the start state of the cell."""
-        from robolang.pendant.live import Live
+        """The controller with the program, in the start state of the cell when it is first used."""
+        # built when a line first needs it: numerics and physics take their time to import
+        if self._live is None:
+            from robolang.pendant.live import Live
 
-        project = self.project
-        if not project.ok:  # the arm can be jogged and points be taught all the same, with no program to run
-            project = replace(project, analysis=Analysis(source=Source(project.source.path, "")), diagnostics=())
-        live = Live(project, self.output, self.interrupts, physics=self.choice.physics, realtime=self.choice.realtime)
-        self._apply_mode(live)
-        return live
+            project, choice = self.project, self.choice
+            if not project.ok:  # the arm can be jogged and points be taught all the same, with no program to run
+                project = replace(project, analysis=Analysis(source=Source(project.source.path, "")), diagnostics=())
+            self._live = Live(project, self.output, self.interrupts, physics=choice.physics, realtime=choice.realtime)
+            self._apply_mode(self._live)
+        return self._live
 
     def start_again(self) -> None:
         """Forget the controller: the next use finds the cell in its start state."""
-        self.__dict__.pop("live", None)
-        self.__dict__.pop("project", None)
+        self._live = self._project = None
 
     def to_auto(self) -> None:
         """Choose AUTO, and say so where it was not chosen."""
@@ -341,8 +344,8 @@ class Pendant:
     def switch(self, mode: Mode) -> None:
         """Choose MANUAL or AUTO."""
         self.mode = mode
-        if "live" in self.__dict__:
-            self._apply_mode(self.live)
+        if self._live is not None:
+            self._apply_mode(self._live)
 
     def _apply_mode(self, live: "Live") -> None:
         # set at once, since the controller keeps it for everything that is planned from then on
