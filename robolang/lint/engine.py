@@ -4,7 +4,6 @@ An editor shows the same list. A cell or points file that cannot be used is a fa
 checked without the names that such a file has.
 """
 
-import os
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
@@ -17,11 +16,12 @@ from robolang.lint.fixes import with_fix
 from robolang.lint.selection import Selection, is_syntax_error
 from robolang.lint.suppress import suppress
 from robolang.project.discovery import CellFiles, points_file, read_beside
-from robolang.project.points import PointStore, load_points
+from robolang.project.points import PointStore, read_points
 from runtime.core.faults import Fault
 from runtime.core.record import Record
 from runtime.core.toml_places import locate
 from runtime.core.tomlfile import FileFault, read_source
+from runtime.core.tomlfile import Source as TomlSource
 
 
 class Checked(Record):
@@ -72,17 +72,21 @@ def check_source(source: Source, selection: Selection | None = None, files: Cell
     return Checked(source=source, analysis=analysis, diagnostics=diagnostics, faults=found.faults, warnings=warnings)
 
 
-def check_points(checked: Checked, selection: Selection | None = None) -> Checked | None:
+def check_points(
+    checked: Checked, selection: Selection | None = None, files: CellFiles | None = None
+) -> Checked | None:
     """Return what was found in the points file beside a checked program (RBL224); None: it has none, or is not read.
 
-    Nothing is reported for a program that does not parse: it may use points where nothing can be read.
+    ``files`` may have the points file as it is typed. Nothing is reported for a program that does not parse: it may use
+    points where nothing can be read.
     """
-    analysis, where = checked.analysis, points_file(Path(checked.source.path))
-    if analysis is None or not _is_whole(checked) or not os.path.lexists(where):
+    analysis, where, files = checked.analysis, points_file(Path(checked.source.path)), files or CellFiles()
+    if analysis is None or not _is_whole(checked) or not files.has(where):
         return None
     try:
         # only the names count here: values were checked with the program, in its cell
-        store, source = load_points(where), Source(str(where), read_source(where).text)
+        text = (files.typed(where) or read_source(where)).text
+        store, source = read_points(TomlSource(str(where), text)), Source(str(where), text)
     except Fault:  # another process has just changed it: the next check reports what is wrong
         return None
     unused = _unused_points(store, named(analysis.program), source)

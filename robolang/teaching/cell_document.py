@@ -63,24 +63,24 @@ def rename_in_cell(documents: Documents, group: str, name: str, new: str) -> Doc
 
 def cell_of(documents: Documents) -> CellFile:
     """Return the cell of documents, the built-in one where they have none; ``FileFault`` RBL6xx."""
-    return parse_cell_file(_source(documents, _text(documents)), documents.cell_path.parent)
+    return parse_cell_file(_source(documents, text_of_cell(documents)), documents.cell_path.parent)
 
 
 def _set(documents: Documents, group: str, name: str, values: Values) -> Documents:
     check_word(name)
     _check(documents, group)
-    return _with(documents, set_table(_text(documents), group, name, values))
+    return _with(documents, set_table(text_of_cell(documents), group, name, values))
 
 
 def _check(documents: Documents, group: str) -> None:
     """Raise ``FileFault`` RBL6xx for a cell file that is damaged, or in which the group cannot be edited."""
     cell_of(documents)
-    check_form(_source(documents, _text(documents)), group, "RBL601")
+    check_form(_source(documents, text_of_cell(documents)), group, "RBL601")
 
 
 def _present(documents: Documents, group: str, name: str) -> str:
     _check(documents, group)
-    text = _text(documents)
+    text = text_of_cell(documents)
     if spelling(text, group, name) is None:
         raise Fault("RBL305", f"the cell has no {group[:-1]} {name}", "Name one that the cell file defines.")
     return text
@@ -90,7 +90,8 @@ def _names(frame: str, tool: str, group: str, name: str) -> bool:
     return {FRAMES: frame, TOOLS: tool}.get(group, "").upper() == name.upper()
 
 
-def _text(documents: Documents) -> str:
+def text_of_cell(documents: Documents) -> str:
+    """Return the text of the cell file, or of the one that is written with the first change."""
     return cell_text() if documents.cell is None else documents.cell
 
 

@@ -3,8 +3,9 @@
 import os
 from bisect import bisect_left
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
+from itertools import takewhile
 from pathlib import Path
 
 import robolang.core.codes  # noqa: F401 - the codes raised here must be registered
@@ -15,7 +16,7 @@ from robolang.project.builtin import cell_text, points_text
 from robolang.project.discovery import Texts, Typed, cell_beside, own_cell
 from robolang.teaching.documents import Documents
 from robolang.teaching.line_map import LineMap, lines_between
-from robolang.teaching.merging import Merge, merge_of
+from robolang.teaching.merging import Merge, merges
 from robolang.teaching.saving import SaveFault, alone, as_saved, check, unified, write
 from runtime.core.faults import Fault
 
@@ -44,7 +45,7 @@ class Desk:
         self.lines = LineMap()
         """How the lines of the program moved in the last change, undo, redo or save."""
         self.taken_over: tuple[str, ...] = ()
-        """The points that somebody else changed in the file, and that the last save found there and kept."""
+        """Points, frames, tools and loads that somebody else changed on the disk, and that the last save kept."""
 
     @property
     def documents(self) -> Documents:
@@ -111,14 +112,13 @@ class Desk:
         if new.path in self.unsaved:
             new = as_saved(new, self.analysis)
         self.lines, self.taken_over = LineMap(), ()
-        merge = None
-        saved: tuple[Path, ...] = ()
         with alone(self._changed(new)):
-            if not force and (merge := merge_of(new, self._disk.get(new.points_path))) is not None:
-                new = replace(new, points=merge.of(new.points) or new.points)
+            found = {} if force else merges(new, self._disk)
+            new = _merged(new, found) or new
             files = self._changed(new)
             if not force:
-                check(files, self._disk if merge is None else {**self._disk, new.points_path: merge.theirs})
+                check(files, {**self._disk, **{new.path_of(field): merge.theirs for field, merge in found.items()}})
+            saved: tuple[Path, ...] = ()
             try:
                 write(files)
                 saved = tuple(files)
@@ -126,18 +126,19 @@ class Desk:
                 saved = fault.saved
                 raise
             finally:
-                self._settle(new, saved, merge)
+                self._settle(new, saved, found)
         return saved
 
-    def _settle(self, new: Documents, saved: tuple[Path, ...], merge: Merge | None) -> None:
+    def _settle(self, new: Documents, saved: tuple[Path, ...], found: Mapping[str, Merge]) -> None:
         """Take over what a save has made of the documents, in the files that were written."""
         self._disk = {**self._disk, **{path: new.texts[path] for path in saved}}
-        if merge is not None and new.points_path in saved:
+        done = {field: merge for field, merge in found.items() if new.path_of(field) in saved}
+        if done:
             # also in the history: an undo must not remove what somebody else taught
-            self._past = deque(reversed(_rebased(reversed(self._past), merge)), self._past.maxlen)
-            self._future = list(reversed(_rebased(reversed(self._future), merge)))
-            self._put(replace(self._documents, points=new.points))
-            self.taken_over = merge.changed
+            self._past = deque(reversed(_rebased(reversed(self._past), done)), self._past.maxlen)
+            self._future = list(reversed(_rebased(reversed(self._future), done)))
+            self._put(_merged(self._documents, done) or self._documents)
+            self.taken_over = tuple(name for merge in done.values() for name in merge.changed)
         if new.path in saved:
             self._put(replace(self._documents, program=new.program))
 
@@ -183,15 +184,18 @@ class Desk:
             self.analysis = self.analysis.updated(_difference(old.program, new.program))
 
 
-def _rebased(steps: Iterable[_Step], merge: Merge) -> list[_Step]:
-    """Return steps, the nearest first, on what somebody else made of the points file, as far as this can be done."""
-    found = []
-    for step in steps:
-        points = merge.of(step.documents.points)
-        if points is None:
-            break
-        found.append(replace(step, documents=replace(step.documents, points=points)))
-    return found
+def _merged(documents: Documents, found: Mapping[str, Merge]) -> Documents | None:
+    """Return documents on what somebody else made of the files, by the names of the fields; None: it cannot be done."""
+    texts = {field: merge.of(getattr(documents, field)) for field, merge in found.items()}
+    if None in texts.values():
+        return None
+    return replace(documents, points=texts.get("points", documents.points), cell=texts.get("cell", documents.cell))
+
+
+def _rebased(steps: Iterable[_Step], found: Mapping[str, Merge]) -> list[_Step]:
+    """Return steps, the nearest first, on what somebody else made of the files, as far as this can be done."""
+    moved = ((step, _merged(step.documents, found)) for step in steps)
+    return [replace(step, documents=new) for step, new in takewhile(lambda each: each[1] is not None, moved) if new]
 
 
 def _mover(documents: Documents, path: Path) -> Callable[[Documents], Documents]:

@@ -37,6 +37,10 @@ class Documents:
         """Where the points file stands, or would."""
         return points_file(self.path)
 
+    def path_of(self, field: str) -> Path:
+        """Return where ``program``, ``points`` or ``cell`` stands, or would."""
+        return {"program": self.path, "points": self.points_path, "cell": self.cell_path}[field]
+
     @property
     def texts(self) -> Texts:
         """The texts by path, in the order in which they are saved: what a program names is there before it."""

@@ -7,6 +7,7 @@ file of its own. Each function returns new documents. A text that is damaged or 
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import lru_cache
 
 from robolang.project.builtin import points_text
 from robolang.project.points import Point, PointStore, read_points
@@ -17,10 +18,10 @@ from robolang.teaching.toml_text import (
     check_form,
     number,
     numbers,
-    quoted,
     remove_table,
     rename_table,
     set_table,
+    written,
 )
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import Source
@@ -29,7 +30,7 @@ Pose = tuple[float, float, float, float, float, float]
 """mm, mm, mm, deg, deg, deg."""
 GROUP = "points"
 MM_DIGITS, DEG_DIGITS = 3, 4
-"""Decimals of mm and deg in the file: 1 um and 0.0001 deg."""
+"""Decimals of mm and deg in the file: 1 um and 0.0001 deg; see ``number``."""
 
 
 def set_point(documents: Documents, point: Point, robot: str = "") -> Documents:
@@ -39,7 +40,7 @@ def set_point(documents: Documents, point: Point, robot: str = "") -> Documents:
     ``Fault`` RBL718: no name for a point, or a variable of the program has it; ``FileFault`` RBL30x.
     """
     text = text_of(documents, robot)
-    if read_points(_source(documents, text)).get(point.name) is None:
+    if read_text(_source(documents, text)).get(point.name) is None:
         check_free(documents, point.name)
     return _with(documents, set_table(text, GROUP, point.name, point_values(point)))
 
@@ -70,11 +71,11 @@ def rename_in_points(documents: Documents, name: str, new: str) -> Documents:
 
 def taught(documents: Documents) -> PointStore:
     """Return the points of documents, the built-in ones where these count; ``FileFault`` RBL30x."""
-    return read_points(_source(documents, text_of(documents)))
+    return read_text(_source(documents, text_of(documents)))
 
 
 def _point(documents: Documents, text: str, name: str) -> Point:
-    found = read_points(_source(documents, text)).get(name)
+    found = read_text(_source(documents, text)).get(name)
     if found is None:
         raise Fault("RBL301", f"there is no point {name}", "Name a point that is taught.")
     return found
@@ -86,18 +87,24 @@ def text_of(documents: Documents, robot: str = "") -> str:
         check_form(_source(documents, documents.points), GROUP, "RBL303")
         return documents.points
     if documents.cell is not None:
-        return f"schema = 1\n{f'robot = {quoted(robot)}' + chr(10) if robot else ''}"
+        return f"schema = 1\n{f'robot = {written(robot)}' + chr(10) if robot else ''}"
     text = points_text()
-    return text if not robot else text.replace('robot = "puma560"', f"robot = {quoted(robot)}")
+    return text if not robot else text.replace('robot = "puma560"', f"robot = {written(robot)}")
 
 
 def _source(documents: Documents, text: str) -> Source:
     return Source(str(documents.points_path), text)
 
 
+@lru_cache(maxsize=4)
+def read_text(source: Source) -> PointStore:
+    """Return the points of a text, read once for all that is done with it; ``FileFault`` RBL30x."""
+    return read_points(source)
+
+
 def _with(documents: Documents, text: str) -> Documents:
     # what was written is read as a run reads it, so that no file can come of it that a run refuses
-    read_points(_source(documents, text))
+    read_text(_source(documents, text))
     return replace(documents, points=text)
 
 
@@ -106,11 +113,11 @@ def point_values(point: Point) -> Values:
     return {
         "pose": None if point.pose is None else pose_text(point.pose),
         "joints": None if point.joints is None else numbers(number(each, DEG_DIGITS) for each in point.joints),
-        "frame": quoted(point.frame) if point.frame else None,
-        "tool": quoted(point.tool) if point.tool else None,
-        "configuration": quoted(" ".join(point.configuration)) if point.configuration else None,
+        "frame": written(point.frame) if point.frame else None,
+        "tool": written(point.tool) if point.tool else None,
+        "configuration": written(" ".join(point.configuration)) if point.configuration else None,
         "turns": numbers(str(each) for each in point.turns) if point.turns else None,
-        "comment": quoted(point.comment) if point.comment else None,
+        "comment": written(point.comment) if point.comment else None,
     }
 
 

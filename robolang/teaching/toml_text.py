@@ -7,7 +7,8 @@ have the whole group as one value (``check_form``).
 
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -15,6 +16,9 @@ from runtime.core.tomlfile import Source
 
 Values = Mapping[str, str | None]
 """All keys that a table may have, with TOML values as they are written; None: the key is removed."""
+
+MOST_DIGITS = 9
+"""Decimals of a taught value whose joint angles need more of them than are usual (docs/decisions/0048)."""
 
 _TOKEN = re.compile(
     r"""
@@ -69,16 +73,16 @@ def set_table(text: str, group: str, name: str, values: Values) -> str:
 
     Names ignore case; one that is there keeps its spelling.
     """
-    written = spelling(text, group, name)
-    if written is None:
+    there = spelling(text, group, name)
+    if there is None:
         return _appended(text, group, name, values)
-    block = _find(text, group, written)
+    block = _find(text, group, there)
     if block is None:
-        return _set_loose(text, group, written, values)
+        return _set_loose(text, group, there, values)
     import tomlkit  # late: nothing is edited at the start of a prompt
 
     part: Any = tomlkit.parse(text[block.start : block.end])
-    table = part[group][written]
+    table = part[group][there]
     for key, value in values.items():
         if value is not None:
             table[key] = tomlkit.value(value)
@@ -89,11 +93,11 @@ def set_table(text: str, group: str, name: str, values: Values) -> str:
 
 def remove_table(text: str, group: str, name: str) -> str:
     """Return a text without ``[group.NAME]``, which must be there, and without the comment right above its header."""
-    written = spelling(text, group, name)
-    assert written is not None
-    block = _find(text, group, written)
+    there = spelling(text, group, name)
+    assert there is not None
+    block = _find(text, group, there)
     if block is None:
-        return _replaced(text, [(row.start, row.end, "") for row in _of(text, group, written)])
+        return _replaced(text, [(row.start, row.end, "") for row in _of(text, group, there)])
     before, after = text[: block.above], text[block.end :]
     # one of the blank lines around it goes too: those of its neighbours stay as many as they were
     if not after.strip():
@@ -106,21 +110,26 @@ def remove_table(text: str, group: str, name: str) -> str:
 
 def rename_table(text: str, group: str, name: str, new: str) -> str:
     """Return a text in which ``[group.NAME]``, which must be there, has another name."""
-    written = spelling(text, group, name)
-    return _replaced(text, [(*_name_in(row), new) for row in _of(text, group, written) if _writes_name(row)])
+    there = spelling(text, group, name)
+    return _replaced(text, [(*_name_in(row), new) for row in _of(text, group, there) if _writes_name(row)])
 
 
 def spelling(text: str, group: str, name: str) -> str | None:
     """Return how a table of a group is written, None where no table has that name."""
-    names = tomllib.loads(text).get(group, {})
-    return next((each for each in names if each.upper() == name.upper()), None)
+    paths = (row.path for row in _rows(text) if len(row.path) > 1 and row.path[0] == group)
+    return next((path[1] for path in paths if path[1].upper() == name.upper()), None)
 
 
 def number(value: float, digits: int) -> str:
-    """Return a number with at most so many decimals, as short as it is exact to them; never ``-0``."""
-    rounded = round(float(value), digits) + 0.0
+    """Return a number with at most so many decimals, without those that are 0; never ``-0``.
+
+    One that has at most ``MOST_DIGITS`` is taken to be rounded on purpose, and written in full.
+    """
+    exact = float(value)
+    kept = exact if exact == round(exact, MOST_DIGITS) else round(exact, digits)
     # one that is not finite is a value of TOML as well, and refused where the text is read
-    return str(int(rounded)) if rounded.is_integer() else repr(rounded)
+    text = f"{kept + 0.0:.{MOST_DIGITS}f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text
 
 
 def numbers(values: Iterable[str]) -> str:
@@ -128,11 +137,11 @@ def numbers(values: Iterable[str]) -> str:
     return f"[{', '.join(values)}]"
 
 
-def quoted(text: str) -> str:
-    """Return a text as it is written."""
+def written(value: Any) -> str:
+    """Return a value, as ``tomllib`` reads it, as it is written."""
     import tomlkit
 
-    return tomlkit.item(text).as_string()
+    return str(tomlkit.item(value).as_string())
 
 
 def _appended(text: str, group: str, name: str, values: Values) -> str:
@@ -187,7 +196,7 @@ def _find(text: str, group: str, written: str) -> _Block | None:
 
 def _blocks(text: str) -> Iterator[_Block]:
     """Yield the tables that have a header."""
-    rows = list(_rows(text))
+    rows = _rows(text)
     headers = [index for index, row in enumerate(rows) if row.is_header]
     for index, following in pairwise([*headers, len(rows)]):
         last = max(at for at in range(index, following) if rows[at].path)
@@ -201,12 +210,18 @@ def _blocks(text: str) -> Iterator[_Block]:
         yield _Block(rows[index].start, rows[last].end, rows[index].path, start)
 
 
-def _comments(rows: list[_Row], places: range) -> int:
+def _comments(rows: Sequence[_Row], places: range) -> int:
     """Return how many rows are comments, from the first place on without a gap."""
     return next((count for count, at in enumerate(places) if not rows[at].is_comment), len(places))
 
 
-def _rows(text: str) -> Iterator[_Row]:
+@lru_cache(maxsize=4)
+def _rows(text: str) -> tuple[_Row, ...]:
+    """Return the statements of a text; a file is scanned once for all that is done with it."""
+    return tuple(_scan(text))
+
+
+def _scan(text: str) -> Iterator[_Row]:
     table: tuple[str, ...] = ()
     start = depth = 0
     ends = [*_TOKEN.finditer(text), None]

@@ -39,7 +39,7 @@ def program(tmp_path):
 
 
 def test_the_first_change_makes_a_cell_file_of_the_built_in_cell(program):
-    new = set_frame(load_documents(program), "pallet", (1, 2, 3.00049, 0, -0.0, 45.00004))
+    new = set_frame(load_documents(program), "pallet", (1, 2, 3 + 1e-4 / 3, 0, -0.0, 45 - 1e-4 / 3))
     assert new.cell == f"{CELL}\n[frames.pallet]\npose_mm_deg = [1, 2, 3, 0, 0, 45]\n"
     assert new.cell_path == program.with_name("P.cell.toml")
     # the built-in points belong to the built-in cell alone
@@ -55,7 +55,7 @@ def test_a_cell_file_that_is_there_keeps_all_other_bytes(program):
     assert new.cell == CELL.replace("[0, 0, 113.7, 0, 0, 0]\n", "[0, 0, 120.5, 0, 0, 0]\n").replace(
         "tcp_mm_deg = [0, 0, 120.5", "tcp_mm_deg = [0, 0, 113.7"
     )
-    new = set_load(found, "empty", 0.81234, (0, 0, 61))
+    new = set_load(found, "empty", 0.8123 + 1e-5 / 3, (0, 0, 61))
     assert new.cell == CELL.replace(
         "mass_kg = 0.8\ncog_mm = [0, 0, 60]\n\n", "mass_kg = 0.8123\ncog_mm = [0, 0, 61]\n\n"
     )

@@ -1,5 +1,7 @@
 import pytest
 
+from robolang.lint.engine import check_points, check_source
+from robolang.project.discovery import CellFiles
 from robolang.project.points import load_points
 from robolang.project.project import load_project
 from robolang.teaching.cell_document import set_frame, set_load, set_tool
@@ -120,3 +122,109 @@ def test_a_point_is_renamed_in_all_files(program):
     refused("RBL718", rename_point, one.documents, "Above", "P2")
     refused("RBL718", rename_point, one.documents, "Above", "MOVE")
     refused("RBL301", rename_point, one.documents, "P1", "P9")
+
+
+def test_lint_checks_typed_files_as_those_on_the_disk(program):
+    one = desk(program)
+    teach(one, "P9")
+    put(one, "30 MOVE P8")
+    files = CellFiles(one.documents.texts)
+    checked = check_source(one.documents.source, files=files)
+    found = [item.code for item in checked.diagnostics], check_points(checked, files=files)
+    one.save()
+    checked = check_source(one.documents.source)
+    assert [item.code for item in checked.diagnostics] == found[0] == ["RBL301"]
+    assert check_points(checked).diagnostics == found[1].diagnostics
+    assert len(found[1].diagnostics) == 5
+
+
+# --- which files a program has ---------------------------------------------------------------------------------------
+
+
+def test_what_cannot_be_read_is_refused_at_the_start(program):
+    refused("RBL701", load_documents, program.with_name("Q.rbl"))
+    refused("RBL702", load_documents, program.parent)
+    refused("RBL600", load_documents, program, program.with_name("other.toml"))
+    program.with_suffix(".points.toml").symlink_to("nowhere")
+    refused("RBL302", load_documents, program)
+    program.with_suffix(".points.toml").unlink()
+    program.with_suffix(".points.toml").write_bytes(b"\xff")
+    refused("RBL311", load_documents, program)
+    program.write_bytes(b"\xff")
+    refused("RBL104", load_documents, program)
+
+
+@pytest.mark.parametrize("beside", ["P.cell.toml", "cell.toml", "given.toml"])
+def test_a_cell_file_is_edited_where_it_is(program, beside):
+    path = program.with_name(beside)
+    path.write_text(CELL)
+    one = Desk(load_documents(program, path if beside == "given.toml" else None))
+    one.change(set_frame(one.documents, "pallet", POSE), "teachframe")
+    assert load_project(one.typed).cell.frames.keys() == {"WORLD", "pallet"}
+    assert one.save() == (path,)
+    assert load_project(program, cell=path).cell.frames.keys() == {"WORLD", "pallet"}
+
+
+# --- another name ----------------------------------------------------------------------------------------------------
+
+
+def moved(program, name, cell=None):
+    """What a program is saved as, and the folder then."""
+    one = Desk(load_documents(program, cell))
+    teach(one, "P9")
+    one.save_as(program.parent / name)
+    before, after = load_project(program, cell=cell), load_project(one.documents.path, cell=cell)
+    assert [part.name for part in after.cell.parts] == [part.name for part in before.cell.parts]
+    assert after.cell.frames.keys() == before.cell.frames.keys()
+    assert after.ok
+    assert one.unsaved == ()
+    return one, sorted(path.name for path in one.documents.path.parent.iterdir() if path.name[0] in "Qc")
+
+
+@pytest.mark.parametrize(
+    ("beside", "name", "there"),
+    [
+        (None, "Q.rbl", ["Q.points.toml", "Q.rbl"]),
+        ("P.cell.toml", "Q.rbl", ["Q.cell.toml", "Q.points.toml", "Q.rbl"]),
+        ("cell.toml", "Q", ["Q.points.toml", "Q.rbl", "cell.toml"]),
+        ("cell.toml", "sub/Q.rbl", ["Q.cell.toml", "Q.points.toml", "Q.rbl"]),
+        ("given.toml", "sub/Q.rbl", ["Q.points.toml", "Q.rbl"]),
+    ],
+)
+def test_a_program_under_another_name_runs_in_the_same_cell(program, beside, name, there):
+    (program.parent / "sub").mkdir()
+    if beside:
+        program.with_name(beside).write_text(f"{CELL}\n[frames.f]\npose_mm_deg = [1, 2, 3, 4, 5, 6]\n")
+        program.with_suffix(".points.toml").write_text(
+            "schema = 1\n[points.P1]\npose = [480, -220, 840, 180, 0, 180]\n"
+        )
+    one, found = moved(program, name, program.with_name(beside) if beside == "given.toml" else None)
+    assert found == there
+    assert program.read_text() == PROGRAM
+    assert one.undo() == "teach P9"
+    assert one.documents.path.name == "Q.rbl"
+    assert one.unsaved == (one.documents.points_path,)
+
+
+def test_the_built_in_cell_goes_along_into_a_folder_with_another_cell(program):
+    (program.parent / "sub").mkdir()
+    (program.parent / "sub" / "cell.toml").write_text(CELL.replace('name = "part"', 'name = "other"'))
+    _, found = moved(program, "sub/Q.rbl")
+    assert found == ["Q.cell.toml", "Q.points.toml", "Q.rbl", "cell.toml"]
+
+
+def test_a_name_that_is_taken_and_a_folder_that_is_not_there(program):
+    one = desk(program)
+    teach(one, "P9")
+    before = one.documents
+    program.with_name("Q.points.toml").write_text("mine")
+    refused("RBL706", one.save_as, program.with_name("Q.rbl"))
+    refused("RBL312", one.save_as, program.parent / "nowhere" / "Q.rbl")
+    assert (one.documents, one.unsaved) == (before, (before.points_path,))
+    assert program.with_name("Q.points.toml").read_text() == "mine"
+    one.save_as(program.with_name("Q.rbl"), force=True)
+    assert load_points(program.with_name("Q.points.toml")).names >= {"P9"}
+    assert not program.with_suffix(".points.toml").exists()
+    # the name that it has: saved as always
+    teach(one, "P8")
+    assert [path.name for path in one.save_as(program.with_name("Q.rbl"))] == ["Q.points.toml"]

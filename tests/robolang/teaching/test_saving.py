@@ -1,18 +1,25 @@
 import errno
 import os
 import tempfile
+import warnings
 from pathlib import Path
 
 import pytest
 
 from robolang.project.points import load_points
-from robolang.teaching.cell_document import set_frame
+from robolang.teaching.cell_document import LOADS, remove_from_cell, set_frame, set_load, set_tool
 from robolang.teaching.points_document import taught
 from robolang.teaching.renaming import rename_point
 from robolang.teaching.saving import ConflictFault, SaveFault
+from runtime.cell.cell_file import read_cell_file
+from tests.campaign import size
+from tests.robolang.cli.commands import BUILTIN
 from tests.robolang.core.test_saves import stepped
 from tests.robolang.core.test_storage import ordinary_user
 from tests.robolang.teaching.desks import POINTS, POSE, PROGRAM, desk, put, refused, remove, teach
+
+CELL = (BUILTIN / "cell.toml").read_text()
+COUNT = size(200, 15)
 
 
 @pytest.fixture
@@ -55,6 +62,62 @@ def test_points_that_two_prompts_teach_are_all_kept(program, points, first, ther
     assert load_points(points).names == before - {"P2"} | {"A1", "A2", "B1", "C1"}
     if there:
         assert points.read_text().startswith(POINTS[:150])
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_frames_tools_and_loads_that_two_prompts_make_are_all_kept(program, there):
+    cell = program.with_suffix(".cell.toml")
+    if there:
+        cell.write_text(CELL)
+    one, other = desk(program), desk(program)
+    one.change(set_frame(one.documents, "pallet", POSE), "teachframe")
+    one.change(set_tool(one.documents, "grip", (0, 0, 1, 0, 0, 0)), "teachtool")
+    other.change(set_frame(other.documents, "tray", POSE), "teachframe")
+    other.change(set_load(other.documents, "box", 1.5, (0, 0, 70)), "weigh")
+    other.change(remove_from_cell(other.documents, LOADS, "empty"), "remove")
+    one.save()
+    other.save()
+    assert other.taken_over == ("GRIP", "PALLET")
+    found = read_cell_file(cell)
+    assert found.frames.keys() == {"WORLD", "pallet", "tray"}
+    assert found.loads.keys() == {"hand_and_part", "box"}
+    assert found.tools["grip"] == (0, 0, 1, 0, 0, 0)
+    assert cell.read_text().startswith(CELL[: CELL.index("[loads.empty]")])
+    other.change(set_tool(other.documents, "grip", (0, 0, 2, 0, 0, 0)), "teachtool")
+    one.change(set_tool(one.documents, "GRIP", (0, 0, 3, 0, 0, 0)), "teachtool")
+    other.save()
+    refused("RBL714", one.save)
+
+
+def test_two_prompts_that_save_at_once_lose_no_point(program, points):
+    ready, go = os.pipe()
+    children = []
+    for letter in "AB":
+        with warnings.catch_warnings():
+            warnings.simplefilter(
+                "ignore", DeprecationWarning
+            )  # threads of other libraries; the child runs none of them
+            child = os.fork()
+        if not child:
+            try:
+                one = desk(program)
+                os.close(go)
+                os.read(ready, 1)
+                for number in range(COUNT):
+                    teach(one, f"{letter}{number}")
+                    one.save()
+                os._exit(0)
+            finally:
+                os._exit(1)
+        children.append(child)
+    os.close(go)  # both begin
+    os.close(ready)
+    assert [os.waitpid(child, 0)[1] for child in children] == [0, 0]
+    assert load_points(points).names == {
+        "P1",
+        "P2",
+        *(f"{letter}{number}" for letter in "AB" for number in range(COUNT)),
+    }
 
 
 def test_an_undo_after_a_merge_keeps_what_somebody_else_taught(program, points):
