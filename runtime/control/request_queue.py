@@ -113,7 +113,7 @@ class RequestQueue(Stateful):
         rows = as_rows(self._spec, rows)
         self._refuse_while_busy()
         if checked:
-            check_motion(self._spec, self._fine, rows)
+            check_motion(self._spec, self._fine, rows, np.array(self._areas.ina))
         if self.speed_cap is not None:  # whatever the caller answers for: in MANUAL it is a person who stands there
             self._cap(self.speed_cap).check(self._fine.after(rows))
         # row 0 of a plan is where the arm is, and is not sent

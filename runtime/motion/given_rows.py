@@ -15,6 +15,9 @@ from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.path_ik import RANGE_TOLERANCE
 from runtime.robot.model.spec import RobotSpec
 
+_BETWEEN = 5e-6
+"""How far past a limit the command may be between set-points that keep it, rad (0.0003 deg)."""
+
 _SLACK = 1.0 + 1e-6
 """A planner leaves its moves the same share of rounding (``time_scaling``)."""
 
@@ -31,19 +34,27 @@ def as_rows(spec: RobotSpec, rows: Array) -> Array:
     return given
 
 
-def check_motion(spec: RobotSpec, fine: FineInterpolator, rows: Array) -> None:
-    """Refuse set-points (K, n) with ``Fault``: RBL411 out of the range of a joint, RBL404 too fast for one."""
+def check_motion(spec: RobotSpec, fine: FineInterpolator, rows: Array, here: Array) -> None:
+    """Refuse set-points (K, n) with ``Fault``: RBL411 out of the range of a joint, RBL404 too fast for one.
+
+    A command that already stands beyond a limit, at ``here`` (n,), may go anywhere but further out.
+    """
     q, dq, ddq = fine.after(rows)
-    check_range(spec, q)
+    check_range(spec, rows, here)
+    # the set-points keep the range to rounding; between them the command swings a little where it starts or stops
+    check_range(spec, q, here, _BETWEEN)
     _check_rate(dq, spec.per_axis("limits", "speed"), "turn at", "deg/s")
     _check_rate(ddq, spec.per_axis("limits", "acceleration"), "accelerate at", "deg/s2")
 
 
-def check_range(spec: RobotSpec, q: Array) -> None:
-    """Refuse joint angles (K, n) out of the range of a joint; ``Fault`` RBL411."""
-    excess = np.maximum(spec.lower - q, q - spec.upper).max(axis=0)
+def check_range(spec: RobotSpec, q: Array, here: Array | None = None, tolerance: float = RANGE_TOLERANCE) -> None:
+    """Refuse joint angles (K, n) out of the range of a joint, widened to ``here`` (n,); ``Fault`` RBL411."""
+    lower, upper = spec.lower, spec.upper
+    if here is not None:
+        lower, upper = np.minimum(lower, here), np.maximum(upper, here)
+    excess = np.maximum(lower - q, q - upper).max(axis=0)
     axis = int(np.argmax(excess))
-    if not excess[axis] <= RANGE_TOLERANCE:
+    if not excess[axis] <= tolerance:
         raise Fault("RBL411", f"J{axis + 1} would leave its range by {excess[axis] / DEG:.4g} deg")
 
 

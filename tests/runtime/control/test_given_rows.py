@@ -170,3 +170,42 @@ def test_a_jump_to_nowhere_is_refused(bad):
     with pytest.raises(ValueError if np.isnan(bad) else Fault):
         robot.jump(q)
     assert np.isfinite(robot.areas.ina).all()
+
+
+def test_held_rows_begin_to_stop_in_the_next_cycle_and_what_is_left_can_be_forgotten():
+    robot, whole = controller(), controller()
+    rows = turned(robot, 10.0)
+    for each in (robot, whole):
+        each.play(rows)
+        for _ in range(30):
+            each.cycle()
+    robot.hold()
+    with pytest.raises(RuntimeError):
+        robot.set_aside()
+    robot.cycle()
+    whole.cycle()
+    held, goes_on = (signals(each)["q_plan"][::8, 0] for each in (robot, whole))
+    assert held[29] == goes_on[29] and held[30] < goes_on[30]
+    while not robot.hold():
+        robot.cycle()
+    rest = np.array(robot.areas.ina)
+    robot.set_aside()
+    robot.go_on()  # nothing is left
+    robot.cycle()
+    assert not robot.moving and (robot.areas.ina == rest).all()
+    robot.play(turned(robot, -10.0))
+    assert robot.moving
+
+
+@pytest.mark.parametrize("beyond_deg", [0.0, 0.5])
+def test_rows_lead_an_arm_back_from_a_limit_and_not_further_out(beyond_deg):
+    robot = controller()
+    limit = SPEC.upper[0] + beyond_deg * DEG
+    q = np.array(robot.areas.ina)
+    q[0] = limit
+    robot.areas.ina = q
+    robot.drives.fine.hold(q)
+    with pytest.raises(Fault) as refused:
+        robot.play(turned(robot, 0.01))
+    assert refused.value.code == "RBL411"
+    robot.play(turned(robot, -10.0))
