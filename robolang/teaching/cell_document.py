@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from robolang.project.builtin import cell_text, points_text
 from robolang.teaching.documents import Documents
-from robolang.teaching.names import check_word
+from robolang.teaching.names import FRAMES, LOADS, TOOLS, check_free
 from robolang.teaching.points_document import pose_text, taught
 from robolang.teaching.toml_text import (
     Values,
@@ -26,7 +26,6 @@ from runtime.cell.cell_file import CellFile, parse_cell_file
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import Source
 
-FRAMES, TOOLS, LOADS = "frames", "tools", "loads"
 _KG_DIGITS, _MM_DIGITS = 4, 3
 
 
@@ -67,9 +66,11 @@ def cell_of(documents: Documents) -> CellFile:
 
 
 def _set(documents: Documents, group: str, name: str, values: Values) -> Documents:
-    check_word(name)
     _check(documents, group)
-    return _with(documents, set_table(text_of_cell(documents), group, name, values))
+    text = text_of_cell(documents)
+    if spelling(text, group, name) is None:
+        check_free(documents, group, name)
+    return _with(documents, set_table(text, group, name, values))
 
 
 def _check(documents: Documents, group: str) -> None:

@@ -145,11 +145,11 @@ class Desk:
     def save_as(self, path: Path, *, force: bool = False) -> tuple[Path, ...]:
         """Give the program another name, write it there with its points and its cell, and return the files.
 
-        A name without an ending gets ``.rbl``. A cell file that the new program finds beside it is not copied. Raises
-        ``Fault`` RBL706 where one of the files is there already, unless ``force``, and as ``save``; the documents then
-        have their old name.
+        A name gets the ending ``.rbl`` where it lacks it. A cell file that the new program finds beside it is not
+        copied. Raises ``Fault`` RBL706 for what is no name of a file, and where one of the files is there already,
+        unless ``force``; and as ``save``. The documents then have their old name.
         """
-        move = _mover(self._documents, path if path.suffix else path.with_suffix(".rbl"))
+        move = _mover(self._documents, _program_path(path))
         new = move(self._documents)
         there = [file for file in new.texts if file not in self._documents.texts and os.path.lexists(file)]
         if there and not force:
@@ -196,6 +196,13 @@ def _rebased(steps: Iterable[_Step], found: Mapping[str, Merge]) -> list[_Step]:
     """Return steps, the nearest first, on what somebody else made of the files, as far as this can be done."""
     moved = ((step, _merged(step.documents, found)) for step in steps)
     return [replace(step, documents=new) for step, new in takewhile(lambda each: each[1] is not None, moved) if new]
+
+
+def _program_path(path: Path) -> Path:
+    if path.name in ("", "..") or "\0" in str(path) or os.path.isdir(path):  # noqa: PTH112 - Path raises for a name that is too long
+        raise Fault("RBL706", f"'{path}' is not the name of a file", "Give a name such as pick.rbl.")
+    # not with_suffix: a name such as station.2 has a dot of its own
+    return path if path.suffix == ".rbl" else path.with_name(f"{path.name}.rbl")
 
 
 def _mover(documents: Documents, path: Path) -> Callable[[Documents], Documents]:

@@ -72,8 +72,9 @@ def load_documents(program: Path | None = None, cell: Path | None = None) -> Doc
         beside = path.with_name("cell.toml")
         found, text, points = cell or (beside if cell_beside(path) == beside else None), "", None
     else:
-        path = program
-        found, text, points = cell or cell_beside(path), read_program(path).text, _points(path)
+        # the program first: no other file is beside one that cannot exist
+        path, text = program, read_program(program).text
+        found, points = cell or cell_beside(path), _points(path)
     return Documents(
         path=path,
         program=text,

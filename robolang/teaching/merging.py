@@ -7,8 +7,9 @@ from typing import Any
 
 from robolang.project.discovery import Texts
 from robolang.project.points import read_points
-from robolang.teaching.cell_document import FRAMES, LOADS, TOOLS, text_of_cell
+from robolang.teaching.cell_document import text_of_cell
 from robolang.teaching.documents import Documents
+from robolang.teaching.names import FRAMES, LOADS, TOOLS
 from robolang.teaching.points_document import GROUP, text_of
 from robolang.teaching.saving import text_on_disk
 from robolang.teaching.toml_text import Values, check_form, remove_table, rename_table, set_table, written

@@ -12,7 +12,7 @@ from functools import lru_cache
 from robolang.project.builtin import points_text
 from robolang.project.points import Point, PointStore, read_points
 from robolang.teaching.documents import Documents
-from robolang.teaching.names import check_free, check_not_taken
+from robolang.teaching.names import POINTS, check_free, check_not_taken
 from robolang.teaching.toml_text import (
     Values,
     check_form,
@@ -28,7 +28,7 @@ from runtime.core.tomlfile import Source
 
 Pose = tuple[float, float, float, float, float, float]
 """mm, mm, mm, deg, deg, deg."""
-GROUP = "points"
+GROUP = POINTS
 MM_DIGITS, DEG_DIGITS = 3, 4
 """Decimals of mm and deg in the file: 1 um and 0.0001 deg; see ``number``."""
 
@@ -37,11 +37,11 @@ def set_point(documents: Documents, point: Point, robot: str = "") -> Documents:
     """Teach a point, new or anew: every key of it is written, those that are empty are removed.
 
     A new point comes after the last one. ``robot``: on which it is taught, for a file that is written anew.
-    ``Fault`` RBL718: no name for a point, or a variable of the program has it; ``FileFault`` RBL30x.
+    ``Fault`` RBL718: no name for a point, or a variable, frame or tool has it; ``FileFault`` RBL30x.
     """
     text = text_of(documents, robot)
     if read_text(_source(documents, text)).get(point.name) is None:
-        check_free(documents, point.name)
+        check_free(documents, GROUP, point.name)
     return _with(documents, set_table(text, GROUP, point.name, point_values(point)))
 
 

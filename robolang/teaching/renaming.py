@@ -5,9 +5,9 @@ from dataclasses import replace
 from robolang.analysis.analysis import Analysis
 from robolang.analysis.cell_symbols import CellSymbols
 from robolang.analysis.symbol_table import SymbolKind
-from robolang.teaching.cell_document import FRAMES, LOADS, TOOLS, cell_of, rename_in_cell
+from robolang.teaching.cell_document import cell_of, rename_in_cell
 from robolang.teaching.documents import Documents
-from robolang.teaching.names import check_free, check_not_taken, check_word
+from robolang.teaching.names import FRAMES, LOADS, POINTS, TOOLS, check_free, check_not_taken
 from robolang.teaching.points_document import rename_in_points, set_point, taught
 from runtime.core.faults import Fault
 
@@ -18,12 +18,12 @@ def rename_point(documents: Documents, name: str, new: str) -> Documents:
     """Rename a point and every use that means it; a variable that hides it somewhere keeps its name.
 
     A line with an error in its text is left as it is. ``Fault`` RBL301: no such point; RBL718: the new name is no name,
-    taken, or that of a variable, which would hide the point.
+    taken, or that of a variable, a frame or a tool.
     """
     points = taught(documents)
     if points.get(name) is None:
         raise Fault("RBL301", f"there is no point {name}", "Name a point that is taught.")
-    check_free(documents, new)
+    check_free(documents, POINTS, new)
     if new.upper() != name.upper():  # its spelling alone may change
         check_not_taken(points.get(new), new)
     renamed = rename_in_points(documents, name, new)
@@ -35,7 +35,7 @@ def rename_of_cell(documents: Documents, group: str, name: str, new: str) -> Doc
 
     ``Fault`` RBL305: it is not there; RBL718 as ``rename_point``.
     """
-    check_word(new) if group == LOADS else check_free(documents, new)
+    check_free(documents, group, new)
     cell, points = cell_of(documents), taught(documents)
     there = {each.upper() for each in getattr(cell, group)}
     if new.upper() != name.upper():

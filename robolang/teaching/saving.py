@@ -81,6 +81,8 @@ def _write(path: Path, text: str | None) -> None:
         data = (_MARK if _raw(path).startswith(_MARK) else b"") + text.encode("utf-8")
     except UnicodeEncodeError as error:  # half of a character, from a terminal that is not UTF-8
         raise Fault("RBL104", f"{path}: character {error.start + 1} cannot be written as UTF-8") from None
+    if len(data) > MAX_BYTES:
+        raise Fault("RBL106", f"{path} would have {len(data)} bytes, more than the {MAX_BYTES} that can be read again")
     write_atomic(path, lambda stream: stream.write(data))
 
 

@@ -248,7 +248,10 @@ def _row(text: str, start: int, end: int, table: tuple[str, ...]) -> _Row:
 
 def _decoded(part: str) -> str:
     """Return the name that is written in a part of a key."""
-    return next(iter(tomllib.loads(f"{part} = 0"))) if part[0] in "\"'" else part
+    try:
+        return next(iter(tomllib.loads(f"{part} = 0"))) if part[0] in "\"'" else part
+    except tomllib.TOMLDecodeError:  # in a text that is no TOML, where only the name of something else is searched for
+        return part
 
 
 def _line_end(text: str) -> str:

@@ -2,9 +2,6 @@ import pytest
 
 from robolang.project.project import load_project
 from robolang.teaching.cell_document import (
-    FRAMES,
-    LOADS,
-    TOOLS,
     cell_of,
     remove_from_cell,
     set_frame,
@@ -13,6 +10,7 @@ from robolang.teaching.cell_document import (
 )
 from robolang.teaching.desk import Desk
 from robolang.teaching.documents import load_documents
+from robolang.teaching.names import FRAMES, LOADS, TOOLS
 from robolang.teaching.points_document import set_point, taught
 from robolang.teaching.renaming import rename_of_cell
 from tests.robolang.cli.commands import BUILTIN

@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import pytest
 
 from robolang.lint.engine import check_points, check_source
@@ -225,6 +227,21 @@ def test_a_name_that_is_taken_and_a_folder_that_is_not_there(program):
     one.save_as(program.with_name("Q.rbl"), force=True)
     assert load_points(program.with_name("Q.points.toml")).names >= {"P9"}
     assert not program.with_suffix(".points.toml").exists()
+    for name in ("", "..", ".", "/", "a\0b", "a\0b.rbl", str(program.parent)):
+        refused("RBL706", one.save_as, Path(name))
+    refused("RBL312", one.save_as, program.with_name("x" * 300))
+    assert one.save_as(program.with_name("station.2"))[-1].name == "station.2.rbl"
+    assert one.save_as(program.with_name("Q.rbl"), force=True)
     # the name that it has: saved as always
     teach(one, "P8")
     assert [path.name for path in one.save_as(program.with_name("Q.rbl"))] == ["Q.points.toml"]
+
+
+def test_a_text_that_could_not_be_read_again_is_not_saved(program):
+    one = desk(program)
+    put(one, "30 ' " + "x" * 9_000)
+    for number in range(200, 320):
+        put(one, f"{number} ' " + "x" * 9_000)
+    refused("RBL312", one.save)
+    assert program.read_text() == PROGRAM
+    one.undo()

@@ -133,16 +133,55 @@ def test_what_no_point_can_be_is_refused(code, point):
     refused(code, set_point, documents(POINTS), point)
 
 
-def test_a_name_that_a_variable_of_the_program_has_is_refused():
-    found = Documents(path=Path("P.rbl"), program="10 x = 1\n20 SUB s(y)\n30 ENDSUB\n", points=POINTS, cell=None,
-                      cell_path=Path("P.cell.toml"))  # fmt: skip
-    for name in ("X", "y"):
-        refused("RBL718", set_point, found, Point(name=name, pose=POSE))
-        refused("RBL718", rename_point, found, "P1", name)
-        refused("RBL718", copy_point, found, "P1", name)
-    refused("RBL718", copy_point, found, "P1", "p2")
-    refused("RBL301", copy_point, found, "P8", "P9")
-    assert taught(copy_point(found, "p1", "P9")).get("P9").comment == "around the part"
+@pytest.mark.parametrize("name", ["X", "y", "GRIP", "tray"])
+def test_a_name_that_means_something_else_in_the_program_is_refused(name):
+    found = Documents(
+        path=Path("P.rbl"),
+        program="10 x = 1\n20 SUB s(y)\n30 ENDSUB\n",
+        points=POINTS,
+        cell='[tools.grip]\n["frames".\'TRAY\']\n["\\z"]\n',
+        cell_path=Path("P.cell.toml"),
+    )
+    refused("RBL718", set_point, found, Point(name=name, pose=POSE))
+    refused("RBL718", rename_point, found, "P1", name)
+    refused("RBL718", copy_point, found, "P1", name)
+
+
+def test_a_copy_has_the_values_of_the_point_and_a_name_of_its_own():
+    refused("RBL718", copy_point, documents(POINTS), "P1", "p2")
+    refused("RBL301", copy_point, documents(POINTS), "P8", "P9")
+    found = copy_point(documents(POINTS), "p1", "P9", (1, 2, 3, 4, 5, 6))
+    assert taught(found).get("P9") == taught(found).get("P1").replaced(name="P9", pose=(1, 2, 3, 4, 5, 6))
+    assert taught(copy_point(found, "P2", "P8", POSE)).get("P8") == Point(name="P8", pose=POSE)
+
+
+def test_a_use_that_does_not_mean_the_point_keeps_its_name():
+    program = """\
+10 MOVE P1  ' P1
+20 p1.z = 1
+30 MOVE P1 + (0, 0, P1.Z), SPEED 100
+40 CALL s(P1)
+*P1
+DIM P1(3)
+P1(1) = 2
+SUB s(P2)
+  MOVE P2
+ENDSUB
+MOVE (P1
+x = P1.X
+"""
+    found = Documents(path=Path("P.rbl"), program=program, points=POINTS, cell="", cell_path=Path("P.cell.toml"))
+    new = rename_point(found, "P1", "Q").program.splitlines()
+    assert new == [
+        "10 MOVE Q  ' P1",
+        *program.splitlines()[1:2],
+        "30 MOVE Q + (0, 0, Q.Z), SPEED 100",
+        "40 CALL s(Q)",
+        *program.splitlines()[4:11],
+        "x = Q.X",
+    ]
+    # hidden in the SUB by its parameter
+    assert rename_point(found, "P2", "Q").program == program
 
 
 # --- any edits of any file -------------------------------------------------------------------------------------------

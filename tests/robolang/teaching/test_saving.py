@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from robolang.project.points import load_points
-from robolang.teaching.cell_document import LOADS, remove_from_cell, set_frame, set_load, set_tool
+from robolang.teaching.cell_document import remove_from_cell, set_frame, set_load, set_tool
+from robolang.teaching.names import LOADS
 from robolang.teaching.points_document import taught
 from robolang.teaching.renaming import rename_point
 from robolang.teaching.saving import ConflictFault, SaveFault
