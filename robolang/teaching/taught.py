@@ -8,7 +8,7 @@ holds, and a program commands. A point is taught
 
 A new point is a pose where a frame of the cell is in force, since whoever works in a frame needs points that follow it,
 and joints elsewhere (docs/decisions/0048). A point that is taught anew keeps its kind, frame, tool and comment. Values
-have three decimals, mm and deg, and more where only these bring the same joint angles back.
+have three decimals of mm and four of deg, and more where only these bring the same joint angles back.
 """
 
 from dataclasses import dataclass
@@ -19,7 +19,9 @@ import numpy as np
 from robolang.execution import lowering
 from robolang.execution.lowering import Surroundings
 from robolang.project.points import NAME_HINT, Point, can_be_name
+from robolang.teaching.points_document import DEG_DIGITS, MM_DIGITS
 from robolang.teaching.postures import reached_point, tool_place
+from robolang.teaching.toml_text import MOST_DIGITS
 from robolang.values.poses import Frame, Six
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, inverse
@@ -31,12 +33,12 @@ from runtime.robot.model.spec import RobotSpec
 
 Kind: TypeAlias = Literal["joints", "pose"]
 
-DECIMALS = 3
+DIGITS = (MM_DIGITS, DEG_DIGITS)
 """Decimals of a taught value, mm and deg: finer than any arm repeats, and short enough to read."""
-MORE_DECIMALS = (6, 9)
+MORE_DIGITS = ((6, 7), (MOST_DIGITS, MOST_DIGITS))
 """Decimals that are tried next, where the joint angles would differ: beside a limit and beside a singularity."""
 SAME = 0.1 * DEG
-"""Joint angles that differ by less, rad, are the same posture: what three decimals leave open near a singularity."""
+"""Joint angles that differ by less, rad, are the same posture: what these decimals leave open near a singularity."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -132,24 +134,24 @@ def _turns(q: Array, robot: RobotSpec) -> tuple[int, ...]:
     return tuple(int(turns) for turns in np.round(q / TURN)[:count])
 
 
-def rounded(pose: Six, decimals: int = DECIMALS) -> Six:
+def rounded(pose: Six, digits: tuple[int, int] = DIGITS) -> Six:
     """Return a pose, mm and deg, with so many decimals."""
-    x, y, z, rx, ry, rz = (_plain(value, decimals) for value in pose)
+    x, y, z, rx, ry, rz = (_plain(value, digits[axis >= 3]) for axis, value in enumerate(pose))
     return x, y, z, rx, ry, rz
 
 
 def rounded_joints(q: Array, robot: RobotSpec) -> tuple[float, ...]:
     """Return joint angles q (n,) rad in deg with the decimals of a point, none of them rounded out of its range."""
     # an end of a range may have more decimals than a point
-    scale = 10.0**DECIMALS
+    scale = 10.0**DEG_DIGITS
     least, most = np.ceil(robot.lower / DEG * scale) / scale, np.floor(robot.upper / DEG * scale) / scale
-    nearest = np.round(q / DEG, DECIMALS)
-    return tuple(_plain(value, DECIMALS) for value in np.clip(nearest, least, most))
+    nearest = np.round(q / DEG, DEG_DIGITS)
+    return tuple(_plain(value, DEG_DIGITS) for value in np.clip(nearest, least, most))
 
 
-def _plain(value: float, decimals: int) -> float:
+def _plain(value: float, digits: int) -> float:
     # adding zero turns a rounded -0.0 into 0.0
-    return round(float(value), decimals) + 0.0
+    return round(float(value), digits) + 0.0
 
 
 # --- as a pose -------------------------------------------------------------------------------------------------------
@@ -169,8 +171,8 @@ def _as_pose(point: Point, q: Array, around: Surroundings, notes: tuple[str, ...
     """Return the point with the pose of q (n,) rad, with as many decimals as bring the arm back to q."""
     exact = pose_in(point, tool_place(q, around), around)
     doubts: list[str] = []
-    for decimals in (DECIMALS, *MORE_DECIMALS):
-        taught = point.replaced(pose=rounded(exact, decimals))
+    for digits in (DIGITS, *MORE_DIGITS):
+        taught = point.replaced(pose=rounded(exact, digits))
         doubt = _read_back(taught, q, around)
         if not doubt:
             return Taught(point=taught, notes=notes)

@@ -1,12 +1,15 @@
 """Points made of where the arm stands bring it back there, under every tool and frame."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from robolang.execution import lowering
 from robolang.project.points import Point
+from robolang.teaching import points_document
+from robolang.teaching.documents import Documents
 from robolang.teaching.postures import reached_point, tool_place
 from robolang.teaching.taught import taught_point
 from runtime.core.faults import Fault
@@ -27,10 +30,10 @@ def random_postures(around, count, seed=1):
     return rows[clear][:count]
 
 
-def test_a_new_point_is_joints_with_three_decimals():
+def test_a_new_point_is_joints_with_four_decimals():
     around = surroundings()
     found = taught_point("P7", None, Q + 1.23456789e-5, around)
-    assert found.point == Point(name="P7", joints=(20.001, 60.001, 10.001, 30.001, 40.001, -199.999))
+    assert found.point == Point(name="P7", joints=(20.0007, 60.0007, 10.0007, 30.0007, 40.0007, -199.9993))
     assert found.notes == ()
 
 
@@ -60,7 +63,7 @@ def test_a_point_brings_the_arm_back(robot, frame, tool):
             assert reached_point(found.point, around, start) == pytest.approx(q, abs=0.1 * DEG)
             assert reached_point(found.point, other, start) == pytest.approx(q, abs=0.1 * DEG)
         joints = taught_point("P7", "joints", q, around, frame=frame).point
-        assert reached_point(joints, around, around.cell.home) == pytest.approx(q, abs=0.00051 * DEG)
+        assert reached_point(joints, around, around.cell.home) == pytest.approx(q, abs=0.000051 * DEG)
 
 
 def test_a_tool_without_a_name_is_noted():
@@ -103,13 +106,24 @@ def test_more_decimals_beside_a_limit():
     assert reached_point(found.point, around, around.cell.home) == pytest.approx(q, abs=0.1 * DEG)
 
 
+@pytest.mark.parametrize("at", ["the limit", "J4 30 deg"])
+def test_the_file_keeps_every_decimal_that_a_point_needs(at):
+    around = surroundings()
+    q = np.array(Q)
+    q[5] = around.cell.robot.upper[5] if at == "the limit" else q[5]
+    documents = Documents(path=Path("p.rbl"), program="", points="schema = 1\n", cell="", cell_path=Path("cell.toml"))
+    for kind in ("joints", "pose"):
+        point = taught_point("P7", kind, q, around).point
+        assert points_document.taught(points_document.set_point(documents, point)).get("P7") == point
+
+
 def test_joints_are_not_rounded_out_of_their_range():
     around = surroundings()
     spec = around.cell.robot
-    narrow = replace(spec.axes[0], limits=replace(spec.axes[0].limits, upper=20.00069 * DEG))
+    narrow = replace(spec.axes[0], limits=replace(spec.axes[0].limits, upper=20.000069 * DEG))
     around = replace(around, cell=replace(around.cell, robot=replace(spec, axes=(narrow, *spec.axes[1:]))))
     q = np.array(Q)
-    q[0] = 20.00069 * DEG
+    q[0] = 20.000069 * DEG
     assert taught_point("P7", "joints", q, around).point.joints[0] == 20.0
 
 
