@@ -112,46 +112,50 @@ def carried(request: WeighRequest) -> Payload:
 
 
 def plan_exercise(request: WeighRequest) -> Exercise:
-    """Return the exercise about home; ``Fault`` before anything moves.
+    """Return the exercise about home; ``Fault`` as ``exercise_about``."""
+    return exercise_about(request.cell.robot, request.cell.home, request.profile, request.amplitude)
 
-    RBL411 where an axis would leave its range, RBL404 where one would be too fast. Without an amplitude in the request
-    each axis swings by what its limits leave; RBL411 when they leave nothing.
+
+def exercise_about(robot: RobotSpec, q: Array, profile: Profile, amplitude: float | None = None) -> Exercise:
+    """Return the exercise about joint angles q (n,) rad; ``Fault`` before anything moves.
+
+    RBL411 where an axis would leave its range, RBL404 where one would be too fast. Without an ``amplitude``, rad, each
+    axis swings by what its limits leave; RBL411 when they leave nothing.
     """
-    robot, home, profile = request.cell.robot, request.cell.home, request.profile
     unit = _shape(robot, profile.period_s)
-    swings = _share(robot) * (AMPLITUDE if request.amplitude is None else request.amplitude)
+    swings = _share(robot) * (AMPLITUDE if amplitude is None else amplitude)
     if not swings.any():
         raise Fault("RBL411", f"no axis of {robot.name} feels the weight of what it carries")
     fine = FineInterpolator(profile.ticks_per_cycle, profile.period_s, np.zeros(robot.n))
     limits = robot.per_axis("limits", "speed"), robot.per_axis("limits", "acceleration")
     most = np.min([limit / peak for limit, peak in zip(limits, fine.peaks(unit), strict=True)], axis=0)
-    room = np.minimum(robot.upper - home, home - robot.lower) - MARGIN
-    if request.amplitude is None:
+    room = np.minimum(robot.upper - q, q - robot.lower) - MARGIN
+    if amplitude is None:
         fitting = np.minimum(swings, np.minimum(SHARE * most, room))
         swings = np.where(fitting >= np.minimum(LEAST, swings), fitting, 0.0)
         if not swings.any():
             raise Fault(
                 "RBL411",
-                f"home leaves no axis of {robot.name} {LEAST / DEG:g} deg to either side to swing",
-                "choose a home further inside the joint ranges",
+                f"this posture leaves no axis of {robot.name} {LEAST / DEG:g} deg to either side to swing",
+                "weigh in a posture, or from a home, that is further inside the joint ranges",
             )
     else:
-        _refuse(robot, home, swings, room, most, request.amplitude)
+        _refuse(robot, q, swings, room, most, amplitude)
     return Exercise(offsets=frozen(unit * swings), amplitudes=frozen(swings))
 
 
-def _refuse(robot: RobotSpec, home: Array, swings: Array, room: Array, most: Array, amplitude: float) -> None:
+def _refuse(robot: RobotSpec, q: Array, swings: Array, room: Array, most: Array, amplitude: float) -> None:
     """Raise the fault of the first axis whose swing passes a limit; the hint says which amplitude would not."""
     moving = swings > 0.0
     best = amplitude * float(np.min(np.minimum(room, most)[moving] / swings[moving])) / DEG
-    hint = "home is too near to the end of a joint range"
+    hint = "the posture is too near to the end of a joint range"
     # below a tenth the amplitude of the hint, rounded down so that it fits itself, would be 0
     if best >= 0.1:
         hint = f"an amplitude of {math.floor(10.0 * best) / 10.0:g} deg fits; without one each axis does what it can"
     for axis in np.flatnonzero(moving):
         low, high, by = robot.lower[axis], robot.upper[axis], float(swings[axis])
         if not by <= room[axis]:
-            end = home[axis] + by if high - home[axis] < home[axis] - low else home[axis] - by
+            end = q[axis] + by if high - q[axis] < q[axis] - low else q[axis] - by
             raise Fault(
                 "RBL411",
                 f"J{axis + 1} would swing to {end / DEG:.1f} deg; its range is {low / DEG:g} to "
@@ -207,25 +211,27 @@ def weigh(request: WeighRequest) -> WeighResult:
     first = controller.recorder.tick
     _play(controller, start + exercise.offsets)
     log = controller.recorder.signals(controller.tool_poses)
+    found = weighed(robot, profile, log["tau_sat"][first:], log["q_fb"][first:], physics=not rigid)
+    return WeighResult(found=found, true=true, exercise=exercise, seconds=controller.time_us / 1e6)
+
+
+def weighed(robot: RobotSpec, profile: Profile, tau: Array, q: Array, *, physics: bool) -> WeighedPayload:
+    """Return what the torques tau (N, n) N m and readings q (N, n) rad of an exercise show, one row a servo tick.
+
+    ``physics`` False: the ideal arm, without friction and gear springs. ``Fault`` RBL516 where no payload explains the
+    torques.
+    """
     watched = profile.supervision
     known = Knowledge(
         torque=torque_limit(robot),
-        # the ideal arm has no friction
-        friction=0.0 if rigid else 1.0 if watched.friction is None else watched.friction,
-        springs=not rigid,
+        friction=0.0 if not physics else 1.0 if watched.friction is None else watched.friction,
+        springs=physics,
         friction_uncertainty=watched.friction_uncertainty,
         torque_uncertainty=watched.torque_uncertainty,
     )
-    found = identify_payload(
-        robot,
-        log["tau_sat"][first:],
-        log["q_fb"][first:],
-        ticks=profile.ticks_per_cycle,
-        tick_s=profile.tick_s,
-        known=known,
-    )
+    found = identify_payload(robot, tau, q, ticks=profile.ticks_per_cycle, tick_s=profile.tick_s, known=known)
     _explained(found, known.torque)
-    return WeighResult(found=found, true=true, exercise=exercise, seconds=controller.time_us / 1e6)
+    return found
 
 
 def _profile(request: WeighRequest) -> Profile:
@@ -259,7 +265,7 @@ def _explained(found: WeighedPayload, torque: Array) -> None:
         raise Fault(
             "RBL516",
             f"up to {found.peak[axis]:.1f} N m of J{axis + 1} in the exercise belong to no payload",
-            "clear the space about home; then check the drive, brake and friction of the axis",
+            "clear the space about the arm; then check the drive, brake and friction of the axis",
         )
 
 

@@ -366,6 +366,15 @@ class Controller:
         return self.requests.X_flange_tool
 
     @property
+    def weighing(self) -> bool:
+        """Whether the payload is being weighed: supervision does not compare it with the declared one."""
+        return self.drives.supervisor.weighing
+
+    @weighing.setter
+    def weighing(self, on: bool) -> None:
+        self.drives.supervisor.weighing = on
+
+    @property
     def wrist_mode(self) -> int:
         """Whether the wrist follows the path at the set-point in INA (``runtime.motion.cartesian_planner``)."""
         return self.requests.wrist_mode

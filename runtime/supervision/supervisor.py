@@ -37,7 +37,7 @@ LOST = 3.0
 class Supervisor(Stateful):
     """Watches one robot; ``model`` is what torques are judged by, that of the robot file by default."""
 
-    VALUES = ("_payload", "_since", "_unexpected", "_suspect", "_late", "_warned", "_first_tick", "_cycle")
+    VALUES = ("weighing", "_payload", "_since", "_unexpected", "_suspect", "_late", "_warned", "_first_tick", "_cycle")
     PARTS = ("watch", "observer")
 
     def __init__(
@@ -48,6 +48,8 @@ class Supervisor(Stateful):
         self.observer = Observer(spec, limits, drives, model)
         self._collision = limits.collision * drives.torque
         self._top = spec.per_axis("limits", "speed")
+        self.weighing = False
+        """Whether the payload is being weighed, so that no declared one is judged; collisions are."""
         self._payload: Payload | None = None
         self._stale_us = limits.stale_s * 1e6
         self._since = self._unexpected = self._suspect = self._late = 0
@@ -98,7 +100,8 @@ class Supervisor(Stateful):
         if self._since >= STRIDE and not float((self.watch.peak / self._top).max()) <= MOVING:
             self._since = 0
             observer.learn()
-            if observer.steps >= FEWEST:
+            # a LOAD that is wrong is the reason to weigh, and must not stop it
+            if observer.steps >= FEWEST and not self.weighing:
                 return self._weigh(tick)
         return None
 
