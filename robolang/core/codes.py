@@ -343,6 +343,12 @@ register(
         remedy="Keep a copy of it if its content matters; then discard it.",
     ),
     Code(
+        code="RBL720",
+        name="jog-unclear",
+        meaning="A jog names no axis of the arm, no frame or no number, or comes while the arm moves.",
+        remedy="Give J1 to J7, X, Y, Z, RX, RY or RZ and a number of mm or deg, when the arm stands.",
+    ),
+    Code(
         code="RBL900",
         name="internal-error",
         meaning="robolang has an internal error; the program is not the cause.",

@@ -1,0 +1,37 @@
+"""What a planned jog has to say: how far it goes, what ends it, and where and why it is slow."""
+
+from robolang.teaching.jogging import JogRequest, is_linear
+from runtime.core.units import DEG, MM
+from runtime.motion.jog import JogPlan
+
+
+def remarks(request: JogRequest, plan: JogPlan) -> tuple[str, ...]:
+    """Return a line for each thing that a programmer has not typed: the end of a jog as far as it goes, slow places."""
+    return tuple(line for line in (_end(request, plan), _slow(request, plan)) if line)
+
+
+def _end(request: JogRequest, plan: JogPlan) -> str:
+    goes = f"{request.axis} goes {_amount(request, plan.goes)} at most"
+    end = plan.end
+    if end.kind == "limit" and end.axis is not None:
+        return f"{goes}: J{end.axis + 1} is limited to {end.limit / DEG:g} deg"
+    if end.kind == "reach":
+        return f"{goes}: there the reach of the arm ends"
+    if end.kind == "singularity":
+        return f"{goes}: there is a singularity; jog a joint to pass it"
+    # what is typed ends where it shall, and a whole turn or a long time needs no reason
+    return ""
+
+
+def _slow(request: JogRequest, plan: JogPlan) -> str:
+    slow = plan.slow
+    if slow is None or slow.axis is None:
+        return ""
+    share = f"{100.0 * slow.share:.0f} %" if slow.share >= 0.01 else "under 1 %"
+    return (
+        f"slow, {share} of the jog speed at {_amount(request, slow.at)}: J{slow.axis + 1} turns far near a singularity"
+    )
+
+
+def _amount(request: JogRequest, value: float) -> str:
+    return f"{value / (MM if is_linear(request.axis) else DEG):.1f} {request.unit}"
