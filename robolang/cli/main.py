@@ -26,6 +26,7 @@ from robolang.cli.commands import (
     rules,
     run,
     step,
+    teach,
     test,
     weigh,
     wrist_demo,
@@ -46,6 +47,7 @@ app = typer.Typer(
 _COMMANDS: dict[str, Callable[..., None]] = {
     "run": run.run,
     "repl": repl.repl,
+    "teach": teach.teach,
     "compare": compare.compare,
     "step": step.step,
     "inertia": inertia.inertia,

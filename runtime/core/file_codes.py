@@ -102,6 +102,12 @@ register(
         remedy="Update robolang, or write the file again with robolang identify.",
     ),
     Code(
+        code="RBL619",
+        name="run-log-unusable",
+        meaning="A log of a run is damaged, is of an arm with another number of axes, or has no such line or time.",
+        remedy="Name a log that robolang run --log FILE.npz has written, and a line and a time that are in it.",
+    ),
+    Code(
         code="RBL640",
         name="part-not-at-rest",
         meaning="A part of the cell overlaps another part, an obstacle or the floor, or nothing supports it.",

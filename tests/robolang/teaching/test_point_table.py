@@ -13,6 +13,7 @@ from robolang.teaching.postures import reached_point, tool_place
 from robolang.teaching.taught import taught_point
 from runtime.core.faults import Fault
 from runtime.core.units import DEG
+from tests.campaign import size
 from tests.robolang.helpers import cell_with
 from tests.robolang.teaching.surroundings import surroundings, torch
 
@@ -102,7 +103,7 @@ def test_every_row_is_that_of_a_move(robot):
     around = surroundings(robot=robot)
     spec, rng = around.cell.robot, np.random.default_rng(3)
     points = []
-    for index, q in enumerate(rng.uniform(spec.lower, spec.upper, (60, spec.n))):
+    for index, q in enumerate(rng.uniform(spec.lower, spec.upper, (size(1000, 60), spec.n))):
         point = taught_point(
             f"P{index}", rng.choice(["joints", "pose"]), q, around, frame=rng.choice(["", "PALLET"])
         ).point

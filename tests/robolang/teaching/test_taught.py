@@ -16,6 +16,7 @@ from runtime.core.faults import Fault
 from runtime.core.frames import inverse
 from runtime.core.units import DEG
 from runtime.robot.kinematics.singularity import singularities
+from tests.campaign import size
 from tests.robolang.teaching.surroundings import surroundings, torch
 
 Q = np.array([20.0, 60.0, 10.0, 30.0, 40.0, -200.0]) * DEG
@@ -55,7 +56,7 @@ def test_a_point_brings_the_arm_back(robot, frame, tool):
     around = surroundings(robot=robot)
     around = torch(around) if tool == "torch" else around
     other = surroundings(robot=robot)  # the flange returns under the tool of the hand too
-    for q in random_postures(around, 10):
+    for q in random_postures(around, size(500, 10)):
         found = taught_point("P7", "pose", q, around, frame=frame)
         assert found.notes == ()
         assert found.point.tool == ("torch" if tool == "torch" else "")
