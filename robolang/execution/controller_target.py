@@ -7,10 +7,11 @@ its dwell, a LOAD at once. ``goes_on`` is called between two cycles, so all that
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TypeAlias
 
 import numpy as np
 
+from robolang.execution.activity import Activity, Left, Motion, Pause
+from robolang.execution.measured import AXIS_FUNCTIONS
 from robolang.execution.observer import Observer
 from robolang.execution.plan_findings import PlanFindings, PlannedMove
 from robolang.execution.result import RunRecord, StatementRun
@@ -36,7 +37,6 @@ from robolang.syntax.ast import Wait
 from robolang.syntax.unparse import describe
 from runtime.cell.seam_sensor import SeamSensor
 from runtime.control.controller import ControllerSnapshot
-from runtime.control.request_queue import SetAside
 from runtime.core.faults import Alarm, Fault
 from runtime.core.frames import Array
 from runtime.core.units import MM
@@ -47,48 +47,10 @@ from runtime.motion.seam import SeamTracker
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.payload import Payload
 
-LAMPS = ("", "WRIST", "WRIST HOLD")
-"""What the lamp shows by ``wrist_mode``."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Motion:
-    """Moves that are carried out: numbers ``first`` to ``last`` of the record; readings that were ``lost`` before them.
-
-    ``sent``: whether a cycle has been run; ``waited_us`` for the arm to come into position; ``skipped``: moves of the
-    chain that had been carried out when it was interrupted.
-    """
-
-    first: int
-    last: int
-    lost: int
-    sent: bool = False
-    waited_us: int = 0
-    skipped: int = 0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Wait:
-    """A statement, by its number in the record, that takes so many more cycles; ``grasp``: what the hand then holds is
-    noted."""
-
-    run: int
-    cycles: int
-    grasp: bool = False
-
-
 _NOBODY = Observer()
 
-_Activity: TypeAlias = _Motion | _Wait | None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Left:
-    """What is left of an activity that is interrupted; of a motion also its set-points and the rows of its moves."""
-
-    activity: _Activity
-    motion: SetAside | None = None
-    rest: tuple[StatementRun, ...] = ()
+LAMPS = ("", "WRIST", "WRIST HOLD")
+"""What the lamp shows by ``wrist_mode``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,7 +62,7 @@ class TargetSnapshot:
     payloads: Taped[dict[str, object]]
     shown: Taped[tuple[float, str]]
     acknowledged: tuple[Alarm, ...]
-    activity: _Activity
+    activity: Activity
     warned: frozenset[tuple[str, Origin]]
 
 
@@ -115,7 +77,7 @@ class ControllerTarget:
         self._findings = PlanFindings(record.project, kinematics)
         self._statements = Tape(record.statements, _copied)
         self._payloads, self._shown = Tape(record.payloads), Tape(record.shown)
-        self._activity: _Activity = None
+        self._activity: Activity = None
         self._warned: frozenset[tuple[str, Origin]] = frozenset()
 
     # --- time --------------------------------------------------------------------------------------------------------
@@ -156,6 +118,15 @@ class ControllerTarget:
         """Which move of the chain the set-point in force belongs to, from 0."""
         return self._record.controller.chain_index
 
+    def measured(self, key: str, index: int) -> float | None:
+        """Return what an axis, from 1, measures; None: no function of axes has this name. ``Fault`` RBL507."""
+        function, axes = AXIS_FUNCTIONS.get(key), self._project.cell.robot.n
+        if function is None:
+            return None
+        if not 1 <= index <= axes:
+            raise Fault("RBL507", f"{key} has the axes 1 to {axes}, no {index}")
+        return float(function.read(self._record.controller)[index - 1])
+
     @property
     def silent(self) -> bool:
         """Whether cycles of the past are run once more: no observer sees them, and no clock paces them."""
@@ -172,7 +143,7 @@ class ControllerTarget:
     def goes_on(self) -> bool:
         """Return whether the statement needs another cycle."""
         activity = self._activity
-        if isinstance(activity, _Motion):
+        if isinstance(activity, Motion):
             return self._moves_on(activity)
         if activity is None or activity.cycles == 0:
             if activity is not None and activity.grasp:
@@ -185,7 +156,7 @@ class ControllerTarget:
         self._activity = replace(activity, cycles=activity.cycles - 1)
         return True
 
-    def _moves_on(self, motion: _Motion) -> bool:
+    def _moves_on(self, motion: Motion) -> bool:
         controller, profile = self._record.controller, self._project.profile
         runs = self._record.statements[motion.first : motion.last + 1]
         if motion.sent:
@@ -208,7 +179,7 @@ class ControllerTarget:
     def _reach(self, runs: list[StatementRun]) -> StatementRun:
         """Return the move of a chain whose set-point is sent next; it begins when the one before it ends."""
         motion = self._activity
-        assert isinstance(motion, _Motion)
+        assert isinstance(motion, Motion)
         tick, at = self._record.controller.recorder.tick, self.move_reached - motion.skipped
         runs[0].begun = tick > runs[0].first_tick
         if not runs[at].begun and runs[0].begun:
@@ -224,7 +195,7 @@ class ControllerTarget:
         going = self._record.controller.cycle()
         motion = self._activity
         # after an alarm ``goes_on`` is not called: the move whose set-point was sent last is noted here
-        if isinstance(motion, _Motion) and self.alarms:
+        if isinstance(motion, Motion) and self.alarms:
             self._reach(self._record.statements[motion.first : motion.last + 1])
         return going
 
@@ -232,7 +203,7 @@ class ControllerTarget:
         """End the statements of the activity at this tick."""
         activity, self._activity = self._activity, None
         tick, statements = self._record.controller.recorder.tick, self._record.statements
-        if isinstance(activity, _Motion):
+        if isinstance(activity, Motion):
             for run in statements[activity.first : activity.last + 1]:
                 run.end_tick = run.end_tick or tick  # within a chain a move has ended where the next one began
         elif activity is not None:
@@ -252,37 +223,37 @@ class ControllerTarget:
         """Resume the move where it rests."""
         self._record.controller.go_on()
 
-    def set_aside(self) -> _Left:
+    def set_aside(self) -> Left:
         """Interrupt a wait or a motion; its statement ends here.
 
         What is left of a wait counts to it again when it ends; what is left of a motion is recorded as another one.
         """
         activity, statements = self._activity, self._record.statements
-        if not isinstance(activity, _Motion):
+        if not isinstance(activity, Motion):
             self.finish()
-            return _Left(activity=activity)
+            return Left(activity=activity)
         motion = self._record.controller.set_aside()
         self._activity = None
         if motion.ended:  # it has only to come into position
-            return _Left(activity=activity, motion=motion)
+            return Left(activity=activity, motion=motion)
         at = activity.first + self.move_reached - activity.skipped
         rest = tuple(statements[at:])
         rest[0].end_tick = self._record.controller.recorder.tick
         # moves that have not begun come after what is done meanwhile
         del statements[at + rest[0].begun :]
-        return _Left(activity=activity, motion=motion, rest=tuple(map(_copied, rest)))
+        return Left(activity=activity, motion=motion, rest=tuple(map(_copied, rest)))
 
-    def take_up(self, left: _Left) -> None:
+    def take_up(self, left: Left) -> None:
         """Go on with a wait, or with a motion, which rests until ``go_on``."""
         activity, statements = left.activity, self._record.statements
         if left.motion is not None:
             self._record.controller.take_up(left.motion)
-        if left.rest and isinstance(activity, _Motion):
+        if left.rest and isinstance(activity, Motion):
             tick, first = self._record.controller.recorder.tick, len(statements)
             # rows of their own: what was measured meanwhile is not of these moves
             statements += [replace(_copied(run), first_tick=tick, end_tick=0, begun=False) for run in left.rest]
             activity = replace(activity, first=first, last=len(statements) - 1, skipped=self.move_reached)
-        elif isinstance(activity, _Wait):
+        elif isinstance(activity, Pause):
             self._statements.change(activity.run)
         self._activity = activity
 
@@ -296,7 +267,7 @@ class ControllerTarget:
         run = StatementRun(origin=origin, text=text, first_tick=controller.recorder.tick, begun=False)
         self._record.statements.append(run)
         last = len(self._record.statements) - 1
-        self._activity = _Motion(first=last, last=last, lost=self._lost)
+        self._activity = Motion(first=last, last=last, lost=self._lost)
         self._seen.run_began(run, self.time_us)
 
     def abandon(self) -> None:
@@ -346,7 +317,7 @@ class ControllerTarget:
             run.wrist, run.seam, run.begun = part.wrist, seam, False
         self._warn(chain, plan)
         last = len(self._record.statements) - 1
-        self._activity = _Motion(first=last + 1 - len(runs), last=last, lost=self._lost)
+        self._activity = Motion(first=last + 1 - len(runs), last=last, lost=self._lost)
         self._seen.run_began(runs[0], self.time_us)
 
     @property
@@ -384,7 +355,7 @@ class ControllerTarget:
         begins = not (goes_on and statements[-1].origin == effect.origin)
         if begins:
             self._record_run(effect)
-        self._activity = _Wait(run=len(statements) - 1, cycles=cycles, grasp=grasp)
+        self._activity = Pause(run=len(statements) - 1, cycles=cycles, grasp=grasp)
         if begins:
             self._seen.run_began(statements[-1], self.time_us)
         return statements[-1]
@@ -458,7 +429,7 @@ class ControllerTarget:
     def _settled(self) -> int:
         """How many statements of the record do not change any more."""
         activity, last = self._activity, len(self._record.statements) - 1  # the last one may be a WAIT that goes on
-        first = last if activity is None else activity.first if isinstance(activity, _Motion) else activity.run
+        first = last if activity is None else activity.first if isinstance(activity, Motion) else activity.run
         return max(0, min(first, last))
 
     def snapshot(self) -> TargetSnapshot:

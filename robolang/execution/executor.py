@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from robolang.core.source import Source, Span
+from robolang.evaluation.evaluator import Evaluator
 from robolang.execution import regain, run_bounds
 from robolang.execution.engine import Alter, Engine, StopsBefore
 from robolang.execution.observer import Observer
@@ -119,6 +120,20 @@ class Executor:
     def frame(self) -> Frame:
         """The frame that FRAME has set: its key in the cell, its pose in the world, or "", the world."""
         return self._engine.machine.frame
+
+    @property
+    def level(self) -> int:
+        """How many CALLs and GOSUBs have not come back, those that were fed included."""
+        return self._engine.machine.level
+
+    @property
+    def evaluator(self) -> Evaluator:
+        """Values of expressions in the scope where the program is, with the arm where it is commanded to be now.
+
+        It changes nothing, and also knows the functions of axes (``measured``); see ``watching.evaluate``.
+        """
+        target = self._engine.target
+        return self._engine.machine.evaluator(self.world.at(target.q), target.measured)
 
     @property
     def displaced(self) -> Displaced | None:

@@ -114,6 +114,12 @@ class Target(Effects, Protocol):
     def move_reached(self) -> int:
         """Which of the moves that were started last has been reached, from 0."""
 
+    def measured(self, key: str, index: int) -> float | None:
+        """Return what an axis, from 1, measures by the name of a function in ``measured``; None: there is none.
+
+        ``Fault`` RBL507 for an axis that the robot does not have.
+        """
+
     silent: bool
     """Whether cycles of the past are run once more: neither seen by an observer nor paced."""
 
@@ -209,6 +215,9 @@ class Untimed:
 
     def abandon(self) -> None:
         """Do nothing: nothing moves."""
+
+    def measured(self, key: str, index: int) -> None:
+        """Return None: nothing is measured."""
 
     def stop(self) -> None:
         """Do nothing: the executor takes no further effect."""

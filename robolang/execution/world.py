@@ -5,6 +5,7 @@ before (``Drain``). Time is that of the clock that it is given, so a rehearsal w
 """
 
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,6 +52,12 @@ class RobotWorld:
             q_last=self.q_last,
             X_flange_tool=self.X_flange_tool,
         )
+
+    def at(self, q: Array) -> "RobotWorld":
+        """Return this world with the arm at joint angles q (n,) rad; it shares the signals."""
+        other = copy(self)
+        other.q_last = np.array(q)
+        return other
 
     def flange_pose(self, q: Array) -> Array:
         """Return X_world_flange (..., 4, 4) at joint angles q (..., n) rad."""

@@ -16,7 +16,7 @@ Bounds are counts, not wall clock: ``run_limits``, ``scope`` for memory, ``evalu
 from collections.abc import Callable, Collection
 from typing import TypeAlias
 
-from robolang.evaluation.evaluator import World
+from robolang.evaluation.evaluator import Evaluator, World
 from robolang.interpreter import dispatch, run_limits, snapshot
 from robolang.interpreter.branch_oracle import Decisions
 from robolang.interpreter.effects import Drain, Origin, origin
@@ -24,11 +24,12 @@ from robolang.interpreter.events import DONE, FED_ENDED, Event, Failed, FedEnded
 from robolang.interpreter.positions import AFTER_FED, BEGUN, DUE, FED, GIVEN, Cursor, Drained, Suspended, Waiting
 from robolang.interpreter.program_fault import ProgramFault
 from robolang.interpreter.run_state import Result, RunState
+from robolang.interpreter.scope import Scopes
 from robolang.interpreter.snapshot import MachineSnapshot
 from robolang.interpreter.variables import Variables, variables_of
 from robolang.syntax.ast import Case, For, Line, Next, Program, Statement, Sub, Unparsed
 from robolang.syntax.blocks import word_of
-from robolang.values.poses import Frame
+from robolang.values.poses import Frame, Value
 from runtime.core.faults import Fault
 
 _Ready: TypeAlias = tuple[Statement, Callable[..., Result], bool, LineBegun]
@@ -279,6 +280,21 @@ class Machine:
         return len(self._run.suspended)
 
     @property
+    def level(self) -> int:
+        """How many CALLs and GOSUBs have not come back."""
+        return len(self._run.scopes.stack) - 1 + sum(len(scope.returns) for scope in self._run.scopes.stack)
+
+    def evaluator(self, world: World, more: Callable[[str, int], Value | None]) -> Evaluator:
+        """Return an evaluator of the scope that runs: it reads the program and another world, and changes nothing.
+
+        ``more`` gives elements of arrays that the program does not have, None: of none.
+        """
+        values = self._run.values
+        found = Evaluator(_Names(self._run.scopes, more), world)
+        found.frame, found.error = values.frame, values.error
+        return found
+
+    @property
     def frame(self) -> Frame:
         """The frame in force."""
         return self._run.values.frame
@@ -309,6 +325,22 @@ class Machine:
         else:
             hint = "Split the program, or shorten its DELAYs; the log and the report end here."
         return ProgramFault(Fault("RBL509", message, hint), running)
+
+
+class _Names:
+    """The names of a program, and more elements than its arrays have."""
+
+    def __init__(self, scopes: Scopes, more: Callable[[str, int], Value | None]) -> None:
+        self._scopes, self._more = scopes, more
+
+    def value(self, key: str) -> Value | None:
+        """Return the value of a name, None when it has none."""
+        return self._scopes.value(key)
+
+    def element(self, key: str, index: int) -> Value | None:
+        """Return an element, None when there is no such array; ``Fault`` RBL507."""
+        found = self._scopes.element(key, index)
+        return self._more(key, index) if found is None else found
 
 
 def _ready(line: Line) -> _Ready:
