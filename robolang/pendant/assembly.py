@@ -1,7 +1,7 @@
 """All commands of the prompt."""
 
 from robolang.pendant.command import Commands
-from robolang.pendant.commands import editing, logs, measuring, running, session, showing, teaching
+from robolang.pendant.commands import editing, logs, measuring, running, session, showing, stepping, teaching
 
 COMMANDS = Commands(
     (
@@ -11,6 +11,7 @@ COMMANDS = Commands(
         *teaching.COMMANDS,
         *measuring.COMMANDS,
         *running.COMMANDS,
+        *stepping.COMMANDS,
         *logs.COMMANDS,
     )
 )

@@ -20,16 +20,18 @@ from robolang.pendant.interrupts import Interrupts
 from robolang.pendant.lines import has_numbers, line_of
 from robolang.pendant.numbers import pose_text
 from robolang.pendant.output import Output
-from robolang.pendant.reading import Blank, CommandLine, LineEdit, Statements, Value, first_word, read
+from robolang.pendant.reading import NAME, Blank, CommandLine, LineEdit, Statements, Value, first_word, read
+from robolang.pendant.words import values
 from robolang.syntax.keywords import near
 from robolang.teaching.desk import Desk
 from robolang.teaching.documents import Documents
 from robolang.teaching.program_document import put_line
 from robolang.teaching.recovery import Recovery, discard, pending_recovery, recover
 from runtime.core.faults import Fault
+from runtime.core.tomlfile import FileFault, FilePlace
 
 if TYPE_CHECKING:
-    from robolang.execution.engine import StopsBefore
+    from robolang.execution.stepping import Breakpoint, Hit, Stop
     from robolang.interpreter.effects import Origin
     from robolang.pendant.live import Live
     from robolang.project.points import Point
@@ -73,6 +75,10 @@ class Pendant:
         """Whether keys move the arm; commands do in any case."""
         self.ended = False
         """Whether ``quit`` has been carried out."""
+        self.breaks: dict[int, Breakpoint] = {}
+        """Breakpoints by their line of the file, from 1."""
+        self.watches: tuple[str, ...] = ()
+        """Expressions that are shown after each stop."""
         self._recovery = Recovery()
         self._project: Project | None = None
         self._live: Live | None = None
@@ -119,18 +125,72 @@ class Pendant:
         return Failure(error.codes, f"{error.text}\n  command: did you mean {guess}?") if guess else error
 
     def show_value(self, text: str) -> None:
-        """Show the value of an expression."""
-        self.carry_out(f"PRINT {text}")
+        """Show the value of an expression where the program stands; nothing moves and nothing changes."""
+        from robolang.execution.watching import evaluate, printed
+
+        executor = self.live.executor
+        for part in values(text, ";"):
+            try:
+                self.output.line(printed(executor, evaluate(executor, Source(NAME, part))))
+            except FileFault:
+                raise
+            except Fault as fault:
+                raise FileFault(fault.code, fault.message, fault.hint, FilePlace(NAME, 1, 1, part)) from None
 
     # --- the program --------------------------------------------------------------------------------------------------
 
-    def run(self, stops_before: "StopsBefore | None" = None, seconds: float = math.inf) -> None:
-        """Let the program go on from where it stands, to a statement that ``stops_before`` names, a stop or its end."""
+    def run(self, stop: "Stop | None" = None, seconds: float = math.inf) -> None:
+        """Let the program go on from where it stands, to a stop or a breakpoint, or to its end."""
+        from robolang.execution.stepping import StopsAt
+
+        live = self.live
         self.refuse_errors()
-        self.live.refuse_latched()
+        live.refuse_latched()
         self.to_auto()
-        self.live.go_on(stops_before, seconds)
+        stops = [stop] if stop is not None else []
+        hook = StopsAt(live.executor, [*stops, *self.breaks.values()])
+        try:
+            live.go_on(hook, seconds)
+        finally:
+            self.show_watches()
+        if hook.last is not None:
+            self._show_hit(hook.last)
         self.output.line(self.standing)
+
+    def _show_hit(self, hit: "Hit") -> None:
+        """Show that a breakpoint has stopped the program; a step says nothing."""
+        from robolang.execution.stepping import Breakpoint
+
+        if isinstance(hit.stop, Breakpoint):
+            condition = f" if {hit.stop.condition}" if hit.stop.condition else ""
+            self.output.line(f"breakpoint{condition}")
+        if hit.fault is not None:
+            self.output.problem(of_fault(hit.fault).text)
+
+    def set_break(self, row: int, condition: str = "") -> None:
+        """Stop before a line of the file from now on; ``FileFault`` for a condition that is no expression."""
+        from robolang.execution.stepping import Breakpoint
+        from robolang.execution.watching import expression
+
+        if condition:
+            expression(Source("condition", condition))
+        self.breaks[row] = Breakpoint(line=row, condition=condition)
+
+    def clear_break(self, row: int) -> None:
+        """Stop there no more; ``Failure`` RBL803 where no breakpoint is."""
+        if self.breaks.pop(row, None) is None:
+            raise failure("RBL803", f"there is no breakpoint at line {row}", "breaks lists them.")
+
+    def show_watches(self) -> None:
+        """Show the values that are watched; one that has no value now says why."""
+        from robolang.execution.watching import evaluate, printed
+
+        for text in self.watches:
+            try:
+                value = printed(self.live.executor, evaluate(self.live.executor, text))
+            except Fault as fault:
+                value = f"{fault.code} {fault.message}"
+            self.output.line(f"  {text} = {value}")
 
     def take_up(self) -> None:
         """Bring the arm back to its interrupted path, or the program before the interrupted statement, and go on."""
@@ -153,7 +213,11 @@ class Pendant:
         """Return the line of the program that an origin is in."""
         if origin is None:
             return "the first statement"
-        return self.desk.analysis.source.line_text(origin.line).strip()
+        return self.row_text(origin.line)
+
+    def row_text(self, row: int) -> str:
+        """Return the text of a line of the file, from 1."""
+        return self.desk.analysis.source.line_text(row).strip()
 
     def refuse_errors(self) -> None:
         """Raise ``Failure`` with the errors of the program, if it has any."""
@@ -214,6 +278,12 @@ class Pendant:
         if not unsaved or self.output.ask(f"{unsaved}: leave without saving?"):
             self.ended = True
             self._recovery.close()
+
+    def confirm(self, question: str, yes: bool) -> None:
+        """Ask whether to go on; ``Failure`` RBL807 after a no, and in a script without ``yes``."""
+        if not (yes or self.output.ask(question)):
+            hint = "Add --yes to the line." if self.scripted else "Nothing has changed."
+            raise failure("RBL807", f"not confirmed: {question}", hint)
 
     def offer_recovery(self) -> None:
         """Ask what becomes of unsaved changes that an earlier prompt left, if there are any."""

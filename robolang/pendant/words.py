@@ -1,12 +1,8 @@
 """Words and numbers after the word of a command, read with errors that say what was expected."""
 
 import math
-from typing import TYPE_CHECKING
 
 from robolang.pendant.failure import Failure, failure
-
-if TYPE_CHECKING:
-    from robolang.pendant.pendant import Pendant
 
 
 def misused(form: str, message: str) -> Failure:
@@ -39,17 +35,22 @@ def whole(text: str, form: str, what: str, low: int, high: int) -> int:
     return int(text)
 
 
+def values(text: str, separator: str) -> tuple[str, ...]:
+    """Return the parts of a text between separators that are outside of parentheses and of texts in quotes."""
+    found, depth, quoted = [""], 0, False
+    for character in text:
+        quoted ^= character == '"'
+        depth += 0 if quoted else {"(": 1, ")": -1}.get(character, 0)
+        if character == separator and not depth and not quoted:
+            found.append("")
+        else:
+            found[-1] += character
+    return tuple(each.strip() for each in found)
+
+
 def without_flag(rest: str, flag: str) -> tuple[str, bool]:
     """Return the text without a flag such as ``--yes`` at its end, and whether that was there."""
     words = rest.rsplit(maxsplit=1)
     if words and words[-1] == flag:
         return rest[: rest.rindex(flag)].rstrip(), True
     return rest, False
-
-
-def refuse_unanswered(pendant: "Pendant", question: str, yes: bool) -> None:
-    """Ask whether to go on; ``Failure`` RBL807 after a no, and in a script without ``--yes``."""
-    if yes or pendant.output.ask(question):
-        return
-    hint = "Add --yes to the line." if pendant.scripted else "Nothing has changed."
-    raise failure("RBL807", f"not confirmed: {question}", hint)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from robolang.pendant.command import Command, Group, Offer
 from robolang.pendant.numbers import pose_text
 from robolang.pendant.output import Column, Table
-from robolang.pendant.words import misused, refuse_unanswered, without_flag
+from robolang.pendant.words import misused, without_flag
 
 if TYPE_CHECKING:
     from robolang.pendant.pendant import Pendant
@@ -81,7 +81,7 @@ def _refuse_taken(pendant: "Pendant", what: str, name: str, yes: bool) -> None:
     cell = pendant.project.cell
     known = cell.frames if what == "frame" else cell.tools
     if any(key.upper() == name.upper() for key in known):
-        refuse_unanswered(pendant, f"Replace the {what} {name}?", yes)
+        pendant.confirm(f"Replace the {what} {name}?", yes)
 
 
 COMMANDS = (

@@ -3,7 +3,6 @@
 from typing import TYPE_CHECKING
 
 from robolang.pendant.command import Command, Group, Offer
-from robolang.pendant.lines import has_numbers
 from robolang.pendant.numbers import pose_text
 from robolang.pendant.output import Column, Listing, Table
 from robolang.pendant.words import misused, nothing, whole
@@ -97,7 +96,7 @@ def _list(pendant: "Pendant", rest: str) -> None:
     first, last = _range(pendant, rest, at, len(rows))
     shown = tuple(text[rows[row - 1].start : rows[row - 1].end] for row in range(first, last + 1))
     pendant.output.program(
-        Listing(rows=shown, first=first, current=at, numbered=has_numbers(pendant.desk.analysis.program))
+        Listing(rows=shown, first=first, current=at, numbered=pendant.has_numbers, marks=frozenset(pendant.breaks))
     )
 
 

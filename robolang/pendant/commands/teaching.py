@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, cast
 from robolang.pendant.command import Command, Group, Offer
 from robolang.pendant.failure import failure
 from robolang.pendant.output import Column, Table
-from robolang.pendant.words import misused, nothing, refuse_unanswered, without_flag
+from robolang.pendant.words import misused, nothing, without_flag
 
 if TYPE_CHECKING:
     from robolang.pendant.pendant import Pendant
@@ -46,7 +46,7 @@ def _take(pendant: "Pendant", name: str, kind: "Kind | None", yes: bool) -> None
     if old is not None:
         taught = _spelled(taught, old.name)
         _show_change(pendant, old, taught.point)
-        refuse_unanswered(pendant, f"Replace {old.name}?", yes)
+        pendant.confirm(f"Replace {old.name}?", yes)
     new = set_point(pendant.desk.documents, taught.point, live.project.cell.robot.name)
     pendant.change(new, f"{'teach' if old is None else 'touch up'} {taught.point.name}")
     pendant.output.line(_described(taught.point))

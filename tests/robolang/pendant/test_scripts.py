@@ -38,7 +38,7 @@ def test_statements_move_the_live_arm_and_expressions_show_values(folder):
         ("PRINT nobody", "RBL215", 7),
         ("SPEED -5", "RBL404", 7),
         ("MOVE P1 + (0, 0, 9000)", "RBL410", 1),
-        ("1 / 0", "RBL209", 7),
+        ("1 / 0", "RBL501", 1),
     ],
 )
 def test_a_statement_with_an_error_is_placed_and_changes_nothing(folder, line, code, column):
@@ -203,6 +203,58 @@ def test_statements_and_lines_are_taken_back(folder):
     for wrong in ("back 0", "back x", "back -1"):
         with pytest.raises(Failure, match="RBL802"):
             session.do(wrong)
+
+
+def test_a_program_is_stepped_over_into_and_out_of_calls(folder, tmp_path):
+    (tmp_path / "p.rbl").write_text("x = 1\nCALL two(x)\nx = 5\nSUB two(n)\nn = n + 1\nn = n + 1\nENDSUB\n")
+    session = prompt(tmp_path / "p.rbl")
+    assert "CALL two" in session.do("step")
+    assert "next: x = 5" in session.do("step")
+    assert "CALL two" in session.do("back 4")
+    assert "n = n + 1" in session.do("step into", "step into")
+    assert "called from line 2: CALL two(x)" in session.do("where")
+    assert session.do("n") == "2\n"
+    assert "next: x = 5" in session.do("step out")
+    assert "ended" in session.do("run")
+
+
+def test_breakpoints_stop_the_program(folder):
+    session = prompt(folder / PICK)
+    session.do("break 60", "break 100 if HERE.Z < 700", "break 110 if 1 / 0 > 3")
+    assert len(session.do("breaks").splitlines()) == 5
+    assert "next: 60" in session.do("run")
+    assert ">*60" in session.do("list")
+    session.do("break 60 off")
+    assert "RBL501" in session.problems.getvalue() or "next: 100" in session.do("run")
+    assert "next: 110" in session.do("run")
+    assert "RBL501" in session.problems.getvalue()
+    session.do("breaks off")
+    assert "ended" in session.do("run")
+    for wrong, code in (
+        ("break 61", "RBL803"),
+        ("break", "RBL802"),
+        ("break 60 if", "RBL802"),
+        ("break 60 off", "RBL803"),
+    ):
+        with pytest.raises(Failure, match=code):
+            session.do(wrong)
+    with pytest.raises(Failure, match="RBL1"):
+        session.do("break 60 if (")
+
+
+def test_a_program_runs_to_a_line(folder):
+    session = prompt(folder / PICK)
+    assert "next: 80" in session.do("runto 80")
+    assert "ended" in session.do("runto 60")
+
+
+def test_values_are_watched(folder):
+    session = prompt(folder / PICK)
+    assert session.do("watch HERE.Z, MAX(1, 2), nobody").splitlines()[:2] == ["  HERE.Z = 840", "  MAX(1, 2) = 2"]
+    assert "  HERE.Z = 640" in session.do("runto 40")
+    with pytest.raises(Failure, match="RBL1"):
+        session.do("watch HERE.")
+    assert "HERE.Z" not in session.do("watch off", "step")
 
 
 def test_again_brings_the_start_state_back(folder):
