@@ -136,6 +136,11 @@ class Executor:
         return self._engine.machine.evaluator(self.world.at(target.q), target.measured)
 
     @property
+    def plays(self) -> bool:
+        """Whether a motion of ``play`` has not ended."""
+        return self._engine.now.playing
+
+    @property
     def displaced(self) -> Displaced | None:
         """How far the arm is from where it has left the path of a motion that is interrupted; None: of none."""
         engine, now = self._engine, self._engine.now

@@ -1,7 +1,7 @@
 """All commands of the prompt."""
 
 from robolang.pendant.command import Commands
-from robolang.pendant.commands import editing, logs, measuring, running, session, showing, stepping, teaching
+from robolang.pendant.commands import editing, jogging, logs, measuring, running, session, showing, stepping, teaching
 
 COMMANDS = Commands(
     (
@@ -10,6 +10,7 @@ COMMANDS = Commands(
         *showing.COMMANDS,
         *teaching.COMMANDS,
         *measuring.COMMANDS,
+        *jogging.COMMANDS,
         *running.COMMANDS,
         *stepping.COMMANDS,
         *logs.COMMANDS,

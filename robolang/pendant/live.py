@@ -10,6 +10,7 @@ import numpy as np
 
 from robolang.core.diagnostics import Severity, render
 from robolang.core.source import Source
+from robolang.execution import lowering
 from robolang.execution.alarms import as_diagnostic
 from robolang.execution.alarms import failure as fault_of
 from robolang.execution.engine import StopsBefore
@@ -124,6 +125,23 @@ class Live:
         """Carry statements out where the program stands; ``Failure`` when one of them fails."""
         self.executor.feed(Source(NAME, text))
         self.drive()
+
+    @property
+    def X_world_frame(self) -> Array:
+        """The FRAME in force (4, 4)."""
+        frame, cell = self.executor.frame, self.project.cell
+        return lowering.frame_pose(frame, cell)
+
+    def play(self, rows: Array, text: str) -> None:
+        """Send set-points (K, n) rad as a motion of its own; where it is stopped, its rest is dropped."""
+        self.executor.play(rows, None, text)
+        self.drive()
+        self.drop()
+
+    def drop(self) -> None:
+        """Forget what is left of a motion by hand that was stopped: nothing follows once a key is released."""
+        if self.executor.plays:
+            self.executor.abandon()
 
     def go_on(self, stops_before: StopsBefore | None = None, seconds: float = math.inf) -> Status:
         """Let the program go on from where it stands until a statement that ``stops_before`` names, or its end.

@@ -4,6 +4,7 @@ A ``Pendant`` is light to make: the controller, and with it numerics and physics
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
@@ -31,12 +32,15 @@ from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault, FilePlace
 
 if TYPE_CHECKING:
+    from runtime.motion.jog import JogPlan
+
     from robolang.execution.stepping import Breakpoint, Hit, Stop
     from robolang.interpreter.effects import Origin
     from robolang.pendant.live import Live
     from robolang.project.points import Point
     from robolang.project.project import Project
     from robolang.syntax.ast import Line
+    from robolang.teaching.jogging import JogRequest, JogSettings
 
 
 def _key(item: Diagnostic) -> tuple[str, str]:
@@ -79,6 +83,9 @@ class Pendant:
         """Breakpoints by their line of the file, from 1."""
         self.watches: tuple[str, ...] = ()
         """Expressions that are shown after each stop."""
+        self.key_mode: Callable[[], None] | None = None
+        """Lets keys jog the arm, where a face has keys."""
+        self._jog: JogSettings | None = None
         self._recovery = Recovery()
         self._project: Project | None = None
         self._live: Live | None = None
@@ -136,6 +143,40 @@ class Pendant:
                 raise
             except Fault as fault:
                 raise FileFault(fault.code, fault.message, fault.hint, FilePlace(NAME, 1, 1, part)) from None
+
+    # --- by hand ------------------------------------------------------------------------------------------------------
+
+    @property
+    def jog(self) -> "JogSettings":
+        """How jogs move the arm."""
+        if self._jog is None:
+            from robolang.teaching.jogging import JogSettings
+
+            self._jog = JogSettings()
+        return self._jog
+
+    @jog.setter
+    def jog(self, settings: "JogSettings") -> None:
+        self._jog = settings
+
+    def plan_jog(self, request: "JogRequest") -> "JogPlan":
+        """Return the plan of a jog from where the arm stands; ``Fault`` for one that cannot be carried out."""
+        from robolang.teaching.jogging import plan_jog
+
+        live = self.live
+        return plan_jog(live.controller, request, self.jog, live.X_world_frame)
+
+    def jog_by(self, request: "JogRequest") -> None:
+        """Jog the arm by an amount, in MANUAL."""
+        from robolang.teaching.jog_remarks import remarks
+
+        self.live.refuse_latched()
+        self.to_manual()
+        plan = self.plan_jog(request)
+        self.live.play(plan.rows, f"jog {request.axis} {request.amount:+g}")
+        for remark in remarks(request, plan):
+            self.output.line(remark)
+        self.output.line(f"{self.live.seconds:.3f} s  {pose_text(self.live.arm.tool_in_frame)}")
 
     # --- the program --------------------------------------------------------------------------------------------------
 
@@ -410,6 +451,12 @@ class Pendant:
         if self.mode is not Mode.AUTO:
             self.switch(Mode.AUTO)
             self.output.line("AUTO")
+
+    def to_manual(self) -> None:
+        """Choose MANUAL, and say so where it was not chosen."""
+        if self.mode is not Mode.MANUAL:
+            self.switch(Mode.MANUAL)
+            self.output.line("MANUAL")
 
     def switch(self, mode: Mode) -> None:
         """Choose MANUAL or AUTO."""

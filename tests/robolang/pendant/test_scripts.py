@@ -286,6 +286,73 @@ def test_manual_is_slow_and_auto_has_the_programmed_speed(folder):
     assert seconds["manual"] > seconds["auto"]
 
 
+def joints(session) -> np.ndarray:
+    return np.array([float(line.split()[1]) for line in session.do("pos").splitlines() if re.match(r"J\d", line)])
+
+
+def test_joints_and_tool_are_jogged(folder):
+    session = prompt(folder / PICK)
+    start = joints(session)
+    session.do("jog J3 +5")
+    assert np.abs(joints(session) - start - [0, 0, 5, 0, 0, 0]).max() < 1e-3
+    session.do("jog J3 -5", "jog X -10")
+    assert abs(float(session.do("HERE.X")) - 470.0) < 1e-3
+    session.do("jogframe tool", "jog Z 20")  # the tool looks down
+    assert abs(float(session.do("HERE.Z")) - 820.0) < 1e-3
+    session.do("FRAME POSE(0, 0, 0, 0, 0, 90)", "jogframe user", "jog X 10")
+    session.do("FRAME WORLD")
+    assert abs(float(session.do("HERE.Y")) + 210.0) < 1e-3
+
+
+@pytest.mark.parametrize(
+    "line, code",
+    [
+        ("jog", "RBL802"),
+        ("jog J9 5", "RBL720"),
+        ("jog X", "RBL720"),
+        ("jog X nan", "RBL720"),
+        ("jog X 1e9", "RBL404"),
+        ("jog J3 60", "RBL411"),
+        ("jog Z 900", "RBL410"),
+        ("jogframe nowhere", "RBL720"),
+        ("jogspeed 0", "RBL404"),
+        ("jogspeed nan", "RBL802"),
+    ],
+)
+def test_a_jog_that_cannot_be_does_not_start(folder, line, code):
+    session = prompt(folder / PICK)
+    start = session.do("pos")
+    with pytest.raises(Failure, match=code):
+        session.do(line)
+    assert session.do("pos") == start
+
+
+def test_a_jog_is_stopped_and_its_rest_dropped(folder):
+    session = prompt(folder / PICK, interrupts=Requests(stop=20))
+    start = joints(session)
+    session.do("jog J1 30")
+    turned = (joints(session) - start)[0]
+    assert 0.0 < turned < 29.0
+    session.do("jog J1 1")
+    assert abs((joints(session) - start)[0] - turned - 1.0) < 1e-3
+
+
+def test_a_jog_within_a_held_move_leaves_its_path(folder):
+    session = prompt(folder / PICK)
+    session.do("run for 1", "jog Z 8")
+    assert "8.0 mm" in session.do("hold")
+    assert "ended" in session.do("continue")
+
+
+def test_jogs_are_taken_back(folder):
+    session = prompt(folder / PICK)
+    start = session.do("pos")
+    session.do("jog J1 5", "jog X 5")
+    assert "jog X +5" in session.do("back")
+    assert "jog J1 +5" in session.do("back")
+    assert session.do("pos") == start
+
+
 def test_an_input_is_forced_and_given_back(folder, tmp_path):
     (tmp_path / "p.rbl").write_text("MOVE P1\n")
     session = prompt(tmp_path / "p.rbl", cell=folder / "programs/shop/cell.toml")
