@@ -54,4 +54,10 @@ register(
         meaning="The name is taken already.",
         remedy="Give another name.",
     ),
+    Code(
+        code="RBL809",
+        name="motion-cut-short",
+        meaning="A motion of the prompt was stopped before its end, so there is no result.",
+        remedy="Start it again.",
+    ),
 )

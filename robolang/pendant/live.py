@@ -138,6 +138,20 @@ class Live:
         self.drive()
         self.drop()
 
+    def weigh(self, rows: Array) -> Array | None:
+        """Send the set-points of a weighing; return what the ticks recorded (N, 4 n), None when it was stopped."""
+        controller = self.controller
+        begun, controller.weighing = controller.recorder.tick, True
+        try:
+            self.executor.play(rows, None, "weigh")
+            self.drive()
+        finally:
+            controller.weighing = False
+        if self.executor.plays:
+            self.executor.abandon()
+            return None
+        return controller.recorder.recent(controller.recorder.tick - begun)
+
     def drop(self) -> None:
         """Forget what is left of a motion by hand that was stopped: nothing follows once a key is released."""
         if self.executor.plays:

@@ -32,8 +32,6 @@ from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault, FilePlace
 
 if TYPE_CHECKING:
-    from runtime.motion.jog import JogPlan
-
     from robolang.execution.stepping import Breakpoint, Hit, Stop
     from robolang.interpreter.effects import Origin
     from robolang.pendant.live import Live
@@ -41,6 +39,7 @@ if TYPE_CHECKING:
     from robolang.project.project import Project
     from robolang.syntax.ast import Line
     from robolang.teaching.jogging import JogRequest, JogSettings
+    from runtime.motion.jog import JogPlan
 
 
 def _key(item: Diagnostic) -> tuple[str, str]:
@@ -269,6 +268,8 @@ class Pendant:
     def standing(self) -> str:
         """Where the program stands, as a line of text."""
         line = self.current
+        if not self.desk.analysis.program.statements:
+            return "the program has no statements"
         at = f"at {self.live.seconds:.3f} s"
         if line is None:
             return f"the program has ended {at}"

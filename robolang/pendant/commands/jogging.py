@@ -15,6 +15,7 @@ def _jog(pendant: "Pendant", rest: str) -> None:
     from robolang.teaching.jogging import read_jog
 
     if not rest:
+        # a script has no keys, and a jog without an amount is none
         if pendant.key_mode is None:
             raise misused(_JOG, "an axis and an amount are expected; keys jog on a terminal only")
         pendant.key_mode()
@@ -32,6 +33,7 @@ def _jogframe(pendant: "Pendant", rest: str) -> None:
 
 def _jogspeed(pendant: "Pendant", rest: str) -> None:
     if rest:
+        # the sign of percent is what the status line shows, so it is read as well
         pendant.jog = pendant.jog.with_speed(number(rest.removesuffix("%").strip(), _SPEED, "the speed, %"))
     pendant.output.line(f"jogs at {pendant.jog.speed:g} % of the speed of MANUAL")
 

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from robolang.pendant.command import Command, Group, Offer
+from robolang.pendant.failure import failure
 from robolang.pendant.numbers import pose_text
 from robolang.pendant.output import Column, Table
 from robolang.pendant.words import misused, without_flag
@@ -10,8 +11,10 @@ from robolang.pendant.words import misused, without_flag
 if TYPE_CHECKING:
     from robolang.pendant.pendant import Pendant
     from robolang.teaching.touches import Touch
+    from runtime.dynamics.payload_identification import WeighedPayload
 
 _FRAME = "teachframe NAME ORIGIN ON_X ON_XY [--yes]"
+_WEIGH = "weigh [NAME]"
 _TOOL = "teachtool NAME P1 P2 P3 [P4 ...] [--yes]"
 
 
@@ -77,6 +80,45 @@ def _touches(pendant: "Pendant", names: list[str]) -> "list[Touch]":
     return found
 
 
+def _weigh(pendant: "Pendant", rest: str) -> None:
+    from robolang.teaching.cell_document import set_load
+    from robolang.teaching.weighing import weigh_plan, weigh_result
+
+    if len(rest.split()) > 1:
+        raise misused(_WEIGH, f"found '{rest}'")
+    if rest:
+        # a name that cannot be is refused before the arm moves
+        set_load(pendant.desk.documents, rest, 0.0, (0.0, 0.0, 0.0))
+    live = pendant.live
+    live.refuse_latched()
+    pendant.to_manual()
+    plan = weigh_plan(live.controller)
+    pendant.output.line(f"the arm swings about its posture for {plan.seconds:.1f} s")
+    rows = live.weigh(plan.rows)
+    if rows is None:
+        raise failure("RBL809", "the motion was stopped before its end, and nothing is known of the payload")
+    result = weigh_result(plan, rows, physics=pendant.choice.physics)
+    found, load = result.found, result.load
+    if load.text is None:
+        raise failure(load.code, load.note)
+    pendant.output.line(f"{load.text}    (+- {found.mass_sd:.3f} kg)")
+    if load.note:
+        pendant.output.line(f"  note: {load.note}")
+    # declared at once: from here on the servo knows what it carries
+    pendant.carry_out(load.text)
+    if rest:
+        _write_load(pendant, rest, found)
+
+
+def _write_load(pendant: "Pendant", name: str, found: "WeighedPayload") -> None:
+    from robolang.teaching.cell_document import set_load
+    from runtime.core.units import MM
+
+    cog = (0.0, 0.0, 0.0) if found.cog is None else tuple(float(value) / MM for value in found.cog)
+    pendant.change(set_load(pendant.desk.documents, name, found.mass, cog), f"load {name}")
+    pendant.output.line(f"LOAD {name} is in the cell file")
+
+
 def _refuse_taken(pendant: "Pendant", what: str, name: str, yes: bool) -> None:
     cell = pendant.project.cell
     known = cell.frames if what == "frame" else cell.tools
@@ -105,5 +147,14 @@ COMMANDS = (
         words=("--yes",),
         more="Touch the tip with the flange tilted to different sides, by 30 deg or more. The orientation of the tool\n"
         "is not measured: it stays, and that of a new tool is the one of the hand.",
+    ),
+    Command(
+        word="weigh",
+        form=_WEIGH,
+        help="Weigh what the arm carries by a short motion, and declare it by LOAD.",
+        group=Group.TEACH,
+        do=_weigh,
+        offers=(Offer.LOAD,),
+        more="With a name the load is written into the cell file too, for LOAD NAME.",
     ),
 )

@@ -20,6 +20,7 @@ def _run(pendant: "Pendant", rest: str) -> None:
     if len(words) != 2 or words[0].lower() != "for":
         raise misused(_RUN, f"found '{rest}'")
     seconds = number(words[1], _RUN, "the seconds")
+    # a run that ends at once would hold a program in the middle of nothing
     if not seconds > 0.0:
         raise misused(_RUN, f"the seconds are {seconds:g} and must be positive")
     pendant.run(seconds=seconds)
@@ -49,6 +50,7 @@ def _where(pendant: "Pendant", rest: str) -> None:
     nothing(rest, "where")
     live = pendant.live
     pendant.output.line(pendant.standing)
+    # the innermost first: it is the one that step out leaves
     for call in reversed(live.executor.calls):
         pendant.output.line(f"called from {named(call.line, call.number)}: {pendant.text_of(call)}")
     far = live.executor.displaced
@@ -58,6 +60,7 @@ def _where(pendant: "Pendant", rest: str) -> None:
 
 def _again(pendant: "Pendant", rest: str) -> None:
     nothing(rest, "again")
+    # edits stay: it is the cell that begins anew, and not the work on the program
     pendant.start_again()
     pendant.output.line("the cell is in its start state, the program before its first statement")
 

@@ -19,6 +19,7 @@ def _help(pendant: "Pendant", rest: str) -> None:
     if rest:
         _explain(pendant, rest)
         return
+    # under headings in the order of work, and not of the alphabet: a newcomer reads from the top
     rows = [
         (group.value if at == 0 else "", command.form, command.help)
         for group in Group
@@ -67,6 +68,7 @@ def _auto(pendant: "Pendant", rest: str) -> None:
 def _arm(pendant: "Pendant", rest: str) -> None:
     if rest.lower() not in ("", "on", "off"):
         raise failure("RBL802", f"arm takes on or off, found '{rest}'", "The form is: arm [on|off]")
+    # no question: to disarm must be as quick as a key
     pendant.armed = rest.lower() != "off"
     pendant.output.line("armed: keys move the arm" if pendant.armed else "not armed: keys do not move the arm")
 

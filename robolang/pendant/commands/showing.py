@@ -46,6 +46,7 @@ def shown(frame: Frame, default: str) -> str:
 def _vars(pendant: "Pendant", rest: str) -> None:
     nothing(rest, "vars")
     executor = pendant.live.executor
+    # the main program first, as the calls were made
     rows: list[tuple[str, ...]] = []
     for depth, names in enumerate(executor.variables):
         where = "main" if depth == 0 else f"call {depth}"
@@ -125,6 +126,7 @@ def _in(pendant: "Pendant", rest: str) -> None:
         raise misused(form, f"found '{rest}'")
     number = whole(words[0], form, "the input", 1, 1024)
     signals.force(number, {"on": 1.0, "off": 0.0, "auto": None}[words[1]])
+    # shown in words: after auto an input may change by itself
     by = "as the cell file says" if words[1] == "auto" else f"forced {words[1].upper()}"
     pendant.output.line(f"input {number}: {by}")
 

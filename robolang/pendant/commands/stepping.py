@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from robolang.pendant.command import Command, Group, Offer
 from robolang.pendant.output import Column, Table
-from robolang.pendant.words import misused, nothing, values
+from robolang.pendant.words import misused, values
 
 if TYPE_CHECKING:
     from robolang.execution.stepping import Stop
@@ -50,6 +50,7 @@ def _break(pendant: "Pendant", rest: str) -> None:
             pendant.set_break(row)
         case "if" if condition.strip():
             pendant.set_break(row, condition.strip())
+        # off with more after it may be the start of a condition: refused below
         case "off" if not condition:
             pendant.clear_break(row)
             pendant.output.line(f"no breakpoint at {word}")
@@ -61,6 +62,7 @@ def _break(pendant: "Pendant", rest: str) -> None:
 
 def _breaks(pendant: "Pendant", rest: str) -> None:
     if rest.lower() == "off":
+        # all at once, since a forgotten breakpoint is found only by running into it
         pendant.breaks.clear()
     elif rest:
         raise misused(_BREAKS, f"found '{rest}'")
@@ -85,7 +87,6 @@ def _watch(pendant: "Pendant", rest: str) -> None:
         for text in texts:
             expression(text)
         pendant.watches = texts
-    nothing("" if pendant.watches else rest, _WATCH)
     pendant.show_watches()
 
 

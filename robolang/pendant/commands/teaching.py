@@ -84,6 +84,7 @@ def _show_change(pendant: "Pendant", old: "Point", new: "Point") -> None:
         f"{old.name} in the frame {found.frame or 'WORLD'}: {found.distance:.3f} mm, {found.angle:.3f} deg"
     )
     pendant.output.table(Table(columns=columns, rows=rows))
+    # a small move of the tool may be a large one of the joints, near a singularity or by another configuration
     if found.joints is not None:
         joints = "  ".join(f"J{i + 1} {round(value, 3) + 0.0:+.3f}" for i, value in enumerate(found.joints))
         pendant.output.line(f"joints, deg: {joints}")
@@ -129,6 +130,7 @@ def _go(pendant: "Pendant", rest: str) -> None:
     words = rest.split()
     if not 1 <= len(words) <= 2 or words[1:] not in ([], ["straight"]):
         raise misused(_GO, f"the name of a point is expected, found '{rest}'")
+    # spelled as it is taught: the line may be recorded
     name = pendant.point(words[0]).name
     pendant.carry_out(f"{'MOVE' if len(words) == 2 else 'MOVEJ'} {name}")
 
@@ -144,6 +146,7 @@ def _copy(pendant: "Pendant", rest: str) -> None:
     old, new = pendant.point(words[0]), words[1]
     if live.project.points.get(new) is not None:
         raise failure("RBL808", f"there is a point {new} already", "Give another name, or del the point first.")
+    # the rest of the line: an offset has blanks, and the parser of the language reads it
     offset = words[2] if len(words) > 2 else ""
     taught = copied(new, old, offset, live.around, frame=live.executor.frame, world=live.executor.world)
     pendant.change(set_point(pendant.desk.documents, taught.point), f"copy {old.name} to {new}")

@@ -312,8 +312,8 @@ def test_joints_and_tool_are_jogged(folder):
         ("jog X", "RBL720"),
         ("jog X nan", "RBL720"),
         ("jog X 1e9", "RBL404"),
-        ("jog J3 60", "RBL411"),
-        ("jog Z 900", "RBL410"),
+        ("jog J3 -60", "RBL411"),
+        ("jog X 900", "RBL41"),
         ("jogframe nowhere", "RBL720"),
         ("jogspeed 0", "RBL404"),
         ("jogspeed nan", "RBL802"),
@@ -408,3 +408,20 @@ def test_a_tool_is_measured_by_touches_of_one_tip(folder, tmp_path):
     cell = tomllib.loads((tmp_path / "mine.cell.toml").read_text())
     hand = prompt().pendant.project.cell.hand.X_flange_tool[:3, 3] * 1000.0
     assert np.abs(np.array(cell["tools"]["probe"]["pose_mm_deg"][:3]) - hand).max() < 0.05
+
+
+@pytest.mark.physics
+def test_the_payload_is_weighed_and_declared(folder, tmp_path):
+    session = prompt(physics=True)
+    session.do("LOAD (0, 0, 60), 0.8", "MOVE P1", "HAND ON", "LOAD (0, 0, 95), 2.3", "MOVE P2")
+    shown = session.do("weigh carried")
+    mass = float(re.search(r"^LOAD \(.*\), ([0-9.]+)", shown, re.MULTILINE)[1])
+    assert abs(mass - 2.3) < 0.15  # the hand of 0.8 kg and the part of 1.5 kg
+    session.do("LOAD carried")
+    assert abs(session.pendant.live.controller.areas.sda.mass - mass) < 0.01
+    stopped = prompt(physics=True, interrupts=Requests(stop=40))
+    with pytest.raises(Failure, match="RBL809"):
+        stopped.do("weigh")
+    for wrong in ("weigh a b", "weigh 3"):
+        with pytest.raises(Failure):
+            stopped.do(wrong)
