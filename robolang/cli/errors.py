@@ -6,13 +6,13 @@ Exit codes: 0 clean, 1 diagnostics found, 2 usage or configuration, 3 motion fau
 
 import errno
 import io
-import os
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 
 from robolang.cli.output import drop, echo
 from robolang.cli.usage import OptionValueError
+from robolang.core.defects import internal
 from robolang.core.diagnostics import Severity, render_fault, safe
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault
@@ -114,12 +114,3 @@ def escape_what_a_terminal_lacks() -> None:
     """Let stdout escape letters that its encoding lacks, as stderr does: excerpts of programs hold them."""
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")
-
-
-def internal(error: Exception) -> Fault:
-    """Return the fault that stands for a defect of robolang itself; raises the error under ``ROBOLANG_DEBUG``."""
-    if os.environ.get("ROBOLANG_DEBUG"):
-        raise error
-    kind = type(error).__name__
-    hint = "this is a defect of robolang; ROBOLANG_DEBUG=1 shows where it happened"
-    return Fault("RBL900", f"internal error: {kind}: {error}", hint)

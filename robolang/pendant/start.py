@@ -1,15 +1,22 @@
 """Starting the prompt: with a terminal the screen of ``prompt``, without one the script of ``script``."""
 
+import os
 import sys
 from pathlib import Path
 
 from robolang.pendant.assembly import COMMANDS
+from robolang.pendant.foreground import Foreground
 from robolang.pendant.interrupts import Signals
+from robolang.pendant.keyboard import Keyboard
 from robolang.pendant.output import PlainOutput
 from robolang.pendant.pendant import Choice, Pendant
+from robolang.pendant.plain_prompt import AskingOutput, converse
 from robolang.pendant.script import play
 from robolang.teaching.desk import Desk
 from robolang.teaching.documents import load_documents
+
+_BY_SIGNAL = 128
+"""Added to the number of a signal in the exit code."""
 
 
 def start(
@@ -21,12 +28,37 @@ def start(
     """
     # only the texts are read here: what is wrong in them is said at the first line that needs them
     desk = Desk(load_documents(program, choice.cell))
+    somebody_types = sys.stdin.isatty()
     pendant = Pendant(
         desk,
         choice,
         PlainOutput(sys.stdout, sys.stderr),
         commands=COMMANDS,
-        interrupts=Signals(),
-        scripted=True,
+        interrupts=Foreground(Keyboard(sys.stdin.fileno())) if somebody_types else Signals(),
+        scripted=not somebody_types,
     )
-    return play(sys.stdin, pendant, keep_going=keep_going).codes
+    if not somebody_types:
+        return play(sys.stdin, pendant, keep_going=keep_going).codes
+    ended_by = _at_terminal(pendant)
+    if ended_by:
+        # what is buffered for a terminal that has gone would be an error at the very end
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        for stream in (sys.stdout, sys.stderr):
+            os.dup2(nowhere, stream.fileno())
+        raise SystemExit(_BY_SIGNAL + ended_by)
+    return ()
+
+
+def _at_terminal(pendant: Pendant) -> int:
+    """Let somebody work at a terminal; return the signal that ended it, 0 for ``quit``."""
+    if not sys.stdout.isatty() or os.environ.get("TERM", "dumb").lower() in ("dumb", "unknown"):
+        pendant.output = AskingOutput(sys.stdin, sys.stdout, sys.stderr)
+        return converse(pendant, sys.stdin, sys.stdout)
+    # a script does not need what edits lines and paints
+    from prompt_toolkit.input import create_input
+    from prompt_toolkit.output import create_output
+
+    from robolang.pendant.history import KeptHistory, history_file
+    from robolang.pendant.prompt import Prompt
+
+    return Prompt(pendant, create_input(), create_output(), KeptHistory(history_file())).run()

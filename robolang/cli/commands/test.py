@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
-from robolang.cli.errors import DIAGNOSTICS, USAGE, internal, reported, say_all
+from robolang.cli.errors import DIAGNOSTICS, USAGE, reported, say_all
 from robolang.cli.options import AllowEmpty, Argument, Group, Option
 from robolang.cli.output import echo
+from robolang.core.defects import internal
 
 if TYPE_CHECKING:
     from robolang.core.diagnostics import Diagnostic

@@ -1,0 +1,50 @@
+"""The prompt on a terminal that can only show lines (TERM=dumb), or whose output is a file: no colours, no menus."""
+
+import signal
+from typing import TextIO
+
+from robolang.pendant.failure import Failure
+from robolang.pendant.foreground import Foreground
+from robolang.pendant.output import PlainOutput
+from robolang.pendant.pendant import Pendant
+from robolang.pendant.reading import is_open
+
+
+class AskingOutput(PlainOutput):
+    """Plain output that reads the answer to a question."""
+
+    def __init__(self, source: TextIO, results: TextIO, problems: TextIO) -> None:
+        super().__init__(results, problems)
+        self._source, self._shown = source, results
+
+    def ask(self, question: str) -> bool:
+        """Print the question and read the answer; nothing but yes means yes."""
+        self._shown.write(f"{question} (y/n) ")
+        self._shown.flush()
+        return self._source.readline().strip().lower() in ("y", "yes")
+
+
+def converse(pendant: Pendant, source: TextIO, shown: TextIO) -> int:
+    """Let somebody work until the end; return the signal that ended it, 0 for ``quit``."""
+    interrupts = pendant.interrupts
+    assert isinstance(interrupts, Foreground)
+    text = ""
+    while not pendant.ended and not interrupts.lost:
+        try:
+            shown.write(". " if text else "> ")
+            shown.flush()
+            line = source.readline()
+            # Ctrl-D gives no line, a terminal that was closed neither
+            text = "quit" if not line else f"{text}{line.rstrip()}"
+            if is_open(text, pendant.commands):
+                text += "\n"
+                continue
+            pendant.do(text)
+            if not line and not pendant.ended and not source.isatty():
+                interrupts.lose(signal.SIGHUP)
+        except Failure as failure:
+            pendant.output.problem(failure.text)
+        except KeyboardInterrupt:
+            shown.write("\n")
+        text = ""
+    return interrupts.signal

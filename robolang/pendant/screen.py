@@ -1,0 +1,175 @@
+"""Results on a terminal: in colours, tables that fit the width, and one line that shows where motion is.
+
+Everything is printed above the prompt, between two of its lines, so nothing has to be painted again. A line of progress
+is replaced by the next one and removed before anything else is printed.
+"""
+
+import re
+import textwrap
+from collections.abc import Callable
+from contextlib import suppress
+
+from prompt_toolkit.formatted_text import FormattedText, StyleAndTextTuples
+from prompt_toolkit.output import Output as Terminal
+from prompt_toolkit.shortcuts import print_formatted_text
+
+from robolang.core.diagnostics import safe
+from robolang.pendant.colours import STYLE
+from robolang.pendant.lexer import coloured
+from robolang.pendant.marks import Names
+from robolang.pendant.output import Listing, Table, as_text, listing_lines
+from runtime.control.clock import wall_s
+
+_HEAD = re.compile(r"(.*?)\b(error|warning|info) (RBL\d+)\b(.*)")
+_EXCERPT = re.compile(r"( *\d+ \| )(.*)")
+_CARETS = re.compile(r" *\| *\^+")
+_HELP = re.compile(r" *(?:help|fix|note|command): ")
+_LISTED = re.compile(r"([> ])([* ])(.*)", re.DOTALL)
+
+_SHOWN_EACH_S = 0.1
+"""A line of progress is written so often at most: a program may run a thousand statements in a second of wall time."""
+_NARROWEST = 16
+"""Columns that the last column of a table keeps at least."""
+
+
+class TerminalOutput:
+    """Output on a terminal; ``names`` gives what names stand for, for colours, ``answer`` asks a question."""
+
+    def __init__(self, terminal: Terminal, names: Callable[[], Names], answer: Callable[[str], bool]) -> None:
+        self._terminal, self._names, self._answer = terminal, names, answer
+        self._shown = self._running = ""
+        self._shown_s = float("-inf")
+
+    @property
+    def columns(self) -> int:
+        """How many columns the terminal has."""
+        return self._terminal.get_size().columns
+
+    def line(self, text: str) -> None:
+        """Print a result."""
+        for line in text.split("\n"):
+            for row in self._wrapped(safe(line)):
+                self._print([("", row)])
+
+    def echo(self, text: str) -> None:
+        """Print a line that is carried out, as if it had been typed."""
+        for line in _safe(text).split("\n"):
+            self._print([("class:prompt", "> "), *coloured(line, self._names())])
+
+    def table(self, table: Table) -> None:
+        """Print a table; its last column is broken into several lines where the terminal is narrow."""
+        lines = as_text(_fitted(table, self.columns)).split("\n")
+        head = 1 + any(column.unit for column in table.columns)
+        for row, line in enumerate(map(safe, lines)):
+            style = "class:heading" if row == 0 else "class:unit" if row <= head else ""
+            strong = row - head - 1 in table.marks and len(lines) == head + 1 + len(table.rows)
+            self._print([("class:strong" if strong else style, line)])
+
+    def program(self, listing: Listing) -> None:
+        """Print lines of a program in their colours, an arrow before the next statement."""
+        for line in listing_lines(listing):
+            found = _LISTED.match(safe(line))
+            arrow, mark, rest = found.groups() if found else (" ", " ", safe(line))
+            self._print([("class:arrow", arrow), ("class:breakpoint", mark), *coloured(rest, self._names())])
+
+    def problem(self, text: str) -> None:
+        """Print an error or a warning with the colours of its parts."""
+        for line in text.split("\n"):
+            # an excerpt keeps its columns, since the carets below point into it
+            is_excerpt = _EXCERPT.fullmatch(safe(line)) or _CARETS.fullmatch(safe(line))
+            for row in [safe(line)] if is_excerpt else self._wrapped(safe(line)):
+                self._print(self._problem(row))
+
+    def progress(self, text: str) -> None:
+        """Print where motion is, in place of what this printed last."""
+        self._running = text
+        self.tick(None)
+
+    def tick(self, seconds: float | None) -> None:
+        """Print again what runs, at another simulated time, s; what began it is then the first column no more."""
+        now = wall_s()
+        text = self._running
+        if seconds is not None:
+            text = f"{seconds:.3f} s  {text.partition('  ')[2]}"
+        if not text or now - self._shown_s < _SHOWN_EACH_S:
+            return
+        self._shown_s = now
+        self._clear()
+        # one column is left free: a full line would wrap
+        self._shown = safe(text.split("\n")[0])[: max(0, self.columns - 1)]
+        self._write([("class:progress", self._shown)], end="")
+
+    def over(self) -> None:
+        """Remove the line of progress."""
+        self._running = ""
+        self._clear()
+
+    def ask(self, question: str) -> bool:
+        """Ask on the terminal and return the answer."""
+        self._clear()
+        return self._answer(_safe(question))
+
+    def _clear(self) -> None:
+        if self._shown:
+            with suppress(OSError):
+                self._terminal.write_raw("\r")
+                self._terminal.erase_end_of_line()
+                self._terminal.flush()
+            self._shown = ""
+
+    def _print(self, fragments: StyleAndTextTuples) -> None:
+        self._clear()
+        self._write(fragments, end="\n")
+
+    def _write(self, fragments: StyleAndTextTuples, end: str) -> None:
+        # a terminal that has gone is found where keys are read, and the arm is stopped there
+        with suppress(OSError):
+            print_formatted_text(FormattedText(fragments), output=self._terminal, style=STYLE, end=end, flush=True)
+
+    def _problem(self, line: str) -> StyleAndTextTuples:
+        if found := _HEAD.match(line):
+            place, severity, code, message = found.groups()
+            style = "class:error" if severity == "error" else "class:warning"
+            return [("", place), (style, f"{severity} {code}"), ("class:strong", message)]
+        if found := _EXCERPT.fullmatch(line):
+            return [("class:unit", found[1]), *coloured(found[2], self._names())]
+        if _CARETS.fullmatch(line):
+            return [("class:caret", line)]
+        if found := _HELP.match(line):
+            return [("class:help", found[0]), ("", line[found.end() :])]
+        return [("", line)]
+
+    def _wrapped(self, line: str) -> list[str]:
+        """Return a line in pieces that fit, broken at blanks; those after the first are set in further."""
+        if len(line) < self.columns:
+            return [line]
+        indent = " " * (len(line) - len(line.lstrip()))
+        return textwrap.wrap(
+            line.lstrip(),
+            max(_NARROWEST, self.columns - 1),
+            initial_indent=indent,
+            subsequent_indent=f"{indent}  ",
+            drop_whitespace=True,
+        )
+
+
+def _safe(text: str) -> str:
+    return "\n".join(map(safe, text.split("\n")))
+
+
+def _fitted(table: Table, width: int) -> Table:
+    """Return a table whose last column, where it is text, is broken so that its lines fit into a width."""
+    if not table.rows or table.columns[-1].number:
+        return table
+    columns = [max(map(len, column)) for column in zip(*table.rows, strict=True)]
+    heads = [max(len(column.heading), len(column.unit)) for column in table.columns]
+    before = sum(map(max, columns[:-1], heads[:-1])) + 2 * (len(columns) - 1)
+    room = max(_NARROWEST, width - before - 1)
+    if columns[-1] <= room:
+        return table
+    rows: list[tuple[str, ...]] = []
+    for row in table.rows:
+        first, *more = textwrap.wrap(row[-1], room) or [""]
+        rows.append((*row[:-1], first))
+        rows += [(*("" for _ in row[:-1]), line) for line in more]
+    return Table(columns=table.columns, rows=tuple(rows))

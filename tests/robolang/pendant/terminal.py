@@ -1,0 +1,71 @@
+"""A prompt in a pseudo-terminal with a model of its screen: what somebody sees and types."""
+
+import os
+import sys
+from pathlib import Path
+
+import pexpect
+import pyte
+
+COMMAND = str(Path(sys.executable).with_name("robolang"))
+WAIT_S = 120
+"""The longest wait for something new on the screen; it ends a hang and measures nothing."""
+
+
+class Terminal:
+    """``robolang repl`` with a screen; ``raw`` are the bytes that it has sent."""
+
+    def __init__(self, folder: Path, *arguments: str, columns: int = 100, rows: int = 30, **environment: str) -> None:
+        env = dict(os.environ, TERM="xterm-256color", XDG_STATE_HOME=str(folder / "state"))
+        env.pop("NO_COLOR", None)
+        self.process = pexpect.spawn(
+            COMMAND,
+            ["repl", "--no-physics", *arguments],
+            dimensions=(rows, columns),
+            env=env | environment,
+            cwd=str(folder),
+            timeout=WAIT_S,
+        )
+        self.screen = pyte.Screen(columns, rows)
+        # answers of the terminal, as to where the cursor is
+        self.screen.write_process_input = self.send
+        self._stream = pyte.ByteStream(self.screen)
+        self.raw = b""
+
+    def send(self, keys: str) -> None:
+        self.process.send(keys.encode())
+
+    @property
+    def lines(self) -> list[str]:
+        return [line.rstrip() for line in self.screen.display]
+
+    def shows(self, *texts: str) -> bool:
+        return all(any(text in line for line in self.lines) for text in texts)
+
+    def until(self, *texts: str) -> list[str]:
+        """Read until every text is on the screen, each within one line; return the lines."""
+        while not self.shows(*texts):
+            self._read(f"{texts} not on the screen")
+        return self.lines
+
+    def until_gone(self, text: str) -> None:
+        while self.shows(text):
+            self._read(f"{text} stays on the screen")
+
+    def ended(self) -> int:
+        """Read until the process ends; return its exit code."""
+        while True:
+            try:
+                self.raw += self.process.read_nonblocking(65536, timeout=WAIT_S)
+            except pexpect.EOF:
+                break
+        self.process.wait()
+        return self.process.exitstatus if self.process.signalstatus is None else -self.process.signalstatus
+
+    def _read(self, why: str) -> None:
+        try:
+            data = self.process.read_nonblocking(65536, timeout=WAIT_S)
+        except (pexpect.TIMEOUT, pexpect.EOF) as error:
+            raise AssertionError("\n".join([f"{why}: {type(error).__name__}", *self.lines])) from None
+        self.raw += data
+        self._stream.feed(data)
