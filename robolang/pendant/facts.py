@@ -13,11 +13,6 @@ if TYPE_CHECKING:
     from robolang.teaching.felt_payload import PayloadSense
 
 
-def is_ready(pendant: "Pendant") -> bool:
-    """Return whether the controller has been built."""
-    return "live" in vars(pendant)
-
-
 class Gathering:
     """Gathers the facts of one pendant."""
 
@@ -29,7 +24,7 @@ class Gathering:
     def facts(self, starting: str = "") -> Facts:
         """Return what is shown now; ``starting``: why the controller is not ready."""
         pendant = self._pendant
-        live = pendant.live if is_ready(pendant) else None
+        live = pendant.built
         alarm = None if live is None else live.executor.status.alarm
         line = pendant.current
         next_one = pendant.desk.analysis.source.line_text(line.source_line).strip() if line else ""
@@ -77,19 +72,19 @@ class Gathering:
 
 def known(pendant: "Pendant") -> Known:
     """Return what completion knows now; before the cell is read, the program alone."""
-    if "project" not in vars(pendant):
+    project, live = pendant.loaded, pendant.built
+    if project is None:
         return Known(analysis=pendant.desk.analysis)
-    project = pendant.project
     found = Known(
         analysis=_of_desk(pendant, project.analysis),
         points=project.points.points,
         axes=project.cell.robot.n,
     )
-    if not is_ready(pendant):
+    if live is None:
         return found
     from robolang.pendant.commands.showing import value_text
 
-    executor = pendant.live.executor
+    executor = live.executor
     values = {key: value_text(value) for names in executor.variables for key, value in names.values.items()}
     world = executor.world
     inputs = {number: world.input(number) for number in project.cell.inputs}

@@ -47,7 +47,8 @@ class Known(Record):
     @cached_property
     def entries(self) -> tuple[Entry, ...]:
         """Every name that can be used at the prompt, in the order of people: P2 before P10."""
-        symbols = self.analysis.symbols.visible(len(self.analysis.source.text))
+        # what is typed runs in the main program: names of a SUB are its own
+        symbols = (each for each in self.analysis.symbols.visible(0) if each.scope is None)
         found = {(each.kind, each.name.upper()): self._entry(each) for each in symbols}
         taught = {key for _, key in found}
         for key in self.values:

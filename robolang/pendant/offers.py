@@ -204,9 +204,7 @@ def _operands(command: Command, line: str, known: Known, commands: Commands) -> 
 
 def _of_offer(offer: Offer, last: str, known: Known, commands: Commands) -> Iterable[Choice]:
     if kinds := _OFFERED.get(offer):
-        # a label is typed with or without its asterisk
-        star = "*" if last.startswith("*") else ""
-        return (Choice(star + name, meaning) for name, meaning in _entries(known.of(*kinds)))
+        return _targets(known) if last.startswith("*") else _entries(known.of(*kinds))
     if offer is Offer.FILE:
         return _files(last)
     if offer is Offer.INPUT:

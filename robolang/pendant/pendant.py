@@ -430,6 +430,16 @@ class Pendant:
         return self._project
 
     @property
+    def built(self) -> "Live | None":
+        """The controller if it has been built; a screen paints without building one."""
+        return self._live
+
+    @property
+    def loaded(self) -> "Project | None":
+        """The documents if they have been read as a project."""
+        return self._project
+
+    @property
     def live(self) -> "Live":
         """The controller with the program, in the start state of the cell when it is first used."""
         # built when a line first needs it: numerics and physics take their time to import

@@ -27,7 +27,7 @@ from robolang.core.source import Source
 from robolang.pendant.colours import STYLE
 from robolang.pendant.command import Commands, Group
 from robolang.pendant.completer import PromptCompleter
-from robolang.pendant.facts import Gathering, is_ready, known
+from robolang.pendant.facts import Gathering, known
 from robolang.pendant.failure import Failure, of_fault
 from robolang.pendant.foreground import Foreground
 from robolang.pendant.known import Known
@@ -242,8 +242,9 @@ class Prompt:
 
     def _watch(self) -> None:
         """Show the simulated time while something runs."""
-        if is_ready(self._pendant):
-            self._output.tick(self._pendant.live.seconds)
+        live = self._pendant.built
+        if live is not None:
+            self._output.tick(live.seconds, "stopping" if self._interrupts.stopped else "")
 
     def _wait_for(self, entry: str) -> None:
         """Wait until the controller is there, unless a line can do without."""

@@ -37,7 +37,7 @@ class TerminalOutput:
 
     def __init__(self, terminal: Terminal, names: Callable[[], Names], answer: Callable[[str], bool]) -> None:
         self._terminal, self._names, self._answer = terminal, names, answer
-        self._shown = self._running = ""
+        self._shown = self._running = self._note = ""
         self._shown_s = float("-inf")
 
     @property
@@ -83,14 +83,19 @@ class TerminalOutput:
     def progress(self, text: str) -> None:
         """Print where motion is, in place of what this printed last."""
         self._running = text
-        self.tick(None)
+        self._show(text)
 
-    def tick(self, seconds: float | None) -> None:
-        """Print again what runs, at another simulated time, s; what began it is then the first column no more."""
+    def tick(self, seconds: float, note: str) -> None:
+        """Print again what runs, at the simulated time that it is now, s; a new ``note`` is shown at once."""
+        if note != self._note:
+            self._note, self._shown_s = note, float("-inf")
+        # in place of the time at which it began
+        begun = self._running.partition("  ")[2]
+        if begun:
+            self._show("  ".join(filter(None, (f"{seconds:.3f} s", note, begun))))
+
+    def _show(self, text: str) -> None:
         now = wall_s()
-        text = self._running
-        if seconds is not None:
-            text = f"{seconds:.3f} s  {text.partition('  ')[2]}"
         if not text or now - self._shown_s < _SHOWN_EACH_S:
             return
         self._shown_s = now
@@ -101,7 +106,7 @@ class TerminalOutput:
 
     def over(self) -> None:
         """Remove the line of progress."""
-        self._running = ""
+        self._running = self._note = ""
         self._clear()
 
     def ask(self, question: str) -> bool:
