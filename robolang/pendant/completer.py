@@ -22,7 +22,7 @@ class PromptCompleter(Completer):
 
     def get_completions(self, document: Document, complete_event: CompleteEvent) -> Iterable[Completion]:
         """Yield the completions at the cursor."""
-        # while typing, a menu of everything would only be in the way of reading
+        # while typing, a menu of everything would only cover what is there
         if not complete_event.completion_requested and not document.current_line_before_cursor.strip():
             return
         for text, meaning, replaces in offered(document.text_before_cursor, self._knowing(), self._commands):

@@ -14,7 +14,7 @@ from robolang.analysis.symbol_table import SymbolKind
 from robolang.pendant.command import Command, Commands, Offer
 from robolang.pendant.known import Entry, Known, natural
 from robolang.pendant.reading import CommandLine, read
-from robolang.syntax.completion import completions
+from robolang.syntax.completion import Completion, completions
 from robolang.syntax.keywords import COMPONENTS6, INSTRUCTIONS, KEYWORDS, MOTIONS
 from robolang.syntax.line_reader import line_reader
 from robolang.syntax.parser import MAX_LINE
@@ -26,8 +26,8 @@ _WORD = re.compile(r"\*?[A-Za-z_]?\w*\$?\Z")
 _SIGNAL = re.compile(r"(?<!\w)(IN|OUT)\s*\(\s*(\d*)\Z", re.IGNORECASE)
 _COMPONENT = re.compile(r"(?<!\w)[A-Za-z_]\w*\.([A-Za-z]*)\Z")
 _JUMP = re.compile(r"(?<!\w)(?:GOTO|GOSUB)\s*\Z", re.IGNORECASE)
-_NUMBERED = re.compile(r"[ \t]*[0-9]+[ \t]+")
-_LABELLED = re.compile(r"[ \t]*\*[ \t]*\w+[ \t]+")
+_NUMBERED = re.compile(r"\A[ \t]*[0-9]+[ \t]+")
+_LABELLED = re.compile(r"\A[ \t]*\*[ \t]*\w+[ \t]+")
 _QUOTED = re.compile(r'"[^"]*"')
 _HIDDEN = re.compile(r"\"[^\"]*\Z|'|(?<!\w)REM(?!\w)", re.IGNORECASE)
 """Where nothing is offered: in a text that is not closed, and in a comment."""
@@ -42,6 +42,7 @@ _AFTER = {
     "NEXT": (SymbolKind.VARIABLE,),
 }
 """What a name stands for in a statement, by the word that decides it; anywhere else it has a value."""
+_POSES = MOTIONS | {"TOOL", "FRAME"}
 _OPERATORS = frozenset({"AND", "OR", "XOR", "NOT", "MOD"})
 _TARGETS = (SymbolKind.LABEL, SymbolKind.LINE)
 _OFFERED = {
@@ -98,50 +99,54 @@ def _command(line: str, commands: Commands) -> Command | None:
 
 
 def _statement(line: str, known: Known, commands: Commands | None) -> Iterator[Offered]:
-    found = _WORD.search(line)
-    prefix = found[0] if found else ""
-    # the asterisk of a product is no part of the name after it
-    if prefix.startswith("*") and not _JUMP.search(line[: len(line) - len(prefix)]):
-        prefix = prefix[1:]
-    before = line[: len(line) - len(prefix)]
-    for head in (_NUMBERED, _LABELLED):
-        if start := head.match(before):
-            before = before[start.end() :]
-            commands = None
     reader = line_reader()
     if reader is None:
         return
-    accepts = reader.following(before)
-    tokens = list(reader.tokens(before))
+    prefix = _prefix(line)
+    before = line[: len(line) - len(prefix)]
+    code = _LABELLED.sub("", _NUMBERED.sub("", before))
+    accepts = reader.following(code)
+    tokens = list(reader.tokens(code))
     yield from _beginning(prefix, chain(_names(tokens, accepts, known), _words(tokens, accepts)))
-    if not tokens and commands is not None:
+    if not tokens and code == before and commands is not None:
         yield from _beginning(prefix, (Choice(each.word, each.help) for each in commands))
         if prefix:  # an expression shows its value
             yield from _beginning(prefix, chain(_entries(known.of(SymbolKind.POINT)), _functions()))
 
 
+def _prefix(line: str) -> str:
+    """Return the beginning of a word at the end of a line; a label has its asterisk."""
+    found = _WORD.search(line)
+    prefix = found[0] if found else ""
+    # the asterisk of a product is no part of the name after it
+    return prefix if _JUMP.search(line[: len(line) - len(prefix)]) else prefix.removeprefix("*")
+
+
 def _names(tokens: list[Token], accepts: frozenset[str], known: Known) -> Iterator[Choice]:
     """Yield the names that can stand after some tokens, and the functions."""
-    if "STAR" in accepts and "NUMBER" in accepts:
+    if accepts >= {"STAR", "NUMBER"}:
         yield from _targets(known)
         return
-    if not tokens:
-        yield from (_entries(known.of(*_VALUES)) if "NAME" in accepts else ())
-        return
-    words = [token.type for token in tokens if token.type in INSTRUCTIONS]
-    word = words[-1] if words else ""
-    is_pose_next = word in MOTIONS and "FUNCTION" in accepts and not _in_option(tokens)
-    kinds = _AFTER.get(word, (SymbolKind.POINT, *_VALUES) if is_pose_next else (*_VALUES, SymbolKind.POINT))
+    word = next((token.type for token in reversed(tokens) if token.type in INSTRUCTIONS), "")
+    takes_pose = word in _POSES and not _is_in_option(tokens)
     if "NAME" in accepts:
+        kinds = _AFTER.get(word) or _ordered(takes_pose, begins=not tokens)
         yield from _entries(each for kind in kinds for each in known.of(kind))
     if "FUNCTION" in accepts:
-        yield from _functions(poses_first=is_pose_next or word in ("TOOL", "FRAME"))
+        yield from _functions(poses_first=takes_pose)
 
 
-def _in_option(tokens: list[Token]) -> bool:
+def _ordered(takes_pose: bool, *, begins: bool) -> tuple[SymbolKind, ...]:
+    """Return the kinds of name in an expression, the likeliest first; a statement that begins with one assigns."""
+    if begins:
+        return _VALUES
+    return (SymbolKind.POINT, *_VALUES) if takes_pose else (*_VALUES, SymbolKind.POINT)
+
+
+def _is_in_option(tokens: list[Token]) -> bool:
     """Return whether the last word of a move is that of an option, which takes a number."""
     last = [token.type for token in tokens if token.type in KEYWORDS][-1]
-    return last not in MOTIONS
+    return last not in _POSES
 
 
 def _targets(known: Known) -> Iterator[Choice]:
@@ -155,19 +160,26 @@ def _words(tokens: list[Token], accepts: frozenset[str]) -> Iterator[Choice]:
     """Yield the keywords that can stand after some tokens."""
     first = tokens[0].type if tokens else ""
     begins = not tokens or tokens[-1].type in ("THEN", "ELSE")
-    after = first if first in MOTIONS and not begins else ""
-    shown: set[str] = set()
-    for each in completions():
-        fits = each.after == after and (begins or after) and each.words.partition(" ")[0] in accepts
-        # LOAD and IF have two forms: the first is shown
-        if fits and each.words not in shown:
-            shown.add(each.words)
-            yield Choice(each.words, each.help)
-    shown |= {words.partition(" ")[0] for words in shown}
-    form = next((each.form for each in completions() if each.words.partition(" ")[0] == first), "")
+    # LOAD and IF have two forms: the first is shown
+    found: dict[str, Choice] = {}
+    if begins or first in MOTIONS:
+        for each in completions():
+            if each.after == ("" if begins else first) and _first(each) in accepts:
+                found.setdefault(each.words, Choice(each.words, each.help))
+    yield from found.values()
     # THEN and TO are what is needed; operators go on with the expression
-    rest = sorted((accepts & KEYWORDS) - shown, key=lambda word: (word in _OPERATORS, word))
-    yield from (Choice(word, form) for word in rest)
+    rest = (accepts & KEYWORDS) - {words.partition(" ")[0] for words in found}
+    form = _form(first)
+    yield from (Choice(word, form) for word in sorted(rest, key=lambda word: (word in _OPERATORS, word)))
+
+
+def _first(completion: Completion) -> str:
+    return completion.words.partition(" ")[0]
+
+
+def _form(word: str) -> str:
+    """Return how the statement is written that begins with a word."""
+    return next((each.form for each in completions() if _first(each) == word), "")
 
 
 def _functions(*, poses_first: bool = False) -> Iterator[Choice]:
@@ -205,17 +217,23 @@ def _operands(command: Command, line: str, known: Known, commands: Commands) -> 
 def _of_offer(offer: Offer, last: str, known: Known, commands: Commands) -> Iterable[Choice]:
     if kinds := _OFFERED.get(offer):
         return _targets(known) if last.startswith("*") else _entries(known.of(*kinds))
-    if offer is Offer.FILE:
-        return _files(last)
-    if offer is Offer.INPUT:
-        return _signals(known, "IN")
-    if offer is Offer.AXIS:
-        joints = (Choice(f"J{axis + 1}", "joint, deg") for axis in range(known.axes))
-        return chain(joints, (Choice(name, f"direction, {unit}") for name, unit in _DIRECTIONS))
-    if offer is Offer.COMMAND:
-        statements = (Choice(each.words, each.help) for each in completions() if not each.after)
-        return chain((Choice(each.word, each.help) for each in commands), statements, _functions())
+    match offer:
+        case Offer.FILE:
+            return _files(last)
+        case Offer.INPUT:
+            return _signals(known, "IN")
+        case Offer.AXIS:
+            return _axes(known)
+        case Offer.COMMAND:
+            statements = (Choice(each.words, each.help) for each in completions() if not each.after)
+            return chain((Choice(each.word, each.help) for each in commands), statements, _functions())
     return ()
+
+
+def _axes(known: Known) -> Iterator[Choice]:
+    """Yield the joints and the directions of a jog."""
+    yield from (Choice(f"J{axis + 1}", "joint, deg") for axis in range(known.axes))
+    yield from (Choice(name, f"direction, {unit}") for name, unit in _DIRECTIONS)
 
 
 def _files(typed: str) -> Iterator[Choice]:

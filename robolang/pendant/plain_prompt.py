@@ -28,23 +28,27 @@ def converse(pendant: Pendant, source: TextIO, shown: TextIO) -> int:
     """Let somebody work until the end; return the signal that ended it, 0 for ``quit``."""
     interrupts = pendant.interrupts
     assert isinstance(interrupts, Foreground)
-    text = ""
     while not pendant.ended and not interrupts.lost:
         try:
-            shown.write(". " if text else "> ")
-            shown.flush()
-            line = source.readline()
-            # Ctrl-D gives no line, a terminal that was closed neither
-            text = "quit" if not line else f"{text}{line.rstrip()}"
-            if is_open(text, pendant.commands):
-                text += "\n"
-                continue
-            pendant.do(text)
-            if not line and not pendant.ended and not source.isatty():
+            text = _read(pendant, source, shown)
+            pendant.do(text or "quit")
+            if not text and not source.isatty():
                 interrupts.lose(signal.SIGHUP)
         except Failure as failure:
             pendant.output.problem(failure.text)
         except KeyboardInterrupt:
             shown.write("\n")
-        text = ""
     return interrupts.signal
+
+
+def _read(pendant: Pendant, source: TextIO, shown: TextIO) -> str:
+    """Return a line, or the lines of a block; ``""`` at the end: Ctrl-D, or a terminal that was closed."""
+    text = ""
+    while not text or is_open(text, pendant.commands):
+        shown.write(". " if text else "> ")
+        shown.flush()
+        line = source.readline()
+        if not line:
+            return ""
+        text += line
+    return text

@@ -21,25 +21,33 @@ def explained(word: str, text: str, known: Known, commands: Commands) -> str:
     """Return what a word means in a line ``text``; ``""`` for a word that means nothing."""
     key = word.upper()
     command = commands.get(word)
-    if command is not None and text.lstrip().lower().startswith(command.word):
-        more = f"\n  {command.more}" if command.more else ""
-        return f"{command.form}\n  {command.help}{more}"
-    if name := next((entry for entry in known.entries if entry.name.upper() == key), None):
-        kind = "" if name.kind.value in name.meaning else f"{name.kind.value}: "
-        return f"{name.name}\n  {kind}{name.meaning}"
-    if function := FUNCTIONS.get(key):
-        return f"{function.form}\n  {function.help}"
-    return "\n".join(_of_statement(key, text)) or (f"{command.form}\n  {command.help}" if command else "")
+    of_command = "" if command is None else "\n  ".join(filter(None, (command.form, command.help, command.more)))
+    if text.lstrip().lower().startswith(word.lower()) and of_command:
+        return of_command
+    return _of_name(key, known) or _of_function(key) or _of_statement(key, text) or of_command
 
 
-def _of_statement(key: str, text: str) -> list[str]:
+def _of_name(key: str, known: Known) -> str:
+    name = next((entry for entry in known.entries if entry.name.upper() == key), None)
+    if name is None:
+        return ""
+    kind = "" if name.kind.value in name.meaning else f"{name.kind.value}: "
+    return f"{name.name}\n  {kind}{name.meaning}"
+
+
+def _of_function(key: str) -> str:
+    function = FUNCTIONS.get(key)
+    return "" if function is None else f"{function.form}\n  {function.help}"
+
+
+def _of_statement(key: str, text: str) -> str:
     """Return forms and meanings of the statements that a keyword begins; of the option, where it is one of a move."""
     first = next(iter(_WORDS.findall(text)), "").upper()
-    found = [each for each in completions() if key in each.words.split()]
     after = first if first in MOTIONS and key != first else ""
-    found = [each for each in found if each.after == after] or [each for each in found if not each.after]
-    forms = dict.fromkeys(f"{each.form}\n  {each.help}" for each in found)
-    if not forms and first:
-        # THEN, TO and the like are explained by their statement
-        forms = dict.fromkeys(f"{each.form}\n  {each.help}" for each in completions() if each.words == first)
-    return list(forms)
+    # THEN, TO and the like are explained by their statement
+    return _forms(key, after) or _forms(key, "") or _forms(first, "")
+
+
+def _forms(word: str, after: str) -> str:
+    found = (each for each in completions() if word in each.words.split() and each.after == after)
+    return "\n".join(dict.fromkeys(f"{each.form}\n  {each.help}" for each in found))
