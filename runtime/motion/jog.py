@@ -125,6 +125,9 @@ class JogPlanner:
         self._refuse(jog, course)
         timed = [self._timing.timed(piece, limits) for piece in course.pieces]
         rows = np.concatenate([each.q[1:] for each in timed])
+        # a joint that just touches its limit is kept there: between its samples a curve swings by 1e-6 rad
+        lower, upper = np.minimum(self._spec.lower, q_start), np.maximum(self._spec.upper, q_start)
+        rows = np.clip(rows, lower, upper)
         slow = min((each.slow for each in timed if each.slow is not None), key=lambda each: each.share, default=None)
         goes = math.copysign(course.goes, jog.amount)
         return JogPlan(rows=frozen(rows), goes=goes, end=course.end, slow=slow, period_s=self._period_s)
