@@ -7,7 +7,7 @@ LOAD in force may be wrong; collisions are found all the same.
 
     plan = weigh_plan(controller)
     begun, controller.weighing = controller.recorder.tick, True
-    executor.play(plan.rows, ...)                  to its end
+    executor.play(plan.rows, None, "weigh")        to its end
     result = weigh_result(plan, controller.recorder.recent(controller.recorder.tick - begun), physics=...)
 """
 
