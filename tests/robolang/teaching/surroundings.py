@@ -38,3 +38,13 @@ def surroundings(*points: Point, robot: str = "puma560", X_flange_tool=None) -> 
 def torch(around: Surroundings) -> Surroundings:
     """The same with the tool ``torch`` in use."""
     return replace(around, X_flange_tool=around.cell.tools["torch"])
+
+
+def without_closed_form(around: Surroundings) -> Surroundings:
+    """The same with an arm whose J4 is out of line, so that only Newton's method solves its poses."""
+    spec = around.cell.robot
+    placement = np.array(spec.axes[3].placement)
+    c, s = np.cos(0.2), np.sin(0.2)
+    placement[:3, :3] = placement[:3, :3] @ np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
+    bent = replace(spec, opw=None, axes=(*spec.axes[:3], replace(spec.axes[3], placement=placement), *spec.axes[4:]))
+    return replace(around, cell=replace(around.cell, robot=bent), kinematics=Kinematics(bent))

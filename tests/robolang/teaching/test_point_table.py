@@ -1,21 +1,23 @@
 """The table of points: what the planner would do with each of them, and where the program uses it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from robolang.analysis.analysis import Analysis
 from robolang.core.source import Source
 from robolang.execution import lowering
-from robolang.project.points import Point
+from robolang.project.points import Point, PointStore
 from robolang.teaching.point_table import point_table, uses
 from robolang.teaching.posture import posture
-from robolang.teaching.postures import reached_point, tool_place
+from robolang.teaching.postures import reached_point, taught_place, tool_place
 from robolang.teaching.taught import taught_point
 from runtime.core.faults import Fault
 from runtime.core.units import DEG
 from tests.campaign import size
 from tests.robolang.helpers import cell_with
-from tests.robolang.teaching.surroundings import surroundings, torch
+from tests.robolang.teaching.surroundings import surroundings, torch, without_closed_form
 
 Q = np.array([20.0, 60.0, 10.0, 30.0, 40.0, 50.0]) * DEG
 PROGRAM = """10 MOVE P1
@@ -117,6 +119,22 @@ def test_every_row_is_that_of_a_move(robot):
             assert (row.fault.code, row.fault.message) == (fault.code, fault.message)
         else:
             assert row.joints == pytest.approx(expected / DEG, abs=1e-9)
+
+
+def test_an_arm_without_a_closed_form():
+    around = without_closed_form(surroundings())
+    spec = around.cell.robot
+    rows = np.random.default_rng(0).uniform(spec.lower, spec.upper, (6, spec.n))
+    points = [taught_point(f"P{index}", "pose", q, around).point for index, q in enumerate(rows)]
+    points.append(points[0].replaced(name="FAR", pose=(9000.0, *[0.0] * 5)))
+    store = PointStore(path="", points={point.name: point for point in points})
+    *found, far = point_table(replace(around, points=store), around.q_last)
+    for row in found:
+        assert row.fault is None
+        q = np.array(row.joints) * DEG
+        assert tool_place(q, around) == pytest.approx(taught_place(row.point, around), abs=1e-8)
+        assert row.posture.limit.margin >= 0.0
+    assert far.fault.code == "RBL410"
 
 
 def test_no_points():

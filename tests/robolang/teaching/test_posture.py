@@ -1,7 +1,5 @@
 """What is near a posture: the end of a range, and a singular posture, each by a measure of its own."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -9,6 +7,7 @@ from robolang.teaching.posture import posture, postures
 from runtime.core.units import DEG
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
+from tests.robolang.teaching.surroundings import surroundings, without_closed_form
 
 KINEMATICS = Kinematics(load_builtin("puma560"))
 Q = np.array([20.0, 60.0, 10.0, 30.0, 40.0, 50.0]) * DEG
@@ -84,17 +83,8 @@ def test_the_wrist_centre_over_axis_1():
 
 
 def test_an_arm_without_a_closed_form_has_no_singular_postures():
-    spec = load_builtin("puma560")
-    bent = replace(spec, opw=None, axes=(*spec.axes[:3], skewed(spec.axes[3]), *spec.axes[4:]))
-    kinematics = Kinematics(bent)
+    kinematics = without_closed_form(surroundings()).kinematics
     assert kinematics.opw is None
     found = posture(Q, kinematics)
     assert found.singular is None
     assert found.limit == posture(Q, KINEMATICS).limit
-
-
-def skewed(axis):
-    placement = np.array(axis.placement)
-    c, s = np.cos(0.2), np.sin(0.2)
-    placement[:3, :3] = placement[:3, :3] @ np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
-    return replace(axis, placement=placement)

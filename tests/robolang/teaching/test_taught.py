@@ -17,7 +17,7 @@ from runtime.core.frames import inverse
 from runtime.core.units import DEG
 from runtime.robot.kinematics.singularity import singularities
 from tests.campaign import size
-from tests.robolang.teaching.surroundings import surroundings, torch
+from tests.robolang.teaching.surroundings import surroundings, torch, without_closed_form
 
 Q = np.array([20.0, 60.0, 10.0, 30.0, 40.0, -200.0]) * DEG
 
@@ -145,6 +145,18 @@ def test_a_pose_that_is_read_back_from_here_only_is_noted():
     found = taught_point("P7", "pose", q, around)
     assert reached_point(found.point, around, q) == pytest.approx(q, abs=1e-3 * DEG)
     assert len(found.notes) == 1
+
+
+def test_an_arm_without_a_closed_form_keeps_its_posture_or_is_noted():
+    around = without_closed_form(surroundings())
+    spec = around.cell.robot
+    for q in np.random.default_rng(0).uniform(spec.lower, spec.upper, (4, spec.n)):
+        found = taught_point("P7", "pose", q, around)
+        assert found.point.configuration == ()
+        back = reached_point(found.point, around, around.cell.home)
+        assert bool(found.notes) == bool(np.abs(back - q).max() > 0.1 * DEG)
+        # the tool is where it was in any case
+        assert tool_place(back, around) == pytest.approx(tool_place(q, around), abs=1e-5)
 
 
 @pytest.mark.parametrize("name", ["7P", "MOVE", "", "P 1", "Pä", "P1\n"])
