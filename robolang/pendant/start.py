@@ -27,7 +27,7 @@ def start(
     ``program`` None: a new program without a name. ``Fault`` and ``FileFault`` for files that cannot be used.
     """
     # only the texts are read here: what is wrong in them is said at the first line that needs them
-    desk = Desk(load_documents(program, choice.cell))
+    desk = Desk(load_documents(program, choice.cell, choice.robot))
     somebody_types = sys.stdin.isatty()
     pendant = Pendant(
         desk,

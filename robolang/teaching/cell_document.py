@@ -8,10 +8,10 @@ damaged is left alone: ``FileFault`` RBL6xx at the place.
 from collections.abc import Sequence
 from dataclasses import replace
 
-from robolang.project.builtin import cell_text, points_text
+from robolang.project.builtin import cell_text
 from robolang.teaching.documents import Documents
 from robolang.teaching.names import FRAMES, LOADS, TOOLS, check_free
-from robolang.teaching.points_document import pose_text, taught
+from robolang.teaching.points_document import pose_text, taught, text_of
 from robolang.teaching.toml_text import (
     Values,
     check_form,
@@ -104,7 +104,7 @@ def _with(documents: Documents, text: str) -> Documents:
     points = documents.points
     # outside the built-in cell a program without a points file has no points
     if documents.cell is None and points is None:
-        points = points_text()
+        points = text_of(documents)
     new = replace(documents, cell=text, points=points)
     cell_of(new)
     return new

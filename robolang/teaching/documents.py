@@ -4,12 +4,13 @@ The texts need not be on the disk: ``robolang.project.project.load_project`` tak
 if they were saved. ``desk`` keeps the documents of a session, with undo and saving. Imports no numerics.
 """
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
 from robolang.analysis.analysis import Analysis
 from robolang.core.source import Source, read_program
-from robolang.project.discovery import Texts, Typed, cell_beside, own_cell, points_file
+from robolang.project.discovery import Texts, Typed, cell_beside, named_arm, own_cell, points_file
 from robolang.project.points import points_source
 from runtime.core.tomlfile import read_source
 
@@ -23,6 +24,7 @@ class Documents:
 
     ``path`` is that of the program. ``points`` None: no points file; ``cell`` None: no cell file, so the built-in cell.
     ``cell_path``: where the cell file stands, or would. ``named``: whether the program has a name of its own.
+    ``robot``: the name of the robot in place of the cell's, for which a new points file is; empty: that of the cell.
     """
 
     path: Path
@@ -31,6 +33,7 @@ class Documents:
     cell: str | None
     cell_path: Path
     named: bool = True
+    robot: str = ""
 
     @property
     def points_path(self) -> Path:
@@ -60,17 +63,18 @@ class Documents:
         )
 
 
-def load_documents(program: Path | None = None, cell: Path | None = None) -> Documents:
+def load_documents(program: Path | None = None, cell: Path | None = None, robot: str | None = None) -> Documents:
     """Read a program with its points file and its cell file; ``program`` None: a new one, in the working folder.
 
-    ``cell`` is a cell file in place of the one beside the program. Raises ``FileFault`` for what cannot be read:
-    RBL701, RBL702, RBL104, RBL106, RBL311, RBL600. What is wrong inside a text is found when it is used or edited.
+    ``cell`` is a cell file in place of the one beside the program, ``robot`` a built-in robot or a robot file in place
+    of the cell's. Raises ``FileFault`` for what cannot be read: RBL701, RBL702, RBL104, RBL106, RBL311, RBL600; for the
+    robot ``Fault`` RBL708 or RBL6xx. What is wrong inside a text is found when it is used or edited.
     """
     if program is None:
         path = Path(UNNAMED)
-        # files of that name belong to another program
+        # files of that name belong to another program; the cell is that of the folder
         beside = path.with_name("cell.toml")
-        found, text, points = cell or (beside if cell_beside(path) == beside else None), "", None
+        found, text, points = cell or (beside if os.path.lexists(beside) else None), "", None
     else:
         # the program first: no other file is beside one that cannot exist
         path, text = program, read_program(program).text
@@ -82,6 +86,7 @@ def load_documents(program: Path | None = None, cell: Path | None = None) -> Doc
         cell=None if found is None else read_source(found).text,
         cell_path=found or own_cell(path),
         named=program is not None,
+        robot="" if robot is None else named_arm(robot).name,
     )
 
 

@@ -95,7 +95,10 @@ def merged(read: str, theirs: str, ours: str, kind: Kind) -> str | None:
         base, other, own = (_tables(text, kind.groups) for text in (read, theirs, ours))
         changed = [key for key in dict.fromkeys((*base, *own)) if base.get(key) != own.get(key)]
         changed = [key for key in changed if own.get(key) != other.get(key)]
-        if any(base.get(key) != other.get(key) for key in changed) or _rest(read, kind) != _rest(ours, kind):
+        if any(base.get(key) != other.get(key) for key in changed) or _rest(ours, kind) not in (
+            _rest(read, kind),
+            _rest(theirs, kind),
+        ):
             return None
         text = _made(theirs, changed, other, own)
         kind.check(text)

@@ -43,7 +43,7 @@ def check_not_taken(there: object | None, name: str) -> None:
 
 def _check_program(documents: Documents, name: str) -> None:
     for symbol in Analysis(source=documents.source).symbols.symbols:
-        if symbol.kind in _VALUES and symbol.definitions and symbol.name.upper() == name.upper():
+        if symbol.kind in _VALUES and symbol.name.upper() == name.upper():
             line = documents.source.place(symbol.definitions[0].start).line
             message = f"{name} is a {symbol.kind.value} of the program, in line {line} of the text, which would hide it"
             raise Fault("RBL718", message, "Choose another name.")

@@ -83,6 +83,7 @@ def _point(documents: Documents, text: str, name: str) -> Point:
 
 def text_of(documents: Documents, robot: str = "") -> str:
     """Return the text of the points file, or of the one that is written with the first change."""
+    robot = robot or documents.robot
     if documents.points is not None:
         check_form(_source(documents, documents.points), GROUP, "RBL303")
         return documents.points

@@ -171,6 +171,7 @@ def _encoded(desk: Desk) -> bytes:
         # the next prompt may start in another folder
         "cell_path": os.path.relpath(documents.cell_path, documents.path.parent),
         "named": documents.named,
+        "robot": documents.robot,
         "when": datetime.now(UTC).isoformat(timespec="seconds"),
         "texts": {key: documents.texts[path] for key, path in names.items()},
         "read": {key: desk.read.get(path) for key, path in names.items()},
@@ -217,6 +218,7 @@ def _pending(file: Path, program: Path, content: dict[str, Any]) -> Pending:
         cell=_text(texts["cell"]),
         cell_path=program.parent / content["cell_path"],
         named=content["named"] is True,
+        robot=_text(content["robot"]) or "",
     )
     paths = {"points": documents.points_path, "cell": documents.cell_path, "program": documents.path}
     known = {path: text for key, path in paths.items() if (text := _text(read[key])) is not None}

@@ -205,9 +205,7 @@ def _blocks(text: str) -> Iterator[_Block]:
         if last + comments + 1 < following or following == len(rows):
             last += comments
         above = index - _comments(rows, range(index - 1, -1, -1))
-        # comments at the top of a file are about the file
-        start = rows[above].start if above else rows[index].start
-        yield _Block(rows[index].start, rows[last].end, rows[index].path, start)
+        yield _Block(rows[index].start, rows[last].end, rows[index].path, rows[above].start)
 
 
 def _comments(rows: Sequence[_Row], places: range) -> int:

@@ -95,7 +95,7 @@ def _open(pendant: "Pendant", rest: str) -> None:
     # the question comes before the file is read: after a no nothing has happened
     if pendant.desk.unsaved and not pendant.output.ask("Unsaved changes: open another program without saving?"):
         raise failure("RBL805", f"these files have unsaved changes: {', '.join(map(str, pendant.desk.unsaved))}")
-    pendant.open(load_documents(Path(rest), pendant.choice.cell))
+    pendant.open(load_documents(Path(rest), pendant.choice.cell, pendant.choice.robot))
     pendant.output.line(f"{rest}: the cell is in its start state, the program before its first statement")
 
 

@@ -57,7 +57,7 @@ def test_a_typed_file_hides_the_one_on_the_disk(program):
 
 def test_an_error_in_a_typed_file_is_at_its_place(program):
     (program.parent / "cell.toml").write_text(CELL.replace("mass_kg = 1.5", "mass_kg = -1.5"))
-    (program.parent / "P.points.toml").write_text("schema = 1\n[points.P1]\npose = [1, 2, 3, 4, 5]\n")
+    (program.parent / "P.points.toml").write_text("schema = 1\n[points.P1]\njoints = [1, 2, 3, 4, 5]\n")
     found = desk(program)
     (program.parent / "cell.toml").write_text("")
     (program.parent / "P.points.toml").write_text("")
@@ -102,6 +102,7 @@ def test_the_analysis_follows_every_change(program):
 
 def test_a_program_without_a_name_is_saved_under_one(program):
     (program.parent / "unnamed.points.toml").write_text("another program's")
+    (program.parent / "unnamed.cell.toml").write_text("another program's")
     one = Desk(load_documents())
     assert (one.documents.named, one.documents.points, one.unsaved) == (False, None, ())
     one.change(put_line(one.documents, "10 move p1")[0], "10")
@@ -114,6 +115,14 @@ def test_a_program_without_a_name_is_saved_under_one(program):
     assert load_points(program.parent / "Q.points.toml").names >= {"P1", "P9"}
     assert one.undo() == "teach P9"
     assert one.documents.path.name == "Q.rbl"
+
+
+def test_a_program_without_a_name_runs_in_the_cell_of_its_folder(program):
+    for name in ("unnamed.cell.toml", "cell.toml"):
+        (program.parent / name).write_text(CELL + f"# {name}\n")
+    one = Desk(load_documents())
+    assert one.documents.cell == CELL + "# cell.toml\n"
+    assert one.documents.cell_path == Path("cell.toml")
 
 
 def test_a_point_is_renamed_in_all_files(program):

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolang.project.points import Point, load_points, read_points
+from robolang.teaching.cell_document import set_frame
 from robolang.teaching.desk import Desk
 from robolang.teaching.documents import Documents, load_documents
 from robolang.teaching.points_document import copy_point, remove_point, set_point, taught
@@ -39,6 +40,17 @@ def test_a_new_point_comes_after_the_last_one():
     new = set_point(documents(POINTS), Point(name="P9", joints=(1 + 1e-10, 2, 3, 0, 0, 0), configuration=("LEFTY",)))
     added = '\n[points.P9]\njoints = [1, 2, 3, 0, 0, 0]\nconfiguration = "LEFTY"\n'
     assert new.points == POINTS.replace("0, 45, 0]\n", f"0, 45, 0]\n{added}")
+
+
+def test_a_new_point_comes_after_the_comments_of_the_last_one_and_after_a_last_line_without_an_end():
+    values = "pose = [450, -150, 840, 180, 0, 180]\n"
+    text = f"schema = 1\n[points.P1]\n{values}# below\n# it\n\n# The end.\n"
+    new = set_point(documents(text), Point(name="P9", pose=POSE)).points
+    assert new == text.replace("# it\n", f"# it\n\n[points.P9]\n{values}")
+    assert remove_point(documents(new), "P9").points == text
+    assert (
+        set_point(documents("schema = 1"), Point(name="P9", pose=POSE)).points == f"schema = 1\n\n[points.P9]\n{values}"
+    )
 
 
 def test_a_removed_point_takes_the_comment_right_above_it_along():
@@ -84,6 +96,14 @@ def test_the_built_in_points_are_written_with_the_first_change():
     assert taught(new).points == {**builtin.points, "P9": Point(name="P9", pose=POSE)}
     assert taught(remove_point(documents(None, cell=None), "P3")).names == builtin.names - {"P3"}
     assert taught(set_point(documents(None, cell=None), Point(name="P9", pose=POSE), robot="scara")).robot == "scara"
+
+
+def test_what_is_written_for_another_robot_can_be_used_on_it(tmp_path):
+    (tmp_path / "P.rbl").write_text("10 LOAD (0, 0, 60), 0.8\n20 DELAY 1\n")
+    found = load_documents(tmp_path / "P.rbl", None, "irb2400")
+    for new in (remove_point(found, "P1"), set_frame(found, "pallet", POSE)):
+        assert taught(new).robot == "irb2400"
+    refused("RBL708", load_documents, tmp_path / "P.rbl", None, "nobody")
 
 
 def test_the_first_point_in_a_cell_of_its_own_makes_a_file():

@@ -118,3 +118,4 @@ def test_lines_between_two_texts_are_the_same_lines(old, new):
         if (there := lines.of(index)) is not None and index not in range(lines.start, lines.start + lines.removed):
             assert new[there] == line
     assert len(new) == len(old) + lines.added - lines.removed
+    assert min(lines.start, lines.added, lines.removed) >= 0

@@ -1,3 +1,4 @@
+import fcntl
 import hashlib
 import json
 import os
@@ -224,6 +225,20 @@ def test_a_kill_while_changes_are_kept_leaves_the_old_ones_or_the_new(program):
         pending = pending_recovery(program)
         assert ("A2" in pending.documents.points) == found
         discard(pending.file)
+
+
+def test_a_lock_file_that_is_removed_before_it_is_locked_is_made_anew(tmp_path, monkeypatch):
+    path, real = tmp_path / "lock", fcntl.flock
+
+    def flock(handle, how):
+        monkeypatch.undo()
+        path.unlink()
+        real(handle, how)
+
+    monkeypatch.setattr(fcntl, "flock", flock)
+    held = claim(path)
+    assert claim(path) is None
+    held.release()
 
 
 def test_a_name_is_held_by_one_process_at_a_time(tmp_path):
