@@ -4,7 +4,7 @@ A statement ends when its effect has: a MOVE when the command has come to rest a
 its dwell, a LOAD at once. ``goes_on`` is called between two cycles, so all that it waits for is plain data here.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -33,6 +33,7 @@ from robolang.interpreter.effects import (
     Show,
 )
 from robolang.interpreter.events import Failed
+from robolang.project.project import Project
 from robolang.syntax.ast import Wait
 from robolang.syntax.unparse import describe
 from runtime.cell.seam_sensor import SeamSensor
@@ -422,6 +423,34 @@ class ControllerTarget:
         """Note STOP or PAUSE in the record."""
         stops = effect.word == "STOP"
         self._start(effect).notes.append("the program stops here" if stops else "nobody is there to wait for: goes on")
+
+    # --- an edited program -------------------------------------------------------------------------------------------
+
+    def adopt(self, project: Project) -> None:
+        """Go on with an edited project of the same robot."""
+        self._project = self._record.project = project
+
+    def rename(self, place: Callable[[Origin], Origin]) -> None:
+        """Name the statements of record, alarms, warnings and moves by their places in an edited text."""
+        record = self._record
+        # replaced and not changed: snapshots from before the edit share them
+        record.statements[:] = [replace(_copied(run), origin=place(run.origin)) for run in record.statements]
+        self._statements = Tape(record.statements, _copied)
+        record.acknowledged[:] = [
+            alarm.replaced(statement=place(alarm.statement)) if isinstance(alarm.statement, Origin) else alarm
+            for alarm in record.acknowledged
+        ]
+        self._warned = frozenset((code, place(origin)) for code, origin in self._warned)
+        record.controller.rename(lambda line: place(line) if isinstance(line, Origin) else line)
+
+    def renamed(self, left: Left, place: Callable[[Origin], Origin]) -> Left:
+        """Return what was set aside, its statements named anew."""
+        rest = tuple(replace(_copied(run), origin=place(run.origin)) for run in left.rest)
+        motion = left.motion
+        if motion is not None:
+            names = [place(line) if isinstance(line, Origin) else line for line in motion.statements]
+            motion = replace(motion, statements=tuple(names))
+        return replace(left, motion=motion, rest=rest)
 
     # --- snapshots ---------------------------------------------------------------------------------------------------
 

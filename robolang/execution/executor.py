@@ -9,15 +9,17 @@ from typing import Any
 
 from robolang.core.source import Source, Span
 from robolang.evaluation.evaluator import Evaluator
-from robolang.execution import regain, run_bounds
+from robolang.execution import adopting, regain, run_bounds
+from robolang.execution.adopting import Edit
 from robolang.execution.engine import Alter, Engine, StopsBefore
 from robolang.execution.observer import Observer
 from robolang.execution.progress import Phase, PlayEnded, Progress
 from robolang.execution.regain import DEFAULT_LIMITS, Displaced, RegainLimits
-from robolang.execution.status import State, Status
+from robolang.execution.status import ENDED, State, Status
 from robolang.execution.target import Target
 from robolang.execution.trail import Trail
 from robolang.execution.world import RobotWorld, WorldSnapshot
+from robolang.interpreter.adopting import Lines
 from robolang.interpreter.branch_oracle import Decisions
 from robolang.interpreter.effects import Origin
 from robolang.interpreter.fed_line import fed_line
@@ -373,6 +375,36 @@ class Executor:
         self._act(Phase.READY)
         now.failed = None
         self.stand()
+
+    # --- an edited program -------------------------------------------------------------------------------------------
+
+    def adopt(self, project: Project, lines: Lines) -> None:
+        """Go on with an edited program, or with other taught points, where the program stands.
+
+        ``lines`` says where the lines of the old program went. The program stands before the same statement, in the
+        same calls, loops and handlers; a statement at which it stands may change or go. What is carried out goes on as
+        it was planned. Points, frames and tools hold from the next statement on. ``Fault`` RBL543 where a line that the
+        program is inside of is gone; ``RuntimeError`` while the program runs, ``ValueError`` for a project with errors
+        or of another robot. Nothing has changed then.
+        """
+        if self._state not in ENDED and not self._engine.now.resting:
+            raise RuntimeError("a statement is being carried out; pause the program first")
+        if not project.ok or project.cell.robot.name != self.project.cell.robot.name:
+            raise ValueError("the program has errors, or is of another robot")
+        edit = Edit(old=self.project, new=project, lines=lines)
+        adoption = adopting.prepared(self._engine, edit)  # all that may be refused comes before the first change
+        self._leaves("edit")
+        adopting.adopt(self._engine, adoption)
+        if self._engine.trail is not None:
+            self._engine.trail.adopts(edit)
+
+    def move_to(self, edit: Edit) -> None:
+        """Move the state to the edited program, as ``adopt`` does, unseen by a trail; ``Fault`` RBL543."""
+        adopting.adopt(self._engine, adopting.prepared(self._engine, edit))
+
+    def become(self, project: Project) -> None:
+        """Take a project whose program has not begun, so that a snapshot of it can be restored."""
+        adopting.become(self._engine, project)
 
     # --- snapshots ---------------------------------------------------------------------------------------------------
 

@@ -5,7 +5,7 @@ method of its kind. An effect that takes time is started by its method; the exec
 effect ``goes_on``, and calls ``finish``. What a target cannot do is a ``Fault`` of the method that was called.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -26,6 +26,7 @@ from robolang.interpreter.effects import (
     Show,
 )
 from robolang.interpreter.events import Failed
+from robolang.project.project import Project
 from runtime.core.faults import Alarm, Fault
 from runtime.core.frames import Array
 from runtime.motion.cartesian_planner import MovePlan
@@ -165,6 +166,15 @@ class Target(Effects, Protocol):
     def refuse(self, effect: Effect, fault: Fault) -> None:
         """Take note of an effect that is refused: the program answers (ON ERROR), unless this raises."""
 
+    def adopt(self, project: Project) -> None:
+        """Go on with an edited project of the same robot."""
+
+    def rename(self, place: Callable[[Origin], Origin]) -> None:
+        """Name the statements of the record, and those that run, by their places in an edited text."""
+
+    def renamed(self, left: Any, place: Callable[[Origin], Origin]) -> Any:
+        """Return what was set aside, its statements named anew."""
+
     def snapshot(self) -> Any:
         """Return all on which the future depends, as a value that nothing changes."""
 
@@ -218,6 +228,17 @@ class Untimed:
 
     def measured(self, key: str, index: int) -> None:
         """Return None: nothing is measured."""
+
+    def adopt(self, project: Project) -> None:
+        """Refuse: what has been planned would stay."""
+        raise RuntimeError("a program is edited on a controller only")
+
+    def rename(self, place: Callable[[Origin], Origin]) -> None:
+        """Do nothing: no project is adopted."""
+
+    def renamed(self, left: Any, place: Callable[[Origin], Origin]) -> Any:
+        """Return what was set aside."""
+        return left
 
     def stop(self) -> None:
         """Do nothing: the executor takes no further effect."""

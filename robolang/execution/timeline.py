@@ -11,6 +11,7 @@ Places before the one to which the program goes back stay, and those after it ar
 
 from dataclasses import dataclass
 
+from robolang.execution.adopting import Edit
 from robolang.execution.executor import Executor, ExecutorSnapshot
 from robolang.execution.status import ENDED
 from robolang.interpreter.effects import Origin
@@ -27,24 +28,30 @@ MOST_SNAPSHOTS = 600
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mark:
-    """A place: ``label`` of what was done from there, "" for the program itself, and the statement that was due."""
+    """A place: ``label`` of what was done from there, "" for the program itself, and the statement that was due.
+
+    ``skipped``: later places that were to be reached, and lie inside of lines which an edit has removed since.
+    """
 
     label: str
     origin: Origin | None
     time_us: int
     snapshot: ExecutorSnapshot
+    skipped: int = 0
 
 
 @dataclass(slots=True, kw_only=True)
 class _Place:
     """A place of the course; ``begins``: a statement is due there, and counts where cycles are run once more.
 
-    ``repeats``: the place before it leads here by itself. ``snapshot`` None: it is given up, or was never taken.
+    ``repeats``: the place before it leads here by itself. ``edition``: how many edits the program had then.
+    ``snapshot`` None: it is given up, or was never taken.
     """
 
     time_us: int
     begins: bool
     repeats: bool
+    edition: int
     label: str = ""
     snapshot: ExecutorSnapshot | None = None
 
@@ -58,6 +65,7 @@ class Timeline:
         self._snapshots = 0
         self._last = 0  # index of the last place with a snapshot
         self._repeats = False  # the next place follows from the last one by itself
+        self._edits: list[Edit] = []
         self._here = False  # the program stands at the last place
         self._to_pass = 0  # places that are still to be passed while cycles are run once more
         executor.follow(self)
@@ -80,6 +88,7 @@ class Timeline:
                     time_us=self._executor.time_us,
                     begins=False,
                     repeats=False,
+                    edition=len(self._edits),
                     label=label,
                     snapshot=self._executor.snapshot(),
                 )
@@ -94,18 +103,44 @@ class Timeline:
         """
         if not 1 <= steps <= len(self):
             raise Fault("RBL545", f"{steps} places back are more than the {len(self)} that are known")
-        index = len(self._places) - steps - self._here
+        wanted = index = len(self._places) - steps - self._here
+        project, present = self._executor.project, self._executor.snapshot()
+        while (start := self._reached(index)) is None:
+            index -= 1
+            if index < 0:
+                self._executor.become(project)
+                self._executor.restore(present)
+                raise Fault("RBL545", "each of these places lies inside of lines that an edit has removed")
         place = self._places[index]
-        start = index
-        while self._places[start].snapshot is None:
-            start -= 1
-        self._restore(start, index)
         # what came later did not happen: another course begins here
         del self._places[index + 1 :]
-        self._last, self._here, self._repeats = start, True, True
+        self._last, self._here, self._repeats = start, True, place.edition == len(self._edits)
         self._snapshots = sum(each.snapshot is not None for each in self._places)
-        snapshot = place.snapshot if place.snapshot is not None and not place.begins else self._executor.snapshot()
-        return Mark(label=place.label, origin=self._executor.origin, time_us=place.time_us, snapshot=snapshot)
+        return Mark(
+            label=place.label,
+            origin=self._executor.origin,
+            time_us=place.time_us,
+            snapshot=self._executor.snapshot(),
+            skipped=wanted - index,
+        )
+
+    def _reached(self, index: int) -> int | None:
+        """Bring the program to a place and return which snapshot led there; None where an edit has removed it."""
+        executor, place, start = self._executor, self._places[index], index
+        while self._places[start].snapshot is None:
+            start -= 1
+        later = self._edits[place.edition :]
+        # the cycles of a place are those of the program as it was then
+        project = later[0].old if later else self._edits[-1].new if self._edits else executor.project
+        if executor.project is not project:
+            executor.become(project)
+        self._restore(start, index)
+        try:
+            for edit in later:
+                executor.move_to(edit)
+        except Fault:
+            return None
+        return start
 
     def _restore(self, start: int, index: int) -> None:
         """Bring the program to a place by the snapshot of one before it, or of its own."""
@@ -137,7 +172,7 @@ class Timeline:
                 self._executor.stand()
             return
         time_us, places = self._executor.time_us, self._places
-        place = _Place(time_us=time_us, begins=True, repeats=self._repeats)
+        place = _Place(time_us=time_us, begins=True, repeats=self._repeats, edition=len(self._edits))
         # where time has passed, cycles would have to be run; where it has not, statements are cheap to repeat
         if not self._repeats or places[self._last].time_us != time_us or len(places) - self._last >= STRIDE:
             place.snapshot = self._executor.snapshot()
@@ -148,6 +183,11 @@ class Timeline:
         """See that a program which stands goes on, or is acted on."""
         if not self._to_pass:
             self.mark(label)
+
+    def adopts(self, edit: Edit) -> None:
+        """See that the program is another one from here on."""
+        self._edits.append(edit)
+        self._repeats = False
 
     def disturbed(self) -> None:
         """See that what follows does not repeat by itself."""

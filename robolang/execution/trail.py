@@ -1,6 +1,6 @@
 """What keeps the course of a program, so that it can be taken back: a Protocol, which ``timeline.Timeline`` fills."""
 
-from typing import Protocol
+from typing import Any, Protocol
 
 from robolang.interpreter.events import LineBegun
 
@@ -13,6 +13,9 @@ class Trail(Protocol):
 
     def leaves(self, label: str) -> None:
         """See that a program which stands goes on or is acted on; ``label`` names what is done, "" for ``resume``."""
+
+    def adopts(self, edit: Any) -> None:
+        """See that the program is another one from here on: an ``adopting.Edit``."""
 
     def disturbed(self) -> None:
         """See that the program is acted on while it runs: what follows does not repeat by itself."""

@@ -53,6 +53,10 @@ class RobotWorld:
             X_flange_tool=self.X_flange_tool,
         )
 
+    def adopt(self, points: PointStore, cell: CellSpec) -> None:
+        """Read other taught points, frames and tools from now on; the tool in use stays."""
+        self._points, self._cell = points, cell
+
     def at(self, q: Array) -> "RobotWorld":
         """Return this world with the arm at joint angles q (n,) rad; it shares the signals."""
         other = copy(self)

@@ -14,6 +14,7 @@ Bounds are counts, not wall clock: ``run_limits``, ``scope`` for memory, ``evalu
 """
 
 from collections.abc import Callable, Collection
+from dataclasses import replace
 from typing import TypeAlias
 
 from robolang.evaluation.evaluator import Evaluator, World
@@ -236,19 +237,26 @@ class Machine:
             place = run.suspended[0]
             run.scopes.unwind(place.depth, place.returns)
         run.cursor, run.suspended = Cursor(at=len(run.lines), ended=DONE), ()
-        return place
+        return replace(place, cursor=self._before(place.cursor))
+
+    def _before(self, cursor: Cursor) -> Cursor:
+        """Return the place before the statement of a cursor, of which nothing has been carried out."""
+        at = cursor.at
+        if cursor.position is DUE or not 0 <= at < len(self._run.lines):
+            return Cursor(at=at)
+        return Cursor(at=at, position=BEGUN, part=(at, self._ready_of(at)[0]))
 
     def begin_again(self, place: Suspended) -> bool:
         """Go back to a place that ``end`` has returned, before its statement; False where its call has been left."""
         run = self._run
         if (len(run.scopes.stack), len(run.scopes.here.returns)) != (place.depth, place.returns):
             return False
-        at = place.cursor.at
-        if place.cursor.position is DUE or at >= len(run.lines):
-            run.cursor = Cursor(at=at)
-        else:
-            run.cursor = Cursor(at=at, position=BEGUN, part=(at, self._ready_of(at)[0]))
+        run.cursor = place.cursor.copy()
         return True
+
+    def successor(self, program: Program, points: Collection[str]) -> "Machine":
+        """Return a machine of another program in the same world, at its beginning."""
+        return Machine(program, self._run.world, points, self._run.decisions)
 
     def stands_at(self, state: MachineSnapshot) -> bool:
         """Return whether nothing has been carried out since a state."""

@@ -5,7 +5,7 @@ the farthest line that has gone back there. Lines are counted from 0, as in ``Pr
 statements, so that it is the same in a run, in its rehearsal and in an export.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 
@@ -31,6 +31,16 @@ class Rounds:
         other = Rounds()
         other._idle = self._idle.copy()
         other._loops = {head: replace(loop) for head, loop in self._loops.items()}
+        return other
+
+    def moved(self, line: Callable[[int], int | None]) -> "Rounds":
+        """Return the same counts by the new places of lines; those of lines that have none are forgotten."""
+        other = Rounds()
+        other._idle = {to: count for head, count in self._idle.items() if (to := line(head)) is not None}
+        for head, loop in self._loops.items():
+            to, end = line(head), line(loop.end)
+            if to is not None and end is not None:
+                other._loops[to] = replace(loop, end=end)
         return other
 
     def idle(self, head: int) -> int:

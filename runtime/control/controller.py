@@ -17,7 +17,7 @@ the brakes; 0 at once. From then on ``cycle`` does nothing and returns False, un
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -292,6 +292,15 @@ class Controller:
                 self.warnings.append(self.stops.alarm_of(found, touch.place))
         # touches are complete at the end only; the report lists warnings in the order of time
         self.warnings.sort(key=lambda alarm: alarm.tick)
+
+    def rename(self, name: Callable[[ProgramLine], ProgramLine]) -> None:
+        """Name the statements of moves, alarms and warnings anew: the program that they are of has been edited."""
+        self.requests.rename(name)
+        stops = self.stops
+        stops.alarms, stops.warnings = (
+            [alarm.replaced(statement=name(alarm.statement)) if alarm.statement else alarm for alarm in found]
+            for found in (stops.alarms, stops.warnings)
+        )
 
     # snapshots ------------------------------------------------------------------------------------------------------
 

@@ -5,7 +5,7 @@ the statement that it belongs to. A set-point that is *computed* reaches INA aft
 next one; one that is *given* (``play``) is there already, costs nothing, and is sent by the interrupt of its own cycle.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -200,6 +200,11 @@ class RequestQueue(Stateful):
     def busy(self) -> bool:
         """Whether set-points are left to send."""
         return self.interpolator.busy or bool(self._waiting)
+
+    def rename(self, name: Callable[[ProgramLine], ProgramLine]) -> None:
+        """Name the statements of the moves anew."""
+        self._statements = tuple(map(name, self._statements))
+        self.statement = None if self.statement is None else name(self.statement)
 
     # the end --------------------------------------------------------------------------------------------------------
 
