@@ -22,7 +22,7 @@ from robolang.execution.world import RobotWorld, WorldSnapshot
 from robolang.interpreter.adopting import Lines
 from robolang.interpreter.branch_oracle import Decisions
 from robolang.interpreter.effects import Origin
-from robolang.interpreter.fed_line import fed_line
+from robolang.interpreter.fed_line import fed
 from robolang.interpreter.machine import Machine
 from robolang.interpreter.snapshot import MachineSnapshot
 from robolang.interpreter.variables import Variables
@@ -242,22 +242,22 @@ class Executor:
             now.stop_requested = now.halt_requested = True
 
     def feed(self, statement: str | Source) -> None:
-        """Carry out one more statement where the program stands; then the program is paused there.
+        """Carry out one more statement, or lines of whole blocks, where the program stands; then it is paused there.
 
         Within a move, which then is not taken up before ``resume``: see ``displaced``. A ``Source`` has the name that
-        messages give as its place. ``FileFault`` with that place for a text that is not one statement, ``Fault`` for a
-        statement that cannot stand alone, ``RuntimeError`` while the program runs and after an alarm. Nothing has
+        messages give as its place. ``FileFault`` with that place for a text that is not whole statements, ``Fault`` for
+        a statement that cannot stand alone, ``RuntimeError`` while the program runs and after an alarm. Nothing has
         changed then.
         """
         source = statement if isinstance(statement, Source) else Source("fed statement", statement)
-        line = fed_line(source)
+        text = fed(source)
         self._refuse_running()
         engine, now = self._engine, self._engine.now
-        engine.machine.check_fed(line)
+        engine.machine.check_fed(text)
         self._leaves(source.text)
         # before the machine takes the line, since that suspends the statement which is interrupted
         interrupts, again = now.phase is Phase.BUSY, engine.interrupted_at()
-        engine.machine.feed(line)
+        engine.machine.feed(text)
         depth = engine.machine.depth - 1
         # what a fed CALL has interrupted is not taken up when a handler or a jump has left that call
         now.aside = tuple(each for each in now.aside if each.depth <= depth)

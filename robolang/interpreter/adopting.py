@@ -52,6 +52,8 @@ class ProgramEdit:
 
     def of(self, index: int) -> int | None:
         """Return the new index of a line; the place after the last line stays there."""
+        if index < 0:  # in a text that was fed
+            return index
         if index >= len(self.old.lines):
             return len(self.new.lines)
         to = self.lines.of(index)
@@ -195,6 +197,8 @@ class _Move:
 
     def _loop(self, loop: Loop, at: int) -> Loop | None:
         """Return a FOR that runs, None for one that a jump has left and that is gone."""
+        if loop.line < 0:
+            return replace(loop)
         to = self._edit.of(loop.line)
         node = None if to is None else self._edit.new.lines[to].statement
         if to is not None and isinstance(node, For) and node.variable.key == loop.variable:

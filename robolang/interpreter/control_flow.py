@@ -22,7 +22,7 @@ from runtime.core.faults import Fault
 def head(run: RunState, line: Line, node: Head, at: int) -> Result:
     """Choose a branch of a block."""
     if node.word == "ELSEIF":  # reached from above: the branch before it is done
-        return run.structure.end[at] + 1
+        return run.end(at) + 1
     if node.word == "SELECT":
         return _next_case(run, at, run.values.value(node.value))
     if node.word == "IF":
@@ -30,35 +30,35 @@ def head(run: RunState, line: Line, node: Head, at: int) -> Result:
     if run.is_true(node.value):
         return None
     run.rounds.leave(at)  # reached again, the loop has its rounds anew
-    return run.structure.end[at] + 1
+    return run.end(at) + 1
 
 
 def ask(run: RunState, asking: Asking) -> Result:
     """Evaluate the condition of an IF or ELSEIF, and those after it until one is true."""
     at = asking.at
-    node = run.lines[at].statement
+    node = run.line(at).statement
     while isinstance(node, Head) and not run.is_true(node.value):
-        at = run.structure.after[at]
-        node = run.lines[at].statement
+        at = run.after(at)
+        node = run.line(at).statement
         if isinstance(node, Head):
             run.cursor.part = at, node
             if reads_state(node.value):
                 run.cursor.position = Asking(at)
-                return Drain(**origin(run.lines[at], node))
+                return Drain(**origin(run.line(at), node))
     return at + 1
 
 
 def _next_case(run: RunState, at: int, chosen: Value) -> Result:
     """Compare the CASE after a line of a SELECT, and those after it until one has the value of the SELECT."""
-    while at != run.structure.end[at]:
-        at = run.structure.after[at]
-        node = run.lines[at].statement
+    while at != run.end(at):
+        at = run.after(at)
+        node = run.line(at).statement
         if not isinstance(node, Case):
             break
         run.cursor.part = at, node  # a fault in a CASE is located there; RESUME takes the SELECT again
         if reads_state(node):
             run.cursor.position = Comparing(at, chosen)
-            return Drain(**origin(run.lines[at], node))
+            return Drain(**origin(run.line(at), node))
         if _is_chosen(run, node, chosen):
             break
     return at + 1
@@ -67,7 +67,7 @@ def _next_case(run: RunState, at: int, chosen: Value) -> Result:
 def compare(run: RunState, comparing: Comparing) -> Result:
     """Compare a CASE for which motion has ended, then those after it."""
     at, chosen = comparing.at, comparing.chosen
-    node = run.lines[at].statement
+    node = run.line(at).statement
     assert isinstance(node, Case)
     return at + 1 if _is_chosen(run, node, chosen) else _next_case(run, at, chosen)
 
@@ -80,10 +80,10 @@ def block(run: RunState, line: Line, node: Block | Case, at: int) -> Result:
     """Reach a line of a block from above: what was chosen is done."""
     word = node.word if isinstance(node, Block) else "CASE"
     if word == "WEND":
-        return run.looped(at, run.structure.after[at])
+        return run.looped(at, run.after(at))
     if word == "ENDSUB":
         return _leave(run)
-    return None if word in ("ENDIF", "ENDSELECT") else run.structure.end[at] + 1
+    return None if word in ("ENDIF", "ENDSELECT") else run.end(at) + 1
 
 
 # --- FOR -------------------------------------------------------------------------------------------------------------
@@ -96,14 +96,15 @@ def begin_for(run: RunState, line: Line, node: For, at: int) -> Result:
     rounds = _rounds(first, last, step)
     run.scopes.assign(node.variable.key, finite(first, "FOR"))
     if rounds <= 0:
-        return run.structure.end[at] + 1
+        return run.end(at) + 1
     loops = run.scopes.here.loops
-    while any(loop.line == at for loop in loops):  # left by a GOTO before
+    key = run.loop_key(at)
+    while any(loop.line == key for loop in loops):  # left by a GOTO before
         loops.pop()
     if len(loops) >= run_limits.MAX_LOOPS:
         raise Fault("RBL504", f"more than {run_limits.MAX_LOOPS} FORs have been begun and not ended")
     run.rounds.leave(at)
-    loops.append(Loop(line=at, variable=node.variable.key, rounds=rounds - 1, step=step))
+    loops.append(Loop(line=key, variable=node.variable.key, rounds=rounds - 1, step=step))
     return None
 
 
@@ -119,8 +120,9 @@ def _rounds(first: float, last: float, step: float) -> int:
 
 def end_for(run: RunState, line: Line, node: Next, at: int) -> Result:
     """Go round again, or leave the loop."""
-    to, loops = run.structure.after[at], run.scopes.here.loops
-    while loops and loops[-1].line != to:
+    to, loops = run.after(at), run.scopes.here.loops
+    key = run.loop_key(to)
+    while loops and loops[-1].line != key:
         loops.pop()
     if not loops:
         raise Fault("RBL533", "NEXT has no FOR that runs")
@@ -157,13 +159,13 @@ def _check_depth(depth: int) -> None:
 
 def pass_sub(run: RunState, line: Line, node: Sub, at: int) -> Result:
     """Pass by a SUB: it runs when it is called."""
-    return run.structure.end[at] + 1
+    return run.end(at) + 1
 
 
 def call_sub(run: RunState, line: Line, node: CallSub, at: int) -> Result:
     """Enter a SUB with its parameters."""
     to = run.structure.subs.get(node.name.key)
-    sub = None if to is None else run.lines[to].statement
+    sub = None if to is None else run.line(to).statement
     if to is None or not isinstance(sub, Sub) or len(sub.parameters) != len(node.arguments):
         raise Fault("RBL533", f"there is no SUB {node.name.text} of {len(node.arguments)} parameters")
     _check_depth(len(run.scopes.stack) - 1)
@@ -221,8 +223,8 @@ def _resume(run: RunState, at: int, *, after: bool) -> int:
 def _after(run: RunState, failed: int) -> int:
     """Return the line after a statement that failed; for the head of a block the one after the block."""
     # the branches of a head that failed were not chosen: to enter one of them would be a guess
-    is_head = isinstance(run.lines[failed].statement, Head | For)
-    return (run.structure.end[failed] if is_head else failed) + 1
+    is_head = isinstance(run.line(failed).statement, Head | For)
+    return (run.end(failed) if is_head else failed) + 1
 
 
 def on_error(run: RunState, line: Line, node: OnError, at: int) -> Result:

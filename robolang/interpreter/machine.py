@@ -22,7 +22,8 @@ from robolang.interpreter import dispatch, run_limits, snapshot
 from robolang.interpreter.branch_oracle import Decisions
 from robolang.interpreter.effects import Drain, Origin, origin
 from robolang.interpreter.events import DONE, FED_ENDED, Event, Failed, FedEnded, LineBegun
-from robolang.interpreter.positions import AFTER_FED, BEGUN, DUE, FED, GIVEN, Cursor, Drained, Suspended, Waiting
+from robolang.interpreter.fed_line import AFTER_FED, Fed
+from robolang.interpreter.positions import BEGUN, DUE, GIVEN, Cursor, Drained, Suspended, Waiting
 from robolang.interpreter.program_fault import ProgramFault
 from robolang.interpreter.run_state import Result, RunState
 from robolang.interpreter.scope import Scopes
@@ -71,7 +72,7 @@ class Machine:
             to = result
         else:
             return result
-        if to < 0 or cursor.at < 0:  # FED and AFTER_FED: no lines of the program
+        if to < 0 or cursor.at < 0:  # no lines of the program
             return self._go_on_fed(to, jumps=result is not None)
         return self._begin(to)
 
@@ -98,7 +99,7 @@ class Machine:
         run, cursor = self._run, self._run.cursor
         lines = run.lines
         # lines of labels and comments alone are passed here: they are no events, and are not counted
-        while at < len(lines) and lines[at].statement is None:
+        while 0 <= at < len(lines) and lines[at].statement is None:
             at += 1
         cursor.at = at
         if at >= len(lines):
@@ -110,7 +111,7 @@ class Machine:
         return begun
 
     def _ready_of(self, at: int) -> _Ready:
-        if at == FED:
+        if at < 0:
             return _ready(self._run.line(at))
         # one entry a line, made when it is first reached: most lines of a loop run often, some lines never
         ready = self._ready[at]
@@ -157,50 +158,67 @@ class Machine:
 
     # --- statements that are fed -------------------------------------------------------------------------------------
 
-    def feed(self, line: Line) -> None:
-        """Carry out one more statement at the present place: its events come next, then the program goes on.
+    def feed(self, text: Line | Fed) -> None:
+        """Carry out one more statement, or several lines, at the present place; then the program goes on.
 
-        ``LineBegun`` of it comes first and ``FedEnded`` last, or ``Failed`` with ``fed``; until then the place of the
+        ``LineBegun`` of each comes and ``FedEnded`` last, or ``Failed`` with ``fed``; until then the place of the
         program is kept, the inside of a statement such as a WAIT too. A GOTO, RETURN, RESUME or END that is fed leads
         the program elsewhere; a CALL or GOSUB that is fed comes back, and only an ON ERROR of what it calls catches
         its faults. A machine that is over can be fed as well, and goes on when a jump is.
 
-        Raises ``Fault`` RBL211 or RBL212 for a statement that begins, divides or ends a block, and ``ValueError`` for
+        Raises ``Fault`` RBL211 or RBL212 for one statement that begins, divides or ends a block, and ``ValueError`` for
         a line without a statement or with an error.
         """
-        node = self.check_fed(line)
+        fed = self.check_fed(text)
         run = self._run
         self._forget_left()
         scopes = run.scopes
         run.suspended += (Suspended(run.cursor, len(scopes.stack), len(scopes.here.returns)),)
+        run.rounds.forget_fed()
         # the old cursor is never written again: snapshots share it with the entry above
-        run.cursor = Cursor(at=FED, fed=line, part=(FED, node))
+        run.cursor = Cursor(at=fed.first, fed=fed, part=(fed.first, fed.lines[0].statement))
 
-    def check_fed(self, line: Line) -> Statement:
-        """Return the statement of a line that can be fed; raises as ``feed`` does."""
-        node = line.statement
-        if node is None:
-            raise ValueError("a line without a statement cannot be fed")
-        if isinstance(node, For | Sub) or word_of(node) in ("IF", "WHILE", "SELECT"):
-            raise Fault("RBL211", f"{word_of(node)} begins a block, which a single statement cannot")
-        if isinstance(node, Next | Case) or word_of(node):
-            raise Fault("RBL212", f"{word_of(node)} belongs to a block, of which a single statement is not a part")
-        _ready(line)  # refuses a statement with an error
-        return node
+    def check_fed(self, text: Line | Fed) -> Fed:
+        """Return what can be fed; raises as ``feed`` does."""
+        fed = text if isinstance(text, Fed) else Fed([text])
+        for line in fed.lines:
+            if line.statement is None:
+                raise ValueError("a line without a statement cannot be fed")
+            _ready(line)  # refuses a statement with an error
+        node = fed.lines[0].statement
+        if len(fed.lines) == 1:
+            if isinstance(node, For | Sub) or word_of(node) in ("IF", "WHILE", "SELECT"):
+                raise Fault("RBL211", f"{word_of(node)} begins a block, which a single statement cannot")
+            if isinstance(node, Next | Case) or word_of(node):
+                raise Fault("RBL212", f"{word_of(node)} belongs to a block, of which a single statement is not a part")
+        return fed
 
     def _go_on_fed(self, to: int, *, jumps: bool) -> Event:
-        """Begin the statement that was fed, or end it; ``jumps``: it has led to line ``to`` itself."""
+        """Go on in what was fed, or end it; ``jumps``: its statement has led to line ``to`` itself."""
         run, cursor = self._run, self._run.cursor
-        if to == FED:
-            cursor.position = BEGUN
-            return _ready(run.line(FED))[-1]
-        if cursor.at == FED and jumps:
-            if run.suspended[-1].is_awaited(run.scopes.stack):
+        if cursor.at < 0 and jumps:
+            if to >= 0 and run.suspended[-1].is_awaited(run.scopes.stack):
                 return self._begin(to)
-            run.suspended = run.suspended[:-1]  # a jump: nothing comes back to the place that was suspended
-            if to != AFTER_FED:
-                run.cursor = Cursor(at=to)
-                return FedEnded(led=True)
+            if to >= 0 or self._has_left():
+                return self._leave_fed(to)
+        if to != AFTER_FED:
+            return self._begin(to)
+        return FED_ENDED if self._take_up() else FedEnded(led=True)
+
+    def _has_left(self) -> bool:
+        """Return whether RETURN has left the place that was suspended last, so that nothing comes back to it."""
+        run = self._run
+        top = run.suspended[-1]
+        return (len(run.scopes.stack), len(run.scopes.here.returns)) < (top.depth, top.returns)
+
+    def _leave_fed(self, to: int) -> Event:
+        """Go on elsewhere: on a line of the program, or of the text whose call has come back."""
+        run = self._run
+        *others, top = run.suspended
+        run.suspended = tuple(others)
+        if to != AFTER_FED:
+            run.cursor = Cursor(at=to, fed=top.cursor.fed if to < 0 else None)
+            return FedEnded(led=True)
         return FED_ENDED if self._take_up() else FedEnded(led=True)
 
     def _take_up(self) -> bool:
@@ -222,7 +240,7 @@ class Machine:
         if run.suspended:
             *others, top = run.suspended
             kept = [each for each in others if each.is_awaited(run.scopes.stack)]
-            if run.cursor.at == FED or top.is_awaited(run.scopes.stack):
+            if run.cursor.at < 0 or top.is_awaited(run.scopes.stack):
                 kept.append(top)
             run.suspended = tuple(kept)
 

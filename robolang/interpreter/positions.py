@@ -10,19 +10,12 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from robolang.interpreter.events import Done, Failed
+from robolang.interpreter.fed_line import Fed
 from robolang.interpreter.scope import Scope
-from robolang.syntax.ast import Line, Statement, Wait
+from robolang.syntax.ast import Statement, Wait
 from robolang.syntax.tree import Node
 from robolang.values.poses import Value
 from runtime.core.faults import Fault
-
-FED = -2
-"""In place of the index of a line: the statement that was fed, which is on no line of the program."""
-AFTER_FED = FED + 1
-"""Where a statement that was fed goes on, and what it calls returns to: the place that it has suspended.
-
-One more than ``FED``, so that a CALL or GOSUB returns to the line after its own in either case.
-"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,11 +85,12 @@ DUE, BEGUN, GIVEN, MOVED = Due(), Begun(), Given(), Given(takes_time=True)
 
 @dataclass(slots=True)
 class Cursor:
-    """The place of a program: index of the line that runs, or ``FED``, and the position inside of its statement.
+    """The place of a program: index of the line that runs, below 0 of what was fed, and the position inside of its
+    statement.
 
     ``part``: line and part of the statement that is carried out, such as the branch of an IF: a fault is located there.
     ``refused``: the fault of the effect that was given, to be answered by the next step; ``ended``: the event of every
-    further step; ``fed``: the line of the statement that was fed, while that is ``at``.
+    further step; ``fed``: the text that was fed, until it is over.
     """
 
     at: int = 0  # not the line of an ELSEIF or CASE: RESUME takes the head of the block again
@@ -104,7 +98,7 @@ class Cursor:
     part: tuple[int, Node | None] = (0, None)
     refused: Fault | None = None
     ended: Done | Failed | None = None
-    fed: Line | None = None
+    fed: Fed | None = None
 
     def copy(self) -> "Cursor":
         """Return the same place."""
@@ -122,6 +116,6 @@ class Suspended:
     def is_awaited(self, stack: Sequence[Scope]) -> bool:
         """Return whether a CALL or GOSUB that was fed has not returned yet."""
         # by the return address: a jump, an error or RETURN may have left the call, and then nothing comes back
-        called = len(stack) > self.depth and stack[self.depth].back == AFTER_FED
-        gone = len(stack) >= self.depth and stack[self.depth - 1].returns[self.returns :][:1] == [AFTER_FED]
-        return called or gone
+        called = len(stack) > self.depth and stack[self.depth].back < 0
+        gone = [] if len(stack) < self.depth else stack[self.depth - 1].returns[self.returns :][:1]
+        return called or any(back < 0 for back in gone)

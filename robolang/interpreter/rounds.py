@@ -43,6 +43,11 @@ class Rounds:
                 other._loops[to] = replace(loop, end=end)
         return other
 
+    def forget_fed(self) -> None:
+        """Forget the loops of what was fed before, whose lines are below 0 as those of the next text."""
+        self._idle = {head: count for head, count in self._idle.items() if head >= 0}
+        self._loops = {head: loop for head, loop in self._loops.items() if head >= 0}
+
     def idle(self, head: int) -> int:
         """Count a jump back to a line; return how many have come since something took time."""
         self._idle[head] = count = self._idle.get(head, 0) + 1

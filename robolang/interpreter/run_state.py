@@ -8,7 +8,8 @@ from robolang.interpreter import run_limits
 from robolang.interpreter.actions import Actions
 from robolang.interpreter.branch_oracle import Decisions
 from robolang.interpreter.effects import Effect, Origin, origin_of
-from robolang.interpreter.positions import FED, Cursor, Suspended
+from robolang.interpreter.fed_line import Fed
+from robolang.interpreter.positions import Cursor, Suspended
 from robolang.interpreter.program_fault import ProgramFault
 from robolang.interpreter.rounds import Rounds
 from robolang.interpreter.scope import Scopes
@@ -23,6 +24,10 @@ Result: TypeAlias = Effect | int | None
 
 After an effect, the position of the cursor says what is left of the statement.
 """
+
+
+_FED_LINES = 1_000_000
+"""More lines than a text can have."""
 
 
 class RunState:
@@ -45,11 +50,25 @@ class RunState:
     # --- lines -------------------------------------------------------------------------------------------------------
 
     def line(self, at: int) -> Line:
-        """Return the line of an index, or the one that was fed."""
-        if at != FED:
-            return self.lines[at]
+        """Return the line of an index, below 0 of what was fed."""
+        return self.lines[at] if at >= 0 else self._fed.line(at)
+
+    @property
+    def _fed(self) -> Fed:
         assert self.cursor.fed is not None
         return self.cursor.fed
+
+    def end(self, at: int) -> int:
+        """Return the line that closes the block of a line."""
+        return self.structure.end[at] if at >= 0 else self._fed.end(at)
+
+    def after(self, at: int) -> int:
+        """Return the next line of the block of a line, of its last line the first."""
+        return self.structure.after[at] if at >= 0 else self._fed.after(at)
+
+    def loop_key(self, at: int) -> int:
+        """Return the number under which a FOR counts: what is fed within what was fed has the same lines."""
+        return at if at >= 0 else at - _FED_LINES * len(self.suspended)
 
     def line_of(self, target: Target) -> int:
         """Return the line that a jump leads to; ``Fault`` RBL533 where there is none."""
@@ -65,7 +84,7 @@ class RunState:
         if not calls:  # a call goes back in the text but is no loop: it returns
             self.rounds.turn(to, at, self.steps)
         if self.rounds.idle(to) > run_limits.MAX_IDLE:
-            line = self.lines[to]
+            line = self.line(to)
             where, most = named(line.source_line, line.number), run_limits.MAX_IDLE
             message = f"the loop that begins at {where} has gone round {most} times without a statement that takes time"
             # located at the head of the loop here, since the statement that runs is its end
@@ -86,7 +105,7 @@ class RunState:
         """
         at = self.cursor.at
         # what is fed has no line that RESUME could go back to
-        if fault.code in run_limits.UNCAUGHT or at == FED:
+        if fault.code in run_limits.UNCAUGHT or at < 0:
             return None
         handler = self.scopes.catch(at, outermost)
         if handler is None:
@@ -116,7 +135,7 @@ class RunState:
         loop = self.rounds.endless((*self._calls(), self.cursor.part[0]), self.steps)
         if loop is None:
             return None
-        line = self.lines[loop[0]]
+        line = self.line(loop[0])
         return origin_of(line, line.statement or line), loop[1]
 
 

@@ -82,10 +82,15 @@ def test_a_warning_of_a_fed_move_is_not_taken_for_that_of_the_program_at_the_sam
         ("MOVE P1 +", "RBL111", 10),
         ("", "RBL111", 1),
         ("' a comment", "RBL111", 1),
-        ("MOVE P1\nMOVE P2", "RBL111", 1),
+        ("X = 1\n  FOR I = 1 TO 3\nY = 1", "RBL211", 3),
+        ("X = 1\nNEXT", "RBL212", 1),
+        ("X = 1\n10 X = 2", "RBL111", 1),
+        ("X = 1\n*A X = 2", "RBL111", 1),
+        ("SUB S()\nX = 1\nENDSUB", "RBL111", 1),
+        ("X = 1\nMOV P1", "RBL112", 1),
     ],
 )
-def test_a_text_that_is_not_one_statement_is_refused_at_its_place(tmp_path, text, code, column):
+def test_a_text_that_is_not_whole_statements_is_refused_at_its_place(tmp_path, text, code, column):
     session = session_of(tmp_path, "X = 1\n")
     until(session, State.DONE)
     before = session.executor.status

@@ -35,6 +35,9 @@ CONSTANT = {
     "Actions._scopes",
     "Decisions._patient",
     "MachineSnapshot.program",
+    "Fed.lines",
+    "Fed.first",
+    "Fed._program",
     "Array._own",  # which blocks are shared is not state: it decides who copies
 }
 """What a machine is made of and does not change while the program runs."""
