@@ -79,6 +79,7 @@ class _Names:
             return replace(origin, line=0, number=None, source=self._edit.old.source)
         old, line = self._edit.old.program.lines[index], self._edit.new.program.lines[to]
         by = line.span.start - old.span.start
+        # the part of a statement that was changed is not known: the whole of it is named
         same = old.statement == line.statement
         span = type(origin.span)(origin.span.start + by, origin.span.end + by) if same else line.span
         return replace(origin, line=line.source_line, number=line.number, span=span)

@@ -435,6 +435,7 @@ class ControllerTarget:
         record = self._record
         # replaced and not changed: snapshots from before the edit share them
         record.statements[:] = [replace(_copied(run), origin=place(run.origin)) for run in record.statements]
+        # another tape: blocks of the old one belong to snapshots from before
         self._statements = Tape(record.statements, _copied)
         record.acknowledged[:] = [
             alarm.replaced(statement=place(alarm.statement)) if isinstance(alarm.statement, Origin) else alarm

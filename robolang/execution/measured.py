@@ -46,6 +46,7 @@ def _last(controller: Controller, group: int) -> Array:
     """Return a group of n columns of the last tick that was recorded; zeros before the first."""
     n = controller.spec.n
     rows = controller.recorder.recent(1)
+    # the recorder has (tau_cmd, tau_sat, q_fb, dq_fb) in a row
     return np.array(rows[-1, group * n : (group + 1) * n]) if len(rows) else np.zeros(n)
 
 

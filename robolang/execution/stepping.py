@@ -97,6 +97,7 @@ def _judged(executor: Executor, begun: LineBegun, stop: Stop) -> Hit | None:
 
 
 def _breaks(executor: Executor, stop: Breakpoint) -> Hit | None:
+    # at every round of a loop: the text is short, and reading it takes less than a cycle
     try:
         return Hit(stop=stop) if not stop.condition or _is_true(executor, stop.condition) else None
     except Fault as fault:

@@ -39,6 +39,7 @@ class Tape(Generic[T]):
     def restore(self, taped: Taped[T]) -> None:
         """Put a snapshot back."""
         self._blocks = taped.blocks
+        # the same list: record and report hold it
         self._items[:] = [*chain.from_iterable(taped.blocks), *map(self._copied, taped.rest)]
 
     def change(self, index: int) -> None:

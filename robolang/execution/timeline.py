@@ -107,7 +107,7 @@ class Timeline:
         project, present = self._executor.project, self._executor.snapshot()
         while (start := self._reached(index)) is None:
             index -= 1
-            if index < 0:
+            if index < 0:  # the present was left for the search
                 self._executor.become(project)
                 self._executor.restore(present)
                 raise Fault("RBL545", "each of these places lies inside of lines that an edit has removed")

@@ -109,6 +109,7 @@ class _Move:
             return cursor.copy()
         if isinstance(cursor.position, Due | Begun) or cursor.ended is not None or at >= len(self._edit.old.lines):
             return self._standing(cursor)
+        # in the middle of it: what is left is of this very statement
         to = self._edit.kept(at, "the statement that is carried out")
         self._check_blocks(at, to)
         node = lines[to].statement
@@ -141,6 +142,7 @@ class _Move:
         old, new = edit.old.lines[at].statement, edit.new.lines[to].statement
         if old != new or new is None or old is None:  # what is left of it would be of another statement
             raise edit.refusal(at, "the statement that is carried out was changed")
+        # the head of the block is at the cursor; what is evaluated is another line of it
         if isinstance(position, Asking | Comparing):
             inner = edit.kept(position.at, "the branch that is evaluated")
             if edit.old.lines[position.at].statement != edit.new.lines[inner].statement:
@@ -158,6 +160,7 @@ class _Move:
             if around and now is not None:
                 if word_of(self._edit.new.lines[now].statement) != word:
                     raise self._edit.refusal(head, f"this {word}, of which the program is inside, was changed")
+            # these two have a state, a count of rounds and a scope; the others are no more than jumps
             elif word in ("FOR", "SUB") or now is not None:
                 raise self._edit.refusal(head, f"this {word}, of which the program is inside, was removed")
 
@@ -165,6 +168,7 @@ class _Move:
 
     def _scopes(self, scopes: tuple[Scope, ...], at: int) -> tuple[Scope, ...]:
         """Return the scopes; ``at``: the line where the innermost runs."""
+        # where a scope stands: at the CALL that the next one inside it returns to
         places = [*(scope.back - 1 if scope.back > 0 else at for scope in scopes[1:]), at]
         return tuple(self._scope(scope, place) for scope, place in zip(scopes, places, strict=True))
 
@@ -174,7 +178,7 @@ class _Move:
             line = edit.kept(failure.line, "the statement that RESUME goes back to")
             failure = replace(failure, line=line, returns=tuple(map(self._return, failure.returns)))
         handler = scope.handler
-        if handler is not None and handler >= 0:
+        if handler is not None and handler >= 0:  # below 0 it is STOPS
             handler = edit.kept(handler, "the handler of errors")
         return replace(
             scope.copy(),
@@ -238,7 +242,7 @@ def _same_part(part: Node, old: Statement, new: Statement) -> Node:
 
 def _shifts(edit: ProgramEdit) -> Callable[[Span], Span | None]:
     """Return the function from a place in a line of the old text to the same place in the new one, None: it changed."""
-    rows = []
+    rows = []  # conditions are known by their places in the text
     for index, line in enumerate(edit.old.lines):
         to = edit.of(index)
         if to is not None and edit.new.lines[to].statement == line.statement:

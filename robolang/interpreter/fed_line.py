@@ -78,6 +78,7 @@ def fed(source: Source) -> Fed:
     if len(statements) > 1:
         for line in statements:
             _check(source, line)
+        # of one statement the machine refuses a block: it is typed often, and needs no tables
         wrong = [each for each in found.structure.diagnostics if each.code in _OF_BLOCKS]
         if wrong:
             raise _refused(source, wrong[0])

@@ -199,6 +199,7 @@ class Machine:
         if cursor.at < 0 and jumps:
             if to >= 0 and run.suspended[-1].is_awaited(run.scopes.stack):
                 return self._begin(to)
+            # a loop or a branch of the text itself leads below 0 as well, and stays in it
             if to >= 0 or self._has_left():
                 return self._leave_fed(to)
         if to != AFTER_FED:

@@ -8,14 +8,18 @@ speed of the machine. Whole processes are timed from outside.
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 
 import mujoco
 import numpy as np
 
 from robolang.execution.session import Session
+from robolang.execution.status import ENDED
+from robolang.execution.timeline import Timeline
 from robolang.interpreter.effects import MoveTo
 from robolang.project.project import Project, load_project
 from runtime.plant.mujoco_plant import MujocoPlant
@@ -186,9 +190,37 @@ def process_seconds(processes: int, *command: str) -> float:
     return statistics.median(times[1:] or times)
 
 
+STATEMENTS = "FOR I = 1 TO 250\nX = X0 + I\nDELAY 0.016\nIF X > 0 THEN Y = X\nNEXT\n".replace("X0", "1")
+"""A thousand statements and two, a quarter of which takes two cycles."""
+
+
+def back_ratio(stops: bool) -> float:
+    """Return the time of going back over 1,000 statements as a share of running them, with physics."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "long.rbl")
+        path.write_text(STATEMENTS)
+        session = Session(load_project(path))
+    executor, timeline = session.executor, Timeline(session.executor)
+    executor.stops_before = lambda begun: stops
+    started = time.perf_counter()
+    while executor.advance(100).state not in ENDED:
+        executor.resume()
+    ran = time.perf_counter() - started
+    started = time.perf_counter()
+    timeline.back(1000)
+    return (time.perf_counter() - started) / ran
+
+
 def rows(smallest: bool) -> Iterator[Row]:
     """Measure everything; small machines differ, so nothing is promised here."""
     yield whole_run(1 if smallest else 11)
+    for stops in (False, True):
+        ratios = [back_ratio(stops) for _ in range(1 if smallest else 5)]
+        yield Row(
+            figure=f"back over 1,000 statements against running them, {'with' if stops else 'without'} stops",
+            form="{:.4f} (at most 0.1)",
+            values=(statistics.median(ratios),),
+        )
     yield from wrist(1 if smallest else 7)
     for figure, command in COMMANDS.items():
         yield Row(figure=figure, form="{:.0f} ms", values=(1e3 * process_seconds(1 if smallest else 8, *command),))
