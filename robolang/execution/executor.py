@@ -376,6 +376,20 @@ class Executor:
         now.failed = None
         self.stand()
 
+    def restart(self) -> None:
+        """Put the program before its first statement, and pause it there: arm, names, settings and signals stay.
+
+        What was interrupted is not taken up. ``RuntimeError`` as ``feed``.
+        """
+        self._refuse_running()
+        self._leaves("restart")
+        engine, now = self._engine, self._engine.now
+        if now.phase is Phase.BUSY:  # the target lets go of a motion that rests, or of a wait
+            engine.set_aside(engine.machine.depth, None)
+        engine.machine.restart()
+        engine.now = Progress(ends_us=engine.target.time_us + self._most_us)
+        self.stand()
+
     # --- an edited program -------------------------------------------------------------------------------------------
 
     def adopt(self, project: Project, lines: Lines) -> None:

@@ -25,6 +25,7 @@ from robolang.interpreter.events import DONE, FED_ENDED, Event, Failed, FedEnded
 from robolang.interpreter.fed_line import AFTER_FED, Fed
 from robolang.interpreter.positions import BEGUN, DUE, GIVEN, Cursor, Drained, Suspended, Waiting
 from robolang.interpreter.program_fault import ProgramFault
+from robolang.interpreter.rounds import Rounds
 from robolang.interpreter.run_state import Result, RunState
 from robolang.interpreter.scope import Scopes
 from robolang.interpreter.snapshot import MachineSnapshot
@@ -257,6 +258,16 @@ class Machine:
             run.scopes.unwind(place.depth, place.returns)
         run.cursor, run.suspended = Cursor(at=len(run.lines), ended=DONE), ()
         return replace(place, cursor=self._before(place.cursor))
+
+    def restart(self) -> None:
+        """Put the program before its first statement: names keep their values, its calls, loops and handlers end."""
+        run = self._run
+        run.scopes.unwind(1, 0)
+        main = run.scopes.here
+        main.loops.clear()
+        main.handler = main.failure = None
+        run.rounds = Rounds()
+        run.cursor, run.suspended = Cursor(), ()
 
     def _before(self, cursor: Cursor) -> Cursor:
         """Return the place before the statement of a cursor, of which nothing has been carried out."""

@@ -3,6 +3,7 @@
 from robolang.pendant.command import Commands
 from robolang.pendant.commands import editing, jogging, logs, measuring, running, session, showing, stepping, teaching
 
+# in any order: help sorts them under their headings
 COMMANDS = Commands(
     (
         *editing.COMMANDS,

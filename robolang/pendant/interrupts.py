@@ -58,6 +58,7 @@ class Signals:
 
     def take(self) -> Interrupt | None:
         """Return what was requested since the last call."""
+        # taken once: a request that stays would stop the next motion as well
         request, self._request = self._request, None
         return request
 

@@ -20,6 +20,7 @@ from robolang.execution.result import StatementRun
 from robolang.execution.session import Session
 from robolang.execution.status import State, Status
 from robolang.execution.timeline import Timeline
+from robolang.interpreter.adopting import Lines
 from robolang.pendant.arm import ArmView, view
 from robolang.pendant.failure import failure, of_diagnostics
 from robolang.pendant.interrupts import Interrupt, Interrupts
@@ -64,14 +65,33 @@ class Live:
         self._output, self._interrupts = output, interrupts
         self.session = Session(project, physics=physics, realtime=realtime, observer=Watching(output))
         self.executor = self.session.executor
-        # a program that is opened stands before its first statement
-        self.executor.stops_before = lambda due: True
-        self.executor.advance()
-        self.executor.stops_before = None
+        self._come_to_first()
         self.timeline = Timeline(self.executor)
         self._warned = 0
         self.wall_s = 0.0
         """Wall time for which the arm was driven, s."""
+
+    def _come_to_first(self) -> None:
+        """Let the program come to its first statement, and stand before it."""
+        self.executor.stops_before = lambda due: True
+        self.executor.advance()
+        self.executor.stops_before = None
+
+    def restart(self) -> None:
+        """Put the program before its first statement; the arm stays where it is."""
+        # the names that were typed at the prompt stay: the first statements may read them
+        self.executor.restart()
+        self.executor.resume()
+        self._come_to_first()
+
+    def adopt(self, project: Project, lines: Lines) -> None:
+        """Go on with an edited project; a program that had no statement begins with its first one."""
+        # whoever types the first lines of a program wants to step it, and not to be shown that it is over
+        had_none = not self.project.program.statements
+        self.executor.adopt(project, lines)
+        self.project = project
+        if had_none and project.program.statements:
+            self.restart()
 
     @property
     def controller(self) -> Controller:
@@ -140,6 +160,7 @@ class Live:
 
     def weigh(self, rows: Array) -> Array | None:
         """Send the set-points of a weighing; return what the ticks recorded (N, 4 n), None when it was stopped."""
+        # the LOAD in force may be wrong, which is why it is weighed: that must raise no alarm meanwhile
         controller = self.controller
         begun, controller.weighing = controller.recorder.tick, True
         try:
@@ -147,6 +168,7 @@ class Live:
             self.drive()
         finally:
             controller.weighing = False
+        # stopped by a key: half of a motion weighs nothing
         if self.executor.plays:
             self.executor.abandon()
             return None

@@ -109,7 +109,8 @@ def listing_lines(listing: Listing) -> list[str]:
     last = listing.first + len(listing.rows) - 1
     lines = []
     for row, text in enumerate(listing.rows, listing.first):
-        arrow = ">" if row == listing.current else " "
+        # two characters: a script shows what is typed after one of them
+        arrow = "->" if row == listing.current else "  "
         mark = "*" if row in listing.marks else " "
         # two columns of numbers would be taken for one another
         number = "" if listing.numbered else f"{row:>{len(str(last))}} "

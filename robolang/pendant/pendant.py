@@ -18,6 +18,8 @@ from robolang.pendant.checking import errors_of
 from robolang.pendant.command import Commands
 from robolang.pendant.failure import Failure, failure, of_diagnostics, of_fault
 from robolang.pendant.interrupts import Interrupts
+from robolang.pendant.keeping import Keeping
+from robolang.pendant.line_moves import LineMoves
 from robolang.pendant.lines import has_numbers, line_of
 from robolang.pendant.numbers import pose_text
 from robolang.pendant.output import Output
@@ -27,7 +29,6 @@ from robolang.syntax.keywords import near
 from robolang.teaching.desk import Desk
 from robolang.teaching.documents import Documents
 from robolang.teaching.program_document import put_line
-from robolang.teaching.recovery import Recovery, discard, pending_recovery, recover
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault, FilePlace
 
@@ -85,7 +86,9 @@ class Pendant:
         self.key_mode: Callable[[], None] | None = None
         """Lets keys jog the arm, where a face has keys."""
         self._jog: JogSettings | None = None
-        self._recovery = Recovery()
+        self._keeping = Keeping(scripted=scripted)
+        # where the lines of the program that the controller has are in the one that is edited
+        self._moved = LineMoves()
         self._project: Project | None = None
         self._live: Live | None = None
 
@@ -243,6 +246,7 @@ class Pendant:
     def back(self, steps: int) -> None:
         """Take back so many statements, jogs and lines of the prompt."""
         live = self.live
+        # documents are not taken back with it: undo does that
         mark = live.timeline.back(steps)
         # the cap is part of the state, and went back too
         live.limit_speed(self.mode is Mode.MANUAL)
@@ -319,7 +323,7 @@ class Pendant:
             raise failure("RBL805", f"these files have unsaved changes: {unsaved}")
         if not unsaved or self.output.ask(f"{unsaved}: leave without saving?"):
             self.ended = True
-            self._recovery.close()
+            self._keeping.close()
 
     def confirm(self, question: str, yes: bool) -> None:
         """Ask whether to go on; ``Failure`` RBL807 after a no, and in a script without ``yes``."""
@@ -329,26 +333,10 @@ class Pendant:
 
     def offer_recovery(self) -> None:
         """Ask what becomes of unsaved changes that an earlier prompt left, if there are any."""
-        documents = self.desk.documents
-        pending = pending_recovery(documents.path if documents.named else None)
-        if pending is None:
-            return
-        self.output.line(pending.diff().rstrip("\n"))
-        if self.output.ask(f"Unsaved changes of {pending.when:%Y-%m-%d %H:%M} UTC were left: take them?"):
-            self.desk, self._recovery = recover(pending), Recovery(pending)
+        taken = self._keeping.offered(self.desk, self.output)
+        if taken is not None:
+            self.desk = taken
             self.start_again()
-        elif self.output.ask("Delete them?"):
-            discard(pending.file)
-
-    def _keep(self) -> None:
-        """Keep what is unsaved in the recovery file; a script can be played again, and needs none."""
-        if self.scripted:
-            return
-        try:
-            self._recovery.keep(self.desk)
-        except Fault as fault:
-            # work goes on without one: the change itself has been made
-            self.output.problem(of_fault(fault).text)
 
     # --- documents ----------------------------------------------------------------------------------------------------
 
@@ -369,25 +357,29 @@ class Pendant:
     def change(self, new: Documents, what: str) -> None:
         """Put changed documents in place of the present ones, and let the controller go on with them."""
         self.desk.change(new, what)
-        try:
-            self.follow()
-        except (Fault, Failure):
-            # documents that cannot be used are not kept: the next line would fail for the same reason
-            self.desk.undo()
-            self._project = None
-            raise
+        # documents that cannot be used are not kept: the next line would fail for the same reason
+        self._follow_or(self.desk.undo)
 
     def undo(self) -> str:
         """Take the last change of the documents back; return what it was."""
         what = self.desk.undo()
-        self.follow()
+        self._follow_or(self.desk.redo)
         return what
 
     def redo(self) -> str:
         """Make the change that was taken back last again; return what it was."""
         what = self.desk.redo()
-        self.follow()
+        self._follow_or(self.desk.undo)
         return what
+
+    def _follow_or(self, take_back: Callable[[], str]) -> None:
+        """Let the controller follow the documents; where it cannot, take their change back and raise the reason."""
+        try:
+            self.follow()
+        except (Fault, Failure):
+            take_back()
+            self._project = None
+            raise
 
     def save(self, path: Path | None = None, *, force: bool = False) -> tuple[Path, ...]:
         """Write what is unsaved, under another name where one is given; return the files.
@@ -401,6 +393,9 @@ class Pendant:
     def open(self, documents: Documents) -> None:
         """Work on other documents, in the start state of their cell."""
         self.desk = Desk(documents)
+        # lines and names of the program before mean nothing in this one
+        self.breaks.clear()
+        self.watches = ()
         self.start_again()
 
     def check(self) -> None:
@@ -414,9 +409,21 @@ class Pendant:
             raise of_diagnostics(refused, self.project.source)
 
     def follow(self) -> None:
-        """Let the controller go on with the documents as they are now."""
-        self._keep()
-        self.start_again()
+        """Let the controller go on with the documents as they are now; ``Fault`` where it cannot.
+
+        While the program has errors the controller keeps the last one without, and has the new points and frames.
+        """
+        self._project = None
+        lines = self._moved.then(self.desk.lines)
+        if self._live is not None:
+            if self.project.ok:
+                self._live.adopt(self.project, lines)
+            else:
+                kept = self._live.project.analysis
+                self._live.adopt(replace(self.project, analysis=kept, diagnostics=()), LineMoves())
+        # only now: a change that is refused moves no line
+        self._moved = LineMoves() if self._live is None or self.project.ok else lines
+        self._keeping.keep(self.desk, self.output)
 
     # --- the controller -----------------------------------------------------------------------------------------------
 
@@ -456,6 +463,7 @@ class Pendant:
     def start_again(self) -> None:
         """Forget the controller: the next use finds the cell in its start state."""
         self._live = self._project = None
+        self._moved = LineMoves()
 
     def to_auto(self) -> None:
         """Choose AUTO, and say so where it was not chosen."""

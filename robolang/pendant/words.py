@@ -50,6 +50,7 @@ def values(text: str, separator: str) -> tuple[str, ...]:
 
 def without_flag(rest: str, flag: str) -> tuple[str, bool]:
     """Return the text without a flag such as ``--yes`` at its end, and whether that was there."""
+    # at the end only: an expression or a text may hold the same characters
     words = rest.rsplit(maxsplit=1)
     if words and words[-1] == flag:
         return rest[: rest.rindex(flag)].rstrip(), True

@@ -52,6 +52,7 @@ def _teachtool(pendant: "Pendant", rest: str) -> None:
     cell = pendant.project.cell
     # the tip has no orientation: that of the tool of this name stays, else that of the hand's own
     X = next((X for key, X in cell.tools.items() if key.upper() == name.upper()), cell.hand.X_flange_tool)
+    # nothing is written before the numbers have been shown: a bad touch is seen by its residual
     pose = (*found.tip, *lowering.six_of(X)[3:])
     pendant.output.line(f"{name}: {pose_text(pose)}")
     rows = tuple((touch.name, f"{each:.3f}") for touch, each in zip(touches, found.residuals, strict=True))

@@ -65,6 +65,14 @@ def _again(pendant: "Pendant", rest: str) -> None:
     pendant.output.line("the cell is in its start state, the program before its first statement")
 
 
+def _restart(pendant: "Pendant", rest: str) -> None:
+    nothing(rest, "restart")
+    pendant.refuse_errors()
+    pendant.live.refuse_latched()
+    pendant.live.restart()
+    pendant.output.line(pendant.standing)
+
+
 def _reset(pendant: "Pendant", rest: str) -> None:
     nothing(rest, "reset")
     alarm = pendant.live.executor.status.alarm
@@ -131,6 +139,13 @@ COMMANDS = (
         help="Put cell, arm and program back into the start state.",
         group=Group.RUN,
         do=_again,
+    ),
+    Command(
+        word="restart",
+        form="restart",
+        help="Put the program before its first statement; arm, cell and names stay.",
+        group=Group.RUN,
+        do=_restart,
     ),
     Command(
         word="reset",

@@ -94,7 +94,7 @@ def _list(pendant: "Pendant", rest: str) -> None:
         return
     current = pendant.current
     at = None if current is None else current.source_line
-    first, last = _range(pendant, rest, at, len(rows))
+    first, last = _range(pendant, rest, at, pendant.rows)
     shown = tuple(text[rows[row - 1].start : rows[row - 1].end] for row in range(first, last + 1))
     pendant.output.program(
         Listing(rows=shown, first=first, current=at, numbered=pendant.has_numbers, marks=frozenset(pendant.breaks))

@@ -36,6 +36,7 @@ def _runto(pendant: "Pendant", rest: str) -> None:
 
     if len(rest.split()) != 1:
         raise misused(_RUNTO, f"a line is expected, found '{rest}'")
+    # breakpoints before that line stop it too
     pendant.run(To(line=pendant.line_of(rest).source_line))
 
 
@@ -66,6 +67,7 @@ def _breaks(pendant: "Pendant", rest: str) -> None:
         pendant.breaks.clear()
     elif rest:
         raise misused(_BREAKS, f"found '{rest}'")
+    # after off too, so that the answer shows what is left
     if not pendant.breaks:
         pendant.output.line("no breakpoints")
         return

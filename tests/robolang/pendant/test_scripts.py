@@ -223,7 +223,7 @@ def test_breakpoints_stop_the_program(folder):
     session.do("break 60", "break 100 if HERE.Z < 700", "break 110 if 1 / 0 > 3")
     assert len(session.do("breaks").splitlines()) == 5
     assert "next: 60" in session.do("run")
-    assert ">*60" in session.do("list")
+    assert "->*60" in session.do("list")
     session.do("break 60 off")
     assert "RBL501" in session.problems.getvalue() or "next: 100" in session.do("run")
     assert "next: 110" in session.do("run")
