@@ -230,14 +230,14 @@ class Executor:
         Safe to call from a signal handler.
         """
         if self._engine.now.phase is not Phase.OVER:
-            self._disturbed()
+            self._ends("stop")
             self._engine.now.stop_requested = True
 
     def halt(self) -> None:
         """Stop at once and end the program (category 0), as ``stop`` does."""
         now = self._engine.now
         if now.phase is not Phase.OVER:
-            self._disturbed()
+            self._ends("halt")
             # a stop as well: only ``brake`` makes a difference between the two
             now.stop_requested = now.halt_requested = True
 
@@ -312,6 +312,7 @@ class Executor:
         now = self._engine.now
         if not (now.playing and now.resting):
             raise RuntimeError("no motion of its own rests; pause it first")
+        self._leaves("abandon")
         self._engine.abandon()
 
     def regain(self, limits: RegainLimits = DEFAULT_LIMITS) -> bool:
@@ -445,6 +446,11 @@ class Executor:
         trail = self._engine.trail
         if trail is not None and (self._engine.now.resting or self._engine.now.phase is Phase.OVER):
             trail.leaves(label)
+
+    def _ends(self, label: str) -> None:
+        # where it runs a signal handler has called this, and no snapshot can be taken within a cycle
+        self._leaves(label)
+        self._disturbed()
 
     def _disturbed(self) -> None:
         if self._engine.trail is not None:

@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 
 from robolang.execution.executor import RegainLimits
+from robolang.execution.session import Session
 from robolang.execution.status import ENDED, State
+from robolang.project.project import load_project
 from runtime.core.faults import Fault
 from runtime.core.units import DEG
+from tests.programs.runs import ROOT
 from tests.robolang.execution.standing import (
     by_hand,
     dump,
@@ -379,3 +382,21 @@ def test_a_statement_whose_call_was_left_cannot_be_begun_again(tmp_path):
     assert refused.value.code == "RBL542"
     executor.resume()
     assert (stands(session).state, shown(session)) == (State.DONE, ["1"])
+
+
+def test_under_a_seam_sensor_nothing_is_played(tmp_path):
+    """The move under it comes to its end first, so it is never held."""
+    session = Session(load_project(ROOT / "wrist/seam.rbl"), physics=False)
+    executor = session.executor
+    while session.controller.tracker is None:
+        executor.advance()
+    paused_after(session, 20)
+    status, log = executor.status, log_of(session)
+    with pytest.raises(Fault) as refused:
+        executor.play(there_and_back(session), by_hand("jog"), "jog")
+    assert refused.value.code == "RBL544"
+    assert (executor.status, log_of(session), executor.displaced.joint_deg) == (status, log, 0.0)
+    assert fed(session, "PRINT 1").fault is None
+    assert executor.displaced.joint_deg == 0.0
+    executor.resume()
+    assert ended(session)[1]["ok"]

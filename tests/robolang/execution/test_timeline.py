@@ -209,3 +209,104 @@ def test_a_course_is_one(tmp_path):
     for steps in (0, -1):
         with pytest.raises(Fault):
             timeline.back(steps)
+
+
+COURSES = size(120, 5)
+FED = (
+    "X = X + 1",
+    "MOVE P1 + (0, 0, 60)",
+    "FOR J = 1 TO 3\nX = X + J\nDELAY 0.016\nNEXT",
+    "CALL S(2)",
+    "Y = 1 / (X - X)",
+    "HAND ON",
+    "SPEED 200",
+    "WAIT TIMER > 1E6, TIMEOUT 0.05",
+)
+COURSE = """X = 1
+FOR I = 1 TO 3
+MOVE P1 + (0, 0, 80), ZONE 20
+X = X + 1
+MOVE P2 + (0, 0, 80), ZONE 20
+CALL S(I)
+NEXT
+WAIT TIMER > 2, TIMEOUT 5
+PRINT X
+END
+SUB S(K)
+DELAY 0.05
+HAND OFF
+X = K
+PRINT K; X
+ENDSUB
+"""
+
+
+class Course:
+    """Random things that are done to a session, each of which leaves it where it stands."""
+
+    def __init__(self, session, chance):
+        self.session, self.chance, self.executor = session, chance, session.executor
+
+    def step(self):
+        stepped(self.session)
+
+    def go(self):
+        """Go on for some cycles, and rest there."""
+        self.executor.stops_before = None
+        self.executor.resume()
+        paused_after(self.session, self.chance.randrange(1, 150))
+
+    def feed(self):
+        self.executor.stops_before = None
+        fed(self.session, self.chance.choice(FED))
+
+    def jog(self):
+        jogged(self.session, most=0.01, back=self.chance.random() < 0.5)
+
+    def interrupted_feed(self):
+        self.executor.feed(self.chance.choice(FED))
+        paused_after(self.session, self.chance.randrange(1, 20))
+
+    def stop(self):
+        self.executor.stop()
+        stands(self.session)
+
+    def again(self):
+        self.executor.acknowledge()
+        self.executor.begin_again()
+
+    def regain(self):
+        self.executor.regain()
+        stands(self.session)
+
+    def any(self):
+        """Do one thing that is possible now; what is refused changes nothing."""
+        names = ("step", "go", "feed", "jog", "interrupted_feed", "stop", "again", "regain")
+        name = self.chance.choices(names, (6, 3, 3, 2, 2, 1, 2, 2))[0]
+        before = state_of(self.session)
+        try:
+            getattr(self, name)()
+        except (Fault, RuntimeError):
+            self.executor.stops_before = None
+            assert name == "again" or state_of(self.session) == before, name
+
+
+@pytest.mark.parametrize("number", range(COURSES))
+def test_back_through_a_course_of_all_that_can_be_done(tmp_path, number):
+    session, chance = session_of(tmp_path, COURSE), random.Random(number)
+    executor, timeline = followed(session)
+    course = Course(session, chance)
+    stepped(session)
+    stood = [(len(timeline), state_of(session))]
+    for _ in range(25):
+        course.any()
+        if chance.random() < 0.2 and len(stood) > 1:
+            at = chance.randrange(len(stood))
+            places, state = stood[at]
+            del stood[at + 1 :]
+            if len(timeline) > places:
+                timeline.back(len(timeline) - places)
+                assert state_of(session) == state
+        elif len(timeline) > stood[-1][0]:
+            stood.append((len(timeline), state_of(session)))
+    assert executor.status.time_us >= 0
