@@ -61,3 +61,11 @@ register(
         remedy="Start it again.",
     ),
 )
+register(
+    Code(
+        code="RBL810",
+        name="recording-full",
+        meaning="What is recorded would be a larger program than can be read.",
+        remedy="Record the next part to another file, after again.",
+    ),
+)

@@ -15,6 +15,7 @@ from robolang.execution.measured import AXIS_FUNCTIONS
 from robolang.execution.observer import Observer
 from robolang.execution.plan_findings import PlanFindings, PlannedMove
 from robolang.execution.result import RunRecord, StatementRun
+from robolang.execution.statement_rows import begin_of, copied, rest_of, row_of
 from robolang.execution.tape import Tape, Taped
 from robolang.execution.target import Requested
 from robolang.execution.world import RobotWorld
@@ -35,12 +36,12 @@ from robolang.interpreter.effects import (
 from robolang.interpreter.events import Failed
 from robolang.project.project import Project
 from robolang.syntax.ast import Wait
-from robolang.syntax.unparse import describe
 from runtime.cell.seam_sensor import SeamSensor
 from runtime.control.controller import ControllerSnapshot
 from runtime.core.faults import Alarm, Fault
 from runtime.core.frames import Array
-from runtime.core.units import MM
+from runtime.core.linear import matmul
+from runtime.core.units import DEG, MM
 from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.commands import Command
 from runtime.motion.motion_planner import ChainPlan
@@ -76,7 +77,7 @@ class ControllerTarget:
         self.world = RobotWorld(record.project.points, record.project.cell, kinematics, lambda: self.time_us)
         """What the program reads of robot and cell."""
         self._findings = PlanFindings(record.project, kinematics)
-        self._statements = Tape(record.statements, _copied)
+        self._statements = Tape(record.statements, copied)
         self._payloads, self._shown = Tape(record.payloads), Tape(record.shown)
         self._activity: Activity = None
         self._warned: frozenset[tuple[str, Origin]] = frozenset()
@@ -140,6 +141,19 @@ class ControllerTarget:
     @property
     def _seen(self) -> Observer:
         return _NOBODY if self.silent else self._observer
+
+    @property
+    def _p_tool(self) -> Array:
+        around = self.world.around
+        return np.asarray(matmul(around.kinematics.forward(self.q), around.X_flange_tool))[:3, 3]
+
+    @property
+    def _joints_deg(self) -> tuple[float, ...]:
+        return tuple(float(angle) for angle in self.q / DEG)
+
+    def _note_rest(self, run: StatementRun) -> None:
+        """Note that the arm came to rest here, short of the end of a move."""
+        run.rest, run.effect = self._joints_deg, begin_of(run.effect, run.path, self._p_tool)
 
     def goes_on(self) -> bool:
         """Return whether the statement needs another cycle."""
@@ -206,7 +220,11 @@ class ControllerTarget:
         tick, statements = self._record.controller.recorder.tick, self._record.statements
         if isinstance(activity, Motion):
             for run in statements[activity.first : activity.last + 1]:
-                run.end_tick = run.end_tick or tick  # within a chain a move has ended where the next one began
+                if run.end_tick:  # within a chain a move has ended where the next one began
+                    continue
+                run.end_tick = tick
+                if run.begun and (self.alarms or run.effect is None):
+                    self._note_rest(run)
         elif activity is not None:
             statements[activity.run].end_tick = tick
 
@@ -242,7 +260,11 @@ class ControllerTarget:
         rest[0].end_tick = self._record.controller.recorder.tick
         # moves that have not begun come after what is done meanwhile
         del statements[at + rest[0].begun :]
-        return Left(activity=activity, motion=motion, rest=tuple(map(_copied, rest)))
+        first, *others = map(copied, rest)
+        if first.begun:
+            self._note_rest(rest[0])
+            first.effect = rest_of(first.effect, first.path, self._p_tool)
+        return Left(activity=activity, motion=motion, rest=(first, *others))
 
     def take_up(self, left: Left) -> None:
         """Go on with a wait, or with a motion, which rests until ``go_on``."""
@@ -252,7 +274,7 @@ class ControllerTarget:
         if left.rest and isinstance(activity, Motion):
             tick, first = self._record.controller.recorder.tick, len(statements)
             # rows of their own: what was measured meanwhile is not of these moves
-            statements += [replace(_copied(run), first_tick=tick, end_tick=0, begun=False) for run in left.rest]
+            statements += [replace(copied(run), first_tick=tick, end_tick=0, begun=False) for run in left.rest]
             activity = replace(activity, first=first, last=len(statements) - 1, skipped=self.move_reached)
         elif isinstance(activity, Pause):
             self._statements.change(activity.run)
@@ -284,6 +306,9 @@ class ControllerTarget:
         alarms = list(self.alarms)  # a copy, since the controller forgets them
         self._record.controller.acknowledge()
         self._record.acknowledged += alarms
+        if self._record.statements and self._record.statements[-1].rest is not None:
+            # where the brakes have left the arm
+            self._record.statements[-1].rest = self._joints_deg
 
     def fail(self, fault: Failed) -> None:
         """Raise the alarm of a fault that the program does not catch."""
@@ -310,6 +335,8 @@ class ControllerTarget:
         # planned before it is recorded: a chain that is refused leaves no statement in the record
         plan = controller.move_chain([each.command for each in chain], [each.effect.origin for each in chain])
         runs = [self._record_run(each.effect) for each in chain]
+        # nothing follows into which it could blend
+        runs[-1].effect = replace(chain[-1].effect, zone_mm=0.0)
         seam = None if self._tracker is None else self._tracker.name
         for run, part in zip(runs, plan.parts, strict=True):
             run.path, run.notes = part.path, [*run.notes, *part.notes]
@@ -344,7 +371,7 @@ class ControllerTarget:
 
     def _record_run(self, effect: Effect) -> StatementRun:
         tick = self._record.controller.recorder.tick
-        run = StatementRun(origin=effect.origin, text=describe(effect.node), first_tick=tick)
+        run = row_of(effect, tick, self.world.around.points)
         self._record.statements.append(run)
         return run
 
@@ -434,9 +461,9 @@ class ControllerTarget:
         """Name the statements of record, alarms, warnings and moves by their places in an edited text."""
         record = self._record
         # replaced and not changed: snapshots from before the edit share them
-        record.statements[:] = [replace(_copied(run), origin=place(run.origin)) for run in record.statements]
+        record.statements[:] = [replace(copied(run), origin=place(run.origin)) for run in record.statements]
         # another tape: blocks of the old one belong to snapshots from before
-        self._statements = Tape(record.statements, _copied)
+        self._statements = Tape(record.statements, copied)
         record.acknowledged[:] = [
             alarm.replaced(statement=place(alarm.statement)) if isinstance(alarm.statement, Origin) else alarm
             for alarm in record.acknowledged
@@ -446,7 +473,7 @@ class ControllerTarget:
 
     def renamed(self, left: Left, place: Callable[[Origin], Origin]) -> Left:
         """Return what was set aside, its statements named anew."""
-        rest = tuple(replace(_copied(run), origin=place(run.origin)) for run in left.rest)
+        rest = tuple(replace(copied(run), origin=place(run.origin)) for run in left.rest)
         motion = left.motion
         if motion is not None:
             names = [place(line) if isinstance(line, Origin) else line for line in motion.statements]
@@ -484,8 +511,3 @@ class ControllerTarget:
         self._shown.restore(snapshot.shown)
         record.acknowledged[:] = snapshot.acknowledged
         self._activity, self._warned = snapshot.activity, snapshot.warned
-
-
-def _copied(run: StatementRun) -> StatementRun:
-    # notes are added to while a statement runs: a list that is shared would change the snapshot
-    return replace(run, notes=list(run.notes))

@@ -4,7 +4,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from robolang.core.diagnostics import Diagnostic
-from robolang.interpreter.effects import Origin
+from robolang.interpreter.effects import Effect, Origin
+from robolang.project.points import Point
 from robolang.project.project import Project
 from runtime.control.controller import Controller
 from runtime.core.faults import Alarm
@@ -20,6 +21,9 @@ class StatementRun:
     ``begun``: whether it was reached; the moves of a row that was stopped before them were not.
     ``wrist`` is what its plan did with the wrist, ``seam`` the sensor it moved under, ``lost`` the readings that this
     one lost meanwhile; ``lamp`` what the pendant's lamp shows now, by ``wrist_mode`` (``controller_target.LAMPS``).
+    ``effect`` is what was carried out, a WAIT's the first, with zone 0 where the move did not blend; None: given
+    set-points. ``points`` are the taught points that it names, as they were. ``rest``: joint angles (n,) deg where the
+    arm came to rest short of the end of the effect, or at the end of given set-points.
     """
 
     origin: Origin
@@ -33,6 +37,9 @@ class StatementRun:
     lost: int = 0
     lamp: str = ""
     begun: bool = True
+    effect: Effect | None = None
+    points: tuple[Point, ...] = ()
+    rest: tuple[float, ...] | None = None
     notes: list[str] = field(default_factory=list)
 
 

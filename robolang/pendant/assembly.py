@@ -1,7 +1,18 @@
 """All commands of the prompt."""
 
 from robolang.pendant.command import Commands
-from robolang.pendant.commands import editing, jogging, logs, measuring, running, session, showing, stepping, teaching
+from robolang.pendant.commands import (
+    editing,
+    jogging,
+    logs,
+    measuring,
+    recording,
+    running,
+    session,
+    showing,
+    stepping,
+    teaching,
+)
 
 # in any order: help sorts them under their headings
 COMMANDS = Commands(
@@ -15,5 +26,6 @@ COMMANDS = Commands(
         *running.COMMANDS,
         *stepping.COMMANDS,
         *logs.COMMANDS,
+        *recording.COMMANDS,
     )
 )

@@ -24,6 +24,7 @@ from robolang.pendant.lines import has_numbers, line_of
 from robolang.pendant.numbers import pose_text
 from robolang.pendant.output import Output
 from robolang.pendant.reading import NAME, Blank, CommandLine, LineEdit, Statements, Value, first_word, read
+from robolang.pendant.recording import Recording
 from robolang.pendant.words import values
 from robolang.syntax.keywords import near
 from robolang.teaching.desk import Desk
@@ -91,11 +92,13 @@ class Pendant:
         self._moved = LineMoves()
         self._project: Project | None = None
         self._live: Live | None = None
+        self.recording = Recording()
 
     def do(self, text: str) -> None:
         """Carry out what was typed; ``Failure`` for what cannot be done, with everything to show."""
         try:
-            self._do(text)
+            with self.recording.kept(self):
+                self._do(text)
         except Fault as fault:
             raise of_fault(fault) from None
 

@@ -37,6 +37,8 @@ def start(
         interrupts=Foreground(Keyboard(sys.stdin.fileno())) if somebody_types else Signals(),
         scripted=not somebody_types,
     )
+    if record is not None:
+        pendant.recording.begin(record, pendant)
     if not somebody_types:
         return play(sys.stdin, pendant, keep_going=keep_going).codes
     ended_by = _at_terminal(pendant)
