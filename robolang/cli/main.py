@@ -18,6 +18,7 @@ from robolang.cli.commands import (
     fmt,
     identify,
     inertia,
+    jog,
     kin,
     renumber,
     repl,
@@ -47,6 +48,7 @@ app = typer.Typer(
 _COMMANDS: dict[str, Callable[..., None]] = {
     "run": run.run,
     "repl": repl.repl,
+    "jog": jog.jog,
     "teach": teach.teach,
     "compare": compare.compare,
     "step": step.step,
@@ -62,9 +64,11 @@ _COMMANDS: dict[str, Callable[..., None]] = {
     "rules": rules.rules,
     "explain": explain.explain,
 }
+# an amount such as -10 is no option
+_PARSED = {"jog": {"ignore_unknown_options": True}}
 # in the order of the table, which is that of --help; `check` is here for its help and for what `quick` cannot read
 for name, function in _COMMANDS.items():
-    app.command(name, cls=PlainCommand)(command(function))
+    app.command(name, cls=PlainCommand, context_settings=_PARSED.get(name))(command(function))
 app.add_typer(config.app, name="config")
 app.add_typer(export.app, name="export")
 app.add_typer(kin.app, name="kin")

@@ -4,7 +4,11 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from robolang.execution.result import StatementRun
+from robolang.execution.tape import Taped
+from robolang.interpreter.effects import Origin
+from runtime.control.controller import ControllerSnapshot
 from runtime.control.request_queue import SetAside
+from runtime.core.faults import Alarm
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,3 +47,16 @@ class Left:
     activity: Activity
     motion: SetAside | None = None
     rest: tuple[StatementRun, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TargetSnapshot:
+    """Controller, plant and record at one moment; nothing changes it."""
+
+    controller: ControllerSnapshot
+    statements: Taped[StatementRun]
+    payloads: Taped[dict[str, object]]
+    shown: Taped[tuple[float, str]]
+    acknowledged: tuple[Alarm, ...]
+    activity: Activity
+    warned: frozenset[tuple[str, Origin]]

@@ -5,18 +5,18 @@ its dwell, a LOAD at once. ``goes_on`` is called between two cycles, so all that
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
-from robolang.execution.activity import Activity, Left, Motion, Pause
+from robolang.execution.activity import Activity, Left, Motion, Pause, TargetSnapshot
 from robolang.execution.measured import AXIS_FUNCTIONS
 from robolang.execution.observer import Observer
 from robolang.execution.plan_findings import PlanFindings, PlannedMove
 from robolang.execution.result import RunRecord, StatementRun
-from robolang.execution.statement_rows import begin_of, copied, rest_of, row_of
-from robolang.execution.tape import Tape, Taped
+from robolang.execution.statement_rows import copied, note_rest, rest_of, row_of, straight_path
+from robolang.execution.tape import Tape
 from robolang.execution.target import Requested
 from robolang.execution.world import RobotWorld
 from robolang.interpreter.effects import (
@@ -37,11 +37,9 @@ from robolang.interpreter.events import Failed
 from robolang.project.project import Project
 from robolang.syntax.ast import Wait
 from runtime.cell.seam_sensor import SeamSensor
-from runtime.control.controller import ControllerSnapshot
 from runtime.core.faults import Alarm, Fault
 from runtime.core.frames import Array
-from runtime.core.linear import matmul
-from runtime.core.units import DEG, MM
+from runtime.core.units import MM
 from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.commands import Command
 from runtime.motion.motion_planner import ChainPlan
@@ -53,19 +51,6 @@ _NOBODY = Observer()
 
 LAMPS = ("", "WRIST", "WRIST HOLD")
 """What the lamp shows by ``wrist_mode``."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TargetSnapshot:
-    """Controller, plant and record at one moment; nothing changes it."""
-
-    controller: ControllerSnapshot
-    statements: Taped[StatementRun]
-    payloads: Taped[dict[str, object]]
-    shown: Taped[tuple[float, str]]
-    acknowledged: tuple[Alarm, ...]
-    activity: Activity
-    warned: frozenset[tuple[str, Origin]]
 
 
 class ControllerTarget:
@@ -142,19 +127,6 @@ class ControllerTarget:
     def _seen(self) -> Observer:
         return _NOBODY if self.silent else self._observer
 
-    @property
-    def _p_tool(self) -> Array:
-        around = self.world.around
-        return np.asarray(matmul(around.kinematics.forward(self.q), around.X_flange_tool))[:3, 3]
-
-    @property
-    def _joints_deg(self) -> tuple[float, ...]:
-        return tuple(float(angle) for angle in self.q / DEG)
-
-    def _note_rest(self, run: StatementRun) -> None:
-        """Note that the arm came to rest here, short of the end of a move."""
-        run.rest, run.effect = self._joints_deg, begin_of(run.effect, run.path, self._p_tool)
-
     def goes_on(self) -> bool:
         """Return whether the statement needs another cycle."""
         activity = self._activity
@@ -224,7 +196,7 @@ class ControllerTarget:
                     continue
                 run.end_tick = tick
                 if run.begun and (self.alarms or run.effect is None):
-                    self._note_rest(run)
+                    note_rest(run, self.q, self.world.around)
         elif activity is not None:
             statements[activity.run].end_tick = tick
 
@@ -262,8 +234,8 @@ class ControllerTarget:
         del statements[at + rest[0].begun :]
         first, *others = map(copied, rest)
         if first.begun:
-            self._note_rest(rest[0])
-            first.effect = rest_of(first.effect, first.path, self._p_tool)
+            note_rest(rest[0], self.q, self.world.around)
+            first.effect = rest_of(first, self.q, self.world.around)
         return Left(activity=activity, motion=motion, rest=(first, *others))
 
     def take_up(self, left: Left) -> None:
@@ -285,9 +257,12 @@ class ControllerTarget:
         controller = self._record.controller
         if controller.tracker is not None:
             raise Fault("RBL544", f"the arm follows the seam sensor {controller.tracker.name}")
+        q_before = self.q
         controller.play(rows)
         self.statement = origin
         run = StatementRun(origin=origin, text=text, first_tick=controller.recorder.tick, begun=False)
+        q = np.concatenate([q_before[None], rows])
+        run.path, run.planned_s = straight_path(q, controller.tool_poses(q)), len(rows) * self._project.profile.period_s
         self._record.statements.append(run)
         last = len(self._record.statements) - 1
         self._activity = Motion(first=last, last=last, lost=self._lost)
@@ -306,9 +281,9 @@ class ControllerTarget:
         alarms = list(self.alarms)  # a copy, since the controller forgets them
         self._record.controller.acknowledge()
         self._record.acknowledged += alarms
-        if self._record.statements and self._record.statements[-1].rest is not None:
-            # where the brakes have left the arm
-            self._record.statements[-1].rest = self._joints_deg
+        for run in self._record.statements[-1:]:
+            if run.rest is not None:  # where the brakes have left the arm
+                note_rest(run, self.q, self.world.around)
 
     def fail(self, fault: Failed) -> None:
         """Raise the alarm of a fault that the program does not catch."""

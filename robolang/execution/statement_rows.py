@@ -5,18 +5,24 @@ from dataclasses import replace
 import numpy as np
 
 from robolang.execution import lowering
+from robolang.execution.lowering import Surroundings
 from robolang.execution.result import StatementRun
 from robolang.interpreter.effects import Effect, MoveTo
 from robolang.project.points import Point, PointStore
 from robolang.syntax.unparse import describe
 from robolang.values.poses import Place
 from runtime.core.frames import Array
-from runtime.core.units import MM
-from runtime.motion.path import Path
+from runtime.core.linear import matmul
+from runtime.core.units import DEG, MM
+from runtime.motion.path import LinePath, Path
 
 _SAMPLES = 1001
 _SHORT = 1.0 * MM
 """An arc shorter than this is a line."""
+_TOGETHER = 1e-9
+"""Joints that turn together are off the straight line in joint space by less, rad."""
+_ON_LINE, _ON_TURN = 1e-5, 1e-4
+"""Set-points are on a line by less, m and rad."""
 
 
 def row_of(effect: Effect, tick: int, points: PointStore) -> StatementRun:
@@ -37,31 +43,53 @@ def _named_by(effect: Effect, points: PointStore) -> tuple[Point, ...]:
     return tuple(point for point in map(points.get, names) if point is not None)
 
 
+def straight_path(q: Array, X: Array) -> LinePath | None:
+    """Return the line that set-points q (K, n) rad with tool poses X (K, 4, 4) follow; None: all joints turn together,
+    or the tool leaves the line."""
+    turned = q - q[0]
+    far = turned[-1]
+    size = float(np.sum(far * far))
+    if not size > 0.0 or np.abs(turned - (turned * far).sum(axis=1)[:, None] / size * far).max() < _TOGETHER:
+        return None
+    path = LinePath.between(X[0], X[-1])
+    # a turn of more than half a turn ends where a shorter one in the other direction does
+    traces = (X[0, :3, :3] * X[:, :3, :3]).sum(axis=(1, 2))
+    turns = np.arccos(np.clip((traces - 1.0) / 2.0, -1.0, 1.0))
+    follows = path.deviation(X[:, :3, 3]).max() < _ON_LINE and turns.max() < abs(path.angle) + _ON_TURN
+    return path if follows else None
+
+
 def copied(run: StatementRun) -> StatementRun:
     """Return a row apart from one that is still written to."""
     # notes are added to while a statement runs: a list that is shared would change the snapshot
     return replace(run, notes=list(run.notes))
 
 
-def rest_of(effect: Effect | None, path: Path | None, p_now: Array) -> Effect | None:
-    """Return the move from the tool point p_now (3,) m on a path to its end; other effects as they are.
+def rest_of(run: StatementRun, q: Array, around: Surroundings) -> Effect | None:
+    """Return the move from joints q (n,) rad on the path of a row to its end; other effects as they are.
 
     A DEPART is measured from where it began, and the point via which an arc leads may have been passed: they become a
     move to a pose in the world, and an arc through the middle of what is left.
     """
+    effect, path = run.effect, run.path
     if not isinstance(effect, MoveTo) or path is None:
         return effect
     if effect.target.last:
         # in the world, since a pose has no other frame of its own
         return replace(effect, target=_place(path, 1.0))
-    return _arc_between(effect, path, _parameter(path, p_now), 1.0)
+    return _arc_between(effect, path, _parameter(path, _tool(q, around)), 1.0)
 
 
-def begin_of(effect: Effect | None, path: Path | None, p_now: Array) -> Effect | None:
-    """Return the part of a move up to the tool point p_now (3,) m, but for its target, which is where the arm rests."""
-    if not isinstance(effect, MoveTo) or path is None:
-        return effect
-    return _arc_between(effect, path, 0.0, _parameter(path, p_now))
+def note_rest(run: StatementRun, q: Array, around: Surroundings) -> None:
+    """Note that the arm came to rest at joints q (n,) rad, short of the end of a move: its effect is the part up to
+    there, but for its target."""
+    run.rest = tuple(float(angle) for angle in q / DEG)
+    if isinstance(run.effect, MoveTo) and run.path is not None:
+        run.effect = _arc_between(run.effect, run.path, 0.0, _parameter(run.path, _tool(q, around)))
+
+
+def _tool(q: Array, around: Surroundings) -> Array:
+    return np.asarray(matmul(around.kinematics.forward(q), around.X_flange_tool))[:3, 3]
 
 
 def _arc_between(effect: MoveTo, path: Path, low: float, high: float) -> MoveTo:

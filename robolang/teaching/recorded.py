@@ -133,7 +133,7 @@ class _Writer:
         rest = run.rest if run.end_tick else self._q_deg
         if effect is None:
             assert rest is not None
-            self._add(f"MOVEJ {_call('JOINT', rest)}")
+            self._given(run, rest)
             return
         assert isinstance(effect, MoveTo)
         if rest is not None:
@@ -144,15 +144,30 @@ class _Writer:
         # effects have names in capitals
         names = {point.name.upper(): self._name(point) for point in run.points}
         # neither is an option of a move, and both end no blend
-        if effect.override_pct != self._override:
-            self._override = effect.override_pct
-            self._add(f"OVERRIDE {number(self._override)}")
+        self._scale(effect.override_pct)
         places = [place for place in (effect.via, effect.target) if place is not None]
         frame = next((frame for place in places for frame in _frames(place)), self._frame)
         if frame != self._frame:
             self._frame = frame
             self._add(f"FRAME {self._of_cell(frame, self._cell.frames, 'WORLD')}")
         self._add(self._moving(effect, names) + self._options(effect))
+
+    def _given(self, run: StatementRun, rest: tuple[float, ...]) -> None:
+        """Write given set-points, such as a jog, as a move that takes their time."""
+        self._scale(100.0)
+        # one that was stopped took less than was planned
+        took = (run.end_tick - run.first_tick) * self._tick_us / 1e6
+        time = "" if run.planned_s is None or took <= 0.0 else f", TIME {number(min(run.planned_s, took))}"
+        if run.path is None:
+            self._add(f"MOVEJ {_call('JOINT', rest)}{time}")
+        else:
+            free = "" if self._wrist in ("", "WRIST AUTO") else ", WRIST AUTO"
+            self._add(f"MOVE {_call('JOINT', rest)}{time}{free}")
+
+    def _scale(self, override: float) -> None:
+        if override != self._override:
+            self._override = override
+            self._add(f"OVERRIDE {number(override)}")
 
     def _moving(self, effect: MoveTo, names: Mapping[str, str]) -> str:
         """Return a move without its options."""

@@ -503,3 +503,36 @@ def test_a_long_recording_is_made_in_linear_time(folder):
 
     small, large = after(200), after(400)
     assert_linear(lambda record: recorded(record, (0.0,) * 6), small, large)
+
+
+def test_jogs_are_moves_to_where_they_ended_in_their_time():
+    prompted = prompt(PICK)
+    prompted.do("record done", "jogspeed 60", "OVERRIDE 50", "jog J3 +5", "jog X -30.5", "jogframe tool", "jog RX 12")
+    prompted.do("jog Z -20", "jog J1 -2", "auto", "MOVE P5", "DEPART 5")
+    found = _statements("done.rbl")
+    assert [re.sub(r"\(.*\)", "()", line).split(", TIME")[0] for line in found] == [
+        "MOVEJ JOINT()",
+        "MOVE JOINT()",
+        "MOVE JOINT()",
+        "MOVE JOINT()",
+        "MOVEJ JOINT()",
+        "OVERRIDE 50",
+        "MOVE P5",
+        "DEPART 5",
+    ]
+    log, again = _done_again(prompted, "done.rbl")
+    assert Path("done.rbl").read_text().splitlines()[4].endswith("' by hand: jog J3 +5")
+    # as long, but for what the arm takes to come into position
+    jogs = prompted.pendant.live.session.record.statements[:5]
+    assert [float(line.split("TIME ")[1]) for line in found[:5]] == pytest.approx([run.planned_s for run in jogs])
+    assert len(again["t"]) == pytest.approx(len(log["t"]), rel=0.1)
+
+
+def test_a_jog_that_is_stopped_is_a_move_to_where_it_came_to_rest():
+    prompted = prompt(PICK, interrupts=Requests(stop=40))
+    prompted.do("record done", "jog X -80", "auto", "DEPART 5")
+    (jog, depart) = _statements("done.rbl")
+    assert jog.startswith("MOVE JOINT(")
+    assert float(jog.split("TIME ")[1]) < 0.6
+    assert depart == "DEPART 5"
+    _done_again(prompted, "done.rbl")
