@@ -9,6 +9,7 @@
 # make fault-campaign         every injected fault and 200 clean runs, counted (minutes)
 # make supervision-campaign   wrong payloads in random programs, counted
 # make blend-campaign         random chains of moves with zones, counted
+# make jog-campaign           random jogs with held keys and stops, their logs checked (20 minutes)
 # make pulse-campaign         random moves of four machines as pulse tables, counted
 # make wrist-campaign         random straight moves through the wrist, counted (minutes)
 # make fuzz               readers of programs, points, cells, arms and golden logs on made-up bytes, FUZZ_SECONDS of each target
@@ -81,6 +82,9 @@ verdict-campaign: $(READY)
 
 blend-campaign: $(READY)
 	$(BIN)/python -m tests.bench.blend_campaign
+
+jog-campaign: $(READY)
+	$(BIN)/python -m tests.bench.jog_campaign
 
 pulse-campaign: $(READY)
 	$(BIN)/python -m tests.bench.pulse_campaign

@@ -1,4 +1,4 @@
-"""Random sequences of jogs on live controllers, and what their logs must show (R06).
+"""Random sequences of jogs on live controllers, and what their logs must show (R06): ``make jog-campaign``.
 
 speed     no tool point and no flange over 250 mm/s at any tick: commanded, and with physics the links as well
 range     no joint over its limit at any tick, but where it began beyond it; no further out there
@@ -41,6 +41,8 @@ SWING = 5e-6
 """Between set-points the command may pass a limit by so much, rad."""
 LINK = 0.1 * DEG
 """A link swings past the limit at which its command stands by so much at most, rad."""
+STANDS = 1e-6
+"""A joint that turns by less in a cycle, rad, stands: between two pieces of a course there is nothing to stop."""
 REST_S = 0.5
 """Time from a stop to rest, s."""
 PERIOD_S = 8e-3
@@ -211,7 +213,7 @@ def check(robot, stops, physics):
         axis = int(np.argmax(np.abs(way)))
         early = abs(gone[axis]) < abs(way[axis]) and gone[axis] * way[axis] >= 0.0
         ends_itself = stop.left <= 3
-        broken["stop"] += int(not (early or ends_itself or np.abs(way).max() < 1e-12))
+        broken["stop"] += int(not (early or ends_itself or np.abs(way).max() < STANDS))
         moving = np.flatnonzero((np.diff(rows[stop.cycle : stop.end], axis=0) != 0.0).any(axis=1))
         broken["rest"] += int(not moving.max(initial=0) * PERIOD_S <= REST_S)
     broken["alarm"] += len(robot.alarms)
