@@ -21,6 +21,8 @@ class Foreground(Signals):
         self.keyboard, self.watch = keyboard, watch
         self.signal = 0
         """The signal that ends the prompt, 0 for none."""
+        self.judge: Callable[[list[str]], bool] = lambda pressed: not STOPPING.isdisjoint(pressed)
+        """Whether keys that were pressed since the last cycle, perhaps none, stop what runs."""
         self.stopped = False
         """Whether a stop has been requested since this was last set to False."""
 
@@ -35,11 +37,30 @@ class Foreground(Signals):
         self.watch()
         pressed = self.keyboard.pressed()
         if self.keyboard.closed:
-            self.lose(signal.SIGHUP)
+            self.hang_up()
         # Ctrl-C counts twice within a second, these do not: a held key repeats
-        request = super().take() or (Interrupt.STOP if STOPPING.intersection(pressed) else None)
+        request = super().take() or (Interrupt.STOP if self.judge(pressed) else None)
         self.stopped |= request is not None
         return request
+
+    @contextmanager
+    def ending(self) -> Iterator[None]:
+        """Let SIGTERM and SIGHUP end the prompt while nothing moves, too: ``lost``, and ``KeyboardInterrupt``."""
+
+        def end(number: int, _frame: object) -> None:
+            self.lose(number)
+            raise KeyboardInterrupt
+
+        before = {number: signal.signal(number, end) for number in (signal.SIGTERM, signal.SIGHUP)}
+        try:
+            yield
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+    def hang_up(self) -> None:
+        """Note that the terminal has gone."""
+        self.lose(signal.SIGHUP)
 
     def lose(self, number: int) -> None:
         """Note that the prompt has to end by a signal; the first one counts."""

@@ -30,6 +30,7 @@ from robolang.pendant.completer import PromptCompleter
 from robolang.pendant.facts import Gathering, known
 from robolang.pendant.failure import Failure, of_fault
 from robolang.pendant.foreground import Foreground
+from robolang.pendant.keys import KeyMode
 from robolang.pendant.known import Known
 from robolang.pendant.lexer import PromptLexer
 from robolang.pendant.pendant import Pendant
@@ -60,6 +61,7 @@ class Prompt:
         self._output = TerminalOutput(terminal, lambda: self.known.names, self._answer)
         pendant.output = self._output
         self._interrupts.watch = self._watch
+        pendant.key_mode = KeyMode(pendant, self._output, terminal, self._gathering).run
         self._source, self._terminal = source, terminal
         words = frozenset(command.word.upper() for command in pendant.commands)
         self._session: PromptSession[str] = PromptSession(
@@ -107,7 +109,8 @@ class Prompt:
         except (EOFError, OSError, termios.error):  # no key gives EOFError, see _bindings: the terminal has gone
             self._interrupts.lose(signal.SIGHUP)
             return
-        self._carry_out(text)
+        with self._interrupts.ending():
+            self._carry_out(text)
 
     def _recover(self) -> None:
         try:

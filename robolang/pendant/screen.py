@@ -6,8 +6,8 @@ is replaced by the next one and removed before anything else is printed.
 
 import re
 import textwrap
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 
 from prompt_toolkit.formatted_text import FormattedText, StyleAndTextTuples
 from prompt_toolkit.output import Output as Terminal
@@ -39,6 +39,16 @@ class TerminalOutput:
         self._terminal, self._names, self._answer = terminal, names, answer
         self._shown = self._running = self._note = ""
         self._shown_s = float("-inf")
+        self._take: Callable[[str], None] | None = None
+
+    @contextmanager
+    def diverted(self, take: Callable[[str], None]) -> Iterator[None]:
+        """Give results and problems to somebody else, who has the screen, and show no progress."""
+        self._take = take
+        try:
+            yield
+        finally:
+            self._take = None
 
     @property
     def columns(self) -> int:
@@ -47,13 +57,16 @@ class TerminalOutput:
 
     def line(self, text: str) -> None:
         """Print a result."""
+        if self._take is not None:
+            self._take(text)
+            return
         for line in text.split("\n"):
             for row in self._wrapped(safe(line)):
                 self._print([("", row)])
 
     def echo(self, text: str) -> None:
         """Print a line that is carried out, as if it had been typed."""
-        for line in _safe(text).split("\n"):
+        for line in safe_lines(text):
             self._print([("class:prompt", "> "), *coloured(line, self._names())])
 
     def table(self, table: Table) -> None:
@@ -74,6 +87,9 @@ class TerminalOutput:
 
     def problem(self, text: str) -> None:
         """Print an error or a warning with the colours of its parts."""
+        if self._take is not None:
+            self._take(text)
+            return
         for line in text.split("\n"):
             # an excerpt keeps its columns, since the carets below point into it
             is_excerpt = _EXCERPT.fullmatch(safe(line)) or _CARETS.fullmatch(safe(line))
@@ -96,6 +112,8 @@ class TerminalOutput:
 
     def _show(self, text: str) -> None:
         now = wall_s()
+        if self._take is not None:
+            return
         if not text or now - self._shown_s < _SHOWN_EACH_S:
             return
         self._shown_s = now
@@ -112,7 +130,7 @@ class TerminalOutput:
     def ask(self, question: str) -> bool:
         """Ask on the terminal and return the answer."""
         self._clear()
-        return self._answer(_safe(question))
+        return self._answer(" ".join(safe_lines(question)))
 
     def _clear(self) -> None:
         if self._shown:
@@ -158,8 +176,9 @@ class TerminalOutput:
         )
 
 
-def _safe(text: str) -> str:
-    return "\n".join(map(safe, text.split("\n")))
+def safe_lines(text: str) -> list[str]:
+    """Return the lines of a text, each safe in a terminal."""
+    return list(map(safe, text.split("\n")))
 
 
 def _fitted(table: Table, width: int) -> Table:

@@ -64,17 +64,18 @@ class _Item:
 def status_lines(facts: Facts, columns: int) -> list[StyleAndTextTuples]:
     """Return two or three lines, more only where a screen is so narrow that facts would be lost otherwise."""
     items = list(_items(facts))
-    lines = _filled([(item.full, item.style) for item in items], columns)
+    lines = joined([(item.style, item.full) for item in items], columns)
     if len(lines) > MOST_LINES:
-        lines = _filled([(item.short, item.style) for item in items], columns)
+        lines = joined([(item.style, item.short) for item in items], columns)
     return lines
 
 
-def _filled(items: list[tuple[str, str]], columns: int) -> list[StyleAndTextTuples]:
-    """Return items in as many lines as they need; only the last one, the statement, is cut to what is left."""
+def joined(items: list[tuple[str, str]], columns: int) -> list[StyleAndTextTuples]:
+    """Return items, style and text, in as many lines as they need; only the last one is cut to what is left."""
     lines: list[StyleAndTextTuples] = [[]]
     used = 0
-    for at, (text, style) in enumerate(items):
+    items = [(style, text) for style, text in items if text]
+    for at, (style, text) in enumerate(items):
         left = columns - used - len(_GAP) * bool(used)
         if at == len(items) - 1 and left >= _LEAST:
             text = text if len(text) <= left else f"{text[: left - 1]}…"
@@ -114,17 +115,18 @@ def _of_arm(arm: ArmFacts) -> Iterator[_Item]:
     if arm.holding:
         yield _Item(f"holding {arm.holding}", f"holds {arm.holding}")
     yield _Item(f"{arm.seconds:.3f} s", f"{arm.seconds:.3f} s")
-    yield _Item(f"joints {_row(arm.joints, 3)} deg", f"J {_row(arm.joints, 1)}")
-    x, y, z, rx, ry, rz = _row(arm.pose, 2).split(" ")
+    yield _Item(f"joints {row(arm.joints, 3)} deg", f"J {row(arm.joints, 1)}")
+    x, y, z, rx, ry, rz = row(arm.pose, 2).split(" ")
     yield _Item(
         f"X {x} Y {y} Z {z} mm RX {rx} RY {ry} RZ {rz} deg",
-        f"XYZ {_row(arm.pose[:3], 1)} R {_row(arm.pose[3:], 1)}",
+        f"XYZ {row(arm.pose[:3], 1)} R {row(arm.pose[3:], 1)}",
     )
     yield _Item(f"limit {arm.limit}", f"limit {arm.limit}")
     if arm.singular:
         yield _Item(f"singular {arm.singular}", arm.singular)
 
 
-def _row(values: tuple[float, ...], digits: int) -> str:
+def row(values: tuple[float, ...], digits: int) -> str:
+    """Return numbers with blanks between them."""
     # + 0.0 makes 0 of -0, also where rounding makes it
     return " ".join(f"{round(value, digits) + 0.0:.{digits}f}" for value in values)

@@ -45,12 +45,12 @@ class Terminal:
     def until(self, *texts: str) -> list[str]:
         """Read until every text is on the screen, each within one line; return the lines."""
         while not self.shows(*texts):
-            self._read(f"{texts} not on the screen")
+            self.read(f"{texts} not on the screen")
         return self.lines
 
     def until_gone(self, text: str) -> None:
         while self.shows(text):
-            self._read(f"{text} stays on the screen")
+            self.read(f"{text} stays on the screen")
 
     def ended(self) -> int:
         """Read until the process ends; return its exit code."""
@@ -62,7 +62,7 @@ class Terminal:
         self.process.wait()
         return self.process.exitstatus if self.process.signalstatus is None else -self.process.signalstatus
 
-    def _read(self, why: str) -> None:
+    def read(self, why: str = "nothing new on the screen") -> None:
         try:
             data = self.process.read_nonblocking(65536, timeout=WAIT_S)
         except (pexpect.TIMEOUT, pexpect.EOF) as error:

@@ -231,3 +231,89 @@ def test_a_terminal_that_only_shows_lines_gets_lines(opened):
     terminal.send("y\n")
     assert terminal.ended() == 0
     assert b"\x1b" not in terminal.raw
+
+
+# --- keys -------------------------------------------------------------------------------------------------------------
+
+RIGHT, LEFT = "\x1b[C", "\x1b[D"
+
+
+@pytest.fixture
+def keys(terminal):
+    terminal.send("jog\r")
+    terminal.until("KEYS", "NOT ARMED: e arms", "J1 by 5 deg", "Esc Space stop")
+    return terminal
+
+
+def test_keys_move_nothing_before_they_are_armed(keys):
+    keys.send(RIGHT)
+    keys.until("not armed: nothing moves", "840.00")
+    keys.send("ez")
+    keys.until("ARMED   Z by 10 mm")
+    keys.send(LEFT)
+    keys.until("830.00")
+    keys.send("q")
+    keys.until("MANUAL  ARMED", "830.0")
+
+
+@pytest.mark.parametrize(("columns", "rows"), [(150, 40), (80, 24), (60, 20)])
+def test_the_panel_fits_the_screen(opened, columns, rows):
+    terminal = opened(columns=columns, rows=rows)
+    terminal.until(READY)
+    terminal.send("jog\r")
+    terminal.until(
+        "KEYS", "NOT ARMED", "J1 by 5 deg", "frame world", "speed 25 %", "limit J5", "0.000 s", "q Enter leave"
+    )
+    terminal.send("ez+t")
+    terminal.until("Z by 50 mm", "frame tool")
+    assert sum("KEYS" in line for line in terminal.lines) == 1
+
+
+def test_a_held_key_goes_on_until_it_is_released(keys):
+    keys.send("ez")
+    keys.until("Z by 10 mm")
+    while not keys.shows("going on"):
+        keys.send(LEFT)
+        keys.read()
+    keys.until_gone("going on")
+    keys.send("q")
+    keys.until("MANUAL  ARMED")
+
+
+@pytest.mark.parametrize("key", [" ", "\x1b"], ids=["space", "escape"])
+def test_a_key_stops_a_jog(keys, key):
+    keys.send("ez++")
+    keys.until("Z by 100 mm")
+    keys.send(LEFT)
+    keys.until("839.")
+    keys.send(key)
+    keys.send("q")
+    keys.until("MANUAL  ARMED")
+    assert not keys.shows("740.0")
+
+
+@pytest.mark.parametrize("key", ["q", "\r", "\x03"], ids=["q", "enter", "ctrl-c"])
+def test_keys_are_left(keys, key):
+    keys.send(key)
+    keys.until("MANUAL  not armed")
+    keys.send("1 + 41\r")
+    keys.until("42")
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("moving", [False, True], ids=["standing", "moving"])
+def test_a_signal_ends_the_keys_and_the_prompt(keys, number, moving):
+    keys.send("ez++")
+    keys.until("Z by 100 mm")
+    if moving:
+        keys.send(LEFT)
+        keys.until("839.")
+    keys.process.kill(number)
+    assert keys.ended() == 128 + number
+
+
+def test_a_jog_beyond_a_limit_says_which(keys):
+    keys.send("e5+++")
+    keys.until("J5 by 45 deg")
+    keys.send(LEFT)
+    keys.until("RBL411")
