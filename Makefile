@@ -58,6 +58,7 @@ bench: $(READY)
 	$(BIN)/python -m tests.bench.run
 	$(BIN)/python -m tests.bench.inertia
 	$(BIN)/python -m tests.bench.check
+	$(BIN)/python -m tests.bench.prompt
 
 $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -c 'import sys; assert sys.version_info >= (3, 11), "Python 3.11 or newer is needed"'

@@ -1,5 +1,6 @@
 """Starting the prompt: with a terminal the screen of ``prompt``, without one the script of ``script``."""
 
+import gc
 import os
 import sys
 from pathlib import Path
@@ -56,6 +57,8 @@ def _at_terminal(pendant: Pendant) -> int:
     if not sys.stdout.isatty() or os.environ.get("TERM", "dumb").lower() in ("dumb", "unknown"):
         pendant.output = AskingOutput(sys.stdin, sys.stdout, sys.stderr)
         return converse(pendant, sys.stdin, sys.stdout)
+    # what imports leave is no garbage: looking for some takes a tenth of the start; on again in ``starting``
+    gc.disable()
     # a script does not need what edits lines and paints
     from prompt_toolkit.input import create_input
     from prompt_toolkit.output import create_output

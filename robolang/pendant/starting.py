@@ -50,5 +50,6 @@ class Starting:
             self.failure = of_fault(internal(error))
         # what imports leave is never garbage: searched again and again, it would delay keys by 10 ms
         gc.freeze()
+        gc.enable()
         self._over.set()
         self._then()

@@ -20,6 +20,7 @@ from tests.bench import (
     measure,
     mutants,
     plots,
+    prompt,
     pulse_campaign,
     run,
     wrist_campaign,
@@ -31,7 +32,7 @@ from tests.fuzz import large, targets
 ROOT = Path(__file__).parents[2]
 MAKEFILE = (ROOT / "Makefile").read_text("utf-8")
 BENCHES = {
-    "make bench": (run.rows, inertia.rows, check.rows),
+    "make bench": (run.rows, inertia.rows, check.rows, prompt.rows),
     "make measured": (measure.rows,),
     "make fault-campaign": (campaign.fault_rows,),
     "make supervision-campaign": (campaign.payload_rows,),
