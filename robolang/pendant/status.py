@@ -102,8 +102,10 @@ def _items(facts: Facts) -> Iterator[_Item]:
         yield _Item(facts.starting, facts.starting)
     if facts.arm is not None:
         yield from _of_arm(facts.arm)
-    name = f"{facts.program}{' (unsaved)' if facts.unsaved else ''}"
-    place = f"{name}: {facts.place}" if facts.place else name
+    if facts.unsaved:
+        yield _Item("(unsaved)", "(unsaved)")
+    # the last one may be cut
+    place = f"{facts.program}: {facts.place}" if facts.place else facts.program
     yield _Item(place, place)
 
 
