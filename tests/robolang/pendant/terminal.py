@@ -1,6 +1,7 @@
 """A prompt in a pseudo-terminal with a model of its screen: what somebody sees and types."""
 
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -12,15 +13,41 @@ WAIT_S = 120
 """The longest wait for something new on the screen; it ends a hang and measures nothing."""
 
 
+_ESCAPES = re.compile(rb"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|[@-Z\\-_])")
+
+
+def _plain(raw: bytes) -> str:
+    """Return what is painted, without colours and places."""
+    return _ESCAPES.sub(b"", raw).decode("utf-8", "replace")
+
+
+def _in_order(shown: str, texts: tuple[str, ...]) -> bool:
+    at = 0
+    for text in texts:
+        at = shown.find(text, at)
+        if at < 0:
+            return False
+        at += len(text)
+    return True
+
+
 class Terminal:
     """``robolang repl`` with a screen; ``raw`` are the bytes that it has sent."""
 
-    def __init__(self, folder: Path, *arguments: str, columns: int = 100, rows: int = 30, **environment: str) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        *arguments: str,
+        columns: int = 100,
+        rows: int = 30,
+        physics: bool = False,
+        **environment: str,
+    ) -> None:
         env = dict(os.environ, TERM="xterm-256color", XDG_STATE_HOME=str(folder / "state"))
         env.pop("NO_COLOR", None)
         self.process = pexpect.spawn(
             COMMAND,
-            ["repl", "--no-physics", *arguments],
+            ["repl", *([] if physics else ["--no-physics"]), *arguments],
             dimensions=(rows, columns),
             env=env | environment,
             cwd=str(folder),
@@ -47,6 +74,15 @@ class Terminal:
         while not self.shows(*texts):
             self.read(f"{texts} not on the screen")
         return self.lines
+
+    def enter(self, line: str, *texts: str, then: str = "armed") -> None:
+        """Type a line, and read until its answers are there, in their order, and what comes ``then``: the status."""
+        self.send(line)
+        self.until(line)
+        start = len(self.raw)
+        self.send("\r")
+        while not _in_order(_plain(self.raw[start:]), (*texts, then)):
+            self.read(f"{line}: {texts} not shown")
 
     def until_gone(self, text: str) -> None:
         while self.shows(text):
