@@ -155,6 +155,8 @@ class Engine:
         for each in now.doing:
             self._seen.effect_done(each)
         now.doing, now.playing = (), False
+        if not now.chain:  # moves that are over hold no line that an edit must keep
+            now.places = ()
 
     def interrupted_at(self) -> MachineSnapshot | None:
         """Return the machine at the statement that is interrupted now, None: it has not gone on since."""

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import robolang.core.codes  # noqa: F401 - the codes raised here must be registered
 from robolang.analysis.analysis import Analysis
@@ -19,7 +19,7 @@ from robolang.pendant.command import Commands
 from robolang.pendant.failure import Failure, failure, of_diagnostics, of_fault
 from robolang.pendant.interrupts import Interrupts
 from robolang.pendant.keeping import Keeping
-from robolang.pendant.line_moves import LineMoves
+from robolang.pendant.line_moves import LineMoves, moved_breaks
 from robolang.pendant.lines import has_numbers, line_of
 from robolang.pendant.numbers import pose_text
 from robolang.pendant.output import Output
@@ -42,6 +42,9 @@ if TYPE_CHECKING:
     from robolang.syntax.ast import Line
     from robolang.teaching.jogging import JogRequest, JogSettings
     from runtime.motion.jog import JogPlan
+
+
+T = TypeVar("T")
 
 
 def _key(item: Diagnostic) -> tuple[str, str]:
@@ -359,39 +362,40 @@ class Pendant:
 
     def change(self, new: Documents, what: str) -> None:
         """Put changed documents in place of the present ones, and let the controller go on with them."""
-        self.desk.change(new, what)
         # documents that cannot be used are not kept: the next line would fail for the same reason
-        self._follow_or(self.desk.undo)
+        self._changed(lambda: self.desk.change(new, what), self.desk.refuse)
 
     def undo(self) -> str:
         """Take the last change of the documents back; return what it was."""
-        what = self.desk.undo()
-        self._follow_or(self.desk.redo)
-        return what
+        return self._changed(self.desk.undo, self.desk.redo)
 
     def redo(self) -> str:
         """Make the change that was taken back last again; return what it was."""
-        what = self.desk.redo()
-        self._follow_or(self.desk.undo)
-        return what
-
-    def _follow_or(self, take_back: Callable[[], str]) -> None:
-        """Let the controller follow the documents; where it cannot, take their change back and raise the reason."""
-        try:
-            self.follow()
-        except (Fault, Failure):
-            take_back()
-            self._project = None
-            raise
+        return self._changed(self.desk.redo, self.desk.undo)
 
     def save(self, path: Path | None = None, *, force: bool = False) -> tuple[Path, ...]:
         """Write what is unsaved, under another name where one is given; return the files.
 
         ``force``: also over what somebody else has changed on the disk meanwhile.
         """
-        files = self.desk.save(force=force) if path is None else self.desk.save_as(path, force=force)
-        self.follow()
-        return files
+        desk = self.desk
+        # in its layout a program has the same lines, so nothing is there to take back
+        return self._changed(
+            lambda: desk.save(force=force) if path is None else desk.save_as(path, force=force), lambda: None
+        )
+
+    def _changed(self, step: Callable[[], T], take_back: Callable[[], object]) -> T:
+        """Let controller and breakpoints follow a step; where they cannot, take it back and raise the reason."""
+        before = self.desk.analysis.program
+        result = step()
+        try:
+            self.follow()
+        except (Fault, Failure):
+            take_back()
+            self._project = None
+            raise
+        self.breaks = moved_breaks(self.breaks, before, self.desk.analysis.program, self.desk.lines)
+        return result
 
     def open(self, documents: Documents) -> None:
         """Work on other documents, in the start state of their cell."""

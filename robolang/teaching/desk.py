@@ -70,6 +70,7 @@ class Desk:
     def change(self, new: Documents, what: str) -> None:
         """Put new documents in place of the old; ``what`` names the change where it is taken back."""
         if new == self._documents:
+            self.lines = LineMap()  # of this change, and not of the one before
             return
         self._past.append(_Step(documents=self._documents, what=what))
         self._future.clear()
@@ -83,6 +84,11 @@ class Desk:
         self._future.append(_Step(documents=self._documents, what=step.what))
         self._put(step.documents)
         return step.what
+
+    def refuse(self) -> None:
+        """Take the last change back for good, as if it had not been made: ``redo`` does not bring it back."""
+        self.undo()
+        self._future.pop()
 
     def redo(self) -> str:
         """Make the change that was last taken back again and return what it was; ``Fault`` RBL715."""

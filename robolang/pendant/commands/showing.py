@@ -125,6 +125,8 @@ def _in(pendant: "Pendant", rest: str) -> None:
     if len(words) != 2 or words[1] not in ("on", "off", "auto"):
         raise misused(form, f"found '{rest}'")
     number = whole(words[0], form, "the input", 1, 1024)
+    # the executor does not see it, so the place before it is kept here
+    pendant.live.timeline.mark(f"in {rest}")
     signals.force(number, {"on": 1.0, "off": 0.0, "auto": None}[words[1]])
     # shown in words: after auto an input may change by itself
     by = "as the cell file says" if words[1] == "auto" else f"forced {words[1].upper()}"

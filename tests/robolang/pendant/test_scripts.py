@@ -242,6 +242,43 @@ def test_breakpoints_stop_the_program(folder):
         session.do("break 60 if (")
 
 
+def test_a_standing_program_is_edited(folder, tmp_path):
+    (tmp_path / "p.rbl").write_text("10 MOVE P1\n20 MOVE P2\n30 MOVE P3\n")
+    session = prompt(tmp_path / "p.rbl")
+    session.do("break 30", "step", "15 DELAY 1", "10")
+    assert session.do("list").splitlines() == ["   15 DELAY 1", "-> 20 MOVE P2", "  *30 MOVE P3"]
+    assert "30 MOVE P3" in session.do("run")
+    session.do("25 PRINT 1", "25 PRINT 1")  # the same again changes nothing
+    assert "30 MOVE P3" in session.do("where")
+    session.do("undo")
+    assert "  *30" in session.do("list").replace("->", "  ")
+    session.do("30")
+    assert session.do("breaks") == "no breakpoints\n"
+    assert session.do("run for 1").count("30") == 0
+    assert "ended" in session.do("where")
+
+
+def test_an_edit_of_what_runs_is_refused_and_nothing_is_left_of_it(folder, tmp_path):
+    (tmp_path / "p.rbl").write_text("CALL two()\nEND\nSUB two()\nx = 1\nMOVE P2\nENDSUB\n")
+    session = prompt(tmp_path / "p.rbl")
+    session.do("step into", "step into")
+    with pytest.raises(Failure, match="RBL543"):
+        session.do("edit 1:")
+    assert session.do("diff") == "nothing is unsaved\n"
+    with pytest.raises(Failure, match="RBL715"):
+        session.do("redo")
+    assert "next: MOVE P2" in session.do("where")
+
+
+def test_a_forced_input_is_taken_back(folder):
+    session = prompt(folder / "programs/shop/tend.rbl")
+    number = min(session.pendant.project.cell.inputs)
+    before = session.do(f"IN({number})")
+    session.do(f"in {number} on", f"in {number} off", f"in {number} on")
+    session.do("back 3")
+    assert session.do(f"IN({number})") == before
+
+
 def test_a_program_runs_to_a_line(folder):
     session = prompt(folder / PICK)
     assert "next: 80" in session.do("runto 80")
