@@ -19,8 +19,6 @@ class Foreground(Signals):
     def __init__(self, keyboard: Keyboard, watch: Callable[[], None] = lambda: None) -> None:
         super().__init__()
         self.keyboard, self.watch = keyboard, watch
-        self.signal = 0
-        """The signal that ends the prompt, 0 for none."""
         self.judge: Callable[[list[str]], bool] = lambda pressed: not STOPPING.isdisjoint(pressed)
         """Whether keys that were pressed since the last cycle, perhaps none, stop what runs."""
         self.stopped = False
@@ -43,30 +41,6 @@ class Foreground(Signals):
         self.stopped |= request is not None
         return request
 
-    @contextmanager
-    def ending(self) -> Iterator[None]:
-        """Let SIGTERM and SIGHUP end the prompt while nothing moves, too: ``lost``, and ``KeyboardInterrupt``."""
-
-        def end(number: int, _frame: object) -> None:
-            self.lose(number)
-            raise KeyboardInterrupt
-
-        before = {number: signal.signal(number, end) for number in (signal.SIGTERM, signal.SIGHUP)}
-        try:
-            yield
-        finally:
-            for number, handler in before.items():
-                signal.signal(number, handler)
-
     def hang_up(self) -> None:
         """Note that the terminal has gone."""
         self.lose(signal.SIGHUP)
-
-    def lose(self, number: int) -> None:
-        """Note that the prompt has to end by a signal; the first one counts."""
-        self.signal = self.signal or number
-        if not self.lost:
-            super()._ended(number, None)
-
-    def _ended(self, number: int, frame: object) -> None:
-        self.lose(number)

@@ -41,6 +41,8 @@ class Signals:
 
     def __init__(self) -> None:
         self.lost = False
+        self.signal = 0
+        """The signal that ends the prompt, 0 for none."""
         self._last_s = float("-inf")
         self._request: Interrupt | None = None
 
@@ -50,6 +52,21 @@ class Signals:
         # SIGHUP: the terminal was closed while the arm moves; without a handler the process would end in motion
         handlers = {signal.SIGINT: self._interrupted, signal.SIGTERM: self._ended, signal.SIGHUP: self._ended}
         before = {number: signal.signal(number, handle) for number, handle in handlers.items()}
+        try:
+            yield
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+    @contextmanager
+    def ending(self) -> Iterator[None]:
+        """Let SIGTERM and SIGHUP end the prompt while nothing moves, too: ``lost``, and ``KeyboardInterrupt``."""
+
+        def end(number: int, _frame: object) -> None:
+            self.lose(number)
+            raise KeyboardInterrupt
+
+        before = {number: signal.signal(number, end) for number in (signal.SIGTERM, signal.SIGHUP)}
         try:
             yield
         finally:
@@ -72,5 +89,19 @@ class Signals:
     def _interrupted(self, _number: int, _frame: object) -> None:
         self.request()
 
-    def _ended(self, _number: int, _frame: object) -> None:
-        self.lost, self._request = True, Interrupt.STOP
+    def lose(self, number: int) -> None:
+        """Note that the prompt has to end by a signal; the first one counts."""
+        self.signal = self.signal or number
+        if not self.lost:
+            self.lost, self._request = True, Interrupt.STOP
+
+    def _ended(self, number: int, _frame: object) -> None:
+        self.lose(number)
+
+
+class ScriptSignals(Signals):
+    """Signals of a script: Ctrl-C ends it too, after the stop, since nobody is there for its next line."""
+
+    def _interrupted(self, number: int, _frame: object) -> None:
+        self.request()
+        self.signal, self.lost = self.signal or number, True

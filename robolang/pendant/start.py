@@ -7,7 +7,7 @@ from pathlib import Path
 
 from robolang.pendant.assembly import COMMANDS
 from robolang.pendant.foreground import Foreground
-from robolang.pendant.interrupts import Signals
+from robolang.pendant.interrupts import ScriptSignals, Signals
 from robolang.pendant.keyboard import Keyboard
 from robolang.pendant.output import PlainOutput
 from robolang.pendant.pendant import Choice, Pendant
@@ -30,18 +30,19 @@ def start(
     # only the texts are read here: what is wrong in them is said at the first line that needs them
     desk = Desk(load_documents(program, choice.cell, choice.robot))
     somebody_types = sys.stdin.isatty()
+    interrupts = Foreground(Keyboard(sys.stdin.fileno())) if somebody_types else ScriptSignals()
     pendant = Pendant(
         desk,
         choice,
         PlainOutput(sys.stdout, sys.stderr),
         commands=COMMANDS,
-        interrupts=Foreground(Keyboard(sys.stdin.fileno())) if somebody_types else Signals(),
+        interrupts=interrupts,
         scripted=not somebody_types,
     )
     if record is not None:
         pendant.recording.begin(record, pendant)
     if not somebody_types:
-        return play(sys.stdin, pendant, keep_going=keep_going).codes
+        return _played(pendant, interrupts, keep_going=keep_going)
     ended_by = _at_terminal(pendant)
     if ended_by:
         # what is buffered for a terminal that has gone would be an error at the very end
@@ -50,6 +51,20 @@ def start(
             os.dup2(nowhere, stream.fileno())
         raise SystemExit(_BY_SIGNAL + ended_by)
     return ()
+
+
+def _played(pendant: Pendant, interrupts: Signals, *, keep_going: bool) -> tuple[str, ...]:
+    """Play the script on standard input; a signal that ends it decides the exit code."""
+    codes: tuple[str, ...] = ()
+    with interrupts.ending():
+        try:
+            codes = play(sys.stdin, pendant, keep_going=keep_going).codes
+        except KeyboardInterrupt:
+            if not interrupts.signal:  # Ctrl-C between two lines
+                raise
+    if interrupts.signal:
+        raise SystemExit(_BY_SIGNAL + interrupts.signal)
+    return codes
 
 
 def _at_terminal(pendant: Pendant) -> int:

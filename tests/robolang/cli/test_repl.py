@@ -1,8 +1,14 @@
 """``robolang repl`` as a process: exit codes of scripts, streams, what is written."""
 
+import os
+import signal
+import subprocess
+import sys
+
 import pytest
 
 from tests.robolang.cli.commands import ROOT, shell
+from tests.steps import HANG_S
 
 PICK = ROOT / "programs" / "pick_and_place.rbl"
 
@@ -50,3 +56,21 @@ def test_a_text_that_is_not_utf8_is_an_error_with_its_place(tmp_path):
     result = shell("repl", cwd=tmp_path, input=b'PRINT "\xff\xfe"\n', text=False)
     assert result.returncode in (1, 2)
     assert b"Traceback" not in result.stderr
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_stops_a_script_on_its_path_and_ends_it(tmp_path, number):
+    command = [sys.executable, "-m", "robolang", "repl", "--no-physics", "--realtime"]
+    env = {**os.environ, "PYTHONPATH": str(ROOT)}
+    process = subprocess.Popen(
+        command, cwd=tmp_path, env=env, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    process.stdin.write("PRINT 1\nDELAY 3000\nPRINT 2\n")
+    process.stdin.flush()
+    for line in process.stdout:
+        if line.startswith("> DELAY"):
+            break
+    process.send_signal(number)
+    results, problems = process.communicate(timeout=HANG_S)
+    assert process.returncode == 128 + number, problems
+    assert "2" not in results and "Traceback" not in problems
