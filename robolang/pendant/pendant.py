@@ -399,11 +399,15 @@ class Pendant:
 
     def open(self, documents: Documents) -> None:
         """Work on other documents, in the start state of their cell."""
+        # what was unsaved has been given up; what an earlier prompt left of the other program is offered
+        self._keeping.close()
         self.desk = Desk(documents)
         # lines and names of the program before mean nothing in this one
         self.breaks.clear()
         self.watches = ()
         self.start_again()
+        if not self.scripted:
+            self.offer_recovery()
 
     def check(self) -> None:
         """Raise ``Failure`` with the errors of the program and of the motion that it will make from the start state."""
