@@ -138,6 +138,17 @@ class Executor:
         return self._engine.machine.evaluator(self.world.at(target.q), target.measured)
 
     @property
+    def is_over(self) -> bool:
+        """Whether nothing of the program is left: also where a statement was fed, or the arm moved, after its end."""
+        now = self._engine.now
+        return self._engine.machine.over and not now.aside and now.phase is not Phase.BUSY
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether ``begin_again`` can put the program back before a statement that an alarm has interrupted."""
+        return self._engine.now.failed is not None
+
+    @property
     def plays(self) -> bool:
         """Whether a motion of ``play`` has not ended."""
         return self._engine.now.playing
@@ -215,6 +226,8 @@ class Executor:
         if held is not None:
             self._refuse_displaced()
         self._leaves("")
+        if now.fault is not None and now.fault.fed:
+            now.fault = None  # of a statement that was fed, and no reason why what comes now should have failed
         if held is not None:
             engine.take_up(held)
         now.resumed = now.pausing

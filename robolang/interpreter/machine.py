@@ -259,6 +259,11 @@ class Machine:
         run.cursor, run.suspended = Cursor(at=len(run.lines), ended=DONE), ()
         return replace(place, cursor=self._before(place.cursor))
 
+    @property
+    def over(self) -> bool:
+        """Whether nothing of the program comes any more, unless it is restarted or a jump is fed."""
+        return self._run.cursor.ended is not None and not self._run.suspended
+
     def restart(self) -> None:
         """Put the program before its first statement: names keep their values, its calls, loops and handlers end."""
         run = self._run

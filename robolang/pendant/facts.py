@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 from robolang.analysis.analysis import Analysis
 from robolang.pendant.known import Known
+from robolang.pendant.standing import place
 from robolang.pendant.status import ArmFacts, Facts
 
 if TYPE_CHECKING:
@@ -26,14 +27,12 @@ class Gathering:
         pendant = self._pendant
         live = pendant.built
         alarm = None if live is None else live.executor.status.alarm
-        line = pendant.current
-        next_one = pendant.desk.analysis.source.line_text(line.source_line).strip() if line else ""
         return Facts(
             mode=pendant.mode.value,
             armed=pendant.armed,
             program=pendant.desk.documents.path.name,
             unsaved=bool(pendant.desk.unsaved),
-            place=f"next {next_one}" if line else "" if live is None else "ended",
+            place="" if live is None else place(live),
             alarm="" if alarm is None else alarm.code,
             starting="" if live is not None else starting,
             arm=None if live is None else self._arm(live),

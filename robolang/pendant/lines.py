@@ -19,13 +19,32 @@ def line_of(analysis: Analysis, word: str) -> Line:
     for line in program.lines:
         # never both: in a numbered program 30 is line number 30, wherever that stands in the file
         place = line.number if numbered else line.source_line
-        if (word.isdigit() and place == int(word[:9])) or (line.label is not None and line.label.key == label):
+        if (word.isascii() and word.isdigit() and place == int(word[:9])) or (
+            line.label is not None and line.label.key == label
+        ):
             return line
     raise failure("RBL803", f"the program has no line {word}", _hint(program, word, numbered))
 
 
+def _is_number(word: str) -> bool:
+    # isdigit alone takes a superscript 2 for a digit, which int refuses
+    return word.isascii() and word.isdigit()
+
+
+def stop_of(analysis: Analysis, word: str) -> int:
+    """Return the line of the file before which a program stops that shall come to a named one: it has a statement.
+
+    A line with a comment or a label alone is no stop: the next one is. ``Failure`` RBL803 where none follows.
+    """
+    row = line_of(analysis, word).source_line
+    for line in analysis.program.statements:
+        if line.source_line >= row:
+            return line.source_line
+    raise failure("RBL803", f"no statement follows line {word}", "list shows the program")
+
+
 def _hint(program: Program, word: str, numbered: bool) -> str:
-    if word.isdigit():
+    if _is_number(word):
         rows = [line.number if numbered else line.source_line for line in program.lines]
         known = [row for row in rows if row is not None]
         if not known:

@@ -125,14 +125,15 @@ class Live:
 
     @property
     def current(self) -> Line | None:
-        """The line whose statement comes next or is interrupted; None when the program is over."""
-        if self.executor.status.state is not State.PAUSED:
+        """The line whose statement comes next or is held; None: the program is over, or what is held was typed."""
+        if self.executor.is_over:
             return None
         # None before the first statement has begun
         origin = self.executor.origin
         lines = self.project.program.statements
         if origin is None:
             return next(iter(lines), None)
+        # a typed statement has line 0, which is none of the program
         return next((line for line in lines if line.source_line == origin.line), None)
 
     def refuse_latched(self) -> None:
@@ -184,7 +185,10 @@ class Live:
 
         ``Failure`` RBL806 when it is over; ``Fault`` RBL540 where the arm has left the path of an interrupted motion.
         """
-        if self.executor.status.state is not State.PAUSED:
+        if self.executor.interrupted:
+            hint = "Type continue to begin the interrupted statement again, or back to go back by statements."
+            raise failure("RBL806", "an alarm has ended the program", hint)
+        if self.executor.is_over:
             raise failure("RBL806", "the program has ended")
         self.executor.stops_before = stops_before
         try:
@@ -194,17 +198,22 @@ class Live:
             # what is fed at the prompt is not to be stopped by the breakpoints of a run
             self.executor.stops_before = None
 
-    def take_up(self) -> None:
+    def take_up(self) -> bool:
         """Put the program back where it was interrupted: the arm on its path, or before the statement of an alarm.
 
-        ``Fault`` RBL541 where the arm is too far from the path, RBL542 where nothing was interrupted.
+        Returns False where the arm was stopped on its return. ``Fault`` RBL541 where it is too far from the path.
         """
         executor = self.executor
         if executor.displaced is not None:
             if executor.regain():
                 self.drive()
-        elif executor.status.state is not State.PAUSED:
+            # whoever stops the return does not want the program to run
+            stopped = executor.plays
+            self.drop()
+            return not stopped
+        if executor.interrupted:
             executor.begin_again()
+        return True
 
     def limit_speed(self, limited: bool) -> None:
         """Keep tool and flange under 250 mm/s in all that is planned from now on, or not."""

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 def refuse_open(files: Iterable[Path], documents: "Documents") -> None:
     """Raise ``Fault`` RBL706 for a file that is one of the documents that are open."""
     # the same file may have two names, by a link or by ./
+    files = tuple(files)
+    if any("\0" in str(path) or not str(path).isprintable() for path in files):
+        raise Fault("RBL706", "the name of the file has characters that no name has", "Give another name.")
     taken = {os.path.realpath(path) for path in documents.texts}
     for path in files:
         if os.path.realpath(path) in taken:

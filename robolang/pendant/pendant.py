@@ -25,17 +25,18 @@ from robolang.pendant.numbers import pose_text
 from robolang.pendant.output import Output
 from robolang.pendant.reading import NAME, Blank, CommandLine, LineEdit, Statements, Value, first_word, read
 from robolang.pendant.recording import Recording
+from robolang.pendant.standing import ENDED, place, text_of
 from robolang.pendant.words import values
 from robolang.syntax.keywords import near
 from robolang.teaching.desk import Desk
 from robolang.teaching.documents import Documents
+from robolang.teaching.line_map import LineMap
 from robolang.teaching.program_document import put_line
 from runtime.core.faults import Fault
 from runtime.core.tomlfile import FileFault, FilePlace
 
 if TYPE_CHECKING:
     from robolang.execution.stepping import Breakpoint, Hit, Stop
-    from robolang.interpreter.effects import Origin
     from robolang.pendant.live import Live
     from robolang.project.points import Point
     from robolang.project.project import Project
@@ -246,24 +247,21 @@ class Pendant:
         self.refuse_errors()
         self.live.refuse_latched()
         self.to_auto()
-        self.live.take_up()
-        self.run()
+        if self.live.take_up():
+            self.run()
+        else:
+            self.output.line(self.standing)
 
     def back(self, steps: int) -> None:
         """Take back so many statements, jogs and lines of the prompt."""
         live = self.live
         # documents are not taken back with it: undo does that
+        self.to_auto()
         mark = live.timeline.back(steps)
         # the cap is part of the state, and went back too
         live.limit_speed(self.mode is Mode.MANUAL)
-        self.output.line(f"back before: {mark.label or self.text_of(mark.origin)}")
+        self.output.line(f"back before: {mark.label or text_of(live, mark.origin)}")
         self.output.line(self.standing)
-
-    def text_of(self, origin: "Origin | None") -> str:
-        """Return the line of the program that an origin is in."""
-        if origin is None:
-            return "the first statement"
-        return self.row_text(origin.line)
 
     def row_text(self, row: int) -> str:
         """Return the text of a line of the file, from 1."""
@@ -277,22 +275,21 @@ class Pendant:
     @property
     def standing(self) -> str:
         """Where the program stands, as a line of text."""
-        line = self.current
         if not self.desk.analysis.program.statements:
             return "the program has no statements"
         at = f"at {self.live.seconds:.3f} s"
-        if line is None:
-            return f"the program has ended {at}"
-        # a motion that is held has begun, and what is typed meanwhile comes before its rest
-        word = "next" if self.live.executor.displaced is None else "held in"
-        return f"{at}, {word}: {self.desk.analysis.source.line_text(line.source_line).strip()}"
+        where = place(self.live)
+        return f"the program has ended {at}" if where == ENDED else f"{at}, {where}"
 
     @property
     def current(self) -> "Line | None":
-        """The line whose statement comes next, or is interrupted; None: the program is over."""
+        """The line of the edited program whose statement comes next or is held; None: none of its lines is."""
+        lines = self.desk.analysis.program.lines
         if self._live is None:
             return next(iter(self.desk.analysis.program.statements), None)
-        return self._live.current
+        line = self._live.current
+        index = None if line is None else self._moved.of(self._live.project.program.lines.index(line))
+        return None if index is None or index >= len(lines) else lines[index]
 
     @property
     def rows(self) -> int:
@@ -348,22 +345,22 @@ class Pendant:
 
     def put_line(self, number: int, text: str) -> None:
         """Put a line into the program by its number; without a text delete it."""
-        edited, _ = put_line(self.desk.documents, f"{number} {text}".rstrip(), self.desk.analysis)
-        self.edit(edited, f"line {number}" if text else f"delete line {number}")
+        edited, lines = put_line(self.desk.documents, f"{number} {text}".rstrip(), self.desk.analysis)
+        self.edit(edited, f"line {number}" if text else f"delete line {number}", lines)
 
-    def edit(self, new: Documents, what: str) -> None:
-        """Change the program, and show the errors that it then has."""
+    def edit(self, new: Documents, what: str, lines: LineMap | None = None) -> None:
+        """Change the program, and show the errors that it then has; ``lines``: where its lines went."""
         # only what is new: an error that is known already need not be shown after every line
         before = {_key(item) for item in self.desk.analysis.diagnostics}
-        self.change(new, what)
+        self.change(new, what, lines)
         found = [item for item in self.project.diagnostics if _key(item) not in before]
         if found:
             self.output.problem(of_diagnostics(found, self.project.source).text)
 
-    def change(self, new: Documents, what: str) -> None:
+    def change(self, new: Documents, what: str, lines: LineMap | None = None) -> None:
         """Put changed documents in place of the present ones, and let the controller go on with them."""
         # documents that cannot be used are not kept: the next line would fail for the same reason
-        self._changed(lambda: self.desk.change(new, what), self.desk.refuse)
+        self._changed(lambda: self.desk.change(new, what, lines), self.desk.refuse)
 
     def undo(self) -> str:
         """Take the last change of the documents back; return what it was."""
@@ -425,15 +422,16 @@ class Pendant:
         While the program has errors the controller keeps the last one without, and has the new points and frames.
         """
         self._project = None
-        lines = self._moved.then(self.desk.lines)
+        # read in any case: files that cannot be used are found by the change that makes them so
+        project, lines = self.project, self._moved.then(self.desk.lines)
         if self._live is not None:
-            if self.project.ok:
-                self._live.adopt(self.project, lines)
+            if project.ok:
+                self._live.adopt(project, lines)
             else:
                 kept = self._live.project.analysis
-                self._live.adopt(replace(self.project, analysis=kept, diagnostics=()), LineMoves())
+                self._live.adopt(replace(project, analysis=kept, diagnostics=()), LineMoves())
         # only now: a change that is refused moves no line
-        self._moved = LineMoves() if self._live is None or self.project.ok else lines
+        self._moved = LineMoves() if self._live is None or project.ok else lines
         self._keeping.keep(self.desk, self.output)
 
     # --- the controller -----------------------------------------------------------------------------------------------

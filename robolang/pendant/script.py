@@ -54,7 +54,8 @@ def _entries(lines: Iterable[str], pendant: Pendant) -> Iterator[str]:
     # lazily: a line that ends the script leaves the rest of the input unread
     gathered: list[str] = []
     for line in lines:
-        gathered.append(line.rstrip("\r\n"))
+        # a byte order mark, which some editors write before the first line
+        gathered.append(line.removeprefix("\ufeff").rstrip("\r\n"))
         text = "\n".join(gathered)
         if not is_open(text, pendant.commands):
             gathered.clear()

@@ -30,6 +30,7 @@ class _Step:
 
     documents: Documents
     what: str
+    lines: LineMap
 
 
 class Desk:
@@ -41,6 +42,7 @@ class Desk:
         self._disk: Texts = (documents.texts if documents.named else {}) if read is None else read
         self._past: deque[_Step] = deque(maxlen=MOST_STEPS)
         self._future: list[_Step] = []
+        self._dropped: list[_Step] = []
         self.analysis = Analysis(source=documents.source)
         self.lines = LineMap()
         """How the lines of the program moved in the last change, undo, redo or save."""
@@ -67,36 +69,40 @@ class Desk:
         """The files whose text differs from what was last read or saved, in the order of saving."""
         return tuple(self._changed(self._documents))
 
-    def change(self, new: Documents, what: str) -> None:
-        """Put new documents in place of the old; ``what`` names the change where it is taken back."""
+    def change(self, new: Documents, what: str, lines: LineMap | None = None) -> None:
+        """Put new documents in place of the old; ``what`` names the change where it is taken back.
+
+        ``lines``: where the lines of the program went; None: by what differs in the texts.
+        """
         if new == self._documents:
             self.lines = LineMap()  # of this change, and not of the one before
             return
-        self._past.append(_Step(documents=self._documents, what=what))
-        self._future.clear()
-        self._put(new)
+        lines = lines or lines_between(self._documents.program, new.program)
+        self._past.append(_Step(documents=self._documents, what=what, lines=lines))
+        self._dropped, self._future = self._future, []
+        self._put(new, lines)
 
     def undo(self) -> str:
         """Take the last change back and return what it was; ``Fault`` RBL715."""
         if not self._past:
             raise Fault("RBL715", "there is no change to take back")
         step = self._past.pop()
-        self._future.append(_Step(documents=self._documents, what=step.what))
-        self._put(step.documents)
+        self._future.append(_Step(documents=self._documents, what=step.what, lines=step.lines))
+        self._put(step.documents, step.lines.inverse)
         return step.what
 
     def refuse(self) -> None:
-        """Take the last change back for good, as if it had not been made: ``redo`` does not bring it back."""
+        """Take the last change back for good, as if it had not been made: what ``redo`` could bring back, it can."""
         self.undo()
-        self._future.pop()
+        self._future = self._dropped
 
     def redo(self) -> str:
         """Make the change that was last taken back again and return what it was; ``Fault`` RBL715."""
         if not self._future:
             raise Fault("RBL715", "there is no change that was taken back")
         step = self._future.pop()
-        self._past.append(_Step(documents=self._documents, what=step.what))
-        self._put(step.documents)
+        self._past.append(_Step(documents=self._documents, what=step.what, lines=step.lines))
+        self._put(step.documents, step.lines)
         return step.what
 
     def diff(self) -> str:
@@ -119,7 +125,8 @@ class Desk:
             new = as_saved(new, self.analysis)
         self.lines, self.taken_over = LineMap(), ()
         with alone(self._changed(new)):
-            found = {} if force else merges(new, self._disk)
+            # also where it is forced: points that can be put together are nobody's to lose
+            found = merges(new, self._disk)
             new = _merged(new, found) or new
             files = self._changed(new)
             if not force:
@@ -181,9 +188,9 @@ class Desk:
             if text != self._disk.get(path) and (text not in nothing or self._disk.get(path) is not None)
         }
 
-    def _put(self, new: Documents) -> None:
+    def _put(self, new: Documents, lines: LineMap | None = None) -> None:
         old = self._documents
-        self._documents, self.lines = new, lines_between(old.program, new.program)
+        self._documents, self.lines = new, lines or lines_between(old.program, new.program)
         if new.path != old.path:
             self.analysis = Analysis(source=new.source)
         elif new.program != old.program:

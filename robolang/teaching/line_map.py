@@ -20,6 +20,11 @@ class LineMap:
     removed: int = 0
     added: int = 0
 
+    @property
+    def inverse(self) -> "LineMap":
+        """Where the lines of the edited program were before the edit."""
+        return LineMap(start=self.start, removed=self.added, added=self.removed)
+
     def of(self, index: int) -> int | None:
         """Return the new index of a line, None when it was deleted."""
         if index < self.start:

@@ -22,15 +22,15 @@ _INSERT, _EDIT = "insert LINE: TEXT", "edit LINE: TEXT"
 
 def _insert(pendant: "Pendant", rest: str) -> None:
     row, text = _line_and_text(pendant, rest, _INSERT)
-    edited, _ = insert_line(pendant.desk.documents, row, text)
-    pendant.edit(edited, f"insert before line {row}")
+    edited, lines = insert_line(pendant.desk.documents, row, text)
+    pendant.edit(edited, f"insert before line {row}", lines)
 
 
 def _edit(pendant: "Pendant", rest: str) -> None:
     row, text = _line_and_text(pendant, rest, _EDIT)
     documents = pendant.desk.documents
-    edited, _ = change_line(documents, row, text) if text else delete_line(documents, row)
-    pendant.edit(edited, f"{'change' if text else 'delete'} line {row}")
+    edited, lines = change_line(documents, row, text) if text else delete_line(documents, row)
+    pendant.edit(edited, f"{'change' if text else 'delete'} line {row}", lines)
 
 
 def _line_and_text(pendant: "Pendant", rest: str, form: str) -> tuple[int, str]:
@@ -71,7 +71,7 @@ def _diff(pendant: "Pendant", rest: str) -> None:
 def _save(pendant: "Pendant", rest: str) -> None:
     rest, force = without_flag(rest, "--force")
     word, _, name = rest.partition(" ")
-    path = _program_path(name.strip()) if word.lower() == "as" and name.strip() else None
+    path = Path(name.strip()) if word.lower() == "as" and name.strip() else None
     if rest and path is None:
         raise misused(_SAVE, f"found '{rest}'")
     try:
@@ -81,12 +81,6 @@ def _save(pendant: "Pendant", rest: str) -> None:
         pendant.output.line(f"changed on the disk:\n{fault.theirs}changed here:\n{fault.ours}".rstrip("\n"))
         raise
     pendant.output.line("saved: " + ", ".join(map(str, files)) if files else "nothing is unsaved")
-
-
-def _program_path(name: str) -> Path:
-    path = Path(name)
-    # with_name and not with_suffix: a name such as station.2 has a dot of its own
-    return path if path.suffix == ".rbl" else path.with_name(path.name + ".rbl")
 
 
 def _open(pendant: "Pendant", rest: str) -> None:

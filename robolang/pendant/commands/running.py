@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from robolang.pendant.command import Command, Group
+from robolang.pendant.standing import text_of
 from robolang.pendant.words import misused, nothing, number, whole
 from runtime.core.program_line import named
 
@@ -52,7 +53,7 @@ def _where(pendant: "Pendant", rest: str) -> None:
     pendant.output.line(pendant.standing)
     # the innermost first: it is the one that step out leaves
     for call in reversed(live.executor.calls):
-        pendant.output.line(f"called from {named(call.line, call.number)}: {pendant.text_of(call)}")
+        pendant.output.line(f"called from {named(call.line, call.number)}: {text_of(live, call)}")
     far = live.executor.displaced
     if far is not None and far.is_away:
         pendant.output.line(f"a motion is held; the arm is {far} away from its path")

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from robolang.pendant.command import Command, Group, Offer
+from robolang.pendant.lines import stop_of
 from robolang.pendant.output import Column, Table
 from robolang.pendant.words import misused, values
 
@@ -37,15 +38,14 @@ def _runto(pendant: "Pendant", rest: str) -> None:
     if len(rest.split()) != 1:
         raise misused(_RUNTO, f"a line is expected, found '{rest}'")
     # breakpoints before that line stop it too
-    pendant.run(To(line=pendant.line_of(rest).source_line))
+    pendant.run(To(line=stop_of(pendant.desk.analysis, rest)))
 
 
 def _break(pendant: "Pendant", rest: str) -> None:
     word, _, more = rest.partition(" ")
     if not word:
         raise misused(_BREAK, "a line is expected")
-    line = pendant.line_of(word)
-    row, (keyword, _, condition) = line.source_line, more.strip().partition(" ")
+    row, (keyword, _, condition) = stop_of(pendant.desk.analysis, word), more.strip().partition(" ")
     match keyword.lower():
         case "":
             pendant.set_break(row)
