@@ -2,6 +2,7 @@
 
 import os
 import re
+import signal
 import sys
 from pathlib import Path
 
@@ -31,6 +32,12 @@ def _in_order(shown: str, texts: tuple[str, ...]) -> bool:
     return True
 
 
+def _with_default_signals() -> None:
+    """Let Ctrl-C and a lost terminal reach the prompt, also where the tests run in the background of a shell."""
+    for number in (signal.SIGINT, signal.SIGQUIT, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
+
+
 class Terminal:
     """``robolang repl`` with a screen; ``raw`` are the bytes that it has sent."""
 
@@ -52,6 +59,7 @@ class Terminal:
             env=env | environment,
             cwd=str(folder),
             timeout=WAIT_S,
+            preexec_fn=_with_default_signals,
         )
         self.screen = pyte.Screen(columns, rows)
         # answers of the terminal, as to where the cursor is
