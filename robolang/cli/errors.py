@@ -28,6 +28,7 @@ _OF_CODE = {
     "RBL805": DIAGNOSTICS,
     "RBL806": MOTION,
     "RBL809": MOTION,
+    "RBL811": MOTION,
     "RBL810": STORAGE,
 }
 # A group of two digits counts before one of one: 40x is about the text, the rest of 4xx a motion (decision 0005).

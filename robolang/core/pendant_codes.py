@@ -40,7 +40,7 @@ register(
         code="RBL806",
         name="program-over",
         meaning="The program has ended, so there is no statement to go on with.",
-        remedy="Type again for the start state of the cell, or back to go back by statements.",
+        remedy="Type restart to begin the program anew, again for the start state of the cell, or back.",
     ),
     Code(
         code="RBL807",
@@ -67,5 +67,11 @@ register(
         name="recording-full",
         meaning="What is recorded would be a larger program than can be read.",
         remedy="Record the next part to another file, after again.",
+    ),
+    Code(
+        code="RBL811",
+        name="typed-statement-stopped",
+        meaning="A statement that was typed was stopped before its end, and the program cannot go on before it.",
+        remedy="Type continue to end it, or back to take it back.",
     ),
 )

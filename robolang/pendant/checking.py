@@ -24,11 +24,19 @@ def errors_of(text: str, program: Analysis, variables: Iterable[Variables]) -> t
     start = end + len(before)
     source = Source(NAME, text)
     return tuple(
-        item.replaced(span=Span(item.span.start - start, item.span.end - start), source=source, fix=None)
+        _at_prompt(item, text, start).replaced(source=source, fix=None)
         for item in combined.diagnostics
         # warnings of flow are about a program that ends here, which the next line of the prompt refutes
         if item.severity is Severity.ERROR and item.span.start >= start
     )
+
+
+def _at_prompt(item: Diagnostic, text: str, start: int) -> Diagnostic:
+    """Return an error at its place in the text that was typed, and with what helps at a prompt."""
+    span = Span(item.span.start - start, item.span.end - start)
+    # the remedy for a file, to write the point into it, is not that of somebody who has the arm at hand
+    hint = f"{item.hint}; at the prompt: teach {text[span.start : span.end]}" if item.code == "RBL301" else item.hint
+    return item.replaced(span=span, hint=hint)
 
 
 def _definitions(variables: Iterable[Variables]) -> Iterator[str]:

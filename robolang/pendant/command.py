@@ -58,6 +58,23 @@ class Command:
     needs_arm: bool = True
 
 
+_ELSEWHERE = {
+    "exit": "quit",
+    "bye": "quit",
+    "q": "quit",
+    "delete": "del",
+    "remove": "del",
+    "ls": "list",
+    "abort": "reset",
+    "stop": "hold",
+    "start": "run",
+    "load": "open",
+    "next": "step",
+    "print": "help",
+}
+"""Words that other prompts have, and the command that is meant."""
+
+
 class Commands:
     """The commands of a prompt, by word."""
 
@@ -84,5 +101,7 @@ class Commands:
 
     def near(self, word: str) -> str:
         """Return the word of the command that resembles a word most, or ``""``."""
+        if word.lower() in _ELSEWHERE:
+            return _ELSEWHERE[word.lower()]
         # stricter than for keywords: many a name of a program resembles one of the short words
         return near(word, self._by_word, cutoff=0.7)

@@ -36,7 +36,7 @@ _WAITS_S = 0.5
 
 
 class KeyMode:
-    """The keys of a pendant. ``run`` returns when they are left; the settings and whether it is armed stay."""
+    """The keys of a pendant. ``run`` returns when they are left; the settings stay, and the keys are disarmed."""
 
     def __init__(self, pendant: Pendant, output: TerminalOutput, terminal: Terminal, gathering: Gathering) -> None:
         self._pendant, self._output, self._gathering = pendant, output, gathering
@@ -57,6 +57,8 @@ class KeyMode:
             while not interrupts.lost and not self._is_left():
                 self._paint()
                 interrupts.keyboard.wait(_WAITS_S)
+        # a key that is pressed after a break must not find the arm armed
+        self._pendant.armed = False
         self._panel.clear()
 
     def _is_left(self) -> bool:

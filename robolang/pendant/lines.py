@@ -11,6 +11,12 @@ def has_numbers(program: Program) -> bool:
     return any(line.number is not None for line in program.lines)
 
 
+def name_of(program: Program, row: int) -> str:
+    """Return how a line of the file is named: by its line number, in a program with line numbers."""
+    numbers = (line.number for line in program.lines if line.source_line == row and line.number is not None)
+    return str(next(numbers, row))
+
+
 def line_of(analysis: Analysis, word: str) -> Line:
     """Return the line that a word names; ``Failure`` RBL803 where there is none."""
     program = analysis.program

@@ -21,6 +21,7 @@ from robolang.execution.session import Session
 from robolang.execution.status import State, Status
 from robolang.execution.timeline import Timeline
 from robolang.interpreter.adopting import Lines
+from robolang.interpreter.effects import Origin
 from robolang.pendant.arm import ArmView, view
 from robolang.pendant.failure import failure, of_diagnostics
 from robolang.pendant.interrupts import Interrupt, Interrupts
@@ -68,6 +69,7 @@ class Live:
         self._come_to_first()
         self.timeline = Timeline(self.executor)
         self._warned = 0
+        self._named: set[str] = set()
         self.wall_s = 0.0
         """Wall time for which the arm was driven, s."""
 
@@ -180,16 +182,23 @@ class Live:
         if self.executor.plays:
             self.executor.abandon()
 
-    def go_on(self, stops_before: StopsBefore | None = None, seconds: float = math.inf) -> Status:
+    def go_on(
+        self, stops_before: StopsBefore | None = None, seconds: float = math.inf, *, typed: bool = False
+    ) -> Status:
         """Let the program go on from where it stands until a statement that ``stops_before`` names, or its end.
 
-        ``Failure`` RBL806 when it is over; ``Fault`` RBL540 where the arm has left the path of an interrupted motion.
+        ``typed``: what was typed and stopped may go on. ``Failure`` RBL811 where it may not, RBL806 when all is over;
+        ``Fault`` RBL540 where the arm has left the path of an interrupted motion.
         """
         if self.executor.interrupted:
             hint = "Type continue to begin the interrupted statement again, or back to go back by statements."
             raise failure("RBL806", "an alarm has ended the program", hint)
         if self.executor.is_over:
             raise failure("RBL806", "the program has ended")
+        origin = self.executor.origin
+        if not typed and origin is not None and origin.source is not None:
+            text = origin.source.line_text(1).strip()
+            raise failure("RBL811", f"a typed statement was stopped: {text}")
         self.executor.stops_before = stops_before
         try:
             self.executor.resume()
@@ -246,6 +255,11 @@ class Live:
         new = self.controller.warnings[self._warned :]
         self._warned += len(new)
         for warning in new:
+            # of what is typed each kind once: the same friction or missing LOAD would be named after every jog
+            typed = isinstance(warning.statement, Origin) and warning.statement.source is not None
+            if typed and warning.code in self._named:
+                continue
+            self._named |= {warning.code} if typed else set()
             self._output.problem(render(as_diagnostic(warning, Severity.WARNING), self.project.source))
 
     def _judge(self, status: Status) -> None:
@@ -254,6 +268,7 @@ class Live:
         if status.alarm is not None:
             at = f"at {status.alarm.tick * self.project.profile.tick_s:.3f} s: "
             item = as_diagnostic(status.alarm, Severity.ERROR)
-            raise of_diagnostics([item.replaced(message=at + item.message)], self.project.source)
+            hint = f"{item.hint} At the prompt: reset acknowledges the alarm."
+            raise of_diagnostics([item.replaced(message=at + item.message, hint=hint)], self.project.source)
         if status.fault is not None:
             raise of_diagnostics([fault_of(status.fault)], self.project.source)

@@ -151,7 +151,8 @@ class Pendant:
             except FileFault:
                 raise
             except Fault as fault:
-                raise FileFault(fault.code, fault.message, fault.hint, FilePlace(NAME, 1, 1, part)) from None
+                located = FileFault(fault.code, fault.message, fault.hint, FilePlace(NAME, 1, 1, part))
+                raise self._with_command(text, of_fault(located)) from None
 
     # --- by hand ------------------------------------------------------------------------------------------------------
 
@@ -189,9 +190,9 @@ class Pendant:
 
     # --- the program --------------------------------------------------------------------------------------------------
 
-    def run(self, stop: "Stop | None" = None, seconds: float = math.inf) -> None:
+    def run(self, stop: "Stop | None" = None, seconds: float = math.inf, *, typed: bool = False) -> None:
         """Let the program go on from where it stands, to a stop or a breakpoint, or to its end."""
-        from robolang.execution.stepping import StopsAt
+        from robolang.execution.stepping import StopsAt, To
 
         live = self.live
         self.refuse_errors()
@@ -200,11 +201,13 @@ class Pendant:
         stops = [stop] if stop is not None else []
         hook = StopsAt(live.executor, [*stops, *self.breaks.values()])
         try:
-            live.go_on(hook, seconds)
+            live.go_on(hook, seconds, typed=typed)
         finally:
             self.show_watches()
         if hook.last is not None:
             self._show_hit(hook.last)
+        elif isinstance(stop, To) and live.executor.is_over:
+            self.output.line(f"line {stop.line} was not reached")
         self.output.line(self.standing)
 
     def _show_hit(self, hit: "Hit") -> None:
@@ -248,7 +251,7 @@ class Pendant:
         self.live.refuse_latched()
         self.to_auto()
         if self.live.take_up():
-            self.run()
+            self.run(typed=True)
         else:
             self.output.line(self.standing)
 

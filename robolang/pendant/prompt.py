@@ -46,6 +46,8 @@ from runtime.core.faults import Fault
 
 PROMPT = "> "
 _QUIT = "quit"
+_ESC_S = 0.05
+"""How long what follows an Esc belongs to it, as in Alt-Enter, s."""
 _INDENT = "  "
 
 
@@ -133,6 +135,8 @@ class Prompt:
     def _begin(self) -> None:
         """Let signals end the prompt, and the controller start once the prompt is on the screen."""
         app = self._session.app
+        # Esc stops motion, so it is often pressed a moment late: it must not wait for the next letter and eat it
+        app.ttimeoutlen, app.timeoutlen = _ESC_S, _ESC_S
         loop = asyncio.get_running_loop()
         for number in (signal.SIGTERM, signal.SIGHUP):
             loop.add_signal_handler(number, partial(self._ended, number))

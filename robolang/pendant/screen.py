@@ -24,7 +24,7 @@ _HEAD = re.compile(r"(.*?)\b(error|warning|info) (RBL\d+)\b(.*)")
 _EXCERPT = re.compile(r"( *\d+ \| )(.*)")
 _CARETS = re.compile(r" *\| *\^+")
 _HELP = re.compile(r" *(?:help|fix|note|command): ")
-_LISTED = re.compile(r"([> ])([* ])(.*)", re.DOTALL)
+_LISTED = re.compile(r"(->|  )([* ])(.*)", re.DOTALL)
 
 _SHOWN_EACH_S = 0.1
 """A line of progress is written so often at most: a program may run a thousand statements in a second of wall time."""
@@ -82,7 +82,7 @@ class TerminalOutput:
         """Print lines of a program in their colours, an arrow before the next statement."""
         for line in listing_lines(listing):
             found = _LISTED.match(safe(line))
-            arrow, mark, rest = found.groups() if found else (" ", " ", safe(line))
+            arrow, mark, rest = found.groups() if found else ("  ", " ", safe(line))
             self._print([("class:arrow", arrow), ("class:breakpoint", mark), *coloured(rest, self._names())])
 
     def problem(self, text: str) -> None:

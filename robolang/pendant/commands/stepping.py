@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from robolang.pendant.command import Command, Group, Offer
-from robolang.pendant.lines import stop_of
+from robolang.pendant.lines import name_of, stop_of
 from robolang.pendant.output import Column, Table
 from robolang.pendant.words import misused, values
 
@@ -71,7 +71,8 @@ def _breaks(pendant: "Pendant", rest: str) -> None:
     if not pendant.breaks:
         pendant.output.line("no breakpoints")
         return
-    rows = tuple((str(row), pendant.row_text(row), stop.condition) for row, stop in sorted(pendant.breaks.items()))
+    program, stops = pendant.desk.analysis.program, sorted(pendant.breaks.items())
+    rows = tuple((name_of(program, row), pendant.row_text(row), stop.condition) for row, stop in stops)
     columns = (Column(heading="line", number=True), Column(heading="statement"), Column(heading="if"))
     pendant.output.table(Table(columns=columns, rows=rows))
 

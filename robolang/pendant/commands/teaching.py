@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, cast
 
 from robolang.pendant.command import Command, Group, Offer
 from robolang.pendant.failure import failure
+from robolang.pendant.lines import name_of
 from robolang.pendant.output import Column, Table
 from robolang.pendant.words import misused, nothing, without_flag
 
@@ -99,6 +100,7 @@ def _points(pendant: "Pendant", rest: str) -> None:
     from robolang.teaching.point_table import point_table
 
     live = pendant.live
+    program = pendant.desk.analysis.program
     found = point_table(live.around, live.q, pendant.desk.analysis)
     if not found:
         pendant.output.line("no point is taught")
@@ -118,7 +120,7 @@ def _points(pendant: "Pendant", rest: str) -> None:
     for row in found:
         margin = "" if row.posture is None else f"{row.posture.limit.margin:.1f}"
         reached = "yes" if row.fault is None else f"no: {row.fault.code}"
-        lines = ", ".join(map(str, row.lines))
+        lines = ", ".join(name_of(program, line) for line in row.lines)
         point = row.point
         rows.append(
             (point.name, row.kind, point.frame, point.tool, row.configuration, margin, reached, lines, point.comment)

@@ -23,7 +23,17 @@ EXPECTED = {"1": 1, "2": 1, "3": 2, "40": 1, "4": 3, "5": 3, "6": 2, "7": 2, "8"
 
 @pytest.mark.parametrize("code", [entry.code for entry in all_codes()])
 def test_every_registered_code_has_the_exit_code_of_its_group(code):
-    special = {"RBL301": 1, "RBL312": 4, "RBL706": 4, "RBL804": 3, "RBL805": 1, "RBL806": 3, "RBL809": 3, "RBL810": 4}
+    special = {
+        "RBL301": 1,
+        "RBL312": 4,
+        "RBL706": 4,
+        "RBL804": 3,
+        "RBL805": 1,
+        "RBL806": 3,
+        "RBL809": 3,
+        "RBL810": 4,
+        "RBL811": 3,
+    }
     assert exit_code(code) == special.get(code, EXPECTED.get(code[3:5], EXPECTED[code[3]]))
 
 

@@ -80,8 +80,24 @@ def test_a_typed_move_that_is_held_is_shown_as_typed(opened):
     session = opened(MOVES, interrupts=Requests(stop=20))
     session.do("MOVEJ JOINT(60,0,0,0,45,0)")
     assert "held in: MOVEJ JOINT(60,0,0,0,45,0)" in session.do("where")
+    with pytest.raises(Failure, match="RBL811"):
+        session.do("run")
     session.do("continue")
     assert "next: 10" in session.do("where")
+
+
+def test_a_line_that_is_not_reached_is_named(opened):
+    session = opened(MOVES)
+    session.do("runto 40")
+    assert "line 1 was not reached" in session.do("runto 10")
+
+
+@pytest.mark.parametrize(("word", "meant"), [("savee", "save"), ("exit", "quit"), ("ls", "list"), ("delete P1", "del")])
+def test_a_slip_names_the_command_that_was_meant(opened, word, meant):
+    session = opened(MOVES)
+    with pytest.raises(Failure) as caught:
+        session.do(word)
+    assert meant in caught.value.text.splitlines()[-1].split()[-1]
 
 
 def test_an_edit_of_one_of_equal_lines_moves_the_program_with_the_others(opened):
