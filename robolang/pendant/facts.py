@@ -32,7 +32,8 @@ class Gathering:
             armed=pendant.armed,
             program=pendant.desk.documents.path.name,
             unsaved=bool(pendant.desk.unsaved),
-            place="" if live is None else place(live),
+            # a program without a statement is not over: it has not been written
+            place=place(live) if live is not None and pendant.desk.analysis.program.statements else "",
             alarm="" if alarm is None else alarm.code,
             starting="" if live is not None else starting,
             arm=None if live is None else self._arm(live),

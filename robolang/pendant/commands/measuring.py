@@ -94,7 +94,7 @@ def _weigh(pendant: "Pendant", rest: str) -> None:
     live.refuse_latched()
     pendant.to_manual()
     plan = weigh_plan(live.controller)
-    pendant.output.line(f"the arm swings about its posture for {plan.seconds:.1f} s")
+    pendant.output.line(f"the arm swings about its posture for {plan.seconds:.1f} s; keep 200 mm free")
     rows = live.weigh(plan.rows)
     if rows is None:
         raise failure("RBL809", "the motion was stopped before its end, and nothing is known of the payload")
@@ -156,6 +156,7 @@ COMMANDS = (
         group=Group.TEACH,
         do=_weigh,
         offers=(Offer.LOAD,),
-        more="With a name the load is written into the cell file too, for LOAD NAME.",
+        more="Keep 200 mm free about the arm and its load: it swings about its posture. With a name the load is\n"
+        "written into the cell file too, for LOAD NAME.",
     ),
 )
