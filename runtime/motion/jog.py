@@ -51,6 +51,9 @@ LONGEST_S = 30.0
 _BETWEEN = 0.999
 """Points are timed at every fourth tick only, and are a little faster at others."""
 
+TOUCH = 5e-6
+"""How far before a limit a joint is kept that touches it on its course, rad: more than the command swings there."""
+
 LEAST = 1e-7
 """A jog of less, m or rad, is none."""
 
@@ -128,8 +131,10 @@ class JogPlanner:
         self._refuse(jog, course)
         timed = [self._timing.timed(piece, limits) for piece in course.pieces]
         rows = np.concatenate([each.q[1:] for each in timed])
-        # a joint that just touches its limit is kept there: between its samples a curve swings by 1e-6 rad
+        # a joint that just touches its limit is kept before it: between its samples a curve swings by 1e-6 rad, and
+        # between the set-points that are cut the command swings by some more, which ``given_rows`` would refuse
         lower, upper = np.minimum(self._spec.lower, q_start), np.maximum(self._spec.upper, q_start)
+        rows[:-1] = np.clip(rows[:-1], lower + TOUCH, upper - TOUCH)
         rows = np.clip(rows, lower, upper)
         slow = min((each.slow for each in timed if each.slow is not None), key=lambda each: each.share, default=None)
         goes = math.copysign(course.goes, jog.amount)

@@ -253,7 +253,7 @@ def test_keys_move_nothing_before_they_are_armed(keys):
     keys.send(LEFT)
     keys.until("830.00")
     keys.send("q")
-    keys.until("MANUAL  ARMED", "830.0")
+    keys.until("MANUAL  not armed", "830.0")
 
 
 @pytest.mark.parametrize(("columns", "rows"), [(150, 40), (80, 24), (60, 20)])
@@ -277,7 +277,7 @@ def test_a_held_key_goes_on_until_it_is_released(keys):
         keys.read()
     keys.until_gone("going on")
     keys.send("q")
-    keys.until("MANUAL  ARMED")
+    keys.until("MANUAL  not armed")
 
 
 @pytest.mark.parametrize("key", [" ", "\x1b"], ids=["space", "escape"])
@@ -288,7 +288,7 @@ def test_a_key_stops_a_jog(keys, key):
     keys.until("839.")
     keys.send(key)
     keys.send("q")
-    keys.until("MANUAL  ARMED")
+    keys.until("MANUAL  not armed")
     assert not keys.shows("740.0")
 
 
