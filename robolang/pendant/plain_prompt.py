@@ -3,11 +3,12 @@
 import signal
 from typing import TextIO
 
-from robolang.pendant.failure import Failure
+from robolang.pendant.failure import Failure, of_fault
 from robolang.pendant.foreground import Foreground
 from robolang.pendant.output import PlainOutput
 from robolang.pendant.pendant import Pendant
 from robolang.pendant.reading import is_open
+from runtime.core.faults import Fault
 
 
 class AskingOutput(PlainOutput):
@@ -28,16 +29,21 @@ def converse(pendant: Pendant, source: TextIO, shown: TextIO) -> int:
     """Let somebody work until the end; return the signal that ended it, 0 for ``quit``."""
     interrupts = pendant.interrupts
     assert isinstance(interrupts, Foreground)
-    while not pendant.ended and not interrupts.lost:
-        try:
-            text = _read(pendant, source, shown)
-            pendant.do(text or "quit")
-            if not text and not source.isatty():
-                interrupts.lose(signal.SIGHUP)
-        except Failure as failure:
-            pendant.output.problem(failure.text)
-        except KeyboardInterrupt:
-            shown.write("\n")
+    try:
+        pendant.offer_recovery()
+    except Fault as fault:  # a file that is damaged keeps nobody from working
+        pendant.output.problem(of_fault(fault).text)
+    with interrupts.ending():
+        while not pendant.ended and not interrupts.lost:
+            try:
+                text = _read(pendant, source, shown)
+                pendant.do(text or "quit")
+                if not text and not source.isatty():
+                    interrupts.lose(signal.SIGHUP)
+            except Failure as failure:
+                pendant.output.problem(failure.text)
+            except KeyboardInterrupt:
+                shown.write("\n")
     return interrupts.signal
 
 

@@ -31,7 +31,7 @@ def _log(pendant: "Pendant", rest: str) -> None:
 def _report(pendant: "Pendant", rest: str) -> None:
     path = Path(rest)
     # a slip must not cost a program or a cell: these are there only once
-    if not rest or path.suffix in (".rbl", ".toml"):
+    if not rest or path.suffix.lower() in (".rbl", ".toml"):
         raise misused(_REPORT, f"the name of a .json file is expected, found '{rest}'")
     refuse_open([path], pendant.desk.documents)
     result = _result(pendant)

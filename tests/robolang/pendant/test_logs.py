@@ -102,6 +102,7 @@ def test_mcap_is_written_by_its_name(tmp_path):
         ("report", "RBL802"),
         ("report a.rbl", "RBL802"),
         ("report a.cell.toml", "RBL802"),
+        ("report a.RBL", "RBL802"),
         ("log nowhere/a.npz", "RBL706"),
         ("report nowhere/a.json", "RBL706"),
     ],

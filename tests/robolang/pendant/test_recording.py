@@ -1,6 +1,5 @@
 """``record``: what was done at the prompt as a program that does it again."""
 
-import io
 import os
 import re
 import signal
@@ -11,26 +10,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from robolang.execution.session import Session
 from robolang.pendant import recording
 from robolang.pendant.failure import Failure
-from robolang.pendant.script import play
-from robolang.project.discovery import own_cell, points_file
+from robolang.project.discovery import own_cell
 from robolang.project.project import load_project
-from robolang.teaching.recorded import recorded
-from tests.campaign import examples
 from tests.robolang.cli.commands import ROOT, robolang, shell
-from tests.robolang.pendant.prompting import Prompted, Requests, prompt
+from tests.robolang.pendant.prompting import Requests, prompt
+from tests.robolang.pendant.recordings import PICK, done_again, same_log, statements, tolerant
 from tests.steps import HANG_S
 
 PROGRAMS = sorted((ROOT / "programs").rglob("*.rbl"))
-PICK = ROOT / "programs" / "pick_and_place.rbl"
 SHOP = ROOT / "programs" / "shop"
-OF_THE_TEXT = ("line", "number")
-"""Signals that name lines of the file."""
 
 
 @pytest.fixture(autouse=True)
@@ -39,71 +31,22 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-def _statements(path: Path | str) -> list[str]:
-    """The statements of a recording without comments."""
-    lines = [line.split("  '")[0].strip() for line in Path(path).read_text().splitlines()]
-    return [line for line in lines if line and not line.startswith("'")]
-
-
-def _ends(session: Session, log: dict) -> list[np.ndarray]:
-    """Where each motion of a session ended, in the order of their ends, rad; moves that blend have no end."""
-    moved = [run for run in session.record.statements if run.begun and run.end_tick and _stops(run)]
-    return [log["q_plan"][run.end_tick - 1] for run in moved]
-
-
 def _environment() -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "80"}
-
-
-def _stops(run) -> bool:
-    return run.effect is None or (hasattr(run.effect, "zone_mm") and run.effect.zone_mm == 0.0)
-
-
-def _done_again(prompted: Prompted, path: str, *, physics: bool = False) -> tuple[dict, dict]:
-    """Check a recording and run it; the log of the prompt and of the run, whose motions end at the same joints."""
-    robolang("check", path)
-    project = load_project(path)
-    again = Session(project, physics=physics)
-    result = again.run()
-    assert result.ok, result.alarms
-    session = prompted.pendant.live.session
-    log = session.result(0.0).log
-    found, expected = _ends(again, result.log), _ends(session, log)
-    assert len(found) == len(expected)
-    for one, other in zip(found, expected, strict=True):
-        assert np.abs(one - other).max() < 1e-9
-    return log, result.log
-
-
-def _same_log(logs: tuple[dict, dict]) -> None:
-    one, other = logs
-    differs = [name for name in one if name not in OF_THE_TEXT and one[name].tobytes() != other[name].tobytes()]
-    assert differs == []
 
 
 @pytest.mark.parametrize("program", PROGRAMS, ids=lambda path: path.stem)
 def test_a_program_is_done_again_to_the_byte(program):
     prompted = prompt(program)
     prompted.do("record again.rbl", "run")
-    _same_log(_done_again(prompted, "again.rbl"))
+    same_log(done_again(prompted, "again.rbl"))
 
 
 @pytest.mark.physics
 def test_a_program_is_done_again_with_physics():
     prompted = prompt(PICK, physics=True)
     prompted.do("record again.rbl", "auto", "MOVE P2, SPEED 150", "MOVE P5", "run")
-    _same_log(_done_again(prompted, "again.rbl", physics=True))
-
-
-def _tolerant(program: Path, folder: Path) -> Path:
-    """A copy of a program in a cell whose controller does not compare the payload: moves out of turn are no alarm."""
-    copy = folder / "source" / program.name
-    copy.parent.mkdir()
-    cell = own_cell(program) if own_cell(program).exists() else program.with_name("cell.toml")
-    copy.write_text(program.read_text())
-    points_file(copy).write_text(points_file(program).read_text())
-    own_cell(copy).write_text(f'{cell.read_text()}\n[controller.supervision]\npayload_mismatch = "off"\n')
-    return copy
+    same_log(done_again(prompted, "again.rbl", physics=True))
 
 
 MIXED = {
@@ -116,7 +59,7 @@ MIXED = {
 @pytest.mark.parametrize("program", MIXED, ids=lambda path: path.stem)
 @pytest.mark.parametrize("stop", [60, 140, 230])
 def test_statements_steps_and_stops_within_a_program_are_done_again(program, stop, folder):
-    prompted = prompt(_tolerant(program, folder), interrupts=Requests(stop=stop))
+    prompted = prompt(tolerant(program, folder), interrupts=Requests(stop=stop))
     prompted.do("record again", "auto", "run")
     live = prompted.pendant.live
     assert live.executor.status.state.value == "paused"
@@ -124,7 +67,7 @@ def test_statements_steps_and_stops_within_a_program_are_done_again(program, sto
         live.go_on(lambda _: True)
         prompted.do(line)
     prompted.do("home", "run", "HAND OFF, 0.1")
-    _done_again(prompted, "again.rbl")
+    done_again(prompted, "again.rbl")
 
 
 def test_the_values_stand_in_the_statements():
@@ -157,7 +100,7 @@ def test_the_values_stand_in_the_statements():
         "MOVEC POSE(460, -180, 840, 180, 0, 180), POSE(480, -160, 840, 180, 0, 180)",
         "DEPART 3",
     )
-    found = _statements("done.rbl")
+    found = statements("done.rbl")
     # an offset of the world, in the axes of the frame of its pose
     turned = re.fullmatch(r"MOVE POSE\(-20, -450, 700, 180, 0, 180\) \+ \((\S+), -5, 0\), TIME 2, WRIST KEEP", found[4])
     assert turned is not None
@@ -183,7 +126,7 @@ def test_the_values_stand_in_the_statements():
         "MOVEC POSE(460, -180, 840, 180, 0, 180), POSE(480, -160, 840, 180, 0, 180), SPEED 200",
         "DEPART 3, SPEED 200",
     ]
-    _same_log(_done_again(prompted, "done.rbl"))
+    same_log(done_again(prompted, "done.rbl"))
 
 
 def test_each_line_says_where_it_comes_from():
@@ -206,15 +149,15 @@ def test_a_statement_in_the_middle_of_a_wait_divides_it(folder):
     live = prompted.pendant.live
     live.go_on(seconds=0.8)
     prompted.do("LOAD (0, 0, 60), 0.8", "run")
-    first = float(_statements("done.rbl")[0].removeprefix("DELAY "))
-    statements = _statements("done.rbl")
-    assert statements[1:3] == ["OUT(1) = 1", "HAND OFF, 0.16"]
-    assert float(statements[3].removeprefix("DELAY ")) == pytest.approx(1.0 - first)
-    hand = float(statements[4].removeprefix("HAND ON, "))
-    assert statements[5] == "LOAD (0, 0, 60), 0.8"
-    assert float(statements[6].removeprefix("DELAY ")) == pytest.approx(0.8 - hand)
-    assert statements[7:] == ["MOVE P2"]
-    _same_log(_done_again(prompted, "done.rbl"))
+    first = float(statements("done.rbl")[0].removeprefix("DELAY "))
+    found = statements("done.rbl")
+    assert found[1:3] == ["OUT(1) = 1", "HAND OFF, 0.16"]
+    assert float(found[3].removeprefix("DELAY ")) == pytest.approx(1.0 - first)
+    hand = float(found[4].removeprefix("HAND ON, "))
+    assert found[5] == "LOAD (0, 0, 60), 0.8"
+    assert float(found[6].removeprefix("DELAY ")) == pytest.approx(0.8 - hand)
+    assert found[7:] == ["MOVE P2"]
+    same_log(done_again(prompted, "done.rbl"))
 
 
 ARC = "MOVEC P2 + (0, 0, 40), P2 + (0, 80, 0), SPEED 100"
@@ -232,8 +175,8 @@ def test_a_move_that_was_left_and_regained_is_done_again(folder, line):
     assert live.executor.regain()
     live.drive()
     prompted.do("run")
-    log, again = _done_again(prompted, "done.rbl")
-    found = _statements("done.rbl")
+    log, again = done_again(prompted, "done.rbl")
+    found = statements("done.rbl")
     assert len(found) == 6
     assert "JOINT(" in found[1]
     # the tool takes the same path, an arc too
@@ -250,7 +193,7 @@ def test_what_stops_short_ends_where_the_arm_came_to_rest():
         prompted.do("run")
     prompted.pendant.interrupts = prompted.pendant.live._interrupts = Requests()
     prompted.do("reset", "MOVE P4")
-    found = _statements("done.rbl")
+    found = statements("done.rbl")
     assert found[2].startswith("MOVE JOINT(")
     assert found[3:] == ["MOVE P4"]
     # the brakes have left the arm a little beyond the last command: it goes on from there
@@ -265,7 +208,7 @@ def test_what_stops_short_ends_where_the_arm_came_to_rest():
 def test_a_move_that_rests_on_its_path_ends_there():
     prompted = prompt(PICK, interrupts=Requests(stop=70))
     prompted.do("record done", "auto", "run")
-    assert _statements("done.rbl")[2].startswith("MOVE JOINT(")
+    assert statements("done.rbl")[2].startswith("MOVE JOINT(")
     result = Session(load_project("done.rbl"), physics=False).run()
     assert np.abs(result.log["q_plan"][-1] - prompted.pendant.live.q).max() < 1e-9
 
@@ -276,25 +219,25 @@ def test_what_is_taken_back_is_taken_out():
     prompted.do("record done", "auto", "OUT(1) = 1", "MOVE P2", "LOAD empty", "OUT(2) = 1")
     timeline.back(3)
     prompted.do("OUT(3) = 1")
-    assert _statements("done.rbl") == ["OUT(1) = 1", "OUT(3) = 1"]
+    assert statements("done.rbl") == ["OUT(1) = 1", "OUT(3) = 1"]
     prompted.do("run")
     timeline.back(2)
     prompted.do("")
-    assert _statements("done.rbl")[-1] == "LOAD (0, 0, 60), 0.8"
+    assert statements("done.rbl")[-1] == "LOAD (0, 0, 60), 0.8"
     timeline.back()
     prompted.do("run")
-    _same_log(_done_again(prompted, "done.rbl"))
+    same_log(done_again(prompted, "done.rbl"))
 
 
 def test_again_begins_anew_and_a_recording_that_ended_is_left():
     prompted = prompt(PICK)
     prompted.do("auto", "MOVE P2", "record done")
-    assert _statements("done.rbl") == ["MOVE P2"]
+    assert statements("done.rbl") == ["MOVE P2"]
     assert prompted.do("record").startswith("done.rbl: 1 lines")
     prompted.do("MOVE P4")
-    assert _statements("done.rbl") == ["MOVE P2"]
+    assert statements("done.rbl") == ["MOVE P2"]
     prompted.do("record done", "again")
-    assert _statements("done.rbl") == []
+    assert statements("done.rbl") == []
     robolang("check", "done.rbl")
     assert prompted.do("record", "record").endswith("nothing is recorded; record FILE begins\n")
 
@@ -310,7 +253,7 @@ def test_points_stand_beside_it_as_they_were():
         effect = replace(second.effect, target=second.effect.target.replaced(point=point.name.upper()))
         record.statements.append(replace(second, effect=effect, points=(point,)))
     prompted.do("")
-    assert _statements("done.rbl") == ["MOVE P2", "MOVE P4", "MOVE P4_2", "MOVE P2", "MOVE P2_2"]
+    assert statements("done.rbl") == ["MOVE P2", "MOVE P4", "MOVE P4_2", "MOVE P2", "MOVE P2_2"]
     points = load_project("done.rbl").points
     assert [*points.points] == ["P2", "P4", "P4_2", "P2_2"]
     assert points.get("P4_2").pose == other.pose
@@ -335,7 +278,7 @@ def test_the_cell_stands_beside_it_where_it_is_not_found_anyway(folder, where):
     prompted.do(f"record {path}", "auto", "run", "MOVE POSE(480, 0, 840, 180, 0, -135)")
     assert own_cell(path).exists() == (where not in ("folder", "built-in"))
     assert load_project(path).cell.hand.dwell == (0.3 if where.startswith("built-in") else 0.4)
-    _same_log(_done_again(prompted, str(path)))
+    same_log(done_again(prompted, str(path)))
 
 
 @pytest.mark.parametrize(
@@ -417,7 +360,7 @@ def test_a_line_that_fails_is_recorded_as_far_as_it_came_and_both_errors_are_sho
     prompted.do("record done", "auto")
     with pytest.raises(Failure):
         prompted.do("run")
-    assert _statements("done.rbl") == ["MOVE P2 + (0, 0, 0)"]
+    assert statements("done.rbl") == ["MOVE P2 + (0, 0, 0)"]
     prompted.pendant.recording._written.clear()
     Path("done.rbl").unlink()
     Path("done.rbl").mkdir()
@@ -441,98 +384,6 @@ def test_a_terminal_that_is_lost_in_motion_loses_nothing(folder):
             break
     process.send_signal(signal.SIGHUP)
     process.communicate(timeout=HANG_S)
-    found = _statements("done.rbl")
+    found = statements("done.rbl")
     assert found[:2] == ["MOVE P2", "OUT(1) = 1"]
     assert "OUT(2) = 1" not in found
-
-
-LINES = st.lists(
-    st.sampled_from(
-        [
-            "MOVE P1",
-            "MOVE P2, SPEED 300, ZONE 20",
-            "MOVE P3 + (0, 0, 30), ACCEL 40",
-            "MOVEJ P4, SPEED 35",
-            "MOVEJ JOINT(0, 60, -170, 10, -60, 5)",
-            "MOVE P5 * (0, 0, -20, 0, 0, 15), WRIST AUTO",
-            "DEPART 25",
-            "APPROACH P2, 40, TIME 3",
-            "MOVEC P2, P3, SPEED 90",
-            "FRAME POSE(5, -3, 2, 0, 0, 12)",
-            "FRAME WORLD",
-            "TOOL grip",
-            "TOOL POSE(0, 0, 80, 0, 10, 0)",
-            "LOAD empty",
-            "SPEED 120",
-            "SPEEDJ 30",
-            "OVERRIDE 60",
-            "ACCEL 70",
-            "ZONE 15",
-            "OUT(1) = 1",
-            "PULSE 2, 0.1",
-            "DELAY 0.05",
-            "HAND OFF, 0.1",
-            "WRIST KEEP",
-            "WRIST HOLD TILT",
-            "run",
-            "again",
-        ]
-    ),
-    max_size=12,
-)
-
-
-@examples(200, 6)
-@given(lines=LINES)
-def test_whatever_was_done_is_done_again(lines, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("random")
-    prompted = prompt(_tolerant(PICK, folder))
-    play(io.StringIO("\n".join(["auto", f"record {folder / 'done'}", *lines])), prompted.pendant, keep_going=True)
-    _same_log(_done_again(prompted, str(folder / "done.rbl")))
-
-
-def test_a_long_recording_is_made_in_linear_time(folder):
-    from tests.steps import assert_linear
-
-    def after(rounds: int):
-        program = folder / f"{rounds}.rbl"
-        program.write_text(f"FOR i = 1 TO {rounds}\nOUT(1) = i\nNEXT\n")
-        prompted = prompt(program)
-        prompted.do("run")
-        return prompted.pendant.live.session.record
-
-    small, large = after(200), after(400)
-    assert_linear(lambda record: recorded(record, (0.0,) * 6), small, large)
-
-
-def test_jogs_are_moves_to_where_they_ended_in_their_time():
-    prompted = prompt(PICK)
-    prompted.do("record done", "jogspeed 60", "OVERRIDE 50", "jog J3 +5", "jog X -30.5", "jogframe tool", "jog RX 12")
-    prompted.do("jog Z -20", "jog J1 -2", "auto", "MOVE P5", "DEPART 5")
-    found = _statements("done.rbl")
-    assert [re.sub(r"\(.*\)", "()", line).split(", TIME")[0] for line in found] == [
-        "MOVEJ JOINT()",
-        "MOVE JOINT()",
-        "MOVE JOINT()",
-        "MOVE JOINT()",
-        "MOVEJ JOINT()",
-        "OVERRIDE 50",
-        "MOVE P5",
-        "DEPART 5",
-    ]
-    log, again = _done_again(prompted, "done.rbl")
-    assert Path("done.rbl").read_text().splitlines()[4].endswith("' by hand: jog J3 +5")
-    # as long, but for what the arm takes to come into position
-    jogs = prompted.pendant.live.session.record.statements[:5]
-    assert [float(line.split("TIME ")[1]) for line in found[:5]] == pytest.approx([run.planned_s for run in jogs])
-    assert len(again["t"]) == pytest.approx(len(log["t"]), rel=0.1)
-
-
-def test_a_jog_that_is_stopped_is_a_move_to_where_it_came_to_rest():
-    prompted = prompt(PICK, interrupts=Requests(stop=40))
-    prompted.do("record done", "jog X -80", "auto", "DEPART 5")
-    (jog, depart) = _statements("done.rbl")
-    assert jog.startswith("MOVE JOINT(")
-    assert float(jog.split("TIME ")[1]) < 0.6
-    assert depart == "DEPART 5"
-    _done_again(prompted, "done.rbl")

@@ -233,6 +233,23 @@ def test_a_terminal_that_only_shows_lines_gets_lines(opened):
     assert b"\x1b" not in terminal.raw
 
 
+def test_a_terminal_that_only_shows_lines_offers_what_was_left(opened):
+    lost = opened(TERM="dumb")
+    lost.until(">")
+    lost.send("110\n")
+    lost.send("1 + 41\n")
+    lost.until("42")
+    lost.process.kill(signal.SIGHUP)
+    assert lost.ended() == 128 + signal.SIGHUP
+    terminal = opened(TERM="dumb")
+    terminal.until("take them? (y/n)")
+    terminal.send("y\n")
+    terminal.send("quit\n")
+    terminal.until("leave without saving? (y/n)")
+    terminal.send("y\n")
+    assert terminal.ended() == 0
+
+
 # --- keys -------------------------------------------------------------------------------------------------------------
 
 RIGHT, LEFT = "\x1b[C", "\x1b[D"
