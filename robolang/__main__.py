@@ -1,6 +1,7 @@
 """Entry point of ``robolang`` and ``python -m robolang``.
 
-``--version`` is answered here, before typer and rich are imported, and ``check`` goes without the other commands.
+``--version`` is answered here, before typer and rich are imported, and ``check`` and ``repl`` go without the
+other commands.
 ``python -m`` puts the working folder before every other place that modules are imported from; it is taken out first, so
 that a ``lark.py`` beside the programs stays a file like any other.
 """
@@ -40,17 +41,19 @@ def main() -> None:
         sys.stdout.write(f"robolang {__version__}\n")
         return
     try:
-        if sys.argv[1:2] == ["check"]:
+        if sys.argv[1:2] in (["check"], ["repl"]):
             # What imports leave is never garbage, and looking through it again and again takes a tenth of a check.
             gc.disable()
-            from robolang.cli.quick import run_app
+            from robolang.cli import quick
 
+            command = quick.COMMANDS[sys.argv[1]]()
             gc.freeze()
             gc.enable()
+            quick.run_app(command)
         else:
             from robolang.cli.main import run_app
 
-        run_app()
+            run_app()
     except KeyboardInterrupt:
         sys.exit(130)
 

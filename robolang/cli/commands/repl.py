@@ -12,7 +12,7 @@ from robolang.cli.options import Argument, CellOptions, Option, SimulationOption
 _Program = Annotated[str | None, Argument("[PROG]", "Program file (.rbl); without one, a new program.")]
 
 
-class _PromptOptions(SimulationOptions):
+class PromptOptions(SimulationOptions):
     """Which arm moves, and what becomes of the lines."""
 
     PANEL: ClassVar[str] = "Prompt"
@@ -24,7 +24,7 @@ class _PromptOptions(SimulationOptions):
     ] = False
 
 
-def repl(program: _Program, files: CellOptions, options: _PromptOptions) -> None:
+def repl(program: _Program, files: CellOptions, options: PromptOptions) -> None:
     """Jog the arm, teach points, and step through a program, forward and backward.
 
     Lines that come from a pipe or a file are carried out one after the other, and the first that fails ends the script.

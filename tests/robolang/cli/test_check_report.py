@@ -249,8 +249,9 @@ def python(code, *words, cwd):
     "words", some([("--help",), ("--no-such-option",), ("--output-format", "x"), ("bad.rbl",), ()], 0, 1, 3)
 )
 def test_the_short_way_into_it_is_the_same_command(words, folder):
-    code = "sys.argv[0] = 'robolang'; from robolang.cli.{} import run_app; run_app()"
-    short, whole = (python(code.format(name), "check", *words, cwd=folder) for name in ("quick", "main"))
+    code = "sys.argv[0] = 'robolang'; from robolang.cli import quick, main; {}"
+    calls = ("quick.run_app(quick.check())", "main.run_app()")
+    short, whole = (python(code.format(call), "check", *words, cwd=folder) for call in calls)
     assert short.returncode == whole.returncode
     assert (short.stdout, short.stderr) == (whole.stdout, whole.stderr)
     assert short.stdout + short.stderr
