@@ -43,6 +43,10 @@ class ExecutorSnapshot:
     progress: Progress
 
 
+EDIT = "edit"
+"""The label of the place before an edited program was adopted."""
+
+
 class Executor:
     """Carries a program out on a target."""
 
@@ -421,7 +425,7 @@ class Executor:
             raise ValueError("the program has errors, or is of another robot")
         edit = Edit(old=self.project, new=project, lines=lines)
         adoption = adopting.prepared(self._engine, edit)  # all that may be refused comes before the first change
-        self._leaves("edit")
+        self._leaves(EDIT)
         adopting.adopt(self._engine, adoption)
         if self._engine.trail is not None:
             self._engine.trail.adopts(edit)

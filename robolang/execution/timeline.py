@@ -74,6 +74,11 @@ class Timeline:
         """Return how many places ``back`` can reach."""
         return len(self._places) - self._here
 
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """The labels of the places that ``back`` can reach, the nearest first."""
+        return tuple(place.label for place in reversed(self._places[: len(self)]))
+
     def mark(self, label: str) -> None:
         """Keep the place where the program stands, before something is done from outside that ``label`` names.
 

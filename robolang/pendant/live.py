@@ -14,12 +14,13 @@ from robolang.execution import lowering
 from robolang.execution.alarms import as_diagnostic
 from robolang.execution.alarms import failure as fault_of
 from robolang.execution.engine import StopsBefore
+from robolang.execution.executor import EDIT
 from robolang.execution.lowering import Surroundings
 from robolang.execution.observer import Observer
 from robolang.execution.result import StatementRun
 from robolang.execution.session import Session
 from robolang.execution.status import State, Status
-from robolang.execution.timeline import Timeline
+from robolang.execution.timeline import Mark, Timeline
 from robolang.interpreter.adopting import Lines
 from robolang.interpreter.effects import Origin
 from robolang.pendant.arm import ArmView, view
@@ -31,6 +32,7 @@ from robolang.project.project import Project
 from robolang.syntax.ast import Line
 from runtime.control.clock import wall_s
 from runtime.control.controller import Controller
+from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.program_line import named
 from runtime.core.units import DEG
@@ -223,6 +225,16 @@ class Live:
         if executor.interrupted:
             executor.begin_again()
         return True
+
+    def back(self, steps: int) -> Mark:
+        """Take back so many statements, jogs and typed lines; ``Fault`` RBL545 where there are not as many.
+
+        An edit is a place of its own for the executor; at the prompt it is no step, since it is not taken back.
+        """
+        at = [index for index, label in enumerate(self.timeline.labels, 1) if label != EDIT]
+        if not steps <= len(at):
+            raise Fault("RBL545", f"{steps} steps back are more than the {len(at)} that are known")
+        return self.timeline.back(at[steps - 1])
 
     def limit_speed(self, limited: bool) -> None:
         """Keep tool and flange under 250 mm/s in all that is planned from now on, or not."""

@@ -260,7 +260,7 @@ class Pendant:
         live = self.live
         # documents are not taken back with it: undo does that
         self.to_auto()
-        mark = live.timeline.back(steps)
+        mark = live.back(steps)
         # the cap is part of the state, and went back too
         live.limit_speed(self.mode is Mode.MANUAL)
         self.output.line(f"back before: {mark.label or text_of(live, mark.origin)}")

@@ -119,6 +119,7 @@ def test_lines_are_shown_while_the_edited_program_has_errors(opened):
     session.do("runto 50", "10", "20")
     assert "next: 50 END" in session.do("where")
     assert "-> 50 END" in session.do("list")
+    assert "40 PRINT Z" in session.do("back")
 
 
 def test_redo_survives_a_change_that_is_refused(opened):
@@ -137,3 +138,12 @@ def test_odd_names_are_refused_with_a_code(opened, line):
     with pytest.raises(Failure) as caught:
         session.do(line)
     assert all(code.startswith("RBL") and code != "RBL900" for code in caught.value.codes)
+
+
+def test_an_edit_is_no_step_of_back(opened):
+    session = opened(MOVES)
+    session.do("step", "step", "teach A", "15 PRINT 1", "undo", "copy A B")
+    assert "20 MOVEJ" in session.do("back")
+    assert "10 MOVEJ" in session.do("back")
+    with pytest.raises(Failure, match="RBL545"):
+        session.do("back 3")
