@@ -28,6 +28,8 @@ _LISTED = re.compile(r"(->|  )([* ])(.*)", re.DOTALL)
 
 _SHOWN_EACH_S = 0.1
 """A line of progress is written so often at most: a program may run a thousand statements in a second of wall time."""
+_FEWEST = 3
+"""Columns that no table loses, however narrow the screen is."""
 _NARROWEST = 16
 """Columns that the last column of a table keeps at least."""
 
@@ -182,18 +184,44 @@ def safe_lines(text: str) -> list[str]:
 
 
 def _fitted(table: Table, width: int) -> Table:
+    """Return a table that fits into a width: without empty columns where it is too wide, then without its last ones.
+
+    Of the columns that are left the last one, where it is text, is broken into several lines. A table of up to
+    ``_FEWEST`` columns keeps them all.
+    """
+    if _width(table) >= width:
+        filled = [any(row[at] for row in table.rows) for at in range(len(table.columns))]
+        table = _only(table, [at for at, some in enumerate(filled) if some]) if any(filled) else table
+    while len(table.columns) > _FEWEST and _width(table) - _widths(table)[-1] + _NARROWEST > width:
+        table = _only(table, list(range(len(table.columns) - 1)))
+    return _broken(table, width)
+
+
+def _broken(table: Table, width: int) -> Table:
     """Return a table whose last column, where it is text, is broken so that its lines fit into a width."""
-    if not table.rows or table.columns[-1].number:
+    if not table.rows or table.columns[-1].number or _width(table) < width:
         return table
-    columns = [max(map(len, column)) for column in zip(*table.rows, strict=True)]
-    heads = [max(len(column.heading), len(column.unit)) for column in table.columns]
-    before = sum(map(max, columns[:-1], heads[:-1])) + 2 * (len(columns) - 1)
-    room = max(_NARROWEST, width - before - 1)
-    if columns[-1] <= room:
-        return table
+    room = max(_NARROWEST, width - 1 - (_width(table) - _widths(table)[-1]))
     rows: list[tuple[str, ...]] = []
     for row in table.rows:
         first, *more = textwrap.wrap(row[-1], room) or [""]
         rows.append((*row[:-1], first))
         rows += [(*("" for _ in row[:-1]), line) for line in more]
     return Table(columns=table.columns, rows=tuple(rows))
+
+
+def _only(table: Table, at: list[int]) -> Table:
+    """Return a table with some of its columns."""
+    rows = tuple(tuple(row[index] for index in at) for row in table.rows)
+    return Table(columns=tuple(table.columns[index] for index in at), rows=rows, marks=table.marks)
+
+
+def _widths(table: Table) -> list[int]:
+    """Return the width of each column."""
+    cells = [[column.heading, column.unit] for column in table.columns]
+    return [max(map(len, [*own, *(row[at] for row in table.rows)])) for at, own in enumerate(cells)]
+
+
+def _width(table: Table) -> int:
+    """Return the width of a table, with two blanks between its columns."""
+    return sum(_widths(table)) + 2 * (len(table.columns) - 1)

@@ -220,6 +220,16 @@ def test_colours_are_there(terminal):
     assert COLOURS.search(terminal.raw)
 
 
+@pytest.mark.parametrize(("columns", "kept"), [(150, "comment"), (80, "used in lines"), (60, "configuration")])
+def test_a_table_fits_on_its_screen(opened, columns, kept):
+    terminal = opened(columns=columns)
+    terminal.until(READY)
+    terminal.enter("points", "P1", "P5")
+    rows = [at for at, line in enumerate(terminal.lines) if re.match(r"P\d ", line)]
+    assert rows == list(range(rows[0], rows[0] + 5))  # one line a point
+    assert terminal.shows(kept)
+
+
 def test_a_terminal_that_only_shows_lines_gets_lines(opened):
     terminal = opened(TERM="dumb")
     terminal.until(">")
