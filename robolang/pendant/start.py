@@ -14,7 +14,8 @@ from robolang.pendant.pendant import Choice, Pendant
 from robolang.pendant.plain_prompt import AskingOutput, converse
 from robolang.pendant.script import play
 from robolang.teaching.desk import Desk
-from robolang.teaching.documents import load_documents
+from robolang.teaching.documents import Documents, load_documents
+from runtime.core.tomlfile import FileFault
 
 _BY_SIGNAL = 128
 """Added to the number of a signal in the exit code."""
@@ -28,7 +29,7 @@ def start(
     ``program`` None: a new program without a name. ``Fault`` and ``FileFault`` for files that cannot be used.
     """
     # only the texts are read here: what is wrong in them is said at the first line that needs them
-    desk = Desk(load_documents(program, choice.cell, choice.robot))
+    desk = Desk(_documents(program, choice))
     somebody_types = sys.stdin.isatty()
     interrupts = Foreground(Keyboard(sys.stdin.fileno())) if somebody_types else ScriptSignals()
     pendant = Pendant(
@@ -51,6 +52,17 @@ def start(
             os.dup2(nowhere, stream.fileno())
         raise SystemExit(_BY_SIGNAL + ended_by)
     return ()
+
+
+def _documents(program: Path | None, choice: Choice) -> Documents:
+    """Read what is edited; ``FileFault`` for files that cannot be used."""
+    try:
+        return load_documents(program, choice.cell, choice.robot)
+    except FileFault as fault:
+        if fault.code != "RBL701":
+            raise
+        hint = f"{fault.hint} robolang repl without a name begins a new program, and save as NAME names it."
+        raise FileFault(fault.code, fault.message, hint, fault.place) from None
 
 
 def _played(pendant: Pendant, interrupts: Signals, *, keep_going: bool) -> tuple[str, ...]:
