@@ -1,0 +1,1 @@
+"""What robots, hands and cells look like: shapes from joint frames and dimensions, for pictures alone."""
