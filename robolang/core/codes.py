@@ -7,6 +7,7 @@ code keeps its number and its meaning for ever; a message may be reworded. Calle
 
 import robolang.core.pendant_codes
 import robolang.core.run_codes  # noqa: F401 - registers 2xx, 50x and 53x
+import runtime.appearance.codes
 import runtime.core.tomlfile
 import runtime.motion.codes
 import runtime.pulses.codes

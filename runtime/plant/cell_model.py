@@ -13,9 +13,9 @@ import mujoco
 import numpy as np
 
 from runtime.cell.cell import CellSpec
+from runtime.cell.gripper import FINGERS
 from runtime.core.frames import Array
 from runtime.plant.gears import elastic_axes
-from runtime.plant.hand import FINGERS
 from runtime.plant.mjcf import build_mjcf, gear_joint, joint_name, own_pair_name, own_pairs
 from runtime.robot.model.spec import RobotSpec
 

@@ -9,31 +9,18 @@ estimate, since no hand of this kind is published with its inertia. Frames: flan
 import numpy as np
 
 from runtime.cell.cell import HandSpec
-from runtime.core.frames import Array, pose
+from runtime.cell.gripper import FINGERS, finger_sign, palm_box
+from runtime.core.frames import Array
 from runtime.core.linear import dot, matmul
 from runtime.robot.model.spec import Body
 
-FINGERS = ("left", "right")
 FINGER_SHARE = 0.125
-PALM_THICKNESS = 0.02
-
-
-def finger_sign(side: str) -> float:
-    """Return the direction along the tool's y axis in which a finger opens."""
-    return 1.0 if side == "left" else -1.0
 
 
 def box_inertia(mass: float, size: Array) -> Array:
     """Return the inertia (3, 3) kg m2 of a uniform box of ``size`` (3,) m about its centre."""
     squares = np.asarray(size, dtype=np.float64) ** 2
     return np.diag(mass / 12.0 * (squares.sum() - squares))
-
-
-def palm_box(hand: HandSpec) -> tuple[Array, Array]:
-    """Return the size (3,) m of the palm and its place X_tool_palm (4, 4): its face is a finger's length back."""
-    width, thickness, _ = hand.pad
-    size = np.array([2.0 * width, hand.stroke + 2.0 * thickness, PALM_THICKNESS])
-    return size, pose([0.0, 0.0, -hand.finger_length - PALM_THICKNESS / 2.0])
 
 
 def finger_body(hand: HandSpec, side: str) -> Body:

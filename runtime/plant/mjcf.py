@@ -41,11 +41,12 @@ from collections.abc import Iterable
 import numpy as np
 
 from runtime.cell.cell import CellSpec, HandSpec, ObstacleSpec, PartSpec
+from runtime.cell.gripper import FINGERS, finger_sign, palm_box
 from runtime.core.decompositions import symmetric_eigen
 from runtime.core.frames import Array, pose
 from runtime.core.linear import matmul, norm
 from runtime.core.units import GRAVITY
-from runtime.plant.hand import FINGERS, box_inertia, finger_body, finger_sign, palm_body, palm_box
+from runtime.plant.hand import box_inertia, finger_body, palm_body
 from runtime.robot.model.spec import AxisSpec, Body, RobotSpec
 
 # who meets whom: a geom collides where its contype meets the other's conaffinity, in either order

@@ -23,12 +23,12 @@ import mujoco
 import numpy as np
 
 from runtime.cell.cell import CellSpec
+from runtime.cell.gripper import FINGERS
 from runtime.core.frames import Array, pose
 from runtime.core.linear import dot, norm
 from runtime.core.state import State
 from runtime.plant.cell_model import CellModel
 from runtime.plant.gears import elastic_axes, physics_steps
-from runtime.plant.hand import FINGERS
 from runtime.plant.mjcf import friction_bias
 from runtime.plant.plant import HandState
 from runtime.plant.touches import Bodies, Pair

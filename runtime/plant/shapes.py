@@ -11,9 +11,9 @@ import mujoco
 import numpy as np
 
 from runtime.cell.cell import CellSpec
+from runtime.cell.gripper import FINGERS, finger_sign
 from runtime.core.frames import Array, pose
 from runtime.plant.cell_model import CLEARANCE, CellModel
-from runtime.plant.hand import FINGERS, finger_sign
 from runtime.plant.touches import Pair
 from runtime.robot.model.spec import RobotSpec
 

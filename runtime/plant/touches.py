@@ -23,12 +23,12 @@ from itertools import chain
 
 import numpy as np
 
+from runtime.cell.gripper import FINGERS
 from runtime.core.frames import Array, rotation_angle
 from runtime.core.linear import matmul, norm
 from runtime.core.program_line import ProgramLine, named
 from runtime.core.state import State
 from runtime.core.units import DEG, MM
-from runtime.plant.hand import FINGERS
 
 Pair = tuple[str, str]
 NOTICED = 0.5e-3

@@ -9,9 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolang.project.builtin import cell_text
+from runtime.cell.gripper import FINGERS
 from runtime.core.frames import frozen, pose_from_xyzrpy, rotation_from_rpy, skew
 from runtime.core.tomlfile import Source
-from runtime.plant.hand import FINGERS, finger_body, hand_body, palm_body
+from runtime.plant.hand import finger_body, hand_body, palm_body
 from runtime.plant.mjcf import build_mjcf, friction_bias, quaternion
 from runtime.robot.model.spec import inertia_defect
 from tests.runtime.from_texts import parse_cell

@@ -10,10 +10,11 @@ import pytest
 
 from robolang.project.builtin import cell_text
 from runtime.cell.cell import CellSpec
+from runtime.cell.gripper import FINGERS
 from runtime.core.frames import Array, inverse, pose_from_xyzrpy, rotation_angle
 from runtime.core.tomlfile import Source
 from runtime.core.units import DEG
-from runtime.plant.hand import FINGERS, box_inertia, hand_body
+from runtime.plant.hand import box_inertia, hand_body
 from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.arm_model import ArmModel, spec_rotors

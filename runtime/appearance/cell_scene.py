@@ -1,0 +1,46 @@
+"""The scene of a cell: robot, hand, obstacles, parts, frames and taught points."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from runtime.appearance.arm import arm_bodies, arm_shapes, reach_of
+from runtime.appearance.colours import colours_of
+from runtime.appearance.hand import hand_bodies, hand_shapes
+from runtime.appearance.scene import Mark, Scene
+from runtime.appearance.surroundings import obstacle_bodies, obstacle_shapes, part_bodies, part_shapes
+from runtime.cell.cell import CellSpec
+from runtime.core.frames import Array
+
+NO_POINTS: Mapping[str, Array] = MappingProxyType({})
+
+
+def scene_of(cell: CellSpec, points: Mapping[str, Array] = NO_POINTS) -> Scene:
+    """Return what a cell looks like; ``points`` are taught points by name, X_world_point (4, 4).
+
+    Bodies: ``base``, ``link1`` to ``linkN``, ``flange``, ``tool``, ``finger_left``, ``finger_right``, ``part:NAME`` and
+    ``obstacle:NAME``.
+    """
+    spec = cell.robot
+    return Scene(
+        robot=spec.name,
+        reach=reach_of(spec),
+        bodies=(
+            *arm_bodies(spec),
+            *hand_bodies(cell.hand),
+            *part_bodies(cell.parts),
+            *obstacle_bodies(cell.obstacles),
+        ),
+        shapes=(
+            *arm_shapes(spec),
+            *hand_shapes(cell.hand),
+            *part_shapes(cell.parts),
+            *obstacle_shapes(cell.obstacles),
+        ),
+        colours=colours_of(spec.name),
+        frames=_marks(cell.frames),
+        points=_marks(points),
+    )
+
+
+def _marks(places: Mapping[str, Array]) -> tuple[Mark, ...]:
+    return tuple(Mark(name=name, X_world_mark=X) for name, X in places.items())

@@ -1,0 +1,74 @@
+"""What stands around a robot: obstacles, tables on legs, and parts."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from runtime.appearance.scene import SceneBody, SceneJoint, Shape
+from runtime.appearance.solids import box
+from runtime.cell.cell import ObstacleSpec, PartSpec
+from runtime.core.frames import pose
+
+LEG = 0.045
+"""Edge of a table's leg, m."""
+LEG_INSET = 0.05
+"""Distance of the middle of a leg from the edges of its table, m."""
+LOWEST_TABLE, THICKEST_TABLE = 0.15, 0.15
+"""A box whose underside is higher than the one, and which is thinner than the other, m, is the top of a table."""
+LEVEL = 0.999
+"""Cosine of how far a top may lean and still stand on legs."""
+
+
+def obstacle_bodies(obstacles: Sequence[ObstacleSpec]) -> list[SceneBody]:
+    """Return a body for each obstacle, fixed in the world."""
+    return [
+        SceneBody(name=_name(each), parent=None, X_parent_body=each.X_world_obstacle)  # its middle
+        for each in obstacles
+    ]
+
+
+def obstacle_shapes(obstacles: Sequence[ObstacleSpec]) -> list[Shape]:
+    """Return the box of each obstacle, and legs to the floor where it is a table."""
+    return [shape for each in obstacles for shape in _obstacle(each)]
+
+
+def _name(obstacle: ObstacleSpec) -> str:
+    return f"obstacle:{obstacle.name}"
+
+
+def _obstacle(obstacle: ObstacleSpec) -> list[Shape]:
+    name, size = _name(obstacle), obstacle.size
+    under = float(obstacle.X_world_obstacle[2, 3] - size[2] / 2.0)
+    level = obstacle.X_world_obstacle[2, 2] >= LEVEL
+    if not (level and under >= LOWEST_TABLE and size[2] <= THICKEST_TABLE and min(size[:2]) >= 4.0 * LEG_INSET):
+        return [box(name, np.eye(4), size, "obstacle", obstacle.name)]
+    x, y = size[0] / 2.0 - LEG_INSET, size[1] / 2.0 - LEG_INSET
+    z = -(size[2] + under) / 2.0
+    legs = [
+        box(name, pose([sx * x, sy * y, z]), (LEG, LEG, under), "leg", "leg")
+        for sx in (-1.0, 1.0)
+        for sy in (-1.0, 1.0)
+    ]
+    return [box(name, np.eye(4), size, "table", obstacle.name), *legs]
+
+
+def part_bodies(parts: Sequence[PartSpec]) -> list[SceneBody]:
+    """Return a body for each part: where it stands at first, and with a joint by which its poses are its own."""
+    return [
+        SceneBody(
+            name=_part_name(part),
+            parent=None,
+            X_parent_body=part.X_world_part,
+            joint=SceneJoint(kind="prismatic", axis=np.array([0.0, 0.0, 1.0]), source="part", index=index),
+        )
+        for index, part in enumerate(parts)
+    ]
+
+
+def part_shapes(parts: Sequence[PartSpec]) -> list[Shape]:
+    """Return the box of each part."""
+    return [box(_part_name(part), np.eye(4), part.size, "part", part.name) for part in parts]
+
+
+def _part_name(part: PartSpec) -> str:
+    return f"part:{part.name}"

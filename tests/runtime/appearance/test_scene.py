@@ -1,0 +1,174 @@
+"""Scenes: the bodies and shapes of a cell, their JSON, and what is refused of a JSON that anybody may have written."""
+
+import copy
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from runtime.appearance.cell_scene import scene_of
+from runtime.appearance.scene import ROLES, Mesh, Scene, SceneBody, SceneJoint, Shape
+from runtime.core.faults import Fault
+from runtime.core.frames import pose
+from tests.runtime.from_texts import load_cell
+
+CELL = load_cell(Path("programs/pick_and_place.cell.toml"))
+TRIANGLE = Mesh(vertices=np.eye(3), faces=np.array([[0, 1, 2]], dtype=np.int32))
+SCENE = Scene(
+    robot="two",
+    reach=1.5,
+    bodies=(
+        SceneBody(name="base", parent=None, X_parent_body=np.eye(4)),
+        SceneBody(
+            name="arm",
+            parent="base",
+            X_parent_body=pose([0.0, 0.0, 0.1]),
+            joint=SceneJoint(kind="revolute", axis=np.array([0.0, 0.0, 1.0]), source="axis", index=0),
+        ),
+    ),
+    shapes=(
+        Shape(body="arm", kind="box", X_body_shape=np.eye(4), size=(0.1, 0.2, 0.3), role="body", name="<b>"),
+        Shape(body="base", kind="mesh", X_body_shape=np.eye(4), size=(), role="cover", mesh="m"),
+    ),
+    colours=dict.fromkeys(ROLES, "#102030"),
+    meshes={"m": TRIANGLE},
+)
+
+
+def test_a_scene_comes_back_from_its_json():
+    value = json.loads(json.dumps(SCENE.as_json(), allow_nan=False))
+    again = Scene.from_json(value)
+    assert again.as_json() == value
+    assert (again.bodies[1].parent, again.bodies[1].joint.index, again.shapes[0].size) == ("base", 0, (0.1, 0.2, 0.3))
+    assert again.meshes["m"].faces.tolist() == [[0, 1, 2]]
+
+
+def test_the_scene_of_a_cell_names_its_bodies_parents_first():
+    scene = scene_of(CELL, {"P1": pose([0.1, 0.2, 0.3])})
+    names = [body.name for body in scene.bodies]
+    assert names == [
+        "base",
+        *(f"link{k}" for k in range(1, 7)),
+        "flange",
+        "tool",
+        "finger_left",
+        "finger_right",
+        "part:part",
+        "obstacle:table",
+    ]
+    assert all(body.parent is None or body.parent in names[:k] for k, body in enumerate(scene.bodies))
+    sources = [(body.joint.source, body.joint.index) for body in scene.bodies if body.joint]
+    assert sources == [*(("axis", k) for k in range(6)), ("finger", 0), ("finger", 1), ("part", 0)]
+    assert [mark.name for mark in scene.points] == ["P1"]
+    value = json.loads(json.dumps(scene.as_json()))
+    assert Scene.from_json(value).as_json() == value
+
+
+def _set(path, value):
+    def change(scene):
+        *folders, last = path
+        for each in folders:
+            scene = scene[each]
+        scene[last] = value
+
+    return change
+
+
+def _unset(*path):
+    def change(scene):
+        *folders, last = path
+        for each in folders:
+            scene = scene[each]
+        del scene[last]
+
+    return change
+
+
+IDENTITY = np.eye(4).tolist()
+TORN = [[2.0 * x for x in row] for row in IDENTITY]
+MIRROR = np.diag([1.0, 1.0, -1.0, 1.0]).tolist()
+LONG = "x" * 201
+
+
+@pytest.mark.parametrize(
+    ("change", "place"),
+    [
+        (_unset("bodies"), "scene"),
+        (_set(["bodies"], {}), "scene.bodies"),
+        (_set(["bodies"], [{}] * 1001), "scene.bodies"),
+        (_set(["bodies", 0], 7), "scene.bodies[0]"),
+        (_set(["bodies", 0, "name"], LONG), "scene.bodies[0].name"),
+        (_set(["bodies", 0, "name"], None), "scene.bodies[0].name"),
+        (_set(["bodies", 1, "name"], "base"), "scene.bodies[1]"),
+        (_set(["bodies", 0, "parent"], "arm"), "scene.bodies[0].parent"),
+        (_set(["bodies", 1, "parent"], "arm"), "scene.bodies[1].parent"),
+        (_set(["bodies", 1, "X"], IDENTITY[:3]), "scene.bodies[1].X"),
+        (_set(["bodies", 1, "X"], TORN), "scene.bodies[1].X"),
+        (_set(["bodies", 1, "X"], MIRROR), "scene.bodies[1].X"),
+        (_set(["bodies", 1, "X", 0, 3], float("nan")), "scene.bodies[1].X"),
+        (_set(["bodies", 1, "X", 0, 3], 1e5), "scene.bodies[1].X"),
+        (_set(["bodies", 1, "X", 0, 3], "1"), "scene.bodies[1].X"),
+        (_set(["bodies", 1, "X", 0, 3], True), "scene.bodies[1].X"),
+        (_set(["bodies", 1, "X", 0, 3], 10**400), "scene.bodies[1].X"),
+        (_set(["bodies", 1, "X", 0], [1.0]), "scene.bodies[1].X"),
+        (_set(["bodies", 1, "X", 3, 0], 0.5), "scene.bodies[1].X"),
+        (_set(["bodies", 1, "joint", "kind"], "ball"), "scene.bodies[1].joint.kind"),
+        (_set(["bodies", 1, "joint", "axis"], [0, 0, 0.5]), "scene.bodies[1].joint.axis"),
+        (_set(["bodies", 1, "joint", "axis"], [0, 0, float("nan")]), "scene.bodies[1].joint.axis"),
+        (_set(["bodies", 1, "joint", "source"], "wind"), "scene.bodies[1].joint.source"),
+        (_set(["bodies", 1, "joint", "index"], -1), "scene.bodies[1].joint.index"),
+        (_set(["bodies", 1, "joint", "index"], True), "scene.bodies[1].joint.index"),
+        (_set(["bodies", 1, "joint", "index"], 0.0), "scene.bodies[1].joint.index"),
+        (_set(["shapes", 0, "body"], "leg"), "scene.shapes[0].body"),
+        (_set(["shapes", 0, "kind"], "torus"), "scene.shapes[0].kind"),
+        (_set(["shapes", 0, "size"], [1.0]), "scene.shapes[0].size"),
+        (_set(["shapes", 0, "size"], [1.0, 1.0, -1.0]), "scene.shapes[0].size"),
+        (_set(["shapes", 0, "size"], [1.0, 1.0, float("nan")]), "scene.shapes[0].size"),
+        (_set(["shapes", 0, "size", 0], float("inf")), "scene.shapes[0].size"),
+        (_set(["shapes", 0, "colour"], "red"), "scene.shapes[0].colour"),
+        (_set(["shapes", 0, "mesh"], "m"), "scene.shapes[0].mesh"),
+        (_set(["shapes", 1, "mesh"], None), "scene.shapes[1].mesh"),
+        (_set(["shapes", 1, "mesh"], "other"), "scene.shapes[1].mesh"),
+        (_set(["shapes", 1, "mesh"], []), "scene.shapes[1].mesh"),
+        (_set(["colours", "body"], "red"), "scene.colours.body"),
+        (_set(["colours", "body"], "#10203g"), "scene.colours.body"),
+        (_set(["colours", "body"], "#102030;x"), "scene.colours.body"),
+        (_unset("colours", "body"), "scene.colours"),
+        (_set(["colours"], [1]), "scene.colours"),
+        (_set(["meshes", "m", "faces"], [[0, 1, 3]]), "scene.meshes.m.faces"),
+        (_set(["meshes", "m", "faces"], [[0, 1, -1]]), "scene.meshes.m.faces"),
+        (_set(["meshes", "m", "faces"], [[0, 1, 0.5]]), "scene.meshes.m.faces"),
+        (_set(["meshes", "m", "faces"], [[0, 1]]), "scene.meshes.m.faces"),
+        (_set(["meshes", "m", "vertices"], []), "scene.meshes.m.vertices"),
+        (_set(["meshes"], {LONG: {}}), "a name in scene.meshes"),
+        (_set(["reach"], 0.0), "scene.reach"),
+        (_set(["reach"], float("nan")), "scene.reach"),
+        (_set(["reach"], None), "scene.reach"),
+        (_set(["frames"], [{"name": "F", "X": TORN}]), "scene.frames[0].X"),
+        (_set(["points"], "P1"), "scene.points"),
+    ],
+)
+def test_a_scene_that_is_none_is_refused_at_its_place(change, place):
+    value = copy.deepcopy(SCENE.as_json())
+    change(value)
+    with pytest.raises(Fault) as refused:
+        Scene.from_json(value)
+    assert refused.value.code == "RBL833"
+    assert refused.value.message.startswith(f"{place} ")
+
+
+@pytest.mark.parametrize("value", [None, 7, "scene", [], {}])
+def test_what_is_no_object_is_no_scene(value):
+    with pytest.raises(Fault) as refused:
+        Scene.from_json(value)
+    assert refused.value.code == "RBL833"
+
+
+def test_more_vertices_than_a_picture_can_have_are_refused():
+    value = SCENE.as_json()
+    half = [[0.0, 0.0, 0.0]] * 150_001
+    value["meshes"] = {name: {"vertices": half, "faces": [[0, 1, 2]]} for name in ("m", "n")}
+    with pytest.raises(Fault) as refused:
+        Scene.from_json(value)
+    assert (refused.value.code, refused.value.message.split(" ")[0]) == ("RBL833", "scene.meshes.n")
