@@ -6,7 +6,8 @@ code keeps its number and its meaning for ever; a message may be reworded. Calle
 """
 
 import robolang.core.pendant_codes
-import robolang.core.run_codes  # noqa: F401 - registers 2xx, 50x and 53x
+import robolang.core.run_codes
+import robolang.core.view_codes  # noqa: F401
 import runtime.appearance.codes
 import runtime.core.tomlfile
 import runtime.motion.codes

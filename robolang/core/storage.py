@@ -289,7 +289,7 @@ def write_json(path: Path, value: object) -> None:
 
     A file name that is not UTF-8 is kept as escapes, so that the report of a run is never lost for its name.
     """
-    text = json.dumps(_strict(value), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    text = json.dumps(strict(value), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
     write_atomic(path, lambda stream: stream.write(text.encode("utf-8", "backslashreplace")))
 
 
@@ -324,9 +324,10 @@ def _umask() -> int:
     return mask
 
 
-def _strict(value: object) -> object:
+def strict(value: object) -> object:
+    """Return a value as strict JSON has it: a number that is not finite becomes None."""
     if isinstance(value, dict):
-        return {key: _strict(item) for key, item in value.items()}
+        return {key: strict(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_strict(item) for item in value]
+        return [strict(item) for item in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,85 @@
+"""One HTML file with everything in it: skeleton, style, script and the runs that it shows.
+
+The browser loads nothing else, and the policy in the file forbids it to: of scripts and styles only those whose hash it
+names, no connection, no frame, no form. What a user has written is never in the HTML: it is in the runs, in base64,
+and the script puts it into the page as text.
+"""
+
+import base64
+import hashlib
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+from typing import IO
+
+from robolang.core.storage import write_atomic
+from runtime.core.faults import Fault
+
+_MARK = re.compile(r"\{\{(CSP|CSS|RUNS|JS)\}\}")
+_MARKS = ["CSP", "CSS", "RUNS", "JS"]
+# Each of them would end the element around it, or be another text in a browser than the one whose hash is named.
+_ENDING = re.compile(r"</script|<script|</style|<!--|[\r\0]", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bundle:
+    """What all pages have: the ``skeleton`` with its four marks in this order, the ``script`` and the ``style``."""
+
+    skeleton: str
+    script: str
+    style: str
+
+    def __post_init__(self) -> None:
+        if _MARK.findall(self.skeleton) != _MARKS:
+            raise _incomplete("page.html has other marks than {{CSP}}, {{CSS}}, {{RUNS}} and {{JS}}, once each")
+        for name, text in (("viewer.js", self.script), ("viewer.css", self.style)):
+            if found := _ENDING.search(text):
+                raise _incomplete(f"{name} has {found[0]!r} in it, which a page cannot have there")
+
+    @staticmethod
+    def installed() -> "Bundle":
+        """Return that of this installation; ``Fault`` RBL825."""
+        folder = resources.files("robolang.view") / "static"
+        try:
+            skeleton, script, style = (
+                (folder / name).read_text("utf-8") for name in ("page.html", "viewer.js", "viewer.css")
+            )
+        except (OSError, UnicodeDecodeError) as error:
+            raise _incomplete(str(error)) from None
+        return Bundle(skeleton=skeleton, script=script, style=style)
+
+    @property
+    def policy(self) -> str:
+        """The content security policy of a page that is opened from a disk."""
+        return (
+            f"default-src 'none'; script-src {_hash(self.script)}; style-src {_hash(self.style)}; "
+            "img-src data: blob:; base-uri 'none'; form-action 'none'"
+        )
+
+
+def write_page(path: Path, runs: Sequence[bytes], bundle: Bundle) -> None:
+    """Write a page that shows packed runs (``packing.pack``); ``Fault`` RBL706, with the old file untouched."""
+    write_atomic(path, lambda stream: _write(stream, runs, bundle))
+
+
+def _write(stream: IO[bytes], runs: Sequence[bytes], bundle: Bundle) -> None:
+    for k, piece in enumerate(_MARK.split(bundle.skeleton)):
+        if k % 2 == 0:
+            stream.write(piece.encode())
+        elif piece == "RUNS":
+            for number, run in enumerate(runs):
+                stream.write(b'<script type="text/plain" data-run="%d">' % number)
+                stream.write(base64.b64encode(run))
+                stream.write(b"</script>\n")
+        else:
+            stream.write({"CSP": bundle.policy, "CSS": bundle.style, "JS": bundle.script}[piece].encode())
+
+
+def _hash(text: str) -> str:
+    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+
+def _incomplete(what: str) -> Fault:
+    return Fault("RBL825", f"the files of the page are not whole: {what}", "Install robolang again.")

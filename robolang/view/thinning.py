@@ -1,0 +1,53 @@
+"""Fewer rows for a page: of a long run the least and the largest value of each bin, in the order in which they came.
+
+No peak is lost, only its time inside the bin. What the robot is moved by is thinned evenly instead: a joint that jumps
+between its least and its largest angle is not a posture.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from robolang.view.packing import Signal
+from runtime.core.frames import Array
+
+MOST_ROWS = 60_000
+"""Rows of a signal in a page: a minute of servo ticks of 1 ms."""
+
+
+def bin_rows(rows: int) -> int:
+    """Return the rows of a bin whose two values keep a signal within ``MOST_ROWS``; 1: it is short enough."""
+    return 1 if rows <= MOST_ROWS else -(-2 * rows // MOST_ROWS)
+
+
+def paired(signal: Signal) -> Signal:
+    """Return a signal as pairs, two rows for each bin; one that is short enough is returned as it is."""
+    size = bin_rows(len(signal.values))
+    if size == 1:
+        return signal
+    return replace(signal, base="pairs", dt=signal.dt * size / 2, values=_pairs(signal.values, size))
+
+
+def evenly(signal: Signal) -> Signal:
+    """Return every so many rows of a signal, the first among them."""
+    # one value for a bin here, so bins of half the size
+    step = -(-len(signal.values) // MOST_ROWS) or 1
+    return replace(signal, dt=signal.dt * step, values=signal.values[::step])
+
+
+def _pairs(values: Array, size: int) -> Array:
+    bins = -(-len(values) // size)
+    # column by column: a run of half an hour is copied once for each, not for all at once
+    return np.stack([_pairs_of(values[:, k], bins, size) for k in range(values.shape[1])], axis=1)
+
+
+def _pairs_of(column: Array, bins: int, size: int) -> Array:
+    filled = np.full(bins * size, np.nan)
+    filled[: len(column)] = column
+    binned = filled.reshape(bins, size)
+    known = np.isfinite(binned)
+    rows = np.arange(bins)
+    least = np.argmin(np.where(known, binned, np.inf), axis=1)
+    largest = np.argmax(np.where(known, binned, -np.inf), axis=1)
+    first, last = np.minimum(least, largest), np.maximum(least, largest)
+    return np.stack([binned[rows, first], binned[rows, last]], axis=1).reshape(-1)

@@ -1,0 +1,101 @@
+"""The file of a page: its policy, its runs, and that nothing which a user has written is ever markup."""
+
+import base64
+import hashlib
+
+import pytest
+
+from robolang.view.page import Bundle, write_page
+from robolang.view.run_page import pack_run
+from runtime.core.faults import Fault
+from tests.robolang.view.decoding import Page
+from tests.robolang.view.recorded import event, log, meta, statement
+
+SKELETON = (
+    '<!doctype html><html><head><meta http-equiv="Content-Security-Policy" content="{{CSP}}"><style>{{CSS}}</style>'
+    "</head><body>{{RUNS}}<script>{{JS}}</script></body></html>"
+)
+STUB = Bundle(skeleton=SKELETON, script='document.title = "é {{RUNS}}"', style="body { color: #000 }")
+HOSTILE = "</script><img src=x onerror=alert(1)><!-- <script> \u2028\u2029 \udcff \0 {{JS}} ]]>"
+
+
+def written(path, *runs, bundle=STUB):
+    write_page(path / "page.html", runs, bundle)
+    return Page(path / "page.html")
+
+
+def sha256(text):
+    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+
+def test_the_policy_names_the_hashes_of_what_is_in_the_file_and_allows_nothing_else(tmp_path):
+    page = written(tmp_path, pack_run(log(20), meta(), "a"))
+    ((_, style),) = page.of("style")
+    ((_, script),) = [found for found in page.of("script") if "data-run" not in found[0]]
+    assert page.policy == {
+        "default-src": "'none'",
+        "script-src": sha256(script),
+        "style-src": sha256(style),
+        "img-src": "data: blob:",
+        "base-uri": "'none'",
+        "form-action": "'none'",
+    }
+    assert (script, style) == (STUB.script, STUB.style)
+
+
+def test_runs_are_numbered_in_their_order_and_only_text(tmp_path):
+    page = written(tmp_path, pack_run(log(20), meta(), "a"), pack_run(log(24), meta(), "b"))
+    runs = [attributes for attributes, _ in page.of("script") if "data-run" in attributes]
+    assert runs == [{"type": "text/plain", "data-run": str(k)} for k in (0, 1)]
+    assert [header["label"] for header, _ in page.runs] == ["a", "b"]
+
+
+def test_hostile_texts_are_in_the_run_as_they_are_and_nowhere_in_the_html(tmp_path):
+    plain = written(tmp_path, pack_run(log(20), meta(), "a"))
+    hostile = meta(
+        program={"name": HOSTILE, "text": HOSTILE * 1000},
+        robot={**meta()["robot"], "name": HOSTILE},
+        scene={"bodies": [{"name": f"part:{HOSTILE}"}]},
+        events=[event("output", HOSTILE, 1, 0.0)],
+        report={"statements": [statement(1, 0.0, text=HOSTILE, notes=[HOSTILE])]},
+    )
+    page = written(tmp_path, pack_run(log(20), hostile, HOSTILE))
+    assert [name for name, _, _ in page.elements] == [name for name, _, _ in plain.elements]
+    ((header, _),) = page.runs
+    assert header["label"] == HOSTILE and header["meta"]["program"] == hostile["program"]
+    assert header["meta"]["scene"] == hostile["scene"]
+
+
+def test_a_line_of_a_megabyte_is_kept(tmp_path):
+    text = "'" + "<" * 1_000_000
+    ((header, _),) = written(tmp_path, pack_run(log(20), meta(program={"name": "a", "text": text}), "a")).runs
+    assert header["meta"]["program"]["text"] == text
+
+
+def test_the_same_run_is_the_same_file(tmp_path):
+    first = written(tmp_path, pack_run(log(163), meta(), "a")).text
+    assert written(tmp_path, pack_run(log(163), meta(), "a")).text == first
+
+
+@pytest.mark.parametrize(
+    "broken",
+    [
+        {"skeleton": SKELETON.replace("{{CSP}}", "")},
+        {"skeleton": SKELETON + "{{JS}}"},
+        {"script": "a = '</SCRIPT >'"},
+        {"script": "a = '<!--'"},
+        {"script": "a = '<script>'"},
+        {"style": "</style>"},
+        {"script": "a\r\nb"},
+    ],
+)
+def test_a_bundle_that_would_break_the_page_is_refused(broken):
+    with pytest.raises(Fault) as caught:
+        Bundle(**{"skeleton": SKELETON, "script": "", "style": "", **broken})
+    assert caught.value.code == "RBL825"
+
+
+def test_a_folder_that_is_not_there_is_a_fault_and_nothing_is_written(tmp_path):
+    with pytest.raises(Fault) as caught:
+        written(tmp_path / "none", pack_run(log(20), meta(), "a"))
+    assert caught.value.code == "RBL706" and not list(tmp_path.iterdir())
