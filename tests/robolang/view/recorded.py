@@ -18,7 +18,7 @@ def event(kind, name, value, time_s):
 
 
 def happened(code, line, time_s):
-    return {"code": code, "line": line, "time_s": time_s, "message": f"{code} here", "hint": "do this"}
+    return {"code": code, "line": line, "time_s": time_s, "message": code, "hint": "hint"}
 
 
 def meta(**changes):

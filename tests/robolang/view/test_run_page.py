@@ -118,13 +118,16 @@ def test_alarms_warnings_notes_and_prints_stand_at_their_time():
             ],
         },
     )
-    found = [(each["time_s"], each["line"], each["code"], each["severity"], each["text"]) for each in header["notes"]]
+    found = [
+        (each["time_s"], each["line"], each["code"], each["severity"], each["text"].splitlines())
+        for each in header["notes"]
+    ]
     assert found == [
-        (0.0, 1, None, "note", "slowed: J2"),
-        (0.02, 2, "RBL523", "warning", "RBL523 here\ndo this"),
-        (0.03, None, None, "print", "round 1"),
-        (0.05, 2, "RBL523", "warning", "RBL523 here\ndo this"),
-        (0.1, 3, "RBL501", "error", "RBL501 here\ndo this"),
+        (0.0, 1, None, "note", ["slowed: J2"]),
+        (0.02, 2, "RBL523", "warning", ["RBL523", "hint"]),
+        (0.03, None, None, "print", ["round 1"]),
+        (0.05, 2, "RBL523", "warning", ["RBL523", "hint"]),
+        (0.1, 3, "RBL501", "error", ["RBL501", "hint"]),
     ]
 
 
