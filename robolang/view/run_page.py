@@ -3,7 +3,7 @@
 A log gives one row a servo tick for every signal; what changes once a cycle is kept once a cycle.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 from robolang.view import charts, joints, notes
 from robolang.view.packing import Signal, pack
 from robolang.view.thinning import bin_rows, evenly, paired
+from runtime.core.faults import Fault
 from runtime.core.frames import Array
 
 _TICK = ("q_cmd", "q_fb", "dq_fb", "tau_sat", "tool_error", "tool_speed")
@@ -39,6 +40,16 @@ def pack_run(log: Mapping[str, Array], meta: Mapping[str, Any], label: str) -> b
         "joints": [asdict(joint) for joint in joints.ranges(robot["axes"], log["q_link"], tick_s)],
     }
     return pack(header, list(signals.values()))
+
+
+def check_comparable(robots: Sequence[Mapping[str, Any]]) -> None:
+    """Raise ``Fault`` RBL826 when runs are not of one robot: ``meta["robot"]`` of each."""
+    shapes = [(robot["name"], [(axis["name"], axis["kind"]) for axis in robot["axes"]]) for robot in robots]
+    for name, axes in shapes[1:]:
+        if (name, axes) != shapes[0]:
+            first, count = shapes[0][0], len(shapes[0][1])
+            message = f"the first run is of {first} with {count} axes, the other of {name} with {len(axes)}"
+            raise Fault("RBL826", message, "Write a page for each of them.")
 
 
 def _signals(log: Mapping[str, Array], robot: Mapping[str, Any], tick_s: float, cycle_s: float) -> Iterator[Signal]:

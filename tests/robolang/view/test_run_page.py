@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from robolang.view import thinning
-from robolang.view.run_page import pack_run
+from robolang.view.run_page import check_comparable, pack_run
+from runtime.core.faults import Fault
 from tests.robolang.view.decoding import furthest, unpacked
-from tests.robolang.view.recorded import event, happened, log, meta, statement
+from tests.robolang.view.recorded import AXES, event, happened, log, meta, statement
 
 
 def shown(signals, **changes):
@@ -176,3 +177,13 @@ def test_a_long_run_is_thinned_and_says_so(monkeypatch):
     assert max(found["joint_error"][0]) == pytest.approx(0.01 - 0.0002)
     assert (listed["q_link"]["base"], listed["q_link"]["dt"]) == ("tick", pytest.approx(0.01))
     assert found["q_link"][0] == pytest.approx(recorded["q_link"][::10, 0].tolist(), abs=1e-6)
+
+
+@pytest.mark.parametrize("other", [{"name": "made", "axes": AXES[:2]}, {"name": "another", "axes": AXES}])
+def test_runs_of_two_robots_are_not_compared(other):
+    robot = meta()["robot"]
+    check_comparable([robot])
+    check_comparable([robot, {**robot, "flange": []}])
+    with pytest.raises(Fault) as caught:
+        check_comparable([robot, other])
+    assert caught.value.code == "RBL826"
