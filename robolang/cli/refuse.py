@@ -1,20 +1,30 @@
 """What every command that runs a program does first: say what is wrong with it and leave."""
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robolang.cli.errors import DIAGNOSTICS, exit_code, say_warnings
 from robolang.cli.output import echo
 
 if TYPE_CHECKING:
+    from robolang.execution.outlook import PlannedStep
     from robolang.execution.plan_memory import PlanMemory
     from robolang.project.project import Project
 
 
-def refuse(project: "Project", *, warnings: bool = True, plans: "PlanMemory | None" = None) -> bool:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Accepted:
+    """A program that may run: whether there are warnings, printed or not, and what its rehearsal takes time for."""
+
+    warned: bool
+    steps: "tuple[PlannedStep, ...]"
+
+
+def refuse(project: "Project", *, warnings: bool = True, plans: "PlanMemory | None" = None) -> Accepted:
     """Print the diagnostics and what is unlikely about the robot and the cell.
 
     Leave when the text has errors or a motion cannot be planned. ``warnings`` False: print errors only. ``plans``
-    keeps what is planned, for the run. Returns whether there are warnings, printed or not.
+    keeps what is planned, for the run.
     """
     from robolang.core.diagnostics import Severity, render
 
@@ -25,13 +35,15 @@ def refuse(project: "Project", *, warnings: bool = True, plans: "PlanMemory | No
             echo(render(item, project.source), err=True)
     if not project.ok:
         raise SystemExit(DIAGNOSTICS)
-    from robolang.execution.dry_run import motion_check
+    from robolang.execution.dry_run import rehearse
 
-    refused = motion_check(project, plans)
-    for item in refused:
+    rehearsal = rehearse(project, plans=plans)
+    for item in rehearsal.preventing:
         echo(render(item, project.source), err=True)
-    if refused:
-        raise SystemExit(exit_code(refused[0].code))
+    if rehearsal.preventing:
+        raise SystemExit(exit_code(rehearsal.preventing[0].code))
     # counted although not printed: --strict needs them with --quiet too
     unlikely = bool(project.cell.warnings)
-    return unlikely or any(item.severity is Severity.WARNING for item in project.diagnostics)
+    return Accepted(
+        warned=unlikely or any(item.severity is Severity.WARNING for item in project.diagnostics), steps=rehearsal.steps
+    )

@@ -18,6 +18,7 @@ from robolang.core.source import Span
 from robolang.execution import run_bounds
 from robolang.execution.alarms import failure
 from robolang.execution.executor import Executor
+from robolang.execution.outlook import PlannedStep, waits
 from robolang.execution.plan_memory import PlanMemory
 from robolang.execution.status import ENDED
 from robolang.execution.target import Requested, Untimed
@@ -89,7 +90,7 @@ class Rehearsal:
 
     ``times_us`` and ``runs`` give by line of the file what statements that take time took, and how often they ran;
     ``reached`` the places of all moves that the program came to, with those that were refused and caught by ON ERROR.
-    ``kinematics`` are those that it was planned with.
+    ``kinematics`` are those that it was planned with, ``steps`` what takes time, in order.
     """
 
     moves: tuple[RehearsedMove, ...]
@@ -100,6 +101,12 @@ class Rehearsal:
     reached: frozenset[Span]
     runs: Mapping[int, int]
     kinematics: Kinematics
+    steps: tuple[PlannedStep, ...]
+
+    @property
+    def preventing(self) -> tuple[Diagnostic, ...]:
+        """What keeps the program from being started: RBL3xx, RBL4xx, and loops and runs without an end."""
+        return tuple(item for item in self.refused if lookup(item.code).prevents_run)
 
 
 def motion_check(project: Project, plans: PlanMemory | None = None) -> tuple[Diagnostic, ...]:
@@ -109,7 +116,7 @@ def motion_check(project: Project, plans: PlanMemory | None = None) -> tuple[Dia
 
     Runtime errors (arithmetic, WAIT timeouts) are not reported here; they occur during the run.
     """
-    return tuple(item for item in rehearse(project, plans=plans).refused if lookup(item.code).prevents_run)
+    return rehearse(project, plans=plans).preventing
 
 
 def rehearse(
@@ -135,6 +142,7 @@ def rehearse(
         reached=frozenset(target.reached),
         runs=dict(target.runs),
         kinematics=plans.kinematics,
+        steps=tuple(target.steps),
     )
 
 
@@ -155,6 +163,7 @@ class _DryRun(Untimed):
         self.reached: set[Span] = set()
         self.runs: Counter[int] = Counter()
         self.times_us: dict[int, int] = {}
+        self.steps: list[PlannedStep] = []
         self.refused: tuple[Diagnostic, ...] = ()
 
     @property
@@ -218,7 +227,15 @@ class _DryRun(Untimed):
         self.statement = effect.origin
         spent = cycles * self._period_us
         self.times_us[effect.line] = self.times_us.get(effect.line, 0) + spent
+        self._note_step(effect, self.time_us + spent)
         self.time_us += spent
+
+    def _note_step(self, effect: Effect, ends_us: int) -> None:
+        origin, begins_us, waiting = effect.origin, self.time_us, waits(effect)
+        # a WAIT passes its time cycle by cycle, and is one step
+        if waiting and self.steps and self.steps[-1].waits and self.steps[-1].origin == origin:
+            begins_us = self.steps.pop().begins_us
+        self.steps.append(PlannedStep(origin=origin, begins_us=begins_us, ends_us=ends_us, waits=waiting))
 
     def wrist(self, effect: SetWrist) -> None:
         """Do nothing: each move carries the setting that holds for it."""

@@ -22,6 +22,7 @@ from robolang.cli.usage import OptionValueError
 
 if TYPE_CHECKING:
     from robolang.core.diagnostics import Diagnostic
+    from robolang.execution.outlook import PlannedStep
     from robolang.execution.plan_memory import PlanMemory
     from robolang.execution.session import RunResult, Session
     from robolang.project.project import Project
@@ -74,8 +75,8 @@ def run(
             from robolang.execution.plan_memory import PlanMemory
 
             plans = PlanMemory(project)
-            warned = refuse(project, warnings=output.warnings, plans=plans)
-        result, code = _run(project, plans, simulation, output)
+            accepted = refuse(project, warnings=output.warnings, plans=plans)
+        result, code = _run(project, plans, accepted.steps, simulation, output)
         if not output.quiet:
             from robolang.cli.run_table import print_result
 
@@ -83,22 +84,27 @@ def run(
         _print_alarms(project, result, warnings=output.warnings)
     # a file that is lost or a signal says more than the alarm, which is printed in any case
     code = code or (0 if result.ok else MOTION)
-    if not code and output.strict and (warned or result.warnings):
+    if not code and output.strict and (accepted.warned or result.warnings):
         code = DIAGNOSTICS
     if code:
         raise SystemExit(code)
 
 
 def _run(
-    project: "Project", plans: "PlanMemory", simulation: SimulationOptions, output: _OutputOptions
+    project: "Project",
+    plans: "PlanMemory",
+    steps: "tuple[PlannedStep, ...]",
+    simulation: SimulationOptions,
+    output: _OutputOptions,
 ) -> "tuple[RunResult, int]":
     """Run the program and write its files; return the result, and the exit code of a file or a signal, or 0."""
     from robolang.cli.run_progress import shown
     from robolang.execution.session import Session
 
-    with shown(output.quiet) as progress:
+    with shown(output.quiet, steps) as progress:
         physics, realtime = not simulation.no_physics, simulation.realtime
         session = Session(project, physics=physics, realtime=realtime, observer=progress, plans=plans)
+        progress.follow(session.controller)
         with _signals(session) as stopped:  # until the files are written: a signal must not cut them off
             result = session.run()
             code = _write(result, output)

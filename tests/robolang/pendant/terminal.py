@@ -39,7 +39,7 @@ def _with_default_signals() -> None:
 
 
 class Terminal:
-    """``robolang repl`` with a screen; ``raw`` are the bytes that it has sent."""
+    """``robolang repl``, or another ``command``, with a screen; ``raw`` are the bytes that it has sent."""
 
     def __init__(
         self,
@@ -48,13 +48,14 @@ class Terminal:
         columns: int = 100,
         rows: int = 30,
         physics: bool = False,
+        command: str = "repl",
         **environment: str,
     ) -> None:
         env = dict(os.environ, TERM="xterm-256color", XDG_STATE_HOME=str(folder / "state"))
         env.pop("NO_COLOR", None)
         self.process = pexpect.spawn(
             COMMAND,
-            ["repl", *([] if physics else ["--no-physics"]), *arguments],
+            [command, *([] if physics else ["--no-physics"]), *arguments],
             dimensions=(rows, columns),
             env=env | environment,
             cwd=str(folder),
@@ -100,9 +101,11 @@ class Terminal:
         """Read until the process ends; return its exit code."""
         while True:
             try:
-                self.raw += self.process.read_nonblocking(65536, timeout=WAIT_S)
+                data = self.process.read_nonblocking(65536, timeout=WAIT_S)
             except pexpect.EOF:
                 break
+            self.raw += data
+            self._stream.feed(data)
         self.process.wait()
         return self.process.exitstatus if self.process.signalstatus is None else -self.process.signalstatus
 
