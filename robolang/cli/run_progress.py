@@ -15,7 +15,7 @@ from robolang.execution.result import StatementRun
 from runtime.core.program_line import named
 
 _CYCLES = 25
-"""Cycles between two looks at the lamp of a statement: 0.2 s of the robot."""
+"""Cycles between two readings of the lamp of a statement: 0.2 s of the robot."""
 
 
 class LineProgress(RunOutput):
