@@ -186,7 +186,7 @@ def _surroundings(world: ET.Element, obstacles: Iterable[ObstacleSpec]) -> None:
             "environment",
             box.X_world_obstacle,
             type="box",
-            size=_row(box.size / 2.0),
+            size=row(box.size / 2.0),
             rgba="0.55 0.47 0.38 1",
         )
 
@@ -213,7 +213,7 @@ def _hinge(body: ET.Element, index: int, axis: AxisSpec, timestep: float) -> Non
         name=joint_name(index),
         type="hinge",
         axis="0 0 1",
-        range=_row([axis.limits.lower, axis.limits.upper]),
+        range=row([axis.limits.lower, axis.limits.upper]),
         armature=repr(axis.motor.reflected_inertia),
         damping=repr(axis.motor.joint_viscous_friction),
         frictionloss=repr((forward + backward) / 2.0),
@@ -249,7 +249,7 @@ def _link_geom(body: ET.Element, index: int, end: Array, radius: float) -> None:
     if norm(end) < 1e-3:
         _geom(body, name, group, type="sphere", size=repr(radius), rgba="0.95 0.75 0.2 1")
         return
-    fromto = _row([0.0, 0.0, 0.0, *end])
+    fromto = row([0.0, 0.0, 0.0, *end])
     _geom(body, name, group, type="capsule", fromto=fromto, size=repr(radius), rgba="0.95 0.75 0.2 1")
 
 
@@ -257,8 +257,8 @@ def _hand(flange: ET.Element, hand: HandSpec, timestep: float) -> None:
     _inertial(flange, palm_body(hand))
     size, X_tool_palm = palm_box(hand)
     X_flange_palm = matmul(hand.X_flange_tool, X_tool_palm)
-    _geom(flange, "palm", "hand", X_flange_palm, type="box", size=_row(size / 2.0), rgba="0.3 0.32 0.35 1")
-    ET.SubElement(flange, "site", {"name": "tool", "size": "0.003", **_place(hand.X_flange_tool)})
+    _geom(flange, "palm", "hand", X_flange_palm, type="box", size=row(size / 2.0), rgba="0.3 0.32 0.35 1")
+    ET.SubElement(flange, "site", {"name": "tool", "size": "0.003", **place(hand.X_flange_tool)})
     for side in FINGERS:
         _finger(flange, hand, side, timestep)
 
@@ -276,7 +276,7 @@ def _finger(flange: ET.Element, hand: HandSpec, side: str, timestep: float) -> N
         name=f"finger_{side}",
         type="slide",
         axis=f"0 {sign!r} 0",
-        range=_row([0.0, hand.stroke / 2.0]),
+        range=row([0.0, hand.stroke / 2.0]),
         armature=repr(FINGER_ARMATURE),
         damping=repr(hand.grip_force / FINGER_SPEED),
         solreflimit=f"{2.0 * timestep!r} 1",
@@ -286,8 +286,8 @@ def _finger(flange: ET.Element, hand: HandSpec, side: str, timestep: float) -> N
     top, tip = -hand.finger_length, length / 2.0
     pad, shank = pose([0.0, y_pad, 0.0]), pose([0.0, y_shank, (top + tip) / 2.0])
     shank_size = np.array([width, thickness * 0.75, tip - top])
-    _geom(finger, f"pad_{side}", "hand", pad, type="box", size=_row(hand.pad / 2.0), rgba="0.1 0.1 0.1 1")
-    _geom(finger, f"shank_{side}", "hand", shank, type="box", size=_row(shank_size / 2.0), rgba="0.4 0.42 0.45 1")
+    _geom(finger, f"pad_{side}", "hand", pad, type="box", size=row(hand.pad / 2.0), rgba="0.1 0.1 0.1 1")
+    _geom(finger, f"shank_{side}", "hand", shank, type="box", size=row(shank_size / 2.0), rgba="0.4 0.42 0.45 1")
 
 
 def own_pairs(spec: RobotSpec) -> list[tuple[str, str]]:
@@ -367,7 +367,7 @@ def _part(world: ET.Element, part: PartSpec) -> None:
         f"part:{part.name}",
         "part",
         type="box",
-        size=_row(part.size / 2.0),
+        size=row(part.size / 2.0),
         priority="1",
         friction=f"{part.friction!r} 0.005 0.0001",
         rgba="0.45 0.55 0.7 1",
@@ -385,11 +385,11 @@ def _actuators(root: ET.Element, spec: RobotSpec, with_hand: bool) -> None:
 def _geom(parent: ET.Element, name: str, group: str, X: Array | None = None, **attributes: str) -> None:
     contype, conaffinity = COLLIDES.get(group, NOTHING)
     given = {"name": name, "contype": str(contype), "conaffinity": str(conaffinity), **attributes}
-    ET.SubElement(parent, "geom", given if X is None else given | _place(X))
+    ET.SubElement(parent, "geom", given if X is None else given | place(X))
 
 
 def _body(parent: ET.Element, name: str, X: Array) -> ET.Element:
-    return ET.SubElement(parent, "body", {"name": name, **_place(X)})
+    return ET.SubElement(parent, "body", {"name": name, **place(X)})
 
 
 def _inertial(parent: ET.Element, body: Body) -> None:
@@ -402,15 +402,16 @@ def _inertial(parent: ET.Element, body: Body) -> None:
     ET.SubElement(
         parent,
         "inertial",
-        pos=_row(body.cog),
-        quat=_row(quaternion(axes)),
+        pos=row(body.cog),
+        quat=row(quaternion(axes)),
         mass=repr(float(body.mass)),
-        diaginertia=_row(moments),
+        diaginertia=row(moments),
     )
 
 
-def _place(X: Array) -> dict[str, str]:
-    return {"pos": _row(X[:3, 3]), "quat": _row(quaternion(X[:3, :3]))}
+def place(X: Array) -> dict[str, str]:
+    """Return the attributes that place an element at a pose (4, 4) in its parent."""
+    return {"pos": row(X[:3, 3]), "quat": row(quaternion(X[:3, :3]))}
 
 
 def quaternion(R: Array) -> Array:
@@ -429,5 +430,6 @@ def quaternion(R: Array) -> Array:
     return q / norm(q)
 
 
-def _row(values: Iterable[float]) -> str:
+def row(values: Iterable[float]) -> str:
+    """Return numbers as the text of an attribute, without loss."""
     return " ".join(repr(float(value)) for value in values)

@@ -1,0 +1,60 @@
+"""Pictures of scenes: what is on them and where."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from runtime.appearance.cell_scene import scene_of
+from runtime.appearance.stance import Stance
+from runtime.appearance.views import DIRECTIONS, View, named_view
+from runtime.plant.camera import Camera
+from tests.runtime.from_texts import load_cell
+from tests.runtime.plant.drawing import need_graphics
+
+pytestmark = pytest.mark.physics
+
+CELL = load_cell(Path("programs/pick_and_place.cell.toml"))
+SCENE = scene_of(CELL)
+HOME = Stance(axes=CELL.home, fingers=(0.03, 0.03))
+WIDTH, HEIGHT = 200, 150
+
+
+@pytest.fixture(scope="module")
+def camera():
+    need_graphics()
+    with Camera(SCENE, width=WIDTH, height=HEIGHT) as opened:
+        yield opened
+
+
+@pytest.mark.parametrize("name", DIRECTIONS)
+def test_a_named_view_takes_in_every_shape(camera, name):
+    view = named_view(name, SCENE, [HOME], WIDTH / HEIGHT)
+    seen = camera.segments(HOME, view) >= 0
+    assert not seen[[0, -1]].any()
+    assert not seen[:, [0, -1]].any()
+    rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
+    # and is no further away than that needs: one of the two directions is filled
+    assert max(np.ptp(rows) / HEIGHT, np.ptp(columns) / WIDTH) > 0.75
+
+
+def test_a_part_is_drawn_where_its_pose_is(camera):
+    part = next(k for k, shape in enumerate(SCENE.shapes) if shape.role == "part")
+    view = View(position=np.array([0.5, -2.0, 1.2]), target=np.array([0.5, 0.0, 1.2]))
+    moved = Stance(axes=CELL.home, parts=[[0.5, -1.0, 1.2, 1.0, 0.0, 0.0, 0.0]])
+    rows, columns = np.nonzero(camera.segments(moved, view) == part)
+    # straight ahead of the camera, so in the middle of the picture; 60 by 80 mm are seen from 0.98 m
+    assert (rows.mean(), columns.mean()) == pytest.approx(((HEIGHT - 1) / 2.0, (WIDTH - 1) / 2.0), abs=0.6)
+    assert np.ptp(rows) / np.ptp(columns) == pytest.approx(80.0 / 60.0, abs=0.15)
+    away = Stance(axes=CELL.home, parts=[[0.5, -9.0, 1.2, 1.0, 0.0, 0.0, 0.0]])
+    assert not (camera.segments(away, view) == part).any()
+
+
+def test_pictures_have_colours_and_are_the_same_again(camera):
+    view = named_view("iso", SCENE, [HOME], WIDTH / HEIGHT)
+    first, again = camera.picture(HOME, view), camera.picture(HOME, view)
+    assert first.shape == (HEIGHT, WIDTH, 3)
+    assert np.array_equal(first, again)
+    assert len(np.unique(first.reshape(-1, 3), axis=0)) > 300
+    other = camera.picture(Stance(axes=(0.0,) * 6), view)
+    assert not np.array_equal(first, other)
