@@ -18,4 +18,28 @@ register(
         meaning="Two runs cannot be compared in one page: they are of different robots.",
         remedy="Write a page for each of them.",
     ),
+    Code(
+        code="RBL834",
+        name="live-port-unusable",
+        meaning="The live view cannot listen on this port: another program has it, or it needs more rights.",
+        remedy="Give another --port from 1024 to 65535, or none: a free one is taken.",
+    ),
+    Code(
+        code="RBL835",
+        name="live-command-invalid",
+        meaning="A message of the live page is no command, or a value in it has another type or is out of its range.",
+        remedy="Reload the page by the address that the command has printed.",
+    ),
+    Code(
+        code="RBL836",
+        name="live-command-too-early",
+        meaning="A command of the live page cannot be carried out in the present state of the program or the arm.",
+        remedy="Pause the program, or wait until the arm rests, and send the command again.",
+    ),
+    Code(
+        code="RBL837",
+        name="live-without-control",
+        meaning="A page that only watches has sent a command: one page at a time has control.",
+        remedy="Give control back in the page that has it, or close that page; then take it in this one.",
+    ),
 )

@@ -1,0 +1,204 @@
+"""What the run and the pages exchange: newest states for the pages, commands for the run. Neither ever waits.
+
+The run's thread puts a frame and a status in place of the ones before it, adds what PRINT shows and replies to a ring,
+and takes one command in each cycle. The server's thread sends what is new to every page at the page's own pace: a page
+that does not read gets fewer frames, and the run does not know of it. Commands that nobody takes are bounded too.
+
+Who has control is decided here: the first page that is there; every other one watches. Control is handed over by two
+acts, one in each page (``give``, then ``take``), so it never changes under somebody's hand.
+"""
+
+import json
+import threading
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import robolang.core.codes  # noqa: F401 - the codes raised here must be registered
+from robolang.teaching.held_button import HeldButton, Press
+from robolang.view.messages import Command, Go, Held, Jog, Message
+from runtime.control.clock import wall_s
+from runtime.core.faults import Fault
+
+MOST_WAITING = 16
+"""Commands that wait for the run; a page sends one after another."""
+MOST_SAID = 200
+"""Lines and replies that are kept for a page that reads slowly."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Order:
+    """A command for the run: of which page, with its number there, and the press of a jog."""
+
+    page: int
+    id: int
+    command: Command
+    press: Press | None = None
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Page:
+    """What one page has still to get; read and written in the server's thread, ``said`` by both."""
+
+    number: int
+    frame: int = 0
+    status: tuple[int, str] = (-1, "")
+    said: deque[str] = field(default_factory=lambda: deque(maxlen=MOST_SAID))
+
+
+class Exchange:
+    """Between the thread of a run and the thread of its server."""
+
+    def __init__(self, hello: Mapping[str, Any]) -> None:
+        """``hello``: what a page gets first, as JSON."""
+        self.hello = json.dumps({"kind": "hello", **hello}, separators=(",", ":"))
+        self.button = HeldButton()
+        self.frame: tuple[int, bytes] = (0, b"")
+        """The newest frame, counted."""
+        self.status: tuple[int, str] = (0, '{"state":"starting"}')
+        """The newest status, counted, as JSON without what depends on the page."""
+        self.notify: Callable[[], None] = lambda: None
+        """Wakes the server; it never waits."""
+        self._pages: dict[int, Page] = {}
+        self._control: int | None = None
+        self._last = 0
+        self._orders: deque[Order] = deque()
+        self._wake = threading.Event()
+
+    # --- the run's thread --------------------------------------------------------------------------------------------
+
+    def show_frame(self, frame: bytes) -> None:
+        """Put a frame in place of the one before it."""
+        self.frame = self.frame[0] + 1, frame
+        self.notify()
+
+    def show_status(self, status: str) -> None:
+        """Put a status, a JSON object, in place of the one before it, if it differs."""
+        if status != self.status[1]:
+            self.status = self.status[0] + 1, status
+            self.notify()
+
+    def say(self, text: str) -> None:
+        """Send a line of PRINT to every page."""
+        line = json.dumps({"kind": "printed", "text": text})
+        # a copy: the server's thread adds and removes pages
+        for page in list(self._pages.values()):
+            page.said.append(line)
+        self.notify()
+
+    def reply(self, page: int, id: int, fault: Fault | None = None, notes: tuple[str, ...] = ()) -> None:
+        """Answer a command of a page, which may have gone."""
+        found = self._pages.get(page)
+        if found is not None:
+            found.said.append(_reply(id, fault, notes))
+            self.notify()
+
+    def take(self) -> Order | None:
+        """Return the next command, if there is one."""
+        if not self._orders:
+            return None
+        self._wake.clear()
+        return self._orders.popleft()
+
+    def wait(self, seconds: float) -> None:
+        """Wait until a command comes, or something is over; at most so long."""
+        if not self._orders and self._wake.wait(seconds):
+            self._wake.clear()
+
+    def wake(self) -> None:
+        """End a ``wait``; safe to call from a signal handler."""
+        self._wake.set()
+
+    @property
+    def watched(self) -> bool:
+        """Whether any page is there."""
+        return bool(self._pages)
+
+    # --- the server's thread -----------------------------------------------------------------------------------------
+
+    def join(self) -> Page:
+        """Let a page in. A jog stops: whoever holds its button may not know that somebody else looks on."""
+        self.button.release()
+        self._last += 1
+        page = Page(number=self._last)
+        if not self._pages:
+            self._control = page.number
+        self._pages[page.number] = page
+        self._wake.set()
+        self.notify()
+        return page
+
+    def leave(self, page: Page) -> None:
+        """Let a page go: its button is released, and its control is free."""
+        self.button.release(page.number)
+        del self._pages[page.number]
+        if self._control == page.number:
+            self._control = None
+        self.notify()
+
+    def has_control(self, page: Page) -> bool:
+        """Return whether a page may command."""
+        return self._control == page.number
+
+    @property
+    def control_is_free(self) -> bool:
+        """Whether no page has control."""
+        return self._control is None
+
+    def receive(self, page: Page, message: Message) -> None:
+        """Hand a command over; what cannot be handed over is answered at once (RBL836, RBL837)."""
+        try:
+            self._receive(page, message)
+        except Fault as fault:
+            self.reply(page.number, message.id, fault)
+
+    def _receive(self, page: Page, message: Message) -> None:
+        match message.command:
+            case Held(jog=jog, released=released):
+                # a sign that comes after its release, or of a page without control, finds no button and is no error
+                if released:
+                    self.button.release(page.number, jog)
+                    self._wake.set()
+                else:
+                    self.button.keep(page.number, jog, wall_s())
+                return
+            case Go(word="take" | "give" as word):
+                self._hand_over(page, word)
+                self.reply(page.number, message.id)
+                return
+            case command:
+                if self._control != page.number:
+                    raise Fault("RBL837", "another page has control" if self._control else "no page has control")
+        if len(self._orders) >= MOST_WAITING:
+            raise Fault("RBL836", f"{MOST_WAITING} commands wait already")
+        press = self.button.press(page.number, message.id, wall_s()) if isinstance(command, Jog) else None
+        self._orders.append(Order(page=page.number, id=message.id, command=command, press=press))
+        self._wake.set()
+
+    def _hand_over(self, page: Page, word: str) -> None:
+        if word == "give":
+            if self._control != page.number:
+                raise Fault("RBL837", "this page has no control that it could give")
+            self.button.release()
+            self._control = None
+        elif self._control not in (None, page.number):
+            raise Fault("RBL837", "another page has control")
+        else:
+            self._control = page.number
+        self.notify()
+
+
+def _reply(id: int, fault: Fault | None, notes: tuple[str, ...]) -> str:
+    if fault is None:
+        return json.dumps({"kind": "reply", "id": id, "ok": True, "notes": notes})
+    return json.dumps(
+        {
+            "kind": "reply",
+            "id": id,
+            "ok": False,
+            "code": fault.code,
+            "message": fault.message,
+            "hint": fault.hint,
+        }
+    )
