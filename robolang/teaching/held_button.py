@@ -35,12 +35,14 @@ class HeldButton:
 
     def press(self, page: int, jog: int, now_s: float) -> Press:
         """Hold a button from now on; one that was held before is released."""
+        # one at a time: who presses a second button has let go of the first, or does not mean it
         self._press = press = Press(page=page, jog=jog, seen_s=now_s)
         return press
 
     def keep(self, page: int, jog: int, now_s: float) -> bool:
         """Take note that a button is still held; False, and it is released, where that comes too late."""
         press = self._press
+        # also a sign that comes after its release: it must not begin the jog anew
         if press is None or (press.page, press.jog) != (page, jog):
             return False
         self._press = replace(press, seen_s=now_s) if press.alive(now_s) else None
@@ -54,5 +56,6 @@ class HeldButton:
 
     def holds(self, begun: Press, now_s: float) -> bool:
         """Return whether the jog of a press may go on at ``now_s``."""
+        # read once: the other thread may replace it in between
         press = self._press
         return press is not None and (press.page, press.jog) == (begun.page, begun.jog) and press.alive(now_s)

@@ -75,6 +75,7 @@ class Exchange:
 
     def show_status(self, status: str) -> None:
         """Put a status, a JSON object, in place of the one before it, if it differs."""
+        # it is made with every frame and changes rarely
         if status != self.status[1]:
             self.status = self.status[0] + 1, status
             self.notify()
@@ -90,6 +91,7 @@ class Exchange:
     def reply(self, page: int, id: int, fault: Fault | None = None, notes: tuple[str, ...] = ()) -> None:
         """Answer a command of a page, which may have gone."""
         found = self._pages.get(page)
+        # a page that has gone needs no answer
         if found is not None:
             found.said.append(_reply(id, fault, notes))
             self.notify()
@@ -121,7 +123,9 @@ class Exchange:
         """Let a page in. A jog stops: whoever holds its button may not know that somebody else looks on."""
         self.button.release()
         self._last += 1
+        # counted, never used again: an old reply must not reach another page
         page = Page(number=self._last)
+        # alone only: a page that is opened beside others must not take control unasked
         if not self._pages:
             self._control = page.number
         self._pages[page.number] = page
@@ -172,6 +176,7 @@ class Exchange:
                     raise Fault("RBL837", "another page has control" if self._control else "no page has control")
         if len(self._orders) >= MOST_WAITING:
             raise Fault("RBL836", f"{MOST_WAITING} commands wait already")
+        # held from here on, so that the time in which the run plans the jog counts too
         press = self.button.press(page.number, message.id, wall_s()) if isinstance(command, Jog) else None
         self._orders.append(Order(page=page.number, id=message.id, command=command, press=press))
         self._wake.set()

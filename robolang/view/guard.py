@@ -80,10 +80,12 @@ class Guard:
         return _answer(HTTPStatus.OK, self.page.html, "text/html; charset=utf-8", self._policy)
 
     def _refused(self, asked: Asked) -> HTTPStatus | None:
+        # the library answers a POST as a GET, so no method may be left to it
         if asked.method != "GET":
             return HTTPStatus.METHOD_NOT_ALLOWED
         if len(asked.target) > LONGEST_TARGET:
             return HTTPStatus.REQUEST_URI_TOO_LONG
+        # before the token: who comes from elsewhere learns nothing about it
         if not self._is_here(asked):
             return HTTPStatus.FORBIDDEN
         if not self._has_token(asked):
@@ -92,11 +94,13 @@ class Guard:
 
     def _is_here(self, asked: Asked) -> bool:
         """Return whether the request names this port of this machine, and comes from a page of it or from none."""
+        # exactly, and not by parsing: user names, dots and other spellings of an address have no place here
         if len(asked.hosts) != 1 or asked.hosts[0] not in {f"{name}:{self.port}" for name in HOSTS}:
             return False
         # a browser sends Origin with every socket: who leaves it out is no page of ours
         if not asked.origins:
             return _path(asked) != SOCKET_PATH
+        # the name by which the page was opened, so that the two names of this machine are two sites
         return asked.origins == (f"http://{asked.hosts[0]}",)
 
     def _has_token(self, asked: Asked) -> bool:
@@ -107,6 +111,7 @@ class Guard:
     @property
     def _policy(self) -> str:
         """The content policy of the page: its own scripts and styles, and the socket of this run."""
+        # both names: the page opens its socket on the host by which it was opened
         sockets = " ".join(f"ws://{name}:{self.port}" for name in HOSTS)
         scripts, styles = (" ".join(f"'{each}'" for each in found) for found in (self.page.scripts, self.page.styles))
         return (
@@ -120,6 +125,7 @@ def _path(asked: Asked) -> str:
 
 
 def _answer(status: HTTPStatus, body: bytes, kind: str, policy: str) -> Answer:
+    # no page may frame this one, read it, or keep it; and no link of it carries its address on
     headers = (
         ("Content-Type", kind),
         ("Content-Length", str(len(body))),

@@ -118,6 +118,7 @@ def _whole(low: int, high: int) -> Check:
 
 
 def _one_of(*values: object) -> Check:
+    # type first: a list is not hashable, and True equals 1
     return lambda value: isinstance(value, str | int | None) and not isinstance(value, bool) and value in values
 
 
@@ -155,6 +156,7 @@ _FIELDS: Mapping[str, Mapping[str, Check]] = {
 
 def read_message(text: str | bytes) -> Message:
     """Return the command of a message; ``Fault`` RBL835."""
+    # pages send text frames alone
     if isinstance(text, bytes):
         raise Fault("RBL835", "a message of bytes is no command")
     found = _object(text)
@@ -164,6 +166,7 @@ def read_message(text: str | bytes) -> Message:
     if not _ID(number):
         raise Fault("RBL835", f"'id' is {_shown(number)} and no whole number from 0")
     checks = _FIELDS[word]
+    # a key more is refused too: it would be a value that nobody has checked
     if found.keys() != checks.keys():
         raise Fault("RBL835", f"{word} has the keys {', '.join(checks) or '(none)'}, and no others")
     for key, check in checks.items():
@@ -202,5 +205,6 @@ def _command(word: str, values: Mapping[str, Any]) -> Command:
 
 def _shown(value: object) -> str:
     """Return a value of a page for a message: short, whatever it is."""
+    # by repr: what a page sends may hold line ends and control characters
     text = repr(value)
     return text if len(text) <= 40 else f"{text[:40]}..."

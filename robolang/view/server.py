@@ -68,6 +68,7 @@ class LiveServer:
 
     def start(self) -> None:
         """Listen, in a thread of its own; ``Fault`` RBL834."""
+        # here and not in the thread: what is wrong with the port is an error of the command
         listener = _listener(self._port)
         port = int(listener.getsockname()[1])
         self.guard = Guard(port=port, token=secrets.token_urlsafe(TOKEN_BYTES), page=self._page)
@@ -118,6 +119,7 @@ class LiveServer:
             close_timeout=1.0,
             logger=_SILENT,
         )
+        # leaving this block ends the connections that are left
         async with serving as server:
             self._ready.set()
             await self._ended.wait()
@@ -132,6 +134,7 @@ class LiveServer:
             def connection_made(self, transport: asyncio.BaseTransport) -> None:
                 outer._open += 1
                 super().connection_made(transport)
+                # aborted and not answered: an answer would cost what the bound is there to save
                 if outer._open > MOST_CONNECTIONS:
                     self.transport.abort()
 
@@ -162,6 +165,7 @@ class LiveServer:
         receiving = asyncio.create_task(self._receive(connection, page))
         try:
             changed.set()
+            # whichever ends first: the run, or the page
             await asyncio.wait((sending, receiving), return_when=asyncio.FIRST_COMPLETED)
         finally:
             self._changed.discard(changed)
@@ -181,9 +185,11 @@ class LiveServer:
                 over = self._ended.is_set()
                 for message in _news(self._exchange, page):
                     await connection.send(message)
+                # read before the news: what came last is sent before the end
                 if over:
                     await connection.send('{"kind":"over"}')
                     return
+                # what comes meanwhile is sent together, the newest frame alone
                 await asyncio.sleep(FRAME_S)
 
     async def _receive(self, connection: ServerConnection, page: Page) -> None:
@@ -220,6 +226,7 @@ def _news(exchange: Exchange, page: Page) -> list[str | bytes]:
         found.append(page.said.popleft())
     number, status = exchange.status
     control = "yours" if exchange.has_control(page) else "free" if exchange.control_is_free else "other"
+    # control differs from page to page, and is no part of what the run knows
     mark = (number, control)
     if page.status != mark:
         page.status = mark
