@@ -53,7 +53,7 @@ from runtime.robot.model.payload import NO_PAYLOAD, Payload
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RehearsedMove:
-    """A move of the rehearsal: its effect and plan, and when it begins and ends, us.
+    """A move of the rehearsal: its effect and plan, when it begins and ends, us, and its tool (4, 4).
 
     ``q`` (K, n) rad are its set-points as they are carried out, blends included, row 0 of them row ``first`` of the
     plan. ``payload`` is the one declared last, ``corner`` what became of the blend into the next move, None where it
@@ -67,6 +67,7 @@ class RehearsedMove:
     ends_us: int
     q: Array
     first: int
+    X_flange_tool: Array
     payload: Payload
     corner: Corner | None
 
@@ -77,11 +78,16 @@ class RehearsedMove:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RehearsedHand:
-    """A HAND of the rehearsal: its effect, ``after`` how many moves it comes, and q (n,) rad where the arm then is."""
+    """A HAND of the rehearsal: its effect, ``after`` how many moves it comes and when it begins, us.
+
+    The arm then is at q (n,) rad, with this tool (4, 4).
+    """
 
     effect: SetHand
     after: int
+    begins_us: int
     q: Array
+    X_flange_tool: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -219,6 +225,7 @@ class _DryRun(Untimed):
                     corner=corner,
                     q=joined.q[part.first : part.last + 1],
                     first=part.first - part.offset,
+                    X_flange_tool=self._X_flange_tool,
                     payload=self._payload,
                 )
             )
@@ -249,7 +256,15 @@ class _DryRun(Untimed):
 
     def hand(self, effect: SetHand, cycles: int) -> None:
         """Keep where the hand moves, and let it dwell."""
-        self.hands.append(RehearsedHand(effect=effect, after=len(self.moves), q=self._q))
+        self.hands.append(
+            RehearsedHand(
+                effect=effect,
+                after=len(self.moves),
+                begins_us=self.time_us,
+                q=self._q,
+                X_flange_tool=self._X_flange_tool,
+            )
+        )
         self._spend(effect, cycles)
 
     def seam(self, effect: SetSeam) -> None:

@@ -13,7 +13,7 @@ Checks the executed set-points, blends included, 8 ms apart. Obstacles and parts
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -25,6 +25,7 @@ from robolang.execution.plan_findings import PlanFindings, PlannedMove
 from robolang.planning.line_times import range_margin
 from robolang.planning.part_findings import CellTouches
 from robolang.planning.path_coverage import Detour
+from robolang.planning.placed import Placed, Places
 from robolang.project.project import Project
 from runtime.core.faults import Group, lookup
 from runtime.core.rounding import beside
@@ -38,7 +39,7 @@ DEFAULTS = Bounds()
 OVERLOAD, NOTHING = 1e-3, 1e-6
 """A payload that is over its limit by less than this share and so many N m or kg m2 is within it."""
 
-Found = Iterator[Diagnostic]
+Found = Iterator[Placed]
 
 
 def findings(
@@ -54,16 +55,17 @@ def findings(
     lead there. Other faults that end a detour, such as a WAIT that times out, are the answer of its program.
     """
     moves = _Moves(project, rehearsal.kinematics, bounds)
-    found: dict[tuple[str, Span], Diagnostic] = {}
-    for item in (*rehearsal.refused, *moves.findings(rehearsal)):
+    found: dict[tuple[str, Span], Placed] = {}
+    for item in (*moves.refused(rehearsal), *moves.findings(rehearsal)):
         found.setdefault((item.code, item.span), item)
     for detour in detours:
-        refused = (item for item in detour.rehearsal.refused if lookup(item.code).group in (Group.POINTS, Group.MOTION))
+        ended = moves.refused(detour.rehearsal)
+        refused = (item for item in ended if lookup(item.code).group in (Group.POINTS, Group.MOTION))
         for item in (*refused, *moves.findings(detour.rehearsal)):
             if item.code == "RBL441":  # on another branch parts may lie elsewhere as well
                 continue
-            placed = replace(item, message=f"{item.message} ({_branches(project, detour)})")
-            found.setdefault((item.code, item.span), placed)
+            branched = item.replaced(message=f"{item.message} ({_branches(project, detour)})", time_us=None)
+            found.setdefault((item.code, item.span), branched)
     return (*found.values(), *_cycle(rehearsal, max_cycle_s))
 
 
@@ -76,16 +78,12 @@ def _branches(project: Project, detour: Detour) -> str:
     )
 
 
-def _cycle(rehearsal: Rehearsal, most_s: float | None) -> Found:
+def _cycle(rehearsal: Rehearsal, most_s: float | None) -> Iterator[Diagnostic]:
     total = rehearsal.total_us / 1e6
     if most_s is not None and not total <= most_s and not rehearsal.refused:
         takes, most = beside(total, most_s, form=".3f")
         message = f"the program takes {takes} s, {total - most_s:.3g} s more than {most} s"
         yield Diagnostic(code="RBL423", message=message, span=Span(0, 0))
-
-
-def _at(code: str, move: RehearsedMove, message: str, severity: Severity = Severity.WARNING) -> Diagnostic:
-    return Diagnostic(code=code, severity=severity, message=message, span=move.effect.span)
 
 
 class _Moves:
@@ -98,7 +96,17 @@ class _Moves:
         self._cell = CellTouches(project, kinematics)
         self._plans = PlanFindings(project, kinematics)
         self._project = project
+        self._places = Places(kinematics, project.profile.period_us)
         self._seen: set[tuple[object, ...]] = set()
+
+    def refused(self, rehearsal: Rehearsal) -> Found:
+        """Yield what ended a rehearsal, where the arm then was."""
+        cell, last = self._project.cell, rehearsal.moves[-1:]
+        q, X_flange_tool = (last[0].q[-1], last[0].X_flange_tool) if last else (cell.home, cell.hand.X_flange_tool)
+        for item in rehearsal.refused:
+            p = self._places.tool_point(q, X_flange_tool)
+            # not replaced(): a diagnostic of another class
+            yield Placed(**{name: getattr(item, name) for name in item.FIELDS}, p=p, time_us=rehearsal.total_us)
 
     def findings(self, rehearsal: Rehearsal) -> Found:
         """Yield what the moves of a rehearsal show, those of one check after those of another."""
@@ -106,7 +114,7 @@ class _Moves:
         yield from self._cell.follow(rehearsal)
         new = [move for move in rehearsal.moves if self._is_new(move)]
         for check in (self.folds, self.near_range, self.near_singular):
-            first: dict[Span, Diagnostic] = {}
+            first: dict[Span, Placed] = {}
             for move in new:
                 if move.effect.span not in first:
                     first.update((item.span, item) for item in check(move))
@@ -115,7 +123,7 @@ class _Moves:
         for move, after in zip(rehearsal.moves, (*rehearsal.moves[1:], None), strict=False):
             if id(move) in fresh:
                 yield from self.otherwise(move, after)
-        yield from _loads(self._project, self._kinematics, new)
+        yield from _loads(self._project, self._kinematics, self._places, new)
 
     def _is_new(self, move: RehearsedMove) -> bool:
         # rounds of a loop and detours share most moves; the payload is part of the key, since LOAD changes the findings
@@ -130,7 +138,7 @@ class _Moves:
         for row, q in enumerate(move.q):
             if (pair := self._cell.shapes.folded(q)) is not None:
                 message = f"at {move.share(row):.1f} % of the path {pair[0]} would be in {pair[1]}"
-                yield _at("RBL424", move, message, Severity.ERROR)
+                yield self._places.at("RBL424", move, message, row=row, severity=Severity.ERROR)
                 return
 
     def otherwise(self, move: RehearsedMove, after: RehearsedMove | None) -> Found:
@@ -143,7 +151,7 @@ class _Moves:
             after=None if move.corner is None or after is None else after.plan,
         )
         for found in self._plans.of(planned):
-            yield replace(_at(found.code, move, found.message), hint=found.hint)
+            yield self._places.at(found.code, move, found.message).replaced(hint=found.hint)
 
     def near_range(self, move: RehearsedMove) -> Found:
         """Report the joint that comes nearest to the end of its range."""
@@ -152,11 +160,12 @@ class _Moves:
         if not margin >= self._bounds[RANGE_MARGIN] * DEG:
             ends = f"{spec.lower[axis] / DEG:g} to {spec.upper[axis] / DEG:g} deg"
             at = float(move.q[row, axis]) / DEG
-            yield _at(
+            yield self._places.at(
                 "RBL422",
                 move,
                 f"at {move.share(row):.1f} % of the path J{axis + 1} is at {at:.2f} deg, "
                 f"{margin / DEG:.2f} deg from an end of its range {ends}",
+                row=row,
             )
 
     def near_singular(self, move: RehearsedMove) -> Found:
@@ -175,11 +184,12 @@ class _Moves:
             least = self._bounds[bound]
             if not values[row] >= least * size:
                 away, keep = beside(float(values[row]) / size, least, form=".2f")
-                yield _at(
+                yield self._places.at(
                     "RBL427",
                     move,
                     f"at {100.0 * float(move.plan.s[row]):.1f} % of the path the arm is {away} "
                     f"{bound.unit} from where its {name}, which is singular; keep {keep} {bound.unit} away",
+                    row=row - move.first,
                 )
                 return
 
@@ -224,19 +234,20 @@ def worst_loads(project: Project, kinematics: Kinematics, moves: Sequence[Rehear
     return sorted(worst.values(), key=lambda share: (share.what != "moment", share.axis))
 
 
-def _loads(project: Project, kinematics: Kinematics, moves: Sequence[RehearsedMove]) -> Found:
+def _loads(project: Project, kinematics: Kinematics, places: Places, moves: Sequence[RehearsedMove]) -> Found:
     """Report each axis of the wrist that a payload overloads, at the move with the worst posture."""
     shares = worst_loads(project, kinematics, moves)
     for share in sorted(shares, key=lambda share: (not share.given, share.limit / share.value)):  # worst first
         if not share.value <= share.limit * (1.0 + OVERLOAD) + NOTHING:
             value, limit = beside(share.value, share.limit, form=".3g")
             code = "RBL425" if share.what == "moment" else "RBL426"
-            yield _at(
+            yield places.at(
                 code,
                 share.move,
                 f"at {share.move.share(share.row):.1f} % of the path the {share.what} of the "
                 f"payload of {share.move.payload.mass:g} kg about J{share.axis + 1} is {value} "
                 f"{share.unit}, {share.value - share.limit:.3g} {share.unit} above the limit of {limit} {share.unit}, "
                 f"which is {'its rating' if share.given else 'estimated from its drive'}",
-                Severity.ERROR if share.given else Severity.WARNING,
+                row=share.row,
+                severity=Severity.ERROR if share.given else Severity.WARNING,
             )

@@ -19,9 +19,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from robolang.core.diagnostics import Diagnostic, Severity
-from robolang.core.source import Span
+from robolang.core.diagnostics import Severity
 from robolang.execution.dry_run import Rehearsal, RehearsedHand, RehearsedMove
+from robolang.planning.placed import Placed, Places
 from robolang.project.project import Project
 from runtime.core.frames import Array, inverse, pose
 from runtime.plant.cell_model import CLEARANCE
@@ -37,7 +37,7 @@ PRESSED = 1e-3
 ALIKE = 2e-4
 """Difference in width of parts that are gripped side by side, m."""
 
-Found = Iterator[Diagnostic]
+Found = Iterator[Placed]
 _PART = "part:"
 NO_BOUND = (-np.inf, -np.inf, -np.inf)
 
@@ -103,7 +103,7 @@ class Sweep:
                 self.met = _meeting(row, pair)
 
 
-Followed = Generator[Diagnostic, None, Scene]
+Followed = Generator[Placed, None, Scene]
 
 
 class CellTouches:
@@ -112,6 +112,7 @@ class CellTouches:
     def __init__(self, project: Project, kinematics: Kinematics) -> None:
         cell = project.cell
         self._cell, self._kinematics = cell, kinematics
+        self._places = Places(kinematics, project.profile.period_us)
         self.shapes = Shapes(cell.robot, cell)
         self._swept: dict[tuple[object, ...], Sweep] = {}
         self._sizes = {part.name: part.size for part in cell.parts}
@@ -149,12 +150,12 @@ class CellTouches:
         if struck is not None:
             by, what = struck.by, struck.what.removeprefix("obstacle:")
             message = f"at {move.share(struck.row):.1f} % of the path {by} would be in {what}"
-            yield _at("RBL421", move.effect.span, message, Severity.ERROR)
+            yield self._places.at("RBL421", move, message, row=struck.row, severity=Severity.ERROR)
         if met is None or struck is not None:  # an obstacle stops the move, so that what it meets later is not reached
             return scene
         carried = "the carried " if met.by.startswith(_PART) else ""
         what = f"{carried}{shape_text(met.by)} would touch {shape_text(met.what)}"
-        yield _at("RBL440", move.effect.span, f"at {move.share(met.row):.1f} % of the path {what}")
+        yield self._places.at("RBL440", move, f"at {move.share(met.row):.1f} % of the path {what}", row=met.row)
         return scene.without({name.removeprefix(_PART) for name in (met.by, met.what) if name.startswith(_PART)})
 
     def _sweep(self, q: Array, scene: Scene) -> Sweep:
@@ -223,7 +224,7 @@ class CellTouches:
             return (yield from self._release(hand, scene))
         scene = self._grip(hand, scene)
         if not scene.held and self._cell.parts and scene.known:
-            yield _at("RBL441", hand.effect.span, "no part is between the fingers here")
+            yield self._places.at("RBL441", hand, "no part is between the fingers here")
         return scene
 
     def _grip(self, hand: RehearsedHand, scene: Scene) -> Scene:
@@ -252,7 +253,7 @@ class CellTouches:
         scene = replace(scene, held={}, opening=opening, closed=False)
         met = self._sweep(hand.q[None], scene).met
         if met is not None:
-            yield _at("RBL440", hand.effect.span, f"{shape_text(met.by)} would touch {shape_text(met.what)}")
+            yield self._places.at("RBL440", hand, f"{shape_text(met.by)} would touch {shape_text(met.what)}")
             scene = scene.without({met.what.removeprefix(_PART)})
         return self._resting(replace(scene, lying={**scene.lying, **released}), released)
 
@@ -276,7 +277,3 @@ def _meeting(row: int, pair: Pair) -> Meeting:
 def _centre(carried: Mapping[str, Array], pair: Pair) -> Array:
     """Return the centre (3,) m of the carried part of a pair."""
     return carried[pair[0].removeprefix(_PART)][:3, 3]
-
-
-def _at(code: str, span: Span, message: str, severity: Severity = Severity.WARNING) -> Diagnostic:
-    return Diagnostic(code=code, severity=severity, message=message, span=span)
