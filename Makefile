@@ -17,6 +17,7 @@
 # make large              time and memory of check and fmt on programs of 1 MB of every kind (minutes)
 # make mutants   mutants of supervision, stops, payload and areas: those that no test finds, and how many one finds (minutes)
 # make measured   the figures of docs/measured.md that repeat exactly
+# make viewer   the script of the pages, built anew from robolang/view/page (needs node)
 # make help   these lines
 
 PYTHON ?= python3
@@ -109,6 +110,9 @@ mutants: $(READY)
 	$(BIN)/mutmut run
 	$(BIN)/mutmut results
 	$(BIN)/python -m tests.bench.mutants
+
+viewer:
+	cd robolang/view/page && npm ci --ignore-scripts --no-audit --no-fund && npx --no-install tsc --noEmit && node build.mjs
 
 clean:
 	rm -rf $(VENV) out mutants

@@ -1,0 +1,244 @@
+import uPlot from "uplot";
+import type { ChartHead, SeriesHead } from "../contract";
+import { el, token } from "../dom";
+import { number } from "../format";
+import type { Player } from "../player";
+import { coloursOf, type Line, linesOf, plotData } from "./data";
+import { drawBand, drawNames, drawNotes } from "./drawing";
+
+const HEIGHT = 136;
+const LANE = 20;
+const COLOURS = 8;
+/** Playing, the values over a chart change this often at most: no eye reads faster. */
+const VALUE_MS = 120;
+/** A click within this time after a drag belongs to the drag. */
+const AFTER_DRAG_MS = 120;
+
+/** One chart: drawn when it is first seen, never while the run plays; its playhead is an element above it. */
+export class Chart {
+  readonly element: HTMLElement;
+  readonly head: ChartHead;
+  visible = false;
+  private readonly player: Player;
+  private readonly box: HTMLElement;
+  private readonly playhead = el("div", { class: "playhead", "aria-hidden": "true" });
+  /** Where the value of each series is written. */
+  private readonly values: HTMLElement[] = [];
+  private readonly hidden = new Set<number>();
+  private lines: readonly Line[] | null = null;
+  private plot: uPlot | null = null;
+  private width = 0;
+  private stale = true;
+  private dragged = -Infinity;
+  private valued = -Infinity;
+
+  constructor(player: Player, head: ChartHead) {
+    this.player = player;
+    this.head = head;
+    this.box = el("div", { class: "plot" });
+    this.box.style.height = `${this.height}px`;
+    const values = el("div", { class: "values", role: "group", "aria-label": `Curves of ${head.title}` });
+    const title = el("h3", { id: `chart-${head.id}` }, head.title, el("span", { class: "unit" }, head.unit));
+    this.element = el("section", { class: "chart", "data-testid": "chart", "data-signal": head.id, "aria-labelledby": `chart-${head.id}` }, el("header", {}, title, values), this.box);
+    const colours = coloursOf(head.series);
+    head.series.forEach((series, k) => values.append(this.chip(series, colours[k] ?? 0)));
+    new ResizeObserver(() => this.resize()).observe(this.box);
+  }
+
+  private get height(): number {
+    return this.head.lanes ? 36 + LANE * Math.max(2, this.head.series.length) : HEIGHT;
+  }
+
+  /** Bring the drawing up to date: the first time, for a new range, or in another theme. */
+  draw(): void {
+    if (!this.stale || this.box.clientWidth === 0) return;
+    this.stale = false;
+    const [from, to] = this.player.range;
+    if (!this.plot) this.build();
+    const plot = this.plot;
+    if (!plot) return;
+    plot.batch(() => {
+      plot.setData(this.data(), false);
+      plot.setScale("x", { min: from, max: to });
+    });
+    this.place();
+  }
+
+  /** The drawing no longer holds. */
+  spoil(how: "range" | "theme" | "rows"): void {
+    this.stale = true;
+    if (how === "rows") this.lines = null;
+    if (how === "theme") {
+      this.plot?.destroy();
+      this.plot = null;
+    }
+    if (this.visible) this.draw();
+  }
+
+  /** Show the time: moves the playhead, and writes the values. */
+  paint(now: number): void {
+    if (!this.plot) return;
+    this.place();
+    if (this.player.playing && now - this.valued < VALUE_MS) return;
+    this.valued = now;
+    this.values.forEach((value, k) => (value.textContent = this.valueText(k)));
+  }
+
+  private laidOut(plot: uPlot): void {
+    this.width = plot.bbox.width / uPlot.pxRatio;
+    this.place();
+  }
+
+  private place(): void {
+    const [from, to] = this.player.range;
+    const x = ((this.player.t - from) / (to - from)) * this.width;
+    this.playhead.style.transform = `translateX(${x.toFixed(1)}px)`;
+    this.playhead.hidden = x < -1 || x > this.width + 1;
+  }
+
+  /** The values of a series at the time, one for each run. */
+  private valueText(series: number): string {
+    const lines = this.curves().filter((line) => line.head === this.head.series[series]);
+    const texts = lines.map(({ curve }) => number(curve.values[curve.signal.row(this.player.t)] ?? NaN));
+    return texts.join(" | ") || "–";
+  }
+
+  private curves(): readonly Line[] {
+    this.lines ??= linesOf(this.head.series, this.player.runs);
+    return this.lines;
+  }
+
+  private chip(series: SeriesHead, colour: number): HTMLElement {
+    const value = el("output", { "aria-live": "off" }, "–");
+    this.values.push(value);
+    const key = el("i", { class: `key colour-${colour % COLOURS} ${series.role}`, "aria-hidden": "true" });
+    const made = el("button", { type: "button", class: "chip", "aria-pressed": "true", title: `Hide or show ${series.label}` }, key, series.label, value);
+    made.addEventListener("click", () => this.toggle(made, series));
+    return made;
+  }
+
+  private toggle(chip: HTMLElement, series: SeriesHead): void {
+    const show = chip.getAttribute("aria-pressed") !== "true";
+    chip.setAttribute("aria-pressed", String(show));
+    this.curves().forEach((line, k) => {
+      if (line.head !== series) return;
+      if (show) this.hidden.delete(k);
+      else this.hidden.add(k);
+      this.plot?.setSeries(k + 1, { show });
+    });
+  }
+
+  private data(): uPlot.AlignedData {
+    const [from, to] = this.player.range;
+    const bins = Math.max(200, this.width || this.box.clientWidth);
+    const lanes = this.head.lanes ?? false;
+    const count = this.head.series.length;
+    const lines = this.curves();
+    return plotData(lines, from, to, bins, (y, k) => (lanes ? count - 1 - this.lane(lines[k]) + 0.7 * y : y));
+  }
+
+  private lane(line: Line | undefined): number {
+    return line ? this.head.series.indexOf(line.head) : 0;
+  }
+
+  private build(): void {
+    const plot = new uPlot(this.options(), this.data(), this.box);
+    this.plot = plot;
+    plot.over.append(this.playhead);
+    plot.over.addEventListener("click", (event) => {
+      if (performance.now() - this.dragged > AFTER_DRAG_MS) this.player.seek(plot.posToVal(event.offsetX, "x"));
+    });
+    plot.over.addEventListener("dblclick", () => this.player.zoom());
+    this.paint(Infinity);
+  }
+
+  private options(): uPlot.Options {
+    const axis: uPlot.Axis = {
+      stroke: token("--muted"),
+      font: "11px system-ui, sans-serif",
+      grid: { stroke: token("--grid"), width: 1 },
+      ticks: { show: false },
+    };
+    const lanes = this.head.lanes ?? false;
+    const names = this.head.series.map((series) => series.label);
+    const upright: uPlot.Axis = lanes
+      ? { ...axis, size: 62, splits: names.map((_, k) => k + 0.35), values: () => [...names].reverse() }
+      : { ...axis, size: 50, gap: 4, space: 26 };
+    return {
+      width: this.box.clientWidth,
+      height: this.height,
+      padding: [8, this.head.series.length > 1 && !lanes ? 30 : 12, 0, 0],
+      legend: { show: false },
+      scales: { x: { time: false }, y: { range: (_, low, high) => this.yRange(low, high) } },
+      axes: [{ ...axis, size: 24, gap: 4, space: 64, values: (_, ticks) => ticks.map((tick) => `${+tick.toFixed(6)} s`) }, upright],
+      series: [{}, ...this.curves().map((line, k) => this.series(line, k))],
+      cursor: {
+        y: false,
+        points: { show: false },
+        drag: { x: true, y: false, setScale: false },
+        sync: { key: "run", setSeries: false, filters: { pub: passes, sub: passes } },
+      },
+      hooks: {
+        setSelect: [(plot) => this.selected(plot)],
+        // The plot lays itself out after its constructor has returned.
+        drawClear: [(plot) => this.laidOut(plot), (plot) => drawBand(plot, this.head.band)],
+        draw: [
+          (plot) => drawNotes(plot, this.player.first.header.notes),
+          (plot) => drawNames(plot, lanes ? [] : this.curves(), this.hidden),
+        ],
+      },
+    };
+  }
+
+  private series(line: Line, k: number): uPlot.Series {
+    const stepped = line.head.role === "step" || this.head.lanes;
+    const made: uPlot.Series = {
+      label: line.head.label,
+      show: !this.hidden.has(k),
+      stroke: token(line.head.role === "limit" ? "--limit" : `--curve-${line.colour % COLOURS}`),
+      width: line.run > 0 || line.head.role === "command" ? 1.1 : 1.6,
+      points: { show: false },
+    };
+    const dash = dashOf(line);
+    if (dash) made.dash = dash;
+    const paths = stepped ? uPlot.paths.stepped?.({ align: 1 }) : undefined;
+    if (paths) made.paths = paths;
+    return made;
+  }
+
+  /** Range of the values, with the limits where the values come near to them. */
+  private yRange(low: number | null, high: number | null): [number, number] {
+    if (this.head.lanes) return [-0.15, this.head.series.length - 0.1];
+    if (low === null || high === null || !Number.isFinite(low) || !Number.isFinite(high)) return [0, 1];
+    const [under, over] = this.head.band ?? [NaN, NaN];
+    if (low < 0.6 * under) low = Math.min(low, under);
+    if (high > 0.6 * over) high = Math.max(high, over);
+    const margin = high > low ? 0.06 * (high - low) : Math.max(Math.abs(high) * 0.1, 1e-3);
+    return [low >= 0 && low - margin < 0 ? Math.min(0, low) : low - margin, high + margin];
+  }
+
+  private selected(plot: uPlot): void {
+    const { left, width } = plot.select;
+    if (!(width > 3)) return;
+    this.dragged = performance.now();
+    const [from, to] = [plot.posToVal(left, "x"), plot.posToVal(left + width, "x")];
+    plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+    this.player.zoom(from, to);
+  }
+
+  private resize(): void {
+    if (!this.plot || this.box.clientWidth === 0) return;
+    this.plot.setSize({ width: this.box.clientWidth, height: this.height });
+    this.spoil("range");
+  }
+}
+
+/** Mouse-up must not pass from chart to chart: a drag in one would zoom as often as there are charts. */
+const passes = (type: string): boolean => type === "mousemove" || type === "mouseleave";
+
+/** The second run is dashed, commands are dotted, limits have long dashes. */
+function dashOf(line: Line): number[] | null {
+  if (line.head.role === "limit") return [8, 5];
+  if (line.run > 0) return [5, 4];
+  return line.head.role === "command" ? [1.5, 2.5] : null;
+}

@@ -1,0 +1,63 @@
+import { el, select } from "../dom";
+import { seconds } from "../format";
+import type { Player } from "../player";
+import { Chart } from "./chart";
+
+/** All charts of the page. A chart that nobody sees is neither built nor redrawn. */
+export class Charts {
+  readonly element = el("section", { class: "charts", "aria-label": "Charts", "data-testid": "charts" });
+  private readonly player: Player;
+  private readonly charts: readonly Chart[];
+  private readonly shown = el("span", { class: "shown", "data-testid": "range" });
+
+  constructor(player: Player) {
+    this.player = player;
+    this.charts = player.first.header.charts.map((head) => new Chart(player, head));
+    const list = el("div", { class: "list" }, ...this.charts.map((chart) => chart.element));
+    const jump = select("Go to a chart", [["", "Go to chart …"] as const, ...this.charts.map(({ head }) => [head.id, head.title] as const)], "", (id) => this.goTo(id, jump));
+    this.element.append(el("div", { class: "bar" }, el("h2", {}, "Charts"), this.shown, jump), list);
+    const eyes = new IntersectionObserver((entries) => this.seen(entries), { rootMargin: "120px" });
+    for (const chart of this.charts) eyes.observe(chart.element);
+    player.on("time", () => this.paint());
+    player.on("range", () => this.spoil("range"));
+    player.on("grown", () => this.spoil("rows"));
+    this.describe();
+  }
+
+  paint(): void {
+    const now = performance.now();
+    for (const chart of this.charts) if (chart.visible) chart.paint(now);
+  }
+
+  spoil(how: "range" | "theme" | "rows"): void {
+    for (const chart of this.charts) chart.spoil(how);
+    this.describe();
+  }
+
+  /** For paper: every chart. */
+  drawAll(): void {
+    for (const chart of this.charts) chart.draw();
+  }
+
+  private seen(entries: readonly IntersectionObserverEntry[]): void {
+    for (const entry of entries) {
+      const chart = this.charts.find((one) => one.element === entry.target);
+      if (!chart) continue;
+      chart.visible = entry.isIntersecting;
+      if (!chart.visible) continue;
+      chart.draw();
+      chart.paint(Infinity);
+    }
+  }
+
+  private describe(): void {
+    const [from, to] = this.player.range;
+    this.shown.textContent = this.player.zoomed ? `${from.toFixed(3)} to ${seconds(to)}` : "whole run";
+    this.shown.classList.toggle("zoomed", this.player.zoomed);
+  }
+
+  private goTo(id: string, jump: HTMLSelectElement): void {
+    this.charts.find((chart) => chart.head.id === id)?.element.scrollIntoView({ block: "start" });
+    jump.value = "";
+  }
+}

@@ -1,0 +1,42 @@
+import type { Note, Severity } from "../contract";
+import { el } from "../dom";
+import { seconds } from "../format";
+import type { Player } from "../player";
+
+const NAMES: Readonly<Record<Severity, string>> = { error: "Alarm", warning: "Warning", note: "Note", print: "Print" };
+
+/** Alarms, warnings, notes and printed lines in the order of their times. A click goes to the place. */
+export class Notes {
+  readonly element = el("div", { class: "notes", role: "group", "aria-label": "Alarms and notes", "data-testid": "notes" });
+  private readonly player: Player;
+
+  constructor(player: Player) {
+    this.player = player;
+    player.runs.forEach((run, k) => {
+      if (player.runs.length > 1) this.element.append(el("h3", {}, run.header.label));
+      if (run.header.notes.length === 0) this.element.append(el("p", { class: "empty" }, "No alarm, no warning, no note."));
+      else this.element.append(el("ol", {}, ...run.header.notes.map((note) => this.item(note, k))));
+    });
+  }
+
+  private item(note: Note, run: number): HTMLElement {
+    const place = [note.line === null ? "" : `line ${note.line}`, note.time_s === null ? "" : seconds(note.time_s)].filter(Boolean).join(" · ");
+    const head = el("span", { class: "about" }, el("span", { class: `flag ${note.severity}` }, note.code ?? NAMES[note.severity]), el("span", { class: "place" }, place));
+    const body = el("span", { class: "text" }, note.text);
+    if (note.time_s === null) return el("li", { class: "note" }, head, body);
+    const time = note.time_s;
+    const made = el("button", { type: "button", class: "note", "data-testid": "note" }, head, body);
+    made.addEventListener("click", () => this.go(note, time, run));
+    return el("li", {}, made);
+  }
+
+  private go(note: Note, time: number, run: number): void {
+    const { statements } = this.player.first;
+    const running = statements.at(time);
+    const known = run === 0 && note.line !== null ? (statements.byLine.get(note.line) ?? []) : [];
+    // The note names its line; at one time several statements can start.
+    const meant = known.find((k) => statements.all[k]?.start_s === statements.all[running]?.start_s);
+    this.player.seek(time, meant);
+    this.player.reveal(time);
+  }
+}

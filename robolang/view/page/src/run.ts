@@ -1,0 +1,91 @@
+import type { Header, SeriesHead, SignalHead, Statement } from "./contract";
+import { Statements } from "./statements";
+
+/** A signal: evenly spaced rows of some columns. NaN: no value. */
+export class Signal {
+  readonly t0: number;
+  readonly dt: number;
+  rows: number;
+  columns: Float32Array[];
+
+  constructor(head: Pick<SignalHead, "t0" | "dt">, columns: Float32Array[]) {
+    this.t0 = head.t0;
+    this.dt = head.dt;
+    this.columns = columns;
+    this.rows = columns[0]?.length ?? 0;
+  }
+
+  /** Number of the row at a time, inside the rows there are. */
+  row(t: number): number {
+    return Math.max(0, Math.min(this.rows - 1, Math.floor((t - this.t0) / this.dt + 1e-6)));
+  }
+
+  /** Value of a column at a time, between two rows where both have one. */
+  at(column: number, t: number): number {
+    const values = this.columns[column];
+    if (!values || this.rows === 0) return NaN;
+    const x = Math.max(0, Math.min(this.rows - 1, (t - this.t0) / this.dt));
+    const k = Math.min(Math.floor(x), this.rows - 1);
+    const here = values[k] ?? NaN;
+    if (k + 1 >= this.rows) return here;
+    const next = values[k + 1] ?? NaN;
+    return Number.isNaN(next) ? here : here + (x - k) * (next - here);
+  }
+
+  /** Add one row; the columns grow by doubling, for a run that is still going on. */
+  append(row: ArrayLike<number>): void {
+    if (this.rows >= (this.columns[0]?.length ?? 0)) {
+      this.columns = this.columns.map((column) => {
+        const wider = new Float32Array(Math.max(1024, 2 * column.length));
+        wider.set(column);
+        return wider;
+      });
+    }
+    this.columns.forEach((column, k) => (column[this.rows] = row[k] ?? NaN));
+    this.rows += 1;
+  }
+}
+
+/** A curve of a chart: a column in the unit of the chart. */
+export interface Curve {
+  readonly head: SeriesHead;
+  readonly signal: Signal;
+  readonly values: Float32Array;
+}
+
+/** One run: its header, its signals by name, its statements. */
+export class Run {
+  readonly header: Header;
+  readonly signals: ReadonlyMap<string, Signal>;
+  readonly statements: Statements;
+  end: number;
+
+  constructor(header: Header, signals: ReadonlyMap<string, Signal>) {
+    this.header = header;
+    this.signals = signals;
+    this.end = header.duration_s;
+    const known: readonly Statement[] = header.meta.report.statements;
+    this.statements = new Statements(known.filter((one) => Number.isFinite(one.start_s)));
+  }
+
+  /** The curve of a series, null where the run does not have its signal. */
+  curve(head: SeriesHead): Curve | null {
+    const signal = this.signals.get(head.signal);
+    const column = signal?.columns[head.column];
+    if (!signal || !column) return null;
+    if (head.scale === 1 && !head.minus) return { head, signal, values: column };
+    const minus = head.minus ? this.signals.get(head.minus[0])?.columns[head.minus[1]] : undefined;
+    const values = new Float32Array(signal.rows);
+    for (let k = 0; k < signal.rows; k++) values[k] = ((column[k] ?? NaN) - (minus ? (minus[k] ?? NaN) : 0)) * head.scale;
+    return { head, signal, values };
+  }
+
+  /** Largest finite value of the first column of a signal, 0 without one. */
+  largest(name: string): number {
+    const column = this.signals.get(name)?.columns[0];
+    if (!column) return 0;
+    let most = 0;
+    for (const value of column) if (value > most) most = value;
+    return most;
+  }
+}

@@ -1,0 +1,333 @@
+"""The page of a run in a browser, without network and with software rendering: what a person does with it."""
+
+import numpy as np
+import pytest
+
+from tests.robolang.view import made_up
+from tests.robolang.view.browser import WITHOUT_GL, Tab, chromium
+
+DURATION_S = 4.8
+LINE = "[data-testid=line][data-line='{}']"
+RUNNING = "[data-testid=line][aria-current=true]"
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium() as started:
+        yield started
+
+
+@pytest.fixture(scope="module")
+def first(browser, tmp_path_factory):
+    """The page of one run, opened once."""
+    tab = Tab(browser)
+    tab.open(made_up.page(tmp_path_factory.mktemp("page") / "run.html", made_up.run(DURATION_S)))
+    yield tab
+    tab.close()
+
+
+@pytest.fixture
+def page(first):
+    """The page at its start, showing the whole run."""
+    first.page.evaluate("robolang.pause(); robolang.viewer.player.zoom(); robolang.seek(0)")
+    return first.page
+
+
+def time_of(page):
+    return page.evaluate("robolang.t")
+
+
+def running(page):
+    return int(page.locator(RUNNING).get_attribute("data-line"))
+
+
+def until(page, condition, *values):
+    """Wait until a condition holds. The policy of the page refuses the text that Playwright's own waiting evaluates."""
+    for _ in range(200):
+        if page.evaluate(condition, *values):
+            return
+        page.wait_for_timeout(25)
+    pytest.fail(f"not within five seconds: {condition}")
+
+
+def centre(page, selector, x=0.5, y=0.5):
+    box = page.locator(selector).bounding_box()
+    return box["x"] + box["width"] * x, box["y"] + box["height"] * y
+
+
+def test_the_page_loads_nothing_and_complains_about_nothing(first, page):
+    assert page.get_attribute("body", "data-state") == "ready"
+    assert len(first.requests) == 1
+    assert first.complaints == []
+
+
+def test_a_line_leads_to_its_start_and_a_loop_to_its_next_execution(page):
+    begins = [one["start_s"] for one in made_up.statements(DURATION_S) if one["line"] == 5]
+    for expected in [*begins, begins[0]]:
+        page.click(LINE.format(5))
+        assert time_of(page) == pytest.approx(expected, abs=1e-6)
+        assert running(page) == 5
+    assert "MOVE P2" in page.inner_text("[data-testid=now]")
+
+
+def test_a_line_without_duration_is_named_although_the_next_one_starts_with_it(page):
+    page.click(LINE.format(2))
+    assert time_of(page) == pytest.approx(1.6)
+    assert running(page) == 2
+    assert "LOAD" in page.inner_text("[data-testid=now]")
+
+
+def test_a_line_of_a_loop_shows_count_and_total(page):
+    text = page.inner_text(LINE.format(3))
+    assert "3 ×" in text
+    assert "0.96 s" in text
+
+
+def test_a_click_in_the_timeline_names_the_running_line(page):
+    page.mouse.click(*centre(page, "[data-testid=timeline]", 0.55, 0.3))
+    assert time_of(page) == pytest.approx(0.55 * DURATION_S, abs=0.01)
+    assert running(page) == 6
+    x = centre(page, "[data-testid=timeline]", 1.6 / DURATION_S, 0.3)
+    page.mouse.click(*x)
+    assert running(page) == 2
+
+
+def test_a_click_in_a_chart_leads_to_its_time(page):
+    page.mouse.click(*centre(page, "[data-signal=tool_error] .u-over", 0.9))
+    assert time_of(page) == pytest.approx(0.9 * DURATION_S, abs=0.02)
+
+
+def test_dragging_zooms_all_charts_once_and_a_double_click_shows_the_whole_run(page):
+    page.evaluate("robolang.seek(1)")
+    plot = "[data-signal=tool_error] .u-over"
+    page.mouse.move(*centre(page, plot, 0.2))
+    page.mouse.down()
+    page.mouse.move(*centre(page, plot, 0.4), steps=4)
+    page.mouse.up()
+    low, high = page.evaluate("robolang.range")
+    assert (low, high) == pytest.approx((0.2 * DURATION_S, 0.4 * DURATION_S), abs=0.03)
+    assert time_of(page) == pytest.approx(1.0)
+    page.mouse.dblclick(*centre(page, plot))
+    assert page.evaluate("robolang.range") == [0, DURATION_S]
+
+
+def test_playing_advances_the_time_and_space_pauses(page):
+    page.click("[data-testid=play]")
+    until(page, "robolang.t > 0.3")
+    page.keyboard.press("Space")
+    assert page.evaluate("robolang.playing") is False
+    stood = time_of(page)
+    page.wait_for_timeout(60)
+    assert time_of(page) == stood
+
+
+def test_keys_step_by_cycles_and_statements(page):
+    page.evaluate("document.activeElement.blur()")
+    page.keyboard.press("ArrowRight")
+    assert time_of(page) == pytest.approx(0.008)
+    page.keyboard.press("Shift+ArrowRight")
+    assert time_of(page) == pytest.approx(0.108)
+    page.keyboard.press("PageDown")
+    assert running(page) == 4
+    page.keyboard.press("End")
+    assert time_of(page) == pytest.approx(DURATION_S)
+    page.keyboard.press("Home")
+    assert time_of(page) == 0.0
+
+
+def test_lines_are_walked_and_entered_by_keys(page):
+    page.click(LINE.format(3))
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Enter")
+    assert running(page) == 4
+    assert page.locator("[data-testid=line][tabindex='0']").count() == 1
+
+
+def test_help_opens_and_closes_by_key(page):
+    page.keyboard.press("?")
+    assert page.is_visible("[data-testid=help]")
+    page.keyboard.press("Escape")
+    assert not page.is_visible("[data-testid=help]")
+
+
+def test_the_scene_moves_as_the_signals_say(page):
+    """The nesting of bodies against the kinematics of the made-up arm, m."""
+    signals = made_up.run(DURATION_S)[1]
+    for k in range(0, len(signals["q_link"]), 397):
+        page.evaluate("t => robolang.seek(t)", k * made_up.TICK_S)
+        found = page.evaluate("robolang.bodyAt(0, 'tool')")
+        assert found == pytest.approx(made_up.tool_point(signals["q_link"][[k]])[0], abs=1e-6)
+
+
+def test_the_part_moves_with_its_recorded_pose(page):
+    page.evaluate("robolang.seek(1.6)")
+    expected = made_up.run(DURATION_S)[1]["parts"][100, :3]
+    assert page.evaluate("robolang.bodyAt(0, 'part:part')") == pytest.approx(expected, abs=1e-6)
+
+
+def test_the_picture_changes_with_the_time(page):
+    view = page.locator("[data-testid=view3d]")
+    shots = []
+    for t in (0.5, 3.0):
+        page.evaluate("t => robolang.seek(t)", t)
+        page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        shots.append(view.screenshot())
+    assert shots[0] != shots[1]
+
+
+@pytest.mark.parametrize("name", ["tool_error", "gap", "constant", "nothing", "levels", "q_cmd"])
+def test_columns_are_decoded_to_a_step_of_their_range(page, name):
+    expected = made_up.run(DURATION_S)[1][name]
+    found = page.evaluate(
+        "name => robolang.runs[0].signals.get(name).columns.map(c => Array.from(c, v => isNaN(v) ? null : v))", name
+    )
+    found = np.array(found, dtype=float).T
+    assert np.array_equal(np.isnan(found), np.isnan(expected))
+    span = np.nanmax(expected) - np.nanmin(expected) if not np.isnan(expected).all() else 0.0
+    assert np.allclose(found, expected, rtol=1e-6, atol=1e-6 * span, equal_nan=True)
+
+
+def test_a_bin_keeps_its_least_and_largest_value_and_a_gap(page):
+    rows = page.evaluate(
+        """() => {
+            const values = Float32Array.from({ length: 4000 }, (_, k) => (k >= 1000 && k < 2000 ? NaN : Math.sin(k)));
+            values[3003] = 9; values[3777] = -9;
+            const { t, y } = robolang.thin(values, 0, 4000, 100, (row) => row / 1000);
+            return [Array.from(t), y];
+        }"""
+    )
+    t, y = rows
+    assert len(y) == 200
+    assert all(value is None for value in y[50:100])
+    assert None not in y[:50] + y[100:]
+    assert y.index(9) // 2 == 3003 // 40
+    assert y.index(-9) // 2 == 3777 // 40
+    assert t == sorted(t)
+
+
+def test_charts_out_of_sight_are_not_built(page):
+    assert page.locator("[data-testid=chart]").count() == len(made_up.charts())
+    assert page.locator("[data-testid=chart] .u-over").count() < len(made_up.charts())
+
+
+def test_a_name_over_a_chart_hides_its_curve(page):
+    chip = page.locator("[data-signal=joint_error] .chip").first
+    chip.click()
+    assert chip.get_attribute("aria-pressed") == "false"
+    chip.click()
+    assert chip.get_attribute("aria-pressed") == "true"
+
+
+def test_notes_stand_in_text_and_list_and_lead_to_their_place(page):
+    assert "RBL501" in page.inner_text(LINE.format(5))
+    page.click("[data-testid=tab-notes]")
+    assert page.locator("[data-testid=note]").count() == len(made_up.notes(DURATION_S))
+    page.locator("[data-testid=note]").last.click()
+    assert time_of(page) == pytest.approx(0.6 * DURATION_S)
+    page.click("[data-testid=tab-program]")
+
+
+def test_joints_show_their_value_and_lead_to_their_least_margin(page):
+    page.click("[data-testid=tab-joints]")
+    page.locator("[data-testid=joints] button.margin").first.click()
+    assert time_of(page) == pytest.approx(1.5)
+    angle = np.degrees(made_up.run(DURATION_S)[1]["q_link"][1500, 0])
+    until(page, "text => document.querySelector('.joint .value').textContent === text", f"{angle:.2f} deg")
+    page.click("[data-testid=tab-program]")
+
+
+def test_the_theme_switches_and_follows_the_system(browser, page, tmp_path):
+    page.click("button.theme")
+    assert page.evaluate("document.documentElement.dataset.theme") == "dark"
+    page.click("button.theme")
+    tab = Tab(browser, color_scheme="dark")
+    other = tab.open(made_up.page(tmp_path / "dark.html", made_up.run(DURATION_S)))
+    assert other.evaluate("document.documentElement.dataset.theme") == "dark"
+    tab.close()
+
+
+def test_two_runs_stand_side_by_side(browser, tmp_path):
+    tab = Tab(browser)
+    runs = made_up.run(DURATION_S, label="scheduled"), made_up.run(3.2, label="fixed", phase=1.0)
+    page = tab.open(made_up.page(tmp_path / "two.html", *runs))
+    assert tab.complaints == []
+    assert page.evaluate("robolang.runs.length") == 2
+    words = page.inner_text("body")
+    assert "scheduled" in words
+    assert "fixed" in words
+    page.evaluate("robolang.seek(1.0)")
+    assert page.evaluate("robolang.bodyAt(0, 'tool')") != page.evaluate("robolang.bodyAt(1, 'tool')")
+    assert " | " in page.inner_text("[data-signal=tool_error] output")
+    tab.close()
+
+
+HOSTILE = "</script><img src=x onerror=\"window.hit=1\"><svg onload='window.hit=1'>{{JS}}"
+
+
+def test_hostile_names_and_texts_do_nothing(browser, tmp_path):
+    tab = Tab(browser)
+    run = made_up.run(DURATION_S, program=f"' {HOSTILE}\n" + made_up.PROGRAM, name=HOSTILE, part=HOSTILE, label=HOSTILE)
+    header = run[0]
+    header["notes"].append({"time_s": 1.0, "line": 1, "code": HOSTILE, "severity": "note", "text": HOSTILE})
+    header["charts"][0]["title"] = header["joints"][0]["name"] = HOSTILE
+    page = tab.open(made_up.page(tmp_path / "hostile.html", run))
+    assert page.get_attribute("body", "data-state") == "ready"
+    assert page.evaluate("window.hit") is None
+    assert page.evaluate("document.querySelectorAll('img, svg, iframe').length") == 0
+    assert HOSTILE in page.inner_text(LINE.format(1))
+    assert tab.complaints == []
+    assert len(tab.requests) == 1
+    tab.close()
+
+
+def test_a_thinned_run_says_so(browser, tmp_path):
+    tab = Tab(browser)
+    text = "thinned to one pair every 20 ms"
+    page = tab.open(
+        made_up.page(tmp_path / "long.html", made_up.run(DURATION_S, thinned={"every_s": 0.02, "text": text}))
+    )
+    assert text in page.inner_text("[data-testid=thinned]")
+    tab.close()
+
+
+def test_a_long_program_has_only_the_shown_lines_as_elements(browser, tmp_path):
+    tab = Tab(browser)
+    program = made_up.PROGRAM + "\n".join(f"' line {k}" for k in range(10, 20_010))
+    page = tab.open(made_up.page(tmp_path / "text.html", made_up.run(DURATION_S, program=program)))
+    assert page.locator("[data-testid=line]").count() < 200
+    page.evaluate("document.querySelector('[data-testid=program]').scrollTop = 1e9")
+    page.wait_for_selector(LINE.format(20_009))
+    page.evaluate("robolang.seek(0.4)")
+    assert running(page) == 4
+    tab.close()
+
+
+def test_data_that_cannot_be_read_are_said_to_be(browser, tmp_path):
+    tab = Tab(browser)
+    path = made_up.page(tmp_path / "torn.html", made_up.run(DURATION_S))
+    text = path.read_text("utf-8")
+    at = text.index('data-run="0">') + 4000
+    path.write_text(text[:at] + "AAAA" + text[at + 4000 :], "utf-8")
+    page = tab.open(path)
+    assert page.get_attribute("body", "data-state") == "failed"
+    assert page.is_visible("[role=alert]")
+    tab.close()
+
+
+def test_without_webgl_words_stand_for_the_robot_and_the_rest_works(first, tmp_path):
+    """In a browser of its own, in a thread of its own: Playwright runs one loop a thread."""
+    from concurrent.futures import ThreadPoolExecutor
+
+    path = made_up.page(tmp_path / "words.html", made_up.run(DURATION_S))
+    with ThreadPoolExecutor(1) as pool:
+        pool.submit(without_webgl, path).result()
+
+
+def without_webgl(path):
+    with chromium(WITHOUT_GL) as started:
+        page = Tab(started).open(path)
+        assert page.get_attribute("body", "data-state") == "ready"
+        assert "WebGL" in page.inner_text("[data-testid=no3d]")
+        page.click(LINE.format(5))
+        assert running(page) == 5
+        assert page.locator("[data-signal=tool_error] .u-over").count() == 1
