@@ -19,6 +19,7 @@ __all__ = [
     *("Analysis", "Diagnostic", "Edit", "Line", "Source", "Span", "read_program"),
     *("Executor", "ExecutorSnapshot", "State", "Status", "Timeline", "ENDED", "Fault", "FileFault"),
     *("Observer", "ProgramError", "Project", "RunResult", "Session", "load_project", "run"),
+    *("Log", "read_log"),
 ]
 
 

@@ -12,6 +12,8 @@ from robolang.execution.result import RunResult
 from robolang.execution.session import ProgramError, Session, run
 from robolang.execution.status import ENDED, State, Status
 from robolang.execution.timeline import Timeline
+from robolang.logs.log import Log
+from robolang.logs.npz_file import read_log
 from robolang.project.project import Project, load_project
 from robolang.syntax.ast import Line
 from runtime.core.faults import Fault
@@ -28,6 +30,7 @@ __all__ = [
     "Fault",
     "FileFault",
     "Line",
+    "Log",
     "Observer",
     "ProgramError",
     "Project",
@@ -39,6 +42,7 @@ __all__ = [
     "Status",
     "Timeline",
     "load_project",
+    "read_log",
     "read_program",
     "run",
 ]

@@ -7,6 +7,24 @@ from runtime.core.faults import Code, register
 
 register(
     Code(
+        code="RBL820",
+        name="log-lacks-this",
+        meaning="A log of a run lacks what is needed: it was written by an older version of robolang.",
+        remedy="Run the program again with --log; what the old log holds can still be read by robolang.read_log.",
+    ),
+    Code(
+        code="RBL821",
+        name="log-too-new",
+        meaning="A log of a run was written by a newer version of robolang, whose layout this one does not know.",
+        remedy="Install the version of robolang that wrote the log, or a later one.",
+    ),
+    Code(
+        code="RBL822",
+        name="log-not-kept",
+        meaning="A run that was carried out without a log is to give its signals.",
+        remedy="Run the program with --log, or in Python with Session(project), which keeps the log.",
+    ),
+    Code(
         code="RBL825",
         name="viewer-incomplete",
         meaning="The files that every page is made of are missing from the installation, or are not those of a page.",

@@ -14,6 +14,7 @@ from robolang.core.diagnostics import Severity
 from robolang.execution.alarms import as_json
 from robolang.execution.result import RunRecord, StatementRun
 from runtime.control.controller import Controller
+from runtime.control.signals import Signals
 from runtime.core.faults import Alarm
 from runtime.core.frames import Array, xyzrpy_from_pose
 from runtime.core.units import DEG, MM, PERCENT
@@ -21,11 +22,11 @@ from runtime.plant.touches import shape_text
 from runtime.servo.motor import torque_limit
 
 
-def build_report(record: RunRecord, log: dict[str, Array], wall_s: float) -> dict[str, Any]:
+def build_report(record: RunRecord, log: Signals, wall_s: float) -> dict[str, Any]:
     """Return the report of a finished run (docs/signals.md explains every key)."""
     controller = record.controller
     sim_s = controller.time_us / 1_000_000
-    measures = _Measures(log, controller.tool_poses(log["q_cmd"]), torque_limit(controller.spec))
+    measures = _Measures(log, torque_limit(controller.spec))
     return {
         "program": record.project.source.path,
         "robot": controller.spec.name,
@@ -78,10 +79,10 @@ _MEASURED = (
 class _Measures:
     """Error measures of every tick, computed once for the whole run."""
 
-    def __init__(self, log: dict[str, Array], X_cmd: Array, torque: Array) -> None:
+    def __init__(self, log: Signals, torque: Array) -> None:
         self.p_tool = log["X_world_tool"][:, :3, 3]
         self.joint_deg = np.abs(log["q_cmd"] - log["q_link"]).max(axis=1) / DEG
-        self.tool_mm = np.linalg.norm(X_cmd[:, :3, 3] - self.p_tool, axis=1) / MM
+        self.tool_mm = log["tool_error"] / MM
         self.wrist_mode, self.deviation = log["wrist_mode"], log["seam_deviation"]
         self.torque_pct = np.abs(log["tau_sat"] / torque).max(axis=1) / PERCENT
 

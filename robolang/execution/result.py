@@ -5,11 +5,11 @@ from typing import Any
 
 from robolang.core.diagnostics import Diagnostic
 from robolang.interpreter.effects import Effect, Origin
+from robolang.logs.log import Log
 from robolang.project.points import Point
 from robolang.project.project import Project
 from runtime.control.controller import Controller
 from runtime.core.faults import Alarm
-from runtime.core.frames import Array
 from runtime.motion.cartesian_planner import WristChange
 from runtime.motion.path import Path
 
@@ -45,7 +45,7 @@ class StatementRun:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunResult:
-    """Outcome of a run: ``report`` of plain JSON types, ``log`` arrays by signal name, first dimension ticks.
+    """Outcome of a run: ``report`` of plain JSON types, ``log`` arrays by signal name.
 
     ``ok``: the program ran to its end. ``alarms`` ended it otherwise, the one that stopped the arm first; ``warnings``
     did not: both at the statements that ran.
@@ -55,7 +55,7 @@ class RunResult:
     alarms: tuple[Diagnostic, ...]
     warnings: tuple[Diagnostic, ...]
     report: dict[str, Any]
-    log: dict[str, Array]
+    log: Log
 
 
 @dataclass(slots=True, kw_only=True)

@@ -12,6 +12,7 @@ from robolang.execution.alarms import as_diagnostic
 from robolang.execution.controller_target import ControllerTarget
 from robolang.execution.dry_run import motion_check
 from robolang.execution.executor import Alter, Executor
+from robolang.execution.log_meta import meta_of
 from robolang.execution.observer import Observer
 from robolang.execution.plan_memory import PlanMemory
 from robolang.execution.report import build_report
@@ -19,6 +20,7 @@ from robolang.execution.result import RunRecord, RunResult, StatementRun
 from robolang.execution.rig import Rig
 from robolang.execution.status import ENDED
 from robolang.execution.world import RobotWorld
+from robolang.logs.log import Log
 from robolang.project.project import Project, load_project
 from runtime.control.clock import wall_s
 from runtime.control.controller import Controller
@@ -98,8 +100,8 @@ class Session:
         before = list(self.controller.warnings)
         # first: the report lists the warnings
         self.controller.warn_of_touches()
-        log = self.controller.recorder.signals(self.controller.tool_poses)
-        report = build_report(self.record, log, wall_s)
+        report = build_report(self.record, self.controller.signals(), wall_s)
+        log = Log(self.controller.recorder.recorded(), meta_of(self.record, self.world.signals, report))
         alarms, warnings = (
             tuple(as_diagnostic(alarm, severity) for alarm in found)
             for found, severity in (

@@ -14,7 +14,7 @@ same tick:
 
 import hashlib
 import multiprocessing
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -223,7 +223,7 @@ def _without_equals(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return found
 
 
-def _digest(log: dict[str, Array]) -> str:
+def _digest(log: Mapping[str, Array]) -> str:
     digest = hashlib.sha256()
     for name in ("q_cmd", "q_link", "X_world_tool"):
         digest.update(np.ascontiguousarray(log[name]).tobytes())
@@ -274,7 +274,7 @@ def wrong_mass(mass: float, rated: float) -> float:
 # --- measures --------------------------------------------------------------------------------------------------------
 
 
-def measures(log: dict[str, Array], X_cmd: Array, statements: list[StatementRun]) -> dict[str, Any]:
+def measures(log: Mapping[str, Array], X_cmd: Array, statements: list[StatementRun]) -> dict[str, Any]:
     """Return the figures of a run, in deg, mm, s and %, over all its MOVEs; None where there is none."""
     moves = [run for run in statements if run.begun and run.path is not None and run.end_tick > run.first_tick]
     if not moves:
@@ -317,7 +317,7 @@ def _longest_settling(moves: list[dict[str, Any]]) -> float | None:
     return None if None in settled else max(settled)  # a largest time beside a move that never settles would mislead
 
 
-def _move(run: StatementRun, log: dict[str, Array], p_tool: Array) -> dict[str, Any]:
+def _move(run: StatementRun, log: Mapping[str, Array], p_tool: Array) -> dict[str, Any]:
     span = slice(run.first_tick, run.end_tick)
     assert run.path is not None  # only moves get here
     q_cmd, q_link, t = log["q_cmd"][span], log["q_link"][span], log["t"][span]

@@ -192,7 +192,7 @@ def _refuse_touch(request: StepRequest, controller: Controller) -> None:
 
 def _measure(request: StepRequest, controller: Controller, first: int) -> StepResult:
     axis, size, tick_s = request.axis, request.size, controller.profile.tick_s
-    log = controller.recorder.signals(controller.tool_poses)
+    log = controller.signals()
     q, rest = log["q_link"][:, axis], log["q_link"][first - 1, axis]
     response = q[first:] - rest
     t = np.arange(len(response)) * tick_s

@@ -210,7 +210,7 @@ def weigh(request: WeighRequest) -> WeighResult:
     _play(controller, np.zeros((round(SETTLE_S / profile.period_s), robot.n)) + start)
     first = controller.recorder.tick
     _play(controller, start + exercise.offsets)
-    log = controller.recorder.signals(controller.tool_poses)
+    log = controller.signals()
     found = weighed(robot, profile, log["tau_sat"][first:], log["q_fb"][first:], physics=not rigid)
     return WeighResult(found=found, true=true, exercise=exercise, seconds=controller.time_us / 1e6)
 

@@ -38,11 +38,15 @@ from runtime.settings.profile import Profile, ServoMode
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Project:
-    """Everything a run needs. ``diagnostics`` are those of the analysis; with an error the program must not run."""
+    """Everything a run needs. ``diagnostics`` are those of the analysis; with an error the program must not run.
+
+    ``cell_text`` is the text of the cell file, of the built-in cell too.
+    """
 
     analysis: Analysis
     diagnostics: tuple[Diagnostic, ...]
     cell: CellSpec
+    cell_text: str
     points: PointStore
     settings: Settings
 
@@ -104,6 +108,7 @@ def load_project(
         analysis=analysis,
         diagnostics=analysis.diagnostics,
         cell=spec,
+        cell_text=found.cell.text,
         points=found.points,
         settings=settings,
     )

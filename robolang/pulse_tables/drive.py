@@ -196,7 +196,7 @@ class _Arm:
 
     def _result(self) -> Drive:
         controller = self._controller
-        log = controller.recorder.signals(controller.tool_poses)
+        log = controller.signals()
         tool = log["X_world_tool"][:, :3, 3]
         return Drive(
             moves=tuple(_driven(run, tool[run.first_tick : run.end_tick], self._profile.tick_s) for run in self._runs),

@@ -5,7 +5,7 @@ could miss is none. A difference from the golden log is named by the first line 
 """
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -47,7 +47,7 @@ class Verdict:
 
 
 def judge(
-    expected: Expectation, session: Session, report: dict[str, Any], log: dict[str, Array], update: bool = False
+    expected: Expectation, session: Session, report: dict[str, Any], log: Mapping[str, Array], update: bool = False
 ) -> list[Verdict]:
     """Return the verdicts on a finished run; ``update``: the golden log is written when all are met."""
     found = _events(expected, report["alarms"], report["warnings"], [entry["text"] for entry in report["printed"]])
@@ -143,7 +143,7 @@ def _largest(statements: list[dict[str, Any]], key: str, measure: str, most: flo
     return Verdict(name=name, ok=value <= most, detail=detail, key=(key,))
 
 
-def _end_pose(session: Session, log: dict[str, Array]) -> Array:
+def _end_pose(session: Session, log: Mapping[str, Array]) -> Array:
     """Return X_world_tool (4, 4) at the end of the run; a run without a tick ends where it starts."""
     poses = log["X_world_tool"]
     return poses[-1] if len(poses) else session.controller.tool_poses(np.array(session.controller.areas.ina))
@@ -184,13 +184,13 @@ def _part(objects: dict[str, Any], name: str, place: tuple[float, ...], most: fl
     return Verdict(name=title, ok=off <= most, detail=f"{away} mm away, at most {bound} mm", key=key)
 
 
-def _cycles(session: Session, log: dict[str, Array]) -> tuple[Array, Array]:
+def _cycles(session: Session, log: Mapping[str, Array]) -> tuple[Array, Array]:
     """Return detected joint angles (n, axes), as precise as a golden log has them, and lines (n,) of every cycle."""
     every = session.project.profile.ticks_per_cycle
     return log["q_fb"][::every].astype(np.float32), log["line"][::every]
 
 
-def _update(expected: Expectation, session: Session, log: dict[str, Array], clean: bool) -> Verdict:
+def _update(expected: Expectation, session: Session, log: Mapping[str, Array], clean: bool) -> Verdict:
     q, line = _cycles(session, log)
     if not (clean and np.isfinite(q).all()):
         why = "the run does not meet the other expectations" if not clean else "its angles are not finite"
@@ -199,7 +199,7 @@ def _update(expected: Expectation, session: Session, log: dict[str, Array], clea
     return Verdict(name="golden", ok=True, detail=f"written, {len(q)} cycles", key=("golden_deg",))
 
 
-def _golden(expected: Expectation, session: Session, log: dict[str, Array]) -> Verdict:
+def _golden(expected: Expectation, session: Session, log: Mapping[str, Array]) -> Verdict:
     q, line = _cycles(session, log)
     try:
         golden = read_golden(expected.golden, axes=q.shape[1], most_cycles=len(q))

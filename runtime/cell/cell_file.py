@@ -72,10 +72,11 @@ class LoadFile(Record):
 
 
 class CellFile(Record):
-    """A cell file. ``tools``, ``frames``: poses (6,) mm and deg by name, FLANGE and WORLD among them; ``controller``:
-    the settings of ``[controller]``; ``doubts``: parts that cannot rest where they are (RBL640)."""
+    """A cell file and its ``text``. ``tools``, ``frames``: poses (6,) mm and deg by name, FLANGE and WORLD among them;
+    ``controller``: the settings of ``[controller]``; ``doubts``: parts that cannot rest where they are (RBL640)."""
 
     path: str
+    text: str
     arm: ArmFile
     home_deg: Numbers
     hand: HandFile
@@ -133,6 +134,7 @@ def parse_cell_file(source: Source, folder: Path | None = None) -> CellFile:
     table.finish()
     assert arm is not None and home is not None and hand is not None and inputs is not None and controller is not None
     return CellFile(
+        text=source.text,
         path=source.path,
         arm=arm,
         home_deg=home,

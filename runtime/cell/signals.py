@@ -13,7 +13,7 @@ them; one that PULSE set goes back to 0 by itself. Times are integers of microse
 no sum of times rounds. Read by every WAIT and condition of a program, and by the dry run on its own clock.
 """
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 from runtime.core.faults import Fault
@@ -93,7 +93,7 @@ class SignalsSnapshot(Record):
     """Signals as they were: of each output that was set the times, us, from which it has its states; forced inputs."""
 
     outputs: Mapping[int, tuple[tuple[int, float], ...]]
-    forced: Mapping[int, float]
+    held: tuple[tuple[int, int, float | None], ...]
 
 
 class Signals:
@@ -103,29 +103,31 @@ class Signals:
         self._inputs = inputs
         self._history: dict[int, list[tuple[int, float]]] = {}
         self._forced: dict[int, float] = {}
+        self._held: list[tuple[int, int, float | None]] = []
+        """Each time that an input was forced, us, its number, and the state, None: no longer."""
 
     def snapshot(self) -> SignalsSnapshot:
         """Return what the outputs have been so far and will be by themselves, and which inputs are forced."""
         outputs = {output: tuple(rows) for output, rows in self._history.items()}
-        return SignalsSnapshot(outputs=outputs, forced=self._forced.copy())
+        return SignalsSnapshot(outputs=outputs, held=tuple(self._held))
 
     def restore(self, snapshot: SignalsSnapshot) -> None:
         """Go back, or on, to a snapshot."""
         self._history = {output: list(rows) for output, rows in snapshot.outputs.items()}
-        self._forced = dict(snapshot.forced)
+        self._held = list(snapshot.held)
+        self._forced = _forced(self._held)
 
     @property
     def forced(self) -> Mapping[int, float]:
         """The inputs that an operator holds in a state, whatever the cell file says."""
         return self._forced
 
-    def force(self, number: int, state: float | None) -> None:
+    def force(self, number: int, state: float | None, now_us: int) -> None:
         """Hold an input in a state from now on; None: the cell file decides again. ``Fault`` RBL534."""
         if number not in self._inputs:
             raise unknown_input(number, self._inputs)
-        self._forced.pop(number, None)
-        if state is not None:
-            self._forced[number] = state
+        self._held.append((now_us, number, state))
+        self._forced = _forced(self._held)
 
     def set(self, output: int, value: float, now_us: int, off_us: int | None = None) -> None:
         """Set an output from ``now_us`` on, and back to 0 at ``off_us``."""
@@ -145,12 +147,41 @@ class Signals:
         spec = self._inputs.get(number)
         if spec is None:
             raise unknown_input(number, self._inputs)
-        if number in self._forced:
-            return self._forced[number]
+        return self._forced[number] if number in self._forced else self._by_itself(spec, now_us)
+
+    def _by_itself(self, spec: InputSpec, now_us: int) -> float:
         if spec.follows is not None:
             # the whole history is kept: a delay may reach back further than the last change
             return _at(self._history.get(spec.follows, ()), now_us - spec.delay_us)
         return _at(spec.changes, now_us)
+
+    def output_changes(self, until_us: int) -> dict[int, list[tuple[int, float]]]:
+        """Return of each output that was set the times, us, and the states, from 0 to ``until_us``."""
+        return {
+            number: [(0, 0.0)] * (rows[0][0] > 0) + [row for row in rows if row[0] <= until_us]
+            for number, rows in self._history.items()
+        }
+
+    def input_changes(self, until_us: int) -> dict[int, list[tuple[int, float]]]:
+        """Return of each input of the cell the times, us, and the states, from 0 to ``until_us``."""
+        found: dict[int, list[tuple[int, float]]] = {}
+        for number, spec in self._inputs.items():
+            delayed = [(us + spec.delay_us) for us, _ in self._history.get(spec.follows or 0, ())]
+            held = [row for row in self._held if row[1] == number]
+            times = sorted({0, *delayed, *(us for us, _ in spec.changes), *(us for us, _, _ in held)})
+            rows = found[number] = []
+            for us in (each for each in times if each <= until_us):
+                forced = _forced([row for row in held if row[0] <= us])
+                state = forced.get(number, self._by_itself(spec, us))
+                if not rows or rows[-1][1] != state:
+                    rows.append((us, state))
+        return found
+
+
+def _forced(held: Iterable[tuple[int, int, float | None]]) -> dict[int, float]:
+    """Return the inputs that are held, by what was done to them so far."""
+    last = {number: state for _, number, state in held}
+    return {number: state for number, state in last.items() if state is not None}
 
 
 def unknown_input(number: int, known: Collection[int], cell_file: str = "") -> Fault:

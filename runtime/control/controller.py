@@ -28,6 +28,7 @@ from runtime.control.memory_areas import Areas
 from runtime.control.recorder import Recorder
 from runtime.control.request_queue import RequestQueue, SetAside
 from runtime.control.scheduler import IdleProcessor
+from runtime.control.signals import Signals
 from runtime.control.stop_logic import StopLogic
 from runtime.core.faults import Alarm
 from runtime.core.frames import Array
@@ -143,6 +144,7 @@ class Controller:
     def use_tool(self, X_flange_tool: Array) -> None:
         """TOOL: the tool point of the moves that follow, X_flange_tool (4, 4)."""
         self.requests.X_flange_tool = X_flange_tool
+        self.recorder.use_tool(X_flange_tool)
 
     def seam(self, tracker: SeamTracker | None) -> None:
         """SEAM ON: the moves that follow go where the tracker's sensor sees the seam; None, SEAM OFF, ends that."""
@@ -443,6 +445,10 @@ class Controller:
     def tool_poses(self, q: Array) -> Array:
         """Return X_world_tool (..., 4, 4) at joint angles q (..., n)."""
         return np.asarray(matmul(self.kinematics.forward(q), self.X_flange_tool))
+
+    def signals(self) -> Signals:
+        """Return the signals of the run up to now, by name."""
+        return Signals(self.recorder.recorded(), self.kinematics.chain)
 
     # parts of the drive train ---------------------------------------------------------------------------------------
 

@@ -81,7 +81,8 @@ class DriveTrain(Stateful):
         if profile.servo.mode == "fixed":
             self._held_inertia = fixed_inertia(spec, profile.servo, X_flange_tool)
         self.processor = IdleProcessor(self._task)
-        self.recorder = Recorder(spec.n, profile.ticks_per_cycle, profile.tick_us, plant.q_link)
+        self.recorder = Recorder(spec.n, profile.ticks_per_cycle, profile.tick_us, len(plant.parts()))
+        self.recorder.begin(plant.q_link, X_flange_tool)
         self.fine = FineInterpolator(profile.ticks_per_cycle, profile.period_s, q)
         self.power_up(q, 0)
         self.supervisor = Supervisor(spec, profile.supervision, drive_data(spec, profile), load_model(spec, profile))
@@ -149,6 +150,7 @@ class DriveTrain(Stateful):
             (self.areas.ina, D, T, read_us, seam_deviation),
             motion,
             (self.areas.sda.mass, *logged(statement), wrist_mode),
+            self.plant.moved,
         )
         return motion
 

@@ -129,6 +129,21 @@ def rpy_from_rotation(R: Array) -> Array:
     return np.asarray(angles + np.where(is_half_turn(angles) & (angles < 0.0), 2.0 * np.pi, 0.0))
 
 
+def quaternion(R: Array) -> Array:
+    """Return the quaternion (4,), w x y z and w >= 0, of a rotation (3, 3)."""
+    xx, yy, zz = R[0, 0], R[1, 1], R[2, 2]
+    # four times the square of each component; the root of the largest one loses no digits (Shepperd 1978)
+    squares = np.array([1.0 + xx + yy + zz, 1.0 + xx - yy - zz, 1.0 - xx + yy - zz, 1.0 - xx - yy + zz])
+    wx, wy, wz = R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]
+    xy, xz, yz = R[0, 1] + R[1, 0], R[0, 2] + R[2, 0], R[1, 2] + R[2, 1]
+    largest = int(np.argmax(squares))
+    row = np.array(
+        [(squares[0], wx, wy, wz), (wx, squares[1], xy, xz), (wy, xy, squares[2], yz), (wz, xz, yz, squares[3])]
+    )
+    found = row[largest] / (2.0 * np.sqrt(squares[largest]))
+    return np.asarray(-found if found[0] < 0.0 else found)
+
+
 def pose(position: ArrayLike = (0.0, 0.0, 0.0), rotation: ArrayLike | None = None) -> Array:
     """Return the homogeneous matrix (..., 4, 4) of a position (..., 3) in m and a rotation (..., 3, 3)."""
     p = np.asarray(position, dtype=np.float64)

@@ -67,6 +67,10 @@ class MujocoPlant:
         self._motors, self._gears, self._fingers = built.motors, built.gears, built.fingers
         self._elastic = elastic_axes(spec)
         self._part_address, self._geom_names = built.parts, built.shapes
+        # a finger's coordinate is the distance of its pad from the tool point
+        places = [np.arange(at, at + 7) for at in built.parts.values()]
+        fingers = np.arange(built.fingers.start, built.fingers.stop)
+        self._pictured = np.concatenate([*places, fingers])
         self._warnings = self._data.warning.number.tobytes
         self._no_warning = self._warnings()
         self._valid = True
@@ -281,6 +285,10 @@ class MujocoPlant:
     def parts(self) -> dict[str, Array]:
         """Return the pose X_world_part (4, 4) of every part by name."""
         return {name: _pose(self._last_qpos[at : at + 7]) for name, at in self._part_address.items()}
+
+    def moved(self) -> Array:
+        """Return pose of each part and distance of each pad, as ``Plant.moved``."""
+        return np.asarray(self._last_qpos[self._pictured])
 
     def X_world_tool(self) -> Array:
         """Return the true pose (4, 4) of the tool point, of the same instant as ``q``."""

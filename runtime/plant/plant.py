@@ -62,6 +62,13 @@ class Plant(Protocol):
     def parts(self) -> dict[str, Array]:
         """Return the pose X_world_part (4, 4) of every part by name."""
 
+    def moved(self) -> Array:
+        """Return what a picture of the cell shows beside the joints (7 m + 2,), in the order of ``parts``.
+
+        Of each part x y z, m, and the quaternion w x y z in the world; of each finger the distance of its pad from the
+        tool point, m. Called every 16 ms.
+        """
+
     @property
     def bodies(self) -> Bodies | None:
         """Parts and tool as live arrays; None where the plant knows no contacts."""

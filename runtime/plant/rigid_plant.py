@@ -12,7 +12,7 @@ from typing import ClassVar
 import numpy as np
 
 from runtime.cell.cell import CellSpec
-from runtime.core.frames import Array, inverse
+from runtime.core.frames import Array, inverse, quaternion
 from runtime.core.linear import matmul, norm
 from runtime.core.state import Stateful
 from runtime.plant.plant import HandState
@@ -86,6 +86,11 @@ class RigidPlant(Stateful):
         if self._holding is not None:
             poses[self._holding] = matmul(self._X_world_tool(), self._X_tool_part)
         return poses
+
+    def moved(self) -> Array:
+        """Return pose of each part and distance of each pad, as ``Plant.moved``."""
+        poses = [np.concatenate([X[:3, 3], quaternion(X[:3, :3])]) for X in self.parts().values()]
+        return np.concatenate([*poses, np.full(2, self.hand().opening / 2.0)])
 
     def touching(self) -> frozenset[Pair]:
         """Return nothing: there are no contacts."""

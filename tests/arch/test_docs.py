@@ -29,7 +29,9 @@ from robolang.core.diagnostics import has_errors
 from robolang.core.source import Source
 from robolang.syntax.parser import parse
 from runtime.control.recorder import Recorder
+from runtime.control.signals import Signals
 from runtime.core.faults import all_codes
+from runtime.robot.kinematics.chain import Chain
 from tests.robolang.helpers import cell_with
 
 ROOT = Path(__file__).parents[2]
@@ -328,17 +330,20 @@ def test_the_layers_are_those_that_are_checked():
 
 
 def test_every_signal_is_in_the_table_with_its_shape():
-    recorder = Recorder(7, 8, 1000)  # seven axes: a deviation has six entries on any arm
+    recorder = Recorder(7, 8, 1000, parts=3)  # seven axes: a deviation has six entries on any arm
     zeros = np.zeros(7)
     recorder.begin_cycle((zeros, zeros, zeros, zeros, np.zeros(6)), np.zeros((3, 8, 7)), (0.0, 0, 0, 0))
     recorder.record((zeros, zeros, zeros, zeros, zeros))
-    signals = recorder.signals(lambda q: np.zeros((len(q), 4, 4)))
+    chain = Chain(placements=(np.eye(4),) * 7, X_last_flange=np.eye(4))
+    signals = Signals(recorder.recorded(), chain)
+    names = {7: "n", 3: "m"}
     shapes = {
-        key: "(N, " + ", ".join("n" if k == 7 else str(k) for k in values.shape[1:]) + ")"
-        for key, values in signals.items()
+        key: ", ".join(["(N" if signals.base(key) == "tick" else "(K", *(names.get(k, str(k)) for k in rest)]) + ")"
+        for key, rest in ((key, values.shape[1:]) for key, values in signals.items())
     }
-    rows = re.findall(r"^\| `(\w+)` \| (\(N[^|]*\)) \|", (ROOT / "docs/signals.md").read_text("utf-8"), re.MULTILINE)
-    assert dict(rows) == {key: shape.replace("(N, )", "(N,)") for key, shape in shapes.items()}
+    shapes |= {"tool_cmd": "(N, 3)", "parts": "(K, m, 7)"}  # 3 axes of space, and 7 numbers of a pose
+    rows = re.findall(r"^\| `(\w+)` \| (\([NK][^|]*\)) \|", (ROOT / "docs/signals.md").read_text("utf-8"), re.MULTILINE)
+    assert dict(rows) == {key: re.sub(r"^\((.)\)$", r"(\1,)", shape) for key, shape in shapes.items()}
 
 
 @pytest.mark.physics

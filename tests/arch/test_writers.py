@@ -29,8 +29,8 @@ KNOWN = {
     "robolang/syntax/grammar.py: LINE_TABLE.write_text": "run by hand, makes a file of the source",
     "robolang/syntax/generate.py: NODES.write_text": "run by hand, makes a file of the source",
     "robolang/lint/pages.py: folder / name.write_text": "run by hand, makes the pages of the rules",
+    "robolang/logs/npz_file.py: file.open": "to a stream of write_atomic",
     "robolang/testing/golden.py: np.savez_compressed": "to a stream of write_atomic",
-    "robolang/execution/runlog.py: np.savez": "to a stream of write_atomic",
 }
 
 

@@ -192,7 +192,7 @@ def hold_key(robot, plan, times, ended):
 
 def check(robot, stops, physics):
     """Return what a log breaks."""
-    broken, log = Counter(), robot.recorder.signals(robot.tool_poses)
+    broken, log = Counter(), robot.signals()
     tick_s = float(log["t"][1] - log["t"][0])
     ticks = round(PERIOD_S / tick_s)
     spec = robot.spec

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from robolang.execution.lowering import pose_si
-from robolang.execution.runlog import write_log
 from robolang.execution.session import RunResult, Session
 from robolang.experiments.step import StepResult, step
+from robolang.logs.files import write_log
 from robolang.project.project import load_project
 from runtime.core.frames import inverse, pose, principal_axis, rotation_about, rotation_angle, rotation_from_rpy
 from runtime.core.units import badness

@@ -134,7 +134,7 @@ def _check_outputs(program: str, output: _OutputOptions) -> None:
 def _write(result: "RunResult", output: _OutputOptions) -> int:
     """Write report and log, each of them even if the other cannot be written; return the exit code."""
     from robolang.core.storage import write_json
-    from robolang.execution.runlog import write_log
+    from robolang.logs.files import write_log
     from runtime.core.faults import Fault
 
     writers: list[tuple[Path | None, Callable[[Path], None]]] = [

@@ -17,7 +17,7 @@ _LOG, _REPORT = "log FILE", "report FILE"
 
 def _log(pendant: "Pendant", rest: str) -> None:
     # late, as all that imports numerics
-    from robolang.execution.runlog import SUFFIXES, write_log
+    from robolang.logs.files import SUFFIXES, write_log
 
     path = Path(rest)
     if path.suffix not in SUFFIXES:

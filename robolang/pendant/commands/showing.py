@@ -118,7 +118,7 @@ def _range(pendant: "Pendant", rest: str, current: int | None, count: int) -> tu
 def _in(pendant: "Pendant", rest: str) -> None:
     form = "in N on|off|auto"
     words = rest.lower().split()
-    signals = pendant.live.executor.world.signals
+    world = pendant.live.executor.world
     if not words:
         _show_inputs(pendant)
         return
@@ -127,7 +127,8 @@ def _in(pendant: "Pendant", rest: str) -> None:
     number = whole(words[0], form, "the input", 1, 1024)
     # the executor does not see it, so the place before it is kept here
     pendant.live.timeline.mark(f"in {rest}")
-    signals.force(number, {"on": 1.0, "off": 0.0, "auto": None}[words[1]])
+    state = {"on": 1.0, "off": 0.0, "auto": None}[words[1]]
+    world.signals.force(number, state, round(world.seconds() * 1e6))
     # shown in words: after auto an input may change by itself
     by = "as the cell file says" if words[1] == "auto" else f"forced {words[1].upper()}"
     pendant.output.line(f"input {number}: {by}")

@@ -27,6 +27,7 @@ from runtime.core.frames import Array, frozen, is_half_turn
 from runtime.core.linear import matmul
 from runtime.core.units import DEG
 from runtime.robot.kinematics import opw
+from runtime.robot.kinematics.chain import Chain
 from runtime.robot.kinematics.closed_form import find_opw
 from runtime.robot.kinematics.newton import NewtonSolver
 from runtime.robot.kinematics.opw import BRANCHES, NUMERIC, TURN, Branch, Geometry
@@ -68,7 +69,9 @@ class Kinematics:
         self.spec = spec
         self.n = spec.n
         self._opw = spec.opw if spec.opw is not None else find_opw(spec.axes, spec.X_last_flange)
-        self.newton = NewtonSolver([axis.placement for axis in spec.axes], spec.X_last_flange)
+        self.chain = Chain(placements=tuple(axis.placement for axis in spec.axes), X_last_flange=spec.X_last_flange)
+        """The joint frames."""
+        self.newton = NewtonSolver(self.chain.placements, spec.X_last_flange)
         """Solves what has no closed form."""
         self._lower, self._upper = frozen(spec.lower), frozen(spec.upper)
         self._middle = frozen(0.5 * (spec.lower + spec.upper))
@@ -85,10 +88,7 @@ class Kinematics:
 
     def forward(self, q: ArrayLike) -> Array:
         """Return X_base_flange (..., 4, 4) of joint angles (..., n) rad."""
-        X = np.eye(4)
-        for X in self._axis_frames(np.asarray(q, dtype=np.float64)):  # noqa: B007 - only the last frame is needed
-            pass
-        return np.asarray(matmul(X.reshape(-1, 4), self.spec.X_last_flange).reshape(X.shape))
+        return self.chain.flange(q)
 
     def jacobian(self, q: ArrayLike) -> Array:
         """Return the Jacobian (..., 6, n): rows 0-2 velocity of the flange origin m/s per rad/s, 3-5 angular."""
@@ -96,7 +96,7 @@ class Kinematics:
 
     def jacobian_and_rotation(self, q: ArrayLike) -> tuple[Array, Array]:
         """Return the Jacobian (..., 6, n) and the rotation (..., 3, 3) of the flange at joint angles (..., n) rad."""
-        frames = list(self._axis_frames(np.asarray(q, dtype=np.float64)))
+        frames = list(self.chain.axis_frames(np.asarray(q, dtype=np.float64)))
         X_base_flange = matmul(frames[-1], self.spec.X_last_flange)
         columns = [_twist(X, X_base_flange[..., :3, 3]) for X in frames]
         return np.stack(columns, axis=-1), X_base_flange[..., :3, :3]
@@ -223,19 +223,6 @@ class Kinematics:
         """Return the whole turns (..., n) from q on that still end inside the range."""
         fewest = np.ceil((self._lower - LIMIT_ROUNDING - q) / TURN)
         return fewest, np.floor((self._upper + LIMIT_ROUNDING - q) / TURN)
-
-    def _axis_frames(self, q: Array) -> Iterator[Array]:
-        """Yield the frame of each axis, turned, in the base frame (..., 4, 4)."""
-        X = np.eye(4)
-        for i, axis in enumerate(self.spec.axes):
-            X = matmul(X.reshape(-1, 4), axis.placement).reshape(X.shape)  # one product for all postures
-            c, s = np.cos(q[..., i])[..., None], np.sin(q[..., i])[..., None]
-            x, y = X[..., :, 0], X[..., :, 1]
-            # a rotation about z mixes the first two columns only: cheaper than a product with a matrix
-            turned = np.empty((*q.shape[:-1], 4, 4))
-            turned[..., 0], turned[..., 1], turned[..., 2:] = c * x + s * y, c * y - s * x, X[..., :, 2:]
-            X = turned
-            yield X
 
 
 def _twist(X_base_axis: Array, p_flange: Array) -> Array:

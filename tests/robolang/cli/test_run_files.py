@@ -64,13 +64,13 @@ def test_a_disk_that_fills_up_leaves_old_files_and_is_said(folder, monkeypatch, 
 
 
 def test_one_file_that_fails_does_not_cost_the_other(folder, monkeypatch):
-    from robolang.execution import runlog
+    from robolang.logs import files
 
     def full(stream, signals):
         stream.write(b"half")
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr(runlog, "_write_npz", full)
+    monkeypatch.setitem(files._WRITERS, ".npz", full)
     dry("p.rbl", "--report", "r.json", "--log", "l.npz", code=4)
     assert json.loads((folder / "r.json").read_text())["ok"] is True
     assert sorted(os.listdir()) == ["p.rbl", "r.json"]

@@ -9,7 +9,8 @@ import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-from runtime.control.recorder import Recorder
+from robolang.logs.npz_file import read_log
+from runtime.control.signals import NAMES
 from tests.robolang.cli.commands import dry, robolang
 
 REPORT_KEYS = {
@@ -69,7 +70,11 @@ SIGNALS = {
     "seam_deviation",
     "q_link",
     "X_world_tool",
+    "tool_cmd",
+    "tool_error",
+    "tool_speed",
 }
+FRAMES = {"frame_t", "parts", "fingers"}
 PROGRAMS = {
     "move": "10 LOAD (0, 0, 60), 0.8\n20 MOVE P1\n",
     "load": "10 LOAD (0, 0, 60), 0.8\n20 LOAD (0, 0, 95), 2.3\n",
@@ -106,7 +111,7 @@ def results(tmp_path_factory):
 
 
 def test_the_documented_signals_are_those_of_the_recorder():
-    assert set(Recorder(6, 8, 1000).signals(lambda q: np.zeros((len(q), 4, 4)))) == SIGNALS
+    assert set(NAMES) == SIGNALS | FRAMES
 
 
 @pytest.mark.physics
@@ -150,13 +155,15 @@ def test_a_program_without_motion_takes_no_cycle(results, name):
 @pytest.mark.physics
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_the_npz_has_every_signal_with_the_ticks_first(results, name):
-    log = np.load(results[name][0] / "l.npz")
+    log = read_log(results[name][0] / "l.npz")
     ticks = len(log["t"])
-    assert set(log) == SIGNALS
+    assert set(log) == SIGNALS | FRAMES
+    assert log["parts"].shape == (-(-ticks // 16), 1, 7)
     assert ticks == (0 if name != "move" else strict(results[name][0] / "r.json")["cycles"] * 8)
     for signal in SIGNALS:
-        shape = {"X_world_tool_fb": (4, 4), "X_world_tool": (4, 4)}.get(
-            signal, () if signal in ("t", "payload_mass", "line", "number", "wrist_mode") else (6,)
+        numbers = ("t", "payload_mass", "line", "number", "wrist_mode", "tool_error", "tool_speed")
+        shape = {"X_world_tool_fb": (4, 4), "X_world_tool": (4, 4), "tool_cmd": (3,)}.get(
+            signal, () if signal in numbers else (6,)
         )
         assert log[signal].shape == (ticks, *shape), signal
         assert np.isfinite(log[signal]).all(), signal
@@ -166,7 +173,7 @@ def test_the_npz_has_every_signal_with_the_ticks_first(results, name):
 @pytest.mark.physics
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_stock_readers_find_the_same_numbers_in_the_mcap(results, name):
-    log = np.load(results[name][0] / "l.npz")
+    log = read_log(results[name][0] / "l.npz")
     with (results[name][0] / "l.mcap").open("rb") as stream:
         reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
         summary = reader.get_summary()

@@ -12,7 +12,7 @@ from mcap.reader import make_reader
 from typer.testing import CliRunner
 
 from robolang.cli.main import app
-from robolang.execution import runlog
+from robolang.logs import files
 from runtime.control.controller import Controller
 from tests.robolang.cli.commands import ROOT, robolang
 from tests.steps import HANG_S
@@ -62,14 +62,14 @@ def test_the_first_signal_ends_the_run_with_complete_files(tmp_path, number, cod
 def test_a_signal_while_the_files_are_written_does_not_cut_them_off(tmp_path, monkeypatch):
     """In this process: SIGINT and SIGTERM arrive while the bytes of the log go out."""
     (tmp_path / "p.rbl").write_text("MOVE P1\n")
-    write_npz = runlog._write_npz
+    write_npz = files._WRITERS[".npz"]
     for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
 
         def interrupted(stream, signals, number=number):
             os.kill(os.getpid(), number)
             write_npz(stream, signals)
 
-        monkeypatch.setattr(runlog, "_write_npz", interrupted)
+        monkeypatch.setitem(files._WRITERS, ".npz", interrupted)
         words = ["--report", tmp_path / "r.json", "--log", tmp_path / "l.npz"]
         robolang("run", "--no-physics", tmp_path / "p.rbl", *words, code=code)
         assert len(np.load(tmp_path / "l.npz")["t"]) > 700
@@ -108,7 +108,7 @@ def test_the_second_signal_leaves_at_once_and_leaves_no_half_file(tmp_path, monk
         os.kill(os.getpid(), signal.SIGTERM)
         raise AssertionError("not reached")
 
-    monkeypatch.setattr(runlog, "_write_npz", interrupted)
+    monkeypatch.setitem(files._WRITERS, ".npz", interrupted)
     robolang("run", "--no-physics", tmp_path / "p.rbl", "--log", tmp_path / "l.npz", code=143)
     assert (tmp_path / "l.npz").read_text() == "old"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["l.npz", "p.rbl"]

@@ -12,10 +12,9 @@ import numpy as np
 import pytest
 
 from robolang.core.storage import check_writable, write_atomic, write_json
-from robolang.execution import runlog
+from robolang.logs.files import write_log
 from runtime.core.faults import Fault
-
-SIGNALS = {"t": np.arange(4000) * 1e-3, "q_fb": np.random.default_rng(1).normal(size=(4000, 6))}
+from tests.robolang.logs.made import log
 
 
 @contextmanager
@@ -76,7 +75,7 @@ def test_a_full_disk_while_writing_leaves_the_old_file_as_it_was(tmp_path, suffi
         if suffix == ".json":
             said = refused(write_json, path, {"x": list(range(20_000))})
         else:
-            said = refused(runlog.write_log, path, SIGNALS)
+            said = refused(write_log, path, log(4000))
     assert os.strerror(errno.EFBIG) in said
     assert path.read_bytes() == b"old bytes"
     assert os.listdir(tmp_path) == [path.name]

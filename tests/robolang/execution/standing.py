@@ -39,7 +39,7 @@ def stops_at(session, *lines):
 
 
 def log_of(session):
-    signals = session.controller.recorder.signals(session.controller.tool_poses)
+    signals = session.controller.signals()
     return {name: values.tobytes() for name, values in signals.items()}
 
 

@@ -30,7 +30,7 @@ def fed(text):
 
 def log_of(session):
     """The log so far, as bytes."""
-    signals = session.controller.recorder.signals(session.controller.tool_poses)
+    signals = session.controller.signals()
     return {name: values.tobytes() for name, values in signals.items()}
 
 
@@ -200,7 +200,7 @@ def test_statements_are_fed_where_the_program_stands(tmp_path):
 
 def commanded(session):
     """The commanded tool points (ticks, 3), m."""
-    q = session.controller.recorder.signals(session.controller.tool_poses)["q_cmd"]
+    q = session.controller.signals()["q_cmd"]
     return session.controller.tool_poses(q)[:, :3, 3]
 
 
@@ -240,7 +240,7 @@ def test_a_pause_rests_on_the_path_and_the_move_goes_on_where_it_rests(tmp_path,
             assert off <= other.path.deviation(path[other.first_tick : other.end_tick]).max() + 2e-6
     np.testing.assert_array_equal(session.controller.areas.ina, whole.controller.areas.ina)
     limits = session.controller.spec.per_axis("limits", "acceleration")
-    dq = session.controller.recorder.signals(session.controller.tool_poses)["dq_cmd"]
+    dq = session.controller.signals()["dq_cmd"]
     assert (np.abs(np.diff(dq, axis=0)) / 1e-3 <= limits * 1.05).all()
     session.executor.restore(kept)
     session.executor.resume()
@@ -316,7 +316,7 @@ def test_after_an_alarm_is_acknowledged_statements_are_fed_again(tmp_path, physi
     assert executor.status.state is State.DONE
     assert [alarm["code"] for alarm in report["alarms"]] == [code]
     assert not report["ok"]
-    speed = session.controller.recorder.signals(session.controller.tool_poses)["dq_cmd"]
+    speed = session.controller.signals()["dq_cmd"]
     assert np.isfinite(speed).all()
     executor.restore(acknowledged)
     assert carried_out(executor, "MOVE P2 + (0, 0, 20)").fault is None

@@ -38,11 +38,11 @@ MOVES = "\n".join(
 
 
 def commanded(session):
-    return session.controller.recorder.signals(session.controller.tool_poses)["q_cmd"]
+    return session.controller.signals()["q_cmd"]
 
 
 def planned(session):
-    return session.controller.recorder.signals(session.controller.tool_poses)["q_plan"][::8]
+    return session.controller.signals()["q_plan"][::8]
 
 
 def moved(rows):

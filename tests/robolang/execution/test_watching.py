@@ -75,7 +75,7 @@ def test_functions_of_axes_are_those_of_the_controller(tmp_path, name):
     session = session_of(tmp_path, "MOVE P1\n", physics=True)
     assert np.isfinite([number(session, f"{name}({axis})") for axis in range(1, 7)]).all()
     paused_after(session, 40)
-    signals = session.controller.recorder.signals(session.controller.tool_poses)
+    signals = session.controller.signals()
     expected = {
         "TORQUE": signals["tau_sat"][-1],
         "ANGLE": np.degrees(session.controller.servo.alpha),

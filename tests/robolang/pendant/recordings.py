@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from robolang.execution.session import Session
+from robolang.logs.log import Log
 from robolang.project.discovery import own_cell, points_file
 from robolang.project.project import load_project
 from tests.robolang.cli.commands import ROOT, robolang
@@ -31,7 +32,7 @@ def _stops(run) -> bool:
     return run.effect is None or (hasattr(run.effect, "zone_mm") and run.effect.zone_mm == 0.0)
 
 
-def done_again(prompted: Prompted, path: str, *, physics: bool = False) -> tuple[dict, dict]:
+def done_again(prompted: Prompted, path: str, *, physics: bool = False) -> tuple[Log, Log]:
     """Check a recording and run it; the log of the prompt and of the run, whose motions end at the same joints."""
     robolang("check", path)
     project = load_project(path)
@@ -47,7 +48,7 @@ def done_again(prompted: Prompted, path: str, *, physics: bool = False) -> tuple
     return log, result.log
 
 
-def same_log(logs: tuple[dict, dict]) -> None:
+def same_log(logs: tuple[Log, Log]) -> None:
     one, other = logs
     differs = [name for name in one if name not in OF_THE_TEXT and one[name].tobytes() != other[name].tobytes()]
     assert differs == []

@@ -144,5 +144,5 @@ def test_feeling_changes_nothing():
             wait(controller, 120)
             if controller is controllers[0]:
                 sense.felt()
-    one, other = (each.recorder.signals(each.tool_poses) for each in controllers)
+    one, other = (each.signals() for each in controllers)
     assert all(np.array_equal(one[name], other[name]) for name in one)

@@ -80,7 +80,7 @@ def test_the_true_payload_is_found_whatever_is_declared(cell, mass, said, within
 
 def fastest(controller):
     """The largest speed of tool point and flange, m/s, of commands and of the true arm."""
-    log = controller.recorder.signals(controller.tool_poses)
+    log = controller.signals()
     found = []
     for q in (log["q_cmd"], log["q_link"]):
         X = controller.kinematics.forward(q)

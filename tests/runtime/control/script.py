@@ -160,7 +160,7 @@ class Script:
 
 def log_of(robot: Controller) -> dict[str, bytes]:
     """Return every recorded signal as bytes."""
-    return {name: values.tobytes() for name, values in robot.recorder.signals(robot.tool_poses).items()}
+    return {name: values.tobytes() for name, values in robot.signals().items()}
 
 
 def outcome(robot: Controller) -> tuple[object, ...]:

@@ -1,6 +1,7 @@
 """The controller on the ideal arm: pipeline, idle budget, gains and what happens when a hand-over goes bad."""
 
 import dataclasses
+from collections.abc import Mapping
 
 import numpy as np
 import pytest
@@ -34,8 +35,8 @@ def down(robot: Controller, dz: float = -0.1) -> MoveLinear:
     return MoveLinear(X_world_tool=X)
 
 
-def signals(robot: Controller) -> dict[str, Array]:
-    return robot.recorder.signals(robot.tool_poses)
+def signals(robot: Controller) -> Mapping[str, Array]:
+    return robot.signals()
 
 
 def carried_payload() -> Payload:
@@ -138,7 +139,7 @@ def test_a_right_load_holds_the_arm_still_and_a_missing_one_lets_it_sag():
     cell = sagging.areas.ita[1]
     missing = still.areas.ita[1].T - cell.T
     inertia = cell.D + CELL.robot.axes[1].motor.reflected_inertia
-    droop = (sagging.recorder.signals(sagging.tool_poses)["q_cmd"] - signals(sagging)["q_fb"])[-1, 1]
+    droop = (sagging.signals()["q_cmd"] - signals(sagging)["q_fb"])[-1, 1]
     assert droop == pytest.approx(missing / (kp_kv * inertia), rel=0.01)  # docs/servo.md
     assert abs(np.degrees(droop)) > 0.01
 

@@ -1,6 +1,7 @@
 """The three sources of inertia: the same D, the same torques, through a LOAD and a move."""
 
 import dataclasses
+from collections.abc import Mapping
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from runtime.settings.supervision import SupervisionLimits
 from tests.runtime.control.test_controller import carried_payload, controller, down, signals
 
 
-def log_of(source: str, load_mode: str = "add") -> dict[str, np.ndarray]:
+def log_of(source: str, load_mode: str = "add") -> Mapping[str, np.ndarray]:
     watched = SupervisionLimits(enabled=False)  # the arm carries less than is declared
     robot = controller(Profile(inertia_source=source, load_mode=load_mode, supervision=watched))
     for _ in range(5):

@@ -100,7 +100,7 @@ def test_after_a_stop_the_next_move_begins_where_the_arm_stands_and_without_the_
     first = robot.recorder.tick
     while robot.moving:
         assert robot.cycle(), robot.alarms
-    q = robot.recorder.signals(robot.tool_poses)["q_cmd"][first:]
+    q = robot.signals()["q_cmd"][first:]
     np.testing.assert_allclose(q[0], before, atol=1e-12)
     acceleration = np.abs(np.diff(q, 2, axis=0)).max(axis=0) / 0.001**2
     assert (acceleration <= SPEC.per_axis("limits", "acceleration") * 1.01).all()
@@ -139,7 +139,7 @@ def test_wrist_mode_is_that_of_the_motion_also_around_a_stop():
     robot.acknowledge()
     for _ in range(3):
         robot.cycle()
-    mode = robot.recorder.signals(robot.tool_poses)["wrist_mode"]
+    mode = robot.signals()["wrist_mode"]
     assert mode[2000] == 1
     assert mode[-1] == 0
 
@@ -153,7 +153,7 @@ def test_consecutive_moves_on_one_seam_keep_the_deviation():
             assert robot.cycle(), robot.alarms
         at = robot.tool_poses(np.array(robot.areas.ina))[:3, 3]
         np.testing.assert_allclose(at, (robot.kinematics.forward(q) @ TOOL)[:3, 3] + [0, 0, 4 * MM], atol=1e-6)
-    assert np.abs(np.diff(robot.recorder.signals(robot.tool_poses)["q_cmd"], axis=0)).max() < 1e-3
+    assert np.abs(np.diff(robot.signals()["q_cmd"], axis=0)).max() < 1e-3
 
 
 def test_an_end_that_is_out_of_reach_for_a_moment_is_not_lost():

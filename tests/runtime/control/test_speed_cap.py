@@ -20,7 +20,7 @@ EMPTY_CELL = dataclasses.replace(CELL, obstacles=(), parts=())
 
 def fastest(robot: Controller, signal: str) -> float:
     """The largest speed of tool point and flange over the ticks of the log, from places alone, m/s."""
-    q = robot.recorder.signals(robot.tool_poses)[signal]
+    q = robot.signals()[signal]
     flange = robot.kinematics.forward(q)
     places = np.stack([(flange @ robot.X_flange_tool)[:, :3, 3], flange[:, :3, 3]])
     return float(np.linalg.norm(np.diff(places, axis=1), axis=2).max()) * 1000.0

@@ -67,7 +67,7 @@ def link_error(move: str, K2: float, **servo: object) -> tuple[np.ndarray, np.nd
     controller.play(start + np.array(turn) * s**3 * (10.0 - 15.0 * s + 6.0 * s * s))
     while controller.moving:
         assert controller.cycle()
-    log = controller.recorder.signals(controller.tool_poses)
+    log = controller.signals()
     error = log["q_cmd"] - np.array(links)
     assert (np.abs(log["dq_cmd"]).max(axis=0) <= SPEC.per_axis("limits", "speed")).all()
     return error[400:], error[399], log["tau_sat"], log["q_cmd"][400:]

@@ -1,51 +1,42 @@
-"""The log of a run as a file: ``.npz`` for numpy, ``.mcap`` for log viewers.
+"""The log of a run as ``.mcap``, for log viewers.
 
-``.npz`` holds one array per signal of ``runtime.control.recorder``, first dimension the servo ticks. ``.mcap`` holds
-one protobuf message ``robolang.Sample`` per tick on the channel ``/controller``, with the schema inside, so a viewer
+One protobuf message ``robolang.Sample`` per tick on the channel ``/controller``, with the schema inside, so a viewer
 that reads MCAP shows the fields by name; times are simulated, in ns from power-up. A run without a tick gives a valid
-file without a message. Both repeat byte for byte: neither carries the time of day.
+file without a message.
 """
 
 import math
 from collections.abc import Iterator, Mapping
-from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
 
-from robolang.core.storage import write_atomic
+from robolang.logs.log import Log
 from runtime.core.frames import Array
 
-SUFFIXES = (".npz", ".mcap")
 CHANNEL = "/controller"
+_PIECE = 4096
+"""Ticks that are written at once."""
 
 
-def write_log(path: Path, signals: Mapping[str, Array]) -> None:
-    """Write the signals to ``path`` in the format of its suffix; ``ValueError`` for another one, ``Fault`` RBL706."""
-    if path.suffix not in SUFFIXES:
-        raise ValueError(f"{path} must end in .npz or .mcap")
-    writer = _write_npz if path.suffix == ".npz" else _write_mcap
-    write_atomic(path, lambda stream: writer(stream, signals))
-
-
-def _write_npz(stream: IO[bytes], signals: Mapping[str, Array]) -> None:
-    # numpy dates every entry of the archive 1980-01-01, so equal signals give equal bytes
-    np.savez(stream, allow_pickle=False, **signals)
-
-
-def _write_mcap(stream: IO[bytes], signals: Mapping[str, Array]) -> None:
+def write_mcap(stream: IO[bytes], log: Log) -> None:
+    """Write a log, piece by piece; equal logs give equal bytes."""
     from mcap.writer import Writer
     from mcap_protobuf.schema import register_schema
 
-    message_class = _message_class(signals)
+    names = [name for name in log if log.base(name) == "tick"]
+    message_class = _message_class({name: log.span(name, 0, 0) for name in names})
     writer: Any = Writer(stream)  # the writer of mcap_protobuf would name the schema only with the first message
     writer.start()
     channel = writer.register_channel(CHANNEL, "protobuf", register_schema(writer, message_class))
-    # rounded: 1.025 s times 1e9 is a little less than 1,025,000,000
-    times_ns = np.rint(signals["t"] * 1e9).astype(np.int64).tolist()
-    for time_ns, fields in zip(times_ns, _rows(signals), strict=True):
-        data = message_class(**fields).SerializeToString(deterministic=True)
-        writer.add_message(channel, log_time=time_ns, publish_time=time_ns, data=data)
+    count = log.count("t")
+    for first in range(0, count, _PIECE):
+        signals = {name: log.span(name, first, min(first + _PIECE, count)) for name in names}
+        # rounded: 1.025 s times 1e9 is a little less than 1,025,000,000
+        times_ns = np.rint(signals["t"] * 1e9).astype(np.int64).tolist()
+        for time_ns, fields in zip(times_ns, _rows(signals), strict=True):
+            data = message_class(**fields).SerializeToString(deterministic=True)
+            writer.add_message(channel, log_time=time_ns, publish_time=time_ns, data=data)
     writer.finish()
 
 

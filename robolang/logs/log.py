@@ -1,0 +1,65 @@
+"""The log of a run: its signals by name, computed when they are read, and ``meta``, what the run was of.
+
+``Log`` is the same whether the run has just ended or its file is read years later. What ``meta`` holds is made by
+``robolang.execution.log_meta``; docs/signals.md has its keys.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+import robolang.core.codes  # noqa: F401 - the codes raised here must be registered
+from runtime.control.signals import Rows, Signals
+from runtime.core.faults import Fault
+from runtime.robot.kinematics.chain import Chain
+
+VERSION = 2
+"""Layout of the files that are written; those of version 1 hold every signal in every tick, and no ``meta``."""
+
+Meta = Mapping[str, Any]
+"""Plain JSON types: program, cell, points, robot, scene, events, report, tick_s, cycle_s."""
+
+
+class Log(Signals):
+    """The signals of a run by name, first dimension ticks or frames, with what the run was of."""
+
+    version = VERSION
+    """Layout of the file that it was read from."""
+
+    def __init__(self, rows: Rows, meta: Meta | None, source: str = "this log") -> None:
+        """``source`` is what messages call it; ``meta`` None: nothing is known of the run but its signals."""
+        chain = chain_of(meta["robot"]) if meta is not None else _NO_CHAIN
+        super().__init__(rows, chain)
+        self.source = source
+        self.meta = meta
+
+    @property
+    def events(self) -> list[dict[str, Any]]:
+        """Changes of inputs, outputs and the hand: ``time_s``, ``kind``, ``name`` and ``value``; none if unknown."""
+        return [] if self.meta is None else list(self.meta["events"])
+
+    def require(self, *names: str) -> None:
+        """Refuse a log that lacks one of these signals; ``Fault`` RBL820."""
+        for name in names:
+            if name not in self:
+                raise self.lacks(f"the signal {name}")
+
+    def needed_meta(self) -> Meta:
+        """Return ``meta``; ``Fault`` RBL820 for a log that has none."""
+        if self.meta is None:
+            raise self.lacks("the program and the robot")
+        return self.meta
+
+    def lacks(self, what: str) -> Fault:
+        """Return the fault of a log in which something is missing."""
+        return Fault("RBL820", f"{self.source} lacks {what}: it has layout {self.version}, this version {VERSION}")
+
+
+def chain_of(robot: Mapping[str, Any]) -> Chain:
+    """Return the joint frames of the robot in a ``meta``."""
+    placements = tuple(np.array(axis["placement"], dtype=np.float64) for axis in robot["axes"])
+    return Chain(placements=placements, X_last_flange=np.array(robot["flange"], dtype=np.float64))
+
+
+_NO_CHAIN = Chain(placements=(), X_last_flange=np.eye(4))

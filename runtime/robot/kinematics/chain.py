@@ -1,0 +1,44 @@
+"""The joint frames of an arm, one after another: where its flange is at given joint angles, m and rad.
+
+    X_base_flange = prod_i (placement_i Rz(q_i)) X_last_flange
+
+It needs nothing else of the robot, so that a log of a run, which has these frames alone, gives the same poses to the
+last bit.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from runtime.core.frames import Array
+from runtime.core.linear import matmul
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Chain:
+    """``placements``: X_before_axis (4, 4) of each axis at joint angle zero; ``X_last_flange`` (4, 4)."""
+
+    placements: tuple[Array, ...]
+    X_last_flange: Array
+
+    def flange(self, q: ArrayLike) -> Array:
+        """Return X_base_flange (..., 4, 4) of joint angles (..., n) rad."""
+        X = np.eye(4)
+        for X in self.axis_frames(np.asarray(q, dtype=np.float64)):  # noqa: B007 - only the last frame is needed
+            pass
+        return np.asarray(matmul(X.reshape(-1, 4), self.X_last_flange).reshape(X.shape))
+
+    def axis_frames(self, q: Array) -> Iterator[Array]:
+        """Yield the frame of each axis, turned, in the base frame (..., 4, 4)."""
+        X = np.eye(4)
+        for i, placement in enumerate(self.placements):
+            X = matmul(X.reshape(-1, 4), placement).reshape(X.shape)  # one product for all postures
+            c, s = np.cos(q[..., i])[..., None], np.sin(q[..., i])[..., None]
+            x, y = X[..., :, 0], X[..., :, 1]
+            # a rotation about z mixes the first two columns only: cheaper than a product with a matrix
+            turned = np.empty((*q.shape[:-1], 4, 4))
+            turned[..., 0], turned[..., 1], turned[..., 2:] = c * x + s * y, c * y - s * x, X[..., :, 2:]
+            X = turned
+            yield X
