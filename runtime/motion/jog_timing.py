@@ -236,10 +236,18 @@ def _over_time(sigma: Array, v: Array, period_s: float) -> Array:
 
 
 def _smoothed(places: Array) -> Array:
-    """Return places (K,) over time averaged over ``SMOOTH`` cycles, (K + SMOOTH - 1,): from rest to rest as well."""
-    before, after = np.full(SMOOTH, places[0]), np.full(SMOOTH, places[-1])
+    """Return places (K,) over time averaged over ``SMOOTH`` cycles and over two: from rest to rest as well."""
+    # over two besides: beside a first or last step fine interpolation swings by 8 % of it, which counts at a limit
+    for cycles in (SMOOTH, 2):
+        places = _averaged(places, cycles)
+    return places
+
+
+def _averaged(places: Array, cycles: int) -> Array:
+    """Return places (K,) over time averaged over some cycles, (K + cycles - 1,)."""
+    before, after = np.full(cycles, places[0]), np.full(cycles, places[-1])
     total = np.cumsum(np.concatenate([before, places, after]))
-    found = (total[SMOOTH:] - total[:-SMOOTH]) / SMOOTH
+    found = (total[cycles:] - total[:-cycles]) / cycles
     found[0], found[-1] = places[0], places[-1]
     return np.asarray(np.maximum.accumulate(np.clip(found, places[0], places[-1])))
 

@@ -47,7 +47,7 @@ REST_S = 0.5
 """Time from a stop to rest, s."""
 PERIOD_S = 8e-3
 LONG_S = 1.5
-KINDS = ("speed", "range", "stop", "rest", "alarm")
+KINDS = ("speed", "range", "stop", "rest", "alarm", "refused")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -234,13 +234,10 @@ def sequence(name, rng, physics=False, late=0):
         except Fault as fault:
             done[fault.code] += 1
             continue
-        if ended in ("step", "stopped"):
-            # a long step is never seen to its end: that takes much time and shows little
-            cut = ended == "stopped" or plan.seconds > LONG_S
-            stop = play(robot, plan, float(rng.uniform(0.0, min(plan.seconds, LONG_S))) if cut else None, late)
-        else:
-            # the step of the press and the pause are over: the jog begins with the second repeat
-            stop = hold_key(robot, plan, keys_held(rng), ended)
+        try:
+            stop = carry_out(robot, plan, ended, rng, late)
+        except Fault:
+            return Counter(refused=1), done  # the controller takes every jog that was planned
         done[ended] += 1
         if stop is not None:
             stops.append(stop)
@@ -250,6 +247,16 @@ def sequence(name, rng, physics=False, late=0):
     if robot.recorder.tick < 2:
         return Counter(), done
     return check(robot, stops, physics), done
+
+
+def carry_out(robot, plan, ended, rng, late):
+    """Carry out a jog that ends as drawn; return its stop, None: it had ended before."""
+    if ended in ("step", "stopped"):
+        # a long step is never seen to its end: that takes much time and shows little
+        cut = ended == "stopped" or plan.seconds > LONG_S
+        return play(robot, plan, float(rng.uniform(0.0, min(plan.seconds, LONG_S))) if cut else None, late)
+    # the step of the press and the pause are over: the jog begins with the second repeat
+    return hold_key(robot, plan, keys_held(rng), ended)
 
 
 def leads_back(name, rng):
@@ -277,11 +284,15 @@ def leads_back(name, rng):
 
 def campaign(index, sequences, with_physics, postures, seed=15):
     """Return what was counted on one robot: broken and fastest, what was done, postures that a jog leads back from."""
-    name, rng, total, done = ROBOTS[index], np.random.default_rng([seed, index]), Counter(), Counter()
+    name, total, done = ROBOTS[index], Counter(), Counter()
     for k in range(sequences + with_physics):
-        broken, did = sequence(name, rng, physics=k >= sequences)
+        # numbers of its own for each sequence, so that one that breaks something is repeated alone
+        broken, did = sequence(name, np.random.default_rng([seed, index, k]), physics=k >= sequences)
+        if any(broken[each] for each in KINDS):
+            done[f"broken: {name} {k}"] += 1
         add(total, broken)
         done += did
+    rng = np.random.default_rng([seed, index])
     return total, done, sum(leads_back(name, rng) for _ in range(postures))
 
 
@@ -302,8 +313,8 @@ def rows(smallest: bool) -> Iterator[Row]:
         back += leads
     yield Row(
         figure="random sequences of jogs, on each of three robots 3,334 and 40 with physics: over 250 mm/s, over a "
-        "limit, late stops, not at rest in 0.5 s, alarms",
-        form="{}, {}, {}, {}, {}",
+        "limit, late stops, not at rest in 0.5 s, alarms, refused by the controller",
+        form="{}, {}, {}, {}, {}, {}",
         values=tuple(total[each] for each in KINDS),
         good=not any(total[each] for each in KINDS),
         details=(str(dict(done)),),

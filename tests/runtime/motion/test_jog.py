@@ -162,6 +162,16 @@ def test_a_joint_jog_leads_out_of_every_limit_and_not_further(name):
                     assert refused.value.code == "RBL411" and f"J{axis + 1}" in fields(refused.value.message)
 
 
+def test_a_fast_start_at_a_limit_does_not_swing_past_it():
+    robot = bench("manutec_r3")
+    # near its singularity the wrist turns fast for a small turn of the tool, and here J6 begins at its limit
+    q = np.array([69.723, -60.515, 36.248, -17.903, -2.245, -265.0]) * DEG
+    q[5] = robot.spec.lower[5]
+    found = plan(robot, q, ToolJog.along(np.eye(4), 4, -10.0 * DEG), 1.0)
+    assert found.rows[0, 5] - q[5] > 3e-5, "the first step is large"
+    assert_keeps_limits(robot, q, found, 1.0)
+
+
 def test_as_far_as_it_goes_ends_before_the_limit_and_an_amount_may_end_at_it():
     robot = bench("puma560")
     q = robot.home()
