@@ -15,6 +15,7 @@ from robolang.cli.check_options import FixOptions, ReportOptions
 from robolang.cli.errors import DIAGNOSTICS, say, say_all, say_warnings
 from robolang.cli.output import echo
 from robolang.cli.rewrite import Loaded, load, store, unified
+from robolang.cli.usage import OptionValueError
 from robolang.core.diagnostics import Diagnostic, Severity, has_errors, in_order, safe
 from robolang.core.source import Source
 from robolang.lint.apply import fix_all
@@ -49,6 +50,7 @@ class Job(Record):
     motion: bool = False
     max_cycle_s: float | None = None
     times: Path | None = None
+    html: Path | None = None
 
     @property
     def output(self) -> Path | None:
@@ -59,8 +61,8 @@ class Job(Record):
 class _Outcome(Record):
     """A program as it was read, the findings after its fixes and in its points, how often each code was fixed.
 
-    ``warnings`` are about the files of its robot, ``table`` and ``times`` are the times of its lines; ``whole`` is
-    False for a program that could not be read, and for one whose cell or points could not.
+    ``warnings`` are about the files of its robot, ``table`` and ``times`` are the times of its lines, ``plan`` is its
+    motion; ``whole`` is False for a program that could not be read, and for one whose cell or points could not.
     """
 
     checked: Checked
@@ -70,6 +72,7 @@ class _Outcome(Record):
     fixed: Mapping[str, int] = MappingProxyType({})
     table: str = ""
     times: dict[str, object] | None = None
+    plan: "Planned | None" = None
     warnings: tuple[FileFault, ...] = ()
 
     @property
@@ -113,9 +116,13 @@ def run_once(job: Job) -> int:
     names = programs(job.paths, excludes=settings.excludes)
     if not names and not job.allow_empty:
         raise Fault("RBL713", f"there is no program (*.rbl) in {safe(', '.join(job.paths))}")
+    if job.html is not None and len(names) > 1:
+        raise OptionValueError("--html", f"shows one program; {len(names)} were found")
     outcomes = _once(_examined_all(names, job, settings))
     if job.times is not None:
         _write_times(job.times, outcomes)
+    if job.html is not None:
+        _write_page(job.html, outcomes)
     _print(job, outcomes)
     # not `or`: --exit-zero makes findings 0, and a file that cannot be used stays 2
     return max(_say_rest(job, outcomes), _judged(job, outcomes))
@@ -137,8 +144,13 @@ def _programs(count: int) -> str:
 
 
 def _check_outputs(job: Job) -> None:
-    """Refuse files that cannot be written before anything is checked; ``Fault`` RBL706."""
-    outputs = [path for path in (job.output, job.times) if path is not None]
+    """Refuse files that cannot be written before anything is checked; ``Fault`` RBL706, ``OptionValueError``."""
+    outputs = [path for path in (job.output, job.times, job.html) if path is not None]
+    # a link may have any name, and what it leads to would be replaced
+    others = [str(path) for path in (job.output, job.times) if path is not None]
+    taken = {os.path.realpath(path) for path in (*job.paths, *others)}
+    if job.html is not None and os.path.realpath(job.html) in taken:
+        raise OptionValueError("--html", f"'{job.html}' is the program or another output of this check")
     if outputs:
         from robolang.core.storage import check_writable
 
@@ -238,6 +250,7 @@ def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
         checked=checked.replaced(diagnostics=_with_plan(checked, plan, selection)),
         table=plan.table,
         times=plan.times,
+        plan=plan,
         warnings=plan.warnings,
     )
 
@@ -261,6 +274,17 @@ def _write_times(path: Path, outcomes: Sequence[_Outcome]) -> None:
 
     text = json.dumps([outcome.times for outcome in outcomes if outcome.times is not None], indent=2) + "\n"
     write_atomic(path, lambda stream: stream.write(text.encode()))
+
+
+def _write_page(path: Path, outcomes: Sequence[_Outcome]) -> None:
+    """Write the page of the program whose motion was planned; say that there is none where it was not."""
+    for outcome in outcomes:
+        if outcome.plan is None or outcome.plan.rehearsal is None:
+            echo(f"{safe(str(path))} is not written: the motion was not planned", err=True)
+            continue
+        from robolang.cli.check_motion import write_page
+
+        write_page(path, outcome.plan, tuple(outcome.findings))
 
 
 def _written(outcome: _Outcome) -> _Outcome:

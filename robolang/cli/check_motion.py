@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
+from pathlib import Path
 
 from robolang.analysis.analysis import Analysis
 from robolang.cli import lines
@@ -53,13 +54,16 @@ def progress(count: int) -> Iterator[Callable[[int, str], None]]:
 class Planned:
     """The findings in the motion of a program, the table of its times for people, and the same as plain JSON types.
 
-    ``warnings`` are what is unlikely about its cell and the files of its robot.
+    ``warnings`` are what is unlikely about its cell and the files of its robot; ``rehearsal`` is its motion, None where
+    none was planned.
     """
 
     diagnostics: tuple[Diagnostic, ...]
     warnings: tuple[FileFault, ...] = ()
     table: str = ""
     times: dict[str, object] | None = None
+    project: Project | None = None
+    rehearsal: Rehearsal | None = None
 
 
 def planned(program: Analysis | str, max_cycle_s: float | None, bounds: Bounds = DEFAULTS) -> Planned:
@@ -78,7 +82,19 @@ def planned(program: Analysis | str, max_cycle_s: float | None, bounds: Bounds =
         warnings=project.cell.warnings,
         table=_table(project, explored.rehearsal, rows) + _branches(project, explored) + _shapes(project),
         times=_times(project, explored, rows),
+        project=project,
+        rehearsal=explored.rehearsal,
     )
+
+
+def write_page(path: Path, plan: Planned, found: Sequence[Diagnostic]) -> None:
+    """Write the page of a planned motion with what was found in program and motion; ``Fault`` RBL706, RBL825."""
+    from robolang.view.page import Bundle
+    from robolang.view.page import write_page as write
+    from robolang.view.plan_page import pack_plan
+
+    assert plan.project is not None and plan.rehearsal is not None, "a page shows what was planned"
+    write(path, [pack_plan(plan.project, plan.rehearsal, found)], Bundle.installed())
 
 
 def _times(project: Project, explored: Exploration, rows: Sequence[LineTime]) -> dict[str, object]:

@@ -66,6 +66,10 @@ class MotionOptions(Group):
         str | None,
         Option("--times", metavar="FILE.json", help="With --motion: write the time of every line, s, to this file."),
     ] = None
+    html: Annotated[
+        str | None,
+        Option("--html", metavar="FILE.html", help="With --motion: show the planned motion of one program in a page."),
+    ] = None
 
 
 class FileOptions(Group):

@@ -56,8 +56,8 @@ class RehearsedMove:
     """A move of the rehearsal: its effect and plan, when it begins and ends, us, and its tool (4, 4).
 
     ``q`` (K, n) rad are its set-points as they are carried out, blends included, row 0 of them row ``first`` of the
-    plan. ``payload`` is the one declared last, ``corner`` what became of the blend into the next move, None where it
-    stops.
+    plan. That row is sent at ``sent_us``: when the move begins, or in the cycle before it where it follows another.
+    ``payload`` is the one declared last, ``corner`` what became of the blend into the next move, None where it stops.
     """
 
     effect: MoveTo
@@ -65,6 +65,7 @@ class RehearsedMove:
     command: Command
     begins_us: int
     ends_us: int
+    sent_us: int
     q: Array
     first: int
     X_flange_tool: Array
@@ -208,6 +209,7 @@ class _DryRun(Untimed):
         self._q = np.array(joined.parts[-1].plan.q[-1])
         cycles = np.bincount(joined.command, minlength=len(chain))  # one for each row that is sent, the first as well
         cycles[-1] += REST_CYCLES - 1 if len(joined.q) > 1 else 0
+        start_us = self.time_us
         for each, part, corner, spent in zip(
             chain, joined.parts, [*joined.corners, None], cycles.tolist(), strict=True
         ):
@@ -222,6 +224,7 @@ class _DryRun(Untimed):
                     command=each.command,
                     begins_us=begins,
                     ends_us=self.time_us,
+                    sent_us=start_us + part.first * self._period_us,
                     corner=corner,
                     q=joined.q[part.first : part.last + 1],
                     first=part.first - part.offset,

@@ -36,13 +36,14 @@ class Places:
         """Return a finding at a row of the set-points of a move, or at a HAND."""
         q = np.atleast_2d(step.q)
         row = min(max(row, 0), len(q) - 1)
+        first_us = step.sent_us if isinstance(step, RehearsedMove) else step.begins_us
         return Placed(
             code=code,
             severity=severity,
             message=message,
             span=step.effect.span,
             p=self.tool_point(q[row], step.X_flange_tool),
-            time_us=step.begins_us + row * self._period_us,
+            time_us=first_us + row * self._period_us,
         )
 
     def tool_point(self, q: Array, X_flange_tool: Array) -> tuple[float, float, float]:

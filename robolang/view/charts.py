@@ -148,7 +148,7 @@ def _each(kind: Kind, signal: str, scale: float, role: Role = "value", label: st
 
 def _joints(shown: Shown, kind: Kind) -> Chart:
     command = _each(kind, "q_cmd", 1.0 / kind.size, "command", " command") if "q_fb" in shown.signals else ()
-    value = _each(kind, "q_fb" if command else "q_cmd", 1.0 / kind.size)
+    value = _each(kind, "q_fb" if command else "q_link", 1.0 / kind.size)
     return Chart(id=f"joints{kind.suffix}", title=f"Joint {kind.word}s", unit=kind.unit, series=value + command)
 
 

@@ -1,6 +1,7 @@
 """What happened in a run beside its motion, at its time and its line: alarms, warnings, notes, what PRINT showed."""
 
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -9,9 +10,12 @@ Severity = Literal["error", "warning", "note", "print"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Note:
-    """One event: time s, line of the file, code (None: none); ``p`` m in the world where it has a place."""
+    """One event: time s, line of the file, code (None: none); ``p`` m in the world where it has a place.
 
-    time_s: float
+    Without a time it is in no moment of what the page shows.
+    """
+
+    time_s: float | None
     line: int | None
     code: str | None
     severity: Severity
@@ -21,8 +25,13 @@ class Note:
 
 def of_report(report: Mapping[str, Any]) -> list[Note]:
     """Return the notes of a run from its report (docs/signals.md), by time."""
+    return in_order([*_events(report), *_statements(report), *_printed(report)])
+
+
+def in_order(notes: Iterable[Note]) -> list[Note]:
+    """Return notes by time, those without one at the end."""
     # sorted keeps the order of those at one time: an alarm stands before the note of its statement
-    return sorted([*_events(report), *_statements(report), *_printed(report)], key=lambda note: note.time_s)
+    return sorted(notes, key=lambda note: math.inf if note.time_s is None else note.time_s)
 
 
 def _events(report: Mapping[str, Any]) -> Iterator[Note]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from robolang.view import charts, joints, notes
 from robolang.view.packing import Signal, pack
-from robolang.view.thinning import bin_rows, evenly, paired
+from robolang.view.thinning import bin_rows, evenly, paired, thinned
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 
@@ -33,7 +33,7 @@ def pack_run(log: Mapping[str, Array], meta: Mapping[str, Any], label: str) -> b
         "duration_s": len(log["t"]) * tick_s,
         "tick_s": tick_s,
         "cycle_s": cycle_s,
-        "thinned": _thinned(len(log["t"]), tick_s),
+        "thinned": thinned(len(log["t"]), tick_s),
         "meta": {key: value for key, value in meta.items() if key not in _LEFT_OUT},
         "charts": [asdict(chart) for chart in charts.of_run(shown)],
         "notes": [asdict(note) for note in notes.of_report(meta["report"])],
@@ -98,12 +98,3 @@ def _levels(events: Any, ticks: int, tick_s: float, cycle_s: float) -> tuple[lis
     for name, item in found:
         values[round(item["time_s"] / cycle_s) :, names.index(name)] = float(item["value"])
     return names, [paired(Signal(name="levels", base="cycle", dt=cycle_s, values=values))]
-
-
-def _thinned(ticks: int, tick_s: float) -> dict[str, object] | None:
-    size = bin_rows(ticks)
-    if size == 1:
-        return None
-    every_ms = size * tick_s * 1e3
-    text = f"A long run: the charts show the least and the largest value of every {every_ms:g} ms."
-    return {"every_s": size * tick_s, "text": text}

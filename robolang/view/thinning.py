@@ -35,6 +35,15 @@ def evenly(signal: Signal) -> Signal:
     return replace(signal, dt=signal.dt * step, values=signal.values[::step])
 
 
+def thinned(rows: int, dt: float) -> dict[str, object] | None:
+    """Return what a page says of signals of so many rows, ``dt`` s apart, that are thinned; None: they are not."""
+    size = bin_rows(rows)
+    if size == 1:
+        return None
+    text = f"A long run: the charts show the least and the largest value of every {size * dt * 1e3:g} ms."
+    return {"every_s": size * dt, "text": text}
+
+
 def _pairs(values: Array, size: int) -> Array:
     bins = -(-len(values) // size)
     # column by column: a run of half an hour is copied once for each, not for all at once

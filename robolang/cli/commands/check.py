@@ -52,6 +52,7 @@ def check(
             motion=motion.motion,
             max_cycle_s=_seconds(motion),
             times=None if motion.times is None else Path(motion.times),
+            html=None if motion.html is None else Path(motion.html),
         )
         worst = watched(job) if files.watch else run_once(job)
     if worst:
@@ -70,8 +71,18 @@ def _refuse(paths: tuple[str, ...], files: FileOptions, report: ReportOptions, m
         raise OptionValueError("--statistics", f"cannot be printed as {form}; use full, concise or json")
     if motion.times is not None and not motion.motion:
         raise OptionValueError("--times", "needs --motion")
+    if motion.html is not None:
+        _refuse_page(motion)
     if files.watch and "-" in paths:
         raise OptionValueError("--watch", "cannot be used with -: the standard input does not change")
+
+
+def _refuse_page(motion: MotionOptions) -> None:
+    if not motion.motion:
+        raise OptionValueError("--html", "needs --motion")
+    # a slip in the order of the words must not cost a program
+    if not str(motion.html).endswith(".html"):
+        raise OptionValueError("--html", f"'{motion.html}' must end in .html")
 
 
 def _seconds(motion: MotionOptions) -> float | None:

@@ -1,0 +1,161 @@
+"""What a page holds of a planned motion: the joint angles of every cycle, its times, and the findings at their places.
+
+The same page as that of a run, with what a plan has: no physics, no torques, no errors of the servo.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from robolang.core.diagnostics import Diagnostic, Severity, has_errors
+from robolang.execution.dry_run import Rehearsal
+from robolang.planning.placed import Placed
+from robolang.project.project import Project
+from robolang.syntax.unparse import describe
+from robolang.view import charts, joints, notes
+from robolang.view.packing import Signal, pack
+from robolang.view.thinning import evenly, paired, thinned
+from runtime.appearance.cell_scene import scene_of
+from runtime.core.frames import Array
+from runtime.robot.model.spec import RobotSpec
+
+_WORDS: dict[Severity, notes.Severity] = {Severity.ERROR: "error", Severity.WARNING: "warning"}
+
+
+def pack_plan(project: Project, rehearsal: Rehearsal, found: Sequence[Diagnostic]) -> bytes:
+    """Return a planned motion as a page holds it, with what was ``found`` in program and motion."""
+    cycle_s, robot, label = project.profile.period_s, _robot(project.cell.robot), Path(project.source.path).name
+    q = joint_angles(rehearsal, np.asarray(project.cell.home), project.profile.period_us)
+    signals = {signal.name: signal for signal in _signals(q, _tool(project, rehearsal, q), cycle_s)}
+    header = {
+        "kind": "plan",
+        "label": label,
+        "duration_s": rehearsal.total_us / 1e6,
+        "tick_s": cycle_s,
+        "cycle_s": cycle_s,
+        "thinned": thinned(len(q), cycle_s),
+        "meta": {
+            "program": {"name": label, "text": project.source.text},
+            "robot": robot,
+            "scene": scene_of(project.cell).as_json(),
+            "events": [],
+            "report": _report(project, rehearsal, found),
+        },
+        "charts": [asdict(chart) for chart in charts.of_plan(charts.Shown(robot=robot, signals=signals))],
+        "notes": [asdict(note) for note in _notes(project, rehearsal, found)],
+        "joints": [asdict(joint) for joint in joints.ranges(robot["axes"], q, cycle_s)],
+    }
+    return pack(header, list(signals.values()))
+
+
+def joint_angles(rehearsal: Rehearsal, home: Array, period_us: int) -> Array:
+    """Return the set-points (cycles + 1, n) rad of a rehearsal that starts at ``home`` (n,) rad, a row each cycle."""
+    q = np.tile(home, (rehearsal.total_us // period_us + 1, 1))
+    held, at = home, 0
+    for move in rehearsal.moves:
+        begin = move.sent_us // period_us
+        q[at:begin] = held
+        held, at = move.q[-1], begin + len(move.q)
+        q[begin:at] = move.q[: len(q) - begin]
+    q[at:] = held
+    return q
+
+
+def _signals(q: Array, tool: Array, cycle_s: float) -> Iterator[Signal]:
+    yield evenly(_cycle("q_link", q, cycle_s))
+    speed, point = _change(q, cycle_s), _change(tool, cycle_s)
+    for name, values in (
+        ("dq_cmd", speed),
+        ("ddq_cmd", _change(speed, cycle_s)),
+        ("tool_speed", np.sqrt(np.sum(point**2, axis=1, keepdims=True))),
+    ):
+        yield paired(_cycle(name, values, cycle_s))
+    yield evenly(_cycle("tool", tool, cycle_s))
+
+
+def _cycle(name: str, values: Array, cycle_s: float) -> Signal:
+    return Signal(name=name, base="cycle", dt=cycle_s, values=values)
+
+
+def _change(values: Array, dt: float) -> Array:
+    """Return the rate of each row (N, k) against the row before it."""
+    return np.diff(values, axis=0, prepend=values[:1]) / dt
+
+
+def _tool(project: Project, rehearsal: Rehearsal, q: Array) -> Array:
+    """Return the tool point (N, 3), m in the world, of the tool that each move has."""
+    X_world_flange, points = rehearsal.kinematics.forward(q), np.empty((len(q), 3))
+    at, tool = 0, project.cell.hand.X_flange_tool
+    for move in rehearsal.moves:
+        begin = min(move.sent_us // project.profile.period_us, len(q))
+        points[at:begin] = (X_world_flange[at:begin] @ tool)[:, :3, 3]
+        at, tool = begin, move.X_flange_tool
+    points[at:] = (X_world_flange[at:] @ tool)[:, :3, 3]
+    return points
+
+
+def _robot(spec: RobotSpec) -> dict[str, Any]:
+    """Return a robot as the ``meta`` of a log has it, with the accelerations that a plan is held to."""
+    axes = [
+        {
+            "name": axis.name,
+            "kind": "revolute",
+            "lower": float(axis.limits.lower),
+            "upper": float(axis.limits.upper),
+            "speed": float(axis.limits.speed),
+            "acceleration": float(axis.limits.acceleration),
+            "torque": float(axis.limits.torque),
+        }
+        for axis in spec.axes
+    ]
+    return {"name": spec.name, "axes": axes}
+
+
+def _report(project: Project, rehearsal: Rehearsal, found: Iterable[Diagnostic]) -> dict[str, Any]:
+    """Return of the report of a run what a plan has."""
+    texts = {line.source_line: describe(line.statement) for line in project.program.statements if line.statement}
+    return {
+        "robot": project.cell.robot.name,
+        "ok": not has_errors(found),
+        "sim_time_s": rehearsal.total_us / 1e6,
+        "statements": [
+            {
+                "line": step.origin.line or None,
+                "number": step.origin.number,
+                "text": texts.get(step.origin.line, ""),
+                "begun": True,
+                "start_s": step.begins_us / 1e6,
+                "duration_s": (step.ends_us - step.begins_us) / 1e6,
+                "notes": [],
+            }
+            for step in rehearsal.steps
+        ],
+        "alarms": [],
+        "warnings": [],
+        "printed": [],
+    }
+
+
+def _notes(project: Project, rehearsal: Rehearsal, found: Iterable[Diagnostic]) -> list[notes.Note]:
+    """Return the findings by time; one in the text stands where its line begins, one of another branch has no time."""
+    begins: dict[int, int] = {}
+    for step in rehearsal.steps:
+        begins.setdefault(step.origin.line, step.begins_us)
+    made = []
+    for item in found:
+        line = project.source.place(item.span.start).line
+        time_us = item.time_us if isinstance(item, Placed) else begins.get(line)
+        made.append(
+            notes.Note(
+                time_s=None if time_us is None else time_us / 1e6,
+                line=line,
+                code=item.code,
+                severity=_WORDS.get(item.severity, "note"),
+                text="\n".join((item.message, item.hint)),
+                p=item.p if isinstance(item, Placed) else None,
+            )
+        )
+    return notes.in_order(made)

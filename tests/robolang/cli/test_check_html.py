@@ -1,0 +1,71 @@
+"""``robolang check --motion --html``: which files it takes, what it writes, and when it writes nothing."""
+
+import pytest
+
+from tests.robolang.cli.commands import robolang
+from tests.robolang.view.decoding import Page
+
+pytestmark = pytest.mark.physics
+
+CHECK = ("check", "--motion", "--html")
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_the_page_has_the_plan_and_all_findings(tmp_path):
+    text = "x = 1\nMOVE P5\nMOVE P1 + (0, 0, -30)\n"
+    (tmp_path / "p.rbl").write_text(text)
+    robolang(*CHECK, "p.html", "p.rbl", code=1)
+    ((header, _),) = Page(tmp_path / "p.html").runs
+    assert header["kind"] == "plan" and header["meta"]["program"]["text"] == text
+    # RBL225 is about the text, RBL421 about the motion
+    found = {each["code"]: each for each in header["notes"]}
+    assert {"RBL225", "RBL421"} <= found.keys()
+    assert found["RBL421"]["p"] and not found["RBL225"]["p"]
+
+
+@pytest.mark.parametrize(
+    "options",
+    [("--html", "p.html"), ("--motion", "--html", "p.rbl"), ("--motion", "--html", "page.htm")],
+    ids=["without --motion", "a program", "another suffix"],
+)
+def test_options_that_cannot_be_are_refused(tmp_path, options):
+    (tmp_path / "p.rbl").write_text("x = 1\n")
+    assert "--html" in robolang("check", "p.rbl", *options, code=2).stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["p.rbl"]
+
+
+def test_a_page_is_of_one_program(tmp_path):
+    for name in ("a", "b"):
+        (tmp_path / f"{name}.rbl").write_text("x = 1\n")
+    assert "--html" in robolang(*CHECK, "p.html", ".", code=2).stderr
+    assert not (tmp_path / "p.html").exists()
+
+
+def test_a_program_with_errors_has_no_page_and_says_so(tmp_path):
+    (tmp_path / "p.rbl").write_text("MOV P1\n")
+    assert "p.html" in robolang(*CHECK, "p.html", "p.rbl", code=1).stderr
+    assert not (tmp_path / "p.html").exists()
+
+
+def test_a_folder_that_is_not_there_is_found_before_anything_is_planned(tmp_path):
+    (tmp_path / "p.rbl").write_text("x = 1\n")
+    done = robolang(*CHECK, "none/p.html", "p.rbl", code=4)
+    assert "RBL706" in done.stderr and not done.stdout
+
+
+def test_two_outputs_are_not_one_file(tmp_path):
+    (tmp_path / "p.rbl").write_text("x = 1\n")
+    assert "--html" in robolang(*CHECK, "o.html", "--times", "./o.html", "p.rbl", code=2).stderr
+    assert not (tmp_path / "o.html").exists()
+
+
+def test_a_link_to_the_program_is_not_written_through(tmp_path):
+    (tmp_path / "p.rbl").write_text("x = 1\n")
+    (tmp_path / "p.html").symlink_to("p.rbl")
+    assert "--html" in robolang(*CHECK, "p.html", "p.rbl", code=2).stderr
+    assert (tmp_path / "p.rbl").read_text() == "x = 1\n"
