@@ -100,6 +100,7 @@ class Shown:
 
 def of_run(shown: Shown) -> list[Chart]:
     """Return the charts of a run, what is read first at the top."""
+    # the order is that of the page: what tells how good a run was, then what explains it
     read = [_tool_error(shown), *_by_kind(shown, _joint_error, _torque_pct, _joints, _speed), _tool_speed(shown)]
     load = Chart(id="payload", title="Payload declared by LOAD", unit="kg")
     wrist = Chart(id="wrist", title="Wrist mode", unit="0 path, 1 end angles, 2 held")
@@ -147,13 +148,15 @@ def _each(kind: Kind, signal: str, scale: float, role: Role = "value", label: st
 
 
 def _joints(shown: Shown, kind: Kind) -> Chart:
+    # a plan has set-points alone, and they are what moves its robot
     command = _each(kind, "q_cmd", 1.0 / kind.size, "command", " command") if "q_fb" in shown.signals else ()
     value = _each(kind, "q_fb" if command else "q_link", 1.0 / kind.size)
     return Chart(id=f"joints{kind.suffix}", title=f"Joint {kind.word}s", unit=kind.unit, series=value + command)
 
 
 def _joint_error(shown: Shown, kind: Kind) -> Chart:
-    scale = 1e3 / kind.size
+    scale = 1e3 / kind.size  # thousandths: an error is some hundredths of a degree at most
+    # a long run has it as a signal of its own; else the page subtracts, which costs no bytes
     if "joint_error" in shown.signals:
         series = _each(kind, "joint_error", scale)
     else:
@@ -185,6 +188,7 @@ def _torque_pct(shown: Shown, kind: Kind) -> Chart:
 
 
 def _torque(shown: Shown, kind: Kind) -> Chart:
+    # with the limits of all axes the curves of the weak ones would be flat
     high = [(k, name) for k, name in kind.axes if shown.high(k)]
     return Chart(
         id=f"torque{kind.suffix}",

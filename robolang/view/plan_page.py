@@ -59,13 +59,14 @@ def joint_angles(rehearsal: Rehearsal, home: Array, period_us: int) -> Array:
         begin = move.sent_us // period_us
         q[at:begin] = held
         held, at = move.q[-1], begin + len(move.q)
-        q[begin:at] = move.q[: len(q) - begin]
+        q[begin:at] = move.q[: len(q) - begin]  # a run that is cut at its longest time ends within a move
     q[at:] = held
     return q
 
 
 def _signals(q: Array, tool: Array, cycle_s: float) -> Iterator[Signal]:
     yield evenly(_cycle("q_link", q, cycle_s))
+    # of differences as the planner takes them, so that a plan at its limit shows 100 %
     speed, point = _change(q, cycle_s), _change(tool, cycle_s)
     for name, values in (
         ("dq_cmd", speed),

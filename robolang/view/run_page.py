@@ -63,6 +63,7 @@ def _signals(log: Mapping[str, Array], robot: Mapping[str, Any], tick_s: float, 
     yield evenly(link)
     limits = [np.nan if axis["torque"] is None else axis["torque"] for axis in robot["axes"]]
     yield Signal(name="torque_limit", base="tick", dt=len(log["t"]) * tick_s, values=np.array([limits, limits]))
+    # one row of each cycle says all: the log repeats it in every tick
     for name in _CYCLE:
         yield paired(Signal(name=name, base="cycle", dt=cycle_s, values=_columns(log[name][::every])))
     for name, values in (("tool", log["X_world_tool"][::every, :3, 3]), ("tool_cmd", log["tool_cmd"][::every])):
