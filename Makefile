@@ -5,6 +5,7 @@
 # make campaign   the tests at full size, of which make test runs a sample (minutes)
 # make format  the layout that the gates ask for
 # make bench  the figures of docs/measured.md that are times or ratios of times
+# make view-bench  what a frame of a page costs while it plays (needs chromium)
 # make plots   the plots of docs/servo.md, drawn anew
 # make fault-campaign         every injected fault and 200 clean runs, counted (minutes)
 # make supervision-campaign   wrong payloads in random programs, counted
@@ -60,6 +61,9 @@ bench: $(READY)
 	$(BIN)/python -m tests.bench.inertia
 	$(BIN)/python -m tests.bench.check
 	$(BIN)/python -m tests.bench.prompt
+
+view-bench: $(READY)
+	$(BIN)/python -m tests.bench.frames
 
 $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -c 'import sys; assert sys.version_info >= (3, 11), "Python 3.11 or newer is needed"'

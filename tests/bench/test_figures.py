@@ -15,6 +15,7 @@ from tests.bench import (
     blend_campaign,
     check,
     figures,
+    frames,
     inertia,
     jog_campaign,
     measure,
@@ -33,6 +34,7 @@ ROOT = Path(__file__).parents[2]
 MAKEFILE = (ROOT / "Makefile").read_text("utf-8")
 BENCHES = {
     "make bench": (run.rows, inertia.rows, check.rows, prompt.rows),
+    "make view-bench": (frames.rows,),
     "make measured": (measure.rows,),
     "make fault-campaign": (campaign.fault_rows,),
     "make supervision-campaign": (campaign.payload_rows,),

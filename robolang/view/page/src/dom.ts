@@ -38,7 +38,19 @@ export function select<T extends string | number>(
   return made;
 }
 
+const tokens = new Map<string, string>();
+
 /** The value of a custom property of the style sheet: a colour of the theme. */
 export function token(name: string): string {
-  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  let value = tokens.get(name);
+  if (value === undefined) {
+    value = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+    tokens.set(name, value);
+  }
+  return value;
+}
+
+/** The theme changed: its values are read anew. */
+export function forgetTokens(): void {
+  tokens.clear();
 }

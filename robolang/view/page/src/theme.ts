@@ -1,4 +1,4 @@
-import { button } from "./dom";
+import { button, forgetTokens } from "./dom";
 
 type Theme = "light" | "dark";
 
@@ -36,6 +36,7 @@ export class ThemeSwitch {
     if (document.documentElement.dataset.theme === this.theme) return;
     document.documentElement.dataset.theme = this.theme;
     this.button.setAttribute("aria-pressed", String(this.theme === "dark"));
+    forgetTokens();
     this.changed();
   }
 }

@@ -20,6 +20,8 @@ import { ThemeSwitch } from "./theme";
 const CYCLES_PER_STEP = 12.5;
 /** Numbers in a panel change this often at most while the run plays. */
 const PANEL_MS = 120;
+const SLOW_S = 0.12;
+const SLOW_FRAMES = 6;
 
 /** The page: one player, and the panels that show its time. */
 export class Viewer {
@@ -38,6 +40,7 @@ export class Viewer {
   private readonly theme: ThemeSwitch;
   private readonly frames = new Frames((elapsed) => this.frame(elapsed));
   private painted = -Infinity;
+  private slow = 0;
 
   constructor(host: HTMLElement, runs: readonly Run[], sink: Sink) {
     this.sink = sink;
@@ -91,7 +94,14 @@ export class Viewer {
       this.cost.ms += performance.now() - before;
     }
     this.stage.view?.render();
+    if (player.playing) this.relieve(elapsed);
     return player.playing;
+  }
+
+  /** Where frames come too slowly again and again, the robot is drawn with less work. */
+  private relieve(elapsed: number): void {
+    this.slow = elapsed > SLOW_S ? this.slow + 1 : 0;
+    if (this.slow === SLOW_FRAMES) this.stage.view?.simplify();
   }
 
   private recolour(): void {
@@ -141,7 +151,8 @@ export class Viewer {
     const print = (on: boolean) => (): void => {
       this.theme.print(on);
       this.program.print(on);
-      if (on) this.charts.drawAll();
+      this.charts.print(on);
+      this.timeline.print(on);
       this.stage.print(on);
     };
     addEventListener("beforeprint", print(true));

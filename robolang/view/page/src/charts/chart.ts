@@ -1,10 +1,10 @@
 import uPlot from "uplot";
 import type { ChartHead, SeriesHead } from "../contract";
 import { el, token } from "../dom";
-import { number } from "../format";
+import { fixed } from "../format";
 import type { Player } from "../player";
-import { coloursOf, type Line, linesOf, plotData } from "./data";
-import { drawBand, drawNames, drawNotes } from "./drawing";
+import { coloursOf, follows, leaderOf, type Line, linesOf, plotData } from "./data";
+import { drawBand, drawNames, drawNotes, NAME_LETTERS } from "./drawing";
 
 const HEIGHT = 136;
 const LANE = 20;
@@ -23,11 +23,12 @@ export class Chart {
   private readonly box: HTMLElement;
   private readonly playhead = el("div", { class: "playhead", "aria-hidden": "true" });
   /** Where the value of each series is written. */
-  private readonly values: HTMLElement[] = [];
+  private readonly values = new Map<SeriesHead, HTMLElement>();
   private readonly hidden = new Set<number>();
   private lines: readonly Line[] | null = null;
   private plot: uPlot | null = null;
   private width = 0;
+  private paperWidth: number | null = null;
   private stale = true;
   private dragged = -Infinity;
   private valued = -Infinity;
@@ -41,8 +42,18 @@ export class Chart {
     const title = el("h3", { id: `chart-${head.id}` }, head.title, el("span", { class: "unit" }, head.unit));
     this.element = el("section", { class: "chart", "data-testid": "chart", "data-signal": head.id, "aria-labelledby": `chart-${head.id}` }, el("header", {}, title, values), this.box);
     const colours = coloursOf(head.series);
-    head.series.forEach((series, k) => values.append(this.chip(series, colours[k] ?? 0)));
+    head.series.forEach((series, k) => {
+      if (!follows(series.role)) values.append(this.chip(series, colours[k] ?? 0, k));
+    });
+    this.element.classList.toggle("single", this.values.size === 1);
+    this.element.classList.toggle("long", head.series.some((series) => !follows(series.role) && series.label.length > 4));
+    this.element.classList.toggle("wide", player.runs.length > 1);
+    for (const role of ["command", "limit"] as const) if (head.series.some((series) => series.role === role)) title.after(legendKey(role));
     new ResizeObserver(() => this.resize()).observe(this.box);
+  }
+
+  private get available(): number {
+    return this.paperWidth ?? this.box.clientWidth;
   }
 
   private get height(): number {
@@ -51,7 +62,7 @@ export class Chart {
 
   /** Bring the drawing up to date: the first time, for a new range, or in another theme. */
   draw(): void {
-    if (!this.stale || this.box.clientWidth === 0) return;
+    if (!this.stale || this.available === 0) return;
     this.stale = false;
     const [from, to] = this.player.range;
     if (!this.plot) this.build();
@@ -62,6 +73,14 @@ export class Chart {
       plot.setScale("x", { min: from, max: to });
     });
     this.place();
+  }
+
+  /** Draw in a given width, or in that of its place again. */
+  print(width: number | null): void {
+    this.paperWidth = width;
+    this.stale = true;
+    this.draw();
+    this.resize();
   }
 
   /** The drawing no longer holds. */
@@ -81,12 +100,12 @@ export class Chart {
     this.place();
     if (this.player.playing && now - this.valued < VALUE_MS) return;
     this.valued = now;
-    this.values.forEach((value, k) => (value.textContent = this.valueText(k)));
+    for (const [series, value] of this.values) value.textContent = this.valueText(series);
   }
 
   private laidOut(plot: uPlot): void {
     this.width = plot.bbox.width / uPlot.pxRatio;
-    this.place();
+    this.paint(Infinity);
   }
 
   private place(): void {
@@ -97,10 +116,17 @@ export class Chart {
   }
 
   /** The values of a series at the time, one for each run. */
-  private valueText(series: number): string {
-    const lines = this.curves().filter((line) => line.head === this.head.series[series]);
-    const texts = lines.map(({ curve }) => number(curve.values[curve.signal.row(this.player.t)] ?? NaN));
+  private valueText(series: SeriesHead): string {
+    const lines = this.curves().filter((line) => line.head === series);
+    const texts = lines.map(({ curve }) => fixed(curve.values[curve.signal.row(this.player.t)] ?? NaN, this.digits));
     return texts.join(" | ") || "–";
+  }
+
+  /** Digits after the point, so that a value shows some three hundredth parts of the height of the plot. */
+  private get digits(): number {
+    const { min, max } = this.plot?.scales.y ?? {};
+    const span = (max ?? 1) - (min ?? 0);
+    return span > 0 ? Math.max(0, Math.min(5, Math.ceil(2.5 - Math.log10(span)))) : 2;
   }
 
   private curves(): readonly Line[] {
@@ -108,20 +134,22 @@ export class Chart {
     return this.lines;
   }
 
-  private chip(series: SeriesHead, colour: number): HTMLElement {
+  private chip(series: SeriesHead, colour: number, index: number): HTMLElement {
     const value = el("output", { "aria-live": "off" }, "–");
-    this.values.push(value);
+    this.values.set(series, value);
     const key = el("i", { class: `key colour-${colour % COLOURS} ${series.role}`, "aria-hidden": "true" });
-    const made = el("button", { type: "button", class: "chip", "aria-pressed": "true", title: `Hide or show ${series.label}` }, key, series.label, value);
-    made.addEventListener("click", () => this.toggle(made, series));
+    const name = series.label === this.head.title ? "" : series.label;
+    const made = el("button", { type: "button", class: "chip", "aria-pressed": "true", "aria-label": series.label, title: `Hide or show ${series.label}` }, key, name, value);
+    made.addEventListener("click", () => this.toggle(made, index));
     return made;
   }
 
-  private toggle(chip: HTMLElement, series: SeriesHead): void {
+  /** Hide or show a series, and what follows it: its command, its limits. */
+  private toggle(chip: HTMLElement, index: number): void {
     const show = chip.getAttribute("aria-pressed") !== "true";
     chip.setAttribute("aria-pressed", String(show));
     this.curves().forEach((line, k) => {
-      if (line.head !== series) return;
+      if (leaderOf(this.head.series, this.head.series.indexOf(line.head)) !== index) return;
       if (show) this.hidden.delete(k);
       else this.hidden.add(k);
       this.plot?.setSeries(k + 1, { show });
@@ -130,7 +158,7 @@ export class Chart {
 
   private data(): uPlot.AlignedData {
     const [from, to] = this.player.range;
-    const bins = Math.max(200, this.width || this.box.clientWidth);
+    const bins = Math.max(200, this.width || this.available);
     const lanes = this.head.lanes ?? false;
     const count = this.head.series.length;
     const lines = this.curves();
@@ -161,13 +189,14 @@ export class Chart {
     };
     const lanes = this.head.lanes ?? false;
     const names = this.head.series.map((series) => series.label);
+    const letters = Math.max(...names.map((name) => name.length));
     const upright: uPlot.Axis = lanes
-      ? { ...axis, size: 62, splits: names.map((_, k) => k + 0.35), values: () => [...names].reverse() }
+      ? { ...axis, size: Math.min(150, 14 + 6.5 * letters), splits: names.map((_, k) => k + 0.35), values: () => [...names].reverse() }
       : { ...axis, size: 50, gap: 4, space: 26 };
     return {
-      width: this.box.clientWidth,
+      width: this.available,
       height: this.height,
-      padding: [8, this.head.series.length > 1 && !lanes ? 30 : 12, 0, 0],
+      padding: [8, this.values.size > 1 && !lanes ? 10 + 7 * Math.min(letters, NAME_LETTERS) : 12, 0, 0],
       legend: { show: false },
       scales: { x: { time: false }, y: { range: (_, low, high) => this.yRange(low, high) } },
       axes: [{ ...axis, size: 24, gap: 4, space: 64, values: (_, ticks) => ticks.map((tick) => `${+tick.toFixed(6)} s`) }, upright],
@@ -227,10 +256,15 @@ export class Chart {
   }
 
   private resize(): void {
-    if (!this.plot || this.box.clientWidth === 0) return;
-    this.plot.setSize({ width: this.box.clientWidth, height: this.height });
+    if (!this.plot || this.available === 0) return;
+    this.plot.setSize({ width: this.available, height: this.height });
     this.spoil("range");
   }
+}
+
+/** What the dotted or dashed lines of a chart are. */
+function legendKey(role: "command" | "limit"): HTMLElement {
+  return el("span", { class: "legend-key" }, el("i", { class: `key ${role}`, "aria-hidden": "true" }), role);
 }
 
 /** Mouse-up must not pass from chart to chart: a drag in one would zoom as often as there are charts. */

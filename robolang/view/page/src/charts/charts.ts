@@ -3,6 +3,9 @@ import { seconds } from "../format";
 import type { Player } from "../player";
 import { Chart } from "./chart";
 
+/** Half of the width that a sheet has between its margins, px. */
+const PAPER_WIDTH = 340;
+
 /** All charts of the page. A chart that nobody sees is neither built nor redrawn. */
 export class Charts {
   readonly element = el("section", { class: "charts", "aria-label": "Charts", "data-testid": "charts" });
@@ -15,7 +18,8 @@ export class Charts {
     this.charts = player.first.header.charts.map((head) => new Chart(player, head));
     const list = el("div", { class: "list" }, ...this.charts.map((chart) => chart.element));
     const jump = select("Go to a chart", [["", "Go to chart …"] as const, ...this.charts.map(({ head }) => [head.id, head.title] as const)], "", (id) => this.goTo(id, jump));
-    this.element.append(el("div", { class: "bar" }, el("h2", {}, "Charts"), this.shown, jump), list);
+    const keys = player.runs.length < 2 ? [] : player.runs.map((run, k) => el("span", { class: "run-key", title: run.header.label }, el("i", { class: k === 0 ? "key" : "key second", "aria-hidden": "true" }), run.header.label));
+    this.element.append(el("div", { class: "bar" }, el("h2", {}, "Charts"), ...keys, this.shown, jump), list);
     const eyes = new IntersectionObserver((entries) => this.seen(entries), { rootMargin: "120px" });
     for (const chart of this.charts) eyes.observe(chart.element);
     player.on("time", () => this.paint());
@@ -34,9 +38,9 @@ export class Charts {
     this.describe();
   }
 
-  /** For paper: every chart. */
-  drawAll(): void {
-    for (const chart of this.charts) chart.draw();
+  /** For paper: every chart, in the width of half a sheet. */
+  print(on: boolean): void {
+    for (const chart of this.charts) chart.print(on ? PAPER_WIDTH : null);
   }
 
   private seen(entries: readonly IntersectionObserverEntry[]): void {
@@ -52,7 +56,7 @@ export class Charts {
 
   private describe(): void {
     const [from, to] = this.player.range;
-    this.shown.textContent = this.player.zoomed ? `${from.toFixed(3)} to ${seconds(to)}` : "whole run";
+    this.shown.textContent = this.player.zoomed ? `${from.toFixed(3)} to ${seconds(to)}` : "";
     this.shown.classList.toggle("zoomed", this.player.zoomed);
   }
 

@@ -24,16 +24,22 @@ export function linesOf(series: readonly SeriesHead[], runs: readonly Run[]): re
   );
 }
 
-/** A value has a colour of its own; a command or a limit shares that of the value with the same column. */
-export function coloursOf(series: readonly SeriesHead[]): number[] {
-  const own = series.filter((head) => !follows(head.role));
-  return series.map((head, j) => {
-    const partner = follows(head.role) ? own.findIndex((other) => other.column === head.column) : own.indexOf(head);
-    return partner >= 0 ? partner : j;
-  });
+/** Whether a series belongs to another one: the command of a value, the limit of a value. */
+export const follows = (role: Role): boolean => role === "command" || role === "limit";
+
+/** Number of the series that a series belongs to: a command or a limit to the value of the same column, others to none. */
+export function leaderOf(series: readonly SeriesHead[], j: number): number {
+  const head = series[j];
+  if (!head || !follows(head.role)) return j;
+  const leader = series.findIndex((other) => !follows(other.role) && other.column === head.column);
+  return leader >= 0 ? leader : j;
 }
 
-const follows = (role: Role): boolean => role === "command" || role === "limit";
+/** A value has a colour of its own, what belongs to it has the same. */
+export function coloursOf(series: readonly SeriesHead[]): number[] {
+  const own = series.flatMap((head, j) => (follows(head.role) ? [] : [j]));
+  return series.map((_, j) => Math.max(0, own.indexOf(leaderOf(series, j))));
+}
 
 /** Data of a plot: the rows of the range [from, to] s, at most two for each of `bins` bins. */
 export function plotData(lines: readonly Line[], from: number, to: number, bins: number, place: (y: number, line: number) => number): uPlot.AlignedData {

@@ -4,6 +4,8 @@ import { token } from "../dom";
 import type { Line } from "./data";
 
 const NAME_HEIGHT = 11;
+/** So many letters of a name fit beside a plot. */
+export const NAME_LETTERS = 6;
 
 /** The regions beyond the limits, drawn under the curves. */
 export function drawBand(plot: uPlot, band: readonly [number, number] | null): void {
@@ -33,6 +35,8 @@ export function drawNotes(plot: uPlot, notes: readonly Note[]): void {
   const { ctx, bbox } = plot;
   const size = 4 * devicePixelRatio;
   ctx.save();
+  ctx.setLineDash([]);
+  ctx.lineWidth = devicePixelRatio;
   for (const note of notes) {
     if (note.time_s === null || note.severity === "print") continue;
     const x = plot.valToPos(note.time_s, "x", true);
@@ -71,7 +75,7 @@ export function drawNames(plot: uPlot, lines: readonly Line[], hidden: ReadonlyS
   ctx.textAlign = "left";
   shown.forEach(({ line }, k) => {
     ctx.fillStyle = token(`--curve-${line.colour % 8}`);
-    ctx.fillText(line.head.label.slice(0, 4), bbox.left + bbox.width + 5 * devicePixelRatio, ys[k] ?? 0);
+    ctx.fillText(line.head.label.slice(0, NAME_LETTERS), bbox.left + bbox.width + 5 * devicePixelRatio, ys[k] ?? 0);
   });
   ctx.restore();
 }

@@ -8,10 +8,9 @@ export function head(player: Player, ...tools: readonly HTMLElement[]): HTMLElem
   const { header } = player.first;
   const { meta } = header;
   document.title = `${meta.program.name} · robolang`;
-  const made = el("header", { class: "head" }, el("h1", { "data-testid": "title" }, meta.program.name), outcome(player));
+  const made = el("header", { class: "head" }, el("h1", { "data-testid": "title" }, meta.program.name), outcome(player), el("div", { class: "tools" }, ...tools));
   made.append(facts(player));
   if (header.thinned) made.append(el("p", { class: "thinned", "data-testid": "thinned", title: header.thinned.text }, header.thinned.text));
-  made.append(el("div", { class: "tools" }, ...tools));
   return made;
 }
 
@@ -37,7 +36,7 @@ function facts(player: Player): HTMLElement {
   const made = el("dl", { class: "facts" });
   const { report, scene } = player.first.header.meta;
   add(made, "Robot", report.robot ?? scene?.robot ?? "");
-  add(made, "Servo", report.servo ?? "");
+  add(made, "Servo", both(player, (run) => run.header.meta.report.servo ?? ""));
   add(made, "Duration", both(player, (run) => seconds(run.end)));
   add(made, "Tool error", both(player, (run) => millimetres(run.largest("tool_error") * 1000)));
   add(made, "Off path", both(player, (run) => millimetres(most(run.header.meta.report, (one) => one.path_deviation_mm))));

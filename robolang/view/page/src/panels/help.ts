@@ -2,7 +2,7 @@ import { button, el } from "../dom";
 
 const KEYS: readonly (readonly [string, string])[] = [
   ["Space", "play or pause"],
-  ["← →", "8 ms back or on; with Shift 0.1 s"],
+  ["← →", "one cycle back or on; with Shift 0.1 s"],
   ["Page up, Page down", "statement before, next statement"],
   ["Home, End", "start, end"],
   ["+ −", "faster, slower"],

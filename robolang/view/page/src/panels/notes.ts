@@ -23,9 +23,9 @@ export class Notes {
     const place = [note.line === null ? "" : `line ${note.line}`, note.time_s === null ? "" : seconds(note.time_s)].filter(Boolean).join(" · ");
     const head = el("span", { class: "about" }, el("span", { class: `flag ${note.severity}` }, note.code ?? NAMES[note.severity]), el("span", { class: "place" }, place));
     const body = el("span", { class: "text" }, note.text);
-    if (note.time_s === null) return el("li", { class: "note" }, head, body);
+    if (note.time_s === null) return el("li", { class: "item" }, head, body);
     const time = note.time_s;
-    const made = el("button", { type: "button", class: "note", "data-testid": "note" }, head, body);
+    const made = el("button", { type: "button", class: "item", "data-testid": "note" }, head, body);
     made.addEventListener("click", () => this.go(note, time, run));
     return el("li", {}, made);
   }

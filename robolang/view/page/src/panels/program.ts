@@ -23,14 +23,18 @@ export class ProgramText {
   /** The line that the Tab key enters. */
   private entry = 0;
   private whole: boolean;
+  /** Seconds of the line that took longest: the scale of the bars. */
+  private readonly longest: number;
 
   constructor(player: Player, text: string, notes: readonly Note[]) {
     this.player = player;
     this.lines = text.replace(/\r?\n$/, "").split(/\r?\n/);
     this.whole = this.lines.length <= MOST_ROWS;
     for (const note of notes) if (note.line !== null) this.notes.set(note.line, [...(this.notes.get(note.line) ?? []), note]);
+    const { statements } = player.first;
+    this.longest = [...statements.byLine.keys()].reduce((most, line) => Math.max(most, statements.total(line).seconds), 1e-9);
     this.element.append(this.list);
-    this.entry = Math.min(...player.first.statements.byLine.keys(), this.lines.length);
+    this.entry = [...statements.byLine.keys()].reduce((least, line) => Math.min(least, line), this.lines.length);
     this.element.addEventListener("scroll", () => this.window());
     this.element.addEventListener("keydown", (event) => this.key(event));
     this.list.addEventListener("click", (event) => this.press(event.target));
@@ -115,7 +119,7 @@ export class ProgramText {
     if (count > 1) side.append(el("span", { class: "count", title: `executed ${count} times` }, `${count} ×`));
     if (spent > 0) {
       const share = el("span", { class: "share", "aria-hidden": "true" });
-      share.style.width = `${Math.max(2, (100 * spent) / this.player.end).toFixed(1)}%`;
+      share.style.width = `${((100 * spent) / this.longest).toFixed(1)}%`;
       side.append(el("span", { class: "spent" }, seconds(spent, 2), share));
     }
     return row;
@@ -176,7 +180,7 @@ function source(text: string): HTMLElement {
   const made = el("code", { class: "source" });
   const [, number = "", word = "", rest = ""] = /^(\s*\d*\s*)([A-Za-z]*)(.*)$/.exec(text) ?? [];
   const comment = commentAt(rest);
-  if (number) made.append(el("span", { class: "label" }, number));
+  if (number) made.append(el("span", { class: "stated" }, number));
   if (/^rem$/i.test(word)) return appended(made, el("span", { class: "comment" }, word + rest));
   if (word) made.append(el("b", {}, word));
   made.append(rest.slice(0, comment));

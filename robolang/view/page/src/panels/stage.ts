@@ -82,6 +82,9 @@ export class Stage {
   private controls(view: View3D): void {
     const views = VIEWS.map((name, k) => button(VIEW_NAMES[name], `View: ${VIEW_NAMES[name]} (${k + 1})`, () => view.show(name), { "data-view": name }));
     this.element.append(el("div", { class: "views", role: "group", "aria-label": "View" }, ...views));
+    const press = (): void => views.forEach((one, k) => one.setAttribute("aria-pressed", String(VIEWS[k] === view.shown)));
+    view.turned = press;
+    press();
     this.labelled = el("input", { type: "checkbox", checked: true });
     this.labelled.addEventListener("change", () => {
       view.labels.show(this.labelled?.checked ?? true);

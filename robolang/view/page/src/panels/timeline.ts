@@ -7,6 +7,9 @@ import type { Run } from "../run";
 const LANE = 26;
 const GAP = 4;
 const AXIS = 18;
+/** Height of the name of a run over its lane. */
+const NAME = 18;
+const PAPER_WIDTH = 700;
 const INSTANT = 3;
 /** Statements without duration are caught this many pixels beside their mark. */
 const REACH = 3;
@@ -30,6 +33,7 @@ export class Timeline {
   private readonly head = el("div", { class: "playhead", "aria-hidden": "true" });
   private readonly player: Player;
   private width = 0;
+  private paperWidth: number | null = null;
   private hovered = -1;
   private dragging = false;
 
@@ -48,6 +52,10 @@ export class Timeline {
     this.canvas.addEventListener("dblclick", () => player.zoom());
   }
 
+  private get gap(): number {
+    return this.player.runs.length > 1 ? NAME : GAP;
+  }
+
   /** Move the playhead: no layout is read. */
   paint(): void {
     const x = this.x(this.player.t);
@@ -55,10 +63,17 @@ export class Timeline {
     this.head.hidden = x < -1 || x > this.width + 1;
   }
 
+  /** On paper the timeline is as wide as a sheet. */
+  print(on: boolean): void {
+    this.paperWidth = on ? PAPER_WIDTH : null;
+    this.draw();
+  }
+
   draw(): void {
-    this.width = this.element.clientWidth;
+    this.width = this.paperWidth ?? this.element.clientWidth;
     const { runs } = this.player;
-    const height = runs.length * (LANE + GAP) + AXIS;
+    const height = runs.length * (LANE + this.gap) + AXIS;
+    this.canvas.style.width = this.paperWidth ? `${this.paperWidth}px` : "";
     const scale = Math.min(devicePixelRatio, 2);
     this.canvas.style.height = `${height}px`;
     this.canvas.width = Math.round(this.width * scale);
@@ -74,21 +89,31 @@ export class Timeline {
   }
 
   private lane(pen: CanvasRenderingContext2D, run: Run, lane: number): void {
-    const top = lane * (LANE + GAP) + GAP;
+    const top = lane * (LANE + this.gap) + this.gap;
+    if (this.player.runs.length > 1) {
+      pen.fillStyle = token("--muted");
+      pen.fillText(run.header.label, 0, top - NAME / 2);
+    }
     const [first, last] = run.statements.within(...this.player.range);
     const instants: (() => void)[] = [];
     let drawn = -Infinity;
+    let pinned = -Infinity;
     for (let k = first; k < last; k++) {
       const one = run.statements.all[k];
       if (!one) continue;
       const from = this.x(one.start_s);
       const to = this.x(one.start_s + one.duration_s);
-      // Thousands of statements can share a pixel: one of them is enough.
-      if (to < drawn + 0.5 && k !== this.hovered) continue;
-      drawn = to;
       const lit = lane === 0 && k === this.hovered;
-      if (one.duration_s > 0) this.block(pen, one, from, to, top, lit);
-      else instants.push(() => this.instant(pen, one, from, top, lit));
+      const lasts = one.duration_s > 0;
+      // Thousands of statements can share a pixel: one of them is enough.
+      if (!lit && to < (lasts ? drawn : pinned) + 0.5) continue;
+      if (lasts) {
+        drawn = to;
+        this.block(pen, one, from, to, top, lit);
+      } else {
+        pinned = to;
+        instants.push(() => this.instant(pen, one, from, top, lit));
+      }
     }
     for (const draw of instants) draw();
     for (const note of run.header.notes) this.note(pen, note, top);
@@ -182,7 +207,7 @@ export class Timeline {
     this.canvas.setPointerCapture(event.pointerId);
     const index = this.hit(event);
     const one = this.player.first.statements.all[index];
-    if (one && one.duration_s <= 0 && event.offsetY < LANE + 2 * GAP) this.player.seekStatement(index);
+    if (one && one.duration_s <= 0 && event.offsetY < LANE + 2 * this.gap) this.player.seekStatement(index);
     else this.player.seek(this.time(event));
   }
 

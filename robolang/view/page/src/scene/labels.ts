@@ -8,6 +8,7 @@ interface Label {
   readonly element: HTMLElement;
   readonly at: Object3D;
   readonly kind: Kind;
+  /** Number of the half of the view, 0 or 1. */
   readonly half: number;
 }
 
@@ -34,17 +35,17 @@ export class Labels {
   /** Put each label beside its thing; `width` and `height` are those of one half of the view, px. */
   arrange(camera: PerspectiveCamera, width: number, height: number): void {
     if (this.element.hidden) return;
-    const taken: [number, number, number][] = [];
+    const taken: { half: number; x: number; y: number; wide: number }[] = [];
     const placed = this.labels.map((label) => {
       label.at.getWorldPosition(this.place).project(camera);
       return { label, x: ((this.place.x + 1) * width) / 2, y: ((1 - this.place.y) * height) / 2, depth: this.place.z };
     });
     for (const { label, x, y, depth } of placed.sort((a, b) => a.depth - b.depth)) {
       const wide = label.element.textContent.length * LETTER + 10;
-      const clear = depth < 1 && x > 0 && x < width && y > 0 && y < height && taken.every(([u, v, w]) => Math.abs(v - y) > HEIGHT || u + w < x || x + wide < u);
+      const clear = depth < 1 && x > 0 && x < width && y > 0 && y < height && taken.every((other) => other.half !== label.half || Math.abs(other.y - y) > HEIGHT || other.x + other.wide < x || x + wide < other.x);
       label.element.classList.toggle("shown", clear);
       if (!clear) continue;
-      taken.push([x, y, wide]);
+      taken.push({ half: label.half, x, y, wide });
       label.element.style.transform = `translate(${(x + label.half * width + 9).toFixed(1)}px,${(y - HEIGHT / 2).toFixed(1)}px)`;
     }
   }

@@ -41,11 +41,13 @@ export class View3D {
   private readonly controls: OrbitControls;
   private readonly stages: Stage[];
   private readonly box = new Box3();
-  private readonly quality: Quality;
+  private quality: Quality;
   private readonly top: number;
   private scale = 1;
   private width = 0;
   private height = 0;
+  /** Called when the camera shows another view, or none of them. */
+  turned: () => void = () => undefined;
   private view: View | null = "iso";
   private dirty = true;
 
@@ -68,13 +70,13 @@ export class View3D {
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.maxPolarAngle = 0.52 * Math.PI;
-    this.controls.addEventListener("start", () => (this.view = null));
+    this.controls.addEventListener("start", () => this.leave());
     this.controls.addEventListener("change", () => this.ask(request));
     canvas.addEventListener("keydown", (event) => this.key(event));
     this.stages = player.runs.flatMap((run) => this.stage(run));
     this.measure();
     this.furnish();
-    this.stages.forEach((stage, k) => this.name(stage, k / this.stages.length));
+    this.stages.forEach((stage, k) => this.name(stage, k));
     new ResizeObserver(() => {
       this.resize();
       this.ask(request);
@@ -99,8 +101,13 @@ export class View3D {
     return body.getWorldPosition(new Vector3()).toArray();
   }
 
+  get shown(): View | null {
+    return this.view;
+  }
+
   show(view: View): void {
     this.view = view;
+    this.turned();
     this.controls.target.copy(aim(this.camera, this.box, view));
     this.controls.update();
     this.dirty = true;
@@ -151,11 +158,26 @@ export class View3D {
     this.labels.arrange(this.camera, half, this.height);
   }
 
+  /** Draw with less work: no shadows, fewer pixels. A computer without a graphics card still plays then. */
+  simplify(): void {
+    if (this.quality === PLAIN) return;
+    this.quality = PLAIN;
+    this.renderer.shadowMap.enabled = false;
+    this.furnish();
+    this.resize();
+  }
+
   /** The picture as it is now, for paper. */
   picture(): string {
     this.dirty = true;
     this.render();
     return this.renderer.domElement.toDataURL("image/png");
+  }
+
+  /** The camera is where a person put it. */
+  private leave(): void {
+    this.view = null;
+    this.turned();
   }
 
   private ask(request: () => void): void {
@@ -225,7 +247,7 @@ export class View3D {
     if (!turn && !tilt) return;
     event.preventDefault();
     event.stopPropagation();
-    this.view = null;
+    this.leave();
     const arm = this.camera.position.clone().sub(this.controls.target);
     const flat = Math.hypot(arm.x, arm.y);
     const length = arm.length();

@@ -1,0 +1,62 @@
+"""``make view-bench``: what a frame of a page costs while it plays, for a short run and a long one."""
+
+import statistics
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from playwright.sync_api import Page
+
+from tests.bench import figures
+from tests.bench.figures import Row
+from tests.robolang.view import made_up
+from tests.robolang.view.browser import Tab, chromium
+
+SHORT_S, LONG_S = 5.0, 60.0
+MOST = 1.3
+"""A frame of the long run may cost so many times that of the short one."""
+
+
+def frame_ms(page: Page, plays_ms: int) -> float:
+    """Play from the start and return the processor time of the page's own work in a frame, ms."""
+    page.evaluate(
+        "robolang.pause(); robolang.seek(0); Object.assign(robolang.cost, { frames: 0, ms: 0 }); robolang.play()"
+    )
+    page.wait_for_timeout(plays_ms)
+    return page.evaluate("robolang.cost.ms / robolang.cost.frames")
+
+
+def costs(folder: Path, rounds: int, plays_ms: int) -> tuple[float, float]:
+    """Return the medians of both runs, ms; they take turns, so that a slow moment of the machine meets both."""
+    found: dict[float, list[float]] = {SHORT_S: [], LONG_S: []}
+    with chromium() as browser:
+        tabs = {}
+        for duration in found:
+            path = made_up.page(folder / f"{duration:.0f}.html", made_up.run(duration))
+            tabs[duration] = Tab(browser).open(path)
+        for _ in range(rounds):
+            for duration, page in tabs.items():
+                page.bring_to_front()
+                found[duration].append(frame_ms(page, plays_ms))
+                page.evaluate("robolang.pause()")
+    return statistics.median(found[SHORT_S]), statistics.median(found[LONG_S])
+
+
+def rows(smallest: bool) -> Iterator[Row]:
+    with tempfile.TemporaryDirectory() as folder:
+        short, long = costs(Path(folder), rounds=1 if smallest else 7, plays_ms=300 if smallest else 2500)
+    yield Row(
+        figure="work of the page in a frame while a run of 5 s plays, without the robot",
+        form="{:.2f} ms",
+        values=(short,),
+    )
+    yield Row(
+        figure="the same of a run of 60 s, against that of 5 s",
+        form="{:.2f} times",
+        values=(long / short,),
+        good=smallest or long <= MOST * short,
+    )
+
+
+if __name__ == "__main__":
+    figures.run(rows)
