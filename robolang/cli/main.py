@@ -29,6 +29,7 @@ from robolang.cli.commands import (
     step,
     teach,
     test,
+    view,
     weigh,
     wrist_demo,
 )
@@ -47,6 +48,7 @@ app = typer.Typer(
 )
 _COMMANDS: dict[str, Callable[..., None]] = {
     "run": run.run,
+    "view": view.view,
     "repl": repl.repl,
     "jog": jog.jog,
     "teach": teach.teach,

@@ -20,12 +20,8 @@ class Accepted:
     steps: "tuple[PlannedStep, ...]"
 
 
-def refuse(project: "Project", *, warnings: bool = True, plans: "PlanMemory | None" = None) -> Accepted:
-    """Print the diagnostics and what is unlikely about the robot and the cell.
-
-    Leave when the text has errors or a motion cannot be planned. ``warnings`` False: print errors only. ``plans``
-    keeps what is planned, for the run.
-    """
+def refuse_text(project: "Project", *, warnings: bool = True) -> None:
+    """Print the diagnostics and what is unlikely about the robot and the cell; leave when the text has errors."""
     from robolang.core.diagnostics import Severity, render
 
     if warnings:
@@ -35,6 +31,17 @@ def refuse(project: "Project", *, warnings: bool = True, plans: "PlanMemory | No
             echo(render(item, project.source), err=True)
     if not project.ok:
         raise SystemExit(DIAGNOSTICS)
+
+
+def refuse(project: "Project", *, warnings: bool = True, plans: "PlanMemory | None" = None) -> Accepted:
+    """Print the diagnostics and what is unlikely about the robot and the cell.
+
+    Leave when the text has errors or a motion cannot be planned. ``warnings`` False: print errors only. ``plans``
+    keeps what is planned, for the run.
+    """
+    from robolang.core.diagnostics import Severity, render
+
+    refuse_text(project, warnings=warnings)
     from robolang.execution.dry_run import rehearse
 
     rehearsal = rehearse(project, plans=plans)

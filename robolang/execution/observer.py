@@ -30,3 +30,49 @@ class Observer:
 
     def printed(self, text: str) -> None:
         """See a line that PRINT shows."""
+
+
+class Observers(Observer):
+    """Several observers of one program, in this order; more may be added while it runs."""
+
+    def __init__(self, *observers: Observer) -> None:
+        self._all = observers
+
+    def add(self, observer: Observer) -> None:
+        """Let one more see what happens from now on."""
+        # a new tuple: the program may be in the middle of the old one
+        self._all = (*self._all, observer)
+
+    def remove(self, observer: Observer) -> None:
+        """Let one see no more; nothing where it is none of these."""
+        self._all = tuple(each for each in self._all if each is not observer)
+
+    def statement_began(self, statement: LineBegun) -> None:
+        """Pass it on."""
+        for each in self._all:
+            each.statement_began(statement)
+
+    def run_began(self, run: StatementRun, time_us: int) -> None:
+        """Pass it on."""
+        for each in self._all:
+            each.run_began(run, time_us)
+
+    def effect_done(self, effect: Effect) -> None:
+        """Pass it on."""
+        for each in self._all:
+            each.effect_done(effect)
+
+    def cycle_done(self, time_us: int) -> None:
+        """Pass it on."""
+        for each in self._all:
+            each.cycle_done(time_us)
+
+    def alarm(self, alarm: Alarm) -> None:
+        """Pass it on."""
+        for each in self._all:
+            each.alarm(alarm)
+
+    def printed(self, text: str) -> None:
+        """Pass it on."""
+        for each in self._all:
+            each.printed(text)

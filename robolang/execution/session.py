@@ -4,6 +4,7 @@ Before anything moves the whole program is planned once (``motion_check``), so a
 stands still; the plans are kept for the run.
 """
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TypedDict, Unpack
 
@@ -85,14 +86,20 @@ class Session:
         """Request the end of the run at the next cycle, at once (category 0); safe to call from a signal handler."""
         self.executor.halt()
 
-    def run(self) -> RunResult:
-        """Execute the program to its end, a fault or a stop; the log is complete in every case."""
+    def run(self, drive: Callable[[], None] | None = None) -> RunResult:
+        """Execute the program to its end, a fault or a stop; the log is complete in every case.
+
+        ``drive`` advances ``executor`` to its end; None: without a pause.
+        """
         started = wall_s()
         self.running = True
-        while self.executor.advance(_CYCLES).state not in ENDED:
-            pass
+        (drive or self._advance)()
         self.running = False
         return self.result(wall_s() - started)
+
+    def _advance(self) -> None:
+        while self.executor.advance(_CYCLES).state not in ENDED:
+            pass
 
     def result(self, wall_s: float) -> RunResult:
         """Return what has become of the run so far, which took ``wall_s`` seconds of wall time; the run may go on."""

@@ -43,6 +43,10 @@ class Chart:
     lanes: bool = False
 
 
+_TOOL_ERROR = Chart(id="tool_error", title="Tool error", unit="mm")
+_TOOL_SPEED = Chart(id="tool_speed", title="Tool speed", unit="mm/s")
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Kind:
     """Axes of one kind, by name and index: how their charts are named, and what one of their units is in SI."""
@@ -124,6 +128,17 @@ def of_plan(shown: Shown) -> list[Chart]:
     return _those_with_signals([*joints, _tool_speed(shown), _tool(shown), _levels(shown)], shown)
 
 
+def of_live(robot: Mapping[str, Any]) -> list[Chart]:
+    """Return the charts of a run that still goes on: of what its frames hold (``robolang.view.frames``)."""
+    # chosen without values, since there are none yet
+    shown = Shown(robot=robot, signals={})
+    tool = [
+        _of_one_signal(chart, name, 1.0 / MM)
+        for name, chart in (("tool_error", _TOOL_ERROR), ("tool_speed", _TOOL_SPEED))
+    ]
+    return [*tool, *_by_kind(shown, _joint_error, _torque_pct, _joints), _tool(shown)]
+
+
 def _those_with_signals(found: Iterable[Chart | None], shown: Shown) -> list[Chart]:
     charts = (chart for chart in found if chart is not None)
     return [chart for chart in charts if chart.series and all(each.signal in shown.signals for each in chart.series)]
@@ -134,11 +149,11 @@ def _by_kind(shown: Shown, *makers: Callable[[Shown, Kind], Chart]) -> Iterator[
 
 
 def _tool_error(shown: Shown) -> Chart | None:
-    return _one(shown, "tool_error", Chart(id="tool_error", title="Tool error", unit="mm"), 1.0 / MM)
+    return _one(shown, "tool_error", _TOOL_ERROR, 1.0 / MM)
 
 
 def _tool_speed(shown: Shown) -> Chart | None:
-    return _one(shown, "tool_speed", Chart(id="tool_speed", title="Tool speed", unit="mm/s"), 1.0 / MM)
+    return _one(shown, "tool_speed", _TOOL_SPEED, 1.0 / MM)
 
 
 def _each(kind: Kind, signal: str, scale: float, role: Role = "value", label: str = "") -> tuple[Series, ...]:
@@ -277,8 +292,8 @@ def _hand(shown: Shown) -> Chart | None:
 
 def _one(shown: Shown, name: str, chart: Chart, scale: float = 1.0, role: Role = "value") -> Chart | None:
     """Return a chart with the only column of a signal; None where it says nothing."""
-    return (
-        replace(chart, series=(Series(label=chart.title, signal=name, scale=scale, role=role),))
-        if shown.says(name)
-        else None
-    )
+    return _of_one_signal(chart, name, scale, role) if shown.says(name) else None
+
+
+def _of_one_signal(chart: Chart, name: str, scale: float, role: Role = "value") -> Chart:
+    return replace(chart, series=(Series(label=chart.title, signal=name, scale=scale, role=role),))

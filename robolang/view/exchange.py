@@ -25,6 +25,8 @@ MOST_WAITING = 16
 """Commands that wait for the run; a page sends one after another."""
 MOST_SAID = 200
 """Lines and replies that are kept for a page that reads slowly."""
+MOST_STATEMENTS = 10_000
+"""Statements that are kept for a page that comes late."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,6 +45,7 @@ class Page:
 
     number: int
     frame: int = 0
+    begun: int = 0
     status: tuple[int, str] = (-1, "")
     said: deque[str] = field(default_factory=lambda: deque(maxlen=MOST_SAID))
 
@@ -50,14 +53,17 @@ class Page:
 class Exchange:
     """Between the thread of a run and the thread of its server."""
 
-    def __init__(self, hello: Mapping[str, Any]) -> None:
-        """``hello``: what a page gets first, as JSON."""
-        self.hello = json.dumps({"kind": "hello", **hello}, separators=(",", ":"))
+    def __init__(self) -> None:
+        self.hello = '{"kind":"hello"}'
+        """What a page gets first, as JSON."""
         self.button = HeldButton()
         self.frame: tuple[int, bytes] = (0, b"")
         """The newest frame, counted."""
         self.status: tuple[int, str] = (0, '{"state":"starting"}')
         """The newest status, counted, as JSON without what depends on the page."""
+        self.begun = 0
+        """How many statements have begun."""
+        self._statements: deque[str] = deque(maxlen=MOST_STATEMENTS)
         self.notify: Callable[[], None] = lambda: None
         """Wakes the server; it never waits."""
         self._pages: dict[int, Page] = {}
@@ -67,6 +73,10 @@ class Exchange:
         self._wake = threading.Event()
 
     # --- the run's thread --------------------------------------------------------------------------------------------
+
+    def greet(self, hello: Mapping[str, Any]) -> None:
+        """Give each page that comes from now on this first."""
+        self.hello = json.dumps({"kind": "hello", **hello}, separators=(",", ":"))
 
     def show_frame(self, frame: bytes) -> None:
         """Put a frame in place of the one before it."""
@@ -79,6 +89,12 @@ class Exchange:
         if status != self.status[1]:
             self.status = self.status[0] + 1, status
             self.notify()
+
+    def begin(self, statement: Mapping[str, Any]) -> None:
+        """Add a statement that begins to those that pages show."""
+        self._statements.append(json.dumps(statement, separators=(",", ":")))
+        self.begun += 1
+        self.notify()
 
     def say(self, text: str) -> None:
         """Send a line of PRINT to every page."""
@@ -113,9 +129,9 @@ class Exchange:
         self._wake.set()
 
     @property
-    def watched(self) -> bool:
-        """Whether any page is there."""
-        return bool(self._pages)
+    def pages(self) -> tuple[int, ...]:
+        """The numbers of the pages that are there."""
+        return tuple(self._pages)
 
     # --- the server's thread -----------------------------------------------------------------------------------------
 
@@ -140,6 +156,18 @@ class Exchange:
         if self._control == page.number:
             self._control = None
         self.notify()
+
+    def statements_for(self, page: Page) -> str | None:
+        """Return the statements that a page has not got yet as a message; None: it has all."""
+        count = self.begun
+        new = min(count - page.begun, MOST_STATEMENTS)
+        page.begun = count
+        # of more than are kept it gets the last ones
+        if not new:
+            return None
+        # a copy: the run goes on adding to them
+        rows = list(self._statements.copy())[-new:]
+        return f'{{"kind":"statements","rows":[{",".join(rows)}]}}'
 
     def has_control(self, page: Page) -> bool:
         """Return whether a page may command."""

@@ -48,11 +48,11 @@ class Answer:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LivePage:
-    """The page as it is sent, and the hashes of its scripts and styles (``sha256-...``)."""
+    """The page as it is sent, and the hashes of its script and its style, ``'sha256-...'``."""
 
     html: bytes
-    scripts: tuple[str, ...]
-    styles: tuple[str, ...]
+    script: str
+    style: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,9 +113,8 @@ class Guard:
         """The content policy of the page: its own scripts and styles, and the socket of this run."""
         # both names: the page opens its socket on the host by which it was opened
         sockets = " ".join(f"ws://{name}:{self.port}" for name in HOSTS)
-        scripts, styles = (" ".join(f"'{each}'" for each in found) for found in (self.page.scripts, self.page.styles))
         return (
-            f"default-src 'none'; script-src {scripts}; style-src {styles}; img-src data: blob:; "
+            f"default-src 'none'; script-src {self.page.script}; style-src {self.page.style}; img-src data: blob:; "
             f"connect-src {sockets}; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
         )
 

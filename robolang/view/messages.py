@@ -22,8 +22,8 @@ from runtime.core.limits import INPUT
 LARGEST = 4096
 """Longest message of a page, bytes."""
 
-WORDS = ("start", "pause", "step", "stop", "reset", "restart", "take", "give")
-"""Commands without values. ``take`` and ``give``: control over the arm."""
+WORDS = ("start", "pause", "step", "stop", "reset", "restart", "end", "take", "give")
+"""Commands without values. ``take`` and ``give``: control over the arm; ``end``: of ``robolang view``."""
 
 MOST_AXES = 7
 LONGEST_NAME = 64

@@ -8,7 +8,7 @@ and the script puts it into the page as text.
 import base64
 import hashlib
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
@@ -53,10 +53,26 @@ class Bundle:
     @property
     def policy(self) -> str:
         """The content security policy of a page that is opened from a disk."""
+        script, style = self.hashes
         return (
-            f"default-src 'none'; script-src {_hash(self.script)}; style-src {_hash(self.style)}; "
+            f"default-src 'none'; script-src {script}; style-src {style}; "
             "img-src data: blob:; base-uri 'none'; form-action 'none'"
         )
+
+    @property
+    def hashes(self) -> tuple[str, str]:
+        """Hash of the script and of the style, as a policy names them."""
+        return _hash(self.script), _hash(self.style)
+
+    def filled(self, policy: str, runs: Iterable[bytes]) -> Iterator[bytes]:
+        """Yield the page in pieces; ``runs``: the elements that stand before the script."""
+        for k, piece in enumerate(_MARK.split(self.skeleton)):
+            if k % 2 == 0:
+                yield piece.encode()
+            elif piece == "RUNS":
+                yield from runs
+            else:
+                yield {"CSP": policy, "CSS": self.style, "JS": self.script}[piece].encode()
 
 
 def write_page(path: Path, runs: Sequence[bytes], bundle: Bundle) -> None:
@@ -65,16 +81,15 @@ def write_page(path: Path, runs: Sequence[bytes], bundle: Bundle) -> None:
 
 
 def _write(stream: IO[bytes], runs: Sequence[bytes], bundle: Bundle) -> None:
-    for k, piece in enumerate(_MARK.split(bundle.skeleton)):
-        if k % 2 == 0:
-            stream.write(piece.encode())
-        elif piece == "RUNS":
-            for number, run in enumerate(runs):
-                stream.write(b'<script type="text/plain" data-run="%d">' % number)
-                stream.write(base64.b64encode(run))
-                stream.write(b"</script>\n")
-        else:
-            stream.write({"CSP": bundle.policy, "CSS": bundle.style, "JS": bundle.script}[piece].encode())
+    for piece in bundle.filled(bundle.policy, _elements(runs)):
+        stream.write(piece)
+
+
+def _elements(runs: Sequence[bytes]) -> Iterator[bytes]:
+    for number, run in enumerate(runs):
+        yield b'<script type="text/plain" data-run="%d">' % number
+        yield base64.b64encode(run)
+        yield b"</script>\n"
 
 
 def _hash(text: str) -> str:

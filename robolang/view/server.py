@@ -32,6 +32,8 @@ OPEN_S = 5.0
 """Longest time in which a connection has to send its request, s."""
 PING_S = 5.0
 """A page that does not answer a ping within this is gone, s."""
+END_S = 2.0
+"""How long the end of the run waits for a page that does not read, s."""
 MOST_CONNECTIONS = 32
 """Connections at a time, those that have not sent a request included."""
 MOST_PORT = 65_535
@@ -224,6 +226,9 @@ def _news(exchange: Exchange, page: Page) -> list[str | bytes]:
     found: list[str | bytes] = []
     while page.said:
         found.append(page.said.popleft())
+    statements = exchange.statements_for(page)
+    if statements is not None:
+        found.append(statements)
     number, status = exchange.status
     control = "yours" if exchange.has_control(page) else "free" if exchange.control_is_free else "other"
     # control differs from page to page, and is no part of what the run knows
@@ -243,4 +248,4 @@ async def _sent(server: Server) -> None:
     pages: Any = [connection.wait_closed() for connection in server.connections]
     if pages:
         with contextlib.suppress(TimeoutError):
-            await asyncio.wait_for(asyncio.gather(*pages, return_exceptions=True), PING_S)
+            await asyncio.wait_for(asyncio.gather(*pages, return_exceptions=True), END_S)

@@ -138,6 +138,11 @@ class Signals:
         if off_us is not None:
             rows.append((off_us, 0.0))
 
+    @property
+    def outputs(self) -> tuple[int, ...]:
+        """The outputs that the program has set so far, in order."""
+        return tuple(sorted(self._history))
+
     def output(self, number: int, now_us: int) -> float:
         """Return the state of an output."""
         return _at(self._history.get(number, ()), now_us)

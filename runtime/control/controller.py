@@ -336,6 +336,10 @@ class Controller:
         self.late_cycles = snapshot.late_cycles
         self._clock.restart()
 
+    def restart_clock(self) -> None:
+        """Keep wall time from the next cycle on: cycles that were not run meanwhile, in a pause, are not late."""
+        self._clock.restart()
+
     # state ----------------------------------------------------------------------------------------------------------
 
     @property

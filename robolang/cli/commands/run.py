@@ -15,9 +15,11 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from robolang.cli.controller_settings import settings_of
 from robolang.cli.errors import DIAGNOSTICS, MOTION, reported, say
+from robolang.cli.live_options import FollowOptions, followed, pages_of
 from robolang.cli.options import CellOptions, Group, Option, Program, RunControllerOptions, SimulationOptions, Strict
 from robolang.cli.output import echo
 from robolang.cli.refuse import refuse
+from robolang.cli.signals import handled
 from robolang.cli.usage import OptionValueError
 
 if TYPE_CHECKING:
@@ -58,6 +60,7 @@ def run(
     controller: RunControllerOptions,
     simulation: SimulationOptions,
     output: _OutputOptions,
+    follow: FollowOptions,
 ) -> None:
     """Run a program on the controller and the simulated arm.
 
@@ -70,13 +73,13 @@ def run(
         from robolang.project.project import load_project
 
         # planning a long program takes its time, and there is no session yet that a signal could stop
-        with _handled(_left_before_motion):
+        with handled(_left_before_motion):
             project = load_project(program, files.cell, files.robot, profile=controller.profile, options=settings)
             from robolang.execution.plan_memory import PlanMemory
 
             plans = PlanMemory(project)
             accepted = refuse(project, warnings=output.warnings, plans=plans)
-        result, code = _run(project, plans, accepted.steps, simulation, output)
+        result, code = _run(project, plans, accepted.steps, simulation, output, follow)
         if not output.quiet:
             from robolang.cli.run_table import print_result
 
@@ -96,17 +99,22 @@ def _run(
     steps: "tuple[PlannedStep, ...]",
     simulation: SimulationOptions,
     output: _OutputOptions,
+    follow: FollowOptions,
 ) -> "tuple[RunResult, int]":
     """Run the program and write its files; return the result, and the exit code of a file or a signal, or 0."""
     from robolang.cli.run_progress import shown
+    from robolang.execution.observer import Observers
     from robolang.execution.session import Session
 
+    pages = pages_of(follow)
     with shown(output.quiet, steps) as progress:
         physics, realtime = not simulation.no_physics, simulation.realtime
-        session = Session(project, physics=physics, realtime=realtime, observer=progress, plans=plans)
+        observer = progress if pages is None else Observers(progress, pages.frames)
+        session = Session(project, physics=physics, realtime=realtime, observer=observer, plans=plans)
         progress.follow(session.controller)
-        with _signals(session) as stopped:  # until the files are written: a signal must not cut them off
-            result = session.run()
+        # until the files are written: a signal must not cut them off
+        with followed(session, pages, follow) as run_session, _signals(session) as stopped:
+            result = run_session()
             code = _write(result, output)
     return result, code or (128 + stopped[0] if stopped else 0)
 
@@ -189,7 +197,7 @@ def _signals(session: "Session") -> Iterator[list[int]]:
         else:
             sys.exit(128 + number)
 
-    with _handled(handle):
+    with handled(handle):
         yield received
 
 
@@ -198,14 +206,3 @@ def _left_before_motion(number: int, _frame: object) -> None:
     name = signal.Signals(number).name
     echo(f"stopped by {name} before the program began: nothing has moved, no file was written", err=True)
     sys.exit(128 + number)
-
-
-@contextmanager
-def _handled(handle: Callable[[int, object], None]) -> Iterator[None]:
-    """Have SIGINT and SIGTERM handled."""
-    before = {number: signal.signal(number, handle) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

@@ -13,13 +13,12 @@ from robolang.view.guard import LivePage
 from robolang.view.server import LiveServer
 from tests.steps import HANG_S
 
-PAGE = LivePage(html=b"<!doctype html><title>live</title>", scripts=("sha256-s",), styles=("sha256-c",))
-HELLO = {"joints": 6}
+PAGE = LivePage(html=b"<!doctype html><title>live</title>", script="'sha256-s'", style="'sha256-c'")
 
 
 @contextmanager
 def serving(exchange=None):
-    server = LiveServer(exchange or Exchange(HELLO), PAGE)
+    server = LiveServer(exchange or Exchange(), PAGE)
     server.start()
     try:
         yield server

@@ -17,7 +17,7 @@ class Timed(Exchange):
 
 @pytest.fixture
 def exchange(monkeypatch):
-    exchange = Timed({"joints": 6})
+    exchange = Timed()
     monkeypatch.setattr("robolang.view.exchange.wall_s", lambda: exchange.now)
     return exchange
 

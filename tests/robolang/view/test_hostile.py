@@ -16,7 +16,7 @@ from robolang.view.exchange import Exchange
 from robolang.view.server import MOST_CONNECTIONS, MOST_MISTAKES, LiveServer
 from runtime.core.faults import Fault
 from tests.campaign import size
-from tests.robolang.view.live_server import HELLO, PAGE, origin, page_of, raw, request, serving, status, upgrade
+from tests.robolang.view.live_server import PAGE, origin, page_of, raw, request, serving, status, upgrade
 from tests.steps import HANG_S
 
 
@@ -350,7 +350,7 @@ def _link(path: Path) -> str:
 
 def test_a_port_that_is_taken_has_a_code(live):
     with pytest.raises(Fault) as refused:
-        LiveServer(Exchange(HELLO), PAGE, live.guard.port).start()
+        LiveServer(Exchange(), PAGE, live.guard.port).start()
     assert refused.value.code == "RBL834"
     assert str(live.guard.port) in refused.value.message
 
@@ -358,7 +358,7 @@ def test_a_port_that_is_taken_has_a_code(live):
 @pytest.mark.parametrize("port", [-1, 65536])
 def test_a_port_that_is_none_has_a_code(port):
     with pytest.raises(Fault) as refused:
-        LiveServer(Exchange(HELLO), PAGE, port).start()
+        LiveServer(Exchange(), PAGE, port).start()
     assert refused.value.code == "RBL834"
 
 

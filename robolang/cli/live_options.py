@@ -1,0 +1,64 @@
+"""Options of the live view, and how its address is given to people."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from robolang.cli.options import Group, Option
+from robolang.cli.output import echo
+
+if TYPE_CHECKING:
+    from robolang.execution.session import RunResult, Session
+    from robolang.view.live import Live
+
+
+class PageOptions(Group):
+    """Where the live page is served, and whether a browser opens it."""
+
+    PANEL: ClassVar[str] = "Live view"
+    port: Annotated[
+        int, Option("--port", metavar="N", low=0, high=65535, help="Port on 127.0.0.1; 0: any that is free.")
+    ] = 0
+    no_browser: Annotated[bool, Option("--no-browser", help="Open no browser: the address is printed only.")] = False
+
+
+class FollowOptions(PageOptions):
+    """Whether a run is followed by a live page."""
+
+    view: Annotated[bool, Option("--view", help="Follow the run in a browser.")] = False
+
+
+def announce(url: str, options: PageOptions) -> bool:
+    """Print the address of the live page to stderr and open it; return whether a browser opens it."""
+    from robolang.view.live import open_page
+
+    # the only place where the token is shown
+    echo(f"live view: {url}", err=True)
+    return not options.no_browser and open_page(url)
+
+
+def pages_of(options: FollowOptions) -> "Live | None":
+    """Return the live view that a run is followed by, None without ``--view``."""
+    if not options.view:
+        return None
+    from robolang.view.live import Live
+    from robolang.view.live_page import live_page
+    from robolang.view.page import Bundle
+
+    return Live(live_page(Bundle.installed()), options.port)
+
+
+@contextmanager
+def followed(session: "Session", pages: "Live | None", options: FollowOptions) -> "Iterator[Callable[[], RunResult]]":
+    """Yield what runs a session, by itself or followed by pages, which are served meanwhile."""
+    if pages is None:
+        yield session.run
+        return
+    from robolang.view.driver import Driver
+
+    driver = Driver(session, pages.exchange, pages.frames)
+    with pages.serve(session) as url:
+        # a page that somebody opens by hand is not waited for: a script has nobody who could
+        if announce(url, options):
+            pages.wait_for_page()
+        yield lambda: session.run(driver.run_through)
