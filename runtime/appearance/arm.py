@@ -1,34 +1,48 @@
 """What a robot arm looks like, from nothing but the frames of its joints.
 
 The rule: a foot and a column that stands on the floor, on it a turret that turns with the first joint; about every
-further joint a housing along its axis, with a cover at both ends; and from housing to housing a limb, first along the
-axis and then across it, as the frames lie. All radii follow from the reach.
+further joint a housing along its axis, with a cover at both ends; from axis to axis a limb. Where a joint is long
+(``skeleton``), its housing is a piece of the arm, in two parts that turn against one another. All radii follow from the
+reach, so that a robot of any size has the proportions of a robot.
 """
+
+from dataclasses import dataclass
 
 import numpy as np
 
 from runtime.appearance.scene import SceneBody, SceneJoint, Shape
-from runtime.appearance.solids import Z, cylinder, limb
+from runtime.appearance.skeleton import Axle, axles, next_frame
+from runtime.appearance.solids import Z, cylinder, limb, sphere
 from runtime.core.frames import Array
-from runtime.core.linear import norm
+from runtime.core.linear import matmul, norm
 from runtime.robot.model.spec import RobotSpec
 
-THICKNESS = (1.25, 1.1, 0.85, 0.6, 0.52, 0.4)
-"""Radii of the links, in parts of ``SLENDER`` times the reach."""
+THICKNESS = (1.25, 1.1, 0.85, 0.62, 0.52, 0.4)
+"""Radii of the links of six axes, in parts of ``SLENDER`` times the reach; other numbers of axes lie between."""
 SLENDER = 0.078
-SMALL = 0.03
-"""An offset of less, in parts of the reach, is inside the housing."""
+SHORTEST = 0.05
+"""The least reach that is drawn, m."""
+COVER = 0.1
+"""How far a cover stands out of its housing, in parts of the radius."""
+LONG = 1.6
+"""A joint longer than this, in radii, is a piece of the arm."""
+RING = 0.16
+"""Width of the ring between two links, in radii."""
+INSIDE = 0.8
+"""Radius of a limb that ends in a housing, in radii of the housing: it must not come out at the ends."""
+MOTOR = 1.7
+"""How far the motor of a joint stands out against its direction, in radii."""
 
 
 def link(index: int) -> str:
-    """Return the name of the body that axis ``index`` (0-based) moves."""
-    return f"link{index + 1}"
+    """Return the name of the body that axis ``index`` (0-based) moves; -1: the base."""
+    return f"link{index + 1}" if index >= 0 else "base"
 
 
 def reach_of(spec: RobotSpec) -> float:
     """Return about how far the arm reaches from its second axis, m."""
-    ends = [_end(spec, index) for index in range(1, spec.n)]
-    return max(sum(norm(end) for end in ends), 0.05)
+    ends = [next_frame(spec, index)[:3, 3] for index in range(1, spec.n)]
+    return float(np.maximum(sum(norm(end) for end in ends), SHORTEST))
 
 
 def arm_bodies(spec: RobotSpec) -> list[SceneBody]:
@@ -36,7 +50,7 @@ def arm_bodies(spec: RobotSpec) -> list[SceneBody]:
     links = [
         SceneBody(
             name=link(index),
-            parent=link(index - 1) if index else "base",
+            parent=link(index - 1),
             X_parent_body=axis.placement,
             joint=SceneJoint(kind="revolute", axis=Z, source="axis", index=index),
         )
@@ -48,46 +62,141 @@ def arm_bodies(spec: RobotSpec) -> list[SceneBody]:
 
 def arm_shapes(spec: RobotSpec) -> list[Shape]:
     """Return the shapes of base and links."""
-    scale = SLENDER * reach_of(spec)
-    radii = [scale * THICKNESS[min(index, len(THICKNESS) - 1)] for index in range(spec.n + 1)]
-    shapes = _column(spec, radii)
-    for index in range(1, spec.n):
-        shapes += _link(spec, index, radii)
+    figure = _Figure.of(spec)
+    shapes = _stand(figure)
+    for index in range(spec.n):
+        shapes += _own(figure, index) + _across(figure, index) + _onwards(figure, index)
     return shapes
 
 
-def _end(spec: RobotSpec, index: int) -> Array:
-    """Return where link ``index`` carries the next joint or the flange (3,) m, in its own frame."""
-    after = spec.axes[index + 1].placement if index + 1 < spec.n else spec.X_last_flange
-    return np.asarray(after[:3, 3])
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Figure:
+    """A robot, its axles and the radius of each link, m (one more than axes: of the flange)."""
+
+    spec: RobotSpec
+    axles: list[Axle]
+    radii: list[float]
+
+    @classmethod
+    def of(cls, spec: RobotSpec) -> "_Figure":
+        reach = reach_of(spec)
+        places = np.linspace(0.0, len(THICKNESS) - 1.0, spec.n)
+        radii = SLENDER * reach * np.interp(places, np.arange(len(THICKNESS)), THICKNESS)
+        found = [*radii.tolist(), float(radii[-1])]
+        gaps = [found[max(k - 1, 0)] * 0.95 + found[k + 1] * 0.95 for k in range(spec.n)]
+        return cls(spec=spec, axles=axles(spec, reach, gaps), radii=found)
+
+    def is_long(self, index: int) -> bool:
+        """Return whether the joint is a piece of the arm."""
+        return index == 0 or self.axles[index].length > LONG * self.radii[index]
+
+    def far(self, index: int) -> Array:
+        """Return where link ``index`` arrives at the next axis, or the flange (3,) m, in its own frame."""
+        X = next_frame(self.spec, index)
+        arrives = self.axles[index + 1].arrives if index + 1 < self.spec.n else 0.0
+        return np.asarray(X[:3, 3] + arrives * X[:3, 2])
 
 
-def _column(spec: RobotSpec, radii: list[float]) -> list[Shape]:
-    low, end = -float(spec.axes[0].placement[2, 3]), _end(spec, 0)
-    top = float(np.maximum(end[2] - 0.55 * radii[1], low + 0.12))
-    split = low + 0.62 * (top - low)
-    r = radii[0]
-    shapes = [
-        cylinder("base", 0.0 * Z, 0.028 * Z, (1.7 * r, 1.62 * r), "cover", "foot"),
-        cylinder("base", 0.02 * Z, (split - low) * Z, (1.3 * r, 1.08 * r), "cover", "column"),
-        cylinder(link(0), split * Z, (split + 0.014) * Z, (r, r), "accent", "seam"),
-        cylinder(link(0), (split + 0.014) * Z, (top + radii[1] / 2.0) * Z, (1.08 * r, r), "body", "turret"),
+def _stand(figure: _Figure) -> list[Shape]:
+    """Return foot and column, on the floor."""
+    axle, r = figure.axles[0], figure.radii[0]
+    X = figure.spec.axes[0].placement
+    low, high = (X[:3, 3] + at * X[:3, 2] for at in (axle.arrives, axle.begins))
+    up = (high - low) / norm(high - low) if norm(high - low) > 0.0 else Z
+    thick = 0.28 * r
+    return [
+        cylinder("base", low, low + thick * up, (1.7 * r, 1.62 * r), "cover", "foot"),
+        cylinder("base", low + 0.7 * thick * up, high, (1.3 * r, 1.08 * r), "cover", "column"),
     ]
-    if norm(end[:2]) > SMALL * reach_of(spec):
-        shapes.append(limb(link(0), end[2] * Z, end, (0.95 * r, radii[1]), "body", "shoulder"))
+
+
+def _own(figure: _Figure, index: int) -> list[Shape]:
+    """Return what a link has along its own axis."""
+    if index == 0:
+        return _turret(figure)
+    if not figure.is_long(index):
+        return _housing(figure, index)
+    axle, r, body = figure.axles[index], figure.radii[index], link(index)
+    forward = float(np.sign(axle.leaves - axle.begins))
+    ring = (axle.begins + forward * RING * r) * Z
+    shapes = [cylinder(body, axle.begins * Z, ring, (0.97 * r, 0.97 * r), "cover", "ring")]
+    if index == figure.spec.n - 1:
+        return [*shapes, *_nose(figure, ring, forward)]
+    if _leaves_sideways(figure, index):
+        # a drum: the link hangs on it, so it ends beyond the link, and a cover closes it
+        end = (axle.leaves + forward * 0.95 * r) * Z
+        plate = end + forward * COVER * r * Z
+        shapes.append(cylinder(body, ring, end, (r, r), "body", "drum"))
+        shapes.append(cylinder(body, ring, plate, (0.76 * r, 0.76 * r), "cover", "cover"))
+    else:
+        shapes.append(limb(body, ring, axle.leaves * Z, (0.92 * r, INSIDE * figure.radii[index + 1]), "body", "arm"))
     return shapes
 
 
-def _link(spec: RobotSpec, index: int, radii: list[float]) -> list[Shape]:
-    body, end, r, small = link(index), _end(spec, index), radii[index], SMALL * reach_of(spec)
-    half = 1.08 * radii[0] if index == 1 else r * (1.0 if index < 3 else 0.8)
-    shapes = [
-        cylinder(body, -half * Z, half * Z, (r, r), "body" if index < 3 else "cover", "housing"),
-        cylinder(body, -(half + 0.012) * Z, (half + 0.012) * Z, (0.76 * r, 0.76 * r), "cover", "cover"),
+def _nose(figure: _Figure, start: Array, forward: float) -> list[Shape]:
+    """Return the end of the arm, which carries the flange: flat, so that a hand sits on it."""
+    r, body, end = figure.radii[-1], link(figure.spec.n - 1), figure.axles[-1].leaves * Z
+    face = end - forward * 0.25 * r * Z
+    return [
+        cylinder(body, start, face, (0.92 * r, 0.9 * r), "body", "arm"),
+        cylinder(body, face, end, (0.8 * r, 0.8 * r), "metal", "flange"),
     ]
-    knee, after = (end[2] if abs(end[2]) > small else 0.0) * Z, radii[index + 1]
-    if norm(knee) > 0.0:
-        shapes.append(limb(body, 0.0 * Z, knee, (0.9 * r, 1.02 * after), "body", "limb"))
-    if norm(end[:2]) > small:
-        shapes.append(limb(body, knee, end, (0.86 * r, 0.92 * after), "body", "limb"))
+
+
+def _turret(figure: _Figure) -> list[Shape]:
+    axle, r, body = figure.axles[0], figure.radii[0], link(0)
+    ring = axle.begins + 0.1 * r
+    shapes = [
+        cylinder(body, axle.begins * Z, ring * Z, (1.02 * r, 1.02 * r), "accent", "ring"),
+        cylinder(body, ring * Z, axle.leaves * Z, (1.08 * r, r), "body", "turret"),
+    ]
+    # what goes on sideways at its top needs a rounded one; a housing there closes it by itself
+    if figure.spec.n > 1 and figure.is_long(1):
+        shapes.append(sphere(body, axle.leaves * Z, 1.0 * r, "body", "shoulder"))
+    return shapes
+
+
+def _housing(figure: _Figure, index: int) -> list[Shape]:
+    """Return the housing of a short joint, with covers at both ends."""
+    axle, r, body = figure.axles[index], figure.radii[index], link(index)
+    # the housing on the turret is wider than it, or the turret would show through
+    half = 1.08 * figure.radii[0] if index == 1 else r * (1.0 if index < 3 else 0.85)
+    half += axle.length / 2.0
+    low, high = (axle.middle - half) * Z, (axle.middle + half) * Z
+    plate = COVER * r * Z
+    return [
+        cylinder(body, low, high, (r, r), "body" if index < 3 else "cover", "housing"),
+        cylinder(body, low - plate, high + plate, (0.76 * r, 0.76 * r), "cover", "cover"),
+    ]
+
+
+def _leaves_sideways(figure: _Figure, index: int) -> bool:
+    far = figure.far(index) - figure.axles[index].leaves * Z
+    return norm(far) > figure.radii[index]
+
+
+def _across(figure: _Figure, index: int) -> list[Shape]:
+    """Return the limb from the own axis to the next one."""
+    near, far = figure.axles[index].leaves * Z, figure.far(index)
+    r, after = figure.radii[index], figure.radii[index + 1]
+    if not norm(far - near) > 0.3 * after:
+        return []
+    radii = (0.95 * r, after) if index == 0 else (0.86 * r, 0.92 * after)
+    return [limb(link(index), near, far, radii, "body", "limb")]
+
+
+def _onwards(figure: _Figure, index: int) -> list[Shape]:
+    """Return what a link has along the next axis, up to where the next link begins, and the motor of that joint."""
+    if not (index + 1 < figure.spec.n and figure.is_long(index + 1)):
+        return []
+    X, axle, r = next_frame(figure.spec, index), figure.axles[index + 1], figure.radii[index + 1]
+    near, far = (np.asarray(matmul(X, np.array([0.0, 0.0, at, 1.0]))[:3]) for at in (axle.arrives, axle.begins))
+    forward = (far - near) / norm(far - near)
+    body = link(index)
+    shapes = [
+        sphere(body, near, 1.05 * r, "body", "arm"),
+        cylinder(body, near, far, (1.05 * r, r), "body", "arm"),
+    ]
+    if norm(near - figure.axles[index].leaves * Z) > r:
+        shapes.append(cylinder(body, near - MOTOR * r * forward, near, (0.6 * r, 0.6 * r), "cover", "motor"))
     return shapes

@@ -23,7 +23,7 @@ from runtime.plant.mjcf import quaternion
 
 Image = NDArray[np.uint8]
 
-SKY = ("0.97 0.98 0.99", "0.78 0.85 0.92")
+SKY = ("0.91 0.935 0.96", "0.76 0.83 0.91")
 """Colour of the sky at the horizon and above."""
 MARKS_BEYOND = 200
 """Geoms that a picture may have beside those of the model."""
@@ -134,7 +134,7 @@ def _visual(root: ET.Element, scene: Scene, width: int, height: int) -> None:
     ET.SubElement(visual, "quality", shadowsize="2048", offsamples="8")
     # the far end of the world in parts of its extent: the floor reaches to the horizon
     ET.SubElement(visual, "map", znear="0.01", zfar="40", haze="0.35", shadowclip="1.2", shadowscale="0.6")
-    ET.SubElement(visual, "rgba", haze="0.95 0.965 0.98 1")
+    ET.SubElement(visual, "rgba", haze="0.905 0.93 0.955 1")
     ET.SubElement(root, "statistic", extent=repr(2.0 * scene.reach), center=f"0 0 {scene.reach / 2.0!r}")
     assets = ET.SubElement(root, "asset")
     ET.SubElement(
