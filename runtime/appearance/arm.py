@@ -6,12 +6,14 @@ further joint a housing along its axis, with a cover at both ends; from axis to 
 reach, so that a robot of any size has the proportions of a robot.
 """
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
 
+from runtime.appearance.own_meshes import OwnMeshes
 from runtime.appearance.scene import SceneBody, SceneJoint, Shape
-from runtime.appearance.skeleton import Axle, axles, next_frame
+from runtime.appearance.skeleton import Axle, axles, is_upright, next_frame
 from runtime.appearance.solids import Z, cylinder, limb, sphere
 from runtime.core.frames import Array
 from runtime.core.linear import matmul, norm
@@ -60,13 +62,30 @@ def arm_bodies(spec: RobotSpec) -> list[SceneBody]:
     return [SceneBody(name="base", parent=None, X_parent_body=np.eye(4)), *links, flange]
 
 
-def arm_shapes(spec: RobotSpec) -> list[Shape]:
-    """Return the shapes of base and links."""
+def arm_shapes(spec: RobotSpec, shown: Collection[int] = ()) -> list[Shape]:
+    """Return the shapes of base and links, without the links ``shown`` by their meshes (0: the base)."""
     figure = _Figure.of(spec)
     shapes = _stand(figure)
     for index in range(spec.n):
         shapes += _own(figure, index) + _across(figure, index) + _onwards(figure, index)
-    return shapes
+    hidden = {link(number - 1) for number in shown}
+    return [shape for shape in shapes if shape.body not in hidden]
+
+
+def mesh_shapes(own: OwnMeshes) -> list[Shape]:
+    """Return the meshes of a robot as shapes of its links."""
+    return [
+        Shape(
+            body=link(number - 1),
+            kind="mesh",
+            X_body_shape=np.eye(4),
+            size=(),
+            role="body" if number else "cover",
+            name=name,
+            mesh=name,
+        )
+        for number, name, _ in own.links
+    ]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,7 +107,9 @@ class _Figure:
 
     def is_long(self, index: int) -> bool:
         """Return whether the joint is a piece of the arm."""
-        return index == 0 or self.axles[index].length > LONG * self.radii[index]
+        if index == 0:
+            return is_upright(self.spec)
+        return self.axles[index].length > LONG * self.radii[index]
 
     def far(self, index: int) -> Array:
         """Return where link ``index`` arrives at the next axis, or the flange (3,) m, in its own frame."""
@@ -101,42 +122,51 @@ def _stand(figure: _Figure) -> list[Shape]:
     """Return foot and column, on the floor."""
     axle, r = figure.axles[0], figure.radii[0]
     X = figure.spec.axes[0].placement
-    low, high = (X[:3, 3] + at * X[:3, 2] for at in (axle.arrives, axle.begins))
-    up = (high - low) / norm(high - low) if norm(high - low) > 0.0 else Z
+    top = X[:3, 3] + axle.begins * X[:3, 2]
+    low = X[:3, 3] + axle.arrives * X[:3, 2] if is_upright(figure.spec) else top * np.array([1.0, 1.0, 0.0])
+    if not norm(top - low) > 0.0:
+        return []
+    up = (top - low) / norm(top - low)
+    # the column begins inside of the foot: two faces in one plane would flicker
     thick = 0.28 * r
     return [
         cylinder("base", low, low + thick * up, (1.7 * r, 1.62 * r), "cover", "foot"),
-        cylinder("base", low + 0.7 * thick * up, high, (1.3 * r, 1.08 * r), "cover", "column"),
+        cylinder("base", low + 0.7 * thick * up, top, (1.3 * r, 1.08 * r), "cover", "column"),
     ]
 
 
 def _own(figure: _Figure, index: int) -> list[Shape]:
     """Return what a link has along its own axis."""
+    axle, r, body = figure.axles[index], figure.radii[index], link(index)
+    last = index == figure.spec.n - 1
+    if not figure.is_long(index):
+        # a flange in the middle of the wrist: the hand comes out of the housing there
+        near = axle.arrives * Z
+        return _nose(figure, near, axle.leaves * Z) if last else _housing(figure, index)
     if index == 0:
         return _turret(figure)
-    if not figure.is_long(index):
-        return _housing(figure, index)
-    axle, r, body = figure.axles[index], figure.radii[index], link(index)
     forward = float(np.sign(axle.leaves - axle.begins))
     ring = (axle.begins + forward * RING * r) * Z
     shapes = [cylinder(body, axle.begins * Z, ring, (0.97 * r, 0.97 * r), "cover", "ring")]
-    if index == figure.spec.n - 1:
-        return [*shapes, *_nose(figure, ring, forward)]
+    if last:
+        return [*shapes, *_nose(figure, ring, axle.leaves * Z)]
     if _leaves_sideways(figure, index):
         # a drum: the link hangs on it, so it ends beyond the link, and a cover closes it
         end = (axle.leaves + forward * 0.95 * r) * Z
         plate = end + forward * COVER * r * Z
         shapes.append(cylinder(body, ring, end, (r, r), "body", "drum"))
-        shapes.append(cylinder(body, ring, plate, (0.76 * r, 0.76 * r), "cover", "cover"))
+        shapes.append(cylinder(body, ring, plate, (0.76 * r, 0.76 * r), "cover", "lid"))
     else:
         shapes.append(limb(body, ring, axle.leaves * Z, (0.92 * r, INSIDE * figure.radii[index + 1]), "body", "arm"))
     return shapes
 
 
-def _nose(figure: _Figure, start: Array, forward: float) -> list[Shape]:
+def _nose(figure: _Figure, start: Array, end: Array) -> list[Shape]:
     """Return the end of the arm, which carries the flange: flat, so that a hand sits on it."""
-    r, body, end = figure.radii[-1], link(figure.spec.n - 1), figure.axles[-1].leaves * Z
-    face = end - forward * 0.25 * r * Z
+    r, body = figure.radii[-1], link(figure.spec.n - 1)
+    if not norm(end - start) > 0.3 * r:
+        return []
+    face = end - 0.25 * r * (end - start) / norm(end - start)
     return [
         cylinder(body, start, face, (0.92 * r, 0.9 * r), "body", "arm"),
         cylinder(body, face, end, (0.8 * r, 0.8 * r), "metal", "flange"),
@@ -144,15 +174,16 @@ def _nose(figure: _Figure, start: Array, forward: float) -> list[Shape]:
 
 
 def _turret(figure: _Figure) -> list[Shape]:
+    """Return what turns on the column."""
     axle, r, body = figure.axles[0], figure.radii[0], link(0)
-    ring = axle.begins + 0.1 * r
+    ring = axle.begins + 0.1 * r * float(np.sign(axle.leaves - axle.begins))
     shapes = [
         cylinder(body, axle.begins * Z, ring * Z, (1.02 * r, 1.02 * r), "accent", "ring"),
         cylinder(body, ring * Z, axle.leaves * Z, (1.08 * r, r), "body", "turret"),
     ]
     # what goes on sideways at its top needs a rounded one; a housing there closes it by itself
     if figure.spec.n > 1 and figure.is_long(1):
-        shapes.append(sphere(body, axle.leaves * Z, 1.0 * r, "body", "shoulder"))
+        shapes.append(sphere(body, axle.leaves * Z, r, "body", "shoulder"))
     return shapes
 
 
@@ -193,6 +224,7 @@ def _onwards(figure: _Figure, index: int) -> list[Shape]:
     near, far = (np.asarray(matmul(X, np.array([0.0, 0.0, at, 1.0]))[:3]) for at in (axle.arrives, axle.begins))
     forward = (far - near) / norm(far - near)
     body = link(index)
+    # a ball where the link bends, and a flat end where the next link turns against it
     shapes = [
         sphere(body, near, 1.05 * r, "body", "arm"),
         cylinder(body, near, far, (1.05 * r, r), "body", "arm"),

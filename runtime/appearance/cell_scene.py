@@ -3,9 +3,10 @@
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from runtime.appearance.arm import arm_bodies, arm_shapes, reach_of
+from runtime.appearance.arm import arm_bodies, arm_shapes, mesh_shapes, reach_of
 from runtime.appearance.colours import colours_of
 from runtime.appearance.hand import hand_bodies, hand_shapes
+from runtime.appearance.own_meshes import own_meshes
 from runtime.appearance.scene import Mark, Scene
 from runtime.appearance.surroundings import obstacle_bodies, obstacle_shapes, part_bodies, part_shapes
 from runtime.cell.cell import CellSpec
@@ -21,6 +22,7 @@ def scene_of(cell: CellSpec, points: Mapping[str, Array] = NO_POINTS) -> Scene:
     ``obstacle:NAME``.
     """
     spec = cell.robot
+    own = own_meshes(spec.meshes)
     return Scene(
         robot=spec.name,
         reach=reach_of(spec),
@@ -31,16 +33,19 @@ def scene_of(cell: CellSpec, points: Mapping[str, Array] = NO_POINTS) -> Scene:
             *obstacle_bodies(cell.obstacles),
         ),
         shapes=(
-            *arm_shapes(spec),
+            *arm_shapes(spec, {number for number, _, _ in own.links}),
+            *mesh_shapes(own),
             *hand_shapes(cell.hand),
             *part_shapes(cell.parts),
             *obstacle_shapes(cell.obstacles),
         ),
         colours=colours_of(spec.name),
-        frames=_marks(cell.frames),
-        points=_marks(points),
+        meshes=MappingProxyType({name: mesh for _, name, mesh in own.links}),
+        frames=marks(cell.frames),
+        points=marks(points),
     )
 
 
-def _marks(places: Mapping[str, Array]) -> tuple[Mark, ...]:
+def marks(places: Mapping[str, Array]) -> tuple[Mark, ...]:
+    """Return named places, X_world_place (4, 4), as marks."""
     return tuple(Mark(name=name, X_world_mark=X) for name, X in places.items())

@@ -29,6 +29,8 @@ ROLES = ("body", "cover", "accent", "metal", "rubber", "palm", "table", "leg", "
 """What a shape is, by which it gets its colour."""
 DIGITS = 9
 """Digits of the JSON after the point: a nanometre, so that a chain of ten bodies is exact to far below 0.01 mm."""
+MESH_DIGITS = 5
+"""Digits of the vertices of meshes, which only have to look right: a hundredth of a millimetre."""
 MOST_BODIES, MOST_SHAPES, MOST_MESHES = 1000, 10_000, 200
 """Most bodies, shapes and meshes of a scene: a cell has tens of each."""
 MOST_VERTICES, MOST_FACES = 300_000, 300_000
@@ -139,7 +141,7 @@ class Scene:
             ],
             "colours": dict(self.colours),
             "meshes": {
-                name: {"vertices": _rows(mesh.vertices), "faces": mesh.faces.tolist()}
+                name: {"vertices": np.round(mesh.vertices, MESH_DIGITS).tolist(), "faces": mesh.faces.tolist()}
                 for name, mesh in self.meshes.items()
             },
             "frames": _marks_json(self.frames),

@@ -21,6 +21,8 @@ from runtime.robot.model.spec import RobotSpec
 
 PARALLEL = 0.999
 """Cosine from which on axes are parallel."""
+UPRIGHT = 0.5
+"""Cosine to the vertical from which on the first axis is that of a column."""
 SIDEWAYS = 0.04
 """Offset sideways from which on links lie beside one another, in parts of the reach."""
 INNER = (0.2, 0.85)
@@ -55,8 +57,7 @@ def next_frame(spec: RobotSpec, index: int) -> Array:
 
 def axles(spec: RobotSpec, reach: float, gaps: Sequence[float]) -> list[Axle]:
     """Return the axle of every axis; ``gaps`` (n,) m: how far links beside one another are apart, at each axis."""
-    base = -float(spec.axes[0].placement[2, 3])
-    arrives, leaves = [base], [0.0] * spec.n
+    arrives, leaves = [_floor(spec)], [0.0] * spec.n
     for index in range(spec.n):
         here, there = _feet(next_frame(spec, index), index + 1 == spec.n)
         leaves[index] = here
@@ -65,6 +66,17 @@ def axles(spec: RobotSpec, reach: float, gaps: Sequence[float]) -> list[Axle]:
     for group in _parallels(spec):
         _lay(spec, found, group, SIDEWAYS * reach, gaps)
     return [replace(axle, begins=_begin(axle)) for axle in found]
+
+
+def is_upright(spec: RobotSpec) -> bool:
+    """Return whether the first axis stands on the floor, as a column does, and does not lie over it."""
+    return abs(float(spec.axes[0].placement[2, 2])) > UPRIGHT
+
+
+def _floor(spec: RobotSpec) -> float:
+    """Return where the first axis goes through the floor; the frame's own place for an axis that lies."""
+    X = spec.axes[0].placement
+    return float(-X[2, 3] / X[2, 2]) if is_upright(spec) else 0.0
 
 
 def _feet(X: Array, is_flange: bool) -> tuple[float, float]:
@@ -94,21 +106,31 @@ def _parallels(spec: RobotSpec) -> list[range]:
 
 def _lay(spec: RobotSpec, found: list[Axle], group: range, sideways: float, gaps: Sequence[float]) -> None:
     """Put the links between parallel axes into planes, from the last of them back to the first."""
-    # from the last axis, which is left where the next axis or the flange is, back to the first one
-    shift = found[group[-1]].leaves
+    last = group[-1]
+    # the last link leaves where the next axis is; where none follows, its frame says where it lies
+    lies = found[last].leaves if last + 1 < spec.n else 0.0
+    side = _side(spec, found[group[0]], group, lies, sideways)
     for index in reversed(group[:-1]):
         X = next_frame(spec, index)
-        shift = float(X[2, 3]) + shift * float(np.sign(X[2, 2]))
-    offset = shift - found[group[0]].arrives
-    side = float(np.sign(offset)) if abs(offset) > sideways else 0.0
-    for index in reversed(group[:-1]):
-        X, after = next_frame(spec, index), found[index + 1]
         turned = float(np.sign(X[2, 2]))
         # beside the link that follows: the first one outside of it, further ones by turns
-        beside = side * (1.0 if (index - group[0]) % 2 == 0 else -1.0) * gaps[index + 1] * turned
-        arrives = after.leaves + beside
-        found[index + 1] = replace(after, arrives=arrives)
-        found[index] = replace(found[index], leaves=float(X[2, 3]) + arrives * turned)
+        arrives = lies + side * (1.0 if (index - group[0]) % 2 == 0 else -1.0) * gaps[index + 1] * turned
+        found[index + 1] = replace(found[index + 1], arrives=arrives)
+        lies = float(X[2, 3]) + arrives * turned
+        found[index] = replace(found[index], leaves=lies)
+
+
+def _side(spec: RobotSpec, first: Axle, group: range, lies: float, sideways: float) -> float:
+    """Return on which side, along the first axis of a group, its link is of the next one; 0: in one plane with it."""
+    if group[0] == 0 and is_upright(spec):
+        # as a SCARA: the first link below the second, which turns above it
+        return -float(np.sign(spec.axes[0].placement[2, 2]))
+    offset = lies
+    for index in reversed(group[:-1]):
+        X = next_frame(spec, index)
+        offset = float(X[2, 3]) + offset * float(np.sign(X[2, 2]))
+    offset -= first.arrives
+    return float(np.sign(offset)) if abs(offset) > sideways else 0.0
 
 
 def _begin(axle: Axle) -> float:

@@ -9,7 +9,7 @@ from runtime.core.frames import Array, pose
 from runtime.core.linear import norm
 from runtime.robot.files.imported import rotation_z_to
 
-Z = np.array([0.0, 0.0, 1.0])
+X, Y, Z = np.eye(3)
 
 
 def cylinder(body: str, start: Array, end: Array, radii: Sequence[float], role: str, name: str = "") -> Shape:

@@ -26,6 +26,7 @@ def turned(shape: Shape) -> Mesh:
 
 def _rims(low: float, high: float, length: float) -> Array:
     """Return radius and z (k, 2) m of half the outline of a cylinder, from below to above."""
+    # a rim without a radius has no light on it, and the body looks like a drawing
     b = float(np.min([BEVEL, 0.3 * low, 0.3 * high, 0.3 * length]))
     z = length / 2.0
     arc = np.linspace(0.0, math.pi / 2.0, ARC)

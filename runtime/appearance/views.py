@@ -46,6 +46,7 @@ def named_view(name: str, scene: Scene, stances: Sequence[Stance], aspect: float
     right /= norm(right)
     axes = np.stack([right, np.cross(right, forward), forward])
     corners = matmul(np.concatenate([_corners(scene, stance) for stance in stances]), axes.T)
+    # how far a point may be to the side for each metre before the camera
     slopes = math.tan(FIELD / 2.0) * np.array([aspect, 1.0]) / MARGIN
     return _fitted(corners, axes, slopes)
 

@@ -44,6 +44,7 @@ class Camera:
         self._rect = mujoco.MjrRect(0, 0, width, height)
         self._drawn: Any = mujoco.MjvScene(self._model, self._model.ngeom + MARKS_BEYOND)
         self._option: Any = mujoco.MjvOption()
+        # the floor is in group 0, all shapes are in theirs
         self._option.geomgroup[:] = 0
         self._option.geomgroup[[0, GROUP]] = 1
         self._graphics = open_graphics()
@@ -131,9 +132,10 @@ def _visual(root: ET.Element, scene: Scene, width: int, height: int) -> None:
         visual, "global", offwidth=str(width), offheight=str(height), fovy=repr(FIELD / DEG), orthographic="false"
     )
     ET.SubElement(visual, "headlight", ambient="0.42 0.42 0.42", diffuse="0.16 0.16 0.16", specular="0 0 0")
-    ET.SubElement(visual, "quality", shadowsize="2048", offsamples="8")
+    # large: half a millimetre of shadow for each of its pixels, or round housings get spots
+    ET.SubElement(visual, "quality", shadowsize="4096", offsamples="8")
     # the far end of the world in parts of its extent: the floor reaches to the horizon
-    ET.SubElement(visual, "map", znear="0.01", zfar="40", haze="0.35", shadowclip="1.2", shadowscale="0.6")
+    ET.SubElement(visual, "map", znear="0.01", zfar="40", haze="0.35", shadowclip="0.9", shadowscale="0.6")
     ET.SubElement(visual, "rgba", haze="0.905 0.93 0.955 1")
     ET.SubElement(root, "statistic", extent=repr(2.0 * scene.reach), center=f"0 0 {scene.reach / 2.0!r}")
     assets = ET.SubElement(root, "asset")

@@ -25,7 +25,7 @@ from runtime.core.tomlfile import FileFault
 from runtime.robot.files.corrections import flat, inertia_text
 from runtime.robot.files.xmlfile import Element
 from runtime.robot.model.drives import joint_label
-from runtime.robot.model.spec import Body, OpwParameters, inertia_defect
+from runtime.robot.model.spec import Body, LinkMesh, OpwParameters, inertia_defect
 
 FEWEST_AXES, MOST_AXES = 2, 7
 INERTIA_SLACK = 1e-9
@@ -60,11 +60,20 @@ class Hinge:
     in_degrees: bool
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NodeMesh:
+    """A mesh file at a pose (4, 4) in its node's frame; ``scale`` (3,) makes its numbers m."""
+
+    file: str
+    X_node_mesh: Array
+    scale: Array
+
+
 @dataclass(slots=True, kw_only=True, eq=False)
 class Node:
     """A frame of the file with its body (None: it has no mass), its hinge (None: fixed) and the nodes after it.
 
-    ``X_parent_node`` (4, 4) holds at joint angle zero. ``marker``: a frame that only names a place.
+    ``X_parent_node`` (4, 4) holds at joint angle zero. ``marker``: a frame that only names a place. ``meshes`` show it.
     """
 
     name: str
@@ -73,6 +82,7 @@ class Node:
     body: Body | None = None
     hinge: Hinge | None = None
     marker: bool = False
+    meshes: tuple[NodeMesh, ...] = ()
     children: "list[Node]" = field(default_factory=list)
 
 
@@ -108,6 +118,7 @@ class ImportedArm:
     upper: Array
     opw: OpwParameters | None = None
     warnings: tuple[FileFault, ...] = ()
+    meshes: tuple[LinkMesh, ...] = ()
 
     @property
     def n(self) -> int:
@@ -167,6 +178,7 @@ def serial_chain(root: Node, path: str, name: str, flange: str | None) -> Import
     """
     axes: list[ImportedAxis] = []
     cluster = list(_fixed(root, np.eye(4)))
+    meshes = _meshes(cluster, 0, path)
     while (turning := _turning(cluster)) is not None:
         X, node, hinge = turning
         if hinge.name in {axis.name for axis in axes}:
@@ -175,6 +187,7 @@ def serial_chain(root: Node, path: str, name: str, flange: str | None) -> Import
         X_node_axis = pose(hinge.anchor, rotation_z_to(hinge.axis))
         cluster = list(_fixed(node, inverse(X_node_axis)))
         axes.append(_with_body(_axis(node, hinge, matmul(X, X_node_axis)), cluster, len(axes)))
+        meshes += _meshes(cluster, len(axes), path)
     if not FEWEST_AXES <= len(axes) <= MOST_AXES:
         root.element.fail(
             "RBL605", f"an arm has {FEWEST_AXES} to {MOST_AXES} revolute joints in a row, not {len(axes)}"
@@ -188,7 +201,23 @@ def serial_chain(root: Node, path: str, name: str, flange: str | None) -> Import
         flange=last,
         lower=_limits(axes, "lower"),
         upper=_limits(axes, "upper"),
+        meshes=tuple(meshes),
     )
+
+
+def _meshes(cluster: list[tuple[Array, Node]], link: int, path: str) -> list[LinkMesh]:
+    """Return the meshes of all that is fixed together, as those of one link."""
+    return [
+        LinkMesh(
+            link=link,
+            file=mesh.file,
+            folder=str(PurePath(path).parent),
+            X_link_mesh=frozen(matmul(X, mesh.X_node_mesh)),
+            scale=mesh.scale,
+        )
+        for X, node in cluster
+        for mesh in node.meshes
+    ]
 
 
 def _turning(cluster: list[tuple[Array, Node]]) -> tuple[Array, Node, Hinge] | None:

@@ -11,13 +11,14 @@ springs, ``ref``, gravity compensation, includes, macros. Equality constraints c
 
 import math
 from dataclasses import dataclass
+from pathlib import PurePosixPath
 
 import numpy as np
 
 from runtime.core.frames import Array, frozen, pose, rotation_about
 from runtime.core.linear import dot, matmul, norm
 from runtime.core.units import DEG, GRAVITY
-from runtime.robot.files.imported import Hinge, Node, rotation_z_to
+from runtime.robot.files.imported import Hinge, Node, NodeMesh, rotation_z_to
 from runtime.robot.files.urdf import unit
 from runtime.robot.files.xmlfile import HEAVIEST_LINK, Element
 from runtime.robot.model.spec import Body
@@ -53,6 +54,8 @@ _UNREAD_COMPILER = {
     "settotalmass": "-1",
 }
 _UNREAD_JOINT = {"ref": 0.0, "springref": 0.0, "stiffness": 0.0}
+SHOWN = 2
+"""Last of the groups of geoms that MuJoCo shows unless it is changed there; later ones are for contacts."""
 _GRAVITY_SLACK = 0.05
 """Gravity differs by this much from place to place, m/s2: 9.78 at the equator, 9.83 at the poles."""
 
@@ -61,12 +64,14 @@ Defaults = dict[tuple[str, str], dict[str, str]]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Context:
-    """What holds for the whole file: rad per unit of angle, limits by range, Euler sequence, default classes."""
+    """What holds for the whole file: rad per unit of angle, limits by range, Euler sequence, default classes, and the
+    file and scale (3,) of each mesh by name."""
 
     angle: float
     autolimits: bool
     eulerseq: str
     defaults: Defaults
+    meshes: dict[str, tuple[str, Array]]
 
 
 def read_mjcf(model: Element, file_name: str) -> tuple[str, Node]:
@@ -131,6 +136,7 @@ def _context(model: Element) -> _Context:
         autolimits=settings.get("autolimits", "true") == "true",
         eulerseq=settings.get("eulerseq", "xyz"),
         defaults=defaults,
+        meshes=_mesh_files(model, settings, defaults),
     )
 
 
@@ -138,7 +144,7 @@ def _read_defaults(element: Element, name: str, inherited: dict[str, dict[str, s
     """Enter class ``name`` and those inside it: each takes over what its parent sets."""
     own = {kind: dict(values) for kind, values in inherited.items()}
     # the other kinds (site, camera, actuator ...) set nothing that is read
-    for kind in ("joint", "geom"):
+    for kind in ("joint", "geom", "mesh"):
         for setting in element.all(kind):
             own[kind] = own.get(kind, {}) | setting.attributes
         into[name, kind] = own.get(kind, {})
@@ -162,6 +168,7 @@ def _fill(node: Node, body: Element, context: _Context, childclass: str, names: 
     """Hang on ``node`` what a body holds. ``moving``: a joint lies between it and the world, so its mass counts."""
     # a body fixed to the world is the base: it never moves, and files often give it no inertial
     node.body = _body(body, context, childclass, node.name) if moving else None
+    node.meshes = (*node.meshes, *_meshes(body, context, childclass))
     for child in body.children:
         if child.tag not in _IN_BODY:
             child.fail("RBL621", f"<{child.tag}> is not read")
@@ -276,6 +283,31 @@ def _body(body: Element, context: _Context, childclass: str, name: str) -> Body 
         I_own = np.diag(inertial.numbers("diaginertia", 3))
     mass = inertial.number("mass", low=0.0, high=HEAVIEST_LINK)
     return Body(mass=mass, cog=frozen(X[:3, 3]), inertia=frozen(matmul(R, I_own, R.T)))
+
+
+def _mesh_files(model: Element, settings: dict[str, str], defaults: Defaults) -> dict[str, tuple[str, Array]]:
+    """Return file and scale (3,) of each mesh of the assets that has a file, by name."""
+    folder = settings.get("meshdir", settings.get("assetdir", ""))
+    found = {}
+    for mesh in (each for asset in model.all("asset") for each in asset.all("mesh")):
+        own = defaults.get((mesh.text("class", "main"), "mesh"), {}) | mesh.attributes
+        if "file" in own:
+            full = Element(mesh.source, mesh.tag, own, mesh.line, mesh.column)
+            file = full.text("file")
+            scale = frozen(full.numbers("scale", 3, (1.0, 1.0, 1.0)))
+            found[full.text("name", PurePosixPath(file).stem)] = (str(PurePosixPath(folder) / file), scale)
+    return found
+
+
+def _meshes(body: Element, context: _Context, childclass: str) -> tuple[NodeMesh, ...]:
+    """Return the mesh files that show a body: of the geoms that MuJoCo itself shows."""
+    found = []
+    for geom in (_with_defaults(each, context, childclass) for each in body.all("geom")):
+        name = geom.attributes.get("mesh")
+        if name in context.meshes and geom.number("group", 0.0) <= SHOWN:
+            file, scale = context.meshes[name]
+            found.append(NodeMesh(file=file, X_node_mesh=frozen(_pose(geom, context)), scale=scale))
+    return tuple(found)
 
 
 def _pose(element: Element, context: _Context) -> Array:

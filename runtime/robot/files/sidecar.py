@@ -48,6 +48,7 @@ def complete(arm: ImportedArm, file: SidecarFile) -> RobotSpec:
         corrections=corrections,
         published=tuple(axis.body for axis in arm.axes),
         link_radii=file.link_radii,
+        meshes=arm.meshes,
         warnings=(*arm.warnings, *doubt_axes(file.axes), *_doubted_torques(arm, file)),
     )
 

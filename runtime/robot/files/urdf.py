@@ -5,7 +5,8 @@ Rx); ``axis`` is in that frame, through its origin, x when it is left out. The i
 gravity, in the frame of the inertial's own origin. Source: the URDF specification, wiki.ros.org/urdf/XML.
 
 ``revolute`` and ``continuous`` joints turn, ``fixed`` ones join; anything else is refused (RBL621). A continuous joint
-has no range, and none is invented for it. Shapes are ignored, but a mesh outside the folder is refused (RBL602).
+has no range, and none is invented for it. Of shapes only the meshes of ``visual`` are kept, by name, for pictures; a
+mesh outside the folder is refused (RBL602).
 """
 
 import math
@@ -14,7 +15,7 @@ import numpy as np
 
 from runtime.core.frames import Array, frozen, pose, rotation_from_rpy
 from runtime.core.linear import dot, matmul
-from runtime.robot.files.imported import Hinge, Node
+from runtime.robot.files.imported import Hinge, Node, NodeMesh
 from runtime.robot.files.xmlfile import HEAVIEST_LINK, Element
 from runtime.robot.model.spec import Body
 
@@ -33,7 +34,8 @@ def read_urdf(robot: Element) -> tuple[str, Node]:
     if not links:
         robot.fail("RBL608", "the robot has no link")
     nodes = {
-        name: Node(name=name, element=link, X_parent_node=np.eye(4), body=_body(link)) for name, link in links.items()
+        name: Node(name=name, element=link, X_parent_node=np.eye(4), body=_body(link), meshes=_meshes(link))
+        for name, link in links.items()
     }
     placed: dict[str, str] = {}
     for name, joint in joints.items():
@@ -181,3 +183,15 @@ def _body(link: Element) -> Body | None:
     I_own = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     kg = mass.number("value", low=0.0, high=HEAVIEST_LINK)
     return Body(mass=kg, cog=frozen(X[:3, 3]), inertia=frozen(matmul(R, I_own, R.T)))
+
+
+def _meshes(link: Element) -> tuple[NodeMesh, ...]:
+    """Return the mesh files that show a link; shapes without a file are left out."""
+    found = []
+    for visual in link.all("visual"):
+        geometry = visual.one("geometry")
+        mesh = None if geometry is None else geometry.one("mesh")
+        if mesh is not None and "filename" in mesh.attributes:
+            scale = frozen(mesh.numbers("scale", 3, (1.0, 1.0, 1.0)))
+            found.append(NodeMesh(file=mesh.text("filename"), X_node_mesh=frozen(_origin(visual)), scale=scale))
+    return tuple(found)

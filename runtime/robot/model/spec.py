@@ -88,12 +88,28 @@ class Correction:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class LinkMesh:
+    """A mesh file that shows a link: pictures use it, nothing else does.
+
+    ``link`` counts from the base, 0; link i is moved by axis i - 1. ``X_link_mesh`` (4, 4) is in the frame of the axis
+    (of the base: the world). ``file`` is its name as the model has it, ``folder`` that of the model, which holds it;
+    ``scale`` (3,) makes its numbers m.
+    """
+
+    link: int
+    file: str
+    folder: str
+    X_link_mesh: Array
+    scale: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RobotSpec:
     """A robot of ``n`` axes. ``X_last_flange`` (4, 4) is the flange in the frame of the last axis.
 
     ``published`` holds the bodies as the source prints them, before ``corrections``. ``warnings`` are the doubts
     about its files, each at its place (``plausibility``). ``link_radii`` m, one for each axis: of the capsules from
-    joint to joint that stand for the links; empty: the shapes of the arm are not known.
+    joint to joint that stand for the links; empty: the shapes of the arm are not known. ``meshes`` show the links.
     """
 
     name: str
@@ -109,6 +125,7 @@ class RobotSpec:
     notes: tuple[str, ...]
     warnings: tuple[FileFault, ...] = ()
     link_radii: tuple[float, ...] = ()
+    meshes: tuple[LinkMesh, ...] = ()
 
     @property
     def n(self) -> int:

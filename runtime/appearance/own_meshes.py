@@ -1,0 +1,109 @@
+"""The meshes that the model of an imported arm names, as shapes on its links.
+
+Only files in the folder of the model are opened, wherever links in it lead (R22). What cannot be used is left out and
+noted; the link is then drawn from its joint frames. Meshes go into every log, so fine ones are made coarser.
+"""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from runtime.appearance.mesh_files import MeshError, read_mesh
+from runtime.appearance.scene import Mesh
+from runtime.core.bounded_files import resolved_inside, stays_inside
+from runtime.core.frames import Array, frozen
+from runtime.core.linear import matmul
+from runtime.robot.model.spec import LinkMesh
+
+MOST_FACES = 40_000
+"""Triangles of all meshes of a robot that are kept: about 0.5 MB in a log."""
+FINEST = 400
+"""A mesh that is made coarser is first snapped to a grid of this many steps along its longest side."""
+LARGEST = 20.0
+"""A mesh that is larger, m, is in another unit than its scale says."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OwnMeshes:
+    """Meshes by link (0: the base), in the frame of the link, m; ``notes`` on what was left out."""
+
+    links: tuple[tuple[int, str, Mesh], ...]
+    notes: tuple[str, ...]
+
+
+def own_meshes(meshes: tuple[LinkMesh, ...]) -> OwnMeshes:
+    """Return what can be drawn of the mesh files of a robot."""
+    found: list[tuple[int, str, Mesh]] = []
+    notes, torn = [], set()
+    for index, each in enumerate(meshes):
+        try:
+            found.append((each.link, f"{index}:{Path(each.file).stem[:40]}", _placed(each)))
+        except MeshError as error:
+            notes.append(f"{each.file} {error}")
+            torn.add(each.link)
+    # a link that lacks one of its meshes would have a hole: its joint frames draw it instead
+    whole = [each for each in found if each[0] not in torn]
+    share = MOST_FACES // (len(whole) or 1)
+    return OwnMeshes(links=tuple((link, name, _coarser(mesh, share)) for link, name, mesh in whole), notes=tuple(notes))
+
+
+def _placed(mesh: LinkMesh) -> Mesh:
+    """Return a mesh in the frame of its link, m; ``MeshError``."""
+    read = read_mesh(_located(mesh))
+    vertices = read.vertices * mesh.scale
+    if not np.ptp(vertices, axis=0).max() <= LARGEST:
+        raise MeshError(f"is larger than {LARGEST:g} m: its scale is that of another unit")
+    X = mesh.X_link_mesh
+    placed = frozen(matmul(vertices, X[:3, :3].T) + X[:3, 3])
+    # a mirrored mesh has its faces inside out
+    mirrored = bool(np.prod(mesh.scale) < 0.0)
+    return Mesh(vertices=placed, faces=read.faces[:, ::-1] if mirrored else read.faces)
+
+
+def _located(mesh: LinkMesh) -> Path:
+    """Return the path of a mesh file inside of the folder of its model; ``MeshError``.
+
+    A name with ``package://`` counts from a folder of that name, or from the model's own.
+    """
+    folder = Path(mesh.folder)
+    name = re.sub(r"^(package|model)://", "", mesh.file)
+    # a package may be the folder of the model itself, whose name nobody knows here
+    names = [name]
+    if name != mesh.file and "/" in name:
+        names.append(name.split("/", 1)[1])
+    for each in names:
+        if not stays_inside(each):
+            break
+        try:
+            path = resolved_inside(folder / each, folder, strict=True)
+        except (OSError, RuntimeError, ValueError):
+            continue
+        if path is None:
+            raise MeshError("is a link that leads out of the folder of the model")
+        return path
+    raise MeshError("is not in the folder of the model")
+
+
+def _coarser(mesh: Mesh, most: int) -> Mesh:
+    """Return a mesh of at most ``most`` faces: vertices in one cell of a grid become one, until it has no more."""
+    steps = FINEST
+    while len(mesh.faces) > most and steps >= 4:
+        low = mesh.vertices.min(axis=0)
+        cell = np.ptp(mesh.vertices, axis=0).max() / steps
+        mesh = _snapped(mesh, np.floor((mesh.vertices - low) / cell))
+        steps = steps * 3 // 4
+    return mesh
+
+
+def _snapped(mesh: Mesh, cells: Array) -> Mesh:
+    _, which, counts = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
+    which = which.reshape(-1)
+    middle = np.stack([np.bincount(which, mesh.vertices[:, k]) for k in range(3)], axis=1) / counts[:, None]
+    faces = which[mesh.faces]
+    a, b, c = faces.T
+    kept = faces[(a != b) & (b != c) & (c != a)]
+    # what is thinner than a cell is folded onto itself: each triangle stays once
+    _, first = np.unique(np.sort(kept, axis=1), axis=0, return_index=True)
+    return Mesh(vertices=frozen(middle), faces=kept[np.sort(first)].astype(np.int32))
