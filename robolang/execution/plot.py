@@ -7,6 +7,7 @@ from typing import Literal
 
 import numpy as np
 
+from robolang.execution import svg
 from runtime.core.frames import Array
 
 WIDTH, HEIGHT = 640, 360
@@ -80,7 +81,7 @@ def as_svg(
 
     The names of the curves stand in the right-hand ``corner``, or ``above`` the plot, where no curve runs through them.
     """
-    xs, ys = _ticks(_range([curve.x for curve in curves])), _ticks(_heights(curves, level, marks, dots))
+    xs, ys = svg.ticks(svg.span([curve.x for curve in curves])), svg.ticks(_heights(curves, level, marks, dots))
     view = _View(xs[0], xs[-1], ys[0], ys[-1])
     keys, rows = _keys_above(curves, dots) if corner == "above" else ([], 0)
     # rows of names and the name of an upright mark need room over the plot, which goes down by as much
@@ -88,8 +89,8 @@ def as_svg(
     plot = [
         *_grid(view, xs, ys),
         *_level(view, level),
-        _text((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 8, labels.x, "middle"),
-        _upright((TOP + HEIGHT - BOTTOM) / 2, labels.y),
+        svg.label((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 8, labels.x, "middle"),
+        svg.upright((TOP + HEIGHT - BOTTOM) / 2, labels.y),
         *(part for mark in marks for part in _mark(view, mark)),
         *_curves(view, curves, corner),
         *_dots(view, dots, curves),
@@ -126,17 +127,17 @@ def as_map_svg(
     return "\n".join([*parts, "</svg>", ""])
 
 
-def as_html(title: str, svg: str) -> str:
+def as_html(title: str, drawing: str) -> str:
     """Return one page with a plot in it."""
-    return f'<!doctype html>\n<html lang="en"><meta charset="utf-8"><title>{escape(title)}</title>\n{svg}</html>\n'
+    return f'<!doctype html>\n<html lang="en"><meta charset="utf-8"><title>{escape(title)}</title>\n{drawing}</html>\n'
 
 
 def stacked(svgs: Sequence[str]) -> str:
     """Return one SVG with others of ``as_svg`` or ``as_map_svg`` below one another."""
     parts, down = [], 0
-    for svg in svgs:
-        height = int(svg.partition(f'viewBox="0 0 {WIDTH} ')[2].partition('"')[0])
-        parts.append(svg.replace("<svg ", f'<svg y="{down}" width="{WIDTH}" height="{height}" ', 1))
+    for drawing in svgs:
+        height = int(drawing.partition(f'viewBox="0 0 {WIDTH} ')[2].partition('"')[0])
+        parts.append(drawing.replace("<svg ", f'<svg y="{down}" width="{WIDTH}" height="{height}" ', 1))
         down += height
     return f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {down}">\n{"".join(parts)}</svg>\n'
 
@@ -170,7 +171,7 @@ def _heights(
     """Return the range of everything that has a height in the plot; zero is always in it."""
     levels = [mark.y for mark in marks if mark.y is not None]
     drawn = [*(curve.y for curve in curves), np.array([0.0, level or 0.0, *levels])]
-    return _range(drawn if dots is None else [*drawn, dots.y])
+    return svg.span(drawn if dots is None else [*drawn, dots.y])
 
 
 def _grid(view: _View, xs: Sequence[float], ys: Sequence[float]) -> list[str]:
@@ -178,19 +179,19 @@ def _grid(view: _View, xs: Sequence[float], ys: Sequence[float]) -> list[str]:
     parts = []
     for x in xs:
         parts += [
-            _line(view.x(x), TOP, view.x(x), HEIGHT - BOTTOM, "#e4e4e4"),
-            _text(view.x(x), HEIGHT - 28, f"{x:g}", "middle"),
+            svg.rule(view.x(x), TOP, view.x(x), HEIGHT - BOTTOM, "#e4e4e4"),
+            svg.label(view.x(x), HEIGHT - 28, f"{x:g}", "middle"),
         ]
     for y in ys:
         parts += [
-            _line(LEFT, view.y(y), WIDTH - RIGHT, view.y(y), "#e4e4e4"),
-            _text(LEFT - 6, view.y(y) + 4, f"{y:g}", "end"),
+            svg.rule(LEFT, view.y(y), WIDTH - RIGHT, view.y(y), "#e4e4e4"),
+            svg.label(LEFT - 6, view.y(y) + 4, f"{y:g}", "end"),
         ]
     return parts
 
 
 def _level(view: _View, level: float | None) -> list[str]:
-    return [] if level is None else [_line(LEFT, view.y(level), WIDTH - RIGHT, view.y(level), "#999")]
+    return [] if level is None else [svg.rule(LEFT, view.y(level), WIDTH - RIGHT, view.y(level), "#999")]
 
 
 def _curves(view: _View, curves: Sequence[Curve], corner: Corner) -> list[str]:
@@ -214,7 +215,7 @@ def _polyline(view: _View, curve: Curve, index: int) -> str:
 
 def _key(x: float, y: float, item: Curve | Dots, index: int) -> list[str]:
     """Return a piece of a curve's line, or a dot, followed by its name."""
-    name = _text(x + 32, y + 4, item.name, "start")
+    name = svg.label(x + 32, y + 4, item.name, "start")
     if isinstance(item, Dots):
         return [_dot(x + 13, y, "#666"), name]
     colour, dash = _stroke(item, index)
@@ -262,13 +263,13 @@ def _mark(view: _View, mark: Mark) -> list[str]:
         left = mark.side == "left"
         return [
             f'<line x1="{x:.1f}" y1="{TOP - 12}" x2="{x:.1f}" y2="{HEIGHT - BOTTOM}"{dash}',
-            _text(x - 4 if left else x + 4, TOP - 4, mark.name, "end" if left else "start"),
+            svg.label(x - 4 if left else x + 4, TOP - 4, mark.name, "end" if left else "start"),
         ]
     y = view.y(mark.y or 0.0)
     towards_zero = 13 if (mark.y or 0.0) > 0.0 else -4
     return [
         f'<line x1="{LEFT}" y1="{y:.1f}" x2="{WIDTH - RIGHT}" y2="{y:.1f}"{dash}',
-        _text(LEFT + 6, y + towards_zero, mark.name, "start"),
+        svg.label(LEFT + 6, y + towards_zero, mark.name, "start"),
     ]
 
 
@@ -336,25 +337,25 @@ def _map_axes(view: _MapView, labels: Labels, every: float | None) -> list[str]:
     parts = []
     for tick in _inner_ticks(view.x_bounds, every):
         parts += [
-            _line(view.x(tick), bottom, view.x(tick), bottom + 5, "#666"),
-            _text(view.x(tick), bottom + 18, f"{tick:g}", "middle"),
+            svg.rule(view.x(tick), bottom, view.x(tick), bottom + 5, "#666"),
+            svg.label(view.x(tick), bottom + 18, f"{tick:g}", "middle"),
         ]
     for tick in _inner_ticks(view.y_bounds, every):
         parts += [
-            _line(LEFT - 5, view.y(tick), LEFT, view.y(tick), "#666"),
-            _text(LEFT - 8, view.y(tick) + 4, f"{tick:g}", "end"),
+            svg.rule(LEFT - 5, view.y(tick), LEFT, view.y(tick), "#666"),
+            svg.label(LEFT - 8, view.y(tick) + 4, f"{tick:g}", "end"),
         ]
     return [
         *parts,
-        _text((LEFT + WIDTH - _MAP_RIGHT) / 2, _MAP_HEIGHT - 8, labels.x, "middle"),
-        _upright(middle, labels.y),
+        svg.label((LEFT + WIDTH - _MAP_RIGHT) / 2, _MAP_HEIGHT - 8, labels.x, "middle"),
+        svg.upright(middle, labels.y),
     ]
 
 
 def _inner_ticks(bounds: tuple[float, float], every: float | None) -> list[float]:
     low, high = bounds
     if every is None:
-        return [tick for tick in _ticks(bounds) if low <= tick <= high]
+        return [tick for tick in svg.ticks(bounds) if low <= tick <= high]
     # ends of a range given in degrees and kept in radians come back a little short
     first, last = int(np.ceil(low / every - 1e-9)), int(np.floor(high / every + 1e-9))
     return [k * every + 0.0 for k in range(first, last + 1)]
@@ -365,15 +366,18 @@ def _scale(edges: Sequence[float], label: str) -> list[str]:
     x, height = WIDTH - _MAP_RIGHT + 22, _MAP_HEIGHT - _MAP_TOP - BOTTOM
     step = height / (len(edges) - 1)
     bottom = _MAP_HEIGHT - BOTTOM
-    parts = [_text(x, _MAP_TOP - 10, label, "start")]
+    parts = [svg.label(x, _MAP_TOP - 10, label, "start")]
     for k, shade in enumerate(_shades(len(edges) - 1)):
         parts.append(
             f'<rect x="{x}" y="{bottom - (k + 1) * step:.1f}" width="{_BAR}" height="{step:.1f}" '
             f'fill="{shade}" shape-rendering="crispEdges"/>'
         )
     if len(edges) == 2 and edges[0] == edges[1]:
-        return [*parts, _text(x + _BAR + 6, bottom - height / 2 + 4, f"{edges[0]:.4g}", "start")]
-    return [*parts, *(_text(x + _BAR + 6, bottom - k * step + 4, f"{edge:g}", "start") for k, edge in enumerate(edges))]
+        return [*parts, svg.label(x + _BAR + 6, bottom - height / 2 + 4, f"{edges[0]:.4g}", "start")]
+    return [
+        *parts,
+        *(svg.label(x + _BAR + 6, bottom - k * step + 4, f"{edge:g}", "start") for k, edge in enumerate(edges)),
+    ]
 
 
 def _extremes(view: _MapView, x: Array, y: Array, values: Array) -> list[str]:
@@ -388,42 +392,10 @@ def _extremes(view: _MapView, x: Array, y: Array, values: Array) -> list[str]:
         parts += [
             f'<circle cx="{view.x(float(x[column])):.1f}" cy="{view.y(float(y[row])):.1f}" {look}',
             f'<circle cx="{at}" cy="{_MAP_TOP - 14}" {look}',
-            _text(at + 12, _MAP_TOP - 10, f"{name} {values[row, column]:.4g}", "start"),
+            svg.label(at + 12, _MAP_TOP - 10, f"{name} {values[row, column]:.4g}", "start"),
         ]
     return parts
 
 
 def _dot(x: float, y: float, colour: str) -> str:
     return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" fill="{colour}" stroke="#fff"/>'
-
-
-def _line(x1: float, y1: float, x2: float, y2: float, colour: str) -> str:
-    return f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}" stroke="{colour}"/>'
-
-
-def _text(x: float, y: float, text: str, anchor: str) -> str:
-    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{escape(text)}</text>'
-
-
-def _upright(y: float, text: str) -> str:
-    """Return the label of a vertical axis, read from below."""
-    return f'<text x="16" y="{y:.0f}" text-anchor="middle" transform="rotate(-90 16 {y:.0f})">{escape(text)}</text>'
-
-
-def _range(values: Sequence[Array]) -> tuple[float, float]:
-    found = np.concatenate(values)
-    found = found[np.isfinite(found)]
-    low, high = (float(found.min()), float(found.max())) if len(found) else (0.0, 1.0)
-    # a level curve has no height, and the scale would divide by it
-    return (low, high) if high - low > 1e-9 * max(1.0, abs(high)) else (low - 0.5, high + 0.5)
-
-
-def _ticks(bounds: tuple[float, float]) -> list[float]:
-    """Return round values that span the bounds, about five of them."""
-    low, high = bounds
-    raw = (high - low) / 5.0
-    base = 10.0 ** np.floor(np.log10(raw))
-    # the last step always fits, since base is the power of ten below raw
-    size = float(next(step * base for step in (1.0, 2.0, 2.5, 5.0, 10.0) if step * base >= raw))
-    first, last = int(np.floor(low / size + 1e-9)), int(np.ceil(high / size - 1e-9))
-    return [round(k * size, 10) + 0.0 for k in range(first, last + 1)]
