@@ -12,8 +12,8 @@ from robolang.execution.result import RunResult
 from robolang.execution.session import ProgramError, Session, run
 from robolang.execution.status import ENDED, State, Status
 from robolang.execution.timeline import Timeline
+from robolang.logs.files import read_log
 from robolang.logs.log import Log
-from robolang.logs.npz_file import read_log
 from robolang.project.project import Project, load_project
 from robolang.syntax.ast import Line
 from runtime.core.faults import Fault

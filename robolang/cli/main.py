@@ -20,6 +20,8 @@ from robolang.cli.commands import (
     inertia,
     jog,
     kin,
+    log,
+    plot,
     renumber,
     repl,
     replay_pulses,
@@ -49,6 +51,7 @@ app = typer.Typer(
 _COMMANDS: dict[str, Callable[..., None]] = {
     "run": run.run,
     "view": view.view,
+    "plot": plot.plot,
     "repl": repl.repl,
     "jog": jog.jog,
     "teach": teach.teach,
@@ -74,6 +77,7 @@ for name, function in _COMMANDS.items():
 app.add_typer(config.app, name="config")
 app.add_typer(export.app, name="export")
 app.add_typer(kin.app, name="kin")
+app.add_typer(log.app, name="log")
 app.add_typer(robot.app, name="robot")
 
 

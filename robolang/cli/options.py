@@ -82,6 +82,8 @@ OptionalProgram = Annotated[
     str | None, Argument("[PROG]", "Program file (.rbl), for its cell; default: the built-in cell.")
 ]
 
+Run = Annotated[Path, Argument("RUN", "Log of a run, from robolang run --log.")]
+
 
 ROBOT = "Built-in robot (see robolang robot list), or a .toml, .urdf or .xml file."
 

@@ -61,3 +61,17 @@ register(
         remedy="Give control back in the page that has it, or close that page; then take it in this one.",
     ),
 )
+register(
+    Code(
+        code="RBL838",
+        name="signal-unknown",
+        meaning="A log has no signal, or a signal no column, of this name.",
+        remedy="Give one of those that are listed; 'robolang log show RUN' lists all of a log.",
+    ),
+    Code(
+        code="RBL839",
+        name="format-unavailable",
+        meaning="A file format needs a library or a font that is not installed.",
+        remedy="Install it, as the message says, or write another format.",
+    ),
+)

@@ -32,10 +32,10 @@ def span(values: Sequence[Array]) -> tuple[float, float]:
     return (low, high) if high - low > 1e-9 * max(1.0, abs(high)) else (low - 0.5, high + 0.5)
 
 
-def ticks(bounds: tuple[float, float]) -> list[float]:
-    """Return round values that span the bounds, about five of them."""
+def ticks(bounds: tuple[float, float], count: float = 5.0) -> list[float]:
+    """Return round values that span the bounds, about ``count`` of them."""
     low, high = bounds
-    raw = (high - low) / 5.0
+    raw = (high - low) / count
     base = 10.0 ** np.floor(np.log10(raw))
     # the last step always fits, since base is the power of ten below raw
     size = float(next(step * base for step in (1.0, 2.0, 2.5, 5.0, 10.0) if step * base >= raw))

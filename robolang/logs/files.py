@@ -8,7 +8,7 @@ from pathlib import Path
 from robolang.core.storage import write_atomic
 from robolang.logs.log import Log
 from robolang.logs.mcap_file import write_mcap
-from robolang.logs.npz_file import write_npz
+from robolang.logs.npz_file import read_npz, write_npz
 
 _WRITERS = {".npz": write_npz, ".mcap": write_mcap}
 SUFFIXES = tuple(_WRITERS)
@@ -19,3 +19,12 @@ def write_log(path: Path, log: Log) -> None:
     if path.suffix not in _WRITERS:
         raise ValueError(f"{path} must end in .npz or .mcap")
     write_atomic(path, lambda stream: _WRITERS[path.suffix](stream, log))
+
+
+def read_log(path: Path | str) -> Log:
+    """Return the log in a file of ``robolang run --log``; its signals are read when they are used.
+
+    ``Fault`` RBL600 for a file that cannot be read, RBL619 for one that is no log or is damaged, which may show only
+    when a signal is read, and RBL821 for one of a later version.
+    """
+    return read_npz(path)

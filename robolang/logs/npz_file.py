@@ -65,7 +65,7 @@ def _write(file: zipfile.ZipFile, name: str, count: int, pieces: Iterator[Array]
             stream.write(piece.data if piece.size else b"")
 
 
-def read_log(path: Path | str) -> Log:
+def read_npz(path: Path | str) -> Log:
     """Return the log in a file of ``robolang run --log FILE.npz``; its signals are read when they are used.
 
     ``Fault`` RBL600 for a file that cannot be read, RBL619 for one that is no log or is damaged, which may show only

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from robolang.logs.files import read_log
 from robolang.logs.log import Log
-from robolang.logs.npz_file import read_log
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.rounding import beside

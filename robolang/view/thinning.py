@@ -47,10 +47,11 @@ def thinned(rows: int, dt: float) -> dict[str, object] | None:
 def _pairs(values: Array, size: int) -> Array:
     bins = -(-len(values) // size)
     # column by column: a run of half an hour is copied once for each, not for all at once
-    return np.stack([_pairs_of(values[:, k], bins, size) for k in range(values.shape[1])], axis=1)
+    return np.stack([least_and_largest(values[:, k], bins, size) for k in range(values.shape[1])], axis=1)
 
 
-def _pairs_of(column: Array, bins: int, size: int) -> Array:
+def least_and_largest(column: Array, bins: int, size: int) -> Array:
+    """Return two values (2 bins,) of each bin of ``size`` rows of a column (N,), in their order; NaN where none."""
     filled = np.full(bins * size, np.nan)
     filled[: len(column)] = column
     binned = filled.reshape(bins, size)

@@ -16,7 +16,7 @@ import pytest
 
 from robolang.execution.lowering import pose_si
 from robolang.execution.session import RunResult, Session
-from robolang.logs.npz_file import read_log
+from robolang.logs.files import read_log
 from robolang.project.project import builtin_cell, load_project
 from runtime.control import signals
 from runtime.core.frames import Array, inverse, rotation_angle

@@ -9,7 +9,7 @@ import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-from robolang.logs.npz_file import read_log
+from robolang.logs.files import read_log
 from runtime.control.signals import NAMES
 from tests.robolang.cli.commands import dry, robolang
 

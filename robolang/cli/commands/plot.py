@@ -1,0 +1,85 @@
+"""``robolang plot RUN SIGNAL...``: signals of a log as curves over time, with the statements that ran."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from robolang.cli.errors import reported
+from robolang.cli.options import Argument, Group, Option, Run
+from robolang.cli.output import echo
+from robolang.cli.usage import OptionValueError
+
+if TYPE_CHECKING:
+    from robolang.view.signal_plot import SignalPlot
+
+_SUFFIXES = (".svg", ".png", ".html")
+
+Selections = Annotated[
+    list[str],
+    Argument("SIGNAL...", "Signals: q_fb, q_fb:2 for an axis, tool_cmd:z; q_cmd:2+q_fb:2 in one panel."),
+]
+
+
+class _PlotOptions(Group):
+    """What is drawn, and where to."""
+
+    PANEL: ClassVar[str] = "Output"
+    out: Annotated[
+        Path | None,
+        Option("--out", "-o", metavar="FILE", help="File: .svg, .png or .html; default: RUN-SIGNAL.svg beside RUN."),
+    ] = None
+    begin: Annotated[float | None, Option("--from", metavar="S", help="Start of the plot, s.")] = None
+    end: Annotated[float | None, Option("--to", metavar="S", help="End of the plot, s.")] = None
+
+
+def plot(run: Run, selections: Selections, output: _PlotOptions) -> None:
+    """Draw signals of a log: a panel for each, one time axis, the running statements marked.
+
+    Angles are drawn in deg, lengths in mm. Exit codes: 0 done; 2 the log, a signal or an option cannot be used; 4 the
+    file cannot be written.
+    """
+    path = output.out or _beside(run, selections)
+    if path.suffix not in _SUFFIXES:
+        raise OptionValueError("--out", f"'{path}' must end in {', '.join(_SUFFIXES)}")
+    with reported():
+        from robolang.core.storage import check_writable, write_atomic
+
+        check_writable(path)
+        if path.suffix == ".png":
+            from robolang.view.png import check_png
+
+            check_png()
+        data = _drawn(_plot(run, selections, output), path.suffix)
+        write_atomic(path, lambda stream: stream.write(data))
+        echo(f"{path} written")
+
+
+def _plot(run: Path, selections: list[str], output: _PlotOptions) -> "SignalPlot":
+    from robolang.logs.files import read_log
+    from robolang.view.log_plot import Window, plot_of
+
+    log = read_log(run)
+    try:
+        return plot_of(log, selections, Window(first=output.begin, last=output.end))
+    except ValueError:
+        times = log["t"]
+        span = f"the log goes from {times[0]:g} to {times[-1]:g} s" if len(times) else "the log has no row"
+        raise OptionValueError("--from, --to", f"less than two rows are between these times; {span}") from None
+
+
+def _drawn(found: "SignalPlot", suffix: str) -> bytes:
+    drawing = found.as_svg()
+    if suffix == ".png":
+        from robolang.view.png import as_png
+
+        return as_png(drawing)
+    if suffix == ".html":
+        from robolang.execution.plot import as_html
+
+        return as_html(found.title, drawing).encode("utf-8")
+    return drawing.encode("utf-8")
+
+
+def _beside(run: Path, selections: list[str]) -> Path:
+    # names of signals have a colon, which file systems do not all take
+    name = "-".join(text.replace(":", "").replace("+", "-") for text in selections)
+    return run.with_name(f"{run.stem}-{name}.svg".replace("/", "_"))
