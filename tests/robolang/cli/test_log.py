@@ -9,6 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from robolang.logs.files import read_log, write_log
+from robolang.logs.log import Log
 from tests.messages import fields
 from tests.robolang.cli.commands import dry, flat, robolang
 from tests.robolang.logs.made import log as made_log
@@ -155,8 +156,8 @@ def test_a_log_of_an_older_version_is_shown_as_far_as_it_goes(tmp_path):
 
 def test_events_of_a_file_that_are_none_are_left_out(tmp_path):
     made = made_log(8)
-    made.meta["events"] += [3, {"time_s": "x"}, {"time_s": 1.0, "kind": "\x1b[2J", "name": "n", "value": 1}]
-    write_log(tmp_path / "l.npz", made)
+    events = [*made.events, 3, {"time_s": "x"}, {"time_s": 1.0, "kind": "\x1b[2J", "name": "n", "value": 1}]
+    write_log(tmp_path / "l.npz", Log(made.rows, {**made.meta, "events": events}))
     shown = robolang("log", "show", tmp_path / "l.npz").stdout
     assert "\x1b" not in shown
     assert len(json.loads(robolang("log", "show", tmp_path / "l.npz", "--json").stdout)["events"]) == 2
