@@ -165,6 +165,7 @@ class ArmReading:
     def read(self) -> tuple[tuple[JointShown, ...], float]:
         """Return the joints and the speed of the tool point, mm/s; (), 0 before the first tick."""
         controller, n = self._controller, self._controller.spec.n
+        # one more than a cycle has: a distance needs two ends
         rows = controller.recorder.recent(self._ticks + 1)
         if len(rows) < 2:
             return (), 0.0
@@ -222,6 +223,7 @@ class PanelProgress(RunOutput):
 
     def printed(self, text: str) -> None:
         """Show what the program prints above the panel, which comes back at its next turn."""
+        # to a file it is written without a sign on the screen
         if sys.stdout is not None and sys.stdout.isatty():
             self.clear()
         super().printed(text)

@@ -51,6 +51,7 @@ class Outlook:
         if not isinstance(run.effect, MoveTo | SetHand | Pass):
             return
         self._begun_us, self._planned_us, self._waits = time_us, 0, waits(run.effect)
+        # a planned WAIT may have been true at once in the run, since its arm is later
         at = self._next
         while at < len(self._steps) and self._steps[at].origin != run.origin and self._steps[at].waits:
             at += 1

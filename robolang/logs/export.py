@@ -23,6 +23,7 @@ def write_csv(stream: IO[bytes], table: Table) -> None:
         for piece in table.pieces():
             writer.writerows(zip(*(column.tolist() for column in piece), strict=True))
     finally:
+        # the stream is not ours to close
         text.detach()
 
 
@@ -39,6 +40,7 @@ def write_parquet(stream: IO[bytes], table: Table) -> None:
         for column, values in zip(table.columns, table.empty(), strict=True)
     ]
     schema = pa.schema(fields, metadata=kept)
+    # its default writes larger files of numbers that hardly repeat
     with pq.ParquetWriter(stream, schema, compression="zstd") as writer:
         for piece in table.pieces():
             writer.write_batch(pa.record_batch([pa.array(column) for column in piece], schema=schema))

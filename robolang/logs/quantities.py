@@ -86,6 +86,7 @@ class Column:
 
 def columns(log: SignalSource, name: str) -> tuple[Column, ...]:
     """Return the columns of a signal, in the order of its row."""
+    # no row of it: of a file nothing is read but the header
     shape = log.span(name, 0, 0).shape[1:]
     size = 1
     for length in shape:

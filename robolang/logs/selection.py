@@ -17,6 +17,7 @@ def selected(log: SignalSource, names: Iterable[str], text: str) -> tuple[Column
     found = columns(log, name)
     if not label:
         return found
+    # J alone is no axis, and x of a place is no J
     plain = label.removeprefix("J") if label[1:].isdecimal() else label
     matching = tuple(each for each in found if each.label == plain or each.label.startswith(f"{plain}."))
     if not matching:

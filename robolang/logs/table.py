@@ -51,6 +51,7 @@ class Table:
     def _span(self, signal: str, first: int, last: int) -> Array:
         if self.of_frames or self.log.base(signal) == "tick":
             return self.log.span(signal, first, last)
+        # by their times: which tick a frame belongs to is known to the recorder alone
         times, frames = self.log.span("t", first, last), self.log["frame_t"]
         at = np.searchsorted(frames, times, "right") - 1
         low = int(at[0])
@@ -64,6 +65,7 @@ def table_of(log: Log, selections: Sequence[str]) -> Table:
         chosen = [column for name in log for column in columns(log, name)]
     # the time is the first column in any case
     kept = list(dict.fromkeys(column for column in chosen if column.signal not in _TIMES))
+    # the time alone is that of the ticks
     of_frames = bool(kept) and all(log.base(column.signal) == "frame" for column in kept)
     (time,) = columns(log, "frame_t" if of_frames else "t")
     return Table(log=log, columns=(time, *kept), of_frames=of_frames)

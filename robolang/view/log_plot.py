@@ -32,6 +32,7 @@ def plot_of(log: Log, selections: Sequence[str], window: Window) -> SignalPlot:
     chosen = [[_columns(log, name) for name in text.split(TOGETHER)] for text in selections]
     times = log["t"]
     rows = _rows(times, window)
+    # one row has no extent in time, and the scale would divide by it
     if len(rows) < 2:
         raise ValueError("there is nothing between these times")
     first, last = float(times[rows[0]]), float(times[rows[-1]])
@@ -66,6 +67,7 @@ def _rows(times: Array, window: Window) -> range:
 
 
 def _panels(log: Log, columns: Sequence[Column], window: Window) -> Iterator[SignalPanel]:
+    # a panel has one scale
     by_unit: dict[str, list[Column]] = {}
     for column in columns:
         by_unit.setdefault(column.shown[0], []).append(column)
@@ -102,6 +104,7 @@ def _blocks(log: Log, rows: range) -> Iterator[Block]:
         if line:
             yield Block(
                 begins=float(times[rows[begin]]),
+                # the last one ends with the window
                 ends=float(times[rows[min(end, len(rows) - 1)]]),
                 number=str(number or line),
                 text=texts[line - 1].strip() if 0 < line <= len(texts) else "",

@@ -15,6 +15,7 @@ def check_png() -> None:
 
     The library leaves out text that it has no font for, without a word; so a text is drawn here and compared.
     """
+    # compared as bytes: the same picture is the same file
     if _drawn(_BLANK.format(_WORD)) == _drawn(_BLANK.format("")):
         raise Fault(
             "RBL839",

@@ -75,6 +75,7 @@ class SignalPlot:
 
     def as_svg(self) -> str:
         """Return the drawing."""
+        # shades first: everything else is drawn over them
         bottom = TOP + STRIP + sum(panel.height + GAP for panel in self.panels) - GAP
         height = bottom + BOTTOM
         parts = [
@@ -172,6 +173,7 @@ class SignalPlot:
 
 def _thinned(line: Line) -> tuple[Array, Array]:
     """Return at most two points for each column of the picture."""
+    # rounded up: a column of the picture has a bin of its own or a part of one
     size = -(-len(line.x) // _INNER)
     if size <= 2:
         return line.x, line.y

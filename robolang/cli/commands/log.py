@@ -76,6 +76,7 @@ def export(run: Run, output: _ExportOptions) -> None:
         from robolang.logs.files import read_log
         from robolang.logs.table import table_of
 
+        # before the log is read, which takes the time
         check_writable(path)
         write = _writer(suffix)
         table = table_of(read_log(run), output.signals.split(",") if output.signals else ())
@@ -85,17 +86,14 @@ def export(run: Run, output: _ExportOptions) -> None:
 
 def _suffix(output: _ExportOptions) -> str:
     """Return the suffix of the format that is ordered, by an option or by the name of the file."""
-    if output.csv and output.parquet:
-        raise OptionValueError("--parquet", "a file has one format; leave out --csv or --parquet")
-    of_option = ".csv" if output.csv else ".parquet" if output.parquet else ""
-    of_name = "" if output.out is None else output.out.suffix
-    if not of_option and output.out is None:
-        raise OptionValueError("--csv", "no format is given: add --csv or --parquet")
-    if not of_option and of_name not in (".csv", ".parquet"):
-        raise OptionValueError("--out", f"'{output.out}' must end in .csv or .parquet")
-    if of_option and of_name and of_name != of_option:
-        raise OptionValueError("--out", f"'{output.out}' must end in {of_option}")
-    return of_option or of_name
+    formats = {".csv": output.csv, ".parquet": output.parquet}
+    ordered = {suffix for suffix, given in formats.items() if given}
+    if output.out is not None:
+        ordered.add(output.out.suffix)
+    # also where the option and the name differ: a table under the name of another format is found by nobody
+    if len(ordered) != 1 or not ordered <= formats.keys():
+        raise OptionValueError("--csv, --parquet", "give one format, and a file name that ends in it: .csv or .parquet")
+    return ordered.pop()
 
 
 def _writer(suffix: str) -> "Callable[[IO[bytes], Table], None]":
@@ -123,6 +121,7 @@ def _contents(log: "Log") -> dict[str, Any]:
             }
         )
     ticks = log.count("t")
+    # of a log of layout 1 nothing is known but its signals
     head: dict[str, Any] = dict.fromkeys(("program", "robot", "ok", "duration_s", "tick_s", "cycle_s"))
     if log.meta is not None:
         meta = log.meta

@@ -43,6 +43,7 @@ def plot(run: Run, selections: Selections, output: _PlotOptions) -> None:
     with reported():
         from robolang.core.storage import check_writable, write_atomic
 
+        # before the log is read, which takes the time
         check_writable(path)
         if path.suffix == ".png":
             from robolang.view.png import check_png
@@ -58,6 +59,7 @@ def _plot(run: Path, selections: list[str], output: _PlotOptions) -> "SignalPlot
     from robolang.view.log_plot import Window, plot_of
 
     log = read_log(run)
+    # refused as an option: the log itself is as it should be
     try:
         return plot_of(log, selections, Window(first=output.begin, last=output.end))
     except ValueError:

@@ -111,9 +111,9 @@ def test_parquet_is_what_the_log_holds(run, tmp_path):
     ("words", "code", "said"),
     [
         ([], 2, {"RBL703", "--csv"}),
-        (["--csv", "--parquet"], 2, {"RBL703", "--parquet"}),
-        (["-o", "x.txt"], 2, {"RBL703", "--out"}),
-        (["--csv", "-o", "x.parquet"], 2, {"RBL703", "--out"}),
+        (["--csv", "--parquet"], 2, {"RBL703", "--csv"}),
+        (["-o", "x.txt"], 2, {"RBL703", "--csv"}),
+        (["--csv", "-o", "x.parquet"], 2, {"RBL703", "--csv"}),
         (["--csv", "--signals", "q_fb,,t"], 2, {"RBL838"}),
         (["--csv", "-o", "no/x.csv"], 4, {"RBL706"}),
     ],
