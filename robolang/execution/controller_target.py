@@ -14,7 +14,7 @@ from robolang.execution.activity import Activity, Left, Motion, Pause, TargetSna
 from robolang.execution.measured import AXIS_FUNCTIONS
 from robolang.execution.observer import Observer
 from robolang.execution.plan_findings import PlanFindings, PlannedMove
-from robolang.execution.result import RunRecord, StatementRun
+from robolang.execution.result import GOES_ON, RunRecord, StatementRun
 from robolang.execution.statement_rows import copied, note_rest, rest_of, row_of, straight_path
 from robolang.execution.tape import Tape
 from robolang.execution.target import Requested
@@ -180,11 +180,21 @@ class ControllerTarget:
     def cycle(self) -> bool:
         """Run one cycle of the controller; False when the brakes hold the arm."""
         going = self._record.controller.cycle()
+        self._check_log()
         motion = self._activity
         # after an alarm ``goes_on`` is not called: the move whose set-point was sent last is noted here
         if isinstance(motion, Motion) and self.alarms:
             self._reach(self._record.statements[motion.first : motion.last + 1])
         return going
+
+    def _check_log(self) -> None:
+        """Raise RBL706 where what was recorded cannot be kept: the arm stops on its path, and nothing is lost."""
+        controller = self._record.controller
+        failed, controller.recorder.failed = controller.recorder.failed, None
+        if failed is not None and not self.alarms:
+            why = failed.strerror or failed
+            hint = "Make room for the log, or run without --log; the log up to here is complete."
+            controller.alarm("RBL706", f"cannot write the temporary file of the log: {why}", hint=hint)
 
     def finish(self) -> None:
         """End the statements of the activity at this tick."""
@@ -192,7 +202,7 @@ class ControllerTarget:
         tick, statements = self._record.controller.recorder.tick, self._record.statements
         if isinstance(activity, Motion):
             for run in statements[activity.first : activity.last + 1]:
-                if run.end_tick:  # within a chain a move has ended where the next one began
+                if run.ended:  # within a chain a move has ended where the next one began
                     continue
                 run.end_tick = tick
                 if run.begun and (self.alarms or run.effect is None):
@@ -246,7 +256,7 @@ class ControllerTarget:
         if left.rest and isinstance(activity, Motion):
             tick, first = self._record.controller.recorder.tick, len(statements)
             # rows of their own: what was measured meanwhile is not of these moves
-            statements += [replace(copied(run), first_tick=tick, end_tick=0, begun=False) for run in left.rest]
+            statements += [replace(copied(run), first_tick=tick, end_tick=GOES_ON, begun=False) for run in left.rest]
             activity = replace(activity, first=first, last=len(statements) - 1, skipped=self.move_reached)
         elif isinstance(activity, Pause):
             self._statements.change(activity.run)

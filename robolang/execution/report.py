@@ -6,27 +6,27 @@ of the true tool point from the straight segment of a MOVE, however far along it
 repeats exactly.
 """
 
+from collections.abc import Sequence
 from typing import Any
-
-import numpy as np
 
 from robolang.core.diagnostics import Severity
 from robolang.execution.alarms import as_json
+from robolang.execution.measures import Measured
 from robolang.execution.result import RunRecord, StatementRun
 from runtime.control.controller import Controller
-from runtime.control.signals import Signals
 from runtime.core.faults import Alarm
 from runtime.core.frames import Array, xyzrpy_from_pose
 from runtime.core.units import DEG, MM, PERCENT
 from runtime.plant.touches import shape_text
-from runtime.servo.motor import torque_limit
 
 
-def build_report(record: RunRecord, log: Signals, wall_s: float) -> dict[str, Any]:
-    """Return the report of a finished run (docs/signals.md explains every key)."""
+def build_report(record: RunRecord, measured: Sequence[Measured], wall_s: float) -> dict[str, Any]:
+    """Return the report of a finished run (docs/signals.md explains every key).
+
+    ``measured`` is of each statement, as ``Measures.complete`` gives it.
+    """
     controller = record.controller
     sim_s = controller.time_us / 1_000_000
-    measures = _Measures(log, torque_limit(controller.spec))
     return {
         "program": record.project.source.path,
         "robot": controller.spec.name,
@@ -39,8 +39,8 @@ def build_report(record: RunRecord, log: Signals, wall_s: float) -> dict[str, An
         "cycles": controller.recorder.cycle,
         "overruns": controller.overruns,
         "statements": [
-            {**_statement(run, measures, controller.profile.tick_us), "touched": _touched(run, controller)}
-            for run in record.statements
+            {**_statement(run, found, controller), "touched": _touched(run, controller)}
+            for run, found in zip(record.statements, measured, strict=True)
         ],
         "dynamics": _dynamics(record),
         "payload_history": record.payloads,
@@ -76,38 +76,23 @@ _MEASURED = (
 """Keys that are null for a statement that has not begun."""
 
 
-class _Measures:
-    """Error measures of every tick, computed once for the whole run."""
-
-    def __init__(self, log: Signals, torque: Array) -> None:
-        self.p_tool = log["X_world_tool"][:, :3, 3]
-        self.joint_deg = np.abs(log["q_cmd"] - log["q_link"]).max(axis=1) / DEG
-        self.tool_mm = log["tool_error"] / MM
-        self.wrist_mode, self.deviation = log["wrist_mode"], log["seam_deviation"]
-        self.torque_pct = np.abs(log["tau_sat"] / torque).max(axis=1) / PERCENT
-
-
-def _statement(run: StatementRun, measures: _Measures, tick_us: int) -> dict[str, Any]:
-    # a statement that still goes on has no end yet: what it has done so far is measured
-    end = run.end_tick if run.end_tick >= run.first_tick else len(measures.tool_mm)
-    span = slice(run.first_tick, end)
-    deviation = None
+def _statement(run: StatementRun, measured: Measured, controller: Controller) -> dict[str, Any]:
     if not run.begun:
         return {**_head(run), **dict.fromkeys(_MEASURED), "notes": []}
-    if run.path is not None and end > run.first_tick:
-        # a seam sensor takes the tool off the programmed path on purpose, which is no error of the servo
-        deviation = float(run.path.deviation((measures.p_tool - measures.deviation[:, :3])[span]).max()) / MM
+    tick_us = controller.profile.tick_us
+    # a statement that still goes on has no end yet: what it has done so far is measured
+    end = run.end_tick if run.ended else controller.recorder.tick
     return {
         **_head(run),
         "start_s": run.first_tick * tick_us / 1_000_000,
         "duration_s": (end - run.first_tick) * tick_us / 1_000_000,
         "planned_s": run.planned_s,
-        "joint_error_deg": _largest(measures.joint_deg[span]),
-        "tool_error_mm": _largest(measures.tool_mm[span]),
-        "path_deviation_mm": deviation,
-        "peak_torque_pct": _largest(measures.torque_pct[span]),
-        "wrist": _wrist(run, measures.wrist_mode[span], tick_us),
-        "seam": _seam(run, measures.deviation[span]),
+        "joint_error_deg": measured.joint_deg,
+        "tool_error_mm": measured.tool_mm,
+        "path_deviation_mm": measured.path_mm,
+        "peak_torque_pct": measured.torque_pct,
+        "wrist": _wrist(run, measured, tick_us),
+        "seam": _seam(run, measured),
         "notes": list(run.notes),
     }
 
@@ -133,13 +118,12 @@ def _head(run: StatementRun) -> dict[str, Any]:
     return {"line": run.origin.line or None, "number": run.origin.number, "text": run.text, "begun": run.begun}
 
 
-def _wrist(run: StatementRun, mode: Array, tick_us: int) -> dict[str, object] | None:
+def _wrist(run: StatementRun, measured: Measured, tick_us: int) -> dict[str, object] | None:
     """Return the event of a wrist that left its posture: from when to when, why, and by how much; None for none."""
-    on = np.flatnonzero(mode)
-    if not len(on):
+    if measured.wrist is None:
         return None
-    change = run.wrist
-    start, end = ((run.first_tick + int(at)) * tick_us / 1_000_000 for at in (on[0], on[-1] + 1))
+    change, (first, last) = run.wrist, measured.wrist
+    start, end = (at * tick_us / 1_000_000 for at in (first, last + 1))
     event: dict[str, object] = {"start_s": start, "end_s": end}
     if change is not None:
         event |= {
@@ -154,21 +138,16 @@ def _wrist(run: StatementRun, mode: Array, tick_us: int) -> dict[str, object] | 
     return event
 
 
-def _seam(run: StatementRun, deviation: Array) -> dict[str, object] | None:
+def _seam(run: StatementRun, measured: Measured) -> dict[str, object] | None:
     """Return what a MOVE under a seam sensor followed; None without one."""
     if run.seam is None:
         return None
-    far, turned = np.linalg.norm(deviation[:, :3], axis=1), np.abs(deviation[:, 3:]).max(axis=1)
     return {
         "sensor": run.seam,
-        "largest_mm": _largest(far / MM),
-        "largest_deg": _largest(turned / DEG),
+        "largest_mm": measured.seam_mm,
+        "largest_deg": measured.seam_deg,
         "lost_readings": run.lost,
     }
-
-
-def _largest(values: Array) -> float | None:
-    return float(values.max()) if len(values) else None
 
 
 def _dynamics(record: RunRecord) -> dict[str, Any]:

@@ -13,6 +13,9 @@ from runtime.core.faults import Alarm
 from runtime.motion.cartesian_planner import WristChange
 from runtime.motion.path import Path
 
+GOES_ON = -1
+"""``end_tick`` of a statement that has not ended: tick 0 is one at which a statement may end."""
+
 
 @dataclass(slots=True, kw_only=True)
 class StatementRun:
@@ -29,7 +32,7 @@ class StatementRun:
     origin: Origin
     text: str
     first_tick: int
-    end_tick: int = 0
+    end_tick: int = GOES_ON
     path: Path | None = None
     planned_s: float | None = None
     wrist: WristChange | None = None
@@ -41,6 +44,11 @@ class StatementRun:
     points: tuple[Point, ...] = ()
     rest: tuple[float, ...] | None = None
     notes: list[str] = field(default_factory=list)
+
+    @property
+    def ended(self) -> bool:
+        """Whether the statement has ended, if only for now: a wait may go on."""
+        return self.end_tick != GOES_ON
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -14,6 +14,7 @@ from robolang.execution.controller_target import ControllerTarget
 from robolang.execution.dry_run import motion_check
 from robolang.execution.executor import Alter, Executor
 from robolang.execution.log_meta import meta_of
+from robolang.execution.measures import Measures
 from robolang.execution.observer import Observer
 from robolang.execution.plan_memory import PlanMemory
 from robolang.execution.report import build_report
@@ -22,9 +23,11 @@ from robolang.execution.rig import Rig
 from robolang.execution.status import ENDED
 from robolang.execution.world import RobotWorld
 from robolang.logs.log import Log
+from robolang.logs.not_kept import NotKept
 from robolang.project.project import Project, load_project
 from runtime.control.clock import wall_s
 from runtime.control.controller import Controller
+from runtime.control.spill import Spill
 from runtime.settings.profile import ServoMode
 
 
@@ -54,8 +57,13 @@ class Session:
         observer: Observer | None = None,
         alter: Alter | None = None,
         plans: PlanMemory | None = None,
+        log: Path | bool = True,
     ) -> None:
-        """``plans`` are those of the check before the run: what begins as it did there is not planned again."""
+        """``plans`` are those of the check before the run: what begins as it did there is not planned again.
+
+        ``log``: whether the log is kept; what is old of it goes into a temporary file, a folder says where. False: the
+        report alone is made, the signals cannot be read (RBL822), and nothing can be taken back.
+        """
         if not project.ok:
             raise ProgramError(project, project.diagnostics)
         self.project = project
@@ -64,6 +72,11 @@ class Session:
         plans = plans or PlanMemory(project)
         controller = Rig.of(project, physics, realtime=realtime, plans=plans).controller
         self.record = RunRecord(project=project, controller=controller, physics=physics)
+        self._measures = Measures(self.record)
+        if isinstance(log, Path):
+            controller.recorder.spill = Spill(log)
+        if log is False:
+            controller.recorder.fold = self._measures.take
         observer = observer or Observer()
         target = ControllerTarget(self.record, plans.kinematics, observer)
         self.executor = Executor(project, target, alter=alter, observer=observer)
@@ -107,8 +120,11 @@ class Session:
         before = list(self.controller.warnings)
         # first: the report lists the warnings
         self.controller.warn_of_touches()
-        report = build_report(self.record, self.controller.signals(), wall_s)
-        log = Log(self.controller.recorder.recorded(), meta_of(self.record, self.world.signals, report))
+        recorder = self.controller.recorder
+        recorded = recorder.recorded()
+        report = build_report(self.record, self._measures.complete(recorded), wall_s)
+        rows = recorded if recorder.fold is None else NotKept()
+        log = Log(rows, meta_of(self.record, self.world.signals, report))
         alarms, warnings = (
             tuple(as_diagnostic(alarm, severity) for alarm in found)
             for found, severity in (

@@ -16,7 +16,7 @@ import numpy as np
 
 from robolang.logs.archive import Archive
 from robolang.logs.log import VERSION, Log
-from runtime.control.recorder import FRAME_CYCLES, SCALARS, WHOLE
+from runtime.control.blocks import FRAME_CYCLES, SCALARS, WHOLE
 from runtime.control.signals import NAMES, OF_FRAMES, Base, Rows
 from runtime.core.faults import Fault
 from runtime.core.frames import Array

@@ -130,7 +130,7 @@ class _Writer:
 
     def _move(self, run: StatementRun) -> None:
         effect = run.effect
-        rest = run.rest if run.end_tick else self._q_deg
+        rest = run.rest if run.ended else self._q_deg
         if effect is None:
             assert rest is not None
             self._given(run, rest)
@@ -139,7 +139,7 @@ class _Writer:
         if rest is not None:
             # neither the time nor the zone of the whole move is that of a part
             effect = replace(effect, target=Place(joints=rest), time_s=None, zone_mm=0.0)
-            if not run.end_tick and effect.path == "arc":
+            if not run.ended and effect.path == "arc":
                 effect = replace(effect, path="line", via=None)
         # effects have names in capitals
         names = {point.name.upper(): self._name(point) for point in run.points}

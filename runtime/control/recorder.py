@@ -16,81 +16,46 @@ A snapshot holds the block that is being filled and how far it is filled, and th
 no row, and a controller that takes the snapshot over has the whole log. Rows that were recorded before a snapshot are
 never written again; a recorder that goes back to one goes on in a copy of its last block. One growing array was
 rejected: going back and forth between two snapshots would leave rows of one future in the log of the other.
+
+Memory is bounded: a block that is full and no longer read in every cycle goes into a file without a name, or, where
+nobody needs the log (``fold``), is handed over once and dropped.
 """
 
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
+from runtime.control.blocks import BLOCK_CYCLES, FRAME_CYCLES, WHOLE, Block, InMemory, Layout
+from runtime.control.spill import Spill
 from runtime.core.frames import Array, frozen
 from runtime.core.state import State
-
-BLOCK_CYCLES = 128
-"""Cycles in a block, an even number: about 0.4 MB of a six-axis arm, which is what going back copies."""
-FRAME_CYCLES = 2
-"""Cycles from one frame to the next: 16 ms, which is more often than a screen shows pictures of a moving part."""
-WHOLE = {"line": np.int32, "number": np.int32, "wrist_mode": np.int8, "tool": np.int32}
-"""Signals that are whole numbers."""
-SCALARS = ("payload_mass", "line", "number", "wrist_mode", "tool")
-"""Signals of a cycle with one number."""
-
-Place = tuple[str, slice | int]
-"""Where a signal is in a block: the name of an array, and its columns there."""
-
-
-def _places(n: int, parts: int) -> dict[str, Place]:
-    """Return where the signals of an arm of n axes are."""
-    found: dict[str, Place] = {}
-    for array, names, width in (
-        ("ticks", ("tau_cmd", "tau_sat", "q_fb", "dq_fb", "q_link"), n),
-        ("commands", ("q_cmd", "dq_cmd"), n),
-        ("cycles", ("q_plan", "D", "T", "read_us"), n),
-    ):
-        found |= {name: (array, slice(at * width, (at + 1) * width)) for at, name in enumerate(names)}
-    found["seam_deviation"] = "cycles", slice(4 * n, 4 * n + 6)
-    found |= {name: ("cycles", 4 * n + 6 + at) for at, name in enumerate(SCALARS)}
-    return {**found, "parts": ("frames", slice(0, 7 * parts)), "fingers": ("frames", slice(7 * parts, 7 * parts + 2))}
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Block:
-    """Rows of up to ``BLOCK_CYCLES`` cycles, from ``tick`` and ``cycle`` on, and the block before it."""
-
-    before: "_Block | None"
-    tick: int
-    cycle: int
-    ticks: Array
-    commands: Array
-    cycles: Array
-    frames: Array
-
-    def copy(self) -> "_Block":
-        """Return a block that is written on in place of this one."""
-        ticks, commands = self.ticks.copy(), self.commands.copy()
-        return replace(self, ticks=ticks, commands=commands, cycles=self.cycles.copy(), frames=self.frames.copy())
-
-    def first(self, array: str) -> int:
-        """Return the number of the first row of an array."""
-        if array in ("ticks", "commands"):
-            return self.tick
-        return self.cycle if array == "cycles" else self.cycle // FRAME_CYCLES
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Recorded:
-    """The rows of a run up to some tick, which stay while the recorder goes on: ``runtime.control.signals.Rows``."""
+    """The rows of a run up to some tick, which stay while the recorder goes on: ``runtime.control.signals.Rows``.
 
-    blocks: tuple[_Block, ...]
-    places: dict[str, Place]
+    Reading rows that are in a file may raise ``OSError``.
+    """
+
+    blocks: tuple[Block, ...]
+    layout: Layout
     first_link: Array
-    parts: int
     ticks: int
-    cycles: int
-    ticks_per_cycle: int
     tick_us: int
     tools: tuple[Array, ...]
+
+    @property
+    def ticks_per_cycle(self) -> int:
+        """Ticks in a cycle."""
+        return self.layout.ticks_per_cycle
+
+    @property
+    def cycles(self) -> int:
+        """Cycles recorded so far; one may have begun whose first tick failed, which is not counted."""
+        return -(-self.ticks // self.ticks_per_cycle)
 
     @property
     def frames(self) -> int:
@@ -104,21 +69,25 @@ class Recorded:
             after = self._gathered(name, max(first - 1, 0), last - 1)
             return after if first else np.concatenate([self.first_link[None], after])
         values = self._gathered(name, first, last)
-        return values.reshape(len(values), self.parts, 7) if name == "parts" else values
+        return values.reshape(len(values), self.layout.parts, 7) if name == "parts" else values
 
     def _gathered(self, name: str, first: int, last: int) -> Array:
-        array, columns = self.places[name]
         # never without a piece: the columns of a run without a row have a shape, too
-        pieces = [values[..., columns] for values in self._pieces(array, first, max(first, last))]
+        pieces = list(self._pieces(name, first, max(first, last)))
         return np.concatenate(pieces).astype(WHOLE.get(name, pieces[0].dtype), copy=False)
 
-    def _pieces(self, array: str, first: int, last: int) -> Iterator[Array]:
+    def _pieces(self, name: str, first: int, last: int) -> Iterator[Array]:
+        array = self.layout.columns[name].array
         starts = [block.first(array) for block in self.blocks]
         for at in range(max(0, bisect_right(starts, first) - 1), len(starts)):
             end = min(last, starts[at + 1]) if at + 1 < len(starts) else last
-            yield getattr(self.blocks[at], array)[max(0, first - starts[at]) : max(0, end - starts[at])]
+            yield self.blocks[at].data.read(name, max(0, first - starts[at]), max(0, end - starts[at]))
             if end == last:
                 break
+
+
+Fold = Callable[[Recorded, int, int], None]
+"""What takes the rows of the ticks from one to before another, which are then dropped."""
 
 
 class Recorder:
@@ -127,7 +96,7 @@ class Recorder:
     def __init__(self, n: int, ticks_per_cycle: int, tick_us: int, parts: int = 0) -> None:
         """``parts``: how many parts the cell has. ``begin`` says where the run starts."""
         self.n = n
-        self._parts = parts
+        self._layout = Layout(n=n, parts=parts, ticks_per_cycle=ticks_per_cycle)
         self._first_link = frozen(np.zeros(n))
         self._tools: tuple[Array, ...] = (frozen(np.eye(4)),)
         self._tool = 0
@@ -137,7 +106,14 @@ class Recorder:
         """Ticks recorded so far."""
         self.cycle = 0
         """Cycles begun so far."""
-        self._block = self._new_block(None)
+        self.spill = Spill()
+        """Where old blocks go; replaced before the run."""
+        self.fold: Fold | None = None
+        """What takes old blocks in place of the file; set before the run."""
+        self.failed: OSError | None = None
+        """Why old blocks stay in memory: the file could not be written."""
+        self._data = InMemory.empty(self._layout)
+        self._block = Block(before=None, tick=0, cycle=0, data=self._data)
 
     def begin(self, q_link: Array, X_flange_tool: Array) -> None:
         """Take the true link angles (n,) rad at the start of the run, and its first tool (4, 4)."""
@@ -162,24 +138,22 @@ class Recorder:
         ``vectors``: q_plan, D, T, time of reading us, each (n,), and the seam's deviation (6,); ``scalars``: mass
         declared, line, line number, wrist_mode; ``moved`` as of the plant, called where a frame is due.
         """
-        block = self._block
-        if self.cycle - block.cycle == BLOCK_CYCLES:
-            block = self._block = self._new_block(block)
-        at = self.cycle - block.cycle
-        row = block.cycles[at]
+        if self.cycle - self._block.cycle == BLOCK_CYCLES:
+            self._next_block()
+        data, at = self._data, self.cycle - self._block.cycle
+        row = data.cycles[at]
         np.concatenate(vectors, out=row[:-5])
         row[-5:-1], row[-1] = scalars, self._tool
         if not at % FRAME_CYCLES and moved is not None:
-            block.frames[at // FRAME_CYCLES] = moved()
+            data.frames[at // FRAME_CYCLES] = moved()
         self.cycle += 1
-        at = self.tick - block.tick
-        commands = block.commands[at : at + self._ticks_per_cycle]
+        at = self.tick - self._block.tick
+        commands = data.commands[at : at + self._ticks_per_cycle]
         commands[:, : self.n], commands[:, self.n :] = motion[0], motion[1]
 
     def record(self, parts: tuple[Array, Array, Array, Array, Array]) -> None:
         """Record one tick: (tau_cmd, tau_sat, q_fb, dq_fb) and the true link angles at its end, each (n,)."""
-        block = self._block
-        np.concatenate(parts, out=block.ticks[self.tick - block.tick])
+        np.concatenate(parts, out=self._data.ticks[self.tick - self._block.tick])
         self.tick += 1
 
     def recent(self, ticks: int) -> Array:
@@ -187,12 +161,33 @@ class Recorder:
         first, block = max(0, self.tick - ticks), self._block
         # nearly always in one block, and then a view of it: this is read in every cycle
         if first >= block.tick:
-            return block.ticks[first - block.tick : self.tick - block.tick, : 4 * self.n]
-        gathered = np.concatenate([block.ticks[:filled] for block, filled, _ in self._filled(first)])
-        return gathered[len(gathered) - (self.tick - first) :, : 4 * self.n]
+            return self._data.ticks[first - block.tick : self.tick - block.tick, : 4 * self.n]
+        rows = self._recorded(first)
+        names = ("tau_cmd", "tau_sat", "q_fb", "dq_fb")
+        return np.concatenate([rows.read(name, first, self.tick) for name in names], axis=1)
+
+    def recorded(self) -> Recorded:
+        """Return all rows up to now, or those that are still there."""
+        return self._recorded(0)
+
+    def _recorded(self, first: int) -> Recorded:
+        """Return the rows from the block on that holds tick ``first``."""
+        found = [self._block]
+        while found[-1].tick > first and (before := found[-1].before) is not None:
+            found.append(before)
+        return Recorded(
+            blocks=tuple(found[::-1]),
+            layout=self._layout,
+            first_link=self._first_link,
+            ticks=self.tick,
+            tick_us=self._tick_us,
+            tools=self._tools,
+        )
 
     def snapshot(self) -> State:
         """Return a mark in the log: its last block and how far that is filled."""
+        if self.fold is not None:
+            raise RuntimeError("a run that does not keep its log cannot go back")
         return State(
             owner=type(self), values=(self._block, self.tick, self.cycle, self._first_link, self._tools, self._tool)
         )
@@ -201,40 +196,23 @@ class Recorder:
         """Go back, or on, to a mark: the log is the one that led there."""
         state.check(self)
         block, self.tick, self.cycle, self._first_link, self._tools, self._tool = state.values
-        self._block = block.copy()
+        self._data = block.data.copy()
+        self._block = Block(before=block.before, tick=block.tick, cycle=block.cycle, data=self._data)
 
-    def _new_block(self, before: _Block | None) -> _Block:
-        ticks = BLOCK_CYCLES * self._ticks_per_cycle
-        return _Block(
-            before=before,
-            tick=self.tick,
-            cycle=self.cycle,
-            ticks=np.zeros((ticks, 5 * self.n)),
-            commands=np.zeros((ticks, 2 * self.n)),
-            cycles=np.zeros((BLOCK_CYCLES, 4 * self.n + 6 + len(SCALARS))),  # four vectors, six of the seam
-            frames=np.zeros((BLOCK_CYCLES // FRAME_CYCLES, 7 * self._parts + 2), dtype=np.float32),
-        )
-
-    def _filled(self, first: int = 0) -> list[tuple[_Block, int, int]]:
-        """Return the blocks that hold tick ``first`` and later ones, with the ticks and the cycles that each holds."""
-        found: list[tuple[_Block, int, int]] = []
-        block: _Block | None = self._block
-        end_tick, end_cycle = self.tick, self.cycle
-        while block is not None and end_tick > first:
-            found.append((block, end_tick - block.tick, end_cycle - block.cycle))
-            end_tick, end_cycle, block = block.tick, block.cycle, block.before
-        return found[::-1]
-
-    def recorded(self) -> Recorded:
-        """Return all rows up to now."""
-        return Recorded(
-            blocks=tuple(block for block, _, _ in self._filled(-1)),  # not 0: a run without a tick has its block too
-            places=_places(self.n, self._parts),
-            first_link=self._first_link,
-            parts=self._parts,
-            ticks=self.tick,
-            cycles=-(-self.tick // self._ticks_per_cycle),  # one may have begun whose first tick failed
-            ticks_per_cycle=self._ticks_per_cycle,
-            tick_us=self._tick_us,
-            tools=self._tools,
-        )
+    def _next_block(self) -> None:
+        full = self._block
+        self._data = InMemory.empty(self._layout)
+        self._block = Block(before=full, tick=self.tick, cycle=self.cycle, data=self._data)
+        # the block before stays: what judges a cycle reads the rows of the last ones
+        old = full.before
+        if old is None:
+            return
+        if self.fold is not None:
+            # with a tick more: the first link angle of a block is in the block before it
+            self.fold(self._recorded(max(0, old.tick - 1)), old.tick, full.tick)
+            old.before = None
+        elif self.failed is None and isinstance(old.data, InMemory):
+            try:
+                old.data = old.data.sealed(self.spill)
+            except OSError as error:
+                self.failed = error

@@ -35,7 +35,7 @@ from typing import Literal, Protocol
 
 import numpy as np
 
-from runtime.control.recorder import FRAME_CYCLES
+from runtime.control.blocks import FRAME_CYCLES
 from runtime.core.frames import Array
 from runtime.core.linear import matmul
 from runtime.robot.kinematics.chain import Chain

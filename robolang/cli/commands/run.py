@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from robolang.cli.controller_settings import settings_of
-from robolang.cli.errors import DIAGNOSTICS, MOTION, reported, say
+from robolang.cli.errors import DIAGNOSTICS, MOTION, STORAGE, reported, say
 from robolang.cli.live_options import FollowOptions, followed, pages_of
 from robolang.cli.options import CellOptions, Group, Option, Program, RunControllerOptions, SimulationOptions, Strict
 from robolang.cli.output import echo
@@ -86,7 +86,7 @@ def run(
             print_result(result.report)
         _print_alarms(project, result, warnings=output.warnings)
     # a file that is lost or a signal says more than the alarm, which is printed in any case
-    code = code or (0 if result.ok else MOTION)
+    code = code or _code_of(result)
     if not code and output.strict and (accepted.warned or result.warnings):
         code = DIAGNOSTICS
     if code:
@@ -110,7 +110,9 @@ def _run(
     with shown(output.quiet, steps) as progress:
         physics, realtime = not simulation.no_physics, simulation.realtime
         observer = progress if pages is None else Observers(progress, pages.frames)
-        session = Session(project, physics=physics, realtime=realtime, observer=observer, plans=plans)
+        # old rows beside the log, where there must be room for it anyway; a page may ask for them, too
+        kept = pages is not None if output.log is None else output.log.absolute().parent
+        session = Session(project, physics=physics, realtime=realtime, observer=observer, plans=plans, log=kept)
         progress.follow(session.controller)
         # until the files are written: a signal must not cut them off
         with followed(session, pages, follow) as run_session, _signals(session) as stopped:
@@ -137,6 +139,12 @@ def _check_outputs(program: str, output: _OutputOptions) -> None:
         taken.add(os.path.realpath(path))
     for _, path in files:
         check_writable(path)
+
+
+def _code_of(result: "RunResult") -> int:
+    if any(alarm.code == "RBL706" for alarm in result.alarms):
+        return STORAGE
+    return 0 if result.ok else MOTION
 
 
 def _write(result: "RunResult", output: _OutputOptions) -> int:

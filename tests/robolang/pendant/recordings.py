@@ -24,7 +24,7 @@ def statements(path: Path | str) -> list[str]:
 
 def _ends(session: Session, log: dict) -> list[np.ndarray]:
     """Where each motion of a session ended, in the order of their ends, rad; moves that blend have no end."""
-    moved = [run for run in session.record.statements if run.begun and run.end_tick and _stops(run)]
+    moved = [run for run in session.record.statements if run.begun and run.ended and _stops(run)]
     return [log["q_plan"][run.end_tick - 1] for run in moved]
 
 
