@@ -49,6 +49,7 @@ def meta_of(record: RunRecord, signals: Signals, report: dict[str, Any]) -> dict
 
 def file_name(path: str) -> str:
     """Return the name of a file without its folders, of any system."""
+    # also of a name that another system has written
     return ntpath.basename(path)
 
 

@@ -48,6 +48,7 @@ class Measures:
 
     def complete(self, recorded: Recorded) -> list[Measured]:
         """Return what has been measured of each statement up to now; the run may go on."""
+        # of a copy: the rows that are still there come again when they are dropped
         other = copy(self)
         other._found = [replace(each) for each in self._found]
         for first in range(self._tick, recorded.ticks, _PIECE):

@@ -123,6 +123,7 @@ class Session:
         recorder = self.controller.recorder
         recorded = recorder.recorded()
         report = build_report(self.record, self._measures.complete(recorded), wall_s)
+        # what was dropped must not look like a short log
         rows = recorded if recorder.fold is None else NotKept()
         log = Log(rows, meta_of(self.record, self.world.signals, report))
         alarms, warnings = (

@@ -59,6 +59,7 @@ def _write(file: zipfile.ZipFile, name: str, count: int, pieces: Iterator[Array]
     entry.compress_type = zipfile.ZIP_DEFLATED if packed else zipfile.ZIP_STORED
     with file.open(entry, "w", force_zip64=True) as stream:
         for number, piece in enumerate(pieces):
+            # the number of rows is known before the first of them is computed
             if number == 0:
                 header = {"descr": piece.dtype.str, "fortran_order": False, "shape": (count, *piece.shape[1:])}
                 np.lib.format.write_array_header_1_0(stream, header)

@@ -69,6 +69,7 @@ class Layout:
         return _columns(self)
 
 
+# looked up for each signal of each block that is read
 @cache
 def _columns(layout: Layout) -> dict[str, Column]:
     found: dict[str, Column] = {}
@@ -140,6 +141,7 @@ class Sealed:
         """Return rows that can be written to; ``OSError``."""
         return _filled(self)
 
+    # a future that was given up, and a snapshot that is gone, hold no place
     def __del__(self) -> None:
         self.spill.free(self.place)
 

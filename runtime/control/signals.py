@@ -144,6 +144,7 @@ class Signals(Mapping[str, Array]):
         for at in range(0, len(q), PIECE):
             X = self._chain.flange(q[at : at + PIECE])
             tools = self._of_cycle("tool", first + at, first + at + len(X))
+            # nearly always one tool, and then one product for all
             for tool in np.unique(tools):
                 rows = np.flatnonzero(tools == tool)
                 poses[at + rows] = matmul(X[rows], self._rows.tools[tool])
@@ -154,6 +155,7 @@ class Signals(Mapping[str, Array]):
 
     def _of_cycle(self, name: str, first: int, last: int) -> Array:
         ticks = self._rows.ticks_per_cycle
+        # whole cycles are read, and the ticks before and after are cut off
         start = first // ticks
         rows = self._rows.read(name, start, max(start, -(-last // ticks)))
         return np.repeat(rows, ticks, axis=0)[first - start * ticks : last - start * ticks]

@@ -28,8 +28,10 @@ class Spill:
             self._handle = file.fileno()
         at = self._free[-1] if self._free else self._end
         written = 0
+        # a file system may take less than it is given
         while written < len(data):
             written += os.pwrite(self._handle, data[written:], at + written)
+        # only now: a piece that failed has not used its place
         if self._free:
             self._free.pop()
         else:
