@@ -66,7 +66,7 @@ def joint_angles(rehearsal: Rehearsal, home: Array, period_us: int) -> Array:
 
 def _signals(q: Array, tool: Array, cycle_s: float) -> Iterator[Signal]:
     yield evenly(_cycle("q_link", q, cycle_s))
-    # of differences as the planner takes them, so that a plan at its limit shows 100 %
+    # of set-points 8 ms apart: between them a peak may be a little higher
     speed, point = _change(q, cycle_s), _change(tool, cycle_s)
     for name, values in (
         ("dq_cmd", speed),

@@ -25,7 +25,7 @@ def paired(signal: Signal) -> Signal:
     size = bin_rows(len(signal.values))
     if size == 1:
         return signal
-    return replace(signal, base="pairs", dt=signal.dt * size / 2, values=_pairs(signal.values, size))
+    return replace(signal, base="pairs", dt=signal.dt * size / 2, values=pairs(signal.values, size))
 
 
 def evenly(signal: Signal) -> Signal:
@@ -44,7 +44,10 @@ def thinned(rows: int, dt: float) -> dict[str, object] | None:
     return {"every_s": size * dt, "text": text}
 
 
-def _pairs(values: Array, size: int) -> Array:
+def pairs(values: Array, size: int) -> Array:
+    """Return the least and the largest of each ``size`` rows of columns (N, k), in their order; 1: the columns."""
+    if size == 1:
+        return values
     bins = -(-len(values) // size)
     # column by column: a run of half an hour is copied once for each, not for all at once
     return np.stack([least_and_largest(values[:, k], bins, size) for k in range(values.shape[1])], axis=1)

@@ -45,6 +45,9 @@ class _OutputOptions(Group):
         Path | None,
         Option("--log", metavar="FILE", help="Write all signals: .npz (numpy) or .mcap (log viewers)."),
     ] = None
+    html: Annotated[
+        Path | None, Option("--html", metavar="FILE.html", help="Write a page that shows the run in a browser.")
+    ] = None
     strict: Strict = False
     quiet: Annotated[bool, Option("--quiet", help="Print errors only; with --strict warnings too.")] = False
 
@@ -123,7 +126,9 @@ def _run(
 
 def _check_outputs(program: str, output: _OutputOptions) -> None:
     """Refuse outputs of a wrong kind or that would overwrite an input or each other, and try to write them."""
-    report, log = output.report, output.log
+    report, log, html = output.report, output.log, output.html
+    if html is not None and html.suffix != ".html":
+        raise OptionValueError("--html", f"'{html}' must end in .html")
     if log is not None and log.suffix not in (".npz", ".mcap"):
         raise OptionValueError("--log", f"'{log}' must end in .npz or .mcap")
     # a slip in the order of the words must not cost a program: it is there only once
@@ -132,7 +137,8 @@ def _check_outputs(program: str, output: _OutputOptions) -> None:
     from robolang.core.storage import check_writable
 
     taken = {os.path.realpath(program)}  # the same file may have two names, by a link or by ./
-    files = [(option, path) for option, path in (("--report", report), ("--log", log)) if path is not None]
+    outputs = (("--report", report), ("--log", log), ("--html", html))
+    files = [(option, path) for option, path in outputs if path is not None]
     for option, path in files:
         if os.path.realpath(path) in taken:
             raise OptionValueError(option, f"'{path}' is the program or another output of this run")
@@ -148,7 +154,7 @@ def _code_of(result: "RunResult") -> int:
 
 
 def _write(result: "RunResult", output: _OutputOptions) -> int:
-    """Write report and log, each of them even if the other cannot be written; return the exit code."""
+    """Write report, log and page, each of them even if another cannot be written; return the exit code."""
     from robolang.core.storage import write_json
     from robolang.logs.files import write_log
     from runtime.core.faults import Fault
@@ -156,6 +162,7 @@ def _write(result: "RunResult", output: _OutputOptions) -> int:
     writers: list[tuple[Path | None, Callable[[Path], None]]] = [
         (output.report, lambda path: write_json(path, result.report)),
         (output.log, lambda path: write_log(path, result.log)),
+        (output.html, lambda path: _write_page(path, result)),
     ]
     code = 0  # a full disk takes the log, and may still take the report
     for path, write in writers:
@@ -165,6 +172,14 @@ def _write(result: "RunResult", output: _OutputOptions) -> int:
             except Fault as fault:
                 code = say(fault)
     return code
+
+
+def _write_page(path: Path, result: "RunResult") -> None:
+    from robolang.view.page import Bundle, write_page
+    from robolang.view.run_page import pack_run
+
+    name = str(result.log.needed_meta()["program"]["name"])
+    write_page(path, [pack_run(result.log, name)], Bundle.installed())
 
 
 def _print_alarms(project: "Project", result: "RunResult", *, warnings: bool) -> None:

@@ -29,7 +29,7 @@ def sha256(text):
 
 
 def test_the_policy_names_the_hashes_of_what_is_in_the_file_and_allows_nothing_else(tmp_path):
-    page = written(tmp_path, pack_run(log(20), meta(), "a"))
+    page = written(tmp_path, pack_run(log(20), "a"))
     ((_, style),) = page.of("style")
     ((_, script),) = [found for found in page.of("script") if "data-run" not in found[0]]
     assert page.policy == {
@@ -44,14 +44,14 @@ def test_the_policy_names_the_hashes_of_what_is_in_the_file_and_allows_nothing_e
 
 
 def test_runs_are_numbered_in_their_order_and_only_text(tmp_path):
-    page = written(tmp_path, pack_run(log(20), meta(), "a"), pack_run(log(24), meta(), "b"))
+    page = written(tmp_path, pack_run(log(20), "a"), pack_run(log(24), "b"))
     runs = [attributes for attributes, _ in page.of("script") if "data-run" in attributes]
     assert runs == [{"type": "text/plain", "data-run": str(k)} for k in (0, 1)]
     assert [header["label"] for header, _ in page.runs] == ["a", "b"]
 
 
 def test_hostile_texts_are_in_the_run_as_they_are_and_nowhere_in_the_html(tmp_path):
-    plain = written(tmp_path, pack_run(log(20), meta(), "a"))
+    plain = written(tmp_path, pack_run(log(20), "a"))
     hostile = meta(
         program={"name": HOSTILE, "text": HOSTILE * 1000},
         robot={**meta()["robot"], "name": HOSTILE},
@@ -59,7 +59,7 @@ def test_hostile_texts_are_in_the_run_as_they_are_and_nowhere_in_the_html(tmp_pa
         events=[event("output", HOSTILE, 1, 0.0)],
         report={"statements": [statement(1, 0.0, text=HOSTILE, notes=[HOSTILE])]},
     )
-    page = written(tmp_path, pack_run(log(20), hostile, HOSTILE))
+    page = written(tmp_path, pack_run(log(20, hostile), HOSTILE))
     assert [name for name, _, _ in page.elements] == [name for name, _, _ in plain.elements]
     ((header, _),) = page.runs
     assert header["label"] == HOSTILE and header["meta"]["program"] == hostile["program"]
@@ -68,13 +68,13 @@ def test_hostile_texts_are_in_the_run_as_they_are_and_nowhere_in_the_html(tmp_pa
 
 def test_a_line_of_a_megabyte_is_kept(tmp_path):
     text = "'" + "<" * 1_000_000
-    ((header, _),) = written(tmp_path, pack_run(log(20), meta(program={"name": "a", "text": text}), "a")).runs
+    ((header, _),) = written(tmp_path, pack_run(log(20, meta(program={"name": "a", "text": text})), "a")).runs
     assert header["meta"]["program"]["text"] == text
 
 
 def test_the_same_run_is_the_same_file(tmp_path):
-    first = written(tmp_path, pack_run(log(163), meta(), "a")).text
-    assert written(tmp_path, pack_run(log(163), meta(), "a")).text == first
+    first = written(tmp_path, pack_run(log(163), "a")).text
+    assert written(tmp_path, pack_run(log(163), "a")).text == first
 
 
 @pytest.mark.parametrize(
@@ -97,5 +97,5 @@ def test_a_bundle_that_would_break_the_page_is_refused(broken):
 
 def test_a_folder_that_is_not_there_is_a_fault_and_nothing_is_written(tmp_path):
     with pytest.raises(Fault) as caught:
-        written(tmp_path / "none", pack_run(log(20), meta(), "a"))
+        written(tmp_path / "none", pack_run(log(20), "a"))
     assert caught.value.code == "RBL706" and not list(tmp_path.iterdir())

@@ -5,15 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from robolang.view import thinning
+from robolang.view import run_signals, thinning
 from robolang.view.run_page import check_comparable, pack_run
 from runtime.core.faults import Fault
 from tests.robolang.view.decoding import furthest, unpacked
-from tests.robolang.view.recorded import AXES, event, happened, log, meta, statement
+from tests.robolang.view.recorded import AXES, MadeLog, event, happened, log, meta, statement
 
 
 def shown(signals, **changes):
-    return unpacked(pack_run(signals, meta(**changes), "first"))
+    return unpacked(pack_run(MadeLog(signals.arrays, meta(**changes)), "first"))
 
 
 def chart(header, name):
@@ -26,12 +26,13 @@ def ids(header):
 
 
 def test_every_signal_comes_back_within_its_step():
-    recorded = log(163)
-    header, found = shown(recorded)
+    header, found = shown(log(163))
+    recorded = log(163).arrays
     listed = {each["name"]: each for each in header["signals"]}
     expected = {
         **{name: recorded[name] for name in ("q_cmd", "q_fb", "q_link", "dq_fb", "tau_sat", "parts", "fingers")},
-        **{name: recorded[name][:, None] for name in ("tool_error", "tool_speed")},
+        "tool_speed": recorded["tool_speed"][:, None],
+        "tool_error": np.linalg.norm(recorded["tool_cmd"] - recorded["X_world_tool"][:, :3, 3], axis=1)[:, None],
         **{name: recorded[name][::8] for name in ("D", "T", "D_age", "seam_deviation", "tool_cmd")},
         **{name: recorded[name][::8, None] for name in ("payload_mass", "wrist_mode")},
         "tool": recorded["X_world_tool"][::8, :3, 3],
@@ -155,18 +156,19 @@ def test_a_run_without_a_tick_has_a_page():
 
 
 def test_gaps_in_a_log_are_gaps_in_the_page():
-    q = log(163)["q_link"]
+    q = log(163).arrays["q_link"]
     q[20:30, 1] = math.nan
-    _, found = shown(log(163, q_link=q, tool_error=np.full(163, math.nan)))
+    _, found = shown(log(163, q_link=q, tool_cmd=np.full((163, 3), math.nan)))
     assert [k for k, value in enumerate(found["q_link"][1]) if value is None] == list(range(20, 30))
     assert found["tool_error"] == [[None] * 163]
 
 
 def test_a_long_run_is_thinned_and_says_so(monkeypatch):
     monkeypatch.setattr(thinning, "MOST_ROWS", 100)
-    recorded = log(1000)
+    made = log(1000)
+    recorded = made.arrays
     recorded["q_cmd"][503, 0] += 0.01
-    header, found = shown(recorded)
+    header, found = shown(made)
     listed = {each["name"]: each for each in header["signals"]}
     assert max(each["rows"] for each in header["signals"]) <= 100
     assert header["thinned"]["every_s"] == pytest.approx(0.02)
@@ -181,9 +183,54 @@ def test_a_long_run_is_thinned_and_says_so(monkeypatch):
 
 @pytest.mark.parametrize("other", [{"name": "made", "axes": AXES[:2]}, {"name": "another", "axes": AXES}])
 def test_runs_of_two_robots_are_not_compared(other):
-    robot = meta()["robot"]
-    check_comparable([robot])
-    check_comparable([robot, {**robot, "flange": []}])
+    first = log(24)
+    check_comparable([first])
+    check_comparable([first, log(24, meta(program={"name": "other.rbl", "text": ""}))])
     with pytest.raises(Fault) as caught:
-        check_comparable([robot, other])
+        check_comparable([first, log(24, meta(robot={**meta()["robot"], **other}))])
     assert caught.value.code == "RBL826"
+
+
+def test_a_tool_that_changes_is_no_motion_of_the_tool():
+    """From tick 80 on another tool counts, and its point is 0.3 m away; the log knows the speed of that tick."""
+    made = log(163)
+    made.arrays["cycle/tool"][10:] = 1
+    made.arrays["X_world_tool"][80:, 2, 3] += 0.3
+    _, found = shown(made)
+    assert max(found["tool_speed"][0]) < 10.0
+    assert found["tool_speed"][0][80] == pytest.approx(made.arrays["tool_speed"][80], abs=1e-6)
+
+
+def test_pieces_make_the_same_signals_as_the_whole(monkeypatch):
+    whole = pack_run(log(1000), "a")
+    monkeypatch.setattr(run_signals, "PIECE", 24)
+    assert pack_run(log(1000), "a") == whole
+    monkeypatch.setattr(thinning, "MOST_ROWS", 100)
+    monkeypatch.setattr(run_signals, "PIECE", 100_000)
+    thin = pack_run(log(1003), "a")
+    monkeypatch.setattr(run_signals, "PIECE", 24)
+    assert pack_run(log(1003), "a") == thin
+
+
+@pytest.mark.parametrize(
+    "broken",
+    [
+        {"report": []},
+        {"report": {"statements": [{}]}},
+        {"events": [{"kind": "output", "name": "1", "value": "x", "time_s": 0.0}]},
+        {"events": [{"kind": "output", "name": "1", "value": 1, "time_s": 1e400}]},
+        {"tick_s": None},
+    ],
+    ids=str,
+)
+def test_a_log_that_says_something_else_is_refused(broken):
+    made = log(24)
+    made.meta = {**meta(), **broken}
+    with pytest.raises(Fault) as caught:
+        pack_run(made, "a")
+    assert caught.value.code == "RBL619"
+
+
+def test_a_statement_that_has_not_begun_is_at_no_time():
+    header, _ = shown(log(24), report={"statements": [statement(1, 0.0), {**statement(9, None), "begun": False}]})
+    assert [each["line"] for each in header["meta"]["report"]["statements"]] == [1]

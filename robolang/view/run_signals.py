@@ -1,0 +1,131 @@
+"""The signals of a page from a log, read piece by piece: a run of half an hour needs little more memory than its page.
+
+What changes once a cycle is kept once a cycle: a log repeats it in every tick.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from robolang.logs.log import Log
+from robolang.view.packing import Signal
+from robolang.view.thinning import bin_rows, evenly, paired, pairs
+from runtime.core.frames import Array
+
+PIECE = 65_536
+"""Rows that are read at once."""
+_TICK = ("q_cmd", "q_fb", "dq_fb", "tau_sat")
+_CYCLE = ("D", "T", "payload_mass", "wrist_mode", "seam_deviation")
+
+
+def signals_of(log: Log, robot: dict[str, Any]) -> Iterator[Signal]:
+    """Yield the signals of a page; ``robot`` is that of the ``meta`` of the log."""
+    rows, tick_s = log.count("t"), log.rows.tick_us * 1e-6
+    cycle_s = tick_s * log.rows.ticks_per_cycle
+    for name in _TICK:
+        yield _every_tick(name, partial(log.span, name), rows, tick_s)
+    if bin_rows(rows) > 1:
+        # the difference of two thinned signals says nothing: their values are of different times
+        yield _every_tick(
+            "joint_error", lambda *span: log.span("q_cmd", *span) - log.span("q_link", *span), rows, tick_s
+        )
+    yield evenly(Signal(name="q_link", base="tick", dt=tick_s, values=log["q_link"]))
+    yield from _of_tool(log, rows, tick_s, cycle_s)
+    limits = [np.nan if axis["torque"] is None else axis["torque"] for axis in robot["axes"]]
+    yield Signal(name="torque_limit", base="tick", dt=rows * tick_s, values=np.array([limits, limits]))
+    for name in _CYCLE:
+        yield paired(Signal(name=name, base="cycle", dt=cycle_s, values=_columns(log.each_cycle(name))))
+    ages = _sampled(log, "D_age")
+    yield paired(Signal(name="D_age", base="cycle", dt=cycle_s, values=ages))
+    yield from _frames(log)
+
+
+def _every_tick(name: str, read: Callable[[int, int], Array], rows: int, tick_s: float) -> Signal:
+    size = bin_rows(rows)
+    values = np.concatenate([pairs(_columns(read(*span)), size) for span in _pieces(rows, size)])
+    return Signal(
+        name=name, base="tick" if size == 1 else "pairs", dt=tick_s if size == 1 else tick_s * size / 2, values=values
+    )
+
+
+def _pieces(rows: int, size: int = 1) -> Iterator[tuple[int, int]]:
+    """Yield spans of so many rows, each of whole bins; at least one, which gives an empty signal its columns."""
+    step = size * -(-PIECE // size)
+    for first in range(0, max(rows, 1), step):
+        yield first, min(first + step, rows)
+
+
+def _sampled(log: Log, name: str) -> Array:
+    every = log.rows.ticks_per_cycle
+    return np.concatenate([log.span(name, *span)[::every] for span in _pieces(log.count(name), every)])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _ToolPoint:
+    """The tool point in ticks: ``command`` and ``true`` (N, 3) m, its ``speed`` (N,) m/s."""
+
+    command: Array
+    true: Array
+    speed: Array
+
+    @property
+    def error(self) -> Array:
+        """Distance of the true point from the commanded one (N,), m."""
+        return _lengths(self.true - self.command)
+
+
+def _of_tool(log: Log, rows: int, tick_s: float, cycle_s: float) -> Iterator[Signal]:
+    size, every = bin_rows(rows), log.rows.ticks_per_cycle
+    found: dict[str, list[Array]] = {"tool_error": [], "tool_speed": [], "tool": [], "tool_cmd": []}
+    for span in _pieces(rows, size * every):
+        point = _tool_point(log, *span)
+        for name, values in (("tool_error", point.error), ("tool_speed", point.speed)):
+            found[name].append(pairs(values[:, None], size))
+        for name, values in (("tool", point.true), ("tool_cmd", point.command)):
+            found[name].append(values[::every])
+    base, dt = ("tick", tick_s) if size == 1 else ("pairs", tick_s * size / 2)
+    for name in ("tool_error", "tool_speed"):
+        yield Signal(name=name, base=base, dt=dt, values=np.concatenate(found[name]))
+    for name in ("tool", "tool_cmd"):
+        yield evenly(Signal(name=name, base="cycle", dt=cycle_s, values=np.concatenate(found[name])))
+
+
+def _tool_point(log: Log, first: int, last: int) -> _ToolPoint:
+    """Return the tool point of ticks ``first`` to before ``last``.
+
+    As the log computes it, but with the poses of each tick computed once for all of it: they are what a page costs.
+    """
+    from_ = max(first - 1, 0)
+    true = log.span("X_world_tool", from_, last)[:, :3, 3]
+    before = true[:-1] if first else np.concatenate([true[:1], true[:-1]])
+    true = true[first - from_ :]
+    speed = _lengths(true - before) / (log.rows.tick_us * 1e-6)
+    # where TOOL has changed the point, the difference is no motion
+    for tick in _new_tools(log):
+        if first <= tick < last:
+            speed[tick - first] = log.span("tool_speed", tick, tick + 1)[0]
+    return _ToolPoint(command=log.span("tool_cmd", first, last), true=true, speed=speed)
+
+
+def _new_tools(log: Log) -> list[int]:
+    tools = log.rows.read("tool", 0, log.rows.cycles)
+    return [(int(at) + 1) * log.rows.ticks_per_cycle for at in np.flatnonzero(np.diff(tools))]
+
+
+def _frames(log: Log) -> Iterator[Signal]:
+    times = log["frame_t"]
+    if len(times):
+        dt = float(times[1] - times[0]) if len(times) > 1 else 1.0
+        for name in ("parts", "fingers"):
+            yield evenly(Signal(name=name, base="frame", dt=dt, t0=float(times[0]), values=_columns(log[name])))
+
+
+def _lengths(vectors: Array) -> Array:
+    return np.asarray(np.sqrt((vectors * vectors).sum(axis=1)))
+
+
+def _columns(values: Array) -> Array:
+    return values.reshape(len(values), int(np.prod(values.shape[1:], dtype=int)))
