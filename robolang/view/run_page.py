@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from robolang.logs.files import read_log
 from robolang.logs.log import Log, Meta
-from robolang.logs.npz_file import read_log
 from robolang.view import charts, joints, notes
 from robolang.view.packing import Signal, pack
 from robolang.view.run_signals import signals_of
