@@ -331,3 +331,58 @@ def without_webgl(path):
         page.click(LINE.format(5))
         assert running(page) == 5
         assert page.locator("[data-signal=tool_error] .u-over").count() == 1
+
+
+def test_paper_gets_every_chart_the_whole_text_and_a_picture(browser, tmp_path):
+    tab = Tab(browser, color_scheme="dark")
+    page = tab.open(made_up.page(tmp_path / "paper.html", made_up.run(DURATION_S)))
+    page.emulate_media(media="print")
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert page.evaluate("document.documentElement.dataset.theme") == "light"
+    assert page.locator("[data-testid=chart] .u-over").count() == len(made_up.charts())
+    assert page.locator("img.snapshot").get_attribute("src").startswith("data:image/png;base64,")
+    assert all(
+        page.is_visible(f"[data-testid={name}]") for name in ("program", "notes", "joints", "timeline", "outcome")
+    )
+    assert not page.is_visible("[data-testid=play]")
+    page.evaluate("dispatchEvent(new Event('afterprint'))")
+    assert page.evaluate("document.documentElement.dataset.theme") == "dark"
+    assert tab.complaints == []
+    tab.close()
+
+
+def test_a_narrow_page_has_everything_one_under_another(browser, tmp_path):
+    tab = Tab(browser, width=390, height=844)
+    page = tab.open(made_up.page(tmp_path / "phone.html", made_up.run(DURATION_S)))
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    tops = [
+        page.locator(f"[data-testid={name}]").bounding_box()["y"] for name in ("stage", "timeline", "program", "charts")
+    ]
+    assert tops == sorted(tops)
+    page.click(LINE.format(4))
+    assert running(page) == 4
+    tab.close()
+
+
+def test_a_view_with_less_work_still_shows_the_robot(page, first):
+    page.evaluate("robolang.viewer.stage.view.simplify(); robolang.seek(2)")
+    page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    assert first.complaints == []
+
+
+def test_the_error_of_the_path_can_be_drawn_larger(page):
+    view = page.locator("[data-testid=view3d]")
+    before = view.screenshot()
+    page.keyboard.press("e")
+    page.keyboard.press("e")
+    page.keyboard.press("e")
+    page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    assert "500" in page.evaluate("document.querySelector('.legend select').selectedOptions[0].textContent")
+    assert view.screenshot() != before
+    page.keyboard.press("e")
+
+
+@pytest.mark.parametrize("key,view", [("2", "front"), ("3", "side"), ("4", "top"), ("1", "iso")])
+def test_views_have_keys_and_say_which_is_shown(page, key, view):
+    page.keyboard.press(key)
+    assert page.locator("[data-view][aria-pressed=true]").get_attribute("data-view") == view

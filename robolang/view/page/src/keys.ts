@@ -6,7 +6,7 @@ export function bindKeys(bindings: Bindings): void {
   addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const target = event.target as HTMLElement;
-    if (target.closest("dialog") && event.key !== "?") return;
+    if (target.closest("dialog[open]") && event.key !== "?") return;
     if (keeps(target, event.key)) return;
     const action = bindings[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (!action) return;

@@ -126,7 +126,7 @@ export class Chart {
   private get digits(): number {
     const { min, max } = this.plot?.scales.y ?? {};
     const span = (max ?? 1) - (min ?? 0);
-    return span > 0 ? Math.max(0, Math.min(5, Math.ceil(2.5 - Math.log10(span)))) : 2;
+    return span > 0 ? Math.max(0, Math.min(5, Math.ceil(2.6 - Math.log10(span)))) : 2;
   }
 
   private curves(): readonly Line[] {

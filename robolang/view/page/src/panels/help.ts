@@ -3,14 +3,14 @@ import { button, el } from "../dom";
 const KEYS: readonly (readonly [string, string])[] = [
   ["Space", "play or pause"],
   ["← →", "one cycle back or on; with Shift 0.1 s"],
-  ["Page up, Page down", "statement before, next statement"],
-  ["Home, End", "start, end"],
+  ["PgUp PgDn", "statement before, next statement"],
+  ["Home End", "start, end"],
   ["+ −", "faster, slower"],
   ["Z", "whole run"],
   ["1 2 3 4", "view: 3-D, front, side, top"],
   ["E", "error of the path: true size, × 10, × 100, × 500"],
   ["L", "labels on or off"],
-  ["P, N, J", "program, notes, joints"],
+  ["P N J", "program, notes, joints"],
   ["T", "light or dark"],
   ["?", "this list"],
 ];
@@ -31,7 +31,7 @@ export class Help {
 
   constructor() {
     const close = button("", "Close (Escape)", () => this.element.close(), { class: "icon close" });
-    this.element.append(el("header", {}, el("h2", {}, "Keys and mouse"), close), list(KEYS, "kbd"), list(HANDS, "span"));
+    this.element.append(el("header", {}, el("h2", {}, "Keys and mouse"), close), list(KEYS, (keys) => keys.split(" ").map((key) => el("kbd", {}, key))), list(HANDS, (hand) => [hand]));
     this.element.addEventListener("click", (event) => {
       if (event.target === this.element) this.element.close();
     });
@@ -44,6 +44,6 @@ export class Help {
   }
 }
 
-function list(rows: readonly (readonly [string, string])[], tag: "kbd" | "span"): HTMLElement {
-  return el("dl", {}, ...rows.map(([key, text]) => el("div", {}, el("dt", {}, el(tag, {}, key)), el("dd", {}, text))));
+function list(rows: readonly (readonly [string, string])[], show: (name: string) => (Node | string)[]): HTMLElement {
+  return el("dl", {}, ...rows.map(([name, text]) => el("div", {}, el("dt", {}, ...show(name)), el("dd", {}, text))));
 }

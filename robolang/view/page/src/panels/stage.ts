@@ -39,7 +39,7 @@ export class Stage {
     } catch (error) {
       host.remove();
       const reason = error instanceof Error ? error.message : String(error);
-      this.refuse(`The robot cannot be drawn: this browser offers no WebGL (${reason}). Program, charts and timeline work without it.`);
+      this.refuse("This browser offers no WebGL, so the robot is not drawn. Program, timeline and charts work without it.", reason);
       return;
     }
     this.controls(this.view);
@@ -74,9 +74,9 @@ export class Stage {
     if (this.now.textContent !== text) this.now.textContent = text;
   }
 
-  private refuse(words: string): void {
+  private refuse(words: string, reason?: string): void {
     this.element.classList.add("empty");
-    this.element.append(el("p", { class: "words", role: "status", "data-testid": "no3d" }, words));
+    this.element.append(el("p", { class: "words", role: "status", title: reason, "data-testid": "no3d" }, words));
   }
 
   private controls(view: View3D): void {
@@ -107,6 +107,7 @@ export class Stage {
       view.exaggerate(k);
       this.player.seek(this.player.t, this.player.statement);
     });
+    if (!(view.largestError > 0)) return [el("label", {}, shown, "Tool path")];
     const ramp = el("span", { class: "ramp", title: "Distance of the tool point from its commanded place" }, el("small", {}, "0"), el("i", {}), el("small", {}, `${number(view.largestError * 1000)} mm`));
     return [el("label", {}, shown, "Tool path"), ramp, this.scale];
   }

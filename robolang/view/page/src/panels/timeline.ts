@@ -16,9 +16,9 @@ const REACH = 3;
 
 type Kind = "move" | "hand" | "load" | "wait" | "other";
 const KINDS: readonly (readonly [RegExp, Kind])[] = [
-  [/^(MOVE|MOVEJ|MOVEC|SEEK|HOME)\b/, "move"],
+  [/^(MOVE|MOVEJ|MOVEC|APPROACH|DEPART)\b/, "move"],
   [/^HAND\b/, "hand"],
-  [/^(LOAD|TOOL)\b/, "load"],
+  [/^(LOAD|TOOL|FRAME)\b/, "load"],
   [/^(DELAY|WAIT|PAUSE)\b/, "wait"],
 ];
 

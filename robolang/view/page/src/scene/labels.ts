@@ -16,7 +16,15 @@ interface Label {
 const HEIGHT = 18;
 const LETTER = 7;
 
-/** Names that stand beside things of the scene. Where two would overlap, the nearer one is shown. */
+/** What is shown where names would overlap: findings before points and parts, those before things and frames. */
+const ORDER: readonly (readonly Kind[])[] = [["error"], ["warning"], ["note", "point", "part"]];
+
+function rank(kind: Kind): number {
+  const found = ORDER.findIndex((kinds) => kinds.includes(kind));
+  return found < 0 ? ORDER.length : found;
+}
+
+/** Names that stand beside things of the scene. Where two would overlap, the more important or nearer one is shown. */
 export class Labels {
   readonly element = el("div", { class: "labels", "aria-hidden": "true" });
   private readonly labels: Label[] = [];
@@ -40,7 +48,7 @@ export class Labels {
       label.at.getWorldPosition(this.place).project(camera);
       return { label, x: ((this.place.x + 1) * width) / 2, y: ((1 - this.place.y) * height) / 2, depth: this.place.z };
     });
-    for (const { label, x, y, depth } of placed.sort((a, b) => a.depth - b.depth)) {
+    for (const { label, x, y, depth } of placed.sort((a, b) => rank(a.label.kind) - rank(b.label.kind) || a.depth - b.depth)) {
       const wide = label.element.textContent.length * LETTER + 10;
       const clear = depth < 1 && x > 0 && x < width && y > 0 && y < height && taken.every((other) => other.half !== label.half || Math.abs(other.y - y) > HEIGHT || other.x + other.wide < x || x + wide < other.x);
       label.element.classList.toggle("shown", clear);

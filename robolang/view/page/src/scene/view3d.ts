@@ -19,6 +19,8 @@ export interface Quality {
 }
 
 export const FINE: Quality = { shadows: true, smooth: true, pixels: 2 };
+/** What a picture becomes where frames come slowly. */
+const COARSE: Quality = { shadows: false, smooth: true, pixels: 0.75 };
 export const PLAIN: Quality = { shadows: false, smooth: false, pixels: 0.5 };
 
 interface Stage {
@@ -160,8 +162,8 @@ export class View3D {
 
   /** Draw with less work: no shadows, fewer pixels. A computer without a graphics card still plays then. */
   simplify(): void {
-    if (this.quality === PLAIN) return;
-    this.quality = PLAIN;
+    if (this.quality !== FINE) return;
+    this.quality = COARSE;
     this.renderer.shadowMap.enabled = false;
     this.furnish();
     this.resize();
@@ -268,11 +270,11 @@ function at<T extends Object3D>(object: T, [x = 0, y = 0, z = 0]: readonly numbe
   return object;
 }
 
-/** Alarms, warnings and notes that have a place: their own, or that of the tool at their time. */
+/** Alarms, warnings and notes with a code and a place: their own, or that of the tool at their time. */
 function findings(run: Run): { name: string; p: readonly number[]; severity: Severity }[] {
   const tool = run.signals.get("tool");
   return run.header.notes.flatMap((note) => {
-    const there = note.p ?? (note.time_s !== null && tool && note.severity !== "print" ? [0, 1, 2].map((k) => tool.at(k, note.time_s ?? 0)) : null);
-    return there?.every(Number.isFinite) ? [{ name: note.code ?? note.severity, p: there, severity: note.severity }] : [];
+    const there = note.p ?? (note.time_s !== null && tool ? [0, 1, 2].map((k) => tool.at(k, note.time_s ?? 0)) : null);
+    return note.code !== null && there?.every(Number.isFinite) ? [{ name: note.code, p: there, severity: note.severity }] : [];
   });
 }
