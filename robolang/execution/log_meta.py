@@ -94,7 +94,8 @@ def robot_of(spec: RobotSpec, X_flange_tool: Array) -> dict[str, Any]:
         "name": spec.name,
         "axes": [
             {
-                "name": axis.name,
+                "name": f"J{number}",  # as messages and the language name it
+                "title": axis.name,
                 "kind": "revolute",
                 "placement": axis.placement.tolist(),
                 "lower": float(axis.limits.lower),
@@ -102,7 +103,7 @@ def robot_of(spec: RobotSpec, X_flange_tool: Array) -> dict[str, Any]:
                 "speed": float(axis.limits.speed),
                 "torque": float(axis.limits.torque),
             }
-            for axis in spec.axes
+            for number, axis in enumerate(spec.axes, 1)
         ],
         "flange": spec.X_last_flange.tolist(),
         "tool": X_flange_tool.tolist(),

@@ -5,13 +5,13 @@ The same page as that of a run, with what a plan has: no physics, no torques, no
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from robolang.core.diagnostics import Diagnostic, Severity, has_errors
 from robolang.execution.dry_run import Rehearsal
+from robolang.execution.log_meta import file_name, point_poses, robot_of
 from robolang.planning.placed import Placed
 from robolang.project.project import Project
 from robolang.syntax.unparse import describe
@@ -20,14 +20,13 @@ from robolang.view.packing import Signal, pack
 from robolang.view.thinning import evenly, paired, thinned
 from runtime.appearance.cell_scene import scene_of
 from runtime.core.frames import Array
-from runtime.robot.model.spec import RobotSpec
 
 _WORDS: dict[Severity, notes.Severity] = {Severity.ERROR: "error", Severity.WARNING: "warning"}
 
 
 def pack_plan(project: Project, rehearsal: Rehearsal, found: Sequence[Diagnostic]) -> bytes:
     """Return a planned motion as a page holds it, with what was ``found`` in program and motion."""
-    cycle_s, robot, label = project.profile.period_s, _robot(project.cell.robot), Path(project.source.path).name
+    cycle_s, robot, label = project.profile.period_s, _robot(project), file_name(project.source.path)
     q = joint_angles(rehearsal, np.asarray(project.cell.home), project.profile.period_us)
     signals = {signal.name: signal for signal in _signals(q, _tool(project, rehearsal, q), cycle_s)}
     header = {
@@ -40,7 +39,7 @@ def pack_plan(project: Project, rehearsal: Rehearsal, found: Sequence[Diagnostic
         "meta": {
             "program": {"name": label, "text": project.source.text},
             "robot": robot,
-            "scene": scene_of(project.cell).as_json(),
+            "scene": scene_of(project.cell, point_poses(project, rehearsal.kinematics)).as_json(),
             "events": [],
             "report": _report(project, rehearsal, found),
         },
@@ -98,21 +97,12 @@ def _tool(project: Project, rehearsal: Rehearsal, q: Array) -> Array:
     return points
 
 
-def _robot(spec: RobotSpec) -> dict[str, Any]:
+def _robot(project: Project) -> dict[str, Any]:
     """Return a robot as the ``meta`` of a log has it, with the accelerations that a plan is held to."""
-    axes = [
-        {
-            "name": axis.name,
-            "kind": "revolute",
-            "lower": float(axis.limits.lower),
-            "upper": float(axis.limits.upper),
-            "speed": float(axis.limits.speed),
-            "acceleration": float(axis.limits.acceleration),
-            "torque": float(axis.limits.torque),
-        }
-        for axis in spec.axes
-    ]
-    return {"name": spec.name, "axes": axes}
+    robot = robot_of(project.cell.robot, project.cell.hand.X_flange_tool)
+    limits = project.cell.robot.per_axis("limits", "acceleration").tolist()
+    axes = [{**axis, "acceleration": limit} for axis, limit in zip(robot["axes"], limits, strict=True)]
+    return {**robot, "axes": axes}
 
 
 def _report(project: Project, rehearsal: Rehearsal, found: Iterable[Diagnostic]) -> dict[str, Any]:

@@ -113,8 +113,9 @@ def _run(
     with shown(output.quiet, steps) as progress:
         physics, realtime = not simulation.no_physics, simulation.realtime
         observer = progress if pages is None else Observers(progress, pages.frames)
-        # old rows beside the log, where there must be room for it anyway; a page may ask for them, too
-        kept = pages is not None if output.log is None else output.log.absolute().parent
+        # old rows beside the log or the page, where there must be room anyway; a live page may ask for them, too
+        beside = output.log or output.html
+        kept = pages is not None if beside is None else beside.absolute().parent
         session = Session(project, physics=physics, realtime=realtime, observer=observer, plans=plans, log=kept)
         progress.follow(session.controller)
         # until the files are written: a signal must not cut them off
