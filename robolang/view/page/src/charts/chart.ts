@@ -139,7 +139,7 @@ export class Chart {
     this.values.set(series, value);
     const key = el("i", { class: `key colour-${colour % COLOURS} ${series.role}`, "aria-hidden": "true" });
     const name = series.label === this.head.title ? "" : series.label;
-    const made = el("button", { type: "button", class: "chip", "aria-pressed": "true", "aria-label": series.label, title: `Hide or show ${series.label}` }, key, name, value);
+    const made = el("button", { type: "button", class: "chip", "aria-pressed": "true", "aria-label": series.label, title: `Hide or show ${series.label}` }, key, el("span", { class: "name" }, name), value);
     made.addEventListener("click", () => this.toggle(made, index));
     return made;
   }

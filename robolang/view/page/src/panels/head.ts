@@ -10,7 +10,11 @@ export function head(player: Player, ...tools: readonly HTMLElement[]): HTMLElem
   document.title = `${meta.program.name} · robolang`;
   const made = el("header", { class: "head" }, el("h1", { "data-testid": "title" }, meta.program.name), outcome(player), el("div", { class: "tools" }, ...tools));
   made.append(facts(player));
-  if (header.thinned) made.append(el("p", { class: "thinned", "data-testid": "thinned", title: header.thinned.text }, header.thinned.text));
+  const second = player.runs[1];
+  if (second && second.header.meta.program.text !== meta.program.text) {
+    made.append(el("p", { class: "remark" }, `${second.header.label} executed another text; the one shown is that of ${header.label}.`));
+  }
+  if (header.thinned) made.append(el("p", { class: "remark", "data-testid": "thinned", title: header.thinned.text }, header.thinned.text));
   return made;
 }
 
