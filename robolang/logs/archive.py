@@ -6,6 +6,7 @@ without the rest; the only one that is packed, ``meta``, is read with ``packed``
 """
 
 import os
+import re
 import struct
 import weakref
 import zipfile
@@ -24,12 +25,17 @@ from runtime.core.frames import Array
 
 MOST_BYTES = 64_000_000_000
 """Largest log that is read: some days of a six-axis arm."""
-MOST_PACKED = 64_000_000
-"""Most bytes of an array that is packed, before they are unpacked and after."""
+MOST_PACKED = 256_000_000
+"""Most bytes of an array that is packed, before they are unpacked and after: half a million statements in a report."""
 _MOST_LISTED = 100_000
 """Most bytes of the list of arrays at the end of a file: some hundred arrays, where a log has thirty."""
 _END = struct.Struct("<4s4H2LH")  # end of central directory: PKZIP APPNOTE 4.3.16, without a comment
 _LOCAL = struct.Struct("<4s5H3L2H")  # local file header: APPNOTE 4.3.7
+_MAGIC = b"\x93NUMPY\x01\x00"
+_HEADER = re.compile(
+    rb"\{'descr': '(<[fi][48]|\|[iu]1)', 'fortran_order': False, "
+    rb"'shape': \((\d{1,18},|\d{1,18}(?:, \d{1,18}){1,3})\), \} *\n"
+)
 _HASHED = 1 << 20
 _DAMAGE = (zipfile.BadZipFile, zlib.error, EOFError, ValueError, RuntimeError, NotImplementedError, KeyError)
 """What is raised for bytes that are no zip file, or no array."""
@@ -98,8 +104,8 @@ class Archive:
         stored = self.stored(name)
         count = max(0, min(last, stored.shape[0]) - first)
         try:
-            self._file.seek(stored.at + first * stored.row)
-            raw = self._file.read(count * stored.row)
+            # not through the buffer of the file: what is cut meanwhile would still be in it
+            raw = os.pread(self._file.fileno(), count * stored.row, stored.at + first * stored.row)
             return np.frombuffer(raw, stored.dtype).reshape(count, *stored.shape[1:])
         except (ValueError, OSError) as error:
             raise self.damaged(error) from None
@@ -150,13 +156,16 @@ class Archive:
 
 
 def _header(stream: IO[bytes]) -> tuple[tuple[int, ...], np.dtype[np.float64]]:
-    """Read the header of an array of plain numbers, row after row; ``ValueError``."""
-    if np.lib.format.read_magic(stream) != (1, 0):
+    """Read the header of an array of plain numbers, row after row, as numpy writes it; ``ValueError``."""
+    mark = stream.read(len(_MAGIC) + 2)
+    if len(mark) != len(_MAGIC) + 2 or not mark.startswith(_MAGIC):
         raise ValueError("an array of another format")
-    shape, fortran, dtype = np.lib.format.read_array_header_1_0(stream)
-    if fortran or dtype.kind not in "iuf" or not shape or min(shape) < 0:
+    # matched, and not read by numpy, which hands what it finds there to a parser of Python
+    found = _HEADER.fullmatch(stream.read(int.from_bytes(mark[len(_MAGIC) :], "little")))
+    if found is None:
         raise ValueError("an array of another kind")
-    return shape, dtype
+    shape = tuple(map(int, re.findall(rb"\d+", found[2])))
+    return shape, np.dtype(found[1].decode("ascii"))
 
 
 def _reason(error: Exception) -> str:

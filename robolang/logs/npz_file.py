@@ -10,7 +10,7 @@ import math
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import IO, Any, cast
+from typing import IO, Any, NoReturn, cast
 
 import numpy as np
 
@@ -28,6 +28,8 @@ _OLD = tuple(name for name in NAMES if name not in (*OF_FRAMES, "tool_cmd", "too
 """Signals of layout 1."""
 _PIECE = 8192
 """Rows that are written at once."""
+_LEAST_IN_BRACKETS = 5
+"""Fewest characters for each bracket of a meta, on average: a face of a mesh, ``[0,1,2],``, has eight."""
 _MOST_TICKS_PER_CYCLE = 1000
 
 
@@ -84,8 +86,12 @@ def read_npz(path: Path | str) -> Log:
 
 def _meta(archive: Archive) -> dict[str, Any]:
     """Return the ``meta`` of a log, whose robot and times can be computed with."""
+    text = archive.packed("meta")
     try:
-        meta = json.loads(archive.packed("meta"), parse_constant=_no_constant)
+        # each takes twenty times its two characters in memory, and where there are many of them it is no meta
+        if (text.count(b"[") + text.count(b"{")) * _LEAST_IN_BRACKETS > len(text) + _LEAST_IN_BRACKETS * 10_000:
+            raise ValueError("brackets without content")
+        meta = json.loads(text, parse_constant=_no_constant, parse_float=_finite)
     except (ValueError, RecursionError) as error:
         raise archive.damaged(f"its meta cannot be read: {error}") from None
     if not isinstance(meta, dict):
@@ -110,8 +116,14 @@ def _check_robot(robot: dict[str, Any]) -> None:
         raise ValueError("a pose of the robot is not 4 x 4 numbers")
 
 
-def _no_constant(name: str) -> None:
+def _no_constant(name: str) -> NoReturn:
     raise ValueError(f"{name} is no number")
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    # 1e999 is a number in JSON, and infinite
+    return value if math.isfinite(value) else _no_constant(text)
 
 
 class FileRows:
@@ -120,12 +132,18 @@ class FileRows:
     def __init__(self, archive: Archive, meta: dict[str, Any]) -> None:
         self._archive = archive
         self._axes = len(meta["robot"]["axes"])
-        tick_s, cycle_s = float(meta["tick_s"]), float(meta["cycle_s"])
+        tick_s, cycle_s = meta["tick_s"], meta["cycle_s"]
+        if not (isinstance(tick_s, float) and isinstance(cycle_s, float)):
+            raise ValueError(f"a tick of {tick_s} in a cycle of {cycle_s}")
         if not (1e-6 <= tick_s <= 1.0 and 1 <= cycle_s / tick_s <= _MOST_TICKS_PER_CYCLE):
             raise ValueError(f"a tick of {tick_s} s in a cycle of {cycle_s} s")
         self.tick_us = round(tick_s * 1e6)
         self.ticks_per_cycle = round(cycle_s / tick_s)
-        (self.ticks,) = archive.stored("t").shape
+        times = archive.stored("t")
+        # all memory that a signal takes is counted from here: a shorter number would let a small file ask for much
+        if times.dtype != np.float64 or len(times.shape) != 1:
+            raise ValueError(f"t has the shape {times.shape} of {times.dtype}")
+        self.ticks = times.shape[0]
         self.cycles = math.ceil(self.ticks / self.ticks_per_cycle)
         self.frames = math.ceil(self.cycles / FRAME_CYCLES)
         self._tools = archive.stored("tools")
@@ -153,8 +171,11 @@ class FileRows:
         name, stored = place.rpartition("/")[2], self._archive.stored(place)
         widths = {"t": (), "parts": (*stored.shape[1:2], 7), "fingers": (2,), "seam_deviation": (6,)}
         width = widths.get(name, () if name in SCALARS else (self._axes,))
-        if stored.shape != (count, *width) or (stored.dtype.kind != "f") != (name in WHOLE):
-            raise self._archive.damaged(f"{place} has the shape {stored.shape}, not {(count, *width)}")
+        number = np.float32 if name in _FRAMES else WHOLE.get(name, np.float64)
+        if stored.shape != (count, *width) or stored.dtype != number:
+            raise self._archive.damaged(
+                f"{place} has the shape {stored.shape} of {stored.dtype}, not {(count, *width)}"
+            )
         rows = self._archive.rows(place, first, last)
         if name == "tool" and len(rows) and not 0 <= rows.min() <= rows.max() < self._tools.shape[0]:
             raise self._archive.damaged("a tool is used that it does not have")

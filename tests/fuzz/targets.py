@@ -4,6 +4,7 @@ The promises are R10 and R12 to R14: whatever the bytes are, what comes is a dia
 registered code, in bounded time; places lie in the text; formatting is done once and keeps tree and comments.
 """
 
+import json
 import re
 from contextlib import contextmanager
 from pathlib import Path
@@ -16,12 +17,14 @@ from robolang.analysis.cell_symbols import CellSymbols
 from robolang.core.diagnostics import Severity, render, render_fault, to_json
 from robolang.core.source import Source, decode_program
 from robolang.lint import engine
+from robolang.logs.files import read_log
 from robolang.project.discovery import builtin_cell_file
 from robolang.project.points import load_points
 from robolang.syntax import ast, formatter
 from robolang.syntax.grammar import line_parser
 from robolang.syntax.keywords import KEYWORDS
 from robolang.syntax.parser import parse
+from robolang.teaching.logged import joints_at
 from robolang.testing.golden import read_golden
 from runtime.core.faults import Fault, lookup
 from runtime.core.tomlfile import FileFault
@@ -155,6 +158,31 @@ def golden(data):
     assert said
 
 
+def log(data):
+    """A log is read and gives all that it names, or is refused; what it gives is as large as its rows say."""
+    path = _FOLDER / "fuzz.npz"
+    path.write_bytes(data)
+    with _refusing("RBL600", "RBL619", "RBL820", "RBL821"):
+        found = read_log(path)
+        for name in found:
+            with _refusing("RBL619"):
+                assert len(found[name]) == found.count(name) <= len(data)
+        if found.meta is not None:
+            found.each_cycle("line")
+            json.dumps(found.meta, allow_nan=False)
+        joints_at(path, 6, 0.0)
+
+
+@contextmanager
+def _refusing(*codes):
+    try:
+        yield
+    except Fault as fault:
+        assert fault.code in codes
+        assert fault.message
+        assert fault.hint or lookup(fault.code).remedy
+
+
 TARGETS = {
     "lex": lex,
     "parse": read,
@@ -164,8 +192,9 @@ TARGETS = {
     "cell": cell,
     "model": model,
     "golden": golden,
+    "log": log,
 }
-SEEDS = {each: each for each in ("points", "cell", "model", "golden")}
+SEEDS = {each: each for each in ("points", "cell", "model", "golden", "log")}
 """The folder of the corpus for each target; ``program`` for the others."""
 
 
