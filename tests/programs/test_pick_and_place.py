@@ -41,6 +41,34 @@ def result() -> RunResult:
     return run("pick_and_place.rbl")[1]
 
 
+def frames(result: RunResult, number: int) -> np.ndarray:
+    """Frames in which a statement runs."""
+    at = ticks(result, number)
+    return np.flatnonzero((result.log["frame_t"] >= at[0] / 1000) & (result.log["frame_t"] <= at[-1] / 1000))
+
+
+def test_the_carried_part_moves_with_the_hand_in_the_log(result):
+    log, rows = result.log, frames(result, 60)
+    part = log["parts"][:, 0].astype(np.float64)
+    assert np.abs(np.linalg.norm(part[:, 3:], axis=1) - 1.0).max() < 1e-6
+    X_world_tool = log["X_world_tool"][16 * rows]
+    in_hand = np.einsum("kij,ki->kj", X_world_tool[:, :3, :3], part[rows, :3] - X_world_tool[:, :3, 3])
+    assert np.ptp(part[rows, :3], axis=0).max() > 0.1
+    assert np.ptp(in_hand, axis=0).max() < 1e-3
+    # it lies still before, and where it was put afterwards
+    assert np.ptp(part[frames(result, 30), :3], axis=0).max() < 1e-4
+    assert part[-1, :3] == pytest.approx(np.array(result.report["objects"]["part"]["pose_mm_deg"][:3]) / 1e3, abs=1e-6)
+
+
+def test_the_fingers_close_around_the_part_in_the_log(session, result):
+    fingers, hand = result.log["fingers"], session.project.cell.hand
+    (part,) = session.project.cell.parts
+    assert fingers[0] == pytest.approx(hand.stroke / 2.0, abs=1e-6)
+    # both sides of the part, along the y axis of the tool, are between the pads
+    assert fingers[frames(result, 60)].sum(axis=1) == pytest.approx(part.size[1], abs=1e-3)
+    assert fingers[-1] == pytest.approx(hand.stroke / 2.0, abs=1e-3)
+
+
 def statement(result: RunResult, number: int) -> dict:
     return next(entry for entry in result.report["statements"] if entry["number"] == number)
 
@@ -164,21 +192,25 @@ def test_the_built_in_cell_is_the_cell_beside_the_program():
 
 
 def run_in(folder: Path, name: str, **environment: str) -> tuple[bytes, bytes, dict]:
+    """Run the listing, copied to a folder of its own and started from another one."""
     npz, report = folder / f"{name}.npz", folder / f"{name}.json"
+    own = folder / f"where {name} lies" / "pick.rbl"
+    own.parent.mkdir()
+    own.write_text(PROGRAM.read_text())
     subprocess.run(
-        [sys.executable, "-m", "robolang", "run", "pick.rbl", "--quiet", "--log", str(npz), "--report", str(report)],
-        cwd=folder,
+        [sys.executable, "-m", "robolang", "run", str(own), "--quiet", "--log", str(npz), "--report", str(report)],
+        cwd=own.parent if name == "one" else folder,
         check=True,
         env={**os.environ, **environment},
     )
     values = json.loads(report.read_text())
     for wall in ("wall_time_s", "realtime_factor"):
         assert values.pop(wall) > 0.0
+    assert values.pop("program") == str(own)
     return npz.read_bytes(), report.read_bytes(), values
 
 
 def test_two_runs_give_the_same_bytes(tmp_path, result):
-    (tmp_path / "pick.rbl").write_text(PROGRAM.read_text())
     one = run_in(tmp_path, "one", PYTHONHASHSEED="1", TZ="Asia/Tokyo", LC_ALL="C", OMP_NUM_THREADS="1")
     two = run_in(tmp_path, "two", PYTHONHASHSEED="2", TZ="America/Lima", LC_ALL="C.UTF-8", OMP_NUM_THREADS="2")
     assert one[0] == two[0]
