@@ -30,6 +30,7 @@ _PIECE = 8192
 """Rows that are written at once."""
 _LEAST_IN_BRACKETS = 5
 """Fewest characters for each bracket of a meta, on average: a face of a mesh, ``[0,1,2],``, has eight."""
+_FEW_BRACKETS = 10_000
 _MOST_TICKS_PER_CYCLE = 1000
 
 
@@ -89,7 +90,8 @@ def _meta(archive: Archive) -> dict[str, Any]:
     text = archive.packed("meta")
     try:
         # each takes twenty times its two characters in memory, and where there are many of them it is no meta
-        if (text.count(b"[") + text.count(b"{")) * _LEAST_IN_BRACKETS > len(text) + _LEAST_IN_BRACKETS * 10_000:
+        brackets = text.count(b"[") + text.count(b"{")
+        if not brackets <= _FEW_BRACKETS + len(text) / _LEAST_IN_BRACKETS:
             raise ValueError("brackets without content")
         meta = json.loads(text, parse_constant=_no_constant, parse_float=_finite)
     except (ValueError, RecursionError) as error:
