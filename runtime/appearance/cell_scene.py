@@ -7,7 +7,7 @@ from runtime.appearance.arm import arm_bodies, arm_shapes, mesh_shapes, reach_of
 from runtime.appearance.colours import colours_of
 from runtime.appearance.hand import hand_bodies, hand_shapes
 from runtime.appearance.own_meshes import own_meshes
-from runtime.appearance.scene import Mark, Scene
+from runtime.appearance.scene import Mark, Scene, View
 from runtime.appearance.surroundings import obstacle_bodies, obstacle_shapes, part_bodies, part_shapes
 from runtime.cell.cell import CellSpec
 from runtime.core.frames import Array
@@ -43,6 +43,7 @@ def scene_of(cell: CellSpec, points: Mapping[str, Array] = NO_POINTS) -> Scene:
         meshes=MappingProxyType({name: mesh for _, name, mesh in own.links}),
         frames=marks(cell.frames),
         points=marks(points),
+        camera=None if cell.camera is None else View(position=cell.camera.position, target=cell.camera.target),
     )
 
 

@@ -98,10 +98,19 @@ class Mark:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class View:
+    """A camera at ``position`` (3,) m that looks to ``target`` (3,) m."""
+
+    position: Array
+    target: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Scene:
     """Bodies (parents first), their shapes, colours by role (``#rrggbb``), meshes by name, frames and points.
 
-    ``reach`` m is how far the robot comes from its base: pictures are framed by it.
+    ``reach`` m is how far the robot comes from its base: light and floor are as large. ``camera`` is the view that the
+    cell gives; None: all of it is to be seen.
     """
 
     robot: str
@@ -112,6 +121,7 @@ class Scene:
     meshes: Mapping[str, Mesh] = field(default_factory=lambda: MappingProxyType({}))
     frames: tuple[Mark, ...] = ()
     points: tuple[Mark, ...] = ()
+    camera: View | None = None
 
     def as_json(self) -> dict[str, Any]:
         """Return the scene as JSON values: the same scene gives the same text."""
@@ -146,6 +156,7 @@ class Scene:
             },
             "frames": _marks_json(self.frames),
             "points": _marks_json(self.points),
+            "camera": None if self.camera is None else _view_json(self.camera),
         }
 
     @classmethod
@@ -163,6 +174,7 @@ class Scene:
             meshes=meshes,
             frames=_marks(scene["frames"]),
             points=_marks(scene["points"]),
+            camera=_view(scene["camera"]),
         )
 
 
@@ -180,6 +192,19 @@ def _joint_json(joint: SceneJoint) -> dict[str, Any]:
 
 def _marks_json(marks: Iterable[Mark]) -> list[dict[str, Any]]:
     return [{"name": mark.name, "X": _rows(mark.X_world_mark)} for mark in marks]
+
+
+def _view_json(view: View) -> dict[str, Any]:
+    return {"position": _rows(view.position), "target": _rows(view.target)}
+
+
+def _view(value: Untrusted) -> View | None:
+    if value.value is None:
+        return None
+    view = View(position=value["position"].array((3,)), target=value["target"].array((3,)))
+    if not norm(view.target - view.position) > 0.0:
+        value.fail("looks nowhere: its two places are one")
+    return view
 
 
 def _bodies(value: Untrusted) -> tuple[SceneBody, ...]:

@@ -1,12 +1,11 @@
-"""From where a scene is seen: named views that take in the whole of it, or a camera of the cell."""
+"""Named views, which take in the whole of a scene."""
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from runtime.appearance.scene import Scene, Shape
+from runtime.appearance.scene import Scene, Shape, View
 from runtime.appearance.stance import Stance, world_poses
 from runtime.core.frames import Array
 from runtime.core.linear import matmul, norm
@@ -19,14 +18,6 @@ MARGIN = 1.06
 DIRECTIONS = {"iso": (142.0, -20.0), "front": (180.0, -8.0), "side": (90.0, -8.0), "top": (90.0, -89.9)}
 """Azimuth and elevation, deg, in which each named view looks: ``front`` faces the robot, ``side`` sees it from its
 right, ``top`` has x of the world to the right."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class View:
-    """A camera at ``position`` (3,) m that looks to ``target`` (3,) m."""
-
-    position: Array
-    target: Array
 
 
 def named_view(name: str, scene: Scene, stances: Sequence[Stance], aspect: float) -> View:

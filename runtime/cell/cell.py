@@ -77,12 +77,20 @@ class LoadSpec:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class CameraSpec:
+    """From where pictures of a cell are taken: ``position`` (3,) m, and ``target`` (3,) m in their middle."""
+
+    position: Array
+    target: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class CellSpec:
     """A cell in SI: robot, home joints (n,) rad, hand, parts, obstacles and the names a program may use.
 
     ``tools`` are poses X_flange_tool, ``frames`` poses X_world_frame (4, 4), ``sensors`` seam sensors, ``inputs`` the
     course of each input. ``controller`` are the settings of the controller profile in the file, ``doubts`` parts that
-    cannot rest where they are.
+    cannot rest where they are. ``camera`` None: pictures show the whole of the cell.
     """
 
     robot: RobotSpec
@@ -97,6 +105,7 @@ class CellSpec:
     inputs: Mapping[int, InputSpec]
     controller: Layer
     doubts: tuple[FileFault, ...]
+    camera: CameraSpec | None = None
 
     @property
     def warnings(self) -> tuple[FileFault, ...]:
@@ -141,7 +150,14 @@ def build(file: CellFile) -> CellSpec:
         inputs=file.inputs,
         controller=file.controller,
         doubts=file.doubts,
+        camera=_camera(file),
     )
+
+
+def _camera(file: CellFile) -> CameraSpec | None:
+    if file.camera is None:
+        return None
+    return CameraSpec(position=_lengths(file.camera.position_mm), target=_lengths(file.camera.target_mm))
 
 
 def _robot(file: CellFile) -> RobotSpec:

@@ -5,6 +5,7 @@ a run, so both find the same errors, all of them at once (docs/decisions/0028). 
 inside the cell file's own folder: nothing outside that folder is ever opened, whatever the file names.
 """
 
+import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
@@ -27,6 +28,8 @@ REACH_MM = 20_000.0
 
 HEAVIEST_KG = 5000.0
 """Heaviest hand, part or load, as heavy as the heaviest rated payload of a robot file."""
+NEAREST_MM = 50.0
+"""A camera is no nearer to what it looks to, mm."""
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,62}")
 
 T = TypeVar("T")
@@ -71,6 +74,13 @@ class LoadFile(Record):
     cog_mm: Numbers
 
 
+class CameraFile(Record):
+    """``[camera]``: from where pictures of the cell are taken, and what is in their middle."""
+
+    position_mm: Numbers
+    target_mm: Numbers
+
+
 class CellFile(Record):
     """A cell file and its ``text``. ``tools``, ``frames``: poses (6,) mm and deg by name, FLANGE and WORLD among them;
     ``controller``: the settings of ``[controller]``; ``doubts``: parts that cannot rest where they are (RBL640)."""
@@ -88,6 +98,7 @@ class CellFile(Record):
     sensors: Mapping[str, SensorFile]
     inputs: Mapping[int, InputSpec]
     controller: Layer
+    camera: CameraFile | None
     doubts: tuple[FileFault, ...]
 
     @property
@@ -131,6 +142,7 @@ def parse_cell_file(source: Source, folder: Path | None = None) -> CellFile:
     sensors = _named(table, "sensors", lambda item: read_sensor_file(item, folder))
     inputs = table.attempt(lambda: read_inputs(table.named_tables("inputs")))
     controller = table.table("controller").gather(read_layer) if "controller" in table else {}
+    camera = table.table("camera").gather(_camera) if "camera" in table else None
     table.finish()
     assert arm is not None and home is not None and hand is not None and inputs is not None and controller is not None
     return CellFile(
@@ -147,6 +159,7 @@ def parse_cell_file(source: Source, folder: Path | None = None) -> CellFile:
         sensors=sensors,
         inputs=MappingProxyType(inputs),
         controller=controller,
+        camera=camera,
         doubts=tuple(_doubts(lying, fixed, parts)),
     )
 
@@ -236,6 +249,14 @@ def _load(table: Table) -> LoadFile:
     load = LoadFile(mass_kg=table.number("mass_kg", low=0.0, high=HEAVIEST_KG), cog_mm=_point(table, "cog_mm"))
     table.done()
     return load
+
+
+def _camera(table: Table) -> CameraFile:
+    camera = CameraFile(position_mm=_point(table, "position_mm"), target_mm=_point(table, "target_mm"))
+    table.done()
+    if not math.dist(camera.position_mm, camera.target_mm) >= NEAREST_MM:
+        table.fail("RBL605", f"the camera is less than {NEAREST_MM:g} mm from its target", key="target_mm")
+    return camera
 
 
 def _only_pose(table: Table) -> Numbers:

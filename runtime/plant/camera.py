@@ -12,9 +12,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from runtime.appearance.scene import Scene
+from runtime.appearance.scene import Scene, View
 from runtime.appearance.stance import Stance, world_poses
-from runtime.appearance.views import FIELD, View
+from runtime.appearance.views import FIELD
 from runtime.core.linear import norm
 from runtime.core.units import DEG
 from runtime.plant.dressing import GROUP, dress, rgba
@@ -29,6 +29,10 @@ MARKS_BEYOND = 200
 """Geoms that a picture may have beside those of the model."""
 POINT = 0.007
 """Radius of the ball that shows a point, m."""
+LONGEST_LABEL = 40
+"""Characters of the name of a point that are shown."""
+INK = (0.1, 0.12, 0.15, 1.0)
+"""Colour of points."""
 
 
 class Camera:
@@ -104,6 +108,24 @@ class Camera:
             mujoco.mjtCatBit.mjCAT_ALL.value,
             self._drawn,
         )
+        self._mark()
+
+    def _mark(self) -> None:
+        """Draw the points of the scene, with their names."""
+        for mark in self._scene.points[:MARKS_BEYOND]:
+            geom = self._drawn.geoms[self._drawn.ngeom]
+            mujoco.mjv_initGeom(
+                geom,
+                mujoco.mjtGeom.mjGEOM_SPHERE,
+                np.full(3, POINT),
+                mark.X_world_mark[:3, 3],
+                np.eye(3).ravel(),
+                np.array(INK, np.float32),
+            )
+            # its font has no other characters, and its field 100 of them
+            geom.label = mark.name.encode("ascii", "replace").decode()[:LONGEST_LABEL].replace("\0", " ")
+            geom.objtype, geom.objid = mujoco.mjtObj.mjOBJ_UNKNOWN, -1
+            self._drawn.ngeom += 1
 
     def _drawn_image(self) -> Image:
         mujoco.mjr_render(self._rect, self._drawn, self._context)
@@ -132,7 +154,7 @@ def _visual(root: ET.Element, scene: Scene, width: int, height: int) -> None:
         visual, "global", offwidth=str(width), offheight=str(height), fovy=repr(FIELD / DEG), orthographic="false"
     )
     ET.SubElement(visual, "headlight", ambient="0.42 0.42 0.42", diffuse="0.16 0.16 0.16", specular="0 0 0")
-    # large: half a millimetre of shadow for each of its pixels, or round housings get spots
+    # large: a millimetre of shadow for each of its pixels, or round housings get spots
     ET.SubElement(visual, "quality", shadowsize="4096", offsamples="8")
     # the far end of the world in parts of its extent: the floor reaches to the horizon
     ET.SubElement(visual, "map", znear="0.01", zfar="40", haze="0.35", shadowclip="0.9", shadowscale="0.6")

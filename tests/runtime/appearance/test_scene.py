@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from runtime.appearance.cell_scene import scene_of
-from runtime.appearance.scene import ROLES, Mesh, Scene, SceneBody, SceneJoint, Shape
+from runtime.appearance.scene import ROLES, Mesh, Scene, SceneBody, SceneJoint, Shape, View
 from runtime.core.faults import Fault
 from runtime.core.frames import pose
 from tests.runtime.from_texts import load_cell
@@ -33,6 +33,7 @@ SCENE = Scene(
     ),
     colours=dict.fromkeys(ROLES, "#102030"),
     meshes={"m": TRIANGLE},
+    camera=View(position=np.array([2.0, 0.0, 1.0]), target=np.zeros(3)),
 )
 
 
@@ -147,6 +148,10 @@ LONG = "x" * 201
         (_set(["reach"], None), "scene.reach"),
         (_set(["frames"], [{"name": "F", "X": TORN}]), "scene.frames[0].X"),
         (_set(["points"], "P1"), "scene.points"),
+        (_set(["camera", "position"], [0, 0, 0]), "scene.camera"),
+        (_set(["camera", "position"], [0, 0, float("nan")]), "scene.camera.position"),
+        (_unset("camera", "target"), "scene.camera"),
+        (_unset("camera"), "scene"),
     ],
 )
 def test_a_scene_that_is_none_is_refused_at_its_place(change, place):

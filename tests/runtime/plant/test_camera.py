@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from runtime.appearance.cell_scene import scene_of
+from runtime.appearance.scene import View
 from runtime.appearance.stance import Stance
-from runtime.appearance.views import DIRECTIONS, View, named_view
+from runtime.appearance.views import DIRECTIONS, named_view
 from runtime.plant.camera import Camera
 from tests.runtime.from_texts import load_cell
 from tests.runtime.plant.drawing import need_graphics

@@ -1,0 +1,121 @@
+"""``robolang render PROG|RUN``: a picture or a film of a run, of a program that is run for it or of a log."""
+
+import os
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from robolang.cli.errors import MOTION, reported
+from robolang.cli.options import Argument, CellOptions, Group, Option, PhysicsOptions
+from robolang.cli.output import echo
+from robolang.cli.usage import OptionValueError
+
+if TYPE_CHECKING:
+    from robolang.logs.log import Log
+
+Subject = Annotated[str, Argument("PROG|RUN", "Program file (.rbl), which is run, or log of a run (.npz).")]
+_SIZE = re.compile(r"(\d{1,5})x(\d{1,5})")
+
+
+class _PictureOptions(Group):
+    """What is drawn, and where to."""
+
+    PANEL: ClassVar[str] = "Picture"
+    out: Annotated[
+        Path | None,
+        Option("--out", "-o", metavar="FILE", help="File: .png, .gif, .webp or .mp4; default: PROG or RUN with .png."),
+    ] = None
+    view: Annotated[
+        str | None,
+        Option(
+            "--view",
+            choices=("iso", "front", "side", "top"),
+            help="View of the whole cell; default: the camera of the cell, else iso.",
+        ),
+    ] = None
+    at: Annotated[float | None, Option("--at", metavar="S", help="Time of a .png, s; default: the end.")] = None
+    size: Annotated[
+        str | None,
+        Option("--size", metavar="WxH", help="Pixels; default: 1280x720, of a .gif or .webp 640x360."),
+    ] = None
+    fps: Annotated[int, Option("--fps", metavar="N", low=1, high=60, help="Pictures of a film per second.")] = 15
+
+
+def render(subject: Subject, files: CellOptions, picture: _PictureOptions, physics: PhysicsOptions) -> None:
+    """Draw a run: a .png at one time, a .gif, .webp or .mp4 of all of it. Films need the extra [video].
+
+    Exit codes: 0 done, also if the run of the program ended with an alarm, which is then 3; 1 the program has errors; 2
+    a file or an option cannot be used, or nothing can draw; 4 the file cannot be written.
+    """
+    out = picture.out if picture.out is not None else Path(subject).with_suffix(".png")
+    if os.path.realpath(out) == os.path.realpath(subject) or out.suffix in (".rbl", ".toml", ".npz"):
+        raise OptionValueError("--out", f"'{out}' would be a program, a cell or a log; name a picture")
+    size = _size(picture.size)
+    with reported():
+        from robolang.core.storage import check_writable
+        from robolang.view.pictures import Order
+        from robolang.view.pictures import render as draw
+
+        order = Order(path=out, view=picture.view, at=picture.at, size=size, rate=picture.fps)
+        # before a run that takes its time
+        order.check()
+        check_writable(out)
+        log, code = _log(subject, files, physics)
+        draw(log, order, _progress())
+        echo(f"{out}: {out.stat().st_size / 1e6:.2f} MB")
+    if code:
+        raise SystemExit(code)
+
+
+def _size(text: str | None) -> tuple[int, int] | None:
+    if text is None:
+        return None
+    found = _SIZE.fullmatch(text)
+    if found is None:
+        raise OptionValueError("--size", f"'{text}' must be width and height in pixels, such as 1280x720")
+    return int(found[1]), int(found[2])
+
+
+def _log(subject: str, files: CellOptions, physics: PhysicsOptions) -> "tuple[Log, int]":
+    """Return the log of a file, or of a run of the program, and the exit code of its alarms, or 0."""
+    if subject.endswith(".npz"):
+        if files.cell is not None or files.robot is not None or physics.no_physics:
+            raise OptionValueError("--cell, --robot, --no-physics", "are for a program; a log has its own")
+        from robolang.logs.npz_file import read_log
+
+        return read_log(subject), 0
+    from robolang.cli.refuse import refuse
+    from robolang.cli.run_progress import shown
+    from robolang.execution.plan_memory import PlanMemory
+    from robolang.execution.session import Session
+    from robolang.project.project import load_project
+    from runtime.appearance.own_meshes import own_meshes
+
+    project = load_project(subject, files.cell, files.robot)
+    for note in own_meshes(project.cell.robot.meshes).notes:
+        echo(f"note: the mesh {note}; its link is drawn from the joint frames", err=True)
+    plans = PlanMemory(project)
+    accepted = refuse(project, plans=plans)
+    with shown(False, accepted.steps) as progress:
+        session = Session(project, physics=not physics.no_physics, observer=progress, plans=plans)
+        progress.follow(session.controller)
+        result = session.run()
+    for alarm in result.alarms:
+        echo(f"the run ended with an alarm: {alarm.code} {alarm.message}", err=True)
+    return result.log, 0 if result.ok else MOTION
+
+
+def _progress() -> Callable[[int, int, str], None]:
+    """Return what prints how far the drawing is: the library at first, then every tenth of a film."""
+    tenths = 0
+
+    def drawn(done: int, count: int, library: str) -> None:
+        nonlocal tenths
+        if done == 1:
+            echo(f"drawing {count} picture{'s' if count > 1 else ''} with {library}", err=True)
+        if count > 1 and 10 * done // count > tenths:
+            tenths = 10 * done // count
+            echo(f"{done} of {count} pictures", err=True)
+
+    return drawn

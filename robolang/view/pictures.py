@@ -1,0 +1,108 @@
+"""Pictures and films of a run, drawn from its log by MuJoCo."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from robolang.core.storage import write_atomic
+from robolang.logs.log import Log
+from robolang.view.film_files import FORMATS, Format, Image
+from robolang.view.replay import Replay
+from runtime.appearance.scene import View
+from runtime.appearance.views import named_view
+from runtime.core.faults import Fault
+from runtime.plant.camera import Camera
+
+SMALLEST, LARGEST = 16, 4096
+"""Pixels of an edge of a picture."""
+FASTEST = 60
+"""Most pictures of a film in a second."""
+
+Progress = Callable[[int, int, str], None]
+"""Called after each picture: how many are drawn, of how many, by which library."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Order:
+    """A picture or film that is to be made: its file, view (None: that of the cell, else ``iso``), the time ``at`` of a
+    picture, s (None: the end), the size in pixels (None: the usual one) and the ``rate`` of a film, 1/s."""
+
+    path: Path
+    view: str | None = None
+    at: float | None = None
+    size: tuple[int, int] | None = None
+    rate: int = 15
+
+    @property
+    def format(self) -> Format:
+        """The kind of the file; ``Fault`` RBL832 for an ending that is none."""
+        found = FORMATS.get(self.path.suffix.lower())
+        if found is None:
+            raise Fault("RBL832", f"'{self.path}' must end in {', '.join(FORMATS)}")
+        return found
+
+    @property
+    def pixels(self) -> tuple[int, int]:
+        """Width and height."""
+        return self.size or self.format.size
+
+    def check(self) -> None:
+        """Refuse what cannot be made, before a run that takes its time; ``Fault`` RBL831 or RBL832."""
+        kind = self.format
+        width, height = self.pixels
+        if not all(SMALLEST <= edge <= LARGEST for edge in self.pixels):
+            raise Fault("RBL832", f"{width}x{height} is no size: give {SMALLEST} to {LARGEST} pixels for each edge")
+        if kind.even and (width % 2 or height % 2):
+            raise Fault("RBL832", f"{width}x{height} has an odd edge, and an .mp4 needs even ones")
+        if not 1 <= self.rate <= FASTEST:
+            raise Fault("RBL832", f"{self.rate} pictures per second are not from 1 to {FASTEST}")
+        if self.at is not None and kind.is_film:
+            raise Fault("RBL832", f"a time is for a picture, and a {self.path.suffix} is a film of the whole run")
+        kind.check(self.path.suffix)
+
+    def times(self, end: float) -> list[float]:
+        """Return the times, s, of the pictures of a run that ends at ``end``; ``Fault`` RBL832."""
+        if not self.format.is_film:
+            at = end if self.at is None else self.at
+            if not 0.0 <= at <= end:
+                raise Fault("RBL832", f"{at:g} s is outside of the run, which is from 0 to {end:.3f} s")
+            return [at]
+        # the last picture is the end itself: what the program came to
+        found = [*(k / self.rate for k in range(int(end * self.rate) + 1)), end]
+        if len(found) > self.format.most:
+            raise Fault(
+                "RBL832",
+                f"{len(found)} pictures of {end:.1f} s are more than the {self.format.most} of a {self.path.suffix}",
+                "give a smaller --fps, or write an .mp4",
+            )
+        return found
+
+
+def render(log: Log, order: Order, progress: Progress = lambda done, count, library: None) -> None:
+    """Draw a run and write the file, whole or not at all.
+
+    ``Fault`` RBL820 or RBL833 for a log without a scene, RBL830 where nothing can draw, RBL832 for an order that does
+    not suit the run, RBL706 for a file that cannot be written.
+    """
+    replay = Replay(log)
+    times = order.times(replay.end)
+    width, height = order.pixels
+    view = _view(replay, order)
+    with Camera(replay.scene, width=width, height=height) as camera:
+
+        def pictures() -> Iterator[Image]:
+            for count, time in enumerate(times, start=1):
+                image = camera.picture(replay.at(time), view)
+                # before it is given away: a writer that has all it needs does not come back
+                progress(count, len(times), camera.graphics)
+                yield image
+
+        write_atomic(order.path, lambda stream: order.format.write(stream, pictures(), order.rate))
+
+
+def _view(replay: Replay, order: Order) -> View:
+    if order.view is None and replay.scene.camera is not None:
+        return replay.scene.camera
+    width, height = order.pixels
+    # of the whole run, not of one time: all pictures of a run are then taken from one place
+    return named_view(order.view or "iso", replay.scene, replay.samples(), width / height)
