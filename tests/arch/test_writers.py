@@ -30,6 +30,7 @@ KNOWN = {
     "robolang/syntax/generate.py: NODES.write_text": "run by hand, makes a file of the source",
     "robolang/lint/pages.py: folder / name.write_text": "run by hand, makes the pages of the rules",
     "robolang/logs/npz_file.py: file.open": "to a stream of write_atomic",
+    "robolang/view/film_files.py: av.open": "to a stream of write_atomic",
     "robolang/testing/golden.py: np.savez_compressed": "to a stream of write_atomic",
 }
 

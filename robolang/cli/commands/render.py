@@ -82,7 +82,7 @@ def _log(subject: str, files: CellOptions, physics: PhysicsOptions) -> "tuple[Lo
     if subject.endswith(".npz"):
         if files.cell is not None or files.robot is not None or physics.no_physics:
             raise OptionValueError("--cell, --robot, --no-physics", "are for a program; a log has its own")
-        from robolang.logs.npz_file import read_log
+        from robolang.logs.files import read_log
 
         return read_log(subject), 0
     from robolang.cli.refuse import refuse

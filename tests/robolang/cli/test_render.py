@@ -8,7 +8,7 @@ import pytest
 from PIL import Image as Pillow
 
 from robolang.execution.session import Session
-from robolang.logs.npz_file import read_log
+from robolang.logs.files import read_log
 from tests.robolang.cli.commands import ROOT, dry, robolang
 from tests.runtime.plant.drawing import need_graphics
 
@@ -37,7 +37,7 @@ def test_a_program_is_run_and_drawn(program):
     assert image(path).shape == (90, 120, 3)
     # what a run shows, then what draws
     assert "MOVE P1" in result.stderr
-    assert "drawing 1 picture with " in result.stderr
+    assert result.stderr.split()[-1] in ("EGL", "OSMesa")
 
 
 def test_a_log_gives_the_picture_of_its_program(program, tmp_path):
