@@ -186,15 +186,26 @@ class Driver:
         self._refuse_latched()
         if executor.is_over and not executor.interrupted:
             raise Fault("RBL806", "the program has ended", "Restart puts it before its first statement.")
+        controller, self._steps = self._session.controller, steps
         # AUTO, with the programmed speeds; the return to a path is slow by itself
-        self._session.controller.speed_cap = None
-        self._steps = steps
+        cap, controller.speed_cap = controller.speed_cap, None
+        try:
+            returns = self._put_back()
+        except Fault:
+            controller.speed_cap = cap
+            raise
+        if returns:
+            self._doing = Doing.REGAIN
+        else:
+            self._go_on()
+
+    def _put_back(self) -> bool:
+        """Put the program where it was interrupted; return whether the arm has to return to its path first."""
+        executor = self._executor
         if executor.interrupted:
             executor.begin_again()
-        elif executor.displaced is not None and executor.regain():
-            self._doing = Doing.REGAIN
-            return
-        self._go_on()
+            return False
+        return executor.displaced is not None and executor.regain()
 
     def _go_on(self) -> None:
         executor = self._executor
@@ -256,7 +267,7 @@ class Driver:
         # planning takes its time, in which buttons are released
         if not self._exchange.button.holds(press, wall_s()):
             raise Fault("RBL836", "the button was released before the arm moved")
-        executor.play(plan.rows, None, f"jog {request.axis} {request.amount:+g}")
+        executor.play(plan.rows, None, _text(jog))
         self._doing, self._press = Doing.JOG, press
         return remarks(request, plan)
 
@@ -278,6 +289,12 @@ class Driver:
             "pace": None if self._pace is None else self._pace.factor,
             "by_hand": self._teaching is not None,
         }
+
+
+def _text(jog: Jog) -> str:
+    """Return a jog as the record names it."""
+    sign = "+" if jog.sign > 0 else "-"
+    return f"jog {jog.axis} {sign}{'' if jog.step is None else f'{jog.step:g}'}"
 
 
 def _request(jog: Jog, joints: int) -> JogRequest:

@@ -304,6 +304,18 @@ def test_a_program_that_was_left_by_a_jog_returns_to_its_path_first(bench):
     assert (bench.facts.state, bench.facts.mode) == ("done", "AUTO")
 
 
+def test_a_return_from_afar_is_refused_and_changes_nothing(bench):
+    bench.send("start")
+    bench.turns(150)
+    assert bench.do("pause") is None
+    number = bench.jog("J1", step=30, speed=100)
+    bench.rest(alive=number)
+    before = bench.q
+    assert bench.do("start") == "RBL541"
+    assert (bench.facts.state, bench.facts.mode) == ("paused", "MANUAL")
+    assert (bench.q == before).all()
+
+
 def test_a_pause_on_the_return_leaves_the_program_where_it_stands(bench):
     bench.send("start")
     bench.turns(150)

@@ -139,7 +139,7 @@ export interface Meta {
 
 export interface Header {
   readonly format: number;
-  readonly kind?: "run" | "plan";
+  readonly kind?: "run" | "plan" | "live";
   readonly label: string;
   readonly duration_s: number;
   readonly tick_s: number;

@@ -1,6 +1,8 @@
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
 import { el } from "./dom";
+import { Connection } from "./live/connection";
+import { isLive, SocketSource } from "./live/source";
 import { NoSink } from "./sink";
 import { EmbeddedSource, type Source } from "./source";
 import { thin } from "./thinning";
@@ -16,8 +18,9 @@ declare global {
 async function start(): Promise<void> {
   const host = document.getElementById("app") ?? document.body.appendChild(el("main", { id: "app" }));
   try {
-    const source: Source = new EmbeddedSource();
-    const viewer = new Viewer(host, await source.runs(), new NoSink());
+    const connection = isLive() ? new Connection() : null;
+    const source: Source = connection ? new SocketSource(connection) : new EmbeddedSource();
+    const viewer = new Viewer(host, await source.runs(), connection ?? new NoSink());
     expose(viewer);
     viewer.buildStage();
     source.follow(viewer);

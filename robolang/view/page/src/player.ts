@@ -90,10 +90,15 @@ export class Player {
   }
 
   /** A run that still goes on has new rows: its end moved. */
-  grow(): void {
+  extend(): void {
     const whole = !this.zoomed;
     this.end = Math.max(...this.runs.map((run) => run.end));
     if (whole) this.range = [0, this.end];
+  }
+
+  /** As `extend`, and everything that shows rows is drawn anew. */
+  grow(): void {
+    this.extend();
     this.emit("grown");
   }
 

@@ -3,8 +3,8 @@ import { Statements } from "./statements";
 
 /** A signal: evenly spaced rows of some columns. NaN: no value. */
 export class Signal {
-  readonly t0: number;
-  readonly dt: number;
+  t0: number;
+  dt: number;
   rows: number;
   columns: Float32Array[];
 
@@ -44,6 +44,14 @@ export class Signal {
     this.columns.forEach((column, k) => (column[this.rows] = row[k] ?? NaN));
     this.rows += 1;
   }
+
+  /** Keep every second row, for a run that is longer than its memory. */
+  halve(): void {
+    const kept = Math.ceil(this.rows / 2);
+    for (const column of this.columns) for (let k = 0; k < kept; k++) column[k] = column[2 * k] ?? NaN;
+    this.rows = kept;
+    this.dt *= 2;
+  }
 }
 
 /** A curve of a chart: a column in the unit of the chart. */
@@ -57,7 +65,7 @@ export interface Curve {
 export class Run {
   readonly header: Header;
   readonly signals: ReadonlyMap<string, Signal>;
-  readonly statements: Statements;
+  statements: Statements;
   end: number;
 
   constructor(header: Header, signals: ReadonlyMap<string, Signal>) {

@@ -1,6 +1,6 @@
 /** Where commands of the page go. */
 export interface Sink {
-  command(name: string, fields: Readonly<Record<string, string | number | boolean>>): void;
+  command(name: string, fields: Readonly<Record<string, string | number | boolean | null>>): void;
 }
 
 /** A page that was opened from disk has nothing to command. */

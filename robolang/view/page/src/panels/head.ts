@@ -28,7 +28,8 @@ function outcome(player: Player): HTMLElement {
   return made;
 }
 
-function ending(report: Report, kind: "run" | "plan"): [string, string] {
+function ending(report: Report, kind: "run" | "plan" | "live"): [string, string] {
+  if (kind === "live") return ["note", "Live"];
   const alarm = report.alarms?.[0]?.code;
   if (report.ok === false) return ["error", alarm ? `Stopped by ${alarm}` : "Stopped"];
   const warnings = report.warnings?.length ?? 0;
@@ -41,6 +42,7 @@ function facts(player: Player): HTMLElement {
   const { report, scene } = player.first.header.meta;
   add(made, "Robot", report.robot ?? scene?.robot ?? "");
   add(made, "Servo", both(player, (run) => run.header.meta.report.servo ?? ""));
+  if (player.first.header.kind === "live") return made;
   add(made, "Duration", both(player, (run) => seconds(run.end)));
   add(made, "Tool error", both(player, (run) => millimetres(run.largest("tool_error") * 1000)));
   add(made, "Off path", both(player, (run) => millimetres(most(run.header.meta.report, (one) => one.path_deviation_mm))));

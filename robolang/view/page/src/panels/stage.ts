@@ -15,6 +15,8 @@ export class Stage {
   private readonly player: Player;
   private readonly now = el("p", { class: "caption", "data-testid": "now", "aria-live": "off" });
   private readonly snapshot = el("img", { class: "snapshot paper", alt: "The robot at the shown time" });
+  /** The error of the last colour of the path. */
+  private readonly most = el("small", {});
   private scale: HTMLSelectElement | null = null;
   private labelled: HTMLInputElement | null = null;
 
@@ -43,6 +45,13 @@ export class Stage {
       return;
     }
     this.controls(this.view);
+  }
+
+  /** The run has more rows: its path is drawn anew. */
+  grow(): void {
+    if (!this.view) return;
+    this.view.grow();
+    this.most.textContent = millimetres(this.view.largestError);
   }
 
   showView(view: View): void {
@@ -107,8 +116,12 @@ export class Stage {
       view.exaggerate(k);
       this.player.seek(this.player.t, this.player.statement);
     });
-    if (!(view.largestError > 0)) return [el("label", {}, shown, "Tool path")];
-    const ramp = el("span", { class: "ramp", title: "Distance of the tool point from its commanded place" }, el("small", {}, "0"), el("i", {}), el("small", {}, `${number(view.largestError * 1000)} mm`));
+    // A run that still goes on has no error yet.
+    if (!(view.largestError > 0) && this.player.first.header.kind !== "live") return [el("label", {}, shown, "Tool path")];
+    this.most.textContent = millimetres(view.largestError);
+    const ramp = el("span", { class: "ramp", title: "Distance of the tool point from its commanded place" }, el("small", {}, "0"), el("i", {}), this.most);
     return [el("label", {}, shown, "Tool path"), ramp, this.scale];
   }
 }
+
+const millimetres = (metres: number): string => `${number(metres * 1000)} mm`;

@@ -14,8 +14,8 @@ const CORNER_COS = Math.cos((8 * Math.PI) / 180);
 export class ToolPath {
   readonly line: Line2;
   private readonly run: Run;
-  private readonly truth: Float32Array[];
-  private readonly samples: readonly number[];
+  private truth: readonly Float32Array[];
+  private samples: readonly number[];
 
   /** `truth`: x, y, z of the true tool point at the rows of the signal `tool`. */
   constructor(run: Run, truth: Float32Array[]) {
@@ -23,6 +23,14 @@ export class ToolPath {
     this.truth = truth;
     this.samples = thinPath(truth, MOST_POINTS);
     this.line = new Line2(new LineGeometry(), new LineMaterial({ linewidth: 3.5, vertexColors: true }));
+  }
+
+  /** Take the rows there are now, of a run that still goes on. */
+  grow(): void {
+    const tool = this.run.signals.get("tool");
+    if (!tool) return;
+    this.truth = tool.columns.map((column) => column.subarray(0, tool.rows));
+    this.samples = thinPath(this.truth, MOST_POINTS);
   }
 
   /** Draw with the error `scale` times its size; `top` is the error of the last colour, m. */

@@ -44,7 +44,7 @@ export class View3D {
   private readonly stages: Stage[];
   private readonly box = new Box3();
   private quality: Quality;
-  private readonly top: number;
+  private top: number;
   private scale = 1;
   private width = 0;
   private height = 0;
@@ -113,6 +113,13 @@ export class View3D {
     this.controls.target.copy(aim(this.camera, this.box, view));
     this.controls.update();
     this.dirty = true;
+  }
+
+  /** Draw the paths anew: their runs have more rows than before. */
+  grow(): void {
+    this.top = Math.max(...this.stages.map(({ run }) => run.largest("tool_error")));
+    for (const stage of this.stages) stage.path?.grow();
+    this.exaggerate(this.scale);
   }
 
   showPath(on: boolean): void {

@@ -1,0 +1,157 @@
+import { button, el, select } from "../dom";
+import type { Connection } from "./connection";
+import type { Reply, Status } from "./messages";
+
+const PACES = [0.1, 0.25, 0.5, 1, 2, 5, 10] as const;
+const STATES: Readonly<Record<Status["state"], string>> = {
+  starting: "Starting",
+  running: "Running",
+  paused: "Paused",
+  waiting: "Waiting",
+  stopped: "Stopped",
+  done: "Ended",
+  alarm: "Alarm",
+};
+const MOST_PRINTED = 200;
+
+/** The strip under the head: where the run stands, its buttons, its signals, and who has control. */
+export class RunPanel {
+  readonly element = el("section", { class: "strip", "aria-label": "Run", "data-testid": "strip" });
+  private readonly connection: Connection;
+  private readonly state = el("span", { class: "outcome", "data-testid": "state", role: "status" });
+  private readonly buttons: Readonly<Record<string, HTMLButtonElement>>;
+  private readonly override = el("input", { type: "range", min: 1, max: 100, value: 100, "aria-label": "Override, %", "data-testid": "override" });
+  private readonly percent = el("output", {}, "100 %");
+  private readonly pace: HTMLSelectElement;
+  private readonly signals = el("span", { class: "signals", "data-testid": "signals" });
+  private readonly control = el("span", { class: "control", "data-testid": "control" });
+  private readonly words = el("p", { class: "words", role: "alert", "data-testid": "words" });
+  private readonly printed = el("output", { class: "printed", "aria-live": "off", "data-testid": "printed" });
+  private sliding = false;
+
+  constructor(connection: Connection) {
+    this.connection = connection;
+    const send = (word: string) => (): void => void this.send(word);
+    this.buttons = {
+      start: button("Start", "Go on with the program", send("start"), { "data-testid": "start" }),
+      pause: button("Pause", "Bring the arm to rest on its path (Esc)", send("pause"), { "data-testid": "pause" }),
+      step: button("Step", "Carry out one statement", send("step"), { "data-testid": "step" }),
+      stop: button("Stop", "Stop the arm and end the program", send("stop"), { "data-testid": "stop" }),
+      reset: button("Reset", "Acknowledge the alarm", send("reset"), { "data-testid": "reset" }),
+      restart: button("Restart", "Put the program before its first statement", send("restart"), { "data-testid": "restart" }),
+      end: button("End", "End robolang view", send("end"), { "data-testid": "end" }),
+    };
+    this.pace = select("Simulated seconds in one of wall time", PACES.map((each) => [each, `${each} × real time`] as const), 1, (factor) => this.send("pace", { factor }));
+    this.override.addEventListener("input", () => {
+      this.sliding = true;
+      this.percent.textContent = `${this.override.value} %`;
+    });
+    this.override.addEventListener("change", () => {
+      this.sliding = false;
+      this.send("override", { percent: Number(this.override.value) });
+    });
+    this.element.append(
+      this.state,
+      el("span", { class: "buttons", role: "group", "aria-label": "Run the program" }, ...Object.values(this.buttons)),
+      el("label", { class: "override" }, "Override", this.override, this.percent),
+      this.pace,
+      this.signals,
+      this.control,
+      this.printed,
+      this.words,
+    );
+  }
+
+  follow(status: Status): void {
+    const { state, alarm, fault } = status;
+    const doing = status.doing ?? "nothing";
+    const words = doing === "jog" ? "Jog" : doing === "return" ? "Returning to its path" : STATES[state];
+    this.state.textContent = status.mode ? `${words} · ${status.mode}` : words;
+    this.state.className = `outcome ${alarm ? "error" : state === "paused" || state === "stopped" ? "warning" : "ok"}`;
+    const problem = alarm ? `${alarm.code} ${alarm.message}${alarm.line ? `, line ${alarm.line}` : ""}. ${alarm.hint}` : (fault ?? "");
+    if (this.words.dataset.of !== problem) {
+      this.words.dataset.of = problem;
+      this.words.textContent = problem;
+    }
+    this.enable(status, doing);
+    if (!this.sliding && status.override !== undefined) {
+      this.override.value = String(status.override);
+      this.percent.textContent = `${Math.round(status.override)} %`;
+    }
+    this.pace.hidden = status.pace === null || status.pace === undefined;
+    if (status.pace && this.pace.value !== String(status.pace)) this.pace.value = String(status.pace);
+    this.showSignals(status);
+    this.showControl(status);
+  }
+
+  print(text: string): void {
+    const line = el("span", {}, text);
+    this.printed.append(line);
+    while (this.printed.childElementCount > MOST_PRINTED) this.printed.firstElementChild?.remove();
+    this.printed.scrollTop = this.printed.scrollHeight;
+  }
+
+  /** Say that nothing more comes. */
+  end(words: string): void {
+    this.element.classList.add("over");
+    this.words.textContent = words;
+    for (const one of this.element.querySelectorAll<HTMLButtonElement>("button, input, select")) one.disabled = true;
+  }
+
+  private enable(status: Status, doing: string): void {
+    const stands = doing === "nothing" && status.control === "yours";
+    const ready = stands && !status.alarm;
+    const goes = ready && (!status.over || (status.can_continue ?? false));
+    const hand = status.by_hand ?? false;
+    const can: Readonly<Record<string, boolean>> = {
+      start: goes,
+      step: goes,
+      pause: doing !== "nothing" && status.control === "yours",
+      stop: status.control === "yours" && !status.alarm && !(status.over && doing === "nothing"),
+      reset: stands && Boolean(status.alarm),
+      restart: ready,
+      end: status.control === "yours",
+    };
+    for (const [name, made] of Object.entries(this.buttons)) {
+      made.disabled = !can[name];
+      made.hidden = !hand && (name === "restart" || name === "end" || name === "reset");
+    }
+    this.override.disabled = this.pace.disabled = status.control !== "yours";
+  }
+
+  private showSignals(status: Status): void {
+    const key = JSON.stringify([status.inputs, status.outputs, status.holding, status.control]);
+    if (this.signals.dataset.of === key) return;
+    this.signals.dataset.of = key;
+    const inputs = (status.inputs ?? []).map(([number, state, forced]) => this.input(number, state, forced, status.control !== "yours"));
+    const outputs = (status.outputs ?? []).map(([number, state]) => el("span", { class: `lamp ${state ? "on" : ""}`, title: `Output ${number}` }, `OUT ${number} ${state}`));
+    this.signals.replaceChildren(...inputs, ...outputs, ...(status.holding ? [el("span", { class: "lamp on" }, `holds ${status.holding}`)] : []));
+  }
+
+  private input(number: number, state: number, forced: boolean, watching: boolean): HTMLElement {
+    const set = (value: number | null) => (): void => void this.send("input", { number, state: value });
+    const flip = button(`IN ${number} ${state}${forced ? " forced" : ""}`, `Hold input ${number} ${state ? "off" : "on"}`, set(state ? 0 : 1), { class: `lamp ${state ? "on" : ""}`, "data-testid": `in-${number}`, disabled: watching });
+    if (!forced) return flip;
+    return el("span", {}, flip, button("auto", `Give input ${number} back to the cell file`, set(null), { class: "auto", disabled: watching }));
+  }
+
+  private showControl(status: Status): void {
+    if (this.control.dataset.of === status.control) return;
+    this.control.dataset.of = status.control;
+    const made = {
+      yours: ["You have control", button("Give", "Give control back, so that another page can take it", () => this.send("give"), { "data-testid": "give" })],
+      free: ["No page has control", button("Take", "Take control of the arm", () => this.send("take"), { "data-testid": "take" })],
+      other: ["You watch: another page has control"],
+    }[status.control];
+    this.control.replaceChildren(...made);
+  }
+
+  private send(word: string, fields: Parameters<Connection["command"]>[1] = {}): void {
+    this.words.textContent = "";
+    this.connection.command(word, fields, (reply) => this.answered(reply));
+  }
+
+  private answered(reply: Reply): void {
+    if (!reply.ok) this.words.textContent = `${reply.code ?? ""} ${reply.message ?? ""}. ${reply.hint ?? ""}`;
+  }
+}

@@ -1,0 +1,217 @@
+"""The live page in a browser: what it sends when buttons are pressed and released, and what the arm does then."""
+
+import json
+import subprocess
+import sys
+from contextlib import contextmanager
+
+import pytest
+
+from robolang.project.project import load_project
+from tests.robolang.view.browser import PATIENCE_MS, WITHOUT_GL, chromium
+from tests.steps import HANG_S
+
+PROGRAM = """MOVEJ HERE + (0, 0, 20)
+MOVE HERE + (0, 0, 60), SPEED 400
+MOVE HERE + (0, 0, -60), SPEED 400
+PRINT "<img src=x onerror=alert(1)>"
+"""
+
+
+class LivePage:
+    """A page of ``robolang view``, with all that it asks for and complains about."""
+
+    def __init__(self, browser, url, mark="#plain"):
+        self.page = browser.new_page(viewport={"width": 1400, "height": 900})
+        self.requests, self.complaints = [], []
+        self.page.on("request", lambda request: self.requests.append(request.url))
+        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.on("console", lambda message: self.complaints.append(f"{message.type}: {message.text}"))
+        self.page.goto(url + mark)
+        self.page.wait_for_selector("body:not([data-state=loading])", timeout=PATIENCE_MS)
+
+    def __getitem__(self, name):
+        return self.page.get_by_test_id(name)
+
+    def waits_for(self, state):
+        """Wait until the strip shows a state."""
+        self.page.wait_for_selector(f"[data-testid=state]:has-text('{state}')", timeout=PATIENCE_MS)
+
+    def run_is(self, state):
+        self.page.wait_for_selector(f"body[data-run={state}]", timeout=PATIENCE_MS)
+
+    def q(self):
+        return self.page.evaluate(
+            "(() => { const s = window.robolang.runs[0].signals.get('q_link'); "
+            "return s.columns.map((column) => column[s.rows - 1]); })()"
+        )
+
+    def rests(self):
+        """Joint angles once they no longer change."""
+        self.waits_for("Paused")
+        return self.q()
+
+
+@pytest.fixture(scope="module")
+def browser():
+    # text and buttons alone: a page that draws the arm with this computer's processor stalls by itself
+    with chromium(WITHOUT_GL) as found:
+        yield found
+
+
+@contextmanager
+def viewed(browser, program, *words):
+    process = subprocess.Popen(
+        [sys.executable, "-m", "robolang", "view", str(program), "--no-physics", "--no-browser", *words],
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        url = process.stderr.readline().split()[-1]
+        yield LivePage(browser, url), url, process
+    finally:
+        process.kill()
+        process.communicate()
+
+
+@pytest.fixture
+def program(tmp_path):
+    path = tmp_path / "p.rbl"
+    path.write_text(PROGRAM)
+    return path
+
+
+@pytest.fixture
+def live(browser, program):
+    with viewed(browser, program) as found:
+        found[0].waits_for("Paused")
+        yield found
+
+
+def test_a_program_is_run_from_the_page(browser, program):
+    with viewed(browser, program, "--speed", "5") as (live, _, process):
+        live.waits_for("Paused")
+        assert live.page.evaluate("document.body.dataset.state") == "ready"
+        # the token is neither in the address bar nor in what the page asks for besides itself and its socket
+        assert "token" not in live.page.url
+        assert len(live.requests) == 1
+        live["start"].click()
+        live.run_is("done")
+        assert live["printed"].inner_text() == "<img src=x onerror=alert(1)>"
+        lines = live.page.evaluate("window.robolang.runs[0].statements.all.map((one) => one.line)")
+        assert lines == [1, 2, 3, 4]
+        rows = live.page.evaluate("window.robolang.runs[0].signals.get('q_link').rows")
+        assert rows > 50
+        live["end"].click()
+        live.run_is("over")
+        assert process.wait(HANG_S) == 0
+        # it keeps what it has shown
+        assert live.page.evaluate("window.robolang.runs[0].signals.get('q_link').rows") >= rows
+        assert [each for each in live.complaints if "WebGL" not in each] == []
+
+
+def test_a_step_goes_to_the_next_line(live):
+    page, _, _ = live
+    for line in (2, 3):
+        page["step"].click()
+        page.page.wait_for_selector(f".line.due[data-line='{line}']", timeout=PATIENCE_MS)
+
+
+def press(page, name):
+    """Press a button with the mouse and wait until the arm moves; it would go on for more than a minute."""
+    page["jog-speed"].select_option("1")
+    page[name].hover()
+    page.page.mouse.down()
+    page.waits_for("Jog")
+
+
+def test_a_jog_lasts_while_its_button_is_pressed(live):
+    page, _, _ = live
+    before = page.q()
+    press(page, "jog-Z+")
+    page.page.mouse.up()
+    after = page.rests()
+    assert after != before
+
+
+RELEASES = {
+    "blur": "window.dispatchEvent(new Event('blur'))",
+    "hidden": "Object.defineProperty(document, 'hidden', { value: true, configurable: true });"
+    "document.dispatchEvent(new Event('visibilitychange'))",
+    "pointercancel": "document.querySelector('[data-testid=\"jog-Z+\"]').dispatchEvent(new Event('pointercancel'))",
+    "lost capture": "document.querySelector('[data-testid=\"jog-Z+\"]').dispatchEvent(new Event('lostpointercapture'))",
+    "page left": "window.dispatchEvent(new Event('pagehide'))",
+    "stalled": "(() => { const end = performance.now() + 1500; while (performance.now() < end); })()",
+}
+
+
+@pytest.mark.parametrize("how", RELEASES.values(), ids=RELEASES)
+def test_a_jog_ends_however_its_button_is_lost(live, how):
+    page, _, _ = live
+    press(page, "jog-Z+")
+    page.page.evaluate(how)
+    page.waits_for("Paused")
+
+
+def test_a_jog_by_the_keyboard_lasts_while_the_key_is_down(live):
+    page, _, _ = live
+    page["jog-speed"].select_option("1")
+    page["jog-Z+"].focus()
+    page.page.keyboard.down("Enter")
+    page.waits_for("Jog")
+    page.page.keyboard.up("Enter")
+    page.waits_for("Paused")
+    page.page.keyboard.down(" ")
+    page.waits_for("Jog")
+    page.page.keyboard.press("Escape")
+    page.waits_for("Paused")
+
+
+def test_a_step_jog_is_of_its_size(live, program):
+    page, _, _ = live
+    page["jog-frame"].select_option("joint")
+    page["jog-angular"].select_option("5")
+    before = page.q()
+    page["jog-J1+"].click()
+    page.waits_for("Jog")
+    after = page.rests()
+    assert after[0] - before[0] == pytest.approx(0.0872665, abs=1e-4)
+    page["teach-name"].fill("P77")
+    page["teach"].click()
+    page.page.wait_for_selector("[data-testid=pendant-said]:has-text('P77')", timeout=PATIENCE_MS)
+    assert load_project(program).points.get("P77") is not None
+    page["teach"].click()
+    page["replace"].click(timeout=PATIENCE_MS)
+    page.page.wait_for_selector("[data-testid=pendant-said]:not(.refused):has-text('P77')", timeout=PATIENCE_MS)
+
+
+def test_a_second_page_stops_a_jog_watches_and_takes_over_by_hand(live, browser):
+    page, url, _ = live
+    press(page, "jog-Z+")
+    second = LivePage(browser, url)
+    page.waits_for("Paused")
+    page.page.mouse.up()
+    second.waits_for("Paused")
+    assert second["start"].is_disabled()
+    assert second["jog-Z+"].is_disabled()
+    page["give"].click()
+    second["take"].click(timeout=PATIENCE_MS)
+    second["jog-Z+"].click(timeout=PATIENCE_MS)
+    page.page.wait_for_selector("[data-testid=jog-Z\\+]:disabled", timeout=PATIENCE_MS)
+
+
+def test_a_page_that_is_closed_stops_its_jog_and_frees_control(live, browser):
+    page, url, _ = live
+    press(page, "jog-Z+")
+    page.page.close()
+    second = LivePage(browser, url)
+    second.waits_for("Paused")
+    # alone again: it has control
+    assert json.loads(second.page.evaluate("JSON.stringify(document.querySelector('[data-testid=give]') !== null)"))
+
+
+def test_an_address_without_its_token_shows_no_page(live, browser):
+    _, url, _ = live
+    page = browser.new_page()
+    assert page.goto(url.partition("?")[0]).status == 401
+    assert page.goto(url.replace("127.0.0.1", "localhost")).status == 200
