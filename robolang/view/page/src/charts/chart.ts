@@ -124,6 +124,7 @@ export class Chart {
 
   /** Digits after the point, so that a value shows some three hundredth parts of the height of the plot. */
   private get digits(): number {
+    if (this.head.lanes) return 0;
     const { min, max } = this.plot?.scales.y ?? {};
     const span = (max ?? 1) - (min ?? 0);
     return span > 0 ? Math.max(0, Math.min(5, Math.ceil(2.6 - Math.log10(span)))) : 2;
@@ -162,7 +163,9 @@ export class Chart {
     const lanes = this.head.lanes ?? false;
     const count = this.head.series.length;
     const lines = this.curves();
-    return plotData(lines, from, to, bins, (y, k) => (lanes ? count - 1 - this.lane(lines[k]) + 0.7 * y : y));
+    // A level is drawn in seven tenths of its lane; a number that an input holds is a level of its largest value.
+    const heights = lanes ? lines.map(({ curve }) => 0.7 / curve.values.reduce((most, y) => Math.max(most, Math.abs(y) || 0), 1)) : [];
+    return plotData(lines, from, to, bins, (y, k) => (lanes ? count - 1 - this.lane(lines[k]) + (heights[k] ?? 0) * y : y));
   }
 
   private lane(line: Line | undefined): number {
@@ -242,7 +245,9 @@ export class Chart {
     const [under, over] = this.head.band ?? [NaN, NaN];
     if (low < 0.6 * under) low = Math.min(low, under);
     if (high > 0.6 * over) high = Math.max(high, over);
-    const margin = high > low ? 0.06 * (high - low) : Math.max(Math.abs(high) * 0.1, 1e-3);
+    // Noise in the last digits of a constant is not worth an axis of its own.
+    const least = 2e-3 * Math.max(Math.abs(low), Math.abs(high), 1e-6);
+    const margin = Math.max(0.06 * (high - low), least);
     return [low >= 0 && low - margin < 0 ? Math.min(0, low) : low - margin, high + margin];
   }
 

@@ -4,6 +4,8 @@ import { token } from "../dom";
 import type { Line } from "./data";
 
 const NAME_HEIGHT = 11;
+/** Where more notes are shown than these, only alarms have a line through the plot. */
+const MOST_LINES = 12;
 /** So many letters of a name fit beside a plot. */
 export const NAME_LETTERS = 6;
 
@@ -37,18 +39,22 @@ export function drawNotes(plot: uPlot, notes: readonly Note[]): void {
   ctx.save();
   ctx.setLineDash([]);
   ctx.lineWidth = devicePixelRatio;
-  for (const note of notes) {
-    if (note.time_s === null || note.severity === "print") continue;
+  const placed = notes.flatMap((note) => {
+    if (note.time_s === null || note.severity === "print") return [];
     const x = plot.valToPos(note.time_s, "x", true);
-    if (x < bbox.left || x > bbox.left + bbox.width) continue;
+    return x < bbox.left || x > bbox.left + bbox.width ? [] : [{ note, x }];
+  });
+  for (const { note, x } of placed) {
     ctx.fillStyle = token(`--${note.severity}`);
-    ctx.strokeStyle = ctx.fillStyle;
-    ctx.globalAlpha = 0.35;
-    ctx.beginPath();
-    ctx.moveTo(x, bbox.top);
-    ctx.lineTo(x, bbox.top + bbox.height);
-    ctx.stroke();
-    ctx.globalAlpha = 1;
+    if (placed.length <= MOST_LINES || note.severity === "error") {
+      ctx.strokeStyle = ctx.fillStyle;
+      ctx.globalAlpha = 0.35;
+      ctx.beginPath();
+      ctx.moveTo(x, bbox.top);
+      ctx.lineTo(x, bbox.top + bbox.height);
+      ctx.stroke();
+      ctx.globalAlpha = 1;
+    }
     ctx.beginPath();
     ctx.moveTo(x - size, bbox.top);
     ctx.lineTo(x + size, bbox.top);

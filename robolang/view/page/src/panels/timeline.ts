@@ -10,7 +10,9 @@ const AXIS = 18;
 /** Height of the name of a run over its lane. */
 const NAME = 18;
 const PAPER_WIDTH = 700;
-const INSTANT = 3;
+const INSTANT = 2;
+/** More pins than these in sight are drawn without heads. */
+const MOST_PINS = 24;
 /** Statements without duration are caught this many pixels beside their mark. */
 const REACH = 3;
 
@@ -95,7 +97,7 @@ export class Timeline {
       pen.fillText(run.header.label, 0, top - NAME / 2);
     }
     const [first, last] = run.statements.within(...this.player.range);
-    const instants: (() => void)[] = [];
+    const instants: ((crowded: boolean) => void)[] = [];
     let drawn = -Infinity;
     let pinned = -Infinity;
     for (let k = first; k < last; k++) {
@@ -112,10 +114,11 @@ export class Timeline {
         this.block(pen, one, from, to, top, lit);
       } else {
         pinned = to;
-        instants.push(() => this.instant(pen, one, from, top, lit));
+        instants.push((crowded) => this.instant(pen, one, from, top, lit, crowded));
       }
     }
-    for (const draw of instants) draw();
+    const crowded = instants.length > MOST_PINS;
+    for (const draw of instants) draw(crowded);
     for (const note of run.header.notes) this.note(pen, note, top);
   }
 
@@ -141,12 +144,14 @@ export class Timeline {
   }
 
   /** A statement that takes no time: a pin in the block that begins there. */
-  private instant(pen: CanvasRenderingContext2D, one: Statement, x: number, top: number, lit: boolean): void {
+  private instant(pen: CanvasRenderingContext2D, one: Statement, x: number, top: number, lit: boolean, crowded: boolean): void {
     pen.fillStyle = token(`--${kindOf(one.text)}-edge`);
+    pen.globalAlpha = crowded && !lit ? 0.45 : 1;
     pen.beginPath();
     pen.rect(x - 1, top, lit ? INSTANT + 1 : INSTANT, LANE);
-    pen.arc(x + 0.5, top + LANE - 3, lit ? 5 : 4, 0, 2 * Math.PI);
+    if (lit || !crowded) pen.arc(x, top + LANE - 3, lit ? 4.5 : 3.5, 0, 2 * Math.PI);
     pen.fill();
+    pen.globalAlpha = 1;
   }
 
   private note(pen: CanvasRenderingContext2D, note: Note, top: number): void {
