@@ -8,6 +8,7 @@ from pathlib import Path
 from robolang.core.storage import write_atomic
 from robolang.logs.log import Log
 from robolang.logs.mcap_file import write_mcap
+from robolang.logs.mcap_reading import read_mcap
 from robolang.logs.npz_file import read_npz, write_npz
 
 _WRITERS = {".npz": write_npz, ".mcap": write_mcap}
@@ -27,4 +28,5 @@ def read_log(path: Path | str) -> Log:
     ``Fault`` RBL600 for a file that cannot be read, RBL619 for one that is no log or is damaged, which may show only
     when a signal is read, and RBL821 for one of a later version.
     """
-    return read_npz(path)
+    path = Path(path)
+    return read_mcap(path) if path.suffix == ".mcap" else read_npz(path)

@@ -10,15 +10,15 @@ import math
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import IO, Any, NoReturn, cast
+from typing import IO, Any, cast
 
 import numpy as np
 
 from robolang.logs.archive import Archive
-from robolang.logs.log import VERSION, Log
+from robolang.logs.log import Log
+from robolang.logs.meta import read_meta, ticks_of
 from runtime.control.blocks import FRAME_CYCLES, SCALARS, WHOLE
 from runtime.control.signals import NAMES, OF_FRAMES, Base, Rows
-from runtime.core.faults import Fault
 from runtime.core.frames import Array
 
 _TICKS = ("t", "line", "q_cmd", "dq_cmd", "q_fb", "dq_fb", "tau_cmd", "tau_sat", "q_link")
@@ -28,10 +28,6 @@ _OLD = tuple(name for name in NAMES if name not in (*OF_FRAMES, "tool_cmd", "too
 """Signals of layout 1."""
 _PIECE = 8192
 """Rows that are written at once."""
-_LEAST_IN_BRACKETS = 5
-"""Fewest characters for each bracket of a meta, on average: a face of a mesh, ``[0,1,2],``, has eight."""
-_FEW_BRACKETS = 10_000
-_MOST_TICKS_PER_CYCLE = 1000
 
 
 def write_npz(stream: IO[bytes], log: Log) -> None:
@@ -79,53 +75,10 @@ def read_npz(path: Path | str) -> Log:
     if "meta" not in archive:
         return OldLog(archive)
     try:
-        meta = _meta(archive)
+        meta = read_meta(archive.packed("meta"), archive.path)
         return Log(FileRows(archive, meta), meta, str(path))
     except (KeyError, TypeError, ValueError, IndexError, OverflowError) as error:
         raise archive.damaged(f"its meta is not as it should be: {error}") from None
-
-
-def _meta(archive: Archive) -> dict[str, Any]:
-    """Return the ``meta`` of a log, whose robot and times can be computed with."""
-    text = archive.packed("meta")
-    try:
-        # each takes twenty times its two characters in memory, and where there are many of them it is no meta
-        brackets = text.count(b"[") + text.count(b"{")
-        if not brackets <= _FEW_BRACKETS + len(text) / _LEAST_IN_BRACKETS:
-            raise ValueError("brackets without content")
-        meta = json.loads(text, parse_constant=_no_constant, parse_float=_finite)
-    except (ValueError, RecursionError) as error:
-        raise archive.damaged(f"its meta cannot be read: {error}") from None
-    if not isinstance(meta, dict):
-        raise archive.damaged("its meta is no object")
-    version = meta.get("format")
-    if isinstance(version, int) and version > VERSION:
-        raise Fault("RBL821", f"{archive.path} has layout {version}; this version of robolang reads up to {VERSION}")
-    if version != VERSION:
-        raise archive.damaged("its meta has no format")
-    _check_robot(meta["robot"])
-    # the keys that everybody reads; what is inside them is for those who show it
-    for key, kind in {"program": dict, "points": dict, "events": list, "report": dict}.items():
-        if not isinstance(meta[key], kind):
-            raise ValueError(f"'{key}' is of another kind")
-    return meta
-
-
-def _check_robot(robot: dict[str, Any]) -> None:
-    matrices = [robot["flange"], robot["tool"], *(axis["placement"] for axis in robot["axes"])]
-    poses = np.array(matrices, dtype=np.float64)
-    if poses.shape != (len(matrices), 4, 4) or not np.isfinite(poses).all():
-        raise ValueError("a pose of the robot is not 4 x 4 numbers")
-
-
-def _no_constant(name: str) -> NoReturn:
-    raise ValueError(f"{name} is no number")
-
-
-def _finite(text: str) -> float:
-    value = float(text)
-    # 1e999 is a number in JSON, and infinite
-    return value if math.isfinite(value) else _no_constant(text)
 
 
 class FileRows:
@@ -134,13 +87,7 @@ class FileRows:
     def __init__(self, archive: Archive, meta: dict[str, Any]) -> None:
         self._archive = archive
         self._axes = len(meta["robot"]["axes"])
-        tick_s, cycle_s = meta["tick_s"], meta["cycle_s"]
-        if not (isinstance(tick_s, float) and isinstance(cycle_s, float)):
-            raise ValueError(f"a tick of {tick_s} in a cycle of {cycle_s}")
-        if not (1e-6 <= tick_s <= 1.0 and 1 <= cycle_s / tick_s <= _MOST_TICKS_PER_CYCLE):
-            raise ValueError(f"a tick of {tick_s} s in a cycle of {cycle_s} s")
-        self.tick_us = round(tick_s * 1e6)
-        self.ticks_per_cycle = round(cycle_s / tick_s)
+        self.tick_us, self.ticks_per_cycle = ticks_of(meta)
         times = archive.stored("t")
         # all memory that a signal takes is counted from here: a shorter number would let a small file ask for much
         if times.dtype != np.float64 or len(times.shape) != 1:
