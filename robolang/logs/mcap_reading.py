@@ -24,9 +24,10 @@ from runtime.core.frames import Array
 
 MOST_RECORD = 64_000_000
 """Most bytes of a record, and of what a chunk unpacks to; ours have about a million."""
-MOST_ROWS = 8_000_000
-"""Most rows of a signal: half an hour of ticks of 0.25 ms. All of them are kept in memory."""
-_ROWS_AT_ONCE = 4096
+MOST_BYTES = 4_000_000_000
+"""Most bytes of all messages of a kind: half an hour of ticks of 0.25 ms. They are kept in memory."""
+_AT_ONCE = 1_000_000
+"""Bytes of messages after which their numbers are packed."""
 _MAGIC = b"\x89MCAP0\r\n"
 _HEAD = struct.Struct("<BQ")
 _RECORDS = {record.topic: record for record in (SAMPLE, CYCLE, FRAME)}
@@ -144,14 +145,16 @@ class _Columns:
         self._widths: dict[str, int] = record.widths(axes)
         self._rows: dict[str, list[Any]] = {name: [] for name in record.fields}
         self._packed: dict[str, list[Array]] = {name: [] for name in record.fields}
-        self._count = 0
+        self._count = self._bytes = self._unpacked = 0
 
     def add(self, data: bytes) -> None:
         """Add a message."""
         message = self._record.message_class.FromString(data)
         self._count += 1
-        if not self._count <= MOST_ROWS:
-            raise ValueError(f"more than {MOST_ROWS} rows")
+        self._bytes += len(data)
+        self._unpacked += len(data)
+        if not self._bytes <= MOST_BYTES:
+            raise ValueError(f"more than {MOST_BYTES} bytes of rows")
         for name, rows in self._rows.items():
             value = getattr(message, name)
             if self._record.is_list(name):
@@ -162,7 +165,8 @@ class _Columns:
                 rows.extend(value)
             else:
                 rows.append(value)
-        if self._count % _ROWS_AT_ONCE == 0:
+        # as floats of Python they take four times as much
+        if self._unpacked > _AT_ONCE:
             self._pack()
 
     def arrays(self) -> dict[str, Array]:
@@ -175,6 +179,7 @@ class _Columns:
         }
 
     def _pack(self) -> None:
+        self._unpacked = 0
         for name, rows in self._rows.items():
             self._packed[name].append(np.array(rows, dtype=self._record.dtype(name)))
             rows.clear()

@@ -209,11 +209,31 @@ def test_other_packing_is_refused(tmp_path):
     refused(mcap(tmp_path / "l.mcap", with_meta([row()]), compression=CompressionType.LZ4))
 
 
-@pytest.mark.parametrize("most", ["MOST_RECORD", "MOST_ROWS"])
-def test_sizes_are_bounded_before_anything_is_unpacked(tmp_path, monkeypatch, most):
+def unpacks_nothing(monkeypatch):
+    def unpack(*_):
+        raise AssertionError("it was unpacked")
+
+    monkeypatch.setattr(zstandard, "decompress", unpack)
+
+
+def test_a_large_record_is_refused_before_it_is_read_or_unpacked(tmp_path, monkeypatch):
     path = written(tmp_path / "l.mcap", log(100))
-    monkeypatch.setattr(mcap_reading, most, 99)
-    monkeypatch.setattr(zstandard, "decompress", zstandard.decompress if most == "MOST_ROWS" else None)
+    unpacks_nothing(monkeypatch)
+    data = path.read_bytes()
+    at = 8 + 9 + int.from_bytes(data[9:17], "little")  # the record after the header
+    path.write_bytes(data[: at + 1] + (2**63).to_bytes(8, "little") + data[at + 9 :])
+    refused(path)
+    monkeypatch.setattr(mcap_reading, "MOST_RECORD", len(data) - 1000)
+    path.write_bytes(data)
+    refused(path)
+
+
+def test_all_rows_together_are_bounded(tmp_path, monkeypatch):
+    path = written(tmp_path / "l.mcap", log(100))
+    size = sum(len(each) for each in SAMPLE.messages({name: log(100)[name] for name in SAMPLE.names}))
+    monkeypatch.setattr(mcap_reading, "MOST_BYTES", size)
+    assert read_log(path).count("t") == 100
+    monkeypatch.setattr(mcap_reading, "MOST_BYTES", size - 1)
     refused(path)
 
 
@@ -222,8 +242,16 @@ def test_a_chunk_that_unpacks_to_more_than_it_says_is_refused(tmp_path, monkeypa
     pack = zstandard.compress
     monkeypatch.setattr(zstandard, "compress", lambda data: pack(bytes(data) + b"\0" * 1_000_000))
     path = mcap(tmp_path / "l.mcap", with_meta([row()]))
-    monkeypatch.setattr(zstandard, "decompress", None)
+    unpacks_nothing(monkeypatch)
     refused(path)
+
+
+@pytest.mark.parametrize("at_once", [1, 10_000])
+def test_rows_are_packed_now_and_then(tmp_path, monkeypatch, at_once):
+    monkeypatch.setattr(mcap_reading, "_AT_ONCE", at_once)
+    made = log(100)
+    read = read_log(written(tmp_path / "l.mcap", made))
+    assert all(same(read[name], values) for name, values in made.items())
 
 
 def test_poses_that_are_no_numbers_are_written_and_read(tmp_path):
