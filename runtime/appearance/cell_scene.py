@@ -9,6 +9,7 @@ from runtime.appearance.hand import hand_bodies, hand_shapes
 from runtime.appearance.own_meshes import own_meshes
 from runtime.appearance.scene import Mark, Scene, View
 from runtime.appearance.surroundings import obstacle_bodies, obstacle_shapes, part_bodies, part_shapes
+from runtime.appearance.untrusted import LONGEST_TEXT
 from runtime.cell.cell import CellSpec
 from runtime.core.frames import Array
 
@@ -24,7 +25,7 @@ def scene_of(cell: CellSpec, points: Mapping[str, Array] = NO_POINTS) -> Scene:
     spec = cell.robot
     own = own_meshes(spec.meshes)
     return Scene(
-        robot=spec.name,
+        robot=spec.name[:LONGEST_TEXT],
         reach=reach_of(spec),
         bodies=(
             *arm_bodies(spec),
@@ -49,4 +50,5 @@ def scene_of(cell: CellSpec, points: Mapping[str, Array] = NO_POINTS) -> Scene:
 
 def marks(places: Mapping[str, Array]) -> tuple[Mark, ...]:
     """Return named places, X_world_place (4, 4), as marks."""
-    return tuple(Mark(name=name, X_world_mark=X) for name, X in places.items())
+    # cut as the reader of a scene demands: a model file and a points file know no longest name
+    return tuple(Mark(name=name[:LONGEST_TEXT], X_world_mark=X) for name, X in places.items())

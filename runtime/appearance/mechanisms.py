@@ -13,6 +13,7 @@ from runtime.appearance.cell_scene import NO_POINTS, marks
 from runtime.appearance.colours import colours_of
 from runtime.appearance.scene import Scene, SceneBody, SceneJoint, Shape
 from runtime.appearance.solids import X, Y, Z, box, cylinder, limb
+from runtime.appearance.untrusted import LONGEST_TEXT
 from runtime.core.frames import Array, pose
 from runtime.pulses.machine import Joint
 from runtime.pulses.mechanism import Mechanism
@@ -27,7 +28,7 @@ def machine_scene(machine: Mechanism, points: Mapping[str, Array] = NO_POINTS) -
     """Return what a machine looks like; ``points`` are taught points by name, X_world_point (4, 4)."""
     frame = {"cartesian": _gantry, "cylindrical": _column, "scara": _scara}[machine.kind](_Plan(machine=machine))
     return Scene(
-        robot=machine.name,
+        robot=machine.name[:LONGEST_TEXT],
         reach=_Plan(machine=machine).size,
         bodies=tuple(frame.bodies),
         shapes=tuple(frame.shapes),

@@ -12,8 +12,8 @@ import numpy as np
 from runtime.appearance.scene import Mesh
 from runtime.core.bounded_files import RefusedError, read_bounded
 from runtime.core.frames import Array, frozen
+from runtime.robot.model.spec import MESH_ENDINGS
 
-ENDINGS = (".stl", ".obj")
 MOST_BYTES = 30_000_000
 """Size of a mesh file, bytes: an STL of 600,000 triangles."""
 FARTHEST = 1e6
@@ -30,8 +30,8 @@ class MeshError(Exception):
 
 def read_mesh(path: Path) -> Mesh:
     """Return the mesh of a file, in the file's unit; ``MeshError``."""
-    if path.suffix.lower() not in ENDINGS:
-        raise MeshError(f"is neither {' nor '.join(ENDINGS)}")
+    if path.suffix.lower() not in MESH_ENDINGS:
+        raise MeshError(f"is neither {' nor '.join(MESH_ENDINGS)}")
     try:
         raw = read_bounded(path, MOST_BYTES)
     except RefusedError as error:

@@ -4,23 +4,25 @@ Only files in the folder of the model are opened, wherever links in it lead (R22
 noted; the link is then drawn from its joint frames. Meshes go into every log, so fine ones are made coarser.
 """
 
+import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runtime.appearance.mesh_files import MeshError, read_mesh
-from runtime.appearance.scene import Mesh
+from runtime.appearance.scene import MOST_MESHES, Mesh
 from runtime.core.bounded_files import resolved_inside, stays_inside
-from runtime.core.frames import Array, frozen
+from runtime.core.frames import frozen
 from runtime.core.linear import matmul
 from runtime.robot.model.spec import LinkMesh
 
-MOST_FACES = 40_000
-"""Triangles of all meshes of a robot that are kept: about 0.5 MB in a log."""
-FINEST = 400
-"""A mesh that is made coarser is first snapped to a grid of this many steps along its longest side."""
+MOST_FACES = 30_000
+"""Triangles of all meshes of a robot that are kept: about 0.3 MB in a log."""
+FINEST, GROWTH = 1e-3, 1.1
+"""Cell of the finest grid that makes meshes coarser, m, and the least factor from one to the next."""
 LARGEST = 20.0
 """A mesh that is larger, m, is in another unit than its scale says."""
 
@@ -39,14 +41,17 @@ def own_meshes(meshes: tuple[LinkMesh, ...]) -> OwnMeshes:
     notes, torn = [], set()
     for index, each in enumerate(meshes):
         try:
+            if index >= MOST_MESHES:
+                raise MeshError(f"is one of more than {MOST_MESHES}")
             found.append((each.link, f"{index}:{Path(each.file).stem[:40]}", _placed(each)))
         except MeshError as error:
             notes.append(f"{each.file} {error}")
             torn.add(each.link)
     # a link that lacks one of its meshes would have a hole: its joint frames draw it instead
     whole = [each for each in found if each[0] not in torn]
-    share = MOST_FACES // (len(whole) or 1)
-    return OwnMeshes(links=tuple((link, name, _coarser(mesh, share)) for link, name, mesh in whole), notes=tuple(notes))
+    coarse = _coarser([mesh for _, _, mesh in whole])
+    links = tuple((link, name, mesh) for (link, name, _), mesh in zip(whole, coarse, strict=True))
+    return OwnMeshes(links=links, notes=tuple(notes))
 
 
 def _placed(mesh: LinkMesh) -> Mesh:
@@ -86,24 +91,34 @@ def _located(mesh: LinkMesh) -> Path:
     raise MeshError("is not in the folder of the model")
 
 
-def _coarser(mesh: Mesh, most: int) -> Mesh:
-    """Return a mesh of at most ``most`` faces: vertices in one cell of a grid become one, until it has no more."""
-    steps = FINEST
-    while len(mesh.faces) > most and steps >= 4:
-        low = mesh.vertices.min(axis=0)
-        cell = np.ptp(mesh.vertices, axis=0).max() / steps
-        mesh = _snapped(mesh, np.floor((mesh.vertices - low) / cell))
-        steps = steps * 3 // 4
-    return mesh
+def _coarser(meshes: list[Mesh]) -> list[Mesh]:
+    """Return meshes of at most ``MOST_FACES`` faces in all: the vertices in one cell of a grid become one.
+
+    All have one grid, so that no link of a robot is coarser than another.
+    """
+    cell, found = FINEST, meshes
+    # always from the meshes themselves: errors of one grid would add to those of the next
+    while (faces := sum(len(mesh.faces) for mesh in found)) > MOST_FACES:
+        # of a surface, four times as many faces are left by a grid half as wide
+        cell *= max(GROWTH, math.sqrt(faces / MOST_FACES)) if found is not meshes else 1.0
+        found = [_snapped(mesh, cell) for mesh in meshes]
+    return found
 
 
-def _snapped(mesh: Mesh, cells: Array) -> Mesh:
-    _, which, counts = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
-    which = which.reshape(-1)
+def _snapped(mesh: Mesh, cell: float) -> Mesh:
+    low = mesh.vertices.min(axis=0)
+    # one number for each cell, since numpy sorts numbers much faster than rows
+    cells = np.floor((mesh.vertices - low) / cell).astype(np.int64)
+    _, which, counts = np.unique(_numbered(cells), return_inverse=True, return_counts=True)
     middle = np.stack([np.bincount(which, mesh.vertices[:, k]) for k in range(3)], axis=1) / counts[:, None]
     faces = which[mesh.faces]
     a, b, c = faces.T
     kept = faces[(a != b) & (b != c) & (c != a)]
     # what is thinner than a cell is folded onto itself: each triangle stays once
-    _, first = np.unique(np.sort(kept, axis=1), axis=0, return_index=True)
+    _, first = np.unique(_numbered(np.sort(kept, axis=1)), return_index=True)
     return Mesh(vertices=frozen(middle), faces=kept[np.sort(first)].astype(np.int32))
+
+
+def _numbered(rows: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return one number for each row of three, each below 2^21."""
+    return np.asarray((rows[:, 0] << 42) | (rows[:, 1] << 21) | rows[:, 2])

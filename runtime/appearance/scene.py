@@ -31,8 +31,8 @@ DIGITS = 9
 """Digits of the JSON after the point: a nanometre, so that a chain of ten bodies is exact to far below 0.01 mm."""
 MESH_DIGITS = 5
 """Digits of the vertices of meshes, which only have to look right: a hundredth of a millimetre."""
-MOST_BODIES, MOST_SHAPES, MOST_MESHES = 1000, 10_000, 200
-"""Most bodies, shapes and meshes of a scene: a cell has tens of each."""
+MOST_BODIES, MOST_SHAPES, MOST_MARKS, MOST_MESHES = 50_000, 250_000, 50_000, 200
+"""Most bodies, shapes, frames or points, and meshes of a scene: more than the largest cell and points file have."""
 MOST_VERTICES, MOST_FACES = 300_000, 300_000
 """Most vertices and faces of all meshes of a scene together."""
 
@@ -290,7 +290,7 @@ def _meshes(value: Untrusted) -> Mapping[str, Mesh]:
 
 
 def _marks(value: Untrusted) -> tuple[Mark, ...]:
-    return tuple(Mark(name=each["name"].text(), X_world_mark=each["X"].pose()) for each in value.items(MOST_SHAPES))
+    return tuple(Mark(name=each["name"].text(), X_world_mark=each["X"].pose()) for each in value.items(MOST_MARKS))
 
 
 def _length(value: Untrusted) -> float:

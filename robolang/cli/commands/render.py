@@ -79,7 +79,7 @@ def _size(text: str | None) -> tuple[int, int] | None:
 
 def _log(subject: str, files: CellOptions, physics: PhysicsOptions) -> "tuple[Log, int]":
     """Return the log of a file, or of a run of the program, and the exit code of its alarms, or 0."""
-    if subject.endswith(".npz"):
+    if Path(subject).suffix in (".npz", ".mcap"):  # a reader of logs knows better what is wrong with them
         if files.cell is not None or files.robot is not None or physics.no_physics:
             raise OptionValueError("--cell, --robot, --no-physics", "are for a program; a log has its own")
         from robolang.logs.files import read_log

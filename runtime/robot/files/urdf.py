@@ -17,7 +17,7 @@ from runtime.core.frames import Array, frozen, pose, rotation_from_rpy
 from runtime.core.linear import dot, matmul
 from runtime.robot.files.imported import Hinge, Node, NodeMesh
 from runtime.robot.files.xmlfile import HEAVIEST_LINK, Element
-from runtime.robot.model.spec import Body
+from runtime.robot.model.spec import MESH_ENDINGS, Body
 
 _IGNORED = ("gazebo", "transmission", "material", "sensor", "ros2_control")
 _TURNING = ("revolute", "continuous")
@@ -186,9 +186,21 @@ def _body(link: Element) -> Body | None:
 
 
 def _meshes(link: Element) -> tuple[NodeMesh, ...]:
-    """Return the mesh files that show a link; shapes without a file are left out."""
+    """Return the mesh files that show a link; shapes without a file are left out.
+
+    Where those of ``visual`` are in a format that is not read, as COLLADA, those of ``collision`` show it if they are.
+    """
+    shown, simple = _of_shapes(link.all("visual")), _of_shapes(link.all("collision"))
+    return simple if simple and _are_read(simple) and not _are_read(shown) else shown
+
+
+def _are_read(meshes: tuple[NodeMesh, ...]) -> bool:
+    return all(mesh.file.lower().endswith(MESH_ENDINGS) for mesh in meshes)
+
+
+def _of_shapes(shapes: list[Element]) -> tuple[NodeMesh, ...]:
     found = []
-    for visual in link.all("visual"):
+    for visual in shapes:
         geometry = visual.one("geometry")
         mesh = None if geometry is None else geometry.one("mesh")
         if mesh is not None and "filename" in mesh.attributes:

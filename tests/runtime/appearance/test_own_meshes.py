@@ -11,7 +11,7 @@ from runtime.core.tomlfile import Source
 from runtime.robot.files.importer import load_file, parse_model
 from runtime.robot.model.spec import LinkMesh
 from tests.runtime.appearance.robots import MESHED, binary_stl, box_mesh, cell_with
-from tests.runtime.robot.models import inertial
+from tests.runtime.robot.models import chain, inertial
 
 BOX = binary_stl(box_mesh((2.0, 3.0, 4.0)))
 TURN = pose([0.0, 0.0, 1.0], rotation_about([0.0, 1.0, 0.0], np.pi / 2.0))
@@ -74,6 +74,12 @@ def test_a_link_that_lacks_one_of_its_meshes_has_none(folder):
     found = own_meshes(tuple(meshes))
     assert [link for link, _, _ in found.links] == [2]
     assert len(found.notes) == 1
+
+
+def test_meshes_beyond_those_of_a_scene_are_left_out(folder, monkeypatch):
+    monkeypatch.setattr(module, "MOST_MESHES", 2)
+    found = own_meshes(tuple(named(folder, "meshes/box.stl", link=link) for link in (1, 2, 3)))
+    assert ([link for link, _, _ in found.links], len(found.notes)) == ([1, 2], 1)
 
 
 @pytest.mark.parametrize("scale", [(100.0, 1.0, 1.0), (0.1, 0.1, float("nan"))])
@@ -152,3 +158,22 @@ def test_an_urdf_gives_the_meshes_of_all_that_is_fixed_together():
     meshes = parse_model(Source("arm.urdf", text)).meshes
     assert [(mesh.link, mesh.file) for mesh in meshes] == [(0, "a.stl"), (1, "b.dae")]
     np.testing.assert_allclose(meshes[1].X_link_mesh[:3, 3], [0.1, 0.0, 0.5])
+
+
+@pytest.mark.parametrize(
+    ("visual", "collision", "shown"),
+    [
+        (["a.dae"], ["a.stl"], ["a.stl"]),
+        (["a.dae", "b.stl"], ["a.STL", "b.obj"], ["a.STL", "b.obj"]),
+        (["a.stl"], ["b.stl"], ["a.stl"]),
+        (["a.dae"], ["a.dae"], ["a.dae"]),
+        (["a.dae"], [], ["a.dae"]),
+        ([], ["a.stl"], []),
+    ],
+)
+def test_meshes_for_collisions_stand_in_for_those_that_are_not_read(visual, collision, shown):
+    shapes = [("visual", file) for file in visual] + [("collision", file) for file in collision]
+    text = "".join(f'<{kind}><geometry><mesh filename="{file}"/></geometry></{kind}>' for kind, file in shapes)
+    frames = [((0, 0, 1), (0, 0, 0), (0, 0, 1)), ((0, 0, 1), (0, 0, 0), (1, 0, 0))]
+    model = chain(frames).replace('<link name="l0"/>', f'<link name="l0">{text}</link>')
+    assert [mesh.file for mesh in parse_model(Source("arm.urdf", model)).meshes] == shown

@@ -2,15 +2,19 @@
 
 import copy
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from runtime.appearance.cell_scene import scene_of
+from runtime.appearance.mechanisms import machine_scene
 from runtime.appearance.scene import ROLES, Mesh, Scene, SceneBody, SceneJoint, Shape, View
+from runtime.appearance.stance import Stance, world_poses
 from runtime.core.faults import Fault
 from runtime.core.frames import pose
+from runtime.pulses.mechanism import library, load_builtin
 from tests.runtime.from_texts import load_cell
 
 CELL = load_cell(Path("programs/pick_and_place.cell.toml"))
@@ -97,7 +101,7 @@ LONG = "x" * 201
     [
         (_unset("bodies"), "scene"),
         (_set(["bodies"], {}), "scene.bodies"),
-        (_set(["bodies"], [{}] * 1001), "scene.bodies"),
+        (_set(["bodies"], [{}] * 50_001), "scene.bodies"),
         (_set(["bodies", 0], 7), "scene.bodies[0]"),
         (_set(["bodies", 0, "name"], LONG), "scene.bodies[0].name"),
         (_set(["bodies", 0, "name"], None), "scene.bodies[0].name"),
@@ -177,3 +181,36 @@ def test_more_vertices_than_a_picture_can_have_are_refused():
     with pytest.raises(Fault) as refused:
         Scene.from_json(value)
     assert (refused.value.code, refused.value.message.split(" ")[0]) == ("RBL833", "scene.meshes.n")
+
+
+def test_whatever_a_cell_holds_its_scene_can_be_read_again():
+    robot = replace(CELL.robot, name="n" * 5000)
+    obstacles = tuple(replace(CELL.obstacles[0], name=f"o{k}") for k in range(1500))
+    points = {"P" * 5000: np.eye(4)} | {f"P{k}": np.eye(4) for k in range(12_000)}
+    value = scene_of(replace(CELL, robot=robot, obstacles=obstacles), points).as_json()
+    assert Scene.from_json(value).as_json() == value
+
+
+@pytest.mark.parametrize("name", library())
+def test_the_scene_of_a_machine_moves_its_tool_as_the_machine_does(name):
+    machine = replace(load_builtin(name), fixed=(("z", 0.25),) if name == "xy" else ())
+    scene = Scene.from_json(machine_scene(machine).as_json())
+    rng = np.random.default_rng(3)
+    for _ in range(10):
+        q = np.array([rng.uniform(joint.lower, joint.upper) for joint in machine.joints])
+        tool = world_poses(scene, Stance(axes=q))["tool"]
+        np.testing.assert_allclose(tool[:3, 3], machine.points(q[None])[0], atol=1e-8)
+    kinds = [body.joint.kind for body in scene.bodies if body.joint]
+    assert sorted(kinds) == sorted("revolute" if joint.rotary else "prismatic" for joint in machine.joints)
+
+
+def test_a_scara_with_a_short_z_has_a_quill():
+    scara = load_builtin("scara")
+    joints = tuple(replace(joint, upper=0.2) if joint.name == "z" else joint for joint in scara.joints)
+    scene = machine_scene(replace(scara, joints=joints))
+    parents = {body.name: body.parent for body in scene.bodies}
+    assert (parents["z"], parents["theta1"]) == ("theta2", "base")
+    assert {body.name: body.parent for body in machine_scene(scara).bodies}["theta1"] == "z"
+    q = np.array([0.4, -0.7, 0.1, 0.3])
+    tool = world_poses(scene, Stance(axes=q))["tool"]
+    np.testing.assert_allclose(tool[:3, 3], scara.points(q[None])[0], atol=1e-12)
