@@ -1,6 +1,6 @@
 """How near each joint of a run came to the ends of its range, and when."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,23 +25,34 @@ class JointRange:
     at_s: float | None
 
 
-def ranges(axes: Sequence[Mapping[str, Any]], q: Array, dt: float) -> list[JointRange]:
-    """Return the range of each joint; ``axes``: of ``meta["robot"]``, q (N, n) rad or m, one row each ``dt`` s."""
-    return [_of(axis, q[:, k], dt) for k, axis in enumerate(axes)]
+def ranges(axes: Sequence[Mapping[str, Any]], pieces: Iterable[Array], dt: float) -> list[JointRange]:
+    """Return the range of each joint; ``axes``: of ``meta["robot"]``, pieces of q (N, n) rad or m, a row every dt s."""
+    limits = [(_number(axis["lower"], -np.inf), _number(axis["upper"], np.inf)) for axis in axes]
+    least: list[tuple[float, int]] = [(np.inf, -1)] * len(axes)
+    row = 0
+    for q in pieces:
+        for k, (lower, upper) in enumerate(limits):
+            margin = np.minimum(q[:, k] - lower, upper - q[:, k])
+            known = np.flatnonzero(np.isfinite(margin))
+            if len(known):
+                at = known[np.argmin(margin[known])]
+                least[k] = min(least[k], (float(margin[at]), row + int(at)))
+        row += len(q)
+    return [_of(axis, *limit, *found, dt) for axis, limit, found in zip(axes, limits, least, strict=True)]
 
 
-def _of(axis: Mapping[str, Any], q: Array, dt: float) -> JointRange:
+def _number(value: float | None, endless: float) -> float:
+    # null in a log: a joint that turns without end
+    return endless if value is None else float(value)
+
+
+def _of(axis: Mapping[str, Any], lower: float, upper: float, margin: float, row: int, dt: float) -> JointRange:
     unit, size = ("deg", DEG) if axis["kind"] == "revolute" else ("mm", MM)
-    # null in the log: a joint that turns without end
-    lower, upper = (np.inf * sign if axis[key] is None else axis[key] for key, sign in (("lower", -1), ("upper", 1)))
-    margin = np.minimum(q - lower, upper - q)
-    known = np.flatnonzero(np.isfinite(margin))
-    at = int(known[np.argmin(margin[known])]) if len(known) else None
     return JointRange(
         name=str(axis["name"]),
         unit=unit,
-        lower=float(lower) / size if np.isfinite(lower) else None,
-        upper=float(upper) / size if np.isfinite(upper) else None,
-        least_margin=None if at is None else float(margin[at]) / size,
-        at_s=None if at is None else at * dt,
+        lower=lower / size if np.isfinite(lower) else None,
+        upper=upper / size if np.isfinite(upper) else None,
+        least_margin=None if row < 0 else margin / size,
+        at_s=None if row < 0 else row * dt,
     )

@@ -6,8 +6,6 @@ from contextlib import contextmanager
 from dataclasses import asdict
 from typing import Any
 
-import numpy as np
-
 from robolang.core.storage import strict
 from robolang.execution.log_meta import file_name, point_poses, robot_of
 from robolang.execution.session import Session
@@ -81,7 +79,7 @@ def header_of(session: Session) -> dict[str, Any]:
         "signals": [],
         "charts": [asdict(chart) for chart in of_live(robot)],
         "notes": [],
-        "joints": [asdict(joint) for joint in ranges(robot["axes"], np.zeros((0, cell.robot.n)), profile.tick_s)],
+        "joints": [asdict(joint) for joint in ranges(robot["axes"], (), profile.tick_s)],
     }
     # plain JSON: no NaN and no infinite limit of a joint
     plain = strict(header)

@@ -1,10 +1,10 @@
 """A run as bytes inside a page: a JSON header and the columns of its signals, in 24 bits each, gzip-compressed.
 
-``gzip([u32 length of the header, little-endian][header][columns of the first signal][of the second]...)``. A column is
-coded over its own range: code ``q = rint((v - lo) / step) + 1``, and 0 where there is no number. What is kept is the
-difference to the code before, modulo 2^24 and with its sign in the lowest bit: near zero for a motion. The three bytes
-of the codes stand apart, all lowest ones first, so that gzip finds long runs of equal bytes. A column that never
-changes has no bytes. Same run, same bytes: gzip carries no time (decision 0055).
+``gzip([u32 length of the header, little-endian][header][columns of the first signal][of the second]...)``. A column
+is coded over its own range, or in the finest step that is of use: code ``q = rint((v - lo) / step) + 1``, and 0 where
+there is no number. What is kept is the difference to the code before, modulo 2^24 and with its sign in the lowest bit:
+near zero for a motion. The three bytes of the codes stand apart, all lowest ones first, so that gzip finds long runs
+of equal bytes. A column that never changes has no bytes. Same run, same bytes: gzip carries no time (decision 0055).
 """
 
 import gzip
@@ -30,7 +30,8 @@ _LEVEL = 6
 class Signal:
     """Columns of one name at regular times: row k of ``values`` (rows, columns) holds at ``t0 + k * dt``, s.
 
-    ``base``: ``tick``, ``cycle`` or ``frame``, or ``pairs`` for the least and the largest value of each bin.
+    ``base``: ``tick``, ``cycle`` or ``frame``, or ``pairs`` for the least and the largest value of each bin. ``finest``
+    is the least step that a reader has a use for, in the unit of the values; 0: as fine as 24 bits are.
     """
 
     name: str
@@ -38,6 +39,7 @@ class Signal:
     dt: float
     values: Array
     t0: float = 0.0
+    finest: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -54,7 +56,7 @@ class Coded:
 
 def pack(header: Mapping[str, object], signals: Sequence[Signal]) -> bytes:
     """Return the bytes of a run: ``header`` with the list of the signals, then their columns."""
-    coded = [code(signal.values) for signal in signals]
+    coded = [code(signal.values, signal.finest) for signal in signals]
     listed = [_listed(signal, columns) for signal, columns in zip(signals, coded, strict=True)]
     # ASCII: a lone surrogate in the text of a program has no UTF-8, and its escape is read back as it was
     head = json.dumps(strict({"format": FORMAT, **header, "signals": listed}), separators=(",", ":"), allow_nan=False)
@@ -62,7 +64,7 @@ def pack(header: Mapping[str, object], signals: Sequence[Signal]) -> bytes:
     return gzip.compress(data, _LEVEL, mtime=0)
 
 
-def code(values: Array) -> Coded:
+def code(values: Array, finest: float = 0.0) -> Coded:
     """Return the codes of columns (rows, columns); a value that is not finite becomes no number."""
     columns = np.ascontiguousarray(values.T, dtype=float)
     there = np.abs(columns) <= LARGEST
@@ -71,7 +73,7 @@ def code(values: Array) -> Coded:
     known = there.any(axis=1)
     span = np.where(known, high, 0.0) - np.where(known, low, 0.0)
     # a constant with gaps has two codes, so it needs bytes: any step will do
-    step = np.where(span > 0.0, span / _STEPS, np.where(known & ~there.all(axis=1), 1.0, 0.0))
+    step = np.where(span > 0.0, np.maximum(span / _STEPS, finest), np.where(known & ~there.all(axis=1), 1.0, 0.0))
     kept = step > 0.0
     return Coded(
         lo=np.where(known, low, np.nan),

@@ -45,7 +45,7 @@ def pack_plan(project: Project, rehearsal: Rehearsal, found: Sequence[Diagnostic
         },
         "charts": [asdict(chart) for chart in charts.of_plan(charts.Shown(robot=robot, signals=signals))],
         "notes": [asdict(note) for note in _notes(project, rehearsal, found)],
-        "joints": [asdict(joint) for joint in joints.ranges(robot["axes"], q, cycle_s)],
+        "joints": [asdict(joint) for joint in joints.ranges(robot["axes"], [q], cycle_s)],
     }
     return pack(header, list(signals.values()))
 

@@ -12,7 +12,7 @@ from robolang.logs.files import read_log
 from robolang.logs.log import Log, Meta
 from robolang.view import charts, joints, notes
 from robolang.view.packing import Signal, pack
-from robolang.view.run_signals import signals_of
+from robolang.view.run_signals import in_pieces, signals_of
 from robolang.view.thinning import paired, thinned
 from runtime.appearance.scene import Scene
 from runtime.core.faults import Fault
@@ -75,7 +75,7 @@ def _packed(log: Log, meta: Meta, label: str) -> bytes:
         },
         "charts": [asdict(chart) for chart in charts.of_run(shown)],
         "notes": [asdict(note) for note in notes.of_report(meta["report"])],
-        "joints": [asdict(joint) for joint in joints.ranges(robot["axes"], log["q_link"], tick_s)],
+        "joints": [asdict(joint) for joint in joints.ranges(robot["axes"], in_pieces(log, "q_link"), tick_s)],
     }
     return pack(header, list(signals.values()))
 

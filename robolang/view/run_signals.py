@@ -4,7 +4,7 @@ What changes once a cycle is kept once a cycle: a log repeats it in every tick.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -12,19 +12,35 @@ import numpy as np
 
 from robolang.logs.log import Log
 from robolang.view.packing import Signal
-from robolang.view.thinning import bin_rows, evenly, paired, pairs
+from robolang.view.thinning import bin_rows, even_step, evenly, paired, pairs
 from runtime.core.frames import Array
 
 PIECE = 65_536
 """Rows that are read at once."""
 _TICK = ("q_cmd", "q_fb", "dq_fb", "tau_sat")
 _CYCLE = ("D", "T", "payload_mass", "wrist_mode", "seam_deviation")
+_ANGLE, _POINT = 2e-7, 1e-7
+_FINEST = {
+    **dict.fromkeys(("q_cmd", "q_fb", "q_link", "joint_error"), _ANGLE),
+    **dict.fromkeys(("tool", "tool_cmd", "parts", "fingers", "seam_deviation"), _POINT),
+    "tool_error": 1e-8,
+    "tool_speed": 1e-6,
+    "dq_fb": 1e-5,
+    "tau_sat": 1e-3,
+    "D": 1e-6,
+    "T": 1e-4,
+    "D_age": 1e-3,
+    "payload_mass": 1e-6,
+    "wrist_mode": 0.0,
+}
+"""The least step in which a signal is kept, in its unit: far below what anybody reads. Of finer ones, most bytes of a
+page would be noise."""
 
 
 def signals_of(log: Log, robot: dict[str, Any]) -> Iterator[Signal]:
     """Yield the signals of a page; ``robot`` is that of the ``meta`` of the log."""
     rows, tick_s = log.count("t"), log.rows.tick_us * 1e-6
-    cycle_s = tick_s * log.rows.ticks_per_cycle
+    every = log.rows.ticks_per_cycle
     for name in _TICK:
         yield _every_tick(name, partial(log.span, name), rows, tick_s)
     if bin_rows(rows) > 1:
@@ -32,23 +48,32 @@ def signals_of(log: Log, robot: dict[str, Any]) -> Iterator[Signal]:
         yield _every_tick(
             "joint_error", lambda *span: log.span("q_cmd", *span) - log.span("q_link", *span), rows, tick_s
         )
-    yield evenly(Signal(name="q_link", base="tick", dt=tick_s, values=log["q_link"]))
-    yield from _of_tool(log, rows, tick_s, cycle_s)
+    step = even_step(rows)
+    yield _signal("q_link", "tick", tick_s * step, _sampled(log, "q_link", step))
+    yield from _of_tool(log, rows, tick_s)
     limits = [np.nan if axis["torque"] is None else axis["torque"] for axis in robot["axes"]]
     yield Signal(name="torque_limit", base="tick", dt=rows * tick_s, values=np.array([limits, limits]))
+    # one row of each cycle says all: the log repeats it in every tick
     for name in _CYCLE:
-        yield paired(Signal(name=name, base="cycle", dt=cycle_s, values=_columns(log.each_cycle(name))))
-    ages = _sampled(log, "D_age")
-    yield paired(Signal(name="D_age", base="cycle", dt=cycle_s, values=ages))
+        yield paired(_signal(name, "cycle", tick_s * every, log.each_cycle(name)))
+    yield paired(_signal("D_age", "cycle", tick_s * every, _sampled(log, "D_age", every)))
     yield from _frames(log)
+
+
+def in_pieces(log: Log, name: str) -> Iterator[Array]:
+    """Yield a signal piece by piece."""
+    return (log.span(name, *span) for span in _pieces(log.count(name)))
 
 
 def _every_tick(name: str, read: Callable[[int, int], Array], rows: int, tick_s: float) -> Signal:
     size = bin_rows(rows)
-    values = np.concatenate([pairs(_columns(read(*span)), size) for span in _pieces(rows, size)])
-    return Signal(
-        name=name, base="tick" if size == 1 else "pairs", dt=tick_s if size == 1 else tick_s * size / 2, values=values
-    )
+    values = np.concatenate([pairs(read(*span), size) for span in _pieces(rows, size)])
+    base, dt = ("tick", tick_s) if size == 1 else ("pairs", tick_s * size / 2)
+    return _signal(name, base, dt, values)
+
+
+def _signal(name: str, base: str, dt: float, values: Array) -> Signal:
+    return Signal(name=name, base=base, dt=dt, values=_columns(values), finest=_FINEST[name])
 
 
 def _pieces(rows: int, size: int = 1) -> Iterator[tuple[int, int]]:
@@ -58,9 +83,9 @@ def _pieces(rows: int, size: int = 1) -> Iterator[tuple[int, int]]:
         yield first, min(first + step, rows)
 
 
-def _sampled(log: Log, name: str) -> Array:
-    every = log.rows.ticks_per_cycle
-    return np.concatenate([log.span(name, *span)[::every] for span in _pieces(log.count(name), every)])
+def _sampled(log: Log, name: str, step: int) -> Array:
+    """Return every so many rows of a signal, the first among them."""
+    return np.concatenate([log.span(name, *span)[::step] for span in _pieces(log.count(name), step)])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -77,7 +102,7 @@ class _ToolPoint:
         return _lengths(self.true - self.command)
 
 
-def _of_tool(log: Log, rows: int, tick_s: float, cycle_s: float) -> Iterator[Signal]:
+def _of_tool(log: Log, rows: int, tick_s: float) -> Iterator[Signal]:
     size, every = bin_rows(rows), log.rows.ticks_per_cycle
     found: dict[str, list[Array]] = {"tool_error": [], "tool_speed": [], "tool": [], "tool_cmd": []}
     for span in _pieces(rows, size * every):
@@ -88,18 +113,18 @@ def _of_tool(log: Log, rows: int, tick_s: float, cycle_s: float) -> Iterator[Sig
             found[name].append(values[::every])
     base, dt = ("tick", tick_s) if size == 1 else ("pairs", tick_s * size / 2)
     for name in ("tool_error", "tool_speed"):
-        yield Signal(name=name, base=base, dt=dt, values=np.concatenate(found[name]))
+        yield _signal(name, base, dt, np.concatenate(found[name]))
     for name in ("tool", "tool_cmd"):
-        yield evenly(Signal(name=name, base="cycle", dt=cycle_s, values=np.concatenate(found[name])))
+        yield evenly(_signal(name, "cycle", tick_s * every, np.concatenate(found[name])))
 
 
 def _tool_point(log: Log, first: int, last: int) -> _ToolPoint:
     """Return the tool point of ticks ``first`` to before ``last``.
 
-    As the log computes it, but with the poses of each tick computed once for all of it: they are what a page costs.
+    As the log computes it, but once for all of it: these points are what a page costs most.
     """
     from_ = max(first - 1, 0)
-    true = log.span("X_world_tool", from_, last)[:, :3, 3]
+    true = log.tool_points("q_link", from_, last)
     before = true[:-1] if first else np.concatenate([true[:1], true[:-1]])
     true = true[first - from_ :]
     speed = _lengths(true - before) / (log.rows.tick_us * 1e-6)
@@ -107,7 +132,7 @@ def _tool_point(log: Log, first: int, last: int) -> _ToolPoint:
     for tick in _new_tools(log):
         if first <= tick < last:
             speed[tick - first] = log.span("tool_speed", tick, tick + 1)[0]
-    return _ToolPoint(command=log.span("tool_cmd", first, last), true=true, speed=speed)
+    return _ToolPoint(command=log.tool_points("q_cmd", first, last), true=true, speed=speed)
 
 
 def _new_tools(log: Log) -> list[int]:
@@ -120,7 +145,7 @@ def _frames(log: Log) -> Iterator[Signal]:
     if len(times):
         dt = float(times[1] - times[0]) if len(times) > 1 else 1.0
         for name in ("parts", "fingers"):
-            yield evenly(Signal(name=name, base="frame", dt=dt, t0=float(times[0]), values=_columns(log[name])))
+            yield evenly(replace(_signal(name, "frame", dt, log[name]), t0=float(times[0])))
 
 
 def _lengths(vectors: Array) -> Array:

@@ -20,6 +20,12 @@ def bin_rows(rows: int) -> int:
     return 1 if rows <= MOST_ROWS else -(-2 * rows // MOST_ROWS)
 
 
+def even_step(rows: int) -> int:
+    """Return of how many rows one is kept where a signal is thinned evenly."""
+    # one value for a bin here, so bins of half the size
+    return -(-rows // MOST_ROWS) or 1
+
+
 def paired(signal: Signal) -> Signal:
     """Return a signal as pairs, two rows for each bin; one that is short enough is returned as it is."""
     size = bin_rows(len(signal.values))
@@ -30,8 +36,7 @@ def paired(signal: Signal) -> Signal:
 
 def evenly(signal: Signal) -> Signal:
     """Return every so many rows of a signal, the first among them."""
-    # one value for a bin here, so bins of half the size
-    step = -(-len(signal.values) // MOST_ROWS) or 1
+    step = even_step(len(signal.values))
     return replace(signal, dt=signal.dt * step, values=signal.values[::step])
 
 

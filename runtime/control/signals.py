@@ -150,6 +150,19 @@ class Signals(Mapping[str, Array]):
                 poses[at + rows] = matmul(X[rows], self._rows.tools[tool])
         return poses
 
+    def tool_points(self, name: str, first: int, last: int) -> Array:
+        """Return the tool point (N, 3), m in the world, at joint angles ``name`` of ticks ``first`` to before ``last``.
+
+        Where no orientation is needed: much quicker than ``tool_poses``, whose last bits differ.
+        """
+        q, tools = self._rows.read(name, first, last), self._of_cycle("tool", first, last)
+        points = np.empty((len(q), 3))
+        with np.errstate(invalid="ignore", over="ignore"):
+            for tool in np.unique(tools):
+                rows = np.flatnonzero(tools == tool)
+                points[rows] = self._chain.points(q[rows], self._rows.tools[tool][:3, 3])
+        return points
+
     def _of_tick(self, name: str, first: int, last: int) -> Array:
         return self._rows.read(name, first, last)
 

@@ -30,6 +30,18 @@ class Chain:
             pass
         return np.asarray(matmul(X.reshape(-1, 4), self.X_last_flange).reshape(X.shape))
 
+    def points(self, q: Array, p_flange: Array) -> Array:
+        """Return where a point (3,) of the flange is in the base (N, 3), m, at joint angles q (N, n) rad.
+
+        Vectors only, from the flange to the base: much quicker than ``flange``, whose last bits differ.
+        """
+        fixed = [*self.placements, self.X_last_flange]
+        x, y, z = np.broadcast_to(_moved(fixed[-1], p_flange[:, None]), (3, len(q)))
+        for i in reversed(range(len(self.placements))):
+            c, s = np.cos(q[:, i]), np.sin(q[:, i])
+            x, y, z = _moved(fixed[i], np.stack([c * x - s * y, s * x + c * y, z]))
+        return np.stack([x, y, z], axis=1)
+
     def axis_frames(self, q: Array) -> Iterator[Array]:
         """Yield the frame of each axis, turned, in the base frame (..., 4, 4)."""
         X = np.eye(4)
@@ -42,3 +54,8 @@ class Chain:
             turned[..., 0], turned[..., 1], turned[..., 2:] = c * x + s * y, c * y - s * x, X[..., :, 2:]
             X = turned
             yield X
+
+
+def _moved(X: Array, p: Array) -> Array:
+    """Return points p (3, N) in the frame in which X (4, 4) is given."""
+    return np.asarray(matmul(X[:3, :3], p) + X[:3, 3:])

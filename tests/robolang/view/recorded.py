@@ -88,6 +88,10 @@ class MadeLog(Log):
     def span(self, name, first, last):
         return self.arrays[name][first:last]
 
+    def tool_points(self, name, first, last):
+        points = {"q_cmd": self.arrays["tool_cmd"], "q_link": self.arrays["X_world_tool"][:, :3, 3]}
+        return points[name][first:last]
+
     def each_cycle(self, name):
         return self.arrays[name][::8]
 
