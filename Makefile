@@ -5,7 +5,7 @@
 # make campaign   the tests at full size, of which make test runs a sample (minutes)
 # make format  the layout that the gates ask for
 # make bench  the figures of docs/measured.md that are times or ratios of times
-# make view-bench  what a frame of a page costs while it plays (needs chromium)
+# make view-bench  what pages of runs cost: bytes, time, memory, and a frame while they play (needs chromium)
 # make plots   the plots of docs/servo.md, drawn anew
 # make fault-campaign         every injected fault and 200 clean runs, counted (minutes)
 # make supervision-campaign   wrong payloads in random programs, counted
@@ -63,6 +63,7 @@ bench: $(READY)
 	$(BIN)/python -m tests.bench.prompt
 
 view-bench: $(READY)
+	$(BIN)/python -m tests.bench.pages
 	$(BIN)/python -m tests.bench.frames
 
 $(READY): pyproject.toml constraints.txt

@@ -70,7 +70,7 @@ def repeated(log: Log, times: int) -> Log:
 
 
 def minute(folder: Path, rounds: int) -> Project:
-    """Return a project that moves for a minute; fewer rounds: for less."""
+    """Return a project that moves for nearly a minute, so that nothing is thinned; fewer rounds: for less."""
     for kind in ("points", "cell"):
         name = f"{PROGRAM.stem}.{kind}.toml"
         (folder / f"minute.{kind}.toml").write_text((PROGRAM.parent / name).read_text())
@@ -111,7 +111,7 @@ def rows(smallest: bool) -> Iterator[Row]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         short, short_share = share(load_project(PROGRAM), folder, 1 if smallest else 5)
-        long, long_share = share(minute(folder, 1 if smallest else 16), folder, 1 if smallest else 3)
+        long, long_share = share(minute(folder, 1 if smallest else 15), folder, 1 if smallest else 3)
         hours = repeated(long, 2 if smallest else -(-1_800_000 // long.count("t")))
         for what, log in (("short", short), ("minute", long), ("half an hour", hours)):
             size, took = written(log, folder)

@@ -20,6 +20,7 @@ from tests.bench import (
     jog_campaign,
     measure,
     mutants,
+    pages,
     plots,
     prompt,
     pulse_campaign,
@@ -34,7 +35,7 @@ ROOT = Path(__file__).parents[2]
 MAKEFILE = (ROOT / "Makefile").read_text("utf-8")
 BENCHES = {
     "make bench": (run.rows, inertia.rows, check.rows, prompt.rows),
-    "make view-bench": (frames.rows,),
+    "make view-bench": (pages.rows, frames.rows),
     "make measured": (measure.rows,),
     "make fault-campaign": (campaign.fault_rows,),
     "make supervision-campaign": (campaign.payload_rows,),
