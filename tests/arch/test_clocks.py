@@ -25,6 +25,7 @@ CLOCKS = {
 MEASURING = {
     "bench/check.py",
     "bench/inertia.py",
+    "bench/pages.py",
     "bench/prompt.py",
     "bench/pulse_campaign.py",
     "bench/run.py",
