@@ -74,4 +74,10 @@ register(
         meaning="A statement that was typed was stopped before its end, and the program cannot go on before it.",
         remedy="Type continue to end it, or back to take it back.",
     ),
+    Code(
+        code="RBL812",
+        name="no-live-picture",
+        meaning="The prompt was started by a program that gave it no live picture.",
+        remedy="Start it with robolang repl.",
+    ),
 )

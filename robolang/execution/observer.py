@@ -43,10 +43,6 @@ class Observers(Observer):
         # a new tuple: the program may be in the middle of the old one
         self._all = (*self._all, observer)
 
-    def remove(self, observer: Observer) -> None:
-        """Let one see no more; nothing where it is none of these."""
-        self._all = tuple(each for each in self._all if each is not observer)
-
     def statement_began(self, statement: LineBegun) -> None:
         """Pass it on."""
         for each in self._all:

@@ -16,7 +16,7 @@ from robolang.execution.alarms import failure as fault_of
 from robolang.execution.engine import StopsBefore
 from robolang.execution.executor import EDIT
 from robolang.execution.lowering import Surroundings
-from robolang.execution.observer import Observer
+from robolang.execution.observer import Observer, Observers
 from robolang.execution.result import StatementRun
 from robolang.execution.session import Session
 from robolang.execution.status import State, Status
@@ -66,7 +66,9 @@ class Live:
     ) -> None:
         self.project = project
         self._output, self._interrupts = output, interrupts
-        self.session = Session(project, physics=physics, realtime=realtime, observer=Watching(output))
+        self.observers = Observers(Watching(output))
+        """Who sees what happens; a picture of the arm may join them."""
+        self.session = Session(project, physics=physics, realtime=realtime, observer=self.observers)
         self.executor = self.session.executor
         self._come_to_first()
         self.timeline = Timeline(self.executor)

@@ -5,8 +5,7 @@ A ``Pendant`` is light to make: the controller, and with it numerics and physics
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from enum import Enum
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -15,6 +14,7 @@ from robolang.analysis.analysis import Analysis
 from robolang.core.diagnostics import Diagnostic, has_errors
 from robolang.core.source import Source
 from robolang.pendant.checking import errors_of
+from robolang.pendant.choice import Choice, Mode
 from robolang.pendant.command import Commands
 from robolang.pendant.failure import Failure, failure, of_diagnostics, of_fault
 from robolang.pendant.interrupts import Interrupts
@@ -23,6 +23,7 @@ from robolang.pendant.line_moves import LineMoves, moved_breaks
 from robolang.pendant.lines import has_numbers, line_of
 from robolang.pendant.numbers import pose_text
 from robolang.pendant.output import Output
+from robolang.pendant.pictures import Pictures
 from robolang.pendant.reading import NAME, Blank, CommandLine, LineEdit, Statements, Value, first_word, read
 from robolang.pendant.recording import Recording
 from robolang.pendant.standing import ENDED, place, text_of
@@ -53,23 +54,6 @@ def _key(item: Diagnostic) -> tuple[str, str]:
     return item.code, item.message
 
 
-class Mode(Enum):
-    """MANUAL: tool and flange stay under 250 mm/s. AUTO: moves have their programmed speeds."""
-
-    MANUAL = "MANUAL"
-    AUTO = "AUTO"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Choice:
-    """What the command line chooses: cell file, robot, physics or the ideal arm, wall time or as fast as it goes."""
-
-    cell: Path | None = None
-    robot: str | None = None
-    physics: bool = True
-    realtime: bool = False
-
-
 class Pendant:
     """A session of the prompt. ``do`` carries out one line, or the lines of one block."""
 
@@ -97,6 +81,7 @@ class Pendant:
         self._project: Project | None = None
         self._live: Live | None = None
         self.recording = Recording()
+        self.pictures = Pictures(choice.picture)
 
     def do(self, text: str) -> None:
         """Carry out what was typed; ``Failure`` for what cannot be done, with everything to show."""
@@ -105,6 +90,8 @@ class Pendant:
                 self._do(text)
         except Fault as fault:
             raise of_fault(fault) from None
+        finally:
+            self.pictures.show()
 
     def _do(self, text: str) -> None:
         match read(text, self.commands):
@@ -470,6 +457,7 @@ class Pendant:
                 project = replace(project, analysis=Analysis(source=Source(project.source.path, "")), diagnostics=())
             self._live = Live(project, self.output, self.interrupts, physics=choice.physics, realtime=choice.realtime)
             self._apply_mode(self._live)
+            self.pictures.follow(self._live)
         return self._live
 
     def start_again(self) -> None:

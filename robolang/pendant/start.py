@@ -6,11 +6,12 @@ import sys
 from pathlib import Path
 
 from robolang.pendant.assembly import COMMANDS
+from robolang.pendant.choice import Choice
 from robolang.pendant.foreground import Foreground
 from robolang.pendant.interrupts import ScriptSignals, Signals
 from robolang.pendant.keyboard import Keyboard
 from robolang.pendant.output import PlainOutput
-from robolang.pendant.pendant import Choice, Pendant
+from robolang.pendant.pendant import Pendant
 from robolang.pendant.plain_prompt import AskingOutput, converse
 from robolang.pendant.script import play
 from robolang.teaching.desk import Desk
@@ -42,9 +43,12 @@ def start(
     )
     if record is not None:
         pendant.recording.begin(record, pendant)
-    if not somebody_types:
-        return _played(pendant, interrupts, keep_going=keep_going)
-    ended_by = _at_terminal(pendant)
+    try:
+        if not somebody_types:
+            return _played(pendant, interrupts, keep_going=keep_going)
+        ended_by = _at_terminal(pendant)
+    finally:
+        pendant.pictures.close()
     if ended_by:
         # what is buffered for a terminal that has gone would be an error at the very end
         nowhere = os.open(os.devnull, os.O_WRONLY)

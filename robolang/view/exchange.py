@@ -53,7 +53,9 @@ class Page:
 class Exchange:
     """Between the thread of a run and the thread of its server."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, watched_only: bool = False) -> None:
+        """``watched_only``: no page may command, since something else drives the arm."""
+        self._watched_only = watched_only
         self.hello = '{"kind":"hello"}'
         """What a page gets first, as JSON."""
         self.button = HeldButton()
@@ -142,7 +144,7 @@ class Exchange:
         # counted, never used again: an old reply must not reach another page
         page = Page(number=self._last)
         # alone only: a page that is opened beside others must not take control unasked
-        if not self._pages:
+        if not self._pages and not self._watched_only:
             self._control = page.number
         self._pages[page.number] = page
         self._wake.set()
@@ -169,14 +171,13 @@ class Exchange:
         rows = list(self._statements.copy())[-new:]
         return f'{{"kind":"statements","rows":[{",".join(rows)}]}}'
 
-    def has_control(self, page: Page) -> bool:
-        """Return whether a page may command."""
-        return self._control == page.number
-
-    @property
-    def control_is_free(self) -> bool:
-        """Whether no page has control."""
-        return self._control is None
+    def control_for(self, page: Page) -> str:
+        """Return who has control, as a page sees it: yours, free, other, or none where pages only watch."""
+        if self._watched_only:
+            return "none"
+        if self._control is None:
+            return "free"
+        return "yours" if self._control == page.number else "other"
 
     def receive(self, page: Page, message: Message) -> None:
         """Hand a command over; what cannot be handed over is answered at once (RBL836, RBL837)."""
@@ -186,6 +187,8 @@ class Exchange:
             self.reply(page.number, message.id, fault)
 
     def _receive(self, page: Page, message: Message) -> None:
+        if self._watched_only:
+            raise Fault("RBL837", "pages only watch here: the prompt has control", "Type the command at the prompt.")
         match message.command:
             case Held(jog=jog, released=released):
                 # a sign that comes after its release, or of a page without control, finds no button and is no error

@@ -62,6 +62,10 @@ class Frames(Observer):
         self._tool, self._shown_us = np.zeros(3), session.controller.time_us
         self.show()
 
+    def stop(self) -> None:
+        """Show nothing more: the session goes on without pages."""
+        self._session = None
+
     def run_began(self, run: StatementRun, time_us: int) -> None:
         """Show the statement that begins."""
         origin = run.origin

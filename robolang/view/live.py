@@ -26,9 +26,9 @@ FIRST_PAGE_S = 15.0
 class Live:
     """Pages that follow a session. Hand ``frames`` to the session as its observer, then ``serve`` it."""
 
-    def __init__(self, page: LivePage, port: int = 0) -> None:
-        """``port`` 0: any that is free."""
-        self.exchange = Exchange()
+    def __init__(self, page: LivePage, port: int = 0, *, watched_only: bool = False) -> None:
+        """``port`` 0: any that is free. ``watched_only``: no page may command."""
+        self.exchange = Exchange(watched_only=watched_only)
         self.frames = Frames(self.exchange)
         self._page, self._port = page, port
 

@@ -230,7 +230,7 @@ def _news(exchange: Exchange, page: Page) -> list[str | bytes]:
     if statements is not None:
         found.append(statements)
     number, status = exchange.status
-    control = "yours" if exchange.has_control(page) else "free" if exchange.control_is_free else "other"
+    control = exchange.control_for(page)
     # control differs from page to page, and is no part of what the run knows
     mark = (number, control)
     if page.status != mark:

@@ -4,10 +4,13 @@ Nothing heavy is imported before the prompt is there: the controller is built wh
 """
 
 from pathlib import Path
-from typing import Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from robolang.cli.errors import exit_code, reported
 from robolang.cli.options import Argument, CellOptions, Option, SimulationOptions
+
+if TYPE_CHECKING:
+    from robolang.pendant.choice import Picture
 
 _Program = Annotated[str | None, Argument("[PROG]", "Program file (.rbl); without one, a new program.")]
 
@@ -34,7 +37,7 @@ def repl(program: _Program, files: CellOptions, options: PromptOptions) -> None:
     143 stopped by a signal.
     """
     with reported():
-        from robolang.pendant.pendant import Choice
+        from robolang.pendant.choice import Choice
         from robolang.pendant.start import start
 
         choice = Choice(
@@ -42,8 +45,18 @@ def repl(program: _Program, files: CellOptions, options: PromptOptions) -> None:
             robot=files.robot,
             physics=not options.no_physics,
             realtime=options.realtime,
+            picture=_picture,
         )
         path = None if program is None else Path(program)
         codes = start(path, choice, record=options.record, keep_going=options.keep_going)
     if codes:
         raise SystemExit(exit_code(codes[0]))
+
+
+def _picture() -> "Picture":
+    """Return a live picture for the prompt, whose folder knows no pages."""
+    from robolang.view.beside import LiveBeside
+    from robolang.view.live_page import live_page
+    from robolang.view.page import Bundle
+
+    return LiveBeside(live_page(Bundle.installed()))

@@ -2,10 +2,10 @@
 
 from typing import TYPE_CHECKING
 
+from robolang.pendant.choice import Mode
 from robolang.pendant.command import Command, Group, Offer
 from robolang.pendant.failure import failure
 from robolang.pendant.output import Column, Table
-from robolang.pendant.pendant import Mode
 from robolang.pendant.words import nothing
 from robolang.syntax.declaration import form
 from robolang.syntax.keywords import near

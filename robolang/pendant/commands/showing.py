@@ -147,6 +147,16 @@ def _show_inputs(pendant: "Pendant") -> None:
     pendant.output.table(Table(columns=columns, rows=rows))
 
 
+def _view(pendant: "Pendant", rest: str) -> None:
+    if rest.lower() not in ("", "off"):
+        raise misused("view [off]", f"found '{rest}'")
+    if rest:
+        pendant.pictures.close()
+        pendant.output.line("the live picture is closed")
+        return
+    pendant.output.line(f"live picture: {pendant.pictures.open(pendant.live)}")
+
+
 COMMANDS = (
     Command(
         word="pos",
@@ -170,6 +180,15 @@ COMMANDS = (
         do=_list,
         offers=(Offer.LINE,),
         needs_arm=False,
+    ),
+    Command(
+        word="view",
+        form="view [off]",
+        help="Show the arm live in a browser, beside the prompt.",
+        group=Group.SHOW,
+        do=_view,
+        words=("off",),
+        more="The page only shows: the prompt moves the arm. Its address holds a token; whoever has it can watch.",
     ),
     Command(
         word="in",

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robolang.pendant.assembly import COMMANDS
+from robolang.pendant.choice import Choice
 from robolang.pendant.interrupts import Interrupt
 from robolang.pendant.output import PlainOutput
-from robolang.pendant.pendant import Choice, Pendant
+from robolang.pendant.pendant import Pendant
 from robolang.pendant.script import play
 from robolang.teaching.desk import Desk
 from robolang.teaching.documents import load_documents
@@ -40,6 +41,7 @@ class Prompted:
     pendant: Pendant
     results: io.StringIO
     problems: io.StringIO
+    opened: tuple[str, ...] | list[str] = ()
 
     def do(self, *lines: str) -> str:
         """Carry lines out and return what they show; the first that fails raises ``Failure``."""
@@ -50,12 +52,12 @@ class Prompted:
 
 
 def prompt(
-    program: Path | None = None, *, physics: bool = False, interrupts=None, cell: Path | None = None
+    program: Path | None = None, *, physics: bool = False, interrupts=None, cell: Path | None = None, picture=None
 ) -> Prompted:
     results, problems = io.StringIO(), io.StringIO()
     pendant = Pendant(
         Desk(load_documents(program, cell)),
-        Choice(cell=cell, physics=physics),
+        Choice(cell=cell, physics=physics, picture=picture),
         PlainOutput(results, problems),
         commands=COMMANDS,
         interrupts=interrupts or Requests(),

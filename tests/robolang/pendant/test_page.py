@@ -11,8 +11,9 @@ import tempfile
 from pathlib import Path
 
 from robolang.pendant.assembly import COMMANDS
+from robolang.pendant.choice import Choice
 from robolang.pendant.output import PlainOutput
-from robolang.pendant.pendant import Choice, Pendant
+from robolang.pendant.pendant import Pendant
 from robolang.pendant.script import play
 from robolang.teaching.desk import Desk
 from robolang.teaching.documents import load_documents

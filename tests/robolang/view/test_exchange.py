@@ -30,8 +30,8 @@ def replies(page):
 
 def test_the_first_page_has_control_and_others_watch(exchange):
     first, second = exchange.join(), exchange.join()
-    assert exchange.has_control(first)
-    assert not exchange.has_control(second)
+    assert exchange.control_for(first) == "yours"
+    assert exchange.control_for(second) != "yours"
     exchange.receive(second, Message(id=5, command=Go(word="start")))
     assert replies(second) == [(5, "RBL837")]
     assert exchange.take() is None
@@ -42,27 +42,27 @@ def test_control_changes_by_give_and_take_alone(exchange):
     exchange.receive(second, Message(id=1, command=Go(word="take")))
     exchange.receive(second, Message(id=2, command=Go(word="give")))
     assert replies(second) == [(1, "RBL837"), (2, "RBL837")]
-    assert exchange.has_control(first)
+    assert exchange.control_for(first) == "yours"
     exchange.receive(first, Message(id=1, command=Go(word="give")))
-    assert exchange.control_is_free
+    assert exchange.control_for(first) == exchange.control_for(second) == "free"
     exchange.receive(first, Message(id=2, command=Go(word="start")))
     exchange.receive(second, Message(id=3, command=Go(word="take")))
     assert replies(first) == [(1, None), (2, "RBL837")]
     assert replies(second) == [(3, None)]
-    assert exchange.has_control(second)
+    assert exchange.control_for(second) == "yours"
 
 
 def test_control_of_a_page_that_goes_is_free_and_is_nobodys_unasked(exchange):
     first, second = exchange.join(), exchange.join()
     exchange.leave(first)
-    assert exchange.control_is_free
-    assert not exchange.has_control(exchange.join())
+    assert exchange.control_for(second) == "free"
+    assert exchange.control_for(exchange.join()) != "yours"
     exchange.leave(second)
 
 
 def test_a_page_that_comes_alone_has_control(exchange):
     exchange.leave(exchange.join())
-    assert exchange.has_control(exchange.join())
+    assert exchange.control_for(exchange.join()) == "yours"
 
 
 def test_commands_come_in_their_order_and_are_bounded(exchange):
@@ -155,3 +155,13 @@ def test_a_reply_to_a_page_that_has_gone_is_dropped(exchange):
     page = exchange.join()
     exchange.leave(page)
     exchange.reply(page.number, 1)
+
+
+def test_pages_that_only_watch_command_nothing():
+    exchange = Exchange(watched_only=True)
+    page = exchange.join()
+    for command in (Go(word="start"), Go(word="take"), JOG, Held(jog=1, released=True)):
+        exchange.receive(page, Message(id=1, command=command))
+        assert replies(page) == [(1, "RBL837")]
+    assert exchange.control_for(page) == "none"
+    assert exchange.take() is None

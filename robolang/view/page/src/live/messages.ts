@@ -11,7 +11,8 @@ export interface Hello {
   readonly header: Header;
 }
 
-export type Control = "yours" | "free" | "other";
+/** `none`: pages only watch, since a prompt drives the arm. */
+export type Control = "yours" | "free" | "other" | "none";
 
 export interface Alarm {
   readonly code: string;

@@ -114,7 +114,7 @@ export class RunPanel {
     };
     for (const [name, made] of Object.entries(this.buttons)) {
       made.disabled = !can[name];
-      made.hidden = !hand && (name === "restart" || name === "end" || name === "reset");
+      made.hidden = status.control === "none" || (!hand && (name === "restart" || name === "end" || name === "reset"));
     }
     this.override.disabled = this.pace.disabled = status.control !== "yours";
   }
@@ -142,6 +142,7 @@ export class RunPanel {
       yours: ["You have control", button("Give", "Give control back, so that another page can take it", () => this.send("give"), { "data-testid": "give" })],
       free: ["No page has control", button("Take", "Take control of the arm", () => this.send("take"), { "data-testid": "take" })],
       other: ["You watch: another page has control"],
+      none: ["You watch: the prompt has control"],
     }[status.control];
     this.control.replaceChildren(...made);
   }
