@@ -1,0 +1,94 @@
+"""``make figures``: takes the pictures of README and docs into docs/pictures/, from runs made on the spot.
+
+Every picture comes from a command that a reader has too; pages are opened in a browser without a network.
+"""
+
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+from PIL import Image
+
+from robolang.__main__ import main
+from tests.robolang.view.browser import Tab, chromium
+
+FOLDER = Path(__file__).parents[2] / "docs" / "pictures"
+DEMO = "programs/pick_and_place.rbl"
+ROBOTS = {"puma560": DEMO, "manutec_r3": "programs/manutec_pick_and_place.rbl", "irb2400": "programs/irb2400_pick_and_place.rbl"}
+WIDE = (1600, 960)
+
+
+def robolang(*words: object) -> None:
+    """Run a command line; a failure ends the script."""
+    sys.argv = ["robolang", *map(str, words)]
+    try:
+        main()
+    except SystemExit as end:
+        if end.code:
+            raise
+
+
+def shoot(page: Path, name: str, prepare: str, *, scheme: str = "light") -> None:
+    """Take a picture of a page after a script has prepared it."""
+    with chromium() as browser:
+        tab = Tab(browser, *WIDE, color_scheme=scheme)
+        shown = tab.open(page, mark="")
+        shown.evaluate(prepare)
+        shown.wait_for_timeout(2000)  # labels and charts that come into view are drawn in the frames after
+        shown.screenshot(path=str(FOLDER / name))
+        assert not tab.complaints, tab.complaints
+
+
+def page_of_a_run(work: Path) -> None:
+    """The demo in its page."""
+    robolang("run", DEMO, "--quiet", "--log", work / "run.npz", "--html", work / "run.html")
+    shoot(work / "run.html", "page.png", "robolang.seek(2.0)")
+
+
+def two_runs(work: Path) -> None:
+    """The demo, and the same without the LOAD that declares the part."""
+    for beside in Path(DEMO).parent.glob(f"{Path(DEMO).stem}*"):
+        shutil.copy(beside, work)
+    text = Path(DEMO).read_text("utf-8")
+    without, count = re.subn(r"^50 .*\n", "", text, flags=re.M)
+    assert count == 1
+    # the controller would stop the second run: it notices that the hand carries more than was declared
+    warn = ("--quiet", "--set", "supervision.payload_mismatch=warn", "--log")
+    robolang("run", DEMO, *warn, work / "declared.npz")
+    (work / Path(DEMO).name).write_text(without, "utf-8")
+    robolang("run", work / Path(DEMO).name, *warn, work / "forgotten.npz")
+    labels = ("--label", "LOAD declared", "--label", "LOAD forgotten")
+    robolang("report", work / "declared.npz", work / "forgotten.npz", *labels, "-o", work / "two.html")
+    shoot(work / "two.html", "two_runs.png", "robolang.seek(2.0)", scheme="dark")
+
+
+def robots(work: Path) -> None:
+    """The built-in arms, beside one another."""
+    pictures = []
+    for name in ROBOTS:
+        robolang("render", ROBOTS[name], "-o", work / f"{name}.png", "--at", "2", "--size", "640x640")
+        pictures.append(Image.open(work / f"{name}.png").convert("RGB"))
+    row = Image.new("RGB", (sum(each.width for each in pictures), pictures[0].height))
+    for index, each in enumerate(pictures):
+        row.paste(each, (index * each.width, 0))
+    row.save(FOLDER / "robots.png")
+
+
+def plot(work: Path) -> None:
+    """The error of the tool and the inertia of the waist."""
+    robolang("run", DEMO, "--quiet", "--log", work / "run.npz")
+    robolang("plot", work / "run.npz", "tool_error", "D:1", "-o", FOLDER / "plot.svg")
+
+
+PICTURES: tuple[Callable[[Path], None], ...] = (page_of_a_run, two_runs, robots, plot)
+
+
+if __name__ == "__main__":
+    FOLDER.mkdir(exist_ok=True)
+    for draw in PICTURES:
+        print(f"{draw.__name__} ...", flush=True)
+        with tempfile.TemporaryDirectory() as folder:
+            draw(Path(folder))
