@@ -17,6 +17,7 @@
 # make verdict-campaign     do check and a run judge alike? 2,000 made-up programs with their files, counted
 # make large              time and memory of check and fmt on programs of 1 MB of every kind (minutes)
 # make mutants   mutants of supervision, stops, payload and areas: those that no test finds, and how many one finds (minutes)
+# make figures  the pictures of README and docs, taken anew from runs
 # make measured   the figures of docs/measured.md that repeat exactly
 # make viewer   the script of the pages, built anew from robolang/view/page (needs node)
 # make help   these lines
@@ -77,6 +78,9 @@ measured: $(READY)
 
 plots: $(READY)
 	$(BIN)/python -m tests.bench.plots
+
+figures: $(READY)
+	$(BIN)/python -m tests.bench.pictures
 
 fault-campaign: $(READY)
 	$(BIN)/python -m tests.faults.campaign faults

@@ -60,8 +60,8 @@ class Replay:
 
 
 def _same_side(before: Array, after: Array) -> Array:
-    """Return poses (7 p,) with quaternions on the side of those before: q and -q are one rotation."""
+    """Return poses (p, 7) with quaternions on the side of those before: q and -q are one rotation."""
     one, other = before.reshape(-1, 7), after.reshape(-1, 7).copy()
     opposite = (one[:, 3:] * other[:, 3:]).sum(axis=1) < 0.0
     other[opposite, 3:] *= -1.0
-    return other.ravel()
+    return other.reshape(before.shape)

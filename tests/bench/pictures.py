@@ -5,6 +5,7 @@ Every picture comes from a command that a reader has too; pages are opened in a 
 
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
@@ -17,17 +18,26 @@ from tests.robolang.view.browser import Tab, chromium
 
 FOLDER = Path(__file__).parents[2] / "docs" / "pictures"
 DEMO = "programs/pick_and_place.rbl"
-ROBOTS = {"puma560": DEMO, "manutec_r3": "programs/manutec_pick_and_place.rbl", "irb2400": "programs/irb2400_pick_and_place.rbl"}
+ROBOTS = {"puma560": DEMO, "manutec_r3": "programs/manutec_pick_and_place.rbl", "irb2400": "programs/wrist/e1.rbl"}
 WIDE = (1600, 960)
+PLANNED = """LOAD (0, 0, 60), 0.8
+HAND OFF
+SPEED 900
+MOVE P4
+MOVE P1
+MOVE P2
+MOVE P5
+MOVE P3 + (0, 0, -20)
+"""
 
 
-def robolang(*words: object) -> None:
-    """Run a command line; a failure ends the script."""
+def robolang(*words: object, ok: tuple[int, ...] = (0,)) -> None:
+    """Run a command line; an exit code that is not ``ok`` ends the script."""
     sys.argv = ["robolang", *map(str, words)]
     try:
         main()
     except SystemExit as end:
-        if end.code:
+        if (end.code or 0) not in ok:
             raise
 
 
@@ -65,6 +75,35 @@ def two_runs(work: Path) -> None:
     shoot(work / "two.html", "two_runs.png", "robolang.seek(2.0)", scheme="dark")
 
 
+def live(work: Path) -> None:
+    """The live page while the demo runs."""
+    words = [sys.executable, "-m", "robolang", "view", DEMO, "--no-browser"]
+    with subprocess.Popen(words, stderr=subprocess.PIPE, text=True) as view:
+        assert view.stderr is not None
+        address = re.search(r"http://\S+", view.stderr.readline())
+        assert address is not None
+        try:
+            with chromium() as browser:
+                page = browser.new_context(viewport={"width": WIDE[0], "height": WIDE[1]}).new_page()
+                page.goto(address[0])
+                page.wait_for_selector("body[data-state=ready]")
+                page.get_by_text("Start", exact=True).click()
+                page.wait_for_timeout(4000)
+                page.screenshot(path=str(FOLDER / "live.png"))
+        finally:
+            view.terminate()
+
+
+def plan(work: Path) -> None:
+    """The planned motion of a program that does not keep its speed, with what check finds in it."""
+    for beside in Path(DEMO).parent.glob(f"{Path(DEMO).stem}*"):
+        shutil.copy(beside, work)
+    program = work / Path(DEMO).name
+    program.write_text(PLANNED, "utf-8")
+    robolang("check", "--motion", "--html", work / "plan.html", program, ok=(0, 1, 3))
+    shoot(work / "plan.html", "plan.png", "robolang.seek(1.2)")
+
+
 def robots(work: Path) -> None:
     """The built-in arms, beside one another."""
     pictures = []
@@ -83,7 +122,7 @@ def plot(work: Path) -> None:
     robolang("plot", work / "run.npz", "tool_error", "D:1", "-o", FOLDER / "plot.svg")
 
 
-PICTURES: tuple[Callable[[Path], None], ...] = (page_of_a_run, two_runs, robots, plot)
+PICTURES: tuple[Callable[[Path], None], ...] = (page_of_a_run, two_runs, plan, live, robots, plot)
 
 
 if __name__ == "__main__":

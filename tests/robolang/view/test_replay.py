@@ -43,6 +43,13 @@ def test_between_two_frames_parts_and_fingers_are_between():
     np.testing.assert_allclose(replay.at(0.399).parts[0], parts[-1].ravel(), atol=1e-6)
 
 
+def test_a_cell_without_parts_has_none():
+    bare = copy.deepcopy(SCENE) | {"bodies": [body for body in SCENE["bodies"] if not body["name"].startswith("part:")]}
+    bare["shapes"] = [shape for shape in SCENE["shapes"] if not shape["body"].startswith("part:")]
+    replay = Replay(Log(made.recorder(400, made.PLAIN, parts=0).recorded(), made.meta() | {"scene": bare}, "run.npz"))
+    assert replay.at(0.1).parts.shape == (0, 7)
+
+
 def test_a_part_whose_quaternion_changes_sign_does_not_turn():
     class Rows:
         ticks, cycles, frames, ticks_per_cycle, tick_us, tools = 33, 5, 3, 8, 1000, (np.eye(4),)
