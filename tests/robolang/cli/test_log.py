@@ -84,6 +84,15 @@ def test_what_cannot_be_plotted_is_refused_and_nothing_is_written(tmp_path, word
     assert sorted(path.name for path in tmp_path.iterdir()) == ["p.txt", "run.npz"]
 
 
+def test_an_mcap_gives_the_same_plot_and_table(run, tmp_path):
+    write_log(tmp_path / "run.mcap", run)
+    for name in ("npz", "mcap"):
+        robolang("plot", f"run.{name}", "q_fb", "tool_error", "parts", "-o", f"{name}.svg")
+        robolang("log", "export", f"run.{name}", "-o", f"{name}.csv")
+    assert (tmp_path / "npz.svg").read_bytes() == (tmp_path / "mcap.svg").read_bytes()
+    assert (tmp_path / "npz.csv").read_bytes() == (tmp_path / "mcap.csv").read_bytes()
+
+
 # --- export -----------------------------------------------------------------------------------------------------------
 
 
