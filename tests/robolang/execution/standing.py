@@ -83,8 +83,8 @@ def dump(thing):
     if isinstance(thing, np.ndarray):
         return thing.shape, thing.tobytes()
     if is_dataclass(thing) and not isinstance(thing, type):
-        if type(thing).__name__ in ("Project", "Program", "MovePlan", "_Block"):
-            return id(thing) if type(thing).__name__ != "_Block" else None
+        if type(thing).__name__ in ("Project", "Program", "MovePlan", "Block"):
+            return id(thing) if type(thing).__name__ != "Block" else None
         return type(thing).__name__, {each.name: dump(getattr(thing, each.name)) for each in fields(thing)}
     if isinstance(thing, dict):
         return {key: dump(value) for key, value in thing.items()}

@@ -108,7 +108,7 @@ def flat(value: Any) -> object:
     """Return a state as plain values that compare by content; rows of the log left out."""
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         state: Any = value
-        if type(value).__name__ == "_Block":
+        if type(value).__name__ == "Block":
             return state.tick
         fields = [field.name for field in dataclasses.fields(value)]
         return type(value).__name__, [flat(getattr(value, name)) for name in fields]
