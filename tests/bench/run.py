@@ -13,14 +13,18 @@ import time
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from unittest.mock import patch
 
 import mujoco
 import numpy as np
 
+from robolang.execution.log_meta import meta_of
+from robolang.execution.plan_memory import PlanMemory
 from robolang.execution.session import Session
 from robolang.execution.status import ENDED
 from robolang.execution.timeline import Timeline
 from robolang.interpreter.effects import MoveTo
+from robolang.logs.files import write_log
 from robolang.project.project import Project, load_project
 from runtime.plant.mujoco_plant import MujocoPlant
 from tests.bench import figures
@@ -211,6 +215,33 @@ def back_ratio(stops: bool) -> float:
     return (time.perf_counter() - started) / ran
 
 
+def logged(rounds: int) -> Row:
+    """Measure a run and the writing of its log, with parts, fingers and ``meta`` and without, in turn."""
+    project = load_project(PROGRAM)
+    pairs = [[logged_seconds(project, whole=each) for each in (True, False)] for _ in range(rounds)]
+    # the least of each: the difference is a hundredth, and what disturbs a run only adds to it
+    whole, bare = map(min, zip(*pairs, strict=True))
+    return Row(
+        figure="run and log with parts and meta against without, processor time",
+        form="{:.3f} (at most 1.03)",
+        values=(whole / bare,),
+    )
+
+
+def logged_seconds(project: Project, *, whole: bool) -> float:
+    """Return the processor time of a run and its log, s; not ``whole``: without parts, fingers and ``meta``."""
+    session = Session(project, plans=PlanMemory(project))
+    nothing = session.controller.plant.moved()
+    changes = {} if whole else {"moved": lambda: nothing}
+    vars(session.controller.plant).update(changes)
+    empty = {**meta_of(session.record, session.world.signals, {}), "scene": None, "points": {}, "program": {}}
+    made = meta_of if whole else lambda *_: empty
+    with tempfile.TemporaryDirectory() as folder, patch("robolang.execution.session.meta_of", made):
+        started = time.process_time()
+        write_log(Path(folder, "l.npz"), session.run().log)
+        return time.process_time() - started
+
+
 def rows(smallest: bool) -> Iterator[Row]:
     """Measure everything; small machines differ, so nothing is promised here."""
     yield whole_run(1 if smallest else 11)
@@ -221,6 +252,7 @@ def rows(smallest: bool) -> Iterator[Row]:
             form="{:.4f} (at most 0.1)",
             values=(statistics.median(ratios),),
         )
+    yield logged(1 if smallest else 15)
     yield from wrist(1 if smallest else 7)
     for figure, command in COMMANDS.items():
         yield Row(figure=figure, form="{:.0f} ms", values=(1e3 * process_seconds(1 if smallest else 8, *command),))
