@@ -21,6 +21,8 @@ FORMAT = 1
 BITS = 24
 LARGEST = 1e30
 """What is larger counts as no number: a page computes in single precision, in which it would be infinite."""
+SMALLEST = 1e-30
+"""A column whose range is smaller counts as constant: single precision has no steps for it."""
 _MASK = (1 << BITS) - 1
 _STEPS = _MASK - 1  # the largest code stands for the largest value, and code 0 for none
 _LEVEL = 6
@@ -72,6 +74,7 @@ def code(values: Array, finest: float = 0.0) -> Coded:
     high = np.max(columns, axis=1, where=there, initial=-np.inf)
     known = there.any(axis=1)
     span = np.where(known, high, 0.0) - np.where(known, low, 0.0)
+    span[span < SMALLEST] = 0.0
     # a constant with gaps has two codes, so it needs bytes: any step will do
     step = np.where(span > 0.0, np.maximum(span / _STEPS, finest), np.where(known & ~there.all(axis=1), 1.0, 0.0))
     kept = step > 0.0

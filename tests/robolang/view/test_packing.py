@@ -40,7 +40,7 @@ def test_every_number_comes_back_within_half_a_step_and_every_gap_as_a_gap(value
     assert (listed["rows"], listed["columns"]) == values.shape
     for before, after in zip(values.T, columns, strict=True):
         rounding = np.spacing(np.abs(before[np.isfinite(before)]).max(initial=0.0))
-        assert furthest(before, after) <= 0.5 * step(before) + 4 * rounding
+        assert furthest(before, after) <= 0.5 * step(before) + 4 * rounding + 1e-30
 
 
 def test_steps_of_both_signs_over_the_whole_range_come_back():
@@ -53,6 +53,20 @@ def test_steps_of_both_signs_over_the_whole_range_come_back():
 def test_what_is_too_large_for_a_page_is_a_gap_and_leaves_the_rest_precise():
     listed, (column,) = read([1.0, 1e300, 2.0, -math.inf])
     assert column == [1.0, None, pytest.approx(2.0), None] and listed["lo"] == [1.0]
+
+
+def test_a_finest_step_makes_codes_coarser_and_never_finer():
+    noise = np.random.default_rng(5).normal(size=500)
+
+    def listed(finest):
+        header, found = unpacked(
+            pack({}, [Signal(name="q", base="tick", dt=1.0, values=noise[:, None], finest=finest)])
+        )
+        assert furthest(noise, found["q"][0]) <= 0.5 * header["signals"][0]["step"][0] * (1 + 1e-9)
+        return header["signals"][0]["step"]
+
+    assert listed(1e-3) == [1e-3]
+    assert listed(1e-12) == listed(0.0) == [pytest.approx(np.ptp(noise) / (2**24 - 2))]
 
 
 def test_a_constant_column_costs_nothing_and_one_without_numbers_has_no_least():
