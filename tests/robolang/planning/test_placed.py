@@ -59,3 +59,11 @@ def test_an_empty_grip_is_where_the_hand_closes(tmp_path):
     (move,) = rehearsal.moves
     assert item.p == pytest.approx(move.plan.path.X_end[:3, 3].tolist(), abs=1e-6)
     assert item.time_us == move.ends_us + 200_000
+
+
+def test_a_singular_posture_is_at_its_share_of_the_path(tmp_path):
+    text = "MOVEJ JOINT(0, 60, -190, 0, -6, 0)\nMOVE HERE + (0, 0, -40), WRIST KEEP\n"
+    item, rehearsal = placed(tmp_path, text, "RBL427")
+    path, share = rehearsal.moves[1].plan.path, numbers(item.message)[0] / 100.0
+    start, end = path.X_start[:3, 3], path.X_end[:3, 3]
+    assert 0.1 < share and np.abs(start + share * (end - start) - item.p).max() <= 1e-3 * np.linalg.norm(end - start)
