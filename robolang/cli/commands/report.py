@@ -12,7 +12,7 @@ from robolang.cli.options import Argument, Group, Option
 from robolang.cli.output import echo
 from robolang.cli.usage import OptionValueError
 
-Run = Annotated[str, Argument("RUN", "Log of a run (.npz).")]
+Run = Annotated[str, Argument("RUN", "Log of a run (.npz or .mcap).")]
 OtherRun = Annotated[str | None, Argument("[RUN2]", "Log of another run, to be shown beside it.")]
 
 

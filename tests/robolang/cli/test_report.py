@@ -41,6 +41,14 @@ def test_a_run_and_its_log_give_the_same_page_but_for_the_name(made):
     assert (made / "run.html").stat().st_size <= 1_200_000
 
 
+def test_a_log_for_other_viewers_gives_the_same_page(short):
+    dry("p.rbl", "--quiet", "--log", "a.npz")
+    dry("p.rbl", "--quiet", "--log", "b.mcap")
+    for name in ("a.npz", "b.mcap"):
+        robolang("report", name, "--label", "run")
+    assert (short / "a.html").read_bytes() == (short / "b.html").read_bytes()
+
+
 def test_the_page_is_the_log_within_a_step(made):
     import robolang as api
 
