@@ -295,6 +295,57 @@ def test_two_programs_are_said_to_differ(browser, tmp_path):
     tab.close()
 
 
+def test_after_the_end_of_the_shorter_run_it_has_no_value(browser, tmp_path):
+    tab = Tab(browser)
+    page = tab.open(made_up.page(tmp_path / "short.html", made_up.run(DURATION_S), made_up.run(1.6, label="short")))
+    page.evaluate("robolang.seek(1.5)")
+    value = "document.querySelector('[data-signal=tool_error] output').textContent"
+    until(page, f"/ \\| [0-9]/.test({value})")
+    page.evaluate("robolang.seek(3)")
+    until(page, f"/[0-9] \\| –/.test({value})")
+    tab.close()
+
+
+@pytest.mark.parametrize("scene", [None, {"bodies": 3}, {**made_up.scene("part"), "shapes": [{"body": None}]}])
+def test_without_a_scene_words_stand_for_the_robot(browser, tmp_path, scene):
+    tab = Tab(browser)
+    header, signals = made_up.run(DURATION_S)
+    header["meta"]["scene"] = scene
+    page = tab.open(made_up.page(tmp_path / "bare.html", (header, signals)))
+    assert page.get_attribute("body", "data-state") == "ready"
+    assert page.is_visible("[data-testid=no3d]")
+    page.click(LINE.format(5))
+    assert running(page) == 5
+    tab.close()
+
+
+def test_a_run_with_nothing_but_a_program_is_shown(browser, tmp_path):
+    tab = Tab(browser)
+    header, _ = made_up.run(DURATION_S)
+    header |= {"charts": [], "notes": [], "joints": []}
+    header["meta"]["report"] = {"statements": []}
+    page = tab.open(made_up.page(tmp_path / "empty.html", (header, {})))
+    assert page.get_attribute("body", "data-state") == "ready"
+    assert tab.complaints == []
+    page.keyboard.press("Space")
+    page.keyboard.press("PageDown")
+    page.keyboard.press("End")
+    assert time_of(page) == pytest.approx(DURATION_S)
+    tab.close()
+
+
+def test_findings_of_one_place_have_one_name_in_space(browser, tmp_path):
+    tab = Tab(browser)
+    header, signals = made_up.run(DURATION_S)
+    header["notes"] = [
+        {"time_s": 1.0, "line": 5, "code": "RBL523", "severity": "warning", "text": str(k)} for k in range(900)
+    ]
+    page = tab.open(made_up.page(tmp_path / "many.html", (header, signals)))
+    assert page.locator(".labels .warning").count() == 1
+    assert page.locator("[data-testid=note]").count() == 900
+    tab.close()
+
+
 def test_a_thinned_run_says_so(browser, tmp_path):
     tab = Tab(browser)
     text = "thinned to one pair every 20 ms"

@@ -15,9 +15,9 @@ export function el<K extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
-/** A button with a name for those who do not see its sign. */
+/** A button. Its name is its text, so that a voice can call what an eye reads; a button that shows a sign is named by its title. */
 export function button(label: string, title: string, press: () => void, attributes: Attributes = {}): HTMLButtonElement {
-  const made = el("button", { type: "button", "aria-label": title, title, ...attributes }, label);
+  const made = el("button", { type: "button", "aria-label": label ? undefined : title, title, ...attributes }, label);
   made.addEventListener("click", press);
   return made;
 }

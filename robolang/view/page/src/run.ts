@@ -20,6 +20,11 @@ export class Signal {
     return Math.max(0, Math.min(this.rows - 1, Math.floor((t - this.t0) / this.dt + 1e-6)));
   }
 
+  /** Whether the signal still has rows at a time; the shorter of two runs ends before the other. */
+  covers(t: number): boolean {
+    return t <= this.t0 + this.rows * this.dt + 1e-6;
+  }
+
   /** Value of a column at a time, between two rows where both have one. */
   at(column: number, t: number): number {
     const values = this.columns[column];

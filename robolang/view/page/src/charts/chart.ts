@@ -3,12 +3,17 @@ import type { ChartHead, SeriesHead } from "../contract";
 import { el, token } from "../dom";
 import { fixed } from "../format";
 import type { Player } from "../player";
+import type { Curve } from "../run";
 import { coloursOf, follows, leaderOf, type Line, linesOf, plotData } from "./data";
 import { drawBand, drawNames, drawNotes, NAME_LETTERS } from "./drawing";
 
 const HEIGHT = 136;
 const LANE = 20;
 const COLOURS = 8;
+/** Digits after the point that a unit is worth, however far a chart is zoomed in. */
+const DIGITS: Readonly<Record<string, number>> = { deg: 2, mm: 3, mdeg: 1, "µm": 1, "mm/s": 1, "deg/s": 1, "% of limit": 1, "N m": 2, N: 1, kg: 2, ms: 1 };
+/** Values of so many letters stand in three columns, shorter ones in six. */
+const LONG_VALUE = 6;
 /** Playing, the values over a chart change this often at most: no eye reads faster. */
 const VALUE_MS = 120;
 /** A click within this time after a drag belongs to the drag. */
@@ -47,7 +52,6 @@ export class Chart {
     });
     this.element.classList.toggle("single", this.values.size === 1);
     this.element.classList.toggle("long", head.series.some((series) => !follows(series.role) && series.label.length > 4));
-    this.element.classList.toggle("wide", player.runs.length > 1);
     for (const role of ["command", "limit"] as const) if (head.series.some((series) => series.role === role)) title.after(legendKey(role));
     new ResizeObserver(() => this.resize()).observe(this.box);
   }
@@ -105,6 +109,9 @@ export class Chart {
 
   private laidOut(plot: uPlot): void {
     this.width = plot.bbox.width / uPlot.pxRatio;
+    const { min, max } = plot.scales.y ?? {};
+    const letters = Math.max(...[min ?? 0, max ?? 0].map((y) => fixed(y, this.digits).length));
+    this.element.classList.toggle("wide", this.player.runs.length > 1 || letters >= LONG_VALUE);
     this.paint(Infinity);
   }
 
@@ -118,7 +125,7 @@ export class Chart {
   /** The values of a series at the time, one for each run. */
   private valueText(series: SeriesHead): string {
     const lines = this.curves().filter((line) => line.head === series);
-    const texts = lines.map(({ curve }) => fixed(curve.values[curve.signal.row(this.player.t)] ?? NaN, this.digits));
+    const texts = lines.map(({ curve }) => fixed(valueAt(curve, this.player.t), this.digits));
     return texts.join(" | ") || "–";
   }
 
@@ -127,7 +134,8 @@ export class Chart {
     if (this.head.lanes) return 0;
     const { min, max } = this.plot?.scales.y ?? {};
     const span = (max ?? 1) - (min ?? 0);
-    return span > 0 ? Math.max(0, Math.min(5, Math.ceil(2.6 - Math.log10(span)))) : 2;
+    const fine = span > 0 ? Math.max(0, Math.ceil(2.6 - Math.log10(span))) : 2;
+    return Math.min(fine, DIGITS[this.head.unit] ?? 3);
   }
 
   private curves(): readonly Line[] {
@@ -139,8 +147,7 @@ export class Chart {
     const value = el("output", { "aria-live": "off" }, "–");
     this.values.set(series, value);
     const key = el("i", { class: `key colour-${colour % COLOURS} ${series.role}`, "aria-hidden": "true" });
-    const name = series.label === this.head.title ? "" : series.label;
-    const made = el("button", { type: "button", class: "chip", "aria-pressed": "true", "aria-label": series.label, title: `Hide or show ${series.label}` }, key, el("span", { class: "name" }, name), value);
+    const made = el("button", { type: "button", class: "chip", "aria-pressed": "true", title: `Hide or show ${series.label}` }, key, el("span", { class: "name" }, series.label), value);
     made.addEventListener("click", () => this.toggle(made, index));
     return made;
   }
@@ -265,6 +272,10 @@ export class Chart {
     this.plot.setSize({ width: this.available, height: this.height });
     this.spoil("range");
   }
+}
+
+function valueAt({ signal, values }: Curve, t: number): number {
+  return signal.covers(t) ? (values[signal.row(t)] ?? NaN) : NaN;
 }
 
 /** What the dotted or dashed lines of a chart are. */

@@ -1,4 +1,4 @@
-import type { Report, Statement } from "../contract";
+import type { Note, Report, Statement } from "../contract";
 import { el } from "../dom";
 import { number, seconds } from "../format";
 import type { Player } from "../player";
@@ -21,7 +21,7 @@ export function head(player: Player, ...tools: readonly HTMLElement[]): HTMLElem
 function outcome(player: Player): HTMLElement {
   const made = el("div", { class: "outcomes", "data-testid": "outcome" });
   for (const run of player.runs) {
-    const [kind, words] = ending(run.header.meta.report, run.header.kind ?? "run");
+    const [kind, words] = run.header.kind === "plan" ? planned(run.header.notes) : ending(run.header.meta.report, run.header.kind ?? "run");
     const name = player.runs.length > 1 ? el("span", { class: "who" }, run.header.label) : "";
     made.append(el("span", { class: `outcome ${kind}` }, name, words));
   }
@@ -34,7 +34,16 @@ function ending(report: Report, kind: "run" | "plan" | "live"): [string, string]
   if (report.ok === false) return ["error", alarm ? `Stopped by ${alarm}` : "Stopped"];
   const warnings = report.warnings?.length ?? 0;
   if (warnings > 0) return ["warning", `Ended with ${warnings} warning${warnings === 1 ? "" : "s"}`];
-  return ["ok", kind === "plan" ? "Planned motion" : "Ran to its end"];
+  return ["ok", "Ran to its end"];
+}
+
+/** How a planned motion came out: its findings, errors before warnings. */
+function planned(notes: readonly Note[]): [string, string] {
+  for (const severity of ["error", "warning"] as const) {
+    const count = notes.filter((note) => note.severity === severity).length;
+    if (count > 0) return [severity, `Planned, ${count} ${severity}${count === 1 ? "" : "s"}`];
+  }
+  return ["ok", "Planned motion"];
 }
 
 function facts(player: Player): HTMLElement {

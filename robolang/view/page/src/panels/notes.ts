@@ -5,6 +5,9 @@ import type { Player } from "../player";
 
 const NAMES: Readonly<Record<Severity, string>> = { error: "Alarm", warning: "Warning", note: "Note", print: "Print" };
 
+/** A list of more items than these is not read, and slows the page. */
+const MOST_ITEMS = 2000;
+
 /** Alarms, warnings, notes and printed lines in the order of their times. A click goes to the place. */
 export class Notes {
   readonly element = el("div", { class: "notes", role: "group", "aria-label": "Alarms and notes", "data-testid": "notes" });
@@ -15,7 +18,9 @@ export class Notes {
     player.runs.forEach((run, k) => {
       if (player.runs.length > 1) this.element.append(el("h3", {}, run.header.label));
       if (run.header.notes.length === 0) this.element.append(el("p", { class: "empty" }, "No alarm, no warning, no note."));
-      else this.element.append(el("ol", {}, ...run.header.notes.map((note) => this.item(note, k))));
+      else this.element.append(el("ol", {}, ...run.header.notes.slice(0, MOST_ITEMS).map((note) => this.item(note, k))));
+      const left = run.header.notes.length - MOST_ITEMS;
+      if (left > 0) this.element.append(el("p", { class: "empty" }, `${left} more are not listed.`));
     });
   }
 

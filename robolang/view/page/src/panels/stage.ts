@@ -41,7 +41,8 @@ export class Stage {
     } catch (error) {
       host.remove();
       const reason = error instanceof Error ? error.message : String(error);
-      this.refuse("This browser offers no WebGL, so the robot is not drawn. Program, timeline and charts work without it.", reason);
+      const why = reason.includes("WebGL") ? "This browser offers no WebGL, so the robot is not drawn." : "The robot cannot be drawn from what the run says of it.";
+      this.refuse(`${why} Program, timeline and charts work without it.`, reason);
       return;
     }
     this.controls(this.view);

@@ -208,6 +208,7 @@ export class Timeline {
   }
 
   private down(event: PointerEvent): void {
+    if (event.button !== 0) return;
     this.dragging = true;
     this.canvas.setPointerCapture(event.pointerId);
     const index = this.hit(event);

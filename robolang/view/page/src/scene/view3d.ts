@@ -33,6 +33,9 @@ interface Stage {
 }
 
 const ORBIT_STEP = 0.1;
+/** Findings of one code within this distance have one mark. */
+const SAME_PLACE_M = 0.01;
+const MOST_FINDINGS = 200;
 
 /** The robots of all runs side by side, seen by one camera. */
 export class View3D {
@@ -277,11 +280,15 @@ function at<T extends Object3D>(object: T, [x = 0, y = 0, z = 0]: readonly numbe
   return object;
 }
 
-/** Alarms, warnings and notes with a code and a place: their own, or that of the tool at their time. */
+/** Alarms, warnings and notes with a code and a place: their own, or that of the tool at their time; each place once. */
 function findings(run: Run): { name: string; p: readonly number[]; severity: Severity }[] {
   const tool = run.signals.get("tool");
-  return run.header.notes.flatMap((note) => {
-    const there = note.p ?? (note.time_s !== null && tool ? [0, 1, 2].map((k) => tool.at(k, note.time_s ?? 0)) : null);
-    return note.code !== null && there?.every(Number.isFinite) ? [{ name: note.code, p: there, severity: note.severity }] : [];
-  });
+  const found = new Map<string, { name: string; p: readonly number[]; severity: Severity }>();
+  for (const { code, severity, time_s, p } of run.header.notes) {
+    const there = p ?? (time_s !== null && tool ? [0, 1, 2].map((k) => tool.at(k, time_s)) : null);
+    if (code === null || !there?.every(Number.isFinite)) continue;
+    const key = `${code} ${there.map((x) => Math.round(x / SAME_PLACE_M)).join(" ")}`;
+    if (!found.has(key)) found.set(key, { name: code, p: there, severity });
+  }
+  return [...found.values()].slice(0, MOST_FINDINGS);
 }
