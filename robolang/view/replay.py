@@ -53,14 +53,14 @@ class Replay:
         at = min(time / frame_s, frames - 1.0)
         first = min(int(at), max(frames - 2, 0))
         rows = self._log.span(name, first, min(first + 2, frames)).astype(np.float64)
-        before, after = rows[0], rows[-1]
+        before, after = rows[0].ravel(), rows[-1].ravel()
         if name == "parts":
             after = _same_side(before, after)
         return np.asarray(before + (at - first) * (after - before))
 
 
 def _same_side(before: Array, after: Array) -> Array:
-    """Return poses (p, 7) with quaternions on the side of those before: q and -q are one rotation."""
+    """Return poses (7 p,) with quaternions on the side of those before: q and -q are one rotation."""
     one, other = before.reshape(-1, 7), after.reshape(-1, 7).copy()
     opposite = (one[:, 3:] * other[:, 3:]).sum(axis=1) < 0.0
     other[opposite, 3:] *= -1.0

@@ -18,9 +18,9 @@ CELL = load_cell(Path("programs/pick_and_place.cell.toml"))
 SCENE = scene_of(CELL).as_json()
 
 
-def log(ticks=400, numbers=made.PLAIN, **changes):
+def log(ticks=400, numbers=made.PLAIN, parts=1, **changes):
     meta = made.meta() | {"scene": copy.deepcopy(SCENE)} | changes
-    return Log(made.recorder(ticks, numbers, parts=1).recorded(), meta, "run.npz")
+    return Log(made.recorder(ticks, numbers, parts).recorded(), meta, "run.npz")
 
 
 def test_the_arm_stands_at_its_tick():
@@ -48,6 +48,14 @@ def test_a_cell_without_parts_has_none():
     bare["shapes"] = [shape for shape in SCENE["shapes"] if not shape["body"].startswith("part:")]
     replay = Replay(Log(made.recorder(400, made.PLAIN, parts=0).recorded(), made.meta() | {"scene": bare}, "run.npz"))
     assert replay.at(0.1).parts.shape == (0, 7)
+
+
+@pytest.mark.parametrize("parts", [0, 1, 3])
+def test_every_part_has_its_pose(parts):
+    recorded = log(parts=parts)
+    found = Replay(recorded).at(0.016)
+    assert found.parts.shape == (parts, 7)
+    np.testing.assert_allclose(found.parts.ravel(), recorded["parts"][1].ravel(), atol=1e-6)
 
 
 def test_a_part_whose_quaternion_changes_sign_does_not_turn():
