@@ -50,7 +50,7 @@ class _ExportOptions(Group):
 
     PANEL: ClassVar[str] = "Output"
     csv: Annotated[bool, Option("--csv", help="Write .csv: names and units in the first row.")] = False
-    parquet: Annotated[bool, Option("--parquet", help="Write .parquet; needs pip install 'robolang[parquet]'.")] = False
+    parquet: Annotated[bool, Option("--parquet", help="Write .parquet; needs the library pyarrow.")] = False
     out: Annotated[
         Path | None,
         Option("--out", "-o", metavar="FILE", help="File to write, .csv or .parquet; default: RUN.csv beside RUN."),

@@ -52,6 +52,13 @@ def test_the_help_is_for_people_who_know_no_python_and_names_the_exit_codes(word
     assert "\n " not in found.help.partition("Exit codes")[2]  # wrapped where the terminal ends, not the source
 
 
+@pytest.mark.parametrize(("words", "found"), COMMANDS, ids=[" ".join(words) for words, _ in COMMANDS])
+def test_no_word_of_a_help_text_is_lost(words, found):
+    """What stands in brackets is taken for a style."""
+    for parameter in found.params:
+        assert not re.search(r"\[[a-z]", parameter.help or ""), parameter.name
+
+
 def test_all_exit_codes_are_in_the_help_of_the_program():
     paragraph = flat(robolang("--help").stdout.partition("Exit codes: ")[2])
     assert {int(code) for code in re.findall(r"(?:^|[;,] )(\d+)", paragraph)} == EXIT_CODES
