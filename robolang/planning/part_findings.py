@@ -137,6 +137,20 @@ class CellTouches:
         for hand in hands:
             scene = yield from self._hand(hand, scene)
 
+    def scenes(self, rehearsal: Rehearsal) -> list[tuple[int, Scene]]:
+        """Return where the parts are by the HANDs of a rehearsal, each with the time from which on, us."""
+        found = [(0, self._start)]
+        for hand in rehearsal.hands:
+            steps = self._hand(hand, found[-1][1])
+            scene = None
+            while scene is None:
+                try:
+                    next(steps)
+                except StopIteration as end:
+                    scene = end.value
+            found.append((hand.begins_us, scene))
+        return found
+
     def _tool(self, q: Array) -> Array:
         return np.asarray(self._kinematics.forward(q) @ self._cell.hand.X_flange_tool)
 

@@ -17,6 +17,7 @@ from robolang.project.project import Project
 from robolang.syntax.unparse import describe
 from robolang.view import charts, joints, notes
 from robolang.view.packing import Signal, pack
+from robolang.view.plan_parts import parts_of
 from robolang.view.thinning import evenly, paired, thinned
 from runtime.appearance.cell_scene import scene_of
 from runtime.core.frames import Array
@@ -28,7 +29,8 @@ def pack_plan(project: Project, rehearsal: Rehearsal, found: Sequence[Diagnostic
     """Return a planned motion as a page holds it, with what was ``found`` in program and motion."""
     cycle_s, robot, label = project.profile.period_s, _robot(project), file_name(project.source.path)
     q = joint_angles(rehearsal, np.asarray(project.cell.home), project.profile.period_us)
-    signals = {signal.name: signal for signal in _signals(q, _tool(project, rehearsal, q), cycle_s)}
+    shown = (*_signals(q, _tool(project, rehearsal, q), cycle_s), *parts_of(project, rehearsal, q))
+    signals = {signal.name: signal for signal in shown}
     header = {
         "kind": "plan",
         "label": label,

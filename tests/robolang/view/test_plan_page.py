@@ -6,6 +6,7 @@ import pytest
 from robolang.core.diagnostics import Diagnostic, Severity
 from robolang.core.source import Span
 from robolang.execution.dry_run import rehearse
+from robolang.execution.session import run
 from robolang.planning.motion_findings import findings
 from robolang.planning.path_coverage import explore
 from robolang.project.project import load_project
@@ -27,13 +28,13 @@ def planned(project):
 
 def written(folder, text):
     (folder / "p.rbl").write_text(text)
-    return load_project(folder / "p.rbl")
+    project = load_project(folder / "p.rbl")
+    assert project.ok, project.diagnostics
+    return project
 
 
 def test_set_points_are_those_of_a_run_at_their_times(tmp_path):
     """A run without physics sends the same set-points, one cycle after the plan begins."""
-    from robolang.execution.session import run
-
     text = "DELAY 0.2\nMOVE P1 + (0, 0, 90), ZONE 20\nMOVE P2 + (0, 0, 90), ZONE 20\nMOVE P3 + (0, 0, 90)\nMOVE P4\n"
     project = written(tmp_path, text)
     rehearsal = rehearse(project)
@@ -114,3 +115,31 @@ def test_a_program_without_motion_has_a_page_and_margins_of_home(tmp_path):
     home = np.asarray(project.cell.home) / DEG
     assert [column[0] / DEG for column in found["q_link"]] == pytest.approx(home.tolist())
     assert all(each["at_s"] == 0.0 for each in header["joints"])
+
+
+def test_a_part_goes_with_the_hand_that_grips_it_and_stays_where_it_is_let_go():
+    """As in a run with physics, to what the fingers push it."""
+    header, found = planned(load_project(PICK))
+    assert next(each["dt"] for each in header["signals"] if each["name"] == "parts") == pytest.approx(0.016)
+    part, recorded = np.array(found["parts"]).T, run(PICK).log["parts"][:, 0]
+    assert np.abs(part[0] - recorded[0]).max() < 1e-3
+    assert np.abs(part[-1, :3] - recorded[-1, :3]).max() < 2e-3
+    assert np.ptp(part[:, :3], axis=0) == pytest.approx(np.ptp(recorded[:, :3], axis=0), abs=3e-3)
+    left, right = found["fingers"]
+    assert left == right and left[0] == pytest.approx(0.04) and min(left) == pytest.approx(0.02, abs=1e-3)
+
+
+def test_quaternions_of_a_part_that_turns_have_no_jump(tmp_path):
+    turn = "MOVEJ POSE(480, -220, 740, 180, 0, {})\n"
+    text = "MOVE P1\nHAND ON\nMOVE P1 + (0, 0, 100)\n" + turn.format(60) + turn.format(-60)
+    _, found = planned(written(tmp_path, text))
+    turns = np.array(found["parts"][3:7]).T
+    assert np.ptp(turns, axis=0).max() > 0.5
+    assert np.abs(np.diff(turns, axis=0)).max() < 0.2
+
+
+def test_a_part_that_is_known_no_more_stays_where_it_was(tmp_path):
+    """It is let go high over the table, so that it falls."""
+    _, found = planned(written(tmp_path, "MOVE P1\nHAND ON\nMOVE P1 + (0, 0, 150)\nHAND OFF\nMOVE P5\n"))
+    heights = found["parts"][2]
+    assert heights[-1] == heights[-10] == pytest.approx(max(heights), abs=1e-3) and np.ptp(heights) > 0.1
