@@ -143,6 +143,49 @@ def test_lines_are_walked_and_entered_by_keys(page):
     assert page.locator("[data-testid=line][tabindex='0']").count() == 1
 
 
+def test_the_name_of_a_button_contains_what_it_shows(page):
+    named = page.evaluate(
+        """() => [...document.querySelectorAll("button, [role=button], [role=tab], select, input")].map((one) =>
+            [one.getAttribute("aria-label") ?? "",
+             one.matches("select, input") ? (one.closest("label")?.textContent ?? "") : one.textContent,
+             one.title])"""
+    )
+    assert len(named) > 30
+    for label, shown, title in named:
+        assert not label or shown.strip().lower() in label.lower()
+        assert label or shown.strip() or title
+
+
+def test_steps_between_whole_numbers_have_no_digits(page):
+    assert "." in page.inner_text("[data-signal=tool_error] output")
+    page.evaluate("document.querySelector('[data-signal=io]').scrollIntoView()")
+    until(page, "document.querySelector('[data-signal=io] .u-over') !== null")
+    assert page.inner_text("[data-signal=io] output") in ("0", "1")
+    page.evaluate("document.querySelector('[data-signal=tool_error]').scrollIntoView()")
+
+
+def test_the_view_of_the_cell_is_the_first_one(browser, tmp_path):
+    tab = Tab(browser)
+    header, signals = made_up.run(DURATION_S)
+    header["meta"]["scene"]["camera"] = {"position": [3.0, 1.0, 2.0], "target": [0.2, 0.0, 0.5]}
+    page = tab.open(made_up.page(tmp_path / "camera.html", (header, signals)))
+    place = "robolang.viewer.stage.view.camera.position.toArray()"
+    assert page.evaluate(place) == pytest.approx([3.0, 1.0, 2.0])
+    page.keyboard.press("4")
+    assert page.evaluate(place) != pytest.approx([3.0, 1.0, 2.0])
+    tab.close()
+
+
+def test_a_plan_with_findings_counts_them(browser, tmp_path):
+    tab = Tab(browser)
+    header, signals = made_up.run(DURATION_S)
+    header["kind"] = "plan"
+    header["notes"] = [{**note, "severity": "warning"} for note in made_up.notes(DURATION_S)]
+    page = tab.open(made_up.page(tmp_path / "plan.html", (header, signals)))
+    assert page.inner_text("[data-testid=outcome]") == "Planned, 3 warnings"
+    tab.close()
+
+
 def test_help_opens_and_closes_by_key(page):
     page.keyboard.press("?")
     assert page.is_visible("[data-testid=help]")
@@ -212,9 +255,13 @@ def test_a_bin_keeps_its_least_and_largest_value_and_a_gap(page):
             assert list(pair) == [bin_[first], bin_[second]]
 
 
-def test_charts_out_of_sight_are_not_built(page):
+def test_charts_out_of_sight_are_not_built(browser, tmp_path):
+    tab = Tab(browser)
+    page = tab.open(made_up.page(tmp_path / "sight.html", made_up.run(DURATION_S)))
+    until(page, "document.querySelectorAll('[data-testid=chart] .u-over').length > 0")
     assert page.locator("[data-testid=chart]").count() == len(made_up.charts())
     assert page.locator("[data-testid=chart] .u-over").count() < len(made_up.charts())
+    tab.close()
 
 
 def test_a_name_over_a_chart_hides_its_curve(page):

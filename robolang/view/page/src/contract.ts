@@ -127,6 +127,8 @@ export interface SceneHead {
   readonly meshes: Readonly<Record<string, MeshHead>>;
   readonly frames: readonly Mark[];
   readonly points: readonly Mark[];
+  /** The view that the cell asks for, m; null: all of it. */
+  readonly camera?: { readonly position: readonly number[]; readonly target: readonly number[] } | null;
   readonly robot: string;
   readonly reach: number;
 }

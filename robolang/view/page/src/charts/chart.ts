@@ -31,6 +31,8 @@ export class Chart {
   private readonly values = new Map<SeriesHead, HTMLElement>();
   private readonly hidden = new Set<number>();
   private lines: readonly Line[] | null = null;
+  /** The chart has nothing but steps between whole numbers: modes, counts. */
+  private whole = false;
   private plot: uPlot | null = null;
   private width = 0;
   private paperWidth: number | null = null;
@@ -131,7 +133,7 @@ export class Chart {
 
   /** Digits after the point, so that a value shows some three hundredth parts of the height of the plot. */
   private get digits(): number {
-    if (this.head.lanes) return 0;
+    if (this.head.lanes || this.whole) return 0;
     const { min, max } = this.plot?.scales.y ?? {};
     const span = (max ?? 1) - (min ?? 0);
     const fine = span > 0 ? Math.max(0, Math.ceil(2.6 - Math.log10(span))) : 2;
@@ -139,7 +141,10 @@ export class Chart {
   }
 
   private curves(): readonly Line[] {
-    this.lines ??= linesOf(this.head.series, this.player.runs);
+    if (!this.lines) {
+      this.lines = linesOf(this.head.series, this.player.runs);
+      this.whole = this.lines.every(({ head, curve }) => head.role === "step" && curve.values.every(Number.isInteger));
+    }
     return this.lines;
   }
 
@@ -202,7 +207,7 @@ export class Chart {
     const letters = Math.max(...names.map((name) => name.length));
     const upright: uPlot.Axis = lanes
       ? { ...axis, size: Math.min(150, 14 + 6.5 * letters), splits: names.map((_, k) => k + 0.35), values: () => [...names].reverse() }
-      : { ...axis, size: 50, gap: 4, space: 26 };
+      : { ...axis, size: 50, gap: 4, space: 26, ...(this.whole ? { incrs: [1, 2, 5, 10, 100] } : {}) };
     return {
       width: this.available,
       height: this.height,

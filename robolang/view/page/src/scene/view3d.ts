@@ -113,7 +113,9 @@ export class View3D {
   show(view: View): void {
     this.view = view;
     this.turned();
-    this.controls.target.copy(aim(this.camera, this.box, view));
+    const own = view === "iso" ? this.stages[0]?.scene.camera : null;
+    if (own) this.camera.position.fromArray(own.position);
+    this.controls.target.copy(own ? new Vector3().fromArray(own.target) : aim(this.camera, this.box, view));
     this.controls.update();
     this.dirty = true;
   }
