@@ -91,6 +91,10 @@ class Shown:
         values = self.signals[name].values if name in self.signals else np.zeros((0, 1))
         return len(values) > 0 and bool(np.any(values != values[0]))
 
+    def switches(self, name: str, column: int) -> bool:
+        """Whether a column has no other values than 0 and 1."""
+        return bool(np.isin(self.signals[name].values[:, column], (0.0, 1.0)).all())
+
     def limit(self, axis: int, kind: str) -> float | None:
         """Return a limit of an axis, in SI; None: it has none."""
         limit = self.robot["axes"][axis].get(kind)
@@ -110,7 +114,7 @@ def of_run(shown: Shown) -> list[Chart]:
     wrist = Chart(id="wrist", title="Wrist mode", unit="0 path, 1 end angles, 2 held")
     found = [
         *read,
-        _levels(shown),
+        *_levels(shown),
         _one(shown, "payload_mass", load, role="step"),
         *_by_kind(shown, _torque, _inertia, _gravity),
         _age(shown),
@@ -125,7 +129,7 @@ def of_run(shown: Shown) -> list[Chart]:
 def of_plan(shown: Shown) -> list[Chart]:
     """Return the charts of a planned motion, speeds and accelerations in per cent of their limits."""
     joints = _by_kind(shown, _joints, _planned_speed, _planned_acceleration)
-    return _those_with_signals([*joints, _tool_speed(shown), _tool(shown), _levels(shown)], shown)
+    return _those_with_signals([*joints, _tool_speed(shown), _tool(shown)], shown)
 
 
 def of_live(robot: Mapping[str, Any]) -> list[Chart]:
@@ -262,9 +266,15 @@ def _tool(shown: Shown) -> Chart:
     return Chart(id="tool", title="Tool position", unit="mm", series=series)
 
 
-def _levels(shown: Shown) -> Chart:
-    series = tuple(Series(label=name, signal="levels", column=k, role="step") for k, name in enumerate(shown.levels))
-    return Chart(id="io", title="Inputs and outputs", unit="", series=series, lanes=True)
+def _levels(shown: Shown) -> list[Chart]:
+    series = [Series(label=name, signal="levels", column=k, role="step") for k, name in enumerate(shown.levels)]
+    # a lane has room for off and on; a number, such as the kind of a part, has an axis
+    lanes = tuple(each for each in series if shown.switches("levels", each.column))
+    numbers = tuple(each for each in series if each not in lanes)
+    return [
+        Chart(id="io", title="Inputs and outputs", unit="", series=lanes, lanes=True),
+        Chart(id="io_numbers", title="Inputs and outputs, numbers", unit="", series=numbers),
+    ]
 
 
 def _seam(shown: Shown) -> list[Chart]:
