@@ -270,10 +270,10 @@ def _levels(shown: Shown) -> list[Chart]:
     series = [Series(label=name, signal="levels", column=k, role="step") for k, name in enumerate(shown.levels)]
     # a lane has room for off and on; a number, such as the kind of a part, has an axis
     lanes = tuple(each for each in series if shown.switches("levels", each.column))
-    numbers = tuple(each for each in series if each not in lanes)
+    numbers = [each for each in series if each not in lanes]
     return [
         Chart(id="io", title="Inputs and outputs", unit="", series=lanes, lanes=True),
-        Chart(id="io_numbers", title="Inputs and outputs, numbers", unit="", series=numbers),
+        *(Chart(id=f"io_{each.column}", title=each.label, unit="", series=(each,)) for each in numbers),
     ]
 
 

@@ -110,8 +110,8 @@ def test_charts_that_would_say_nothing_are_not_there():
 def test_an_input_that_is_a_number_has_an_axis_and_no_lane():
     header, _ = shown(log(163), events=[event("input", "3", 2, 0.016), event("output", "1", 1, 0.04)])
     assert [each["label"] for each in chart(header, "io")["series"]] == ["OUT 1"]
-    numbers = chart(header, "io_numbers")
-    assert [each["label"] for each in numbers["series"]] == ["IN 3"] and not numbers["lanes"]
+    number = chart(header, "io_0")
+    assert (number["title"], number["lanes"]) == ("IN 3", False)
 
 
 def test_alarms_warnings_notes_and_prints_stand_at_their_time():
