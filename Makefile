@@ -66,6 +66,7 @@ bench: $(READY)
 view-bench: $(READY)
 	$(BIN)/python -m tests.bench.pages
 	$(BIN)/python -m tests.bench.frames
+	$(BIN)/python -m tests.bench.live
 
 $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -c 'import sys; assert sys.version_info >= (3, 11), "Python 3.11 or newer is needed"'

@@ -1,4 +1,4 @@
-"""What the pages of a live view are shown of a run: a small frame thirty times a second, and a status when it changes.
+"""What the pages of a live view are shown of a run: small frames, and a status when it changes.
 
 A frame is binary and little-endian: simulated time in s as float64, then float32, in this order:
 
@@ -34,8 +34,8 @@ from runtime.core.faults import Alarm
 from runtime.core.linear import norm
 from runtime.core.units import PERCENT
 
-FRAME_S = 0.033
-"""Wall time between two frames, s."""
+FRAME_S = 1.0 / 40.0
+"""Wall time between two frames, s: less than between two that are sent, so that a new one is there in time."""
 
 
 def layout(controller: Controller) -> list[tuple[str, int]]:

@@ -181,6 +181,7 @@ class LiveServer:
         assert self._ended is not None
         with contextlib.suppress(ConnectionClosed):
             await connection.send(self._exchange.hello)
+            loop, due_s = asyncio.get_running_loop(), float("-inf")
             while True:
                 await changed.wait()
                 changed.clear()
@@ -192,7 +193,8 @@ class LiveServer:
                     await connection.send('{"kind":"over"}')
                     return
                 # what comes meanwhile is sent together, the newest frame alone
-                await asyncio.sleep(FRAME_S)
+                due_s = max(due_s + FRAME_S, loop.time())
+                await asyncio.sleep(due_s - loop.time())
 
     async def _receive(self, connection: ServerConnection, page: Page) -> None:
         mistakes = 0

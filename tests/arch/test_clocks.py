@@ -25,6 +25,7 @@ CLOCKS = {
 MEASURING = {
     "bench/check.py",
     "bench/inertia.py",
+    "bench/live.py",
     "bench/pages.py",
     "bench/prompt.py",
     "bench/pulse_campaign.py",

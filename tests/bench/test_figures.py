@@ -18,6 +18,7 @@ from tests.bench import (
     frames,
     inertia,
     jog_campaign,
+    live,
     measure,
     mutants,
     pages,
@@ -35,7 +36,7 @@ ROOT = Path(__file__).parents[2]
 MAKEFILE = (ROOT / "Makefile").read_text("utf-8")
 BENCHES = {
     "make bench": (run.rows, inertia.rows, check.rows, prompt.rows),
-    "make view-bench": (pages.rows, frames.rows),
+    "make view-bench": (pages.rows, frames.rows, live.rows),
     "make measured": (measure.rows,),
     "make fault-campaign": (campaign.fault_rows,),
     "make supervision-campaign": (campaign.payload_rows,),
