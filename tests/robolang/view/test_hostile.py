@@ -239,7 +239,9 @@ def test_a_header_that_never_ends_is_cut_off(monkeypatch):
         assert status(raw(server, request(server, good(server)))) == 200
 
 
-def test_idle_connections_are_bounded_and_those_who_come_after_them_are_served():
+def test_idle_connections_are_bounded_and_those_who_come_after_them_are_served(monkeypatch):
+    # so long that only the bound can close them
+    monkeypatch.setattr(server_module, "OPEN_S", 10.0 * HANG_S)
     with serving() as server:
         idle = [socket.create_connection(("127.0.0.1", server.guard.port), timeout=HANG_S) for _ in range(200)]
         # all but the first of them are closed at once
