@@ -3,14 +3,17 @@
 import json
 import subprocess
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 import pytest
+from playwright.sync_api import TimeoutError
 
 from robolang.project.project import load_project
 from tests.robolang.view.browser import PATIENCE_MS, WITHOUT_GL, chromium
 from tests.steps import HANG_S
 
+TRIALS = 10
+A_WHILE_MS = 4000
 PROGRAM = """MOVEJ HERE + (0, 0, 20)
 MOVE HERE + (0, 0, 60), SPEED 400
 MOVE HERE + (0, 0, -60), SPEED 400
@@ -102,6 +105,7 @@ def test_a_program_is_run_from_the_page(browser, program):
         assert lines == [1, 2, 3, 4]
         rows = live.page.evaluate("window.robolang.runs[0].signals.get('q_link').rows")
         assert rows > 50
+        assert live.page.evaluate("document.querySelector('.line[data-line=\"2\"]').classList.contains('ran')")
         live["end"].click()
         live.run_is("over")
         assert process.wait(HANG_S) == 0
@@ -121,8 +125,19 @@ def press(page, name):
     """Press a button with the mouse and wait until the arm moves; it would go on for more than a minute."""
     page["jog-speed"].select_option("1")
     page[name].hover()
-    page.page.mouse.down()
-    page.waits_for("Jog")
+    held(page, page.page.mouse.down, page.page.mouse.up)
+
+
+def held(page, down, up):
+    """Hold something until the arm moves: on a busy machine the page may stall for the dead-man, so that it has ended
+    before it is seen; then once more."""
+    for _ in range(TRIALS):
+        down()
+        with suppress(TimeoutError):
+            page.page.wait_for_selector("[data-testid=state]:has-text('Jog')", timeout=A_WHILE_MS)
+            return
+        up()
+    raise AssertionError("the arm does not move")
 
 
 def test_a_jog_lasts_while_its_button_is_pressed(live):
@@ -157,12 +172,10 @@ def test_a_jog_by_the_keyboard_lasts_while_the_key_is_down(live):
     page, _, _ = live
     page["jog-speed"].select_option("1")
     page["jog-Z+"].focus()
-    page.page.keyboard.down("Enter")
-    page.waits_for("Jog")
+    held(page, lambda: page.page.keyboard.down("Enter"), lambda: page.page.keyboard.up("Enter"))
     page.page.keyboard.up("Enter")
     page.waits_for("Paused")
-    page.page.keyboard.down(" ")
-    page.waits_for("Jog")
+    held(page, lambda: page.page.keyboard.down(" "), lambda: page.page.keyboard.up(" "))
     page.page.keyboard.press("Escape")
     page.waits_for("Paused")
 
@@ -171,11 +184,15 @@ def test_a_step_jog_is_of_its_size(live, program):
     page, _, _ = live
     page["jog-frame"].select_option("joint")
     page["jog-angular"].select_option("5")
-    before = page.q()
-    page["jog-J1+"].click()
-    page.waits_for("Jog")
-    after = page.rests()
-    assert after[0] - before[0] == pytest.approx(0.0872665, abs=1e-4)
+    for _ in range(TRIALS):
+        before = page.q()
+        with suppress(TimeoutError):
+            page["jog-J1+"].click()
+            page.page.wait_for_selector("[data-testid=state]:has-text('Jog')", timeout=A_WHILE_MS)
+        moved = page.rests()[0] - before[0]
+        if moved == pytest.approx(0.0872665, abs=1e-4):
+            break
+    assert moved == pytest.approx(0.0872665, abs=1e-4)
     page["teach-name"].fill("P77")
     page["teach"].click()
     page.page.wait_for_selector("[data-testid=pendant-said]:has-text('P77')", timeout=PATIENCE_MS)

@@ -24,17 +24,15 @@ export class ProgramText {
   private entry = 0;
   private whole: boolean;
   /** Seconds of the line that took longest: the scale of the bars. */
-  private readonly longest: number;
+  private longest = 0;
 
   constructor(player: Player, text: string, notes: readonly Note[]) {
     this.player = player;
     this.lines = text.replace(/\r?\n$/, "").split(/\r?\n/);
     this.whole = this.lines.length <= MOST_ROWS;
     for (const note of notes) if (note.line !== null) this.notes.set(note.line, [...(this.notes.get(note.line) ?? []), note]);
-    const { statements } = player.first;
-    this.longest = [...statements.byLine.keys()].reduce((most, line) => Math.max(most, statements.total(line).seconds), 1e-9);
+    this.measure();
     this.element.append(this.list);
-    this.entry = [...statements.byLine.keys()].reduce((least, line) => Math.min(least, line), this.lines.length);
     this.element.addEventListener("scroll", () => this.window());
     this.element.addEventListener("keydown", (event) => this.key(event));
     this.list.addEventListener("click", (event) => this.press(event.target));
@@ -44,6 +42,7 @@ export class ProgramText {
     }).observe(this.element);
     this.window();
     player.on("time", () => this.paint());
+    player.on("grown", () => this.renew());
   }
 
   /** For paper: every line, or the window again. */
@@ -73,6 +72,26 @@ export class ProgramText {
     if (on) row?.setAttribute("aria-current", "true");
     else row?.removeAttribute("aria-current");
     this.rows.get(this.other)?.classList.toggle("other", on);
+  }
+
+  private measure(): void {
+    const { statements } = this.player.first;
+    this.longest = [...statements.byLine.keys()].reduce((most, line) => Math.max(most, statements.total(line).seconds), 1e-9);
+    this.entry = [...statements.byLine.keys()].reduce((least, line) => Math.min(least, line), this.lines.length);
+  }
+
+  /** A run that still goes on has executed more: the rows of its lines are made anew, but for one that is in use. */
+  private renew(): void {
+    this.measure();
+    for (const line of this.player.first.statements.byLine.keys()) {
+      const old = this.rows.get(line);
+      if (!old || old === document.activeElement) continue;
+      const made = this.row(line);
+      made.classList.toggle("due", old.classList.contains("due"));
+      old.replaceWith(made);
+      this.rows.set(line, made);
+    }
+    this.mark(true);
   }
 
   /** Make the rows that the panel shows. */
