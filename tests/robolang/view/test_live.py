@@ -6,6 +6,7 @@ import signal
 import socket
 import subprocess
 import sys
+import webbrowser
 from contextlib import contextmanager
 from typing import NamedTuple
 
@@ -17,7 +18,7 @@ from websockets.typing import Origin
 from robolang.execution.session import Session
 from robolang.project.project import load_project
 from robolang.view.driver import Driver
-from robolang.view.live import Live, header_of
+from robolang.view.live import Live, header_of, open_page
 from tests.robolang.execution.standing import log_of
 from tests.robolang.view.live_server import PAGE, upgrade
 from tests.steps import HANG_S
@@ -245,3 +246,24 @@ def test_a_program_with_errors_and_a_port_that_is_taken_are_refused(program, tmp
             with command(*words, "--no-browser", "--port", port) as started:
                 assert (started.url, started.process.wait(HANG_S)) == ("", 2)
                 assert any("RBL834" in line and port in line for line in started.said)
+
+
+def test_a_browser_that_would_take_the_terminal_is_not_opened(monkeypatch):
+    opened = []
+
+    class Window(webbrowser.BackgroundBrowser):
+        def open(self, url, new=0, autoraise=True):
+            opened.append(url)
+            return True
+
+    def none():
+        raise webbrowser.Error("could not locate runnable browser")
+
+    for found, expected in (
+        (lambda: webbrowser.GenericBrowser("lynx"), False),
+        (none, False),
+        (lambda: Window("firefox"), True),
+    ):
+        monkeypatch.setattr(webbrowser, "get", found)
+        assert open_page("http://127.0.0.1:1/") == expected
+    assert opened == ["http://127.0.0.1:1/"]
