@@ -14,12 +14,15 @@ A frame is binary and little-endian: simulated time in s as float64, then float3
 ==============  ======  ===================================================
 
 About 180 bytes for six joints and two parts. Everything that is text is in the status, JSON. Both are made in the run's
-thread from live arrays, between two cycles, so that they are of one instant; nothing of the run is changed.
+thread between two cycles; nothing of the run is changed. The time is the start of the last tick, and the numbers are
+those of its row in the log: a command is compared with the angles at the start of its tick, not with those a tick
+later, by which the tool has gone on. Parts and pads are of the end of that tick.
 """
 
 import json
 import struct
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -31,6 +34,7 @@ from robolang.view.exchange import Exchange
 from runtime.control.clock import wall_s
 from runtime.control.controller import Controller
 from runtime.core.faults import Alarm
+from runtime.core.frames import Array
 from runtime.core.linear import norm
 from runtime.core.units import PERCENT
 
@@ -57,9 +61,10 @@ class Frames(Observer):
 
     def follow(self, session: Session) -> None:
         """Show this session from now on."""
-        # the tool of another session is elsewhere, and has not moved from there
         self._session = session
-        self._tool, self._shown_us = np.zeros(3), session.controller.time_us
+        # of another session: no time has passed since, so nothing has moved
+        start = _Tick.last(session.controller)
+        self._shown = _Shown(time_us=start.time_us, q=start.q_link, X=np.eye(4), p=np.zeros(3))
         self.show()
 
     def stop(self) -> None:
@@ -92,18 +97,59 @@ class Frames(Observer):
             self._exchange.show_status(json.dumps({**status_of(session), **self.extra()}, separators=(",", ":")))
 
     def _frame(self, controller: Controller) -> bytes:
-        n, plant, q_cmd = controller.spec.n, controller.plant, controller.servo.q_ref
+        tick = _Tick.last(controller)
         # one call for both postures: it is the larger part of the cost of a frame
-        tool, command = controller.tool_poses(np.stack([plant.q_link, q_cmd]))[:, :3, 3]
-        recent, statement, time_us = controller.recorder.recent(1), controller.statement, controller.time_us
-        torque = recent[-1, n : 2 * n] if len(recent) else np.zeros(n)
-        passed_s = (time_us - self._shown_us) * 1e-6
+        tool, command = controller.tool_poses(np.stack([tick.q_link, tick.q_cmd]))[:, :3, 3]
+        speed = self._speed(controller, tick, tool)
+        line = 0 if controller.statement is None else controller.statement.line
+        moved = controller.plant.moved()
+        numbers = ([line], tick.q_link, tick.q_cmd, tick.torque, tool, [norm(command - tool), speed], moved)
+        return struct.pack("<d", tick.time_us * 1e-6) + np.concatenate(numbers).astype("<f4").tobytes()
+
+    def _speed(self, controller: Controller, tick: "_Tick", tool: Array) -> float:
+        """Return the mean speed of the tool point (3,) since the frame before, m/s."""
+        before, self._shown = (
+            self._shown,
+            _Shown(time_us=tick.time_us, q=tick.q_link, X=controller.X_flange_tool, p=tool),
+        )
+        passed_s = (tick.time_us - before.time_us) * 1e-6
         # the arm stands, or the prompt has taken it back
-        speed = norm(tool - self._tool) / passed_s if passed_s > 0.0 else 0.0
-        self._tool, self._shown_us = tool, time_us
-        line = 0 if statement is None else statement.line
-        numbers = ([line], plant.q_link, q_cmd, torque, tool, [norm(command - tool), speed], plant.moved())
-        return struct.pack("<d", time_us * 1e-6) + np.concatenate(numbers).astype("<f4").tobytes()
+        if not passed_s > 0.0:
+            return 0.0
+        same = np.array_equal(before.X, controller.X_flange_tool)
+        # another tool is elsewhere, and has not moved from where the one before was
+        place = before.p if same else controller.tool_poses(before.q[None])[0, :3, 3]
+        return norm(tool - place) / passed_s
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Shown:
+    """What was shown last: the time us, joints ``q`` (n,), tool ``X`` (4, 4) and where its point was, ``p`` (3,) m."""
+
+    time_us: int
+    q: Array
+    X: Array
+    p: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Tick:
+    """The last tick of a run: its start us, and (n,) true joints, command and torque of it."""
+
+    time_us: int
+    q_link: Array
+    q_cmd: Array
+    torque: Array
+
+    @classmethod
+    def last(cls, controller: Controller) -> "_Tick":
+        rows = controller.recorder.latest()
+        if not rows.ticks:
+            q, n = np.array(controller.plant.q_link), controller.spec.n
+            return cls(time_us=0, q_link=q, q_cmd=np.array(controller.servo.q_ref), torque=np.zeros(n))
+        at = rows.ticks - 1
+        q, command, torque = (rows.read(name, at, at + 1)[0] for name in ("q_link", "q_cmd", "tau_sat"))
+        return cls(time_us=at * rows.tick_us, q_link=q, q_cmd=command, torque=torque)
 
 
 def status_of(session: Session) -> dict[str, Any]:

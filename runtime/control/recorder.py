@@ -170,6 +170,10 @@ class Recorder:
         """Return all rows up to now, or those that are still there."""
         return self._recorded(0)
 
+    def latest(self) -> Recorded:
+        """Return the rows of at least the last two ticks, without those of long ago: they show where a run stands."""
+        return self._recorded(max(0, self.tick - 2))
+
     def _recorded(self, first: int) -> Recorded:
         """Return the rows from the block on that holds tick ``first``."""
         found = [self._block]
