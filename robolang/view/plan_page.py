@@ -18,8 +18,10 @@ from robolang.syntax.unparse import describe
 from robolang.view import charts, joints, notes
 from robolang.view.packing import Signal, pack
 from robolang.view.plan_parts import parts_of
+from robolang.view.plan_rows import PlanRows
 from robolang.view.thinning import evenly, paired, thinned
 from runtime.appearance.cell_scene import scene_of
+from runtime.control.signals import Signals
 from runtime.core.frames import Array
 
 _WORDS: dict[Severity, notes.Severity] = {Severity.ERROR: "error", Severity.WARNING: "warning"}
@@ -28,8 +30,9 @@ _WORDS: dict[Severity, notes.Severity] = {Severity.ERROR: "error", Severity.WARN
 def pack_plan(project: Project, rehearsal: Rehearsal, found: Sequence[Diagnostic]) -> bytes:
     """Return a planned motion as a page holds it, with what was ``found`` in program and motion."""
     cycle_s, robot, label = project.profile.period_s, _robot(project), file_name(project.source.path)
-    q = joint_angles(rehearsal, np.asarray(project.cell.home), project.profile.period_us)
-    shown = (*_signals(q, _tool(project, rehearsal, q), cycle_s), *parts_of(project, rehearsal, q))
+    rows = PlanRows(project, rehearsal)
+    q = rows.q
+    shown = (*_signals(Signals(rows, rehearsal.kinematics.chain), q, cycle_s), *parts_of(project, rehearsal, q))
     signals = {signal.name: signal for signal in shown}
     header = {
         "kind": "plan",
@@ -52,30 +55,17 @@ def pack_plan(project: Project, rehearsal: Rehearsal, found: Sequence[Diagnostic
     return pack(header, list(signals.values()))
 
 
-def joint_angles(rehearsal: Rehearsal, home: Array, period_us: int) -> Array:
-    """Return the set-points (cycles + 1, n) rad of a rehearsal that starts at ``home`` (n,) rad, a row each cycle."""
-    q = np.tile(home, (rehearsal.total_us // period_us + 1, 1))
-    held, at = home, 0
-    for move in rehearsal.moves:
-        begin = move.sent_us // period_us
-        q[at:begin] = held
-        held, at = move.q[-1], begin + len(move.q)
-        q[begin:at] = move.q[: len(q) - begin]  # a run that is cut at its longest time ends within a move
-    q[at:] = held
-    return q
-
-
-def _signals(q: Array, tool: Array, cycle_s: float) -> Iterator[Signal]:
+def _signals(made: Signals, q: Array, cycle_s: float) -> Iterator[Signal]:
     yield evenly(_cycle("q_link", q, cycle_s))
     # of set-points 8 ms apart: between them a peak may be a little higher
-    speed, point = _change(q, cycle_s), _change(tool, cycle_s)
+    speed = _change(q, cycle_s)
     for name, values in (
         ("dq_cmd", speed),
         ("ddq_cmd", _change(speed, cycle_s)),
-        ("tool_speed", np.sqrt(np.sum(point**2, axis=1, keepdims=True))),
+        ("tool_speed", made["tool_speed"][:, None]),
     ):
         yield paired(_cycle(name, values, cycle_s))
-    yield evenly(_cycle("tool", tool, cycle_s))
+    yield evenly(_cycle("tool", made.tool_points("q_link", 0, len(q)), cycle_s))
 
 
 def _cycle(name: str, values: Array, cycle_s: float) -> Signal:
@@ -85,18 +75,6 @@ def _cycle(name: str, values: Array, cycle_s: float) -> Signal:
 def _change(values: Array, dt: float) -> Array:
     """Return the rate of each row (N, k) against the row before it."""
     return np.diff(values, axis=0, prepend=values[:1]) / dt
-
-
-def _tool(project: Project, rehearsal: Rehearsal, q: Array) -> Array:
-    """Return the tool point (N, 3), m in the world, of the tool that each move has."""
-    X_world_flange, points = rehearsal.kinematics.forward(q), np.empty((len(q), 3))
-    at, tool = 0, project.cell.hand.X_flange_tool
-    for move in rehearsal.moves:
-        begin = min(move.sent_us // project.profile.period_us, len(q))
-        points[at:begin] = (X_world_flange[at:begin] @ tool)[:, :3, 3]
-        at, tool = begin, move.X_flange_tool
-    points[at:] = (X_world_flange[at:] @ tool)[:, :3, 3]
-    return points
 
 
 def _robot(project: Project) -> dict[str, Any]:

@@ -45,7 +45,7 @@ def thinned(rows: int, dt: float) -> dict[str, object] | None:
     size = bin_rows(rows)
     if size == 1:
         return None
-    text = f"A long run: the charts show the least and the largest value of every {size * dt * 1e3:g} ms."
+    text = f"A long run: charts and their values show the least and the largest of every {size * dt * 1e3:g} ms."
     return {"every_s": size * dt, "text": text}
 
 

@@ -114,6 +114,15 @@ def test_a_program_is_run_from_the_page(browser, program):
         assert [each for each in live.complaints if "WebGL" not in each] == []
 
 
+def test_a_live_page_says_that_its_charts_are_sampled_and_how_few_rows_it_keeps(live):
+    page, _, _ = live
+    assert page["thinned"].is_visible() and "ms" not in page["thinned"].inner_text()
+    units = page.page.locator("[data-testid=chart] .unit").all_inner_texts()
+    assert units and all("sampled" in unit for unit in units)
+    page.page.evaluate("robolang.runs[0].halve(); robolang.viewer.grew()")
+    assert "32 ms" in page["thinned"].inner_text()
+
+
 def test_a_step_goes_to_the_next_line(live):
     page, _, _ = live
     for line in (2, 3):

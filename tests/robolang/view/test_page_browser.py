@@ -403,6 +403,35 @@ def test_a_thinned_run_says_so(browser, tmp_path):
     tab.close()
 
 
+def test_a_second_run_that_is_thinned_says_so_too(browser, tmp_path):
+    tab = Tab(browser)
+    thin = {"every_s": 0.02, "text": "thinned to one pair every 20 ms"}
+    runs = made_up.run(DURATION_S), made_up.run(DURATION_S, label="second", thinned=thin)
+    page = tab.open(made_up.page(tmp_path / "two.html", *runs))
+    assert page.inner_text("[data-testid=thinned]") == "second: thinned to one pair every 20 ms"
+    page = tab.open(made_up.page(tmp_path / "none.html", runs[0]))
+    assert not page.locator("[data-testid=thinned]").is_visible()
+    tab.close()
+
+
+COLOURS = """[...robolang.viewer.stage.view.stages[0].path.line.geometry.attributes.instanceColorEnd.data.array]"""
+
+
+def test_no_peak_of_the_error_is_without_its_colour_on_the_path(browser, tmp_path):
+    """The peak is of one tick, between two rows of the tool point and after the last one."""
+    tab = Tab(browser)
+    for tick in (2003, round(DURATION_S * 1000) - 1):
+        header, signals = made_up.run(DURATION_S)
+        signals["tool_error"][tick] = 0.01
+        page = tab.open(made_up.page(tmp_path / "peak.html", (header, signals)))
+        last = page.evaluate("getComputedStyle(document.documentElement).getPropertyValue('--ramp-4')").strip()
+        shares = np.array([int(last[k : k + 2], 16) / 255 for k in (1, 3, 5)])
+        linear = np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)
+        away = np.abs(np.array(page.evaluate(COLOURS)).reshape(-1, 3) - linear).max(axis=1)
+        assert away.min() == pytest.approx(0.0, abs=1e-3) and np.median(away) > 0.1
+    tab.close()
+
+
 def test_a_long_program_has_only_the_shown_lines_as_elements(browser, tmp_path):
     tab = Tab(browser)
     program = made_up.PROGRAM + "\n".join(f"' line {k}" for k in range(10, 20_010))

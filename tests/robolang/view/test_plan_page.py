@@ -10,7 +10,8 @@ from robolang.execution.session import run
 from robolang.planning.motion_findings import findings
 from robolang.planning.path_coverage import explore
 from robolang.project.project import load_project
-from robolang.view.plan_page import joint_angles, pack_plan
+from robolang.view.plan_page import pack_plan
+from robolang.view.plan_rows import joint_angles
 from runtime.core.units import DEG
 from tests.robolang.view.decoding import unpacked
 from tests.runtime.plant.cells import job
@@ -106,6 +107,17 @@ def test_the_tool_is_that_of_each_move(tmp_path):
     X_world_flange = rehearsal.kinematics.forward(rehearsal.moves[-1].q[-1])
     expected = X_world_flange[:3, 3] + 0.3 * X_world_flange[:3, 2]
     assert [column[-1] for column in found["tool"]] == pytest.approx(expected.tolist(), abs=1e-6)
+
+
+def test_a_change_of_tool_is_no_speed_in_a_plan(tmp_path):
+    """As in the log of the same program; a tool point that jumps by 0.3 m in a cycle would have 37 m/s."""
+    tools = "TOOL POSE(0, 0, 300, 0, 0, 0)\nMOVEJ HERE + (0, 0, 20)\nTOOL FLANGE\nMOVE HERE + (0, 0, 20)\n"
+    project = written(tmp_path, f"MOVE P1 + (0, 0, 90)\n{tools}")
+    _, found = unpacked(pack_plan(project, rehearse(project), ()))
+    recorded = run(tmp_path / "p.rbl", physics=False).log["tool_speed"]
+    assert max(found["tool_speed"][0]) == pytest.approx(max(recorded), rel=0.02)
+    tool = np.array(found["tool"]).T
+    assert np.linalg.norm(np.diff(tool, axis=0), axis=1).max() > 0.2
 
 
 def test_a_program_without_motion_has_a_page_and_margins_of_home(tmp_path):

@@ -8,8 +8,10 @@ import pytest
 from robolang.execution.session import run
 from robolang.logs.log import Log
 from robolang.project.project import load_project
+from robolang.view import thinning
 from robolang.view.page import Bundle, write_page
 from robolang.view.plan_page import pack_plan
+from robolang.view.replay import Replay
 from robolang.view.run_page import pack_run
 from runtime.core.units import MM
 from tests.robolang.cli.commands import ROOT
@@ -19,6 +21,7 @@ from tests.robolang.view.test_page_browser import LINE, RUNNING, time_of
 
 pytestmark = pytest.mark.physics
 
+TURN = "(({w, x, y, z}) => [w, x, y, z])(robolang.viewer.stage.view.stages[0].model.bodies.get('part:part').quaternion)"
 PICK = ROOT / "programs" / "pick_and_place.rbl"
 
 
@@ -59,6 +62,16 @@ def test_robot_and_part_of_the_page_are_where_the_log_has_them(shown, recorded):
         assert np.abs(tool - X[tick, :3, 3]).max() <= 0.01 * MM
         part = np.array(page.evaluate("robolang.bodyAt(0, 'part:part')"))
         assert np.abs(part - parts[tick // 16, 0, :3]).max() <= 0.01 * MM
+    # between two frames of the log: the part goes with the hand, as in a picture of `render`
+    replay, most = Replay(recorded), 0.0
+    for tick in range(5, ticks - 16, 16 * 7 + 3):
+        page.evaluate("t => robolang.seek(t)", tick * 0.001)
+        part = np.array(page.evaluate("robolang.bodyAt(0, 'part:part')"))
+        pose, turn = replay.at(tick * 0.001).parts[0], page.evaluate(TURN)
+        assert np.abs(part - pose[:3]).max() <= 0.01 * MM
+        most = max(most, np.abs(parts[tick // 16, 0, :3] - pose[:3]).max())
+        assert abs(np.dot(turn, pose[3:])) / np.linalg.norm(pose[3:]) == pytest.approx(1.0, abs=1e-8)
+    assert most > 1.0 * MM  # where the frame before would be seen to be wrong
     carried = (parts[:, 0, :3].max(axis=0) - parts[:, 0, :3].min(axis=0)).max()
     assert carried > 0.1
 
@@ -130,6 +143,20 @@ def renamed(value, old, new):
     if isinstance(value, list):
         return [renamed(item, old, new) for item in value]
     return new if value == old else value
+
+
+def test_a_value_over_a_chart_of_a_long_run_is_the_range_of_its_bin(shown, monkeypatch):
+    monkeypatch.setattr(thinning, "MOST_ROWS", 100)
+    made = log(1000, meta(scene=None))
+    page = shown(pack_run(made, "a"))
+    page.locator("[data-signal=tool_speed]").scroll_into_view_if_needed()
+    page.locator("[data-signal=tool_speed] .u-over").wait_for()
+    # bins of 20 ticks: the first and the second half of one say the same
+    for tick in (301, 319):
+        page.evaluate("t => robolang.seek(t)", tick * 0.001)
+        speeds = made.arrays["tool_speed"][300:320] / MM
+        least, most = (float(text) for text in page.inner_text("[data-signal=tool_speed] output").split(" .. "))
+        assert (least, most) == pytest.approx((speeds.min(), speeds.max()), abs=1.0) and most > least
 
 
 ODD = {

@@ -7,8 +7,11 @@ export class Signal {
   dt: number;
   rows: number;
   columns: Float32Array[];
+  /** Two rows are the least and the largest value of a bin, each at a time of its own within it. */
+  readonly paired: boolean;
 
-  constructor(head: Pick<SignalHead, "t0" | "dt">, columns: Float32Array[]) {
+  constructor(head: Pick<SignalHead, "base" | "t0" | "dt">, columns: Float32Array[]) {
+    this.paired = head.base === "pairs";
     this.t0 = head.t0;
     this.dt = head.dt;
     this.columns = columns;
@@ -25,16 +28,33 @@ export class Signal {
     return t <= this.t0 + this.rows * this.dt + 1e-6;
   }
 
+  /** Number of the row before a time, and the share of the next one: 0 at the last row. */
+  between(t: number): readonly [row: number, share: number] {
+    const x = Math.max(0, Math.min(this.rows - 1, (t - this.t0) / this.dt));
+    const row = Math.floor(x);
+    return [row, x - row];
+  }
+
   /** Value of a column at a time, between two rows where both have one. */
   at(column: number, t: number): number {
     const values = this.columns[column];
     if (!values || this.rows === 0) return NaN;
-    const x = Math.max(0, Math.min(this.rows - 1, (t - this.t0) / this.dt));
-    const k = Math.min(Math.floor(x), this.rows - 1);
-    const here = values[k] ?? NaN;
-    if (k + 1 >= this.rows) return here;
-    const next = values[k + 1] ?? NaN;
-    return Number.isNaN(next) ? here : here + (x - k) * (next - here);
+    const [row, share] = this.between(t);
+    const here = values[row] ?? NaN;
+    const next = share > 0 ? (values[row + 1] ?? NaN) : NaN;
+    return Number.isNaN(next) ? here : here + share * (next - here);
+  }
+
+  /** Least and largest value of a column from one time to another, `t` to `to`; NaN where it has none. Of pairs, those of whole bins. */
+  range(values: ArrayLike<number>, t: number, to = t): readonly [least: number, most: number] {
+    const [first, last] = this.paired ? [this.row(t) & ~1, this.row(to) | 1] : [this.row(t), this.row(to)];
+    let [least, most] = [NaN, NaN];
+    for (let row = first; row <= last && row < this.rows; row++) {
+      const value = values[row] ?? NaN;
+      if (!(value >= least)) least = Number.isNaN(value) ? least : value;
+      if (!(value <= most)) most = Number.isNaN(value) ? most : value;
+    }
+    return [least, most];
   }
 
   /** Add one row; the columns grow by doubling, for a run that is still going on. */
@@ -79,6 +99,11 @@ export class Run {
     this.end = header.duration_s;
     const known: readonly Statement[] = header.meta.report.statements;
     this.statements = new Statements(known.filter((one) => Number.isFinite(one.start_s)));
+  }
+
+  /** What a page says of the rows that it does not have; empty: it has all. */
+  get thinned(): string {
+    return this.header.thinned?.text ?? "";
   }
 
   /** The curve of a series, null where the run does not have its signal. */

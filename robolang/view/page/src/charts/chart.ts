@@ -46,7 +46,7 @@ export class Chart {
     this.box = el("div", { class: "plot" });
     this.box.style.height = `${this.height}px`;
     const values = el("div", { class: "values", role: "group", "aria-label": `Curves of ${head.title}` });
-    const title = el("h3", { id: `chart-${head.id}` }, head.title, el("span", { class: "unit" }, head.unit));
+    const title = el("h3", { id: `chart-${head.id}` }, head.title, el("span", { class: "unit" }, [head.unit, player.first.header.kind === "live" ? "sampled" : ""].filter(Boolean).join(", ")));
     this.element = el("section", { class: "chart", "data-testid": "chart", "data-signal": head.id, "aria-labelledby": `chart-${head.id}` }, el("header", {}, title, values), this.box);
     const colours = coloursOf(head.series);
     head.series.forEach((series, k) => {
@@ -113,7 +113,7 @@ export class Chart {
     this.width = plot.bbox.width / uPlot.pxRatio;
     const { min, max } = plot.scales.y ?? {};
     const letters = Math.max(...[min ?? 0, max ?? 0].map((y) => fixed(y, this.digits).length));
-    this.element.classList.toggle("wide", this.player.runs.length > 1 || letters >= LONG_VALUE);
+    this.element.classList.toggle("wide", this.player.runs.length > 1 || letters >= LONG_VALUE || this.curves().some(({ curve }) => curve.signal.paired));
     this.paint(Infinity);
   }
 
@@ -127,7 +127,7 @@ export class Chart {
   /** The values of a series at the time, one for each run. */
   private valueText(series: SeriesHead): string {
     const lines = this.curves().filter((line) => line.head === series);
-    const texts = lines.map(({ curve }) => fixed(valueAt(curve, this.player.t), this.digits));
+    const texts = lines.map(({ curve }) => valueText(curve, this.player.t, this.digits));
     return texts.join(" | ") || "–";
   }
 
@@ -279,8 +279,11 @@ export class Chart {
   }
 }
 
-function valueAt({ signal, values }: Curve, t: number): number {
-  return signal.covers(t) ? (values[signal.row(t)] ?? NaN) : NaN;
+/** The value at a time; of a bin its least and its largest value, since it does not say which of them was when. */
+function valueText({ signal, values }: Curve, t: number, digits: number): string {
+  if (!signal.covers(t)) return fixed(NaN, digits);
+  const [least, most] = signal.range(values, t).map((value) => fixed(value, digits));
+  return least === most ? (least ?? "") : `${least} .. ${most}`;
 }
 
 /** What the dotted or dashed lines of a chart are. */

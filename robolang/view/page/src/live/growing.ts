@@ -21,7 +21,7 @@ export class GrowingRun extends Run {
     for (const [name, count] of layout) {
       if (name === "line") continue;
       for (const [part, columns] of name === "moved" ? split(count) : ([[name, count]] as const)) {
-        if (columns > 0) signals.set(part, new Signal({ t0: 0, dt: GRID_S }, Array.from({ length: columns }, () => new Float32Array(0))));
+        if (columns > 0) signals.set(part, new Signal({ base: "frame", t0: 0, dt: GRID_S }, Array.from({ length: columns }, () => new Float32Array(0))));
       }
     }
     super(header, signals);
@@ -52,6 +52,12 @@ export class GrowingRun extends Run {
   /** Let the running statement last until now. */
   stretch(): void {
     this.statements = new Statements(this.lasting(this.statements.all));
+  }
+
+  override get thinned(): string {
+    const dt = this.any?.dt ?? GRID_S;
+    const kept = dt > GRID_S ? ` Of a long run one value every ${Math.round(dt * 1000)} ms is kept.` : "";
+    return `Live: the charts show samples. A peak between two of them is in the log alone.${kept}`;
   }
 
   private get any(): Signal | undefined {

@@ -14,7 +14,20 @@ export function head(player: Player, ...tools: readonly HTMLElement[]): HTMLElem
   if (second && second.header.meta.program.text !== meta.program.text) {
     made.append(el("p", { class: "remark" }, `${second.header.label} executed another text; the one shown is that of ${header.label}.`));
   }
-  if (header.thinned) made.append(el("p", { class: "remark", "data-testid": "thinned", title: header.thinned.text }, header.thinned.text));
+  made.append(thinned(player));
+  return made;
+}
+
+/** What is not shown of the runs: each text once, with the name of its run where there are two. */
+function thinned(player: Player): HTMLElement {
+  const made = el("p", { class: "remark", "data-testid": "thinned" });
+  const say = (): void => {
+    const texts = player.runs.filter((run) => run.thinned).map((run) => (player.runs.length > 1 ? `${run.header.label}: ${run.thinned}` : run.thinned));
+    made.textContent = made.title = texts.join(" ");
+    made.hidden = texts.length === 0;
+  };
+  player.on("grown", say);
+  say();
   return made;
 }
 

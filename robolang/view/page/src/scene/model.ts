@@ -1,7 +1,7 @@
 import { type BufferGeometry, Color, Group, LineBasicMaterial, LineSegments, Mesh, MeshStandardMaterial, Quaternion, Vector3 } from "three";
 import { mergeGeometries } from "three/examples/jsm/utils/BufferGeometryUtils.js";
 import type { BodyHead, Colour, SceneHead, ShapeHead } from "../contract";
-import type { Run } from "../run";
+import type { Run, Signal } from "../run";
 import { place } from "./pose";
 import { edges, surface } from "./shapes";
 
@@ -23,6 +23,7 @@ export class Model {
   private readonly run: Run;
   private readonly moving: Moving[] = [];
   private readonly turn = new Quaternion();
+  private readonly next = new Quaternion();
   private readonly shift = new Vector3();
 
   constructor(run: Run, scene: SceneHead) {
@@ -56,11 +57,14 @@ export class Model {
   private placePart({ group, joint }: Moving, t: number): void {
     const parts = this.run.signals.get("parts");
     if (!parts) return;
-    const row = parts.row(t);
-    const [x, y, z, qw, qx, qy, qz] = [0, 1, 2, 3, 4, 5, 6].map((k) => parts.columns[7 * joint.index + k]?.[row] ?? NaN);
-    if (!Number.isFinite(x) || !Number.isFinite(qw)) return;
-    group.position.set(x ?? 0, y ?? 0, z ?? 0);
-    group.quaternion.set(qx ?? 0, qy ?? 0, qz ?? 0, qw ?? 1).normalize();
+    const first = 7 * joint.index;
+    const [x = NaN, y = NaN, z = NaN] = [0, 1, 2].map((k) => parts.at(first + k, t));
+    // Between two frames as the joints are: a part in the hand would lag after it by millimetres.
+    const [row, share] = parts.between(t);
+    if (!Number.isFinite(x + y + z) || !turned(this.turn, parts, first, row)) return;
+    group.position.set(x, y, z);
+    group.quaternion.copy(this.turn);
+    if (share > 0 && turned(this.next, parts, first, row + 1)) group.quaternion.slerp(this.next, share);
   }
 
   private hang(body: BodyHead): void {
@@ -93,6 +97,13 @@ export class Model {
       if (first.colour === "part") for (const shape of shapes) outline(body, edges(shape), scene);
     }
   }
+}
+
+/** Read the quaternion of a part, whose columns begin at `first`, from a row; false where the row has none. */
+function turned(out: Quaternion, parts: Signal, first: number, row: number): boolean {
+  const [w = NaN, x = NaN, y = NaN, z = NaN] = [3, 4, 5, 6].map((k) => parts.columns[first + k]?.[row] ?? NaN);
+  out.set(x, y, z, w).normalize();
+  return Number.isFinite(w + x + y + z);
 }
 
 function material(colour: Colour, scene: SceneHead): MeshStandardMaterial {

@@ -42,16 +42,20 @@ export class ToolPath {
     const places: number[] = [];
     const colours: number[] = [];
     const colour = new Color();
-    for (const row of this.samples) {
+    let before = 0;
+    this.samples.forEach((row, k) => {
       const t = tool ? tool.t0 + row * tool.dt : 0;
       for (let j = 0; j < 3; j++) {
         const true_ = this.truth[j]?.[row] ?? 0;
         const wanted = command?.columns[j]?.[command.row(t)] ?? true_;
         places.push(wanted + scale * (true_ - wanted));
       }
-      onRamp(ramp, top > 0 ? (error?.columns[0]?.[error.row(t)] ?? 0) / top : 0, colour);
+      // No peak between two samples is without colour; after the last one the run may have ticks of its own.
+      const [, most] = error?.range(error.columns[0] ?? [], before, k + 1 < this.samples.length ? t : Infinity) ?? [0, 0];
+      onRamp(ramp, top > 0 ? most / top : 0, colour);
       colours.push(colour.r, colour.g, colour.b);
-    }
+      before = t;
+    });
     this.line.geometry.dispose();
     this.line.geometry = new LineGeometry();
     if (this.samples.length < 2) return;
