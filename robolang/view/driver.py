@@ -7,6 +7,7 @@ this thread, so that a server that hangs stops it as well.
 Without a page a run that is driven here is the run of ``Session.run``, to the byte.
 """
 
+import math
 from collections.abc import Callable
 from enum import Enum
 from typing import Any
@@ -49,7 +50,7 @@ class Driver:
     """Drives a session by the commands of an exchange.
 
     ``teaching`` None: a run that pages follow; they may pause, step and stop it, and nothing moves by hand. ``pace``
-    None: cycles are run as fast as they can.
+    None: cycles are run as fast as they can. A jog is never faster than wall time.
     """
 
     def __init__(
@@ -117,7 +118,9 @@ class Driver:
         status = self._executor.advance()
         if status.state not in _STANDING:
             if self._pace is not None:
-                self._pace.wait(self._session.project.profile.period_s)
+                # the dead-man counts wall time: in 200 ms of it a jog must not move for seconds
+                fastest = 1.0 if self._doing is Doing.JOG else math.inf
+                self._pace.wait(self._session.project.profile.period_s, fastest)
         elif self._doing is not Doing.NOTHING:
             self._stood()
         elif not self._left:

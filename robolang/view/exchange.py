@@ -5,13 +5,15 @@ and takes one command in each cycle. The server's thread sends what is new to ev
 that does not read gets fewer frames, and the run does not know of it. Commands that nobody takes are bounded too.
 
 Who has control is decided here: the first page that is there; every other one watches. Control is handed over by two
-acts, one in each page (``give``, then ``take``), so it never changes under somebody's hand.
+acts, one in each page (``give``, then ``take``), so it never changes under somebody's hand. Stop and pause need no
+control, wait for nothing, and end what waits: what was ordered before a stop must not move the arm after it.
 """
 
 import json
 import threading
 from collections import deque
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -23,6 +25,8 @@ from runtime.core.faults import Fault
 
 MOST_WAITING = 16
 """Commands that wait for the run; a page sends one after another."""
+HALTS = ("stop", "pause")
+"""Commands that are taken before all others, from every page; the first of them first."""
 MOST_SAID = 200
 """Lines and replies that are kept for a page that reads slowly."""
 MOST_STATEMENTS = 10_000
@@ -72,6 +76,7 @@ class Exchange:
         self._control: int | None = None
         self._last = 0
         self._orders: deque[Order] = deque()
+        self._halts: dict[str, Order] = {}
         self._wake = threading.Event()
 
     # --- the run's thread --------------------------------------------------------------------------------------------
@@ -115,15 +120,19 @@ class Exchange:
             self.notify()
 
     def take(self) -> Order | None:
-        """Return the next command, if there is one."""
-        if not self._orders:
-            return None
-        self._wake.clear()
-        return self._orders.popleft()
+        """Return the next command, if there is one: a stop, a pause, else the oldest."""
+        for word in HALTS:
+            halt = self._halts.pop(word, None)
+            if halt is not None:
+                return halt
+        # a stop that comes now takes the last one away
+        with suppress(IndexError):
+            return self._orders.popleft()
+        return None
 
     def wait(self, seconds: float) -> None:
         """Wait until a command comes, or something is over; at most so long."""
-        if not self._orders and self._wake.wait(seconds):
+        if not (self._halts or self._orders) and self._wake.wait(seconds):
             self._wake.clear()
 
     def wake(self) -> None:
@@ -202,6 +211,9 @@ class Exchange:
                 self._hand_over(page, word)
                 self.reply(page.number, message.id)
                 return
+            case Go(word=word) if word in HALTS:
+                self._halt(word, Order(page=page.number, id=message.id, command=message.command))
+                return
             case command:
                 if self._control != page.number:
                     raise Fault("RBL837", "another page has control" if self._control else "no page has control")
@@ -210,6 +222,19 @@ class Exchange:
         # held from here on, so that the time in which the run plans the jog counts too
         press = self.button.press(page.number, message.id, wall_s()) if isinstance(command, Jog) else None
         self._orders.append(Order(page=page.number, id=message.id, command=command, press=press))
+        self._wake.set()
+
+    def _halt(self, word: str, order: Order) -> None:
+        """Put a stop or a pause before all that waits, which is not done any more (RBL836)."""
+        # withdrawn first: the run must not find an older start after the halt
+        self.button.release()
+        with suppress(IndexError):
+            while True:
+                older = self._orders.popleft()
+                self.reply(older.page, older.id, Fault("RBL836", f"a {word} came before its turn"))
+        # one of each: a second one finds that the first is to be done
+        if self._halts.setdefault(word, order) is not order:
+            self.reply(order.page, order.id)
         self._wake.set()
 
     def _hand_over(self, page: Page, word: str) -> None:

@@ -106,7 +106,7 @@ class Guard:
     def _has_token(self, asked: Asked) -> bool:
         _, _, query = asked.target.partition("?")
         # compared as a whole: a second token, an escaped one or one in other letters is another query
-        return hmac.compare_digest(query.encode(), f"{_QUERY}{self.token}".encode())
+        return hmac.compare_digest(query.encode("utf-8", "surrogatepass"), f"{_QUERY}{self.token}".encode())
 
     @property
     def _policy(self) -> str:

@@ -1,5 +1,6 @@
 """Keeps a program that people watch at a share of wall time."""
 
+import math
 import time
 
 from runtime.control.clock import wall_s
@@ -15,12 +16,13 @@ class Pace:
         self.factor = factor
         self._due_s = float("-inf")
 
-    def wait(self, cycle_s: float) -> None:
-        """Wait for the end of a cycle of ``cycle_s`` simulated seconds that has been run."""
+    def wait(self, cycle_s: float, fastest: float = math.inf) -> None:
+        """Wait for the end of a cycle of ``cycle_s`` simulated seconds that has been run; ``fastest``: the most that
+        ``factor`` counts."""
         now = wall_s()
         # after a pause, or a jog that was planned for long, time begins anew
         if not now - self._due_s <= LATE_S:
             self._due_s = now
-        self._due_s += cycle_s / self.factor
+        self._due_s += cycle_s / min(self.factor, fastest)
         if self._due_s > now:
             time.sleep(self._due_s - now)

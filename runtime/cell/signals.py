@@ -13,6 +13,7 @@ them; one that PULSE set goes back to 0 by itself. Times are integers of microse
 no sum of times rounds. Read by every WAIT and condition of a program, and by the dry run on its own clock.
 """
 
+from bisect import bisect_right
 from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
@@ -127,7 +128,9 @@ class Signals:
         if number not in self._inputs:
             raise unknown_input(number, self._inputs)
         self._held.append((now_us, number, state))
-        self._forced = _forced(self._held)
+        # replaced and not changed: somebody may be reading it
+        others = {key: value for key, value in self._forced.items() if key != number}
+        self._forced = others if state is None else {**others, number: state}
 
     def set(self, output: int, value: float, now_us: int, off_us: int | None = None) -> None:
         """Set an output from ``now_us`` on, and back to 0 at ``off_us``."""
@@ -172,12 +175,13 @@ class Signals:
         found: dict[int, list[tuple[int, float]]] = {}
         for number, spec in self._inputs.items():
             delayed = [(us + spec.delay_us) for us, _ in self._history.get(spec.follows or 0, ())]
-            held = [row for row in self._held if row[1] == number]
-            times = sorted({0, *delayed, *(us for us, _ in spec.changes), *(us for us, _, _ in held)})
+            held = [(us, state) for us, key, state in self._held if key == number]
+            times = sorted({0, *delayed, *(us for us, _ in spec.changes), *(us for us, _ in held)})
             rows = found[number] = []
             for us in (each for each in times if each <= until_us):
-                forced = _forced([row for row in held if row[0] <= us])
-                state = forced.get(number, self._by_itself(spec, us))
+                last = bisect_right(held, us, key=lambda row: row[0])
+                forced = held[last - 1][1] if last else None
+                state = self._by_itself(spec, us) if forced is None else forced
                 if not rows or rows[-1][1] != state:
                     rows.append((us, state))
         return found

@@ -20,7 +20,7 @@ MOST_TURNS = 5000
 class Bench:
     """A session that is driven by a page; ``now`` s is the wall time of everything."""
 
-    def __init__(self, folder, monkeypatch, text, *, cell="", by_hand=True, physics=False):
+    def __init__(self, folder, monkeypatch, text, *, cell="", by_hand=True, physics=False, pace=None):
         self.now = 1000.0
         for module in ("exchange", "driver", "frames"):
             monkeypatch.setattr(f"robolang.view.{module}.wall_s", lambda: self.now)
@@ -33,7 +33,7 @@ class Bench:
         self.exchange = Exchange()
         self.frames = Frames(self.exchange)
         self.session = Session(project, physics=physics, observer=self.frames)
-        self.driver = Driver(self.session, self.exchange, self.frames, teaching=teaching)
+        self.driver = Driver(self.session, self.exchange, self.frames, pace=pace, teaching=teaching)
         monkeypatch.setattr(self.exchange, "wait", lambda seconds: None)
         self.page = self.exchange.join()
         self._ids = 0

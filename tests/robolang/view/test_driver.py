@@ -4,6 +4,7 @@ import pytest
 from robolang.execution.session import Session
 from robolang.project.builtin import cell_text
 from robolang.project.project import load_project
+from robolang.view.pace import Pace
 from tests.robolang.execution.standing import log_of
 from tests.robolang.view.driving import CYCLE_S, Bench
 
@@ -119,6 +120,14 @@ def test_a_stop_ends_the_program_and_it_begins_again_after_a_reset(bench):
     assert bench.facts.state == "done"
 
 
+def test_what_was_ordered_before_a_pause_moves_nothing_after_it(bench):
+    before = bench.q
+    start, jog, pause = bench.send("start"), bench.jog(), bench.send("pause")
+    bench.turns(50)
+    assert [bench.answer(number).get("code") for number in (start, jog, pause)] == ["RBL836", "RBL836", None]
+    assert (bench.q == before).all()
+
+
 def test_an_override_holds_for_the_moves_that_begin_then(bench):
     assert bench.do("override", percent=20) is None
     assert bench.do("start") is None
@@ -205,6 +214,36 @@ def test_a_jog_without_signs_stops_after_the_dead_man(bench):
     rests = bench.q
     bench.turns(30, alive=number)
     assert (bench.q == rests).all()
+
+
+@pytest.mark.parametrize(("factor", "share"), [(20.0, 1.0), (1.0, 1.0), (0.5, 0.5)])
+def test_a_jog_is_no_faster_than_the_time_of_its_dead_man(tmp_path, monkeypatch, factor, share):
+    bench = Bench(tmp_path, monkeypatch, PROGRAM, pace=Pace(factor))
+
+    def sleep(seconds):
+        bench.now += seconds
+
+    monkeypatch.setattr("robolang.view.pace.wall_s", lambda: bench.now)
+    monkeypatch.setattr("robolang.view.pace.time.sleep", sleep)
+    number = bench.jog("J1")
+    for _ in range(100):
+        bench.send("alive", jog=number)
+        bench.driver.turn()
+    assert bench.facts.doing == "jog"
+    simulated = bench.session.executor.time_us * 1e-6
+    assert simulated == pytest.approx((bench.now - 1000.0) * share, rel=0.05)
+    # the program keeps its own pace
+    bench.send("release", jog=number)
+    while bench.facts.doing != "nothing":
+        bench.driver.turn()
+    began, at = bench.now, bench.session.executor.time_us
+    bench.send("restart")
+    bench.send("start")
+    for _ in range(100):
+        bench.driver.turn()
+    assert bench.facts.doing == "program"
+    simulated = (bench.session.executor.time_us - at) * 1e-6
+    assert simulated == pytest.approx((bench.now - began) * factor, rel=0.05)
 
 
 def test_late_signs_do_not_revive_a_jog(bench):

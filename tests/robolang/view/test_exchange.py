@@ -3,7 +3,7 @@ import math
 
 import pytest
 
-from robolang.view.exchange import MOST_WAITING, Exchange
+from robolang.view.exchange import HALTS, MOST_WAITING, Exchange
 from robolang.view.messages import Go, Held, Jog, Message, Override
 
 JOG = Jog(axis="X", sign=-1, frame="tool", speed=25.0, step=None)
@@ -74,6 +74,40 @@ def test_commands_come_in_their_order_and_are_bounded(exchange):
     assert exchange.take() is None
 
 
+def test_a_stop_and_a_pause_wait_for_nothing_and_end_what_waits(exchange):
+    page = exchange.join()
+    for at in range(MOST_WAITING):
+        exchange.receive(page, Message(id=at, command=Go(word="start")))
+    exchange.receive(page, Message(id=20, command=Go(word="pause")))
+    exchange.receive(page, Message(id=21, command=Go(word="stop")))
+    exchange.receive(page, Message(id=22, command=Go(word="reset")))
+    assert replies(page) == [(at, "RBL836") for at in range(MOST_WAITING)]
+    assert [exchange.take().id for _ in range(3)] == [21, 20, 22]
+    assert exchange.take() is None
+
+
+@pytest.mark.parametrize("word", HALTS)
+def test_every_page_may_stop_and_one_of_each_is_enough(exchange, word):
+    first, second = exchange.join(), exchange.join()
+    for _ in range(2):
+        for at in range(MOST_WAITING + 1):
+            exchange.receive(second, Message(id=at, command=Go(word=word)))
+        # all but the first are answered at once
+        assert replies(second) == [(at, None) for at in range(1, MOST_WAITING + 1)]
+        assert (exchange.take().page, exchange.take()) == (second.number, None)
+        # again, while nobody has control
+        if first.number in exchange.pages:
+            exchange.leave(first)
+    assert exchange.control_for(second) == "free"
+
+
+def test_a_wait_ends_with_a_stop(exchange):
+    page = exchange.join()
+    exchange.receive(page, Message(id=1, command=Go(word="stop")))
+    exchange.wait(math.inf)
+    assert exchange.take().id == 1
+
+
 @pytest.fixture
 def jog(exchange):
     page = exchange.join()
@@ -101,6 +135,16 @@ def test_a_jog_ends_with_its_release(exchange, jog):
     page, order = jog
     exchange.receive(page, Message(id=8, command=Held(jog=7, released=True)))
     assert not holds(exchange, order)
+
+
+@pytest.mark.parametrize("word", HALTS)
+def test_a_jog_ends_when_another_page_stops(exchange, jog, word):
+    _, order = jog
+    # a button of its own: that of the jog is released by the page that comes, too
+    other = exchange.join()
+    press = exchange.button.press(order.page, 9, exchange.now)
+    exchange.receive(other, Message(id=1, command=Go(word=word)))
+    assert not exchange.button.holds(press, exchange.now)
 
 
 def test_a_jog_ends_when_its_page_goes(exchange, jog):

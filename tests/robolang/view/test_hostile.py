@@ -13,6 +13,7 @@ from websockets.exceptions import ConnectionClosed
 
 from robolang.view import server as server_module
 from robolang.view.exchange import Exchange
+from robolang.view.guard import Asked
 from robolang.view.server import MOST_CONNECTIONS, MOST_MISTAKES, LiveServer
 from runtime.core.faults import Fault
 from tests.campaign import size
@@ -135,6 +136,12 @@ def test_every_other_token_is_refused(live, query, path):
     assert status(raw(live, request(live, path + query, *upgrade(), origin(live)))) == 401
 
 
+@pytest.mark.parametrize("query", ["\ud800", "token=\udcff", "token=\u00e9", "\0", ""], ids=ascii)
+def test_a_query_of_any_text_is_refused(live, query):
+    asked = Asked(method="GET", target=f"/?{query}", hosts=(f"127.0.0.1:{live.guard.port}",), origins=())
+    assert live.guard.judge(asked).status == 401
+
+
 def test_a_token_in_a_header_or_a_cookie_is_none(live):
     token = live.guard.token
     headers = (f"Authorization: Bearer {token}", f"Cookie: token={token}", f"Referer: {live.url}")
@@ -185,13 +192,25 @@ def test_no_other_site_is_allowed_to_read(live):
         (b"\x00" * 64 + b"\r\n\r\n", 0),
         (b"GET / HTTP/2.0\r\n\r\n", 0),
         (b"GET /\r\n\r\n", 0),
+        (b"GET /?token=\xed\xa0\x80 HTTP/1.1\r\n\r\n", 0),
         (b"GET / HTTP/1.1\r\nHost 127.0.0.1\r\n\r\n", 0),
         (b"GET / HTTP/1.1\r\n" + b"A: 1\r\n" * 200 + b"\r\n", 431),
         (b"GET / HTTP/1.1\r\nA: " + b"a" * 20_000 + b"\r\n\r\n", 431),
         (b"GET /" + b"a" * 20_000 + b" HTTP/1.1\r\n\r\n", 414),
         (b"GET /" + b"a" * 600 + b" HTTP/1.1\r\n\r\n", 414),
     ],
-    ids=["TLS", "zeros", "HTTP/2", "HTTP/0.9", "no colon", "many headers", "long header", "long line", "long path"],
+    ids=[
+        "TLS",
+        "zeros",
+        "HTTP/2",
+        "HTTP/0.9",
+        "no ASCII",
+        "no colon",
+        "many headers",
+        "long header",
+        "long line",
+        "long path",
+    ],
 )
 def test_what_is_no_request_is_refused(live, sent, expected):
     assert status(raw(live, sent)) == expected

@@ -120,7 +120,7 @@ def test_a_page_that_reads_gets_all_that_is_text_and_frames_of_one_size(program)
         hello = found[0]
     assert hello["kind"] == "hello"
     size = 8 + 4 * sum(count for _, count in hello["layout"])
-    assert {len(frame) for frame in frames} <= {size}
+    assert {len(frame) for frame in frames} == {size}
     assert size < 300
     statements = [row for each in found if each["kind"] == "statements" for row in each["rows"]]
     assert [row["line"] for row in statements] == [2, 3] * 4 + [5]
@@ -233,6 +233,36 @@ def test_a_page_may_pause_and_stop_a_run_that_it_follows(program):
         page.send(json.dumps({"do": "stop", "id": 2}))
         texts(page, is_status(state="stopped"))
         assert started.process.wait(HANG_S) == 3
+
+
+def reply_to(number):
+    return lambda message: message["kind"] == "reply" and message["id"] == number
+
+
+@pytest.mark.parametrize("word", ["stop", "pause"])
+def test_a_page_without_control_stops_an_arm_that_another_one_keeps_busy(program, word):
+    with command("view", program, "--no-physics", "--no-browser") as started, as_page(started.url) as page:
+        page.send(json.dumps({"do": "start", "id": 1}))
+        texts(page, is_status(doing="program"))
+        with as_page(started.url) as other:
+            texts(other, is_status(control="other"))
+            for number in range(2, 200):
+                page.send(json.dumps({"do": "override", "id": number, "percent": 50}))
+            other.send(json.dumps({"do": word, "id": 1}))
+            assert texts(other, reply_to(1))[-1]["ok"]
+            found = texts(other, is_status(doing="nothing"))[-1]
+            assert found["state"] == {"stop": "stopped", "pause": "paused"}[word]
+
+
+def test_a_stop_is_not_kept_by_the_commands_before_it(program):
+    with command("view", program, "--no-physics", "--no-browser") as started, as_page(started.url) as page:
+        page.send(json.dumps({"do": "start", "id": 1}))
+        texts(page, is_status(doing="program"))
+        for number in range(2, 200):
+            page.send(json.dumps({"do": "override", "id": number, "percent": 50}))
+        page.send(json.dumps({"do": "stop", "id": 200}))
+        assert texts(page, reply_to(200))[-1]["ok"]
+        texts(page, is_status(state="stopped", doing="nothing"))
 
 
 def test_a_program_with_errors_and_a_port_that_is_taken_are_refused(program, tmp_path):

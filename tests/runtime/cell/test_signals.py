@@ -37,3 +37,38 @@ def test_changes_that_are_not_finite_keep_their_code(changes):
     with pytest.raises(FileFault) as caught:
         read_input(load_table(Source("cell.toml", f"changes = {changes}\n")))
     assert caught.value.code == "RBL604"
+
+
+class Counted(list):
+    """A list that counts how often it is read from its start."""
+
+    reads = 0
+
+    def __iter__(self):
+        self.reads += 1
+        return super().__iter__()
+
+
+def test_a_forced_input_does_not_cost_what_was_forced_before():
+    signals = Signals({1: InputSpec(changes=((0, 5.0),)), 2: InputSpec(changes=((0, 6.0),))})
+    signals._held = history = Counted()
+    before = signals.snapshot()
+    reads = history.reads
+    for at in range(100):
+        signals.force(1 + at % 2, float(at), at)
+    assert (history.reads, len(history)) == (reads, 100)
+    assert dict(signals.forced) == {1: 98.0, 2: 99.0}
+    after = signals.snapshot()
+    signals.force(1, None, 100)
+    assert (signals.input(1, 100), signals.input(2, 100)) == (5.0, 99.0)
+    signals.restore(after)
+    assert dict(signals.forced) == {1: 98.0, 2: 99.0}
+    signals.restore(before)
+    assert signals.forced == {}
+
+
+def test_changes_of_a_forced_input_are_those_that_it_had_in_turn():
+    signals = Signals({1: InputSpec(changes=((0, 5.0), (25, 6.0)))})
+    for us, state in ((10, 1.0), (10, 2.0), (20, 2.0), (30, None), (40, 6.0), (50, 0.0), (60, 0.0)):
+        signals.force(1, state, us)
+    assert signals.input_changes(55) == {1: [(0, 5.0), (10, 2.0), (30, 6.0), (50, 0.0)]}

@@ -103,11 +103,13 @@ export class RunPanel {
     const ready = stands && !status.alarm;
     const goes = ready && (!status.over || (status.can_continue ?? false));
     const hand = status.by_hand ?? false;
+    // Stopping needs no control.
+    const moves = doing !== "nothing" && status.control !== "none";
     const can: Readonly<Record<string, boolean>> = {
       start: goes,
       step: goes,
-      pause: doing !== "nothing" && status.control === "yours",
-      stop: status.control === "yours" && !status.alarm && !(status.over && doing === "nothing"),
+      pause: moves,
+      stop: !status.alarm && (moves || (status.control === "yours" && !status.over)),
       reset: stands && Boolean(status.alarm),
       restart: ready,
       end: status.control === "yours",
