@@ -15,6 +15,7 @@ from robolang.interpreter.effects import SetHand
 from robolang.logs.log import VERSION
 from robolang.project.project import Project
 from runtime.appearance.cell_scene import scene_of
+from runtime.appearance.scene import Scene
 from runtime.cell.signals import Signals
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
@@ -36,7 +37,7 @@ def meta_of(record: RunRecord, signals: Signals, report: dict[str, Any]) -> dict
         "cell": {"text": project.cell_text},
         "points": points_of(points),
         "robot": robot_of(project.cell.robot, project.cell.hand.X_flange_tool),
-        "scene": scene_of(project.cell, points).as_json(),
+        "scene": _scene(project, points),
         "events": events(record, signals),
         "report": _without_host(report, project.source.path, name),
         "tick_s": profile.tick_s,
@@ -45,6 +46,15 @@ def meta_of(record: RunRecord, signals: Signals, report: dict[str, Any]) -> dict
     plain = strict(found)
     assert isinstance(plain, dict)
     return plain
+
+
+def _scene(project: Project, points: Mapping[str, Array]) -> dict[str, Any] | None:
+    """Return the scene of a run; None where it is none that a reader takes: a log is not lost by how it looks."""
+    scene = scene_of(project.cell, points).as_json()
+    with suppress(Fault):
+        Scene.from_json(scene)
+        return scene
+    return None
 
 
 def file_name(path: str) -> str:

@@ -9,17 +9,19 @@ attachment; times are simulated, in ns from power-up. A run without a tick gives
 import heapq
 import json
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from typing import IO, Any
 
 import numpy as np
 
 from robolang.logs import transforms
-from robolang.logs.log import Log
+from robolang.logs.log import Log, Meta
 from robolang.logs.log_messages import log_messages
 from robolang.logs.records import CYCLE, FRAME, META, SAMPLE, Record
 from robolang.logs.scene_messages import scene_update
 from runtime.appearance.scene import Scene
 from runtime.control.blocks import FRAME_CYCLES
+from runtime.core.faults import Fault
 from runtime.core.frames import Array
 
 _PIECE = 256
@@ -36,7 +38,7 @@ def write_mcap(stream: IO[bytes], log: Log) -> None:
     writer: Any = Writer(stream)  # in chunks packed by zstd
     writer.start()
     meta = log.needed_meta()
-    scene = None if meta["scene"] is None else Scene.from_json(meta["scene"])
+    scene = _scene(meta)
     text = json.dumps(meta, allow_nan=False, separators=(",", ":")).encode("ascii")
     # before the rows: who reads them in order knows the robot by then
     writer.add_attachment(create_time=0, log_time=0, name=META, media_type="application/json", data=text)
@@ -44,6 +46,13 @@ def write_mcap(stream: IO[bytes], log: Log) -> None:
     for time_ns, topic, data in heapq.merge(_recorded(log, scene), log_messages(meta), key=_time):
         writer.add_message(channels[topic], log_time=time_ns, publish_time=time_ns, data=data)
     writer.finish()
+
+
+def _scene(meta: Meta) -> Scene | None:
+    # a log without a picture is better than none: what is wrong with a scene is said by those who draw it
+    with suppress(Fault):
+        return None if meta["scene"] is None else Scene.from_json(meta["scene"])
+    return None
 
 
 def _time(message: Message) -> int:

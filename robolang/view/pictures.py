@@ -12,6 +12,7 @@ from runtime.appearance.scene import View
 from runtime.appearance.views import named_view
 from runtime.core.faults import Fault
 from runtime.plant.camera import Camera
+from runtime.plant.dressing import undrawable
 
 SMALLEST, LARGEST = 16, 4096
 """Pixels of an edge of a picture."""
@@ -78,8 +79,8 @@ class Order:
         return found
 
 
-def render(log: Log, order: Order, progress: Progress = lambda done, count, library: None) -> None:
-    """Draw a run and write the file, whole or not at all.
+def render(log: Log, order: Order, progress: Progress = lambda done, count, library: None) -> tuple[str, ...]:
+    """Draw a run and write the file, whole or not at all; return notes on what is not in it.
 
     ``Fault`` RBL820 or RBL833 for a log without a scene, RBL830 where nothing can draw, RBL832 for an order that does
     not suit the run, RBL706 for a file that cannot be written.
@@ -98,6 +99,7 @@ def render(log: Log, order: Order, progress: Progress = lambda done, count, libr
                 yield image
 
         write_atomic(order.path, lambda stream: order.format.write(stream, pictures(), order.rate))
+    return tuple(f"the mesh {name!r} has no area and is left out" for name in undrawable(replay.scene))
 
 
 def _view(replay: Replay, order: Order) -> View:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from runtime.appearance.mesh_files import MeshError, read_mesh
 from runtime.appearance.scene import MOST_MESHES, Mesh
 from runtime.core.bounded_files import resolved_inside, stays_inside
-from runtime.core.frames import frozen
+from runtime.core.frames import Array, frozen
 from runtime.core.linear import matmul
 from runtime.robot.model.spec import LinkMesh
 
@@ -116,7 +116,18 @@ def _snapped(mesh: Mesh, cell: float) -> Mesh:
     kept = faces[(a != b) & (b != c) & (c != a)]
     # what is thinner than a cell is folded onto itself: each triangle stays once
     _, first = np.unique(_numbered(np.sort(kept, axis=1)), return_index=True)
+    if not len(first):
+        # a screw beside a housing is less than a cell: its box is seen, and a mesh without faces is none
+        return _box(low, mesh.vertices.max(axis=0))
     return Mesh(vertices=frozen(middle), faces=kept[np.sort(first)].astype(np.int32))
+
+
+def _box(low: Array, high: Array) -> Mesh:
+    """Return a box between two corners (3,)."""
+    corners = [[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    faces = [face for a, b, c, d in quads for face in ((a, b, c), (a, c, d))]
+    return Mesh(vertices=frozen(corners), faces=np.array(faces, dtype=np.int32))
 
 
 def _numbered(rows: NDArray[np.int64]) -> NDArray[np.int64]:

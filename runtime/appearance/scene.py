@@ -33,6 +33,8 @@ MESH_DIGITS = 5
 """Digits of the vertices of meshes, which only have to look right: a hundredth of a millimetre."""
 MOST_BODIES, MOST_SHAPES, MOST_MARKS, MOST_MESHES = 50_000, 250_000, 50_000, 200
 """Most bodies, shapes, frames or points, and meshes of a scene: more than the largest cell and points file have."""
+SMALLEST = 10.0**-DIGITS
+"""Least size of a shape, and least reach, m: what is smaller is nothing in the JSON."""
 MOST_VERTICES, MOST_FACES = 300_000, 300_000
 """Most vertices and faces of all meshes of a scene together."""
 
@@ -246,8 +248,8 @@ def _shapes(value: Untrusted, bodies: set[str], meshes: Mapping[str, Mesh]) -> t
         if (kind == "mesh") != (isinstance(mesh, str) and mesh in meshes):
             each["mesh"].fail("is not the name of a mesh, or its shape is none")
         size = each["size"].array((SIZES[kind],))
-        if not (size >= 0.0).all():
-            each["size"].fail("is negative")
+        if not (size >= SMALLEST).all():
+            each["size"].fail("is not positive")
         found.append(
             Shape(
                 body=body,
@@ -295,6 +297,6 @@ def _marks(value: Untrusted) -> tuple[Mark, ...]:
 
 def _length(value: Untrusted) -> float:
     number = value.value
-    if type(number) not in (int, float) or not 0.0 < number <= 1e4:
+    if type(number) not in (int, float) or not SMALLEST <= number <= 1e4:
         value.fail("is not a positive length, m")
     return float(frozen([number])[0])

@@ -15,6 +15,8 @@ FIELD = 32.0 * DEG
 """Vertical field of view, rad: about that of a lens for portraits, so that straight arms look straight."""
 MARGIN = 1.06
 """How much more than the scene a named view shows."""
+NEAREST = 0.01
+"""Least distance of a camera, m: a scene may be one point."""
 DIRECTIONS = {"iso": (142.0, -20.0), "front": (180.0, -8.0), "side": (90.0, -8.0), "top": (90.0, -89.9)}
 """Azimuth and elevation, deg, in which each named view looks: ``front`` faces the robot, ``side`` sees it from its
 right, ``top`` has x of the world to the right."""
@@ -48,7 +50,7 @@ def _fitted(corners: Array, axes: Array, slopes: Array) -> View:
     # a few rounds: what is near looks larger, so the middle of the picture is not that of the scene
     for _ in range(8):
         at = corners - middle
-        distance = float((np.abs(at[:, :2]) / slopes - at[:, 2:]).max())
+        distance = float(np.maximum(NEAREST, (np.abs(at[:, :2]) / slopes - at[:, 2:]).max()))
         seen = at[:, :2] / (distance + at[:, 2:])
         middle[:2] += distance * (seen.min(axis=0) + seen.max(axis=0)) / 2.0
     target = matmul(middle, axes)
@@ -62,7 +64,8 @@ def _corners(scene: Scene, stance: Stance) -> Array:
     for shape in scene.shapes:
         X = matmul(poses[shape.body], shape.X_body_shape)
         found.append(matmul(_box(scene, shape), X[:3, :3].T) + X[:3, 3])
-    return np.concatenate(found)
+    # of nothing, where the robot could come to
+    return np.concatenate(found) if found else np.array([[-scene.reach] * 3, [scene.reach] * 3])
 
 
 def _box(scene: Scene, shape: Shape) -> Array:

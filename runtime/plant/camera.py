@@ -43,7 +43,7 @@ class Camera:
         self._scene = scene
         self._model: Any = mujoco.MjModel.from_xml_string(picture_mjcf(scene, width, height))
         self._data: Any = mujoco.MjData(self._model)
-        self._mocap = {body.name: int(self._model.body(body.name).mocapid[0]) for body in scene.bodies}
+        self._mocap = {body.name: int(self._model.body(_named(k)).mocapid[0]) for k, body in enumerate(scene.bodies)}
         self._image: Image = np.empty((height, width, 3), np.uint8)
         self._rect = mujoco.MjrRect(0, 0, width, height)
         self._drawn: Any = mujoco.MjvScene(self._model, self._model.ngeom + MARKS_BEYOND)
@@ -142,10 +142,16 @@ def picture_mjcf(scene: Scene, width: int, height: int) -> str:
     _light(world, scene)
     ET.SubElement(world, "geom", name="floor", type="plane", size="0 0 0.1", material="grid")
     bodies = {
-        body.name: (ET.SubElement(world, "body", name=body.name, mocap="true"), np.eye(4)) for body in scene.bodies
+        body.name: (ET.SubElement(world, "body", name=_named(k), mocap="true"), np.eye(4))
+        for k, body in enumerate(scene.bodies)
     }
     dress(root, scene, bodies)
     return ET.tostring(root, encoding="unicode")
+
+
+def _named(k: int) -> str:
+    """Return the name of a body in the model: in a log it may be any text, also one that MuJoCo has for its own."""
+    return f"body{k}"
 
 
 def _visual(root: ET.Element, scene: Scene, width: int, height: int) -> None:

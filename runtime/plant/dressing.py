@@ -16,6 +16,9 @@ from runtime.plant.mjcf import place, row
 
 GROUP = 2
 """Geom group of what is only seen; physics has its shapes in group 0."""
+LEAST_AREA = 1e-10
+"""Area of the smallest mesh that is drawn, m2: MuJoCo refuses one without any."""
+_LEAST_VERTICES = 4  # of a mesh of MuJoCo
 EDGE = 0.0012
 """Half the thickness of the edges of a part, m."""
 
@@ -24,11 +27,19 @@ Carriers = Mapping[str, tuple[ET.Element, Array]]
 
 
 def dress(root: ET.Element, scene: Scene, carriers: Carriers) -> None:
-    """Add the shapes of a scene to the MJCF document ``root``, each on the element that carries its body."""
+    """Add the shapes of a scene to the MJCF document ``root``, each on the element that carries its body.
+
+    Those of ``undrawable`` meshes are left out.
+    """
     wardrobe = _Wardrobe(root, scene)
     for index, shape in enumerate(scene.shapes):
         carrier, X_carrier_body = carriers[shape.body]
         wardrobe.put(carrier, matmul(X_carrier_body, shape.X_body_shape), shape, f"shape{index}")
+
+
+def undrawable(scene: Scene) -> tuple[str, ...]:
+    """Return the names of the meshes that have no area to be seen, which a file may well have."""
+    return tuple(name for name, mesh in scene.meshes.items() if not _has_area(mesh))
 
 
 def dressed(mjcf: str, scene: Scene) -> str:
@@ -58,12 +69,12 @@ class _Wardrobe:
 
     def __init__(self, root: ET.Element, scene: Scene) -> None:
         self._assets, self._scene = ET.SubElement(root, "asset"), scene
-        self._turned: dict[tuple[str, tuple[float, ...]], str] = {}
+        self._turned: dict[tuple[str, tuple[float, ...]], str | None] = {}
         for role, colour in scene.colours.items():
             shine = {"metal": ("0.5", "0.6"), "rubber": ("0.1", "0.1")}.get(role, ("0.25", "0.4"))
             ET.SubElement(self._assets, "material", name=role, rgba=rgba(colour), specular=shine[0], shininess=shine[1])
-        for name, mesh in scene.meshes.items():
-            self._write(f"mesh:{name}", mesh)
+        # numbered: a name may be any text, which XML does not take
+        self._meshes = {name: self._write(f"mesh{k}", mesh) for k, (name, mesh) in enumerate(scene.meshes.items())}
 
     def put(self, carrier: ET.Element, X: Array, shape: Shape, name: str) -> None:
         """Add a shape at X_carrier_shape."""
@@ -73,28 +84,33 @@ class _Wardrobe:
                 self._edges(carrier, X, shape, name)
         elif shape.kind == "sphere":
             _geom(carrier, X, shape.role, name, type="sphere", size=row(shape.size))
-        elif shape.kind == "mesh":
-            _geom(carrier, X, shape.role, name, type="mesh", mesh=f"mesh:{shape.mesh}")
-        else:
-            _geom(carrier, X, shape.role, name, type="mesh", mesh=self._mesh_of(shape))
+        elif (mesh := self._mesh_of(shape)) is not None:
+            _geom(carrier, X, shape.role, name, type="mesh", mesh=mesh)
 
-    def _mesh_of(self, shape: Shape) -> str:
+    def _mesh_of(self, shape: Shape) -> str | None:
+        if shape.mesh is not None:
+            return self._meshes[shape.mesh]
         key = (shape.kind, shape.size)
         if key not in self._turned:
-            self._turned[key] = f"turned{len(self._turned)}"
-            self._write(self._turned[key], turned(shape))
+            self._turned[key] = self._write(f"turned{len(self._turned)}", turned(shape))
         return self._turned[key]
 
-    def _write(self, name: str, mesh: Mesh) -> None:
+    def _write(self, name: str, mesh: Mesh) -> str | None:
+        """Write a mesh and return its name; None for one that cannot be drawn."""
+        if not _has_area(mesh):
+            return None
+        # a triangle has too few
+        vertices = np.resize(mesh.vertices, (max(len(mesh.vertices), _LEAST_VERTICES), 3))
         # a shell: MuJoCo refuses a mesh whose volume is nearly none, which a file may well have
         ET.SubElement(
             self._assets,
             "mesh",
             name=name,
             inertia="shell",
-            vertex=row(mesh.vertices.ravel()),
+            vertex=row(vertices.ravel()),
             face=" ".join(map(str, mesh.faces.ravel().tolist())),
         )
+        return name
 
     def _edges(self, carrier: ET.Element, X: Array, shape: Shape, name: str) -> None:
         """Draw the twelve edges of a part, by which it is seen before a table of nearly its colour."""
@@ -108,6 +124,11 @@ class _Wardrobe:
                 at[across] = half[across] * signs
                 edge = f"{name}_edge{axis}{signs[0] > 0:d}{signs[1] > 0:d}"
                 _geom(carrier, matmul(X, pose(at)), "edge", edge, type="box", size=row(size))
+
+
+def _has_area(mesh: Mesh) -> bool:
+    a, b, c = np.moveaxis(mesh.vertices[mesh.faces], 1, 0)
+    return bool(np.sqrt((np.cross(b - a, c - a) ** 2).sum(axis=1)).sum() / 2.0 >= LEAST_AREA)
 
 
 def rgba(colour: str) -> str:

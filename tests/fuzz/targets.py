@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from tempfile import mkdtemp
 
+import mujoco
 import numpy as np
 
 from robolang.analysis import checker
@@ -26,8 +27,12 @@ from robolang.syntax.keywords import KEYWORDS
 from robolang.syntax.parser import parse
 from robolang.teaching.logged import joints_at
 from robolang.testing.golden import read_golden
+from runtime.appearance.scene import Scene
+from runtime.appearance.stance import Stance
+from runtime.appearance.views import named_view
 from runtime.core.faults import Fault, lookup
 from runtime.core.tomlfile import FileFault
+from runtime.plant.camera import picture_mjcf
 from runtime.robot.files.importer import read_arm
 from tests.robolang.helpers import cell_with
 from tests.runtime.from_texts import load_cell
@@ -170,7 +175,17 @@ def log(data):
         if found.meta is not None:
             found.each_cycle("line")
             json.dumps(found.meta, allow_nan=False)
+            _scene(found.meta.get("scene"))
         joints_at(path, 6, 0.0)
+
+
+def _scene(value):
+    """A scene that is one can be drawn and framed."""
+    with _refusing("RBL833"):
+        scene = Scene.from_json(value)
+        mujoco.MjModel.from_xml_string(picture_mjcf(scene, 64, 48))
+        view = named_view("iso", scene, [Stance(axes=())], 4 / 3)
+        assert np.isfinite([view.position, view.target]).all()
 
 
 @contextmanager

@@ -62,7 +62,8 @@ def render(subject: Subject, files: CellOptions, picture: _PictureOptions, physi
         order.check()
         check_writable(out)
         log, code = _log(subject, files, physics)
-        draw(log, order, _progress())
+        for note in draw(log, order, _progress()):
+            echo(f"note: {note}", err=True)
         echo(f"{out}: {out.stat().st_size / 1e6:.2f} MB")
     if code:
         raise SystemExit(code)

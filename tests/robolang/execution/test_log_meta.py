@@ -1,15 +1,19 @@
 """What a log says of its run: enough for a picture, nothing of the host, and the tool that was in use."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from robolang.execution import log_meta
 from robolang.execution.result import RunResult
 from robolang.execution.session import Session
 from robolang.logs.files import read_log, write_log
 from robolang.project.project import load_project
+from runtime.appearance.cell_scene import scene_of
+from runtime.appearance.scene import Mesh
 from runtime.cell.signals import InputSpec, Signals
 from tests.robolang.cli.commands import BUILTIN
 
@@ -139,3 +143,13 @@ def test_parts_are_where_the_ideal_hand_carries_them(tmp_path):
     assert (part[:, 3] >= 0.0).all()
     assert log["fingers"][held].max() == 0.0
     assert part[-1, :3] == pytest.approx(np.array(result.report["objects"]["part"]["pose_mm_deg"][:3]) / 1e3, abs=1e-6)
+
+
+def test_a_scene_that_no_reader_takes_costs_no_log(tmp_path, monkeypatch):
+    empty = Mesh(vertices=np.zeros((1, 3)), faces=np.zeros((0, 3), dtype=np.int32))
+    monkeypatch.setattr(log_meta, "scene_of", lambda *given: replace(scene_of(*given), meshes={"m": empty}))
+    result = carried_out(tmp_path, "LOAD empty\nDELAY 0.1\n")
+    assert result.log.needed_meta()["scene"] is None
+    for name in ("l.npz", "l.mcap"):
+        write_log(tmp_path / name, result.log)
+        assert read_log(tmp_path / name).meta == result.log.meta

@@ -48,6 +48,13 @@ def test_an_mcap_gives_every_number_to_any_reader(tmp_path, ticks):
         assert same(read.reshape(made[name].shape), made[name])
 
 
+def test_a_log_is_written_whatever_its_scene_is(tmp_path):
+    made = Log(log(16).rows, {**meta(), "scene": {"bodies": 7}})
+    read = read_log(written(tmp_path / "l.mcap", made))
+    assert read.meta == made.meta
+    assert same(read["q_fb"], made["q_fb"])
+
+
 @pytest.mark.parametrize("ticks", [1, 7, 8, 9, 16, 17, 5000])
 def test_read_log_gives_the_log_that_was_written(tmp_path, ticks):
     made = log(ticks)

@@ -95,18 +95,36 @@ def test_a_mirrored_mesh_keeps_its_faces_outwards(folder):
 
 
 def test_a_fine_mesh_is_made_coarser_and_keeps_its_form(folder, monkeypatch):
+    (folder / "ball.obj").write_text(ball())
+    monkeypatch.setattr(module, "MOST_FACES", 1000)
+    ((_, _, mesh),) = own_meshes((named(folder, "ball.obj", X=np.eye(4), scale=(1.0, 1.0, 1.0)),)).links
+    assert 200 < len(mesh.faces) <= 1000
+    assert np.linalg.norm(mesh.vertices, axis=1).min() > 0.9
+    assert np.linalg.norm(mesh.vertices, axis=1).max() <= 1.0 + 1e-9
+
+
+def ball():
+    """A ball with a radius of 1, as an OBJ of 3481 squares."""
     angles = np.linspace(0.0, np.pi, 60)
     ring = np.stack([np.sin(angles), np.zeros(60), np.cos(angles)], axis=1)
     lines = [f"v {x * np.cos(t)} {x * np.sin(t)} {z}" for t in np.linspace(0, 2 * np.pi, 60) for x, _, z in ring]
     faces = [
         f"f {60 * k + j + 1} {60 * k + j + 2} {60 * k + j + 62} {60 * k + j + 61}" for k in range(59) for j in range(59)
     ]
-    (folder / "ball.obj").write_text("\n".join([*lines, *faces]))
+    return "\n".join([*lines, *faces])
+
+
+def test_a_small_mesh_beside_a_fine_one_becomes_its_box(folder, monkeypatch):
+    (folder / "ball.obj").write_text(ball())
     monkeypatch.setattr(module, "MOST_FACES", 1000)
-    ((_, _, mesh),) = own_meshes((named(folder, "ball.obj", X=np.eye(4), scale=(1.0, 1.0, 1.0)),)).links
-    assert 200 < len(mesh.faces) <= 1000
-    assert np.linalg.norm(mesh.vertices, axis=1).min() > 0.9
-    assert np.linalg.norm(mesh.vertices, axis=1).max() <= 1.0 + 1e-9
+    fine = named(folder, "ball.obj", X=np.eye(4), scale=(1.0, 1.0, 1.0))
+    screw = named(folder, "meshes/box.stl", link=2, X=np.eye(4), scale=(1e-3, 1e-3, 1e-3))
+    (_, _, large), (link, _, small) = own_meshes((fine, screw)).links
+    assert (link, len(large.faces) <= 1000) == (2, True)
+    np.testing.assert_allclose(np.ptp(small.vertices, axis=0), [2e-3, 3e-3, 4e-3], atol=1e-9)
+    a, b, c = np.moveaxis(small.vertices[small.faces], 1, 0)
+    # closed, and its faces are outwards
+    assert np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0 == pytest.approx(24e-9)
 
 
 def test_links_with_meshes_show_them_and_others_shapes(tmp_path):

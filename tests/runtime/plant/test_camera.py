@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from runtime.appearance.cell_scene import scene_of
-from runtime.appearance.scene import View
+from runtime.appearance.scene import Mark, Mesh, Scene, SceneBody, Shape, View
 from runtime.appearance.stance import Stance
 from runtime.appearance.views import DIRECTIONS, named_view
 from runtime.plant.camera import Camera
+from runtime.plant.dressing import undrawable
 from tests.runtime.from_texts import load_cell
 from tests.runtime.plant.drawing import need_graphics
 
@@ -19,6 +20,11 @@ CELL = load_cell(Path("programs/pick_and_place.cell.toml"))
 SCENE = scene_of(CELL)
 HOME = Stance(axes=CELL.home, fingers=(0.03, 0.03))
 WIDTH, HEIGHT = 200, 150
+NAMES = ("world", "body0", "\ud800", "a\x01b", "", '<&"')
+"""Names of bodies, shapes and meshes that a log may have, and that XML or MuJoCo does not take."""
+LINE = Mesh(vertices=np.array([[k / 10.0, 0.0, 0.0] for k in range(4)]), faces=np.array([[0, 1, 2], [1, 3, 2]]))
+POINT = Mesh(vertices=np.zeros((4, 3)), faces=np.array([[0, 1, 2]]))
+TRIANGLE = Mesh(vertices=np.eye(3), faces=np.array([[0, 1, 2]]))
 
 
 @pytest.fixture(scope="module")
@@ -59,3 +65,34 @@ def test_pictures_have_colours_and_are_the_same_again(camera):
     assert len(np.unique(first.reshape(-1, 3), axis=0)) > 300
     other = camera.picture(Stance(axes=(0.0,) * 6), view)
     assert not np.array_equal(first, other)
+
+
+def test_a_scene_with_any_names_and_meshes_is_drawn():
+    need_graphics()
+    bodies = tuple(SceneBody(name=name, parent=None, X_parent_body=np.eye(4)) for name in NAMES)
+    meshes = dict(zip(NAMES, (TRIANGLE, LINE, POINT, TRIANGLE, LINE, POINT), strict=True))
+    shapes = tuple(
+        Shape(body=name, kind="mesh", X_body_shape=np.eye(4), size=(), role="body", name=name, mesh=name)
+        for name in NAMES
+    )
+    least = tuple(
+        Shape(body="world", kind=kind, X_body_shape=np.eye(4), size=(1e-9,) * count, role="part")
+        for kind, count in (("box", 3), ("cylinder", 3), ("limb", 3), ("sphere", 1))
+    )
+    made = Scene(
+        robot="\ud800", reach=1.0, bodies=bodies, shapes=(*shapes, *least), colours=SCENE.colours, meshes=meshes
+    )
+    scene = Scene.from_json(made.as_json())
+    assert undrawable(scene) == ("body0", "\ud800", "", '<&"')
+    view = named_view("iso", scene, [Stance(axes=())], WIDTH / HEIGHT)
+    with Camera(scene, width=WIDTH, height=HEIGHT) as opened:
+        seen = set(np.unique(opened.segments(Stance(axes=()), view)).tolist())
+    assert seen & {0, 3}
+    assert seen <= {-1, 0, 3, *range(6, 10)}
+
+
+@pytest.mark.parametrize("points", [(), (Mark(name="P", X_world_mark=np.eye(4)),)], ids=["nothing", "a-point"])
+def test_a_scene_without_shapes_has_a_view(points):
+    made = Scene(robot="", reach=0.5, bodies=(), shapes=(), colours=SCENE.colours, points=points)
+    view = named_view("iso", made, [Stance(axes=())], WIDTH / HEIGHT)
+    assert np.isfinite([view.position, view.target]).all()
