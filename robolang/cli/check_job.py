@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from robolang.cli.check_options import FixOptions, ReportOptions
 from robolang.cli.errors import DIAGNOSTICS, say, say_all, say_warnings
 from robolang.cli.output import echo
+from robolang.cli.outputs import check_outputs
 from robolang.cli.rewrite import Loaded, load, store, unified
 from robolang.cli.usage import OptionValueError
 from robolang.core.diagnostics import Diagnostic, Severity, has_errors, in_order, safe
@@ -111,9 +112,9 @@ def watched(job: Job) -> int:
 
 def run_once(job: Job) -> int:
     """Check everything once, print the report and return the exit code; ``Fault`` for a wrong configuration."""
-    _check_outputs(job)
     settings = Settings()
     names = programs(job.paths, excludes=settings.excludes)
+    _check_outputs(job, names)
     if not names and not job.allow_empty:
         raise Fault("RBL713", f"there is no program (*.rbl) in {safe(', '.join(job.paths))}")
     if job.html is not None and len(names) > 1:
@@ -143,19 +144,11 @@ def _programs(count: int) -> str:
     return f"{count} program{'' if count == 1 else 's'}"
 
 
-def _check_outputs(job: Job) -> None:
+def _check_outputs(job: Job, names: Sequence[str]) -> None:
     """Refuse files that cannot be written before anything is checked; ``Fault`` RBL706, ``OptionValueError``."""
-    outputs = [path for path in (job.output, job.times, job.html) if path is not None]
-    # a link may have any name, and what it leads to would be replaced
-    others = [str(path) for path in (job.output, job.times) if path is not None]
-    taken = {os.path.realpath(path) for path in (*job.paths, *others)}
-    if job.html is not None and os.path.realpath(job.html) in taken:
-        raise OptionValueError("--html", f"'{job.html}' is the program or another output of this check")
-    if outputs:
-        from robolang.core.storage import check_writable
-
-        for path in outputs:
-            check_writable(path)
+    outputs = {"--output-file": job.output, "--times": job.times, "--html": job.html}
+    if any(path is not None for path in outputs.values()):
+        check_outputs(outputs, names)
 
 
 def _examined_all(names: Sequence[str], job: Job, settings: Settings) -> list[_Outcome]:

@@ -16,6 +16,7 @@ from robolang.cli.command import PlainCommand, command
 from robolang.cli.errors import reported
 from robolang.cli.options import Group, JsonOptions, Option, Run
 from robolang.cli.output import echo
+from robolang.cli.outputs import check_outputs
 from robolang.cli.usage import OptionValueError
 from robolang.core.diagnostics import safe
 
@@ -72,12 +73,12 @@ def export(run: Run, output: _ExportOptions) -> None:
     suffix = _suffix(output)
     path = output.out or run.with_suffix(suffix)
     with reported():
-        from robolang.core.storage import check_writable, write_atomic
+        from robolang.core.storage import write_atomic
         from robolang.logs.files import read_log
         from robolang.logs.table import table_of
 
         # before the log is read, which takes the time
-        check_writable(path)
+        check_outputs({"--out": path}, [run])
         write = _writer(suffix)
         table = table_of(read_log(run), output.signals.split(",") if output.signals else ())
         write_atomic(path, lambda stream: write(stream, table))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 from robolang.cli.errors import reported
 from robolang.cli.options import Argument, Group, Option, Run
 from robolang.cli.output import echo
+from robolang.cli.outputs import check_outputs
 from robolang.cli.usage import OptionValueError
 
 if TYPE_CHECKING:
@@ -41,10 +42,10 @@ def plot(run: Run, selections: Selections, output: _PlotOptions) -> None:
     if path.suffix not in _SUFFIXES:
         raise OptionValueError("--out", f"'{path}' must end in {', '.join(_SUFFIXES)}")
     with reported():
-        from robolang.core.storage import check_writable, write_atomic
+        from robolang.core.storage import write_atomic
 
         # before the log is read, which takes the time
-        check_writable(path)
+        check_outputs({"--out": path}, [run])
         if path.suffix == ".png":
             from robolang.view.png import check_png
 

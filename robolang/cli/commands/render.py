@@ -1,6 +1,5 @@
 """``robolang render PROG|RUN``: a picture or a film of a run, of a program that is run for it or of a log."""
 
-import os
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -9,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 from robolang.cli.errors import MOTION, reported
 from robolang.cli.options import Argument, CellOptions, Group, Option, PhysicsOptions
 from robolang.cli.output import echo
+from robolang.cli.outputs import check_outputs
 from robolang.cli.usage import OptionValueError
 
 if TYPE_CHECKING:
@@ -49,18 +49,17 @@ def render(subject: Subject, files: CellOptions, picture: _PictureOptions, physi
     a file or an option cannot be used, or nothing can draw; 4 the file cannot be written.
     """
     out = picture.out if picture.out is not None else Path(subject).with_suffix(".png")
-    if os.path.realpath(out) == os.path.realpath(subject) or out.suffix in (".rbl", ".toml", ".npz"):
+    if out.suffix in (".rbl", ".toml", ".npz"):
         raise OptionValueError("--out", f"'{out}' would be a program, a cell or a log; name a picture")
     size = _size(picture.size)
     with reported():
-        from robolang.core.storage import check_writable
         from robolang.view.pictures import Order
         from robolang.view.pictures import render as draw
 
         order = Order(path=out, view=picture.view, at=picture.at, size=size, rate=picture.fps)
         # before a run that takes its time
         order.check()
-        check_writable(out)
+        check_outputs({"--out": out}, [subject, files.cell, files.robot])
         log, code = _log(subject, files, physics)
         for note in draw(log, order, _progress()):
             echo(f"note: {note}", err=True)

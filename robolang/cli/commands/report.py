@@ -3,13 +3,13 @@
 Imports nothing heavy: numpy and the page come in inside the command.
 """
 
-import os
 from pathlib import Path
 from typing import Annotated, ClassVar
 
 from robolang.cli.errors import reported
 from robolang.cli.options import Argument, Group, Option
 from robolang.cli.output import echo
+from robolang.cli.outputs import check_outputs
 from robolang.cli.usage import OptionValueError
 
 Run = Annotated[str, Argument("RUN", "Log of a run (.npz or .mcap).")]
@@ -60,8 +60,4 @@ def _check_output(out: Path, paths: list[Path]) -> None:
     # a slip in the order of the words must not cost a log
     if out.suffix != ".html":
         raise OptionValueError("--out", f"'{out}' must end in .html")
-    if os.path.realpath(out) in map(os.path.realpath, map(str, paths)):
-        raise OptionValueError("--out", f"'{out}' is one of the logs")
-    from robolang.core.storage import check_writable
-
-    check_writable(out)
+    check_outputs({"--out": out}, paths)

@@ -4,7 +4,6 @@ Progress, warnings and errors go to stderr, the table to stdout. Output files ar
 ``--quiet`` leaves warnings out, but not with ``--strict``: what makes the exit code 1 is shown.
 """
 
-import os
 import signal
 import sys
 from collections import Counter
@@ -18,6 +17,7 @@ from robolang.cli.errors import DIAGNOSTICS, MOTION, STORAGE, reported, say
 from robolang.cli.live_options import FollowOptions, followed, pages_of
 from robolang.cli.options import CellOptions, Group, Option, Program, RunControllerOptions, SimulationOptions, Strict
 from robolang.cli.output import echo
+from robolang.cli.outputs import check_outputs
 from robolang.cli.refuse import refuse
 from robolang.cli.signals import handled
 from robolang.cli.usage import OptionValueError
@@ -72,7 +72,7 @@ def run(
     """
     settings = settings_of(controller)
     with reported():
-        _check_outputs(program, output)
+        _check_outputs(program, files, output)
         from robolang.project.project import load_project
 
         # planning a long program takes its time, and there is no session yet that a signal could stop
@@ -125,7 +125,7 @@ def _run(
     return result, code or (128 + stopped[0] if stopped else 0)
 
 
-def _check_outputs(program: str, output: _OutputOptions) -> None:
+def _check_outputs(program: str, files: CellOptions, output: _OutputOptions) -> None:
     """Refuse outputs of a wrong kind or that would overwrite an input or each other, and try to write them."""
     report, log, html = output.report, output.log, output.html
     if html is not None and html.suffix != ".html":
@@ -135,17 +135,7 @@ def _check_outputs(program: str, output: _OutputOptions) -> None:
     # a slip in the order of the words must not cost a program: it is there only once
     if report is not None and report.suffix in (".rbl", ".toml"):
         raise OptionValueError("--report", f"'{report}' would be a program or a cell file; name a .json file")
-    from robolang.core.storage import check_writable
-
-    taken = {os.path.realpath(program)}  # the same file may have two names, by a link or by ./
-    outputs = (("--report", report), ("--log", log), ("--html", html))
-    files = [(option, path) for option, path in outputs if path is not None]
-    for option, path in files:
-        if os.path.realpath(path) in taken:
-            raise OptionValueError(option, f"'{path}' is the program or another output of this run")
-        taken.add(os.path.realpath(path))
-    for _, path in files:
-        check_writable(path)
+    check_outputs({"--report": report, "--log": log, "--html": html}, [program, files.cell, files.robot])
 
 
 def _code_of(result: "RunResult") -> int:
