@@ -19,6 +19,7 @@ from robolang.view import charts, joints, notes
 from robolang.view.packing import Signal, pack
 from robolang.view.plan_parts import parts_of
 from robolang.view.plan_rows import PlanRows
+from robolang.view.run_signals import drawn_off
 from robolang.view.thinning import evenly, paired, thinned
 from runtime.appearance.cell_scene import scene_of
 from runtime.control.signals import Signals
@@ -31,8 +32,8 @@ def pack_plan(project: Project, rehearsal: Rehearsal, found: Sequence[Diagnostic
     """Return a planned motion as a page holds it, with what was ``found`` in program and motion."""
     cycle_s, robot, label = project.profile.period_s, _robot(project), file_name(project.source.path)
     rows = PlanRows(project, rehearsal)
-    q = rows.q
-    shown = (*_signals(Signals(rows, rehearsal.kinematics.chain), q, cycle_s), *parts_of(project, rehearsal, q))
+    q, made = rows.q, Signals(rows, rehearsal.kinematics.chain)
+    shown = (*_signals(made, q, cycle_s), *parts_of(project, rehearsal, q))
     signals = {signal.name: signal for signal in shown}
     header = {
         "kind": "plan",
@@ -40,7 +41,7 @@ def pack_plan(project: Project, rehearsal: Rehearsal, found: Sequence[Diagnostic
         "duration_s": rehearsal.total_us / 1e6,
         "tick_s": cycle_s,
         "cycle_s": cycle_s,
-        "thinned": thinned(len(q), cycle_s),
+        "thinned": thinned(len(q), cycle_s, drawn_off(made)),
         "meta": {
             "program": {"name": label, "text": project.source.text},
             "robot": robot,

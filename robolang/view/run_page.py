@@ -12,7 +12,7 @@ from robolang.logs.files import read_log
 from robolang.logs.log import Log, Meta
 from robolang.view import charts, joints, notes
 from robolang.view.packing import Signal, pack
-from robolang.view.run_signals import in_pieces, signals_of
+from robolang.view.run_signals import drawn_off, in_pieces, signals_of
 from robolang.view.thinning import paired, thinned
 from runtime.appearance.scene import Scene
 from runtime.core.faults import Fault
@@ -68,7 +68,7 @@ def _packed(log: Log, meta: Meta, label: str) -> bytes:
         "duration_s": log.count("t") * tick_s,
         "tick_s": tick_s,
         "cycle_s": cycle_s,
-        "thinned": thinned(log.count("t"), tick_s),
+        "thinned": thinned(log.count("t"), tick_s, drawn_off(log)),
         "meta": {
             **{key: value for key, value in meta.items() if key not in _LEFT_OUT},
             "report": _report(meta["report"]),

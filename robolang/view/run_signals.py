@@ -13,6 +13,7 @@ import numpy as np
 from robolang.logs.log import Log
 from robolang.view.packing import Signal
 from robolang.view.thinning import bin_rows, even_step, evenly, paired, pairs
+from runtime.control.signals import Signals
 from runtime.core.frames import Array
 
 PIECE = 65_536
@@ -63,6 +64,23 @@ def signals_of(log: Log, robot: dict[str, Any]) -> Iterator[Signal]:
 def in_pieces(log: Log, name: str) -> Iterator[Array]:
     """Yield a signal piece by piece."""
     return (log.span(name, *span) for span in _pieces(log.count(name)))
+
+
+def drawn_off(made: Signals) -> float:
+    """Return how far, m, the tool point of the drawn robot is from the true one, half between two postures of a page.
+
+    There it is farthest: a turn between two postures goes along its chord.
+    """
+    rows, most = made.count("t"), 0.0
+    step = even_step(rows)
+    for first, last in _pieces(rows, step) if step > 1 else ():
+        q = made.span("q_link", first, min(last + 1, rows))
+        kept, half = q[::step], step // 2
+        between = kept[:-1] + half / step * np.diff(kept, axis=0)
+        at = first + half + step * np.arange(len(between))
+        off = made.points_at(between, at) - made.points_at(q[half::step][: len(between)], at)
+        most = float(np.fmax.reduce(_lengths(off), initial=most))
+    return most
 
 
 def _every_tick(name: str, read: Callable[[int, int], Array], rows: int, tick_s: float) -> Signal:

@@ -10,9 +10,12 @@ import numpy as np
 
 from robolang.view.packing import Signal
 from runtime.core.frames import Array
+from runtime.core.units import MM
 
 MOST_ROWS = 60_000
 """Rows of a signal in a page: a minute of servo ticks of 1 ms."""
+EVEN_ROWS = 240_000
+"""Rows of what the robot is drawn by: of half an hour one every 8 ms, so that it is some hundredths of a mm off."""
 
 
 def bin_rows(rows: int) -> int:
@@ -22,8 +25,7 @@ def bin_rows(rows: int) -> int:
 
 def even_step(rows: int) -> int:
     """Return of how many rows one is kept where a signal is thinned evenly."""
-    # one value for a bin here, so bins of half the size
-    return -(-rows // MOST_ROWS) or 1
+    return -(-rows // EVEN_ROWS) or 1
 
 
 def paired(signal: Signal) -> Signal:
@@ -40,12 +42,18 @@ def evenly(signal: Signal) -> Signal:
     return replace(signal, dt=signal.dt * step, values=signal.values[::step])
 
 
-def thinned(rows: int, dt: float) -> dict[str, object] | None:
-    """Return what a page says of signals of so many rows, ``dt`` s apart, that are thinned; None: they are not."""
+def thinned(rows: int, dt: float, off_m: float) -> dict[str, object] | None:
+    """Return what a page says of signals of so many rows, ``dt`` s apart, that are thinned; None: they are not.
+
+    ``off_m`` is how far the drawn tool point is from the true one.
+    """
     size = bin_rows(rows)
     if size == 1:
         return None
     text = f"A long run: charts and their values show the least and the largest of every {size * dt * 1e3:g} ms."
+    step = even_step(rows)
+    if step > 1:
+        text += f" The robot is drawn between postures {step * dt * 1e3:g} ms apart, up to {off_m / MM:.2g} mm off."
     return {"every_s": size * dt, "text": text}
 
 

@@ -34,6 +34,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Literal, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runtime.control.blocks import FRAME_CYCLES
 from runtime.core.frames import Array
@@ -155,8 +156,15 @@ class Signals(Mapping[str, Array]):
 
         Where no orientation is needed: much quicker than ``tool_poses``, whose last bits differ.
         """
-        q, tools = self._rows.read(name, first, last), self._of_cycle("tool", first, last)
+        return self.points_at(self._rows.read(name, first, last), np.arange(first, last))
+
+    def points_at(self, q: Array, ticks: NDArray[np.int64]) -> Array:
+        """Return the tool point (N, 3), m in the world, at joint angles q (N, n) rad of ticks (N,) in order."""
         points = np.empty((len(q), 3))
+        if not len(q):
+            return points
+        cycles = ticks // self._rows.ticks_per_cycle
+        tools = self._rows.read("tool", int(cycles[0]), int(cycles[-1]) + 1)[cycles - cycles[0]]
         with np.errstate(invalid="ignore", over="ignore"):
             for tool in np.unique(tools):
                 rows = np.flatnonzero(tools == tool)

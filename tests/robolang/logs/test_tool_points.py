@@ -19,6 +19,14 @@ def test_points_are_those_of_the_poses_with_the_tool_that_is_in_use(name, span):
     assert len(made.rows.tools) > 1
 
 
+def test_points_of_single_ticks_have_the_tool_of_their_tick():
+    made, ticks = log(203, PLAIN), np.arange(3, 203, 9)
+    found = made.points_at(made["q_link"][ticks], ticks)
+    assert np.abs(found - made["X_world_tool"][ticks, :3, 3]).max() <= 1e-14
+    assert len(np.unique(made.rows.read("tool", 0, made.rows.cycles))) > 1
+    assert made.points_at(made["q_link"][:0], ticks[:0]).shape == (0, 3)
+
+
 def test_the_flange_counts():
     about = meta()
     about["robot"]["flange"] = [[0, -1, 0, 0.1], [1, 0, 0, 0.2], [0, 0, 1, 0.3], [0, 0, 0, 1]]

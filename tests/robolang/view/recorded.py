@@ -92,6 +92,9 @@ class MadeLog(Log):
         points = {"q_cmd": self.arrays["tool_cmd"], "q_link": self.arrays["X_world_tool"][:, :3, 3]}
         return points[name][first:last]
 
+    def points_at(self, q, ticks):
+        return self.arrays["X_world_tool"][ticks, :3, 3] + q - self.arrays["q_link"][ticks]
+
     def each_cycle(self, name):
         return self.arrays[name][::8]
 

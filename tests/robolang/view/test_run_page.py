@@ -172,6 +172,7 @@ def test_gaps_in_a_log_are_gaps_in_the_page():
 
 def test_a_long_run_is_thinned_and_says_so(monkeypatch):
     monkeypatch.setattr(thinning, "MOST_ROWS", 100)
+    monkeypatch.setattr(thinning, "EVEN_ROWS", 100)
     made = log(1000)
     recorded = made.arrays
     recorded["q_cmd"][503, 0] += 0.01
@@ -186,6 +187,22 @@ def test_a_long_run_is_thinned_and_says_so(monkeypatch):
     assert max(found["joint_error"][0]) == pytest.approx(0.01 - 0.0002)
     assert (listed["q_link"]["base"], listed["q_link"]["dt"]) == ("tick", pytest.approx(0.01))
     assert found["q_link"][0] == pytest.approx(recorded["q_link"][::10, 0].tolist(), abs=1e-6)
+
+
+def test_a_thinned_run_says_how_far_its_robot_is_off(monkeypatch):
+    """Of the made-up log a posture is a point, so that the joints say how far."""
+    monkeypatch.setattr(thinning, "MOST_ROWS", 100)
+    for rows, step in ((1003, 16), (250, 4)):
+        monkeypatch.setattr(thinning, "EVEN_ROWS", rows // step + 1)
+        made = log(rows)
+        q, t = made.arrays["q_link"], np.arange(rows)
+        kept = np.array([np.interp(t, t[::step], column[::step]) for column in q.T]).T
+        off = np.linalg.norm(kept - q, axis=1)[: (rows - 1) // step * step]
+        assert run_signals.drawn_off(made) == pytest.approx(off.max(), rel=1e-3)
+        header, _ = shown(made)
+        assert f"{step} ms apart, up to {off.max() * 1000:.2g} mm off" in header["thinned"]["text"]
+    made.arrays["q_link"] = np.full((rows, 3), np.nan)
+    assert run_signals.drawn_off(made) == 0.0
 
 
 @pytest.mark.parametrize("other", [{"name": "made", "axes": AXES[:2]}, {"name": "another", "axes": AXES}])
@@ -213,6 +230,7 @@ def test_pieces_make_the_same_signals_as_the_whole(monkeypatch):
     monkeypatch.setattr(run_signals, "PIECE", 24)
     assert pack_run(log(1000), "a") == whole
     monkeypatch.setattr(thinning, "MOST_ROWS", 100)
+    monkeypatch.setattr(thinning, "EVEN_ROWS", 100)
     monkeypatch.setattr(run_signals, "PIECE", 100_000)
     thin = pack_run(log(1003), "a")
     monkeypatch.setattr(run_signals, "PIECE", 24)

@@ -12,6 +12,7 @@ from robolang.view.packing import Signal
 @pytest.fixture(autouse=True)
 def few(monkeypatch):
     monkeypatch.setattr(thinning, "MOST_ROWS", 20)
+    monkeypatch.setattr(thinning, "EVEN_ROWS", 20)
 
 
 def signal(*columns):
@@ -38,6 +39,14 @@ def test_pairs_are_the_extremes_of_each_bin_in_their_order(rows):
             if len(part) == 1:
                 expected = part * 2
             assert thin[2 * k // size : 2 * k // size + 2].tolist() == expected
+
+
+def test_the_robot_of_half_an_hour_has_a_posture_every_cycle(monkeypatch):
+    monkeypatch.undo()
+    assert [thinning.even_step(rows) for rows in (0, 240_000, 240_001, 1_800_000)] == [1, 1, 2, 8]
+    assert thinning.thinned(60_000, 0.001, 0.0) is None
+    short, long = (str(thinning.thinned(rows, 0.001, 8.4e-5)) for rows in (240_000, 1_800_000))
+    assert "mm" not in short and " 8 ms" in long and "0.084 mm" in long
 
 
 def test_gaps_lose_no_peak_and_a_bin_of_gaps_is_a_gap():
