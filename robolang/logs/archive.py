@@ -30,6 +30,8 @@ MOST_PACKED = 256_000_000
 _MOST_LISTED = 100_000
 """Most bytes of the list of arrays at the end of a file: some hundred arrays, where a log has thirty."""
 _END = struct.Struct("<4s4H2LH")  # end of central directory: PKZIP APPNOTE 4.3.16, without a comment
+_LOCATOR = struct.Struct("<4sLQL")  # end of central directory locator of a large file: APPNOTE 4.3.15
+_END64 = struct.Struct("<4sQ2H2L4Q")  # end of central directory of a large file: APPNOTE 4.3.14
 _LOCAL = struct.Struct("<4s5H3L2H")  # local file header: APPNOTE 4.3.7
 _MAGIC = b"\x93NUMPY\x01\x00"
 _HEADER = re.compile(
@@ -72,7 +74,7 @@ class Archive:
         self._stored: dict[str, Stored] = {}
         try:
             self._list()
-        except (*_DAMAGE, OSError) as error:
+        except (*_DAMAGE, OSError, struct.error) as error:
             self.close()
             raise self.damaged(error) from None
 
@@ -82,9 +84,24 @@ class Archive:
         self._file.seek(-_END.size, os.SEEK_END)
         mark, _, _, _, _, listed, _, comment = _END.unpack(self._file.read(_END.size))
         # before zipfile reads it: a list may be as long as the file
-        if mark != b"PK\5\6" or comment or not listed <= _MOST_LISTED:
+        if mark != b"PK\5\6" or comment or not max(listed, self._listed64()) <= _MOST_LISTED:
             raise ValueError("its end is missing or is not that of a log")
         self._zip = zipfile.ZipFile(self._file)
+
+    def _listed64(self) -> int:
+        """Return the bytes of the list that a file beyond 4 GB states, which counts more than the other; 0: none."""
+        at = self._size - _END.size - _LOCATOR.size
+        place = at - _END64.size
+        self._file.seek(max(0, at))
+        mark, _, stated, _ = _LOCATOR.unpack(self._file.read(_LOCATOR.size))
+        if mark != b"PK\6\7":
+            return 0
+        self._file.seek(max(0, place))
+        end = _END64.unpack(self._file.read(_END64.size))
+        # zipfile reads what lies before the locator, or what the locator names: they have to be one
+        if end[0] != b"PK\6\6" or stated != place:
+            raise ValueError("its end is not that of a log")
+        return int(end[-2])
 
     def __contains__(self, name: str) -> bool:
         """Return whether there is an array of this name."""

@@ -26,6 +26,8 @@ MOST_RECORD = 64_000_000
 """Most bytes of a record, and of what a chunk unpacks to; ours have about a million."""
 MOST_BYTES = 4_000_000_000
 """Most bytes of all messages of a kind: half an hour of ticks of 0.25 ms. They are kept in memory."""
+MOST_PACKED = 50
+"""How many times the size of the file all chunks unpack to at most: 2 to 7 in a log, and 9 of an arm at rest."""
 _AT_ONCE = 1_000_000
 """Bytes of messages after which their numbers are packed."""
 _MAGIC = b"\x89MCAP0\r\n"
@@ -82,6 +84,7 @@ class _Reading:
         self._columns: dict[Record, _Columns] = {}
         self._schemas: dict[int, str] = {}
         self._channels: dict[int, Record] = {}
+        self._left = 0
 
     def log(self, stream: IO[bytes]) -> Log:
         """Return the log in a stream."""
@@ -89,6 +92,7 @@ class _Reading:
         from mcap.opcode import Opcode
         from mcap.records import Attachment, Chunk
 
+        self._left = MOST_PACKED * os.fstat(stream.fileno()).st_size
         for code, content in _payloads(stream):
             if code == Opcode.CHUNK:
                 self._chunk(Chunk.read(ReadDataStream(BytesIO(content))))
@@ -115,6 +119,9 @@ class _Reading:
 
         if chunk.compression not in ("", "zstd") or not chunk.uncompressed_size <= MOST_RECORD:
             raise ValueError(f"a chunk of {chunk.uncompressed_size} bytes, packed by {chunk.compression!r}")
+        self._left -= chunk.uncompressed_size
+        if self._left < 0:
+            raise ValueError(f"its chunks unpack to more than {MOST_PACKED} times its size")
         # the library takes the size from the packed bytes, where another one may stand
         if chunk.compression and zstandard.frame_content_size(chunk.data) != chunk.uncompressed_size:
             raise ValueError("a chunk has another size than it says")
@@ -206,6 +213,9 @@ class ReadRows:
             "parts": frame["parts"].reshape(self.frames, frame["parts"].shape[1] // 7, 7),
             "fingers": frame["fingers"],
         }
+        # views of them are given away, as those of a file are
+        for values in (*self._rows.values(), *self.tools):
+            values.setflags(write=False)
 
     def read(self, name: str, first: int, last: int) -> Array:
         """Return rows ``first`` to before ``last`` of a recorded signal."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from robolang.logs.log import VERSION
 from runtime.core.faults import Fault
+from runtime.robot.files.robot_file import MOST_AXES
 
 _LEAST_IN_BRACKETS = 5
 """Fewest characters for each bracket of a meta, on average: a face of a mesh, ``[0,1,2],``, has eight."""
@@ -60,6 +61,8 @@ def ticks_of(meta: dict[str, Any]) -> tuple[int, int]:
 
 
 def _check_robot(robot: dict[str, Any]) -> None:
+    if not len(robot["axes"]) <= MOST_AXES:
+        raise ValueError(f"a robot of {len(robot['axes'])} axes")
     matrices = [robot["flange"], robot["tool"], *(axis["placement"] for axis in robot["axes"])]
     poses = np.array(matrices, dtype=np.float64)
     if poses.shape != (len(matrices), 4, 4) or not np.isfinite(poses).all():

@@ -17,13 +17,21 @@ def selected(log: SignalSource, names: Iterable[str], text: str) -> tuple[Column
     found = columns(log, name)
     if not label:
         return found
-    # J alone is no axis, and x of a place is no J
-    plain = label.removeprefix("J") if label[1:].isdecimal() else label
-    matching = tuple(each for each in found if each.label == plain or each.label.startswith(f"{plain}."))
+    # a part may be called J1, and then it is no axis
+    matching = _labelled(found, label) or _labelled(found, _axis(label))
     if not matching:
         labels = [each.label for each in found if each.label]
         raise Fault("RBL838", f"{name} of {log.source} has no column '{label}'", _offer(label, labels))
     return matching
+
+
+def _labelled(found: tuple[Column, ...], label: str) -> tuple[Column, ...]:
+    return tuple(each for each in found if each.label == label or each.label.startswith(f"{label}."))
+
+
+def _axis(label: str) -> str:
+    # J alone is no axis, and x of a place is no J
+    return label.removeprefix("J") if label[1:].isdecimal() else label
 
 
 def _offer(word: str, known: list[str]) -> str:

@@ -1,6 +1,7 @@
 """Pictures and films as files. A ``.png`` is written here; films need the libraries of the extra ``[video]``."""
 
 import importlib
+import math
 import struct
 import zlib
 from collections.abc import Callable, Iterator
@@ -23,18 +24,21 @@ CODEC, QUALITY = "libx264", {"crf": "20", "preset": "medium"}
 """Of an ``.mp4``: the codec that every player has, and how much it may lose."""
 PALETTE = 8
 """Pictures of a ``.gif`` from which its colours are taken."""
+MOST_KEPT = 350_000_000
+"""Most pixels of all pictures of a ``.gif`` or ``.webp``, which Pillow keeps until the file is written: 1.4 GB."""
 LOSS = 75
 """Quality of a ``.webp``, from 0 to 100."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Format:
-    """A kind of file: its writer, the libraries it needs, how many pictures it can hold, and whether sizes must be
-    even. ``size`` is the usual one, pixels."""
+    """A kind of file: its writer, the libraries it needs, how many pictures and pixels of all of them it can
+    hold, and whether sizes must be even. ``size`` is the usual one, pixels."""
 
     write: Writer
     libraries: tuple[str, ...] = ()
     most: int = 1
+    most_pixels: float = math.inf
     even: bool = False
     size: tuple[int, int] = (1280, 720)
 
@@ -84,12 +88,15 @@ def write_gif(stream: IO[bytes], pictures: Iterator[Image], rate: int) -> None:
     chosen = sorted({round(k) for k in np.linspace(0, len(packed) - 1, PALETTE)})
     mosaic = Pillow.fromarray(np.concatenate([picture(k) for k in chosen]))
     palette = mosaic.quantize(256, method=Pillow.Quantize.MEDIANCUT)
-    made = [
-        Pillow.fromarray(picture(k)).quantize(palette=palette, dither=Pillow.Dither.NONE) for k in range(len(packed))
-    ]
+    first, *others = range(len(packed))
+
+    def made(k: int) -> Pillow.Image:
+        return Pillow.fromarray(picture(k)).quantize(palette=palette, dither=Pillow.Dither.NONE)
+
     # a GIF counts in hundredths of a second
-    shown = [10 * each for each in _steps(len(made), 100, rate)]
-    made[0].save(stream, "GIF", save_all=True, append_images=made[1:], duration=shown, loop=0, optimize=False)
+    shown = [10 * each for each in _steps(len(packed), 100, rate)]
+    rest = map(made, others)
+    made(first).save(stream, "GIF", save_all=True, append_images=rest, duration=shown, loop=0, optimize=False)
 
 
 def write_webp(stream: IO[bytes], pictures: Iterator[Image], rate: int) -> None:
@@ -117,8 +124,8 @@ def write_mp4(stream: IO[bytes], pictures: Iterator[Image], rate: int) -> None:
 
 FORMATS = {
     ".png": Format(write=write_png),
-    ".gif": Format(write=write_gif, libraries=("PIL",), most=600, size=(640, 360)),
-    ".webp": Format(write=write_webp, libraries=("PIL",), most=1500, size=(640, 360)),
+    ".gif": Format(write=write_gif, libraries=("PIL",), most=600, most_pixels=MOST_KEPT, size=(640, 360)),
+    ".webp": Format(write=write_webp, libraries=("PIL",), most=1500, most_pixels=MOST_KEPT, size=(640, 360)),
     ".mp4": Format(write=write_mp4, libraries=("av",), most=60_000, even=True),
 }
 """What can be written, by the ending of the file."""

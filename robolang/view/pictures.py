@@ -76,6 +76,14 @@ class Order:
                 f"{len(found)} pictures of {end:.1f} s are more than the {self.format.most} of a {self.path.suffix}",
                 "give a smaller --fps, or write an .mp4",
             )
+        width, height = self.pixels
+        if not len(found) * width * height <= self.format.most_pixels:
+            raise Fault(
+                "RBL832",
+                f"{len(found)} pictures of {width}x{height} have more than the {self.format.most_pixels / 1e6:g} "
+                f"million pixels of a {self.path.suffix}, which is made in memory",
+                "give a smaller --size or --fps, or write an .mp4",
+            )
         return found
 
 

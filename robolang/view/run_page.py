@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,8 @@ from runtime.core.faults import Fault
 
 _LEFT_OUT = ("cell", "points")
 """Of the log's ``meta``: what no part of the page shows; the points are in the scene."""
+MOST_LEVELS = 1024
+"""Most inputs and outputs that change in a run that is shown."""
 _WRONG = (KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError, RecursionError)
 """What is raised for a ``meta`` that says something else than one of a run."""
 _WORDS = {"input": "IN", "output": "OUT"}
@@ -92,8 +95,16 @@ def _levels(log: Log, cycle_s: float) -> tuple[list[str], list[Signal]]:
     names = sorted({name for name, _ in found}, key=lambda name: (name.split()[0], len(name), name))
     if not names:
         return [], []
+    if not len(names) <= MOST_LEVELS:
+        raise ValueError(f"{len(names)} inputs and outputs change, more than {MOST_LEVELS}")
     values = np.zeros((max(1, log.rows.cycles), len(names)))
+    changes: dict[str, list[tuple[int, float]]] = {name: [] for name in names}
     for name, item in found:
         # the cycle in which it changes: a little before one, by rounding, is that one
-        values[math.floor(item["time_s"] / cycle_s + 1e-6) :, names.index(name)] = float(item["value"])
+        changes[name].append((max(0, math.floor(item["time_s"] / cycle_s + 1e-6)), float(item["value"])))
+    for k, name in enumerate(names):
+        # each up to the next, not to the end: a signal may change in every cycle
+        rows = sorted(changes[name], key=lambda change: change[0])
+        for (row, value), (following, _) in pairwise((*rows, (len(values), 0.0))):
+            values[row:following, k] = value
     return names, [paired(Signal(name="levels", base="cycle", dt=cycle_s, values=values))]

@@ -3,7 +3,9 @@
 import json
 import os
 import random
+import struct
 import zipfile
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +13,14 @@ import pytest
 
 from robolang.logs.files import read_log, write_log
 from robolang.logs.log import Log
+from robolang.logs.meta import read_meta
 from robolang.teaching.logged import joints_at
 from runtime.core.faults import Fault
 from tests.campaign import size
 from tests.fuzz.test_corpus import FOLDER
 from tests.robolang.logs.made import PLAIN, log, meta, recorder
 
+UNIT = np.eye(4).tolist()
 CODES = ("RBL619", "RBL821")
 
 
@@ -141,6 +145,13 @@ def test_a_meta_of_another_form_is_refused(tmp_path, changes):
     refused(changed_meta(tmp_path / "m.npz", **changes), "RBL619")
 
 
+@pytest.mark.parametrize(("axes", "taken"), [(7, True), (8, False), (2000, False)])
+def test_no_robot_has_more_axes_than_one_can_have(axes, taken):
+    robot = {"axes": [{"placement": UNIT}] * axes, "flange": UNIT, "tool": UNIT}
+    with nullcontext() if taken else pytest.raises(ValueError, match=f"{axes} axes"):
+        read_meta(json.dumps({**meta(), "robot": robot}).encode(), "l.mcap")
+
+
 def test_a_packed_meta_is_not_unpacked_beyond_its_bound(tmp_path, monkeypatch):
     monkeypatch.setattr("robolang.logs.archive.MOST_PACKED", 5000)
     made = changed_meta(tmp_path / "m.npz", program={"name": "p.rbl", "text": "x" * 5000})
@@ -170,3 +181,28 @@ def test_a_list_that_is_longer_than_any_of_a_log_is_not_read(tmp_path):
         for number in range(3000):
             file.writestr(f"{number}.npy", b"")
     assert "list" in refused(path, "RBL619").message or "end" in refused(path, "RBL619").message
+
+
+@pytest.mark.parametrize("moved", [0, 1], ids=["where-it-is", "elsewhere"])
+def test_a_list_is_not_read_by_the_end_of_a_large_file_either(tmp_path, monkeypatch, moved):
+    path = tmp_path / "l.npz"
+    with zipfile.ZipFile(path, "w") as file:
+        for number in range(3000):
+            file.writestr(f"{number}.npy", b"")
+    data = path.read_bytes()
+    size, at = struct.unpack("<2L", data[-10:-2])
+    end = struct.pack("<4sQ2H2L4Q", b"PK\6\6", 44, 45, 45, 0, 0, 3000, 3000, size, at)
+    locator = struct.pack("<4sLQL", b"PK\6\7", 0, len(data) - 22 + moved, 1)
+    path.write_bytes(data[:-22] + end + locator + struct.pack("<4s4H2LH", b"PK\5\6", 0, 0, 0xFFFF, 0xFFFF, 0, 0, 0))
+    with zipfile.ZipFile(path) as read:
+        assert len(read.namelist()) == 3000
+    monkeypatch.setattr(zipfile, "ZipFile", None)  # it is not even begun
+    refused(path, "RBL619")
+
+
+@pytest.mark.parametrize("length", [22, 41, 42, 60, 97])
+def test_an_end_of_a_large_file_that_is_torn_is_refused(tmp_path, length):
+    path = tmp_path / "t.npz"
+    tail = struct.pack("<4sLQL", b"PK\6\7", 0, 0, 1) + struct.pack("<4s4H2LH", b"PK\5\6", 0, 0, 0, 0, 0, 0, 0)
+    path.write_bytes((bytes(100) + tail)[-length:])
+    refused(path, "RBL619")

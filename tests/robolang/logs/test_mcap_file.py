@@ -266,3 +266,31 @@ def test_poses_that_are_no_numbers_are_written_and_read(tmp_path):
     assert not np.isfinite(made["q_fb"]).all()
     read = read_log(written(tmp_path / "l.mcap", Log(made.rows, {**made.meta, "scene": None})))
     assert same(read["q_fb"], made["q_fb"])
+
+
+def test_a_small_file_that_unpacks_to_a_large_one_is_refused_before_that(tmp_path, monkeypatch):
+    path, unpacked = tmp_path / "b.mcap", []
+    with path.open("wb") as stream:
+        writer = Writer(stream)
+        writer.start()
+        channel = writer.register_channel("/other", "protobuf", writer.register_schema("other", "protobuf", b""))
+        for _ in range(40):
+            writer.add_message(channel, log_time=0, publish_time=0, data=bytes(1_000_000))
+        writer.finish()
+    assert path.stat().st_size < 100_000
+    seen = mcap_reading._Reading._chunk
+    monkeypatch.setattr(
+        mcap_reading._Reading, "_chunk", lambda self, chunk: (unpacked.append(chunk), seen(self, chunk))
+    )
+    with pytest.raises(Fault) as caught:
+        read_log(path)
+    assert caught.value.code == "RBL619"
+    assert len(unpacked) < 10
+
+
+def test_rows_that_are_read_cannot_be_changed(tmp_path):
+    read = read_log(written(tmp_path / "l.mcap", log(40)))
+    with pytest.raises(ValueError, match="read-only"):
+        read.rows.read("q_fb", 0, 3)[0, 0] = 7.0
+    with pytest.raises(ValueError, match="read-only"):
+        read.rows.tools[0][0, 0] = 7.0

@@ -17,6 +17,7 @@ from robolang.logs.files import read_log
 from robolang.logs.quantities import columns
 from robolang.logs.selection import selected
 from robolang.logs.table import table_of
+from runtime.appearance.scene import ROLES, Scene, SceneBody, SceneJoint
 from runtime.core.faults import Fault
 from tests.robolang.logs.made import PLAIN, log, old
 
@@ -165,6 +166,19 @@ def test_people_see_deg_and_mm():
 def test_signals_are_named_as_people_do(text, names):
     made = log(1)
     assert [column.name for column in selected(made, made, text)] == names
+
+
+@pytest.mark.parametrize(("text", "first"), [("parts:J1", 7), ("parts:J1.x", 7), ("parts:1", 0), ("q_fb:J1", 0)])
+def test_a_part_may_have_the_name_of_an_axis(text, first):
+    made = log(1)
+    free = {"kind": "prismatic", "axis": np.array([0.0, 0.0, 1.0]), "source": "part"}
+    bodies = tuple(
+        SceneBody(name=f"part:{name}", parent=None, X_parent_body=np.eye(4), joint=SceneJoint(index=k, **free))
+        for k, name in enumerate(("1", "J1"))
+    )
+    scene = Scene(robot="r", reach=1.0, bodies=bodies, shapes=(), colours=dict.fromkeys(ROLES, "#000000"))
+    made.meta = {**made.meta, "scene": scene.as_json()}
+    assert selected(made, made, text)[0].index == first
 
 
 @pytest.mark.parametrize(

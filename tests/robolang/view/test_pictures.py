@@ -98,6 +98,19 @@ def test_too_many_pictures_are_refused(tmp_path, monkeypatch):
     assert (refused.value.code, refused.value.message.split()[0]) == ("RBL832", "5")
 
 
+@pytest.mark.parametrize("name", ["x.gif", "x.webp"])
+def test_pictures_that_do_not_fit_into_memory_are_refused(tmp_path, name):
+    order = Order(path=tmp_path / name, size=(4096, 4096), rate=10)
+    assert len(order.times(1.8)) == 20
+    with pytest.raises(Fault) as refused:
+        order.times(1.9)
+    assert refused.value.code == "RBL832"
+    assert "21" in refused.value.message
+    # as many of the usual size as there may be
+    order = Order(path=tmp_path / name, rate=10)
+    assert len(order.times((order.format.most - 2) / 10)) == order.format.most
+
+
 def test_without_graphics_nothing_is_written_and_an_old_file_stays(tmp_path, monkeypatch):
     (tmp_path / "x.png").write_bytes(b"old")
     monkeypatch.setattr(graphics, "EGL_LIBRARY", "libNone.so")

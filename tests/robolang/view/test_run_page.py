@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from robolang.view import run_signals, thinning
+from robolang.view import run_page, run_signals, thinning
 from robolang.view.run_page import check_comparable, pack_run
 from runtime.core.faults import Fault
 from tests.robolang.view.decoding import furthest, unpacked
@@ -105,6 +105,20 @@ def test_charts_that_would_say_nothing_are_not_there():
     io = chart(loud, "io")
     assert io["lanes"] and [each["label"] for each in io["series"]] == ["IN 3", "OUT 1"]
     assert [column[k] for column in found["levels"] for k in (1, 2, 4, 5)] == [0, 1, 1, 1, 0, 0, 0, 1]
+
+
+def test_levels_are_those_of_the_last_change_in_each_cycle():
+    changes = [(0, 0.0), (1, 0.008), (0, 0.008), (1, 0.016), (0, 0.04), (1, -1.0), (1, 9.0)]
+    _, found = shown(log(163), events=[event("input", "3", value, time) for value, time in changes])
+    assert found["levels"][0][:7] == [1, 0, 1, 1, 1, 0, 0]
+
+
+def test_as_many_inputs_as_no_page_has_are_refused():
+    most = [event("input", str(k), 1, 0.0) for k in range(run_page.MOST_LEVELS)]
+    assert len(shown(log(163), events=most)[1]["levels"]) == run_page.MOST_LEVELS
+    with pytest.raises(Fault) as refused:
+        shown(log(163), events=[*most, event("output", "1", 1, 0.0)])
+    assert refused.value.code == "RBL619"
 
 
 def test_an_input_that_is_a_number_has_an_axis_and_no_lane():
