@@ -3,12 +3,14 @@
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 from robolang.core.storage import write_atomic
 from robolang.logs.log import Log
 from robolang.view.film_files import FORMATS, Format, Image
 from robolang.view.replay import Replay
-from runtime.appearance.scene import View
+from runtime.appearance.scene import Scene, View
+from runtime.appearance.stance import Stance
 from runtime.appearance.views import named_view
 from runtime.core.faults import Fault
 from runtime.plant.camera import Camera
@@ -21,6 +23,22 @@ FASTEST = 60
 
 Progress = Callable[[int, int, str], None]
 """Called after each picture: how many are drawn, of how many, by which library."""
+
+
+class Postures(Protocol):
+    """A scene over time: ``Replay`` of a log, ``TableReplay`` of exported pulse tables."""
+
+    scene: Scene
+
+    @property
+    def end(self) -> float:
+        """The last time, s."""
+
+    def at(self, time: float) -> Stance:
+        """Return the posture at a time, s."""
+
+    def samples(self) -> list[Stance]:
+        """Return postures by which a view is framed."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,13 +105,15 @@ class Order:
         return found
 
 
-def render(log: Log, order: Order, progress: Progress = lambda done, count, library: None) -> tuple[str, ...]:
-    """Draw a run and write the file, whole or not at all; return notes on what is not in it.
+def render(
+    subject: Log | Postures, order: Order, progress: Progress = lambda done, count, library: None
+) -> tuple[str, ...]:
+    """Draw a run, or anything that has postures, and write the file, whole or not; return notes on what is not in it.
 
     ``Fault`` RBL820 or RBL833 for a log without a scene, RBL830 where nothing can draw, RBL832 for an order that does
     not suit the run, RBL706 for a file that cannot be written.
     """
-    replay = Replay(log)
+    replay = Replay(subject) if isinstance(subject, Log) else subject
     times = order.times(replay.end)
     width, height = order.pixels
     view = _view(replay, order)
@@ -110,7 +130,7 @@ def render(log: Log, order: Order, progress: Progress = lambda done, count, libr
     return tuple(f"the mesh {name!r} has no area and is left out" for name in undrawable(replay.scene))
 
 
-def _view(replay: Replay, order: Order) -> View:
+def _view(replay: Postures, order: Order) -> View:
     if order.view is None and replay.scene.camera is not None:
         return replay.scene.camera
     width, height = order.pixels

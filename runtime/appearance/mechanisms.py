@@ -6,6 +6,7 @@ The bodies of the joints are named as the joints; their order in the scene is th
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from runtime.appearance.solids import X, Y, Z, box, cylinder, limb
 from runtime.appearance.untrusted import LONGEST_TEXT
 from runtime.core.frames import Array, pose
 from runtime.pulses.machine import Joint
-from runtime.pulses.mechanism import Mechanism
+from runtime.pulses.mechanism import Kind
 
 SLENDER = 0.05
 """Thickness of a beam in parts of the size of the machine."""
@@ -24,7 +25,31 @@ LIFTED = 0.6
 """A SCARA whose z is longer than this, in parts of its arms, lifts them along its column; else it has a quill."""
 
 
-def machine_scene(machine: Mechanism, points: Mapping[str, Array] = NO_POINTS) -> Scene:
+class Machine(Protocol):
+    """What is known of a machine whose scene is made: a ``Mechanism``, or what its tables say of it."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+
+    @property
+    def kind(self) -> Kind:
+        """Which machine it is."""
+
+    @property
+    def joints(self) -> tuple[Joint, ...]:
+        """Its joints, with their ranges."""
+
+    @property
+    def lengths(self) -> tuple[float, float]:
+        """l1 and l2 of a SCARA, m."""
+
+    @property
+    def fixed(self) -> tuple[tuple[str, float], ...]:
+        """The coordinates that have no joint, m."""
+
+
+def machine_scene(machine: Machine, points: Mapping[str, Array] = NO_POINTS) -> Scene:
     """Return what a machine looks like; ``points`` are taught points by name, X_world_point (4, 4)."""
     frame = {"cartesian": _gantry, "cylindrical": _column, "scara": _scara}[machine.kind](_Plan(machine=machine))
     return Scene(
@@ -49,7 +74,7 @@ class _Frame:
 class _Plan:
     """A machine with its lengths, m, and its joints by name."""
 
-    machine: Mechanism
+    machine: Machine
 
     @property
     def size(self) -> float:

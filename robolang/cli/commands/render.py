@@ -13,8 +13,12 @@ from robolang.cli.usage import OptionValueError
 
 if TYPE_CHECKING:
     from robolang.logs.log import Log
+    from robolang.view.pictures import Postures
 
-Subject = Annotated[str, Argument("PROG|RUN", "Program file (.rbl), which is run, or log of a run (.npz).")]
+Subject = Annotated[
+    str,
+    Argument("PROG|RUN", "Program file (.rbl), which is run, log of a run (.npz, .mcap), or folder of pulse tables."),
+]
 _SIZE = re.compile(r"(\d{1,5})x(\d{1,5})")
 
 
@@ -60,8 +64,8 @@ def render(subject: Subject, files: CellOptions, picture: _PictureOptions, physi
         # before a run that takes its time
         order.check()
         check_outputs({"--out": out}, [subject, files.cell, files.robot])
-        log, code = _log(subject, files, physics)
-        for note in draw(log, order, _progress()):
+        drawn, code = _subject(subject, files, physics)
+        for note in draw(drawn, order, _progress()):
             echo(f"note: {note}", err=True)
         echo(f"{out}: {out.stat().st_size / 1e6:.2f} MB")
     if code:
@@ -77,11 +81,26 @@ def _size(text: str | None) -> tuple[int, int] | None:
     return int(found[1]), int(found[2])
 
 
+def _subject(subject: str, files: CellOptions, physics: PhysicsOptions) -> "tuple[Log | Postures, int]":
+    """Return what is drawn, and the exit code of a run, or 0."""
+    if not Path(subject).is_dir():
+        return _log(subject, files, physics)
+    _refuse_files(files, physics, "pulse tables have")
+    from robolang.view.table_replay import TableReplay
+    from runtime.pulses.folder import read_export
+
+    return TableReplay(read_export(Path(subject))), 0
+
+
+def _refuse_files(files: CellOptions, physics: PhysicsOptions, others: str) -> None:
+    if files.cell is not None or files.robot is not None or physics.no_physics:
+        raise OptionValueError("--cell, --robot, --no-physics", f"are for a program; {others} their own")
+
+
 def _log(subject: str, files: CellOptions, physics: PhysicsOptions) -> "tuple[Log, int]":
     """Return the log of a file, or of a run of the program, and the exit code of its alarms, or 0."""
     if Path(subject).suffix in (".npz", ".mcap"):  # a reader of logs knows better what is wrong with them
-        if files.cell is not None or files.robot is not None or physics.no_physics:
-            raise OptionValueError("--cell, --robot, --no-physics", "are for a program; a log has its own")
+        _refuse_files(files, physics, "logs have")
         from robolang.logs.files import read_log
 
         return read_log(subject), 0
