@@ -83,8 +83,10 @@ class _Outcome(Record):
 
     @property
     def findings(self) -> Iterator[Diagnostic]:
-        """All findings in the program and its points."""
-        return (item for result in self.results for item in result.diagnostics)
+        """All findings in the program and its points, those of the points with the text that they are in."""
+        yield from self.checked.diagnostics
+        if self.points is not None:
+            yield from (item.replaced(source=self.points.source) for item in self.points.diagnostics)
 
     @property
     def doubts(self) -> tuple[FileFault, ...]:

@@ -88,13 +88,16 @@ def planned(program: Analysis | str, max_cycle_s: float | None, bounds: Bounds =
 
 
 def write_page(path: Path, plan: Planned, found: Sequence[Diagnostic]) -> None:
-    """Write the page of a planned motion with what was found in program and motion; ``Fault`` RBL706, RBL825."""
+    """Write the page of a planned motion with what was found in program, motion and the files beside them.
+
+    ``Fault`` RBL706, RBL825.
+    """
     from robolang.view.page import Bundle
     from robolang.view.page import write_page as write
     from robolang.view.plan_page import pack_plan
 
     assert plan.project is not None and plan.rehearsal is not None, "a page shows what was planned"
-    write(path, [pack_plan(plan.project, plan.rehearsal, found)], Bundle.installed())
+    write(path, [pack_plan(plan.project, plan.rehearsal, found, plan.warnings)], Bundle.installed())
 
 
 def _times(project: Project, explored: Exploration, rows: Sequence[LineTime]) -> dict[str, object]:

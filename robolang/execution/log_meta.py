@@ -3,13 +3,13 @@
 Nothing in it depends on the machine, the folder or the wall time: the same run gives the same bytes.
 """
 
-import ntpath
 from collections.abc import Mapping
 from contextlib import suppress
 from typing import Any
 
 from robolang.core.storage import strict
 from robolang.execution import lowering
+from robolang.execution.findings import file_name, of_project
 from robolang.execution.result import RunRecord
 from robolang.interpreter.effects import SetHand
 from robolang.logs.log import VERSION
@@ -39,6 +39,8 @@ def meta_of(record: RunRecord, signals: Signals, report: dict[str, Any]) -> dict
         "robot": robot_of(project.cell.robot, project.cell.hand.X_flange_tool),
         "scene": _scene(project, points),
         "events": events(record, signals),
+        "findings": of_project(project),
+        "home": list(map(float, project.cell.home)),
         "report": _without_host(report, project.source.path, name),
         "tick_s": profile.tick_s,
         "cycle_s": profile.period_s,
@@ -55,12 +57,6 @@ def _scene(project: Project, points: Mapping[str, Array]) -> dict[str, Any] | No
         Scene.from_json(scene)
         return scene
     return None
-
-
-def file_name(path: str) -> str:
-    """Return the name of a file without its folders, of any system."""
-    # also of a name that another system has written
-    return ntpath.basename(path)
 
 
 def events(record: RunRecord, signals: Signals) -> list[dict[str, Any]]:

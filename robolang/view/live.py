@@ -7,7 +7,8 @@ from dataclasses import asdict
 from typing import Any
 
 from robolang.core.storage import strict
-from robolang.execution.log_meta import file_name, point_poses, robot_of
+from robolang.execution.findings import file_name
+from robolang.execution.log_meta import point_poses, robot_of
 from robolang.execution.session import Session
 from robolang.view.charts import of_live
 from robolang.view.exchange import Exchange

@@ -23,9 +23,27 @@ class Note:
     p: tuple[float, float, float] | None = None
 
 
-def of_report(report: Mapping[str, Any]) -> list[Note]:
-    """Return the notes of a run from its report (docs/signals.md), by time."""
-    return in_order([*_events(report), *_statements(report), *_printed(report)])
+def of_run(meta: Mapping[str, Any]) -> list[Note]:
+    """Return the notes of a run from the ``meta`` of its log (docs/signals.md), by time."""
+    report = meta["report"]
+    return in_order([*_events(report), *_findings(meta), *_statements(report), *_printed(report)])
+
+
+def of_finding(item: Mapping[str, Any], program: str, begins: Mapping[int, float]) -> Note:
+    """Return what a check has found, as ``execution.findings`` gives it, at the time, s, at which its line begins.
+
+    The page shows one text: what is in a file beside the ``program`` has its place before its words.
+    """
+    text = "\n".join(filter(None, (item["message"], item["hint"])))
+    severity: Severity = item["severity"] if item["severity"] in ("error", "warning") else "note"
+    here, line = item["file"] == program, item["line"]
+    return Note(
+        time_s=begins.get(line) if here else None,
+        line=line if here else None,
+        code=item["code"],
+        severity=severity,
+        text=text if here else f"{item['file']}:{line}: {text}",
+    )
 
 
 def in_order(notes: Iterable[Note]) -> list[Note]:
@@ -40,6 +58,16 @@ def _events(report: Mapping[str, Any]) -> Iterator[Note]:
         for item in report[key]:
             text = "\n".join(filter(None, (item["message"], item["hint"])))
             yield Note(time_s=item["time_s"], line=item["line"], code=item["code"], severity=severity, text=text)
+
+
+def _findings(meta: Mapping[str, Any]) -> Iterator[Note]:
+    begins: dict[int, float] = {}
+    for item in meta["report"]["statements"]:
+        if item["begun"]:
+            begins.setdefault(item["line"], item["start_s"])
+    # a log of an earlier version has none
+    for item in meta.get("findings", ()):
+        yield of_finding(item, meta["program"]["name"], begins)
 
 
 def _statements(report: Mapping[str, Any]) -> Iterator[Note]:

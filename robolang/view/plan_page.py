@@ -4,14 +4,15 @@ The same page as that of a run, with what a plan has: no physics, no torques, no
 """
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
 
-from robolang.core.diagnostics import Diagnostic, Severity, has_errors
+from robolang.core.diagnostics import Diagnostic, has_errors
 from robolang.execution.dry_run import Rehearsal
-from robolang.execution.log_meta import file_name, point_poses, robot_of
+from robolang.execution.findings import file_name, of_diagnostic, of_doubt
+from robolang.execution.log_meta import point_poses, robot_of
 from robolang.planning.placed import Placed
 from robolang.project.project import Project
 from robolang.syntax.unparse import describe
@@ -24,12 +25,16 @@ from robolang.view.thinning import evenly, paired, thinned
 from runtime.appearance.cell_scene import scene_of
 from runtime.control.signals import Signals
 from runtime.core.frames import Array
+from runtime.core.tomlfile import FileFault
 
-_WORDS: dict[Severity, notes.Severity] = {Severity.ERROR: "error", Severity.WARNING: "warning"}
 
+def pack_plan(
+    project: Project, rehearsal: Rehearsal, found: Sequence[Diagnostic], doubts: Sequence[FileFault] = ()
+) -> bytes:
+    """Return a planned motion as a page holds it, with what was ``found`` in program, points and motion.
 
-def pack_plan(project: Project, rehearsal: Rehearsal, found: Sequence[Diagnostic]) -> bytes:
-    """Return a planned motion as a page holds it, with what was ``found`` in program and motion."""
+    ``doubts`` are what is unlikely about the files of cell and robot.
+    """
     cycle_s, robot, label = project.profile.period_s, _robot(project), file_name(project.source.path)
     rows = PlanRows(project, rehearsal)
     q, made = rows.q, Signals(rows, rehearsal.kinematics.chain)
@@ -50,7 +55,7 @@ def pack_plan(project: Project, rehearsal: Rehearsal, found: Sequence[Diagnostic
             "report": _report(project, rehearsal, found),
         },
         "charts": [asdict(chart) for chart in charts.of_plan(charts.Shown(robot=robot, signals=signals))],
-        "notes": [asdict(note) for note in _notes(project, rehearsal, found)],
+        "notes": [asdict(note) for note in _notes(project, rehearsal, found, doubts)],
         "joints": [asdict(joint) for joint in joints.ranges(robot["axes"], [q], cycle_s)],
     }
     return pack(header, list(signals.values()))
@@ -111,23 +116,19 @@ def _report(project: Project, rehearsal: Rehearsal, found: Iterable[Diagnostic])
     }
 
 
-def _notes(project: Project, rehearsal: Rehearsal, found: Iterable[Diagnostic]) -> list[notes.Note]:
+def _notes(
+    project: Project, rehearsal: Rehearsal, found: Iterable[Diagnostic], doubts: Iterable[FileFault]
+) -> list[notes.Note]:
     """Return the findings by time; one in the text stands where its line begins, one of another branch has no time."""
-    begins: dict[int, int] = {}
+    begins: dict[int, float] = {}
     for step in rehearsal.steps:
-        begins.setdefault(step.origin.line, step.begins_us)
+        begins.setdefault(step.origin.line, step.begins_us / 1e6)
+    program, source = file_name(project.source.path), project.source
     made = []
     for item in found:
-        line = project.source.place(item.span.start).line
-        time_us = item.time_us if isinstance(item, Placed) else begins.get(line)
-        made.append(
-            notes.Note(
-                time_s=None if time_us is None else time_us / 1e6,
-                line=line,
-                code=item.code,
-                severity=_WORDS.get(item.severity, "note"),
-                text="\n".join((item.message, item.hint)),
-                p=item.p if isinstance(item, Placed) else None,
-            )
-        )
+        note = notes.of_finding(of_diagnostic(item, source), program, begins)
+        if isinstance(item, Placed):
+            note = replace(note, p=item.p, time_s=None if item.time_us is None else item.time_us / 1e6)
+        made.append(note)
+    made += [notes.of_finding(of_doubt(doubt), program, begins) for doubt in doubts]
     return notes.in_order(made)

@@ -1,7 +1,7 @@
 """What a page holds of a run: its signals, its charts, notes and joints, and what the log says of it, packed."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from itertools import pairwise
 from pathlib import Path
@@ -17,9 +17,10 @@ from robolang.view.run_signals import drawn_off, in_pieces, signals_of
 from robolang.view.thinning import paired, thinned
 from runtime.appearance.scene import Scene
 from runtime.core.faults import Fault
+from runtime.core.frames import Array
 
-_LEFT_OUT = ("cell", "points")
-"""Of the log's ``meta``: what no part of the page shows; the points are in the scene."""
+_LEFT_OUT = ("cell", "points", "findings", "home")
+"""Of the log's ``meta``: what no part of the page shows, or has in another place: the points are in the scene."""
 MOST_LEVELS = 1024
 """Most inputs and outputs that change in a run that is shown."""
 _WRONG = (KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError, RecursionError)
@@ -64,6 +65,8 @@ def _packed(log: Log, meta: Meta, label: str) -> bytes:
     robot, tick_s, cycle_s = meta["robot"], float(meta["tick_s"]), float(meta["cycle_s"])
     names, levels = _levels(log, cycle_s)
     signals = {signal.name: signal for signal in (*signals_of(log, robot), *levels)}
+    if not log.count("t"):
+        signals.update(_standing(meta, tick_s))
     shown = charts.Shown(robot=robot, signals=signals, levels=names)
     header = {
         "kind": "run",
@@ -77,10 +80,26 @@ def _packed(log: Log, meta: Meta, label: str) -> bytes:
             "report": _report(meta["report"]),
         },
         "charts": [asdict(chart) for chart in charts.of_run(shown)],
-        "notes": [asdict(note) for note in notes.of_report(meta["report"])],
-        "joints": [asdict(joint) for joint in joints.ranges(robot["axes"], in_pieces(log, "q_link"), tick_s)],
+        "notes": [asdict(note) for note in notes.of_run(meta)],
+        "joints": [asdict(joint) for joint in joints.ranges(robot["axes"], _angles(log, signals), tick_s)],
     }
     return pack(header, list(signals.values()))
+
+
+def _standing(meta: Meta, tick_s: float) -> dict[str, Signal]:
+    """Return the posture of an arm that has not moved: without a row it would be drawn with all joints at 0."""
+    # a log of an earlier version does not have it
+    if "home" not in meta:
+        return {}
+    q = np.array([meta["home"]], dtype=np.float64)
+    if q.shape != (1, len(meta["robot"]["axes"])):
+        raise ValueError("home has another number of axes")
+    return {"q_link": Signal(name="q_link", base="tick", dt=tick_s, values=q)}
+
+
+def _angles(log: Log, signals: Mapping[str, Signal]) -> Iterable[Array]:
+    # of a long run the page has fewer rows than the log
+    return in_pieces(log, "q_link") if log.count("t") else [signals["q_link"].values]
 
 
 def _report(report: Mapping[str, Any]) -> dict[str, Any]:

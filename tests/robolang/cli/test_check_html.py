@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.robolang.cli.commands import robolang
+from tests.robolang.cli.commands import BUILTIN, PUMA, robolang
 from tests.robolang.view.decoding import Page
 
 pytestmark = pytest.mark.physics
@@ -69,3 +69,22 @@ def test_a_link_to_the_program_is_not_written_through(tmp_path):
     (tmp_path / "p.html").symlink_to("p.rbl")
     assert "--html" in robolang(*CHECK, "p.html", "p.rbl", code=2).stderr
     assert (tmp_path / "p.rbl").read_text() == "x = 1\n"
+
+
+def test_what_is_in_another_file_has_its_place_there_and_no_line_of_the_program(tmp_path):
+    """Line 9 of the points file is no line of a program, and line 1 of it is another one."""
+    (tmp_path / "odd.toml").write_text(PUMA.read_text().replace("gear_ratio = -62.6111", "gear_ratio = -0.9", 1))
+    cell = (BUILTIN / "cell.toml").read_text().replace('robot = "puma560"', 'robot = "odd.toml"')
+    (tmp_path / "p.cell.toml").write_text(cell)
+    points = (BUILTIN / "points.toml").read_text()
+    (tmp_path / "p.points.toml").write_text(f"{points}[points.OLD]\njoints = [0, 45, -180, 0, 45, 0]\n")
+    (tmp_path / "p.rbl").write_text("x = 1\nMOVE P1\nMOVE P2\nMOVE P3\nMOVE P4\nMOVE P5\n")
+    robolang(*CHECK, "p.html", "p.rbl")
+    ((header, _),) = Page(tmp_path / "p.html").runs
+    found = {each["code"]: each for each in header["notes"]}
+    assert (found["RBL225"]["line"], found["RBL225"]["time_s"]) == (1, None)
+    lines = {"RBL224": f"p.points.toml:{len(points.splitlines()) + 1}: ", "RBL629": "odd.toml:"}
+    for code, place in lines.items():
+        assert (found[code]["line"], found[code]["time_s"], found[code]["severity"]) == (None, None, "warning")
+        assert found[code]["text"].startswith(place) and str(tmp_path) not in found[code]["text"]
+    assert len([each for each in header["notes"] if each["code"] == "RBL629"]) == 1

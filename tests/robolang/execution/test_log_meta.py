@@ -97,6 +97,7 @@ def test_the_log_says_what_the_run_was_of(tmp_path):
     assert [body["name"] for body in found["scene"]["bodies"]][-3:] != []
     assert {point["name"] for point in found["scene"]["points"]} == set(found["points"])
     assert (found["tick_s"], found["cycle_s"]) == (0.001, 0.008)
+    assert found["home"] == pytest.approx(result.log["q_cmd"][0].tolist(), abs=1e-9)
     assert found["report"]["statements"] == result.report["statements"]
 
 
@@ -109,6 +110,15 @@ def test_nothing_of_the_host_is_in_it(tmp_path, text):
     assert all(word not in written for word in (str(tmp_path), "here/", "wall_time_s", "realtime_factor", "overruns"))
     assert one.log.meta["report"]["program"] == "p.rbl"
     assert [row["code"] for row in one.log.meta["report"]["alarms"]] == [row["code"] for row in one.report["alarms"]]
+
+
+def test_what_was_found_before_the_run_is_in_it_without_folders(tmp_path):
+    text = "MOVE P1\nx = 1\nDELAY 0.1\n"
+    one, two = carried_out(tmp_path / "here", text), carried_out(tmp_path / "there", text)
+    assert one.log.meta == two.log.meta
+    (item,) = one.log.meta["findings"]
+    place = ("RBL225", "warning", "p.rbl", 2, 1)
+    assert tuple(item[key] for key in ("code", "severity", "file", "line", "column")) == place
 
 
 def test_the_tool_in_use_counts_and_not_the_last_one(tmp_path):

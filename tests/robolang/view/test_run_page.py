@@ -273,3 +273,38 @@ def test_a_log_that_says_something_else_is_refused(broken):
 def test_a_statement_that_has_not_begun_is_at_no_time():
     header, _ = shown(log(24), report={"statements": [statement(1, 0.0), {**statement(9, None), "begun": False}]})
     assert [each["line"] for each in header["meta"]["report"]["statements"]] == [1]
+
+
+def found_before(code, line, **changes):
+    item = {"code": code, "line": line, "severity": "warning", "message": code, "hint": "hint", "file": "made.rbl"}
+    return item | changes
+
+
+def test_what_was_found_before_the_run_stands_where_its_line_begins_first():
+    statements = [statement(1, 0.0), statement(2, 0.5), statement(2, 0.9), statement(3, None, begun=False)]
+    found = [
+        found_before("RBL228", 2),
+        found_before("RBL225", 3),
+        found_before("RBL640", 2, file="made.cell.toml"),
+        found_before("RBL110", 1, severity="info"),
+    ]
+    header, _ = shown(log(20), findings=found, report={"statements": statements})
+    notes = [(each["code"], each["line"], each["time_s"], each["severity"]) for each in header["notes"]]
+    assert notes == [
+        ("RBL110", 1, 0.0, "note"),
+        ("RBL228", 2, 0.5, "warning"),
+        ("RBL225", 3, None, "warning"),
+        ("RBL640", None, None, "warning"),
+    ]
+    assert header["notes"][3]["text"] == "made.cell.toml:2: RBL640\nhint"
+    assert "findings" not in header["meta"]
+
+
+def test_an_arm_that_has_not_moved_stands_at_home():
+    header, found = shown(log(0), home=[0.5, -0.25, 0.125])
+    assert found["q_link"] == [pytest.approx([each], abs=1e-6) for each in (0.5, -0.25, 0.125)]
+    assert [each["at_s"] for each in header["joints"]] == [0.0, None, 0.0]
+    with pytest.raises(Fault) as refused:
+        shown(log(0), home=[0.5])
+    assert refused.value.code == "RBL619"
+    assert len(shown(log(0))[1]["q_link"][0]) == 0
