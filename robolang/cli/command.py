@@ -53,7 +53,9 @@ def command(function: Callable[..., None]) -> Callable[..., None]:
 
     called.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
     called.__annotations__ = {}  # typer would look for the groups otherwise
-    called.__doc__ = "\n\n".join(map(_unwrapped, (inspect.getdoc(function) or "").split("\n\n")))
+    text = "\n\n".join(map(_unwrapped, (inspect.getdoc(function) or "").split("\n\n")))
+    # typer takes a word in brackets for a style, and shows nothing of it
+    called.__doc__ = text.replace("[", r"\[")
     return called
 
 

@@ -114,6 +114,9 @@ def decode_program(name: str, raw: bytes) -> Source:
 
 def read_bytes(name: str) -> bytes:
     """Return the bytes of a program file, at most ``MAX_BYTES``; ``FileFault`` RBL701, RBL702, RBL106."""
+    if name.endswith((".npz", ".mcap")):
+        hint = f"Give the program. 'robolang report {name}' shows the log in a page."
+        _fail("RBL702", f"{name} is the log of a run, not a program", hint, path=name)
     try:
         return read_bounded(name, MAX_BYTES)
     except RefusedError as refused:

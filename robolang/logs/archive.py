@@ -19,6 +19,7 @@ from typing import IO
 import numpy as np
 
 import robolang.core.codes  # noqa: F401 - the codes raised here must be registered
+from robolang.logs.meta import unreadable
 from runtime.core.bounded_files import RefusedError, regular_file
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
@@ -68,7 +69,7 @@ class Archive:
                 self._file = os.fdopen(os.dup(opened.enter_context(regular_file(path)).fileno()), "rb")
                 self._size = os.fstat(self._file.fileno()).st_size
             except (RefusedError, OSError) as error:
-                raise Fault("RBL600", f"cannot read {path}: {_reason(error)}") from None
+                raise unreadable(path, _reason(error)) from None
         # a log is closed when nobody has it any more: it is used like an array
         self.close = weakref.finalize(self, self._file.close)
         self._stored: dict[str, Stored] = {}
@@ -85,7 +86,7 @@ class Archive:
         mark, _, _, _, _, listed, _, comment = _END.unpack(self._file.read(_END.size))
         # before zipfile reads it: a list may be as long as the file
         if mark != b"PK\5\6" or comment or not max(listed, self._listed64()) <= _MOST_LISTED:
-            raise ValueError("its end is missing or is not that of a log")
+            raise ValueError("it is cut off, or no log at all")
         self._zip = zipfile.ZipFile(self._file)
 
     def _listed64(self) -> int:

@@ -10,6 +10,7 @@ from robolang.logs.log import Log
 from robolang.logs.mcap_file import write_mcap
 from robolang.logs.mcap_reading import read_mcap
 from robolang.logs.npz_file import read_npz, write_npz
+from runtime.core.faults import Fault
 
 _WRITERS = {".npz": write_npz, ".mcap": write_mcap}
 SUFFIXES = tuple(_WRITERS)
@@ -29,4 +30,7 @@ def read_log(path: Path | str) -> Log:
     when a signal is read, and RBL821 for one of a later version.
     """
     path = Path(path)
+    if path.suffix == ".rbl":
+        hint = f"Run it first: robolang run {path} --log FILE.npz, and give FILE.npz."
+        raise Fault("RBL619", f"{path} is a program, not the log of a run", hint)
     return read_mcap(path) if path.suffix == ".mcap" else read_npz(path)

@@ -15,7 +15,7 @@ from typing import IO, Any
 import numpy as np
 
 from robolang.logs.log import Log
-from robolang.logs.meta import damaged, read_meta, ticks_of
+from robolang.logs.meta import damaged, read_meta, ticks_of, unreadable
 from robolang.logs.records import CYCLE, FRAME, META, SAMPLE, Record
 from runtime.control.blocks import FRAME_CYCLES, WHOLE
 from runtime.core.bounded_files import RefusedError, regular_file
@@ -53,7 +53,7 @@ def read_mcap(path: Path) -> Log:
             return _Reading(path).log(stream)
     except (RefusedError, OSError) as error:
         reason = error.reason if isinstance(error, RefusedError) else error.strerror
-        raise Fault("RBL600", f"cannot read {path}: {reason}") from None
+        raise unreadable(path, reason) from None
     except (ValueError, KeyError, TypeError, IndexError, EOFError, OverflowError, struct.error) as error:
         raise damaged(path, error) from None
     except (DecodeError, McapError, CRCValidationError, ZstdError) as error:
@@ -66,13 +66,17 @@ def _payloads(stream: IO[bytes]) -> Iterator[tuple[int, bytes]]:
     if stream.read(len(_MAGIC)) != _MAGIC:
         raise ValueError("it does not begin as an MCAP file")
     while left > 0:
+        if left < _HEAD.size:
+            raise ValueError("the file is cut off")
         code, length = _HEAD.unpack(stream.read(_HEAD.size))
         left -= _HEAD.size + length
-        if not (length <= MOST_RECORD and left >= 0):
+        if not length <= MOST_RECORD:
             raise ValueError(f"a record of {length} bytes")
+        if left < 0:
+            raise ValueError("the file is cut off")
         yield code, stream.read(length)
     if stream.read() != _MAGIC:
-        raise ValueError("its end is missing")
+        raise ValueError("the file is cut off")
 
 
 class _Reading:

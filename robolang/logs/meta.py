@@ -7,7 +7,7 @@ from typing import Any, NoReturn
 import numpy as np
 
 from robolang.logs.log import VERSION
-from runtime.core.faults import Fault
+from runtime.core.faults import Fault, lookup
 from runtime.robot.files.robot_file import MOST_AXES
 
 _LEAST_IN_BRACKETS = 5
@@ -19,6 +19,11 @@ _MOST_TICKS_PER_CYCLE = 1000
 def damaged(path: object, why: object) -> Fault:
     """Return the fault of a file that is no log, with the reason."""
     return Fault("RBL619", f"{path} is not the log of a run: {why}")
+
+
+def unreadable(path: object, why: object) -> Fault:
+    """Return the fault of a log that cannot be read, with the reason."""
+    return Fault("RBL600", f"cannot read {path}: {why}", lookup("RBL619").remedy)
 
 
 def read_meta(text: bytes, path: object) -> dict[str, Any]:

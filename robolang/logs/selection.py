@@ -11,7 +11,7 @@ from runtime.core.faults import Fault
 def selected(log: SignalSource, names: Iterable[str], text: str) -> tuple[Column, ...]:
     """Return the columns that a text names; ``names`` are all signals. ``Fault`` RBL838 for one that is not there."""
     known = list(names)
-    name, _, label = text.partition(":")
+    name, _, label = (part.strip() for part in text.partition(":"))
     if name not in known:
         raise Fault("RBL838", f"{log.source} has no signal '{name}'", _offer(name, known))
     found = columns(log, name)

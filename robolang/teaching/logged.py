@@ -13,6 +13,8 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.rounding import beside
 
+_IN_IT = "Give a line and a time that are in the run."
+
 
 def joints_at_end_of(path: Path, axes: int, line: int, time_s: float | None = None) -> Array:
     """Return the joint angles (axes,) rad at the end of the last execution of a line, or of the last before a time.
@@ -30,7 +32,7 @@ def joints_at_end_of(path: Path, axes: int, line: int, time_s: float | None = No
     if not len(rows):
         known = ", ".join(map(str, np.unique(lines[lines > 0]).tolist()[:20])) or "none"
         before = "" if time_s is None else f" before {time_s:g} s"
-        raise Fault("RBL619", f"{path}: no statement of {what} {line} runs{before}; those that do: {known}")
+        raise Fault("RBL619", f"{path}: no statement of {what} {line} runs{before}; those that do: {known}", _IN_IT)
     last = int(rows[-1])
     if time_s is not None:
         # the execution that runs at that time is not over: its end comes later
@@ -47,7 +49,7 @@ def joints_at(path: Path, axes: int, time_s: float) -> Array:
     if not len(times) or not 0.0 <= time_s <= times[-1]:
         end = 0.0 if not len(times) else float(times[-1])
         given, last = beside(time_s, end)
-        raise Fault("RBL619", f"{path}: {given} s is not within the run, which ends at {last} s")
+        raise Fault("RBL619", f"{path}: {given} s is not within the run, which ends at {last} s", _IN_IT)
     # the tick that has begun by then; half a microsecond for times that are no binary fractions
     return _joints(log, axes, int(np.searchsorted(times, time_s + 5e-7, side="right")) - 1)
 

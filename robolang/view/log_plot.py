@@ -10,10 +10,12 @@ from robolang.logs.log import Log
 from robolang.logs.quantities import Column
 from robolang.logs.selection import selected
 from robolang.view.signal_plot import Block, Line, SignalPanel, SignalPlot
+from runtime.core.faults import Fault
 from runtime.core.frames import Array
 
 TOGETHER = "+"
 """What stands between signals that are drawn in one panel."""
+_MOVED = "Draw the log of a run that moves the arm or takes time."
 _ROUNDING_S = 1e-9
 """The tick at 0.1 s may be a bit before it; a window from 0.1 s has it."""
 
@@ -27,12 +29,14 @@ class Window:
 
 
 def plot_of(log: Log, selections: Sequence[str], window: Window) -> SignalPlot:
-    """Return the plot of selected signals; ``Fault`` RBL838 for a signal that is not there, ``ValueError`` for a
-    window without two rows."""
+    """Return the plot of selected signals; ``Fault`` RBL838 for a signal that is not there and RBL832 for a run
+    without two rows, ``ValueError`` for a window without them."""
     chosen = [[_columns(log, name) for name in text.split(TOGETHER)] for text in selections]
     times = log["t"]
     rows = _rows(times, window)
     # one row has no extent in time, and the scale would divide by it
+    if len(times) < 2:
+        raise Fault("RBL832", f"{log.source} is of a run without motion: there is nothing to draw", _MOVED)
     if len(rows) < 2:
         raise ValueError("there is nothing between these times")
     first, last = float(times[rows[0]]), float(times[rows[-1]])
@@ -41,6 +45,7 @@ def plot_of(log: Log, selections: Sequence[str], window: Window) -> SignalPlot:
         title=_title(log),
         panels=tuple(panels),
         blocks=tuple(_blocks(log, rows)),
+        strip="number" if _numbered(log) else "line",
         first=first,
         last=last,
     )
@@ -89,6 +94,11 @@ def _line(log: Log, column: Column, window: Window, names: Sequence[str]) -> Lin
     label = f"J{column.label}" if column.label.isdecimal() else column.label
     name = label if names == [column.signal] and label else f"{column.signal} {label}".strip()
     return Line(name=name, x=times[rows.start : rows.stop], y=y, dashed=column.signal != names[0])
+
+
+def _numbered(log: Log) -> bool:
+    """Return whether the statements of a run have numbers, by which people then know them."""
+    return "number" in log and bool(log["number"].any())
 
 
 def _blocks(log: Log, rows: range) -> Iterator[Block]:

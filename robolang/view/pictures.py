@@ -44,13 +44,15 @@ class Postures(Protocol):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Order:
     """A picture or film that is to be made: its file, view (None: that of the cell, else ``iso``), the time ``at`` of a
-    picture, s (None: the end), the size in pixels (None: the usual one) and the ``rate`` of a film, 1/s."""
+    picture, s (None: the end), the size in pixels (None: the usual one), the ``rate`` of a film, 1/s,
+    and whether points have ``labels``."""
 
     path: Path
     view: str | None = None
     at: float | None = None
     size: tuple[int, int] | None = None
     rate: int = 15
+    labels: bool = True
 
     @property
     def format(self) -> Format:
@@ -117,7 +119,7 @@ def render(
     times = order.times(replay.end)
     width, height = order.pixels
     view = _view(replay, order)
-    with Camera(replay.scene, width=width, height=height) as camera:
+    with Camera(replay.scene, width=width, height=height, labels=order.labels) as camera:
 
         def pictures() -> Iterator[Image]:
             for count, time in enumerate(times, start=1):

@@ -65,13 +65,14 @@ class Block:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SignalPlot:
-    """What is drawn, from ``first`` to ``last``, s."""
+    """What is drawn, from ``first`` to ``last``, s; ``strip``: what the numbers of the blocks are."""
 
     title: str
     panels: tuple[SignalPanel, ...]
     blocks: tuple[Block, ...]
     first: float
     last: float
+    strip: str = "line"
 
     def as_svg(self) -> str:
         """Return the drawing."""
@@ -118,7 +119,7 @@ class SignalPlot:
         return parts
 
     def _times(self, bottom: int) -> list[str]:
-        parts = [svg.label(LEFT - 8, TOP + 13, "line", "end")] if self.blocks else []
+        parts = [svg.label(LEFT - 8, TOP + 13, self.strip, "end")] if self.blocks else []
         rounding = 1e-9 * (self.last - self.first)
         for tick in svg.ticks((self.first, self.last), _TIMES):
             if self.first - rounding <= tick <= self.last + rounding:

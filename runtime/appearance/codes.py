@@ -20,7 +20,8 @@ register(
         code="RBL832",
         name="picture-unsuitable",
         meaning="A picture or film cannot be made as it was ordered: its format, time, size or rate.",
-        remedy="Give another value, as the message says.",
+        remedy="Give a file that ends in .png, .gif, .webp or .mp4, edges from 16 to 4096 pixels, and for a .png "
+        "a time within the run. A run without motion has no picture.",
     ),
     Code(
         code="RBL833",

@@ -105,7 +105,7 @@ register(
         code="RBL619",
         name="run-log-unusable",
         meaning="A log of a run is damaged, is of an arm with another number of axes, or has no such line or time.",
-        remedy="Name a log that robolang run --log FILE.npz has written, and a line and a time that are in it.",
+        remedy="Name a log that robolang run --log FILE.npz (or FILE.mcap) has written.",
     ),
     Code(
         code="RBL640",

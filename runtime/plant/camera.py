@@ -31,6 +31,8 @@ POINT = 0.007
 """Radius of the ball that shows a point, m."""
 LONGEST_LABEL = 40
 """Characters of the name of a point that are shown."""
+NARROWEST = 480
+"""Least width, px, of a picture with names: they have one size, and would hide what a smaller one shows."""
 INK = (0.1, 0.12, 0.15, 1.0)
 """Colour of points."""
 
@@ -38,9 +40,13 @@ INK = (0.1, 0.12, 0.15, 1.0)
 class Camera:
     """A camera on a scene, which draws pictures of one size until it is closed; a context manager."""
 
-    def __init__(self, scene: Scene, *, width: int, height: int) -> None:
-        """Open it; ``Fault`` RBL830 where nothing can draw."""
+    def __init__(self, scene: Scene, *, width: int, height: int, labels: bool = True) -> None:
+        """Open it; ``Fault`` RBL830 where nothing can draw.
+
+        ``labels``: points have their names, where there is room for them.
+        """
         self._scene = scene
+        self._labels = labels and width >= NARROWEST
         self._model: Any = mujoco.MjModel.from_xml_string(picture_mjcf(scene, width, height))
         self._data: Any = mujoco.MjData(self._model)
         self._mocap = {body.name: int(self._model.body(_named(k)).mocapid[0]) for k, body in enumerate(scene.bodies)}
@@ -123,7 +129,8 @@ class Camera:
                 np.array(INK, np.float32),
             )
             # its font has no other characters, and its field 100 of them
-            geom.label = mark.name.encode("ascii", "replace").decode()[:LONGEST_LABEL].replace("\0", " ")
+            name = mark.name.encode("ascii", "replace").decode()[:LONGEST_LABEL].replace("\0", " ")
+            geom.label = name if self._labels else ""
             geom.objtype, geom.objid = mujoco.mjtObj.mjOBJ_UNKNOWN, -1
             self._drawn.ngeom += 1
 

@@ -38,6 +38,8 @@ def plot(run: Run, selections: Selections, output: _PlotOptions) -> None:
     Angles are drawn in deg, lengths in mm. Exit codes: 0 done; 2 the log, a signal or an option cannot be used; 4 the
     file cannot be written.
     """
+    if output.begin is not None and output.end is not None and output.begin > output.end:
+        raise OptionValueError("--from, --to", f"{output.begin:g} s is after {output.end:g} s")
     path = output.out or _beside(run, selections)
     if path.suffix not in _SUFFIXES:
         raise OptionValueError("--out", f"'{path}' must end in {', '.join(_SUFFIXES)}")
@@ -65,7 +67,7 @@ def _plot(run: Path, selections: list[str], output: _PlotOptions) -> "SignalPlot
         return plot_of(log, selections, Window(first=output.begin, last=output.end))
     except ValueError:
         times = log["t"]
-        span = f"the log goes from {times[0]:g} to {times[-1]:g} s" if len(times) else "the log has no row"
+        span = f"the log goes from {times[0]:g} to {times[-1]:g} s"
         raise OptionValueError("--from, --to", f"less than two rows are between these times; {span}") from None
 
 
@@ -84,5 +86,5 @@ def _drawn(found: "SignalPlot", suffix: str) -> bytes:
 
 def _beside(run: Path, selections: list[str]) -> Path:
     # names of signals have a colon, which file systems do not all take
-    name = "-".join(text.replace(":", "").replace("+", "-") for text in selections)
+    name = "-".join(text.replace(" ", "").replace(":", "").replace("+", "-") for text in selections)
     return run.with_name(f"{run.stem}-{name}.svg".replace("/", "_"))

@@ -44,6 +44,9 @@ class _PictureOptions(Group):
         Option("--size", metavar="WxH", help="Pixels; default: 1280x720, of a .gif or .webp 640x360."),
     ] = None
     fps: Annotated[int, Option("--fps", metavar="N", low=1, high=60, help="Pictures of a film per second.")] = 15
+    no_labels: Annotated[
+        bool, Option("--no-labels", help="Leave out the names of the points, as a picture below 480 pixels does.")
+    ] = False
 
 
 def render(subject: Subject, files: CellOptions, picture: _PictureOptions, physics: PhysicsOptions) -> None:
@@ -60,7 +63,8 @@ def render(subject: Subject, files: CellOptions, picture: _PictureOptions, physi
         from robolang.view.pictures import Order
         from robolang.view.pictures import render as draw
 
-        order = Order(path=out, view=picture.view, at=picture.at, size=size, rate=picture.fps)
+        labels = not picture.no_labels
+        order = Order(path=out, view=picture.view, at=picture.at, size=size, rate=picture.fps, labels=labels)
         # before a run that takes its time
         order.check()
         check_outputs({"--out": out}, [subject, files.cell, files.robot])

@@ -57,6 +57,8 @@ def test_no_word_of_a_help_text_is_lost(words, found):
     """What stands in brackets is taken for a style."""
     for parameter in found.params:
         assert not re.search(r"\[[a-z]", parameter.help or ""), parameter.name
+    shown = flat(robolang(*words, "--help").stdout)
+    assert all(word in shown for word in re.findall(r"\[\w+\]", found.help))
 
 
 def test_all_exit_codes_are_in_the_help_of_the_program():

@@ -170,3 +170,52 @@ def test_events_of_a_file_that_are_none_are_left_out(tmp_path):
     shown = robolang("log", "show", tmp_path / "l.npz").stdout
     assert "\x1b" not in shown
     assert len(json.loads(robolang("log", "show", tmp_path / "l.npz", "--json").stdout)["events"]) == 2
+
+
+# --- what is mistaken for a log, and a log for something else ---------------------------------------------------------
+
+
+@pytest.mark.parametrize("command", ["report {}", "plot {} q_fb", "log show {}", "log export {} --csv"])
+def test_a_program_in_place_of_a_log_is_called_a_program(tmp_path, monkeypatch, command):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "p.rbl").write_text("10 DELAY 0.1\n")
+    said = flat(robolang(*command.format("p.rbl").split(), code=2).stderr)
+    assert "RBL619" in said and "robolang run p.rbl --log" in said
+    assert [path.name for path in tmp_path.iterdir()] == ["p.rbl"]
+
+
+@pytest.mark.parametrize("name", ["none.npz", "none.mcap"])
+def test_a_log_that_is_missing_is_no_text_of_a_megabyte(tmp_path, monkeypatch, name):
+    monkeypatch.chdir(tmp_path)
+    said = flat(robolang("log", "show", name, code=2).stderr)
+    assert "RBL600" in said and "UTF-8" not in said and "--log FILE.npz" in said and "FILE.mcap" in said
+
+
+@pytest.mark.parametrize("command", ["run run.npz", "check run.npz", "fmt run.npz", "view run.npz"])
+@pytest.mark.usefixtures("run")
+def test_a_log_in_place_of_a_program_is_called_a_log(command):
+    said = flat(robolang(*command.split(), code=2).stderr)
+    assert "RBL702" in said and "robolang report run.npz" in said
+
+
+def test_a_plot_of_a_run_without_rows_does_not_blame_the_times(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "p.rbl").write_text("x = 1\n")
+    dry(tmp_path / "p.rbl", "--quiet", "--log", "run.npz")
+    said = robolang("plot", "run.npz", "q_fb", code=2).stderr
+    assert "RBL832" in said and "--from" not in said
+
+
+@pytest.mark.usefixtures("run")
+def test_a_plot_from_after_its_end_says_so():
+    said = flat(robolang("plot", "run.npz", "q_fb", "--from", 0.5, "--to", 0.25, code=2).stderr)
+    assert "RBL703" in said and "0.5 s is after 0.25 s" in said
+
+
+@pytest.mark.usefixtures("run")
+def test_blanks_between_signals_do_not_count(tmp_path):
+    robolang("log", "export", "run.npz", "--csv", "--signals", "q_fb: 2, tool_cmd:z", "-o", "spaced.csv")
+    robolang("log", "export", "run.npz", "--csv", "--signals", "q_fb:2,tool_cmd:z", "-o", "dense.csv")
+    assert (tmp_path / "spaced.csv").read_bytes() == (tmp_path / "dense.csv").read_bytes()
+    robolang("plot", "run.npz", "q_cmd:2 + q_fb:2")
+    assert (tmp_path / "run-q_cmd2-q_fb2.svg").exists()

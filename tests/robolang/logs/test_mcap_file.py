@@ -294,3 +294,15 @@ def test_rows_that_are_read_cannot_be_changed(tmp_path):
         read.rows.read("q_fb", 0, 3)[0, 0] = 7.0
     with pytest.raises(ValueError, match="read-only"):
         read.rows.tools[0][0, 0] = 7.0
+
+
+@pytest.mark.parametrize("kept", [0.001, 0.5, 0.999])
+def test_a_file_that_is_cut_is_called_cut(tmp_path, kept):
+    whole, cut = tmp_path / "l.mcap", tmp_path / "cut.mcap"
+    write_log(whole, log(40, PLAIN))
+    content = whole.read_bytes()
+    cut.write_bytes(content[: 8 + int(kept * (len(content) - 8))])
+    with pytest.raises(Fault) as refused:
+        read_log(cut)
+    assert refused.value.code == "RBL619" and "cut off" in refused.value.message
+    assert "FILE.mcap" in refused.value.hint

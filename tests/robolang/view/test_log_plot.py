@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from robolang.logs.files import read_log
+from robolang.logs.log import Log
 from robolang.view import png
 from robolang.view.log_plot import Window, plot_of
 from robolang.view.signal_plot import Block, Line, SignalPanel, SignalPlot
@@ -212,3 +213,17 @@ def test_without_a_font_or_the_library_there_is_no_picture(monkeypatch):
     with pytest.raises(Fault, match="RBL839") as caught:
         png.check_png()
     assert "robolang[plot]" in caught.value.hint
+
+
+def test_the_strip_says_whether_it_has_lines_or_numbers():
+    made = log(40, PLAIN)
+    assert made["number"].any()
+    found = plot_of(made, ["q_fb"], ALL)
+    assert found.strip == "number" and "number" in texts(ET.fromstring(found.as_svg().encode()))
+
+    class Unnumbered(Log):
+        def span(self, name, first, last):
+            return super().span(name, first, last) * (0 if name == "number" else 1)
+
+    plain = plot_of(Unnumbered(made.rows, made.meta), ["q_fb"], ALL)
+    assert plain.strip == "line" and "line" in texts(ET.fromstring(plain.as_svg().encode()))

@@ -96,3 +96,18 @@ def test_a_scene_without_shapes_has_a_view(points):
     made = Scene(robot="", reach=0.5, bodies=(), shapes=(), colours=SCENE.colours, points=points)
     view = named_view("iso", made, [Stance(axes=())], WIDTH / HEIGHT)
     assert np.isfinite([view.position, view.target]).all()
+
+
+def test_names_of_points_are_left_out_where_they_would_hide_the_picture():
+    need_graphics()
+    marked = scene_of(
+        CELL, {"P1": np.block([[np.eye(3), np.array([[0.45], [-0.15], [0.8]])], [np.zeros((1, 3)), 1.0]])}
+    )
+    view = named_view("iso", marked, [HOME], 4.0 / 3.0)
+
+    def taken(width, labels):
+        with Camera(marked, width=width, height=3 * width // 4, labels=labels) as opened:
+            return opened.picture(HOME, view)
+
+    assert not np.array_equal(taken(480, True), taken(480, False))
+    assert np.array_equal(taken(320, True), taken(320, False))
