@@ -31,7 +31,7 @@ class LiveBeside:
 
     def show(self) -> None:
         """Show where the session stands now."""
-        self._live.frames.show()
+        self._live.show()
 
     def close(self) -> None:
         """Tell the pages that nothing more comes, and stop serving them."""

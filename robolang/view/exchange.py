@@ -19,6 +19,7 @@ from typing import Any
 
 import robolang.core.codes  # noqa: F401 - the codes raised here must be registered
 from robolang.teaching.held_button import HeldButton, Press
+from robolang.view.begun import Begun, Got
 from robolang.view.messages import Command, Go, Held, Jog, Message
 from runtime.control.clock import wall_s
 from runtime.core.faults import Fault
@@ -29,8 +30,6 @@ HALTS = ("stop", "pause")
 """Commands that are taken before all others, from every page; the first of them first."""
 MOST_SAID = 200
 """Lines and replies that are kept for a page that reads slowly."""
-MOST_STATEMENTS = 10_000
-"""Statements that are kept for a page that comes late."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,7 +48,8 @@ class Page:
 
     number: int
     frame: int = 0
-    begun: int = 0
+    begun: Got = field(default_factory=Got)
+    hello: str = ""
     status: tuple[int, str] = (-1, "")
     said: deque[str] = field(default_factory=lambda: deque(maxlen=MOST_SAID))
 
@@ -61,15 +61,14 @@ class Exchange:
         """``watched_only``: no page may command, since something else drives the arm."""
         self._watched_only = watched_only
         self.hello = '{"kind":"hello"}'
-        """What a page gets first, as JSON."""
+        """What a page gets first, and once more when it has changed, as JSON."""
         self.button = HeldButton()
         self.frame: tuple[int, bytes] = (0, b"")
         """The newest frame, counted."""
         self.status: tuple[int, str] = (0, '{"state":"starting"}')
         """The newest status, counted, as JSON without what depends on the page."""
-        self.begun = 0
-        """How many statements have begun."""
-        self._statements: deque[str] = deque(maxlen=MOST_STATEMENTS)
+        self.begun = Begun()
+        """The statements that have begun."""
         self.notify: Callable[[], None] = lambda: None
         """Wakes the server; it never waits."""
         self._pages: dict[int, Page] = {}
@@ -82,8 +81,9 @@ class Exchange:
     # --- the run's thread --------------------------------------------------------------------------------------------
 
     def greet(self, hello: Mapping[str, Any]) -> None:
-        """Give each page that comes from now on this first."""
+        """Give this to each page that comes from now on first, and to those that have got another one."""
         self.hello = json.dumps({"kind": "hello", **hello}, separators=(",", ":"))
+        self.notify()
 
     def show_frame(self, frame: bytes) -> None:
         """Put a frame in place of the one before it."""
@@ -99,8 +99,7 @@ class Exchange:
 
     def begin(self, statement: Mapping[str, Any]) -> None:
         """Add a statement that begins to those that pages show."""
-        self._statements.append(json.dumps(statement, separators=(",", ":")))
-        self.begun += 1
+        self.begun.add(statement)
         self.notify()
 
     def say(self, text: str) -> None:
@@ -167,18 +166,6 @@ class Exchange:
         if self._control == page.number:
             self._control = None
         self.notify()
-
-    def statements_for(self, page: Page) -> str | None:
-        """Return the statements that a page has not got yet as a message; None: it has all."""
-        count = self.begun
-        new = min(count - page.begun, MOST_STATEMENTS)
-        page.begun = count
-        # of more than are kept it gets the last ones
-        if not new:
-            return None
-        # a copy: the run goes on adding to them
-        rows = list(self._statements.copy())[-new:]
-        return f'{{"kind":"statements","rows":[{",".join(rows)}]}}'
 
     def control_for(self, page: Page) -> str:
         """Return who has control, as a page sees it: yours, free, other, or none where pages only watch."""

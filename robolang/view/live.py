@@ -32,6 +32,7 @@ class Live:
         self.exchange = Exchange(watched_only=watched_only)
         self.frames = Frames(self.exchange)
         self._page, self._port = page, port
+        self._session: Session | None = None
 
     @contextmanager
     def serve(self, session: Session) -> Iterator[str]:
@@ -48,7 +49,28 @@ class Live:
     def follow(self, session: Session) -> None:
         """Show another session from now on, to pages that come later too."""
         self.exchange.greet({"layout": layout(session.controller), "header": header_of(session)})
+        self._session = session
+        self._settle()
         self.frames.follow(session)
+
+    def show(self) -> None:
+        """Show where the session stands now, also after it was taken back."""
+        self._settle()
+        self.frames.show()
+
+    def _settle(self) -> None:
+        """Let the pages have the statements that the record has: what is taken back is seen by no observer."""
+        if self._session is None:
+            return
+        # made apart first, in the words of the frames: pages get only what differs
+        story = Exchange()
+        record, teller = self._session.record, Frames(story)
+        tick_us = self._session.project.profile.tick_us
+        for run in record.statements:
+            if run.begun:
+                teller.run_began(run, run.first_tick * tick_us)
+        self.exchange.begun.settle(story.begun)
+        self.exchange.notify()
 
     def wait_for_page(self) -> None:
         """Wait for the first page, for ``FIRST_PAGE_S`` at most: a run may be over before a browser is there."""

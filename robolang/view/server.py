@@ -180,7 +180,6 @@ class LiveServer:
         """Send what is new, at the pace at which the page reads; return when the run is over and all is sent."""
         assert self._ended is not None
         with contextlib.suppress(ConnectionClosed):
-            await connection.send(self._exchange.hello)
             loop, due_s = asyncio.get_running_loop(), float("-inf")
             while True:
                 await changed.wait()
@@ -224,11 +223,18 @@ def _listener(port: int) -> socket.socket:
 
 
 def _news(exchange: Exchange, page: Page) -> list[str | bytes]:
-    """Return what a page has not got yet: lines and replies, the newest status, the newest frame."""
+    """Return what a page has not got yet: what the run is, lines and replies, the newest status, the
+    newest frame."""
     found: list[str | bytes] = []
+    # before the hello: a frame of another layout must not come after the one that it does not fit
+    count, frame = exchange.frame
+    hello = exchange.hello
+    if page.hello != hello:
+        page.hello = hello
+        found.append(hello)
     while page.said:
         found.append(page.said.popleft())
-    statements = exchange.statements_for(page)
+    statements = exchange.begun.news(page.begun)
     if statements is not None:
         found.append(statements)
     number, status = exchange.status
@@ -238,7 +244,6 @@ def _news(exchange: Exchange, page: Page) -> list[str | bytes]:
     if page.status != mark:
         page.status = mark
         found.append(f'{{"kind":"status","control":"{control}",{status[1:]}')
-    count, frame = exchange.frame
     if page.frame != count:
         page.frame = count
         found.append(frame)

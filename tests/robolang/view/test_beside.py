@@ -47,6 +47,49 @@ def test_a_page_sees_what_the_prompt_does(prompted):
         texts(page, is_status(next=2, over=False))
 
 
+def shown(messages) -> list[str]:
+    """The statements that a page shows after some messages."""
+    found = []
+    for each in messages:
+        if each["kind"] == "statements":
+            found = [*found[: each["from"]], *(row["text"] for row in each["rows"])]
+    return found
+
+
+def test_what_is_taken_back_is_taken_off_every_page(prompted):
+    url = url_of(prompted.do("view"))
+    with as_page(url) as page:
+        found = texts(page, is_status(next=1))
+        for word, after in (("step", 2), ("step", 3), ("back", 2), ("step", 3), ("back 2", 1), ("step", 2)):
+            prompted.do(word)
+            found += texts(page, is_status(next=after))
+            with as_page(url) as late:
+                story = texts(late, is_status(next=after))
+            assert shown(found) == shown(story) == PROGRAM.splitlines()[: after - 1]
+        prompted.do("again", "step")
+        found += texts(page, is_status(next=2))
+        assert shown(found) == PROGRAM.splitlines()[:1]
+    assert [each["kind"] for each in found].count("hello") == 1
+
+
+def test_a_page_that_is_opened_late_shows_what_was_done_before(prompted):
+    prompted.do("step", "step")
+    with as_page(url_of(prompted.do("view"))) as page:
+        found = texts(page, is_status(next=3))
+        prompted.do("back")
+        found += texts(page, is_status(next=2))
+    assert shown(found) == PROGRAM.splitlines()[:1]
+
+
+def test_another_program_is_another_page(prompted):
+    prompted.do("step")
+    with as_page(url_of(prompted.do("view"))) as page:
+        texts(page, is_status(next=2))
+        prompted.do("edit 2: MOVE HERE + (0, 0, 5)", "again", "step")
+        second = texts(page, lambda message: message["kind"] == "hello")[-1]
+    assert "(0, 0, 5)" in second["header"]["meta"]["program"]["text"]
+
+
 def test_a_page_commands_nothing(prompted):
     with as_page(url_of(prompted.do("view"))) as page:
         for number, word in enumerate(("start", "take", "stop")):

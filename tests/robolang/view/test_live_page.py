@@ -9,11 +9,16 @@ import pytest
 from playwright.sync_api import TimeoutError
 
 from robolang.project.project import load_project
+from robolang.view.beside import LiveBeside
+from robolang.view.live_page import live_page
+from robolang.view.page import Bundle
+from tests.robolang.pendant.prompting import prompt
 from tests.robolang.view.browser import PATIENCE_MS, WITHOUT_GL, chromium
 from tests.steps import HANG_S
 
 TRIALS = 10
 A_WHILE_MS = 4000
+POLL_MS = 50
 PROGRAM = """MOVEJ HERE + (0, 0, 20)
 MOVE HERE + (0, 0, 60), SPEED 400
 MOVE HERE + (0, 0, -60), SPEED 400
@@ -234,6 +239,33 @@ def test_a_page_that_is_closed_stops_its_jog_and_frees_control(live, browser):
     second.waits_for("Paused")
     # alone again: it has control
     assert json.loads(second.page.evaluate("JSON.stringify(document.querySelector('[data-testid=give]') !== null)"))
+
+
+def test_beside_the_prompt_a_page_takes_back_and_opens_anew_for_another_program(browser, program, monkeypatch):
+    monkeypatch.setattr("robolang.view.beside.open_page", lambda url: True)
+    prompted = prompt(program, picture=lambda: LiveBeside(live_page(Bundle.installed())))
+    try:
+        page = LivePage(browser, prompted.do("view").split()[-1]).page
+
+        def shows(expected):
+            lines = "window.robolang?.runs[0].statements.all.map((one) => one.line).join()"
+            # asked again and again: the policy of the page lets no function wait inside it
+            for _ in range(PATIENCE_MS // POLL_MS):
+                found = page.evaluate(lines)
+                if found == expected:
+                    break
+                page.wait_for_timeout(POLL_MS)
+            assert found == expected
+
+        for word, expected in (("step", "1"), ("step", "1,2"), ("back", "1"), ("step", "1,2")):
+            prompted.do(word)
+            shows(expected)
+        prompted.do("edit 2: MOVE HERE + (0, 0, 5)", "again", "step")
+        page.wait_for_selector("text=(0, 0, 5)", timeout=PATIENCE_MS)
+        shows("1")
+        assert "token" not in page.url
+    finally:
+        prompted.pendant.pictures.close()
 
 
 def test_an_address_without_its_token_shows_no_page(live, browser):

@@ -9,17 +9,24 @@ export class Connection implements Sink {
   message: (message: FromServer) => void = () => undefined;
   frame: (bytes: ArrayBuffer) => void = () => undefined;
   ended: () => void = () => undefined;
+  private readonly token: string;
   private readonly socket: WebSocket;
   private readonly waiting = new Map<number, (reply: Reply) => void>();
   private last = 0;
 
   constructor() {
-    const token = new URLSearchParams(location.search).get("token") ?? "";
+    this.token = new URLSearchParams(location.search).get("token") ?? "";
     history.replaceState(null, "", location.pathname + location.hash);
-    this.socket = new WebSocket(`ws://${location.host}/live?token=${token}`);
+    this.socket = new WebSocket(`ws://${location.host}/live?token=${this.token}`);
     this.socket.binaryType = "arraybuffer";
     this.socket.addEventListener("message", (event: MessageEvent<unknown>) => this.receive(event.data));
     this.socket.addEventListener("close", () => this.ended());
+  }
+
+  /** Open the page as by its printed address: another robot or program needs another page. */
+  openAnew(): void {
+    this.ended = () => undefined;
+    location.replace(`${location.pathname}?token=${this.token}${location.hash}`);
   }
 
   /** Send a command; returns its number, by which its reply is known. */

@@ -13,6 +13,8 @@ const MOST_ROWS = 120_000;
 export class GrowingRun extends Run {
   private readonly growing: ReadonlyMap<string, Signal>;
   private before: Frame | null = null;
+  /** Place of the first statement in the run: a page that comes late gets the last ones of very many. */
+  private oldest = 0;
   /** The last row is newer than its place on the grid says, and is replaced by the next frame. */
   private ahead = false;
 
@@ -45,8 +47,10 @@ export class GrowingRun extends Run {
   }
 
   /** Statements that have begun; each lasts until the next one. */
-  began(rows: Began["rows"]): void {
-    this.statements = new Statements(this.lasting([...this.statements.all, ...rows.map((row) => ({ ...row, duration_s: 0 }))]));
+  began({ from, rows }: Began): void {
+    const kept = this.statements.all.slice(0, Math.max(0, from - this.oldest));
+    if (kept.length === 0) this.oldest = from;
+    this.statements = new Statements(this.lasting([...kept, ...rows.map((row) => ({ ...row, duration_s: 0 }))]));
   }
 
   /** Let the running statement last until now. */
@@ -95,7 +99,6 @@ export class GrowingRun extends Run {
     const signal = this.any;
     if (signal) this.cut(Math.max(0, Math.floor((t - signal.t0) / signal.dt)));
     this.ahead = false;
-    this.statements = new Statements(this.statements.all.filter((one) => one.start_s <= t + 1e-9));
     this.before = null;
   }
 

@@ -3,7 +3,7 @@ import type { Header, Statement } from "../contract";
 /** What the server sends, as JSON; frames are binary (`frame.ts`). Written by `robolang.view.exchange`. */
 export type FromServer = Hello | Status | Began | Printed | Reply | Refused | Over;
 
-/** The first message: the run before it begins, and what a frame holds. */
+/** The first message: the run before it begins, and what a frame holds. Another one: the run is another one. */
 export interface Hello {
   readonly kind: "hello";
   /** Names of a frame after its time, and how many numbers each has. */
@@ -44,6 +44,8 @@ export interface Status {
 
 export interface Began {
   readonly kind: "statements";
+  /** Place of the first row in the run; what a page has from there on was taken back. */
+  readonly from: number;
   readonly rows: readonly Omit<Statement, "duration_s">[];
 }
 

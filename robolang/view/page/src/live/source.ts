@@ -45,7 +45,7 @@ export class SocketSource implements Source {
     return new Promise((resolve, reject) => {
       this.connection.ended = () => reject(new Error("the run has refused this page, or is over; open the address that the command has printed"));
       this.connection.message = (message) => {
-        if (message.kind === "hello") resolve([this.greet(message)]);
+        if (message.kind === "hello" && !this.run) resolve([this.greet(message)]);
         else this.early.push(message);
       };
     });
@@ -78,7 +78,7 @@ export class SocketSource implements Source {
         this.status(message);
         break;
       case "statements":
-        this.run?.began(message.rows);
+        this.run?.began(message);
         break;
       case "printed":
         this.panel.print(message.text);
@@ -89,6 +89,8 @@ export class SocketSource implements Source {
       case "refused":
         throw new Error(`${message.code} ${message.message}`);
       case "hello":
+        this.connection.openAnew();
+        break;
       case "reply":
         break;
     }
