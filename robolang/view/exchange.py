@@ -12,7 +12,7 @@ control, wait for nothing, and end what waits: what was ordered before a stop mu
 import json
 import threading
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
@@ -51,6 +51,7 @@ class Page:
     begun: Got = field(default_factory=Got)
     hello: str = ""
     status: tuple[int, str] = (-1, "")
+    notes: int = 0
     said: deque[str] = field(default_factory=lambda: deque(maxlen=MOST_SAID))
 
 
@@ -67,6 +68,8 @@ class Exchange:
         """The newest frame, counted."""
         self.status: tuple[int, str] = (0, '{"state":"starting"}')
         """The newest status, counted, as JSON without what depends on the page."""
+        self.notes: tuple[int, str] = (0, "")
+        """The newest list of notes, counted, as a message."""
         self.begun = Begun()
         """The statements that have begun."""
         self.notify: Callable[[], None] = lambda: None
@@ -96,6 +99,11 @@ class Exchange:
         if status != self.status[1]:
             self.status = self.status[0] + 1, status
             self.notify()
+
+    def show_notes(self, notes: Sequence[Mapping[str, Any]]) -> None:
+        """Put all notes in place of those before."""
+        self.notes = self.notes[0] + 1, json.dumps({"kind": "notes", "rows": notes}, separators=(",", ":"))
+        self.notify()
 
     def begin(self, statement: Mapping[str, Any]) -> None:
         """Add a statement that begins to those that pages show."""

@@ -5,7 +5,17 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from robolang.core.diagnostics import Diagnostic
+from robolang.core.diagnostics import Severity as Rank
+from robolang.execution.alarms import as_json
+from robolang.execution.session import Session
+
 Severity = Literal["error", "warning", "note", "print"]
+
+MOST_LIVE = 500
+"""Alarms, and warnings, that a live page lists, the last ones; a loop may raise thousands."""
+
+_WORDS: dict[Rank, Severity] = {Rank.ERROR: "error", Rank.WARNING: "warning"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,6 +53,30 @@ def of_finding(item: Mapping[str, Any], program: str, begins: Mapping[int, float
         code=item["code"],
         severity=severity,
         text=text if here else f"{item['file']}:{line}: {text}",
+    )
+
+
+def of_live(session: Session) -> list[Note]:
+    """Return what is known of a session while it goes on: alarms, warnings, and what was found in its text before."""
+    source, tick_us = session.project.source, session.project.profile.tick_us
+    found: dict[str, list[dict[str, Any]]] = {
+        key: [as_json(alarm, rank, source, tick_us) for alarm in alarms[-MOST_LIVE:]]
+        for key, rank, alarms in (
+            ("alarms", Rank.ERROR, session.record.alarms),
+            ("warnings", Rank.WARNING, session.controller.warnings),
+        )
+    }
+    return in_order([*_events(found), *(_finding(session, item) for item in session.project.diagnostics)])
+
+
+def _finding(session: Session, item: Diagnostic) -> Note:
+    # of the text, so of no moment of the run
+    return Note(
+        time_s=None,
+        line=session.project.source.place(item.span.start).line,
+        code=item.code,
+        severity=_WORDS.get(item.severity, "note"),
+        text=f"{item.message}\n{item.hint}",
     )
 
 

@@ -237,6 +237,10 @@ def _news(exchange: Exchange, page: Page) -> list[str | bytes]:
     statements = exchange.begun.news(page.begun)
     if statements is not None:
         found.append(statements)
+    count, notes = exchange.notes
+    if page.notes != count:
+        page.notes = count
+        found.append(notes)
     number, status = exchange.status
     control = exchange.control_for(page)
     # control differs from page to page, and is no part of what the run knows

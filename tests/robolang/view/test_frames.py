@@ -30,6 +30,9 @@ class Kept:
     def show_status(self, text):
         pass
 
+    def show_notes(self, notes):
+        pass
+
     def begin(self, row):
         pass
 

@@ -128,6 +128,51 @@ def test_a_live_page_says_that_its_charts_are_sampled_and_how_few_rows_it_keeps(
     assert "32 ms" in page["thinned"].inner_text()
 
 
+REACHED = """() => {
+  const found = [...document.querySelectorAll(":is(.strip, .pendant) :is(button, input, select)")];
+  const shown = found.filter((one) => one.getClientRects().length > 0);
+  const covered = shown.filter((one) => {
+    one.scrollIntoView({ block: "nearest" });
+    const { left, top, width, height } = one.getBoundingClientRect();
+    return document.elementFromPoint(left + width / 2, top + height / 2) !== one;
+  });
+  return [shown.length, covered.map((one) => one.dataset.testid ?? one.title)];
+}"""
+
+
+@pytest.mark.parametrize("size", [(1400, 900), (1024, 768), (1000, 700), (800, 500), (420, 800)], ids=str)
+def test_every_button_is_in_sight_and_covered_by_nothing(live, size):
+    page, _, _ = live
+    width, height = size
+    page.page.set_viewport_size({"width": width, "height": height})
+    page.page.wait_for_timeout(100)
+    shown, covered = page.page.evaluate(REACHED)
+    assert shown > 25
+    assert covered == []
+
+
+def test_an_alarm_is_shown_until_it_is_acknowledged_and_stays_in_the_notes(browser, program):
+    program.write_text("MOVEJ HERE + (0, 0, 20)\nMOVE HERE + (5000, 0, 0)\n")
+    with viewed(browser, program, "--speed", "5") as (live, _, _):
+        live.waits_for("Paused")
+        live["start"].click()
+        live.run_is("alarm")
+        said = live["problem"].inner_text()
+        code = said.split()[0]
+        assert code.startswith("RBL")
+        live["override"].fill("40")
+        live["override"].dispatch_event("change")
+        live.page.wait_for_selector("output:has-text('40 %')", timeout=PATIENCE_MS)
+        assert live["problem"].inner_text() == said
+        flag = f".line[data-line='2'] .flag.error:has-text('{code}')"
+        assert live.page.locator(flag).count() == 1
+        live["tab-notes"].click()
+        assert code in live["note"].inner_text()
+        live["reset"].click()
+        live.page.wait_for_selector("[data-testid=problem]:empty", state="attached", timeout=PATIENCE_MS)
+        assert live.page.locator(flag).count() == 1
+
+
 def test_a_step_goes_to_the_next_line(live):
     page, _, _ = live
     for line in (2, 3):

@@ -1,4 +1,4 @@
-import type { Header, SeriesHead, SignalHead, Statement } from "./contract";
+import type { Header, Note, SeriesHead, SignalHead, Statement } from "./contract";
 import { Statements } from "./statements";
 
 /** A signal: evenly spaced rows of some columns. NaN: no value. */
@@ -91,12 +91,15 @@ export class Run {
   readonly header: Header;
   readonly signals: ReadonlyMap<string, Signal>;
   statements: Statements;
+  /** Alarms, warnings and notes; another list where they are others. */
+  notes: readonly Note[];
   end: number;
 
   constructor(header: Header, signals: ReadonlyMap<string, Signal>) {
     this.header = header;
     this.signals = signals;
     this.end = header.duration_s;
+    this.notes = header.notes;
     const known: readonly Statement[] = header.meta.report.statements;
     this.statements = new Statements(known.filter((one) => Number.isFinite(one.start_s)));
   }

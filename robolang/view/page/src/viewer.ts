@@ -46,15 +46,17 @@ export class Viewer {
     this.sink = sink;
     this.theme = new ThemeSwitch(() => this.recolour());
     const player = (this.player = new Player(runs));
-    const { meta, notes } = player.first.header;
-    this.program = new ProgramText(player, meta.program.text, notes);
+    this.program = new ProgramText(player, player.first.header.meta.program.text);
     this.joints = new Joints(player);
-    const count = runs.reduce((sum, run) => sum + run.header.notes.length, 0);
+    const notes = new Notes(player);
     this.tabs = new Tabs([
       { id: "program", name: "Program", content: this.program.element },
-      { id: "notes", name: "Notes", count, content: new Notes(player).element },
+      { id: "notes", name: "Notes", content: notes.element },
       { id: "joints", name: "Joints", content: this.joints.element },
     ]);
+    const count = (): void => this.tabs.count("notes", notes.count);
+    player.on("grown", count);
+    count();
     this.stage = new Stage(player);
     this.charts = new Charts(player);
     this.timeline = new Timeline(player);

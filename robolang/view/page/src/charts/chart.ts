@@ -227,7 +227,7 @@ export class Chart {
         // The plot lays itself out after its constructor has returned.
         drawClear: [(plot) => this.laidOut(plot), (plot) => drawBand(plot, this.head.band)],
         draw: [
-          (plot) => drawNotes(plot, this.player.first.header.notes),
+          (plot) => drawNotes(plot, this.player.first.notes),
           (plot) => drawNames(plot, lanes ? [] : this.curves(), this.hidden),
         ],
       },

@@ -1,7 +1,7 @@
-import type { Header, Statement } from "../contract";
+import type { Header, Note, Statement } from "../contract";
 
 /** What the server sends, as JSON; frames are binary (`frame.ts`). Written by `robolang.view.exchange`. */
-export type FromServer = Hello | Status | Began | Printed | Reply | Refused | Over;
+export type FromServer = Hello | Status | Began | Noted | Printed | Reply | Refused | Over;
 
 /** The first message: the run before it begins, and what a frame holds. Another one: the run is another one. */
 export interface Hello {
@@ -47,6 +47,12 @@ export interface Began {
   /** Place of the first row in the run; what a page has from there on was taken back. */
   readonly from: number;
   readonly rows: readonly Omit<Statement, "duration_s">[];
+}
+
+/** All notes up to now, in place of those before. */
+export interface Noted {
+  readonly kind: "notes";
+  readonly rows: readonly Note[];
 }
 
 export interface Printed {

@@ -25,6 +25,8 @@ export class RunPanel {
   private readonly pace: HTMLSelectElement;
   private readonly signals = el("span", { class: "signals", "data-testid": "signals" });
   private readonly control = el("span", { class: "control", "data-testid": "control" });
+  /** The alarm that is latched: it stays until it is acknowledged, whatever is answered meanwhile. */
+  private readonly problem = el("p", { class: "problem", role: "alert", "data-testid": "problem" });
   private readonly words = el("p", { class: "words", role: "alert", "data-testid": "words" });
   private readonly printed = el("output", { class: "printed", "aria-live": "off", "data-testid": "printed" });
   private sliding = false;
@@ -58,6 +60,7 @@ export class RunPanel {
       this.signals,
       this.control,
       this.printed,
+      this.problem,
       this.words,
     );
   }
@@ -69,10 +72,8 @@ export class RunPanel {
     this.state.textContent = status.mode ? `${words} · ${status.mode}` : words;
     this.state.className = `outcome ${alarm ? "error" : state === "paused" || state === "stopped" ? "warning" : "ok"}`;
     const problem = alarm ? `${alarm.code} ${alarm.message}${alarm.line ? `, line ${alarm.line}` : ""}. ${alarm.hint}` : (fault ?? "");
-    if (this.words.dataset.of !== problem) {
-      this.words.dataset.of = problem;
-      this.words.textContent = problem;
-    }
+    // Written when it changes only: a reader of screens says it each time.
+    if (this.problem.textContent !== problem) this.problem.textContent = problem;
     this.enable(status, doing);
     if (!this.sliding && status.override !== undefined) {
       this.override.value = String(status.override);

@@ -80,6 +80,10 @@ export class SocketSource implements Source {
       case "statements":
         this.run?.began(message);
         break;
+      case "notes":
+        if (this.run) this.run.notes = message.rows;
+        this.grow();
+        break;
       case "printed":
         this.panel.print(message.text);
         break;

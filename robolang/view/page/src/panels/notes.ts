@@ -13,13 +13,30 @@ export class Notes {
   readonly element = el("div", { class: "notes", role: "group", "aria-label": "Alarms and notes", "data-testid": "notes" });
   private readonly player: Player;
 
+  /** The lists that are shown. */
+  private shown: readonly (readonly Note[])[] = [];
+
   constructor(player: Player) {
     this.player = player;
-    player.runs.forEach((run, k) => {
-      if (player.runs.length > 1) this.element.append(el("h3", {}, run.header.label));
-      if (run.header.notes.length === 0) this.element.append(el("p", { class: "empty" }, "No alarm, no warning, no note."));
-      else this.element.append(el("ol", {}, ...run.header.notes.slice(0, MOST_ITEMS).map((note) => this.item(note, k))));
-      const left = run.header.notes.length - MOST_ITEMS;
+    player.on("grown", () => this.renew());
+    this.renew();
+  }
+
+  /** Number of all notes. */
+  get count(): number {
+    return this.shown.reduce((sum, list) => sum + list.length, 0);
+  }
+
+  private renew(): void {
+    const notes = this.player.runs.map((run) => run.notes);
+    if (notes.every((list, k) => list === this.shown[k])) return;
+    this.shown = notes;
+    this.element.replaceChildren();
+    this.player.runs.forEach((run, k) => {
+      if (this.player.runs.length > 1) this.element.append(el("h3", {}, run.header.label));
+      if (run.notes.length === 0) this.element.append(el("p", { class: "empty" }, "No alarm, no warning, no note."));
+      else this.element.append(el("ol", {}, ...run.notes.slice(0, MOST_ITEMS).map((note) => this.item(note, k))));
+      const left = run.notes.length - MOST_ITEMS;
       if (left > 0) this.element.append(el("p", { class: "empty" }, `${left} more are not listed.`));
     });
   }

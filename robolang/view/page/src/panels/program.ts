@@ -15,6 +15,8 @@ export class ProgramText {
   private readonly player: Player;
   private readonly lines: readonly string[];
   private readonly notes = new Map<number, Note[]>();
+  /** The list that `notes` sorts by lines. */
+  private noted: readonly Note[] = [];
   private readonly rows = new Map<number, HTMLElement>();
   private readonly rowHeight = 22;
   private height = 0;
@@ -26,11 +28,11 @@ export class ProgramText {
   /** Seconds of the line that took longest: the scale of the bars. */
   private longest = 0;
 
-  constructor(player: Player, text: string, notes: readonly Note[]) {
+  constructor(player: Player, text: string) {
     this.player = player;
     this.lines = text.replace(/\r?\n$/, "").split(/\r?\n/);
     this.whole = this.lines.length <= MOST_ROWS;
-    for (const note of notes) if (note.line !== null) this.notes.set(note.line, [...(this.notes.get(note.line) ?? []), note]);
+    this.sortNotes();
     this.measure();
     this.element.append(this.list);
     this.element.addEventListener("scroll", () => this.window());
@@ -83,7 +85,7 @@ export class ProgramText {
   /** A run that still goes on has executed more: the rows of its lines are made anew, but for one that is in use. */
   private renew(): void {
     this.measure();
-    for (const line of this.player.first.statements.byLine.keys()) {
+    for (const line of new Set([...this.sortNotes(), ...this.player.first.statements.byLine.keys()])) {
       const old = this.rows.get(line);
       if (!old || old === document.activeElement) continue;
       const made = this.row(line);
@@ -142,6 +144,17 @@ export class ProgramText {
       side.append(el("span", { class: "spent" }, seconds(spent, 2), share));
     }
     return row;
+  }
+
+  /** Sort the notes by their lines; returns the lines that had one or have one now, none where the list is the same. */
+  private sortNotes(): readonly number[] {
+    const { notes } = this.player.first;
+    if (notes === this.noted) return [];
+    this.noted = notes;
+    const before = [...this.notes.keys()];
+    this.notes.clear();
+    for (const note of notes) if (note.line !== null) this.notes.set(note.line, [...(this.notes.get(note.line) ?? []), note]);
+    return [...before, ...this.notes.keys()];
   }
 
   private worst(line: number): Note | undefined {

@@ -3,7 +3,6 @@ import { el } from "../dom";
 export interface Tab {
   readonly id: string;
   readonly name: string;
-  readonly count?: number;
   readonly content: HTMLElement;
 }
 
@@ -36,9 +35,15 @@ export class Tabs {
     });
   }
 
+  /** Write a number beside the name of a tab; 0: none. */
+  count(id: string, count: number): void {
+    const head = this.heads.find((made) => made.id === `head-${id}`);
+    head?.querySelector(".badge")?.remove();
+    if (count > 0) head?.append(el("span", { class: "badge" }, String(count)));
+  }
+
   private head(tab: Tab): HTMLButtonElement {
     const made = el("button", { type: "button", role: "tab", id: `head-${tab.id}`, "aria-controls": `tab-${tab.id}`, "data-testid": `tab-${tab.id}` }, tab.name);
-    if (tab.count) made.append(el("span", { class: "badge" }, String(tab.count)));
     made.addEventListener("click", () => this.show(tab.id));
     return made;
   }

@@ -119,7 +119,7 @@ export class Timeline {
     }
     const crowded = instants.length > MOST_PINS;
     for (const draw of instants) draw(crowded);
-    for (const note of run.header.notes) this.note(pen, note, top);
+    for (const note of run.notes) this.note(pen, note, top);
   }
 
   private block(pen: CanvasRenderingContext2D, one: Statement, from: number, to: number, top: number, lit: boolean): void {
