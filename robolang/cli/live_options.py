@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from robolang.cli.options import Group, Option
 from robolang.cli.output import echo
+from robolang.cli.signals import handled
 
 if TYPE_CHECKING:
     from robolang.execution.session import RunResult, Session
@@ -28,13 +29,14 @@ class FollowOptions(PageOptions):
     view: Annotated[bool, Option("--view", help="Follow the run in a browser.")] = False
 
 
-def announce(url: str, options: PageOptions) -> bool:
-    """Print the address of the live page to stderr and open it; return whether a browser opens it."""
+def announce(url: str, options: PageOptions) -> None:
+    """Print the address of the live page to stderr, and open it in a browser if there is one."""
     from robolang.view.live import open_page
 
     # the only place where the token is shown
     echo(f"live view: {url}", err=True)
-    return not options.no_browser and open_page(url)
+    if not options.no_browser:
+        open_page(url)
 
 
 def pages_of(options: FollowOptions) -> "Live | None":
@@ -58,7 +60,30 @@ def followed(session: "Session", pages: "Live | None", options: FollowOptions) -
 
     driver = Driver(session, pages.exchange, pages.frames)
     with pages.serve(session) as url:
-        # a page that somebody opens by hand is not waited for: a script has nobody who could
-        if announce(url, options):
-            pages.wait_for_page()
+        announce(url, options)
+        _await(pages)
         yield lambda: session.run(driver.run_through)
+
+
+def remain(pages: "Live") -> None:
+    """Let the pages that are there show the end of their run until they are closed, or a signal ends that."""
+    from robolang.view.live import LAST_PAGE_S
+
+    if not pages.exchange.pages:
+        return
+    echo(
+        f"live view: the run is over; it ends with its pages, with Ctrl-C, or in {LAST_PAGE_S / 60:.0f} minutes",
+        err=True,
+    )
+    # the files are written and the result stands: a signal is no failure of the run
+    with handled(lambda number, frame: pages.leave()):
+        pages.remain()
+
+
+def _await(pages: "Live") -> None:
+    """Let a run begin when its first page is there, or when none comes."""
+    from robolang.view.live import FIRST_PAGE_S
+
+    echo(f"live view: the run begins with its first page, or without one in {FIRST_PAGE_S:.0f} s", err=True)
+    if not pages.wait_for_page():
+        echo("live view: no page has come, the run begins", err=True)

@@ -19,9 +19,13 @@ from robolang.view.packing import FORMAT
 from robolang.view.server import LiveServer
 from runtime.appearance.cell_scene import scene_of
 from runtime.control.clock import wall_s
+from runtime.core.faults import Fault
 
-FIRST_PAGE_S = 15.0
-"""How long a run that is followed waits for the browser to open its page, s."""
+FIRST_PAGE_S = 30.0
+"""How long a run that is followed waits for its first page, s."""
+LAST_PAGE_S = 600.0
+"""How long pages are shown the end of a run, s."""
+IDLE_S = 0.1
 
 
 class Live:
@@ -33,6 +37,7 @@ class Live:
         self.frames = Frames(self.exchange)
         self._page, self._port = page, port
         self._session: Session | None = None
+        self._left = False
 
     @contextmanager
     def serve(self, session: Session) -> Iterator[str]:
@@ -72,11 +77,32 @@ class Live:
         self.exchange.begun.settle(story.begun)
         self.exchange.notify()
 
-    def wait_for_page(self) -> None:
-        """Wait for the first page, for ``FIRST_PAGE_S`` at most: a run may be over before a browser is there."""
+    def wait_for_page(self) -> bool:
+        """Wait for the first page, for ``FIRST_PAGE_S`` at most: a run may be over before a browser is there.
+
+        Return whether one has come.
+        """
         until = wall_s() + FIRST_PAGE_S
         while not self.exchange.pages and wall_s() < until:
-            self.exchange.wait(0.1)
+            self.exchange.wait(IDLE_S)
+        return bool(self.exchange.pages)
+
+    def remain(self) -> None:
+        """Show the end of a run until its pages are closed or ``leave``, for ``LAST_PAGE_S`` at most."""
+        until, facts = wall_s() + LAST_PAGE_S, self.frames.extra
+        self.frames.extra = lambda: {**facts(), "finished": True}
+        self.frames.show()
+        while self.exchange.pages and not self._left and wall_s() < until:
+            order = self.exchange.take()
+            if order is None:
+                self.exchange.wait(IDLE_S)
+            else:
+                self.exchange.reply(order.page, order.id, Fault("RBL836", "the run is over"))
+
+    def leave(self) -> None:
+        """End ``remain``; safe to call from a signal handler."""
+        self._left = True
+        self.exchange.wake()
 
 
 def header_of(session: Session) -> dict[str, Any]:

@@ -8,13 +8,13 @@ import signal
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from robolang.cli.controller_settings import settings_of
 from robolang.cli.errors import DIAGNOSTICS, MOTION, STORAGE, reported, say
-from robolang.cli.live_options import FollowOptions, followed, pages_of
+from robolang.cli.live_options import FollowOptions, followed, pages_of, remain
 from robolang.cli.options import CellOptions, Group, Option, Program, RunControllerOptions, SimulationOptions, Strict
 from robolang.cli.output import echo
 from robolang.cli.outputs import check_outputs
@@ -82,12 +82,12 @@ def run(
 
             plans = PlanMemory(project)
             accepted = refuse(project, warnings=output.warnings, plans=plans)
-        result, code = _run(project, plans, accepted.steps, simulation, output, follow)
-        if not output.quiet:
-            from robolang.cli.run_table import print_result
+        with _ran(project, plans, accepted.steps, simulation, output, follow) as (result, code):
+            if not output.quiet:
+                from robolang.cli.run_table import print_result
 
-            print_result(result.report)
-        _print_alarms(project, result, warnings=output.warnings)
+                print_result(result.report)
+            _print_alarms(project, result, warnings=output.warnings)
     # a file that is lost or a signal says more than the alarm, which is printed in any case
     code = code or _code_of(result)
     if not code and output.strict and (accepted.warned or result.warnings):
@@ -96,33 +96,43 @@ def run(
         raise SystemExit(code)
 
 
-def _run(
+@contextmanager
+def _ran(
     project: "Project",
     plans: "PlanMemory",
     steps: "tuple[PlannedStep, ...]",
     simulation: SimulationOptions,
     output: _OutputOptions,
     follow: FollowOptions,
-) -> "tuple[RunResult, int]":
-    """Run the program and write its files; return the result, and the exit code of a file or a signal, or 0."""
+) -> "Iterator[tuple[RunResult, int]]":
+    """Run the program and write its files; yield the result, and the exit code of a file or a signal, or 0.
+
+    Pages of a live view that are still there then show the end of the run.
+    """
     from robolang.cli.run_progress import shown
     from robolang.execution.observer import Observers
     from robolang.execution.session import Session
 
     pages = pages_of(follow)
-    with shown(output.quiet, steps) as progress:
-        physics, realtime = not simulation.no_physics, simulation.realtime
-        observer = progress if pages is None else Observers(progress, pages.frames)
-        # old rows beside the log or the page, where there must be room anyway; a live page may ask for them, too
-        beside = output.log or output.html
-        kept = pages is not None if beside is None else beside.absolute().parent
-        session = Session(project, physics=physics, realtime=realtime, observer=observer, plans=plans, log=kept)
-        progress.follow(session.controller)
-        # until the files are written: a signal must not cut them off
-        with followed(session, pages, follow) as run_session, _signals(session) as stopped:
-            result = run_session()
-            code = _write(result, output)
-    return result, code or (128 + stopped[0] if stopped else 0)
+    with ExitStack() as serving:
+        with shown(output.quiet, steps) as progress:
+            observer = progress if pages is None else Observers(progress, pages.frames)
+            # old rows beside the log or the page, where there must be room anyway; a live page may ask for them, too
+            beside = output.log or output.html
+            kept = pages is not None if beside is None else beside.absolute().parent
+            physics, realtime = not simulation.no_physics, simulation.realtime
+            session = Session(project, physics=physics, realtime=realtime, observer=observer, plans=plans, log=kept)
+            progress.follow(session.controller)
+            # a page is waited for
+            with handled(_left_before_motion):
+                run_session = serving.enter_context(followed(session, pages, follow))
+            # until the files are written: a signal must not cut them off
+            with _signals(session) as stopped:
+                result = run_session()
+                code = _write(result, output)
+        yield result, code or (128 + stopped[0] if stopped else 0)
+        if pages is not None and not stopped:
+            remain(pages)
 
 
 def _check_outputs(program: str, files: CellOptions, output: _OutputOptions) -> None:

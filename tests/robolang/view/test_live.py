@@ -132,7 +132,7 @@ def test_a_page_that_comes_late_gets_the_whole_story(program):
         session.run(Driver(session, live.exchange, live.frames).run_through)
         with as_page(url) as page:
             found = texts(page, is_status(state="done"))
-    assert [each["kind"] for each in found] == ["hello", "statements", "status"]
+    assert [each["kind"] for each in found] == ["hello", "statements", "notes", "status"]
     assert len(found[1]["rows"]) == 9
 
 
@@ -216,6 +216,17 @@ def test_a_signal_in_motion_brings_the_arm_to_rest(program):
 def test_run_is_followed_and_ends_by_itself(program, tmp_path):
     log = tmp_path / "a.npz"
     with command("run", program, "--no-physics", "--view", "--no-browser", "--log", log) as started:
+        # the page is there from the start, and after the end
+        with as_page(started.url) as page:
+            found = texts(page, is_status(finished=True))
+            assert [row["line"] for each in found if each["kind"] == "statements" for row in each["rows"]] == [
+                *[2, 3] * 4,
+                5,
+            ]
+            assert log.exists()
+            assert started.process.poll() is None
+            page.send(json.dumps({"do": "start", "id": 1}))
+            assert texts(page, lambda message: message["kind"] == "reply")[-1]["code"] == "RBL836"
         started.process.communicate(timeout=HANG_S)
         assert started.process.returncode == 0
     plain = tmp_path / "b.npz"
@@ -231,8 +242,25 @@ def test_a_page_may_pause_and_stop_a_run_that_it_follows(program):
         page.send(json.dumps({"do": "pause", "id": 1}))
         texts(page, is_status(state="paused"))
         page.send(json.dumps({"do": "stop", "id": 2}))
-        texts(page, is_status(state="stopped"))
+        texts(page, is_status(state="stopped", finished=True))
+        # it is shown until the end is asked for
+        started.process.send_signal(signal.SIGINT)
         assert started.process.wait(HANG_S) == 3
+
+
+def test_a_signal_ends_the_wait_for_a_page(program):
+    with command("run", program, "--no-physics", "--view", "--no-browser") as started:
+        started.process.send_signal(signal.SIGTERM)
+        assert started.process.wait(HANG_S) == 143
+
+
+def test_a_run_begins_without_a_page_where_none_comes(program, monkeypatch):
+    monkeypatch.setattr("robolang.view.live.FIRST_PAGE_S", 0.0)
+    with live_of(program) as (live, _, url):
+        assert not live.wait_for_page()
+        with as_page(url) as page:
+            texts(page, is_status(state="running"))
+            assert live.wait_for_page()
 
 
 def reply_to(number):

@@ -1,6 +1,7 @@
 """The live page in a browser: what it sends when buttons are pressed and released, and what the arm does then."""
 
 import json
+import math
 import subprocess
 import sys
 from contextlib import contextmanager, suppress
@@ -171,6 +172,54 @@ def test_an_alarm_is_shown_until_it_is_acknowledged_and_stays_in_the_notes(brows
         live["reset"].click()
         live.page.wait_for_selector("[data-testid=problem]:empty", state="attached", timeout=PATIENCE_MS)
         assert live.page.locator(flag).count() == 1
+
+
+SQUEEZED = """() => [...document.querySelectorAll(".chip")].filter(
+  (chip) => chip.scrollWidth > chip.clientWidth + 1 || chip.querySelector(".name").scrollWidth > 110
+).map((chip) => chip.innerText)"""
+
+
+def test_a_page_that_comes_late_shows_nothing_for_the_time_before(browser, program):
+    with viewed(browser, program, "--speed", "5") as (live, url, _):
+        live.waits_for("Paused")
+        live["start"].click()
+        live.run_is("done")
+        # before the charts have grown once more
+        live.page.wait_for_timeout(500)
+        assert live.page.evaluate(SQUEEZED) == []
+        assert live["unknown"].is_hidden()
+        late = LivePage(browser, url)
+        late.page.wait_for_selector("[data-testid=chart] output:not(:has-text('–'))", timeout=PATIENCE_MS)
+        slider = late.page.evaluate("(({ value, max }) => [value, max])(document.querySelector('[data-testid=scrub]'))")
+        assert float(slider[0]) > 0 and slider[0] == slider[1]
+        assert "following" in late.page.get_attribute("#app", "class")
+        late.page.evaluate("robolang.seek(0.01)")
+        assert late["unknown"].is_visible()
+        assert "following" not in late.page.get_attribute("#app", "class")
+        late.page.wait_for_selector("[data-testid=chart] output:has-text('–')", timeout=PATIENCE_MS)
+        late["tab-joints"].click()
+        assert set(late.page.locator(".joint .value").all_inner_texts()) == {"–"}
+        late.page.evaluate("robolang.seek(1e9)")
+        assert late["unknown"].is_hidden()
+        assert all("–" not in text for text in late.page.locator(".joint .value").all_inner_texts())
+
+
+ADD = """(times) => {
+  const [run] = robolang.runs;
+  const filled = (t) => new Map([...run.signals].map(([name, { columns }]) => [name, columns.map(() => t)]));
+  for (const t of times) run.add({ t, values: filled(t) });
+}"""
+
+
+def test_frames_far_apart_are_not_joined(live):
+    page, _, _ = live
+    page.page.evaluate(ADD, [1.0, 1.05, 2.0, 2.05, 2.1])
+    times = [0.5, 1.02, 1.5, 1.9, 2.03]
+    q = page.page.evaluate("(times) => times.map((t) => robolang.runs[0].signals.get('q_link').at(0, t))", times)
+    assert q == pytest.approx([math.nan, 1.02, math.nan, math.nan, 2.03], abs=0.02, nan_ok=True)
+    known = page.page.evaluate("(times) => times.map((t) => robolang.runs[0].recorded(t))", times)
+    # the last frame before each
+    assert known == pytest.approx([0.0, 1.02, 1.05, 1.05, 2.03], abs=0.02)
 
 
 def test_a_step_goes_to_the_next_line(live):

@@ -23,16 +23,17 @@ export class Signal {
     return Math.max(0, Math.min(this.rows - 1, Math.floor((t - this.t0) / this.dt + 1e-6)));
   }
 
-  /** Whether the signal still has rows at a time; the shorter of two runs ends before the other. */
+  /** Whether the signal has rows at a time: the shorter of two runs ends before the other, a live page may join late. */
   covers(t: number): boolean {
-    return t <= this.t0 + this.rows * this.dt + 1e-6;
+    return t >= this.t0 - this.dt - 1e-6 && t <= this.t0 + this.rows * this.dt + 1e-6;
   }
 
   /** Number of the row before a time, and the share of the next one: 0 at the last row. */
   between(t: number): readonly [row: number, share: number] {
     const x = Math.max(0, Math.min(this.rows - 1, (t - this.t0) / this.dt));
-    const row = Math.floor(x);
-    return [row, x - row];
+    // A time that is that of a row belongs to it, and not to the row before, which may have no value.
+    const row = Math.floor(x + 1e-6);
+    return [row, Math.max(0, x - row)];
   }
 
   /** Value of a column at a time, between two rows where both have one. */
@@ -107,6 +108,11 @@ export class Run {
   /** What a page says of the rows that it does not have; empty: it has all. */
   get thinned(): string {
     return this.header.thinned?.text ?? "";
+  }
+
+  /** The time of the newest row that is known at a time; before the first row, the time of that. What has ended is known whole. */
+  recorded(t: number): number {
+    return t;
   }
 
   /** The curve of a series, null where the run does not have its signal. */

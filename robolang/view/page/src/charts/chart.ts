@@ -10,10 +10,13 @@ import { drawBand, drawNames, drawNotes, NAME_LETTERS } from "./drawing";
 const HEIGHT = 136;
 const LANE = 20;
 const COLOURS = 8;
-/** Digits after the point that a unit is worth, however far a chart is zoomed in. */
+/** Digits after the point that a unit is worth: always so many, so that nothing moves when the values change. */
 const DIGITS: Readonly<Record<string, number>> = { deg: 2, mm: 3, mdeg: 1, "µm": 1, "mm/s": 1, "deg/s": 1, "% of limit": 1, "N m": 2, N: 1, kg: 2, ms: 1 };
-/** Values of so many letters stand in three columns, shorter ones in six. */
-const LONG_VALUE = 6;
+/** Width of a digit and of a letter over a chart, of what stands around them, and the most that a name gets, px. */
+const DIGIT = 6.6;
+const LETTER = 7;
+const AROUND = 26;
+const MOST_NAME = 110;
 /** Playing, the values over a chart change this often at most: no eye reads faster. */
 const VALUE_MS = 120;
 /** A click within this time after a drag belongs to the drag. */
@@ -26,6 +29,7 @@ export class Chart {
   visible = false;
   private readonly player: Player;
   private readonly box: HTMLElement;
+  private readonly list: HTMLElement;
   private readonly playhead = el("div", { class: "playhead", "aria-hidden": "true" });
   /** Where the value of each series is written. */
   private readonly values = new Map<SeriesHead, HTMLElement>();
@@ -35,6 +39,8 @@ export class Chart {
   private whole = false;
   private plot: uPlot | null = null;
   private width = 0;
+  /** Letters of the longest value so far. */
+  private letters = 0;
   private paperWidth: number | null = null;
   private stale = true;
   private dragged = -Infinity;
@@ -45,7 +51,7 @@ export class Chart {
     this.head = head;
     this.box = el("div", { class: "plot" });
     this.box.style.height = `${this.height}px`;
-    const values = el("div", { class: "values", role: "group", "aria-label": `Curves of ${head.title}` });
+    const values = (this.list = el("div", { class: "values", role: "group", "aria-label": `Curves of ${head.title}` }));
     const title = el("h3", { id: `chart-${head.id}` }, head.title, el("span", { class: "unit" }, [head.unit, player.first.header.kind === "live" ? "sampled" : ""].filter(Boolean).join(", ")));
     this.element = el("section", { class: "chart", "data-testid": "chart", "data-signal": head.id, "aria-labelledby": `chart-${head.id}` }, el("header", {}, title, values), this.box);
     const colours = coloursOf(head.series);
@@ -53,7 +59,6 @@ export class Chart {
       if (!follows(series.role)) values.append(this.chip(series, colours[k] ?? 0, k));
     });
     this.element.classList.toggle("single", this.values.size === 1);
-    this.element.classList.toggle("long", head.series.some((series) => !follows(series.role) && series.label.length > 4));
     for (const role of ["command", "limit"] as const) if (head.series.some((series) => series.role === role)) title.after(legendKey(role));
     new ResizeObserver(() => this.resize()).observe(this.box);
   }
@@ -112,9 +117,19 @@ export class Chart {
   private laidOut(plot: uPlot): void {
     this.width = plot.bbox.width / uPlot.pxRatio;
     const { min, max } = plot.scales.y ?? {};
-    const letters = Math.max(...[min ?? 0, max ?? 0].map((y) => fixed(y, this.digits).length));
-    this.element.classList.toggle("wide", this.player.runs.length > 1 || letters >= LONG_VALUE || this.curves().some(({ curve }) => curve.signal.paired));
+    this.letters = Math.max(this.letters, ...[min ?? 0, max ?? 0].map((y) => fixed(y, this.digits).length));
+    this.list.style.setProperty("--columns", String(this.columns));
     this.paint(Infinity);
+  }
+
+  /** Values in one row: as many as have room for their names and digits, in rows of nearly one length. */
+  private get columns(): number {
+    const count = this.values.size;
+    const name = Math.max(...[...this.values.keys()].map((series) => LETTER * series.label.length));
+    const texts = this.player.runs.length * (this.curves().some(({ curve }) => curve.signal.paired) ? 2 : 1);
+    const width = AROUND + Math.min(MOST_NAME, name) + DIGIT * (texts * (this.letters + 3) - 3);
+    const fits = Math.max(1, Math.floor(this.available / width));
+    return Math.ceil(count / Math.ceil(count / fits));
   }
 
   private place(): void {
@@ -131,13 +146,9 @@ export class Chart {
     return texts.join(" | ") || "–";
   }
 
-  /** Digits after the point, so that a value shows some three hundredth parts of the height of the plot. */
   private get digits(): number {
     if (this.head.lanes || this.whole) return 0;
-    const { min, max } = this.plot?.scales.y ?? {};
-    const span = (max ?? 1) - (min ?? 0);
-    const fine = span > 0 ? Math.max(0, Math.ceil(2.6 - Math.log10(span))) : 2;
-    return Math.min(fine, DIGITS[this.head.unit] ?? 3);
+    return DIGITS[this.head.unit] ?? 3;
   }
 
   private curves(): readonly Line[] {
@@ -207,7 +218,7 @@ export class Chart {
     const letters = Math.max(...names.map((name) => name.length));
     const upright: uPlot.Axis = lanes
       ? { ...axis, size: Math.min(150, 14 + 6.5 * letters), splits: names.map((_, k) => k + 0.35), values: () => [...names].reverse() }
-      : { ...axis, size: 50, gap: 4, space: 26, ...(this.whole ? { incrs: [1, 2, 5, 10, 100] } : {}) };
+      : { ...axis, size: 50, gap: 4, space: 26, values: (_, ticks, __, ___, step) => ticks.map((y) => fixed(y, digitsOf(step))), ...(this.whole ? { incrs: [1, 2, 5, 10, 100] } : {}) };
     return {
       width: this.available,
       height: this.height,
@@ -241,7 +252,7 @@ export class Chart {
       show: !this.hidden.has(k),
       stroke: token(line.head.role === "limit" ? "--limit" : `--curve-${line.colour % COLOURS}`),
       width: line.run > 0 || line.head.role === "command" ? 1.1 : 1.6,
-      points: { show: false },
+      points: { show: false, size: 4, filter: (plot, k) => isolated(plot.data[k] ?? []) },
     };
     const dash = dashOf(line);
     if (dash) made.dash = dash;
@@ -257,8 +268,8 @@ export class Chart {
     const [under, over] = this.head.band ?? [NaN, NaN];
     if (low < 0.6 * under) low = Math.min(low, under);
     if (high > 0.6 * over) high = Math.max(high, over);
-    // Noise in the last digits of a constant is not worth an axis of its own.
-    const least = 2e-3 * Math.max(Math.abs(low), Math.abs(high), 1e-6);
+    // Noise in the last digits of a constant is not worth an axis of its own, nor is less than a value shows.
+    const least = Math.max(2e-3 * Math.max(Math.abs(low), Math.abs(high)), this.whole ? 0.05 : 2.5 * 10 ** -this.digits);
     const margin = Math.max(0.06 * (high - low), least);
     return [low >= 0 && low - margin < 0 ? Math.min(0, low) : low - margin, high + margin];
   }
@@ -284,6 +295,21 @@ function valueText({ signal, values }: Curve, t: number, digits: number): string
   if (!signal.covers(t)) return fixed(NaN, digits);
   const [least, most] = signal.range(values, t).map((value) => fixed(value, digits));
   return least === most ? (least ?? "") : `${least} .. ${most}`;
+}
+
+/** Indices of values without a neighbour: no line shows them. */
+function isolated(values: ArrayLike<number | null | undefined>): number[] {
+  const alone: number[] = [];
+  for (let k = 0; k < values.length; k++) if (values[k] != null && values[k - 1] == null && values[k + 1] == null) alone.push(k);
+  return alone;
+}
+
+/** Digits after the point that the marks of an axis need to differ. */
+function digitsOf(step: number): number {
+  let digits = Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
+  // A quarter has a digit more than a tenth.
+  while (digits < 9 && Math.abs(step * 10 ** digits - Math.round(step * 10 ** digits)) > 1e-6) digits += 1;
+  return digits;
 }
 
 /** What the dotted or dashed lines of a chart are. */

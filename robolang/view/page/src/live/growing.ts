@@ -6,6 +6,8 @@ import type { Began, Hello } from "./messages";
 
 /** Seconds between two rows; frames come at times of their own and are brought to this grid. */
 const GRID_S = 0.016;
+/** Frames further apart than this say nothing of the time between them: there is no row, and no curve is drawn. */
+const GAP_S = 0.1;
 /** About half an hour; of a longer run every second row is kept, then every fourth. */
 const MOST_ROWS = 120_000;
 
@@ -34,10 +36,15 @@ export class GrowingRun extends Run {
   add(frame: Frame): void {
     const first = this.any;
     if (!first) return;
-    if (this.before === null) for (const signal of this.growing.values()) signal.t0 = frame.t;
-    else if (frame.t < this.before.t) this.takeBack(frame.t);
-    if (this.ahead) this.cut(first.rows - 1);
-    for (let t = this.next; t < frame.t - 1e-9; t = this.next) this.append(this.between(frame, t));
+    if (this.before !== null && frame.t < this.before.t) this.takeBack(frame.t);
+    if (first.rows === 0) for (const signal of this.growing.values()) signal.t0 = frame.t;
+    const gap = this.before !== null && frame.t - this.before.t > Math.max(GAP_S, 2 * first.dt);
+    // Before a gap the newest row stays a little ahead of its time: it is the only one of its frame.
+    if (this.ahead && !gap) this.cut(first.rows - 1);
+    for (let t = this.next; t < frame.t - 1e-9; t = this.next) {
+      this.append(gap ? () => [] : this.between(frame, t));
+      if (first.rows > MOST_ROWS) this.halve();
+    }
     // The newest row stands at its place on the grid or a little before it, so that what rests is shown as it rests.
     this.ahead = this.next > frame.t + 1e-9;
     this.append((name) => valuesOf(frame, name));
@@ -56,6 +63,17 @@ export class GrowingRun extends Run {
   /** Let the running statement last until now. */
   stretch(): void {
     this.statements = new Statements(this.lasting(this.statements.all));
+  }
+
+  override recorded(t: number): number {
+    const signal = this.any;
+    const values = signal?.columns[0];
+    if (!signal || !values || signal.rows === 0) return t;
+    if (t < signal.t0) return signal.t0;
+    let row = signal.row(t);
+    if (!Number.isNaN(values[row] ?? NaN)) return t;
+    while (row > 0 && Number.isNaN(values[row] ?? NaN)) row -= 1;
+    return signal.t0 + row * signal.dt;
   }
 
   override get thinned(): string {

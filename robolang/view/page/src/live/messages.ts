@@ -28,6 +28,8 @@ export interface Status {
   readonly state: "starting" | "running" | "paused" | "waiting" | "stopped" | "done" | "alarm";
   readonly doing?: "nothing" | "program" | "jog" | "return";
   readonly over?: boolean;
+  /** The run is over, and nothing is carried out any more. */
+  readonly finished?: boolean;
   readonly next?: number | null;
   readonly alarm?: Alarm | null;
   readonly fault?: string | null;

@@ -40,7 +40,7 @@ export class RunPanel {
       step: button("Step", "Carry out one statement", send("step"), { "data-testid": "step" }),
       stop: button("Stop", "Stop the arm and end the program", send("stop"), { "data-testid": "stop" }),
       reset: button("Reset", "Acknowledge the alarm", send("reset"), { "data-testid": "reset" }),
-      restart: button("Restart", "Put the program before its first statement", send("restart"), { "data-testid": "restart" }),
+      restart: button("Restart", "Put the program before its first statement. Arm, parts, signals and time stay as they are; to begin with a new cell, end the command and give it again.", send("restart"), { "data-testid": "restart" }),
       end: button("End", "End robolang view", send("end"), { "data-testid": "end" }),
     };
     this.pace = select("Simulated seconds in one of wall time", PACES.map((each) => [each, `${each} × real time`] as const), 1, (factor) => this.send("pace", { factor }));
@@ -83,6 +83,7 @@ export class RunPanel {
     if (status.pace && this.pace.value !== String(status.pace)) this.pace.value = String(status.pace);
     this.showSignals(status);
     this.showControl(status);
+    if (status.finished) this.end("The run is over. Its command ends when this page is closed.");
   }
 
   print(text: string): void {

@@ -31,6 +31,8 @@ export class SocketSource implements Source {
   private viewer: Viewer | null = null;
   private grown = 0;
   private drawn = 0;
+  /** The timer that lets the charts grow once more after the last frame. */
+  private due = 0;
   /** Whether the page shows the newest instant; scrubbing back ends that, and the end of the time line begins it again. */
   private following = true;
   private moving = false;
@@ -58,6 +60,7 @@ export class SocketSource implements Source {
     host?.append(this.panel.element, ...(this.pendant ? [this.pendant.element] : []));
     viewer.player.on("time", () => {
       if (!this.moving) this.following = viewer.player.t >= viewer.player.end - NEAR_S;
+      host?.classList.toggle("following", this.following);
     });
     this.connection.message = (message) => this.take(message);
     this.connection.frame = (bytes) => this.frame(bytes);
@@ -122,6 +125,8 @@ export class SocketSource implements Source {
     run.add(frame);
     viewer.player.extend();
     if (performance.now() - this.grown > GROWS_MS) this.grow();
+    // No frame may come after this one.
+    else if (this.due === 0) this.due = setTimeout(() => this.grow(), GROWS_MS);
     if (this.following) this.show(run.end);
   }
 
@@ -132,6 +137,8 @@ export class SocketSource implements Source {
   }
 
   private grow(): void {
+    clearTimeout(this.due);
+    this.due = 0;
     this.grown = performance.now();
     this.run?.stretch();
     this.viewer?.grew();

@@ -26,8 +26,10 @@ export class Joints {
   paint(): void {
     const q = this.player.first.signals.get("q_link");
     if (!q) return;
+    const { t, first } = this.player;
+    const known = first.recorded(t) === t;
     this.rows.forEach(({ head, mark, value }, k) => {
-      const now = q.at(k, this.player.t) * (FACTOR[head.unit] ?? 1);
+      const now = (known ? q.at(k, t) : NaN) * (FACTOR[head.unit] ?? 1);
       value.textContent = Number.isFinite(now) ? `${now.toFixed(2)} ${head.unit}` : "–";
       if (head.lower === null || head.upper === null) return;
       const share = Math.max(0, Math.min(1, (now - head.lower) / (head.upper - head.lower)));

@@ -1,5 +1,5 @@
 import { button, el, select } from "../dom";
-import { number } from "../format";
+import { number, seconds } from "../format";
 import type { Player } from "../player";
 import { type View, VIEWS } from "../scene/camera";
 import { FINE, PLAIN, View3D } from "../scene/view3d";
@@ -17,12 +17,13 @@ export class Stage {
   private readonly snapshot = el("img", { class: "snapshot paper", alt: "The robot at the shown time" });
   /** The error of the last colour of the path. */
   private readonly most = el("small", {});
+  private readonly unknown = el("p", { class: "unknown", role: "status", hidden: true, "data-testid": "unknown" });
   private scale: HTMLSelectElement | null = null;
   private labelled: HTMLInputElement | null = null;
 
   constructor(player: Player) {
     this.player = player;
-    this.element.append(this.now);
+    this.element.append(this.now, this.unknown);
     if (player.runs.length > 1) for (const [k, run] of player.runs.entries()) this.element.append(el("p", { class: `who side-${k}` }, run.header.label));
     player.on("time", () => this.paint());
     this.paint();
@@ -78,7 +79,12 @@ export class Stage {
   }
 
   private paint(): void {
-    this.view?.pose(this.player.t);
+    const { t, first } = this.player;
+    const known = first.recorded(t);
+    this.view?.pose(known);
+    this.element.classList.toggle("dim", known !== t);
+    this.unknown.hidden = known === t;
+    this.unknown.textContent = known === t ? "" : `Not recorded here. The robot stands as at ${seconds(known)}.`;
     const one = this.player.first.statements.all[this.player.statement];
     const text = one ? named(one) : "";
     if (this.now.textContent !== text) this.now.textContent = text;

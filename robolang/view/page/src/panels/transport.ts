@@ -21,14 +21,19 @@ export class Transport {
     const on = button("", "Next statement (Page down)", () => this.statement(1), { class: "icon next" });
     this.speed = select("Speed", SPEEDS.map((rate) => [rate, `${rate} ×`] as const), 1, (rate) => (player.rate = rate));
     this.whole = button("Whole run", "Show the whole run in timeline and charts (Z)", () => player.zoom(), { class: "whole", "data-testid": "whole" });
+    // Beside the buttons that move the arm: these only show again what was.
+    if (player.first.header.kind === "live") {
+      this.element.setAttribute("aria-label", "Replay");
+      this.element.append(el("b", { class: "called" }, "Replay"));
+    }
     this.element.append(back, this.toggle, on, this.speed, this.slider, this.clock, this.whole);
     this.slider.addEventListener("input", () => player.seek(Number(this.slider.value)));
     player.on("time", () => this.paint());
-    player.on("grown", () => this.sized());
+    player.on("grown", () => this.paint());
     player.on("range", () => (this.whole.disabled = !player.zoomed));
     player.on("playing", () => this.playing());
     this.whole.disabled = true;
-    this.sized();
+    this.paint();
     this.playing();
   }
 
@@ -53,14 +58,11 @@ export class Transport {
 
   paint(): void {
     const { t, end } = this.player;
+    // Before the value, which a slider keeps inside its range; the end of a run that goes on moves with it.
+    if (Number(this.slider.max) !== end) this.slider.max = String(end);
     this.slider.value = String(t);
     this.slider.setAttribute("aria-valuetext", seconds(t));
     this.clock.textContent = `${t.toFixed(3)} / ${seconds(end)}`;
-  }
-
-  private sized(): void {
-    this.slider.max = String(this.player.end);
-    this.paint();
   }
 
   private playing(): void {

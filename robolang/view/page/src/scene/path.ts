@@ -1,7 +1,7 @@
 import { Color, Vector3 } from "three";
-import { Line2 } from "three/examples/jsm/lines/Line2.js";
-import { LineGeometry } from "three/examples/jsm/lines/LineGeometry.js";
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
+import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
+import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeometry.js";
 import { token } from "../dom";
 import type { Run } from "../run";
 
@@ -12,7 +12,7 @@ const CORNER_COS = Math.cos((8 * Math.PI) / 180);
 
 /** The path of the tool point, coloured by its error; the error can be drawn larger than it was. */
 export class ToolPath {
-  readonly line: Line2;
+  readonly line: LineSegments2;
   private readonly run: Run;
   private truth: readonly Float32Array[];
   private samples: readonly number[];
@@ -22,7 +22,7 @@ export class ToolPath {
     this.run = run;
     this.truth = truth;
     this.samples = thinPath(truth, MOST_POINTS);
-    this.line = new Line2(new LineGeometry(), new LineMaterial({ linewidth: 3.5, vertexColors: true }));
+    this.line = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({ linewidth: 3.5, vertexColors: true }));
   }
 
   /** Take the rows there are now, of a run that still goes on. */
@@ -57,20 +57,29 @@ export class ToolPath {
       before = t;
     });
     this.line.geometry.dispose();
-    this.line.geometry = new LineGeometry();
-    if (this.samples.length < 2) return;
-    this.line.geometry.setPositions(places);
-    this.line.geometry.setColors(colours);
+    this.line.geometry = new LineSegmentsGeometry();
+    const starts = this.samples.flatMap((row, k) => (k > 0 && !this.broken(this.samples[k - 1] ?? row, row) ? [k - 1] : []));
+    if (starts.length === 0) return;
+    this.line.geometry.setPositions(starts.flatMap((k) => places.slice(3 * k, 3 * k + 6)));
+    this.line.geometry.setColors(starts.flatMap((k) => colours.slice(3 * k, 3 * k + 6)));
+  }
+
+  /** Whether the path has a gap between two rows. */
+  private broken(from: number, to: number): boolean {
+    for (let row = from + 1; row < to; row++) if (missing(this.truth, row)) return true;
+    return false;
   }
 }
 
-/** Rows that keep the form of a path: evenly spaced along it, and its corners. */
+const missing = (xyz: readonly Float32Array[], row: number): boolean => Number.isNaN(xyz[0]?.[row] ?? NaN);
+
+/** Rows that keep the form of a path: evenly spaced along it, its corners, and both ends of each gap. */
 export function thinPath(xyz: readonly Float32Array[], most: number): number[] {
   const rows = xyz[0]?.length ?? 0;
   const point = (row: number, out: Vector3): Vector3 => out.set(xyz[0]?.[row] ?? 0, xyz[1]?.[row] ?? 0, xyz[2]?.[row] ?? 0);
   const [kept, here, ahead, before] = [new Vector3(), new Vector3(), new Vector3(), new Vector3()];
   let length = 0;
-  for (let row = 1; row < rows; row++) length += point(row - 1, kept).distanceTo(point(row, here));
+  for (let row = 1; row < rows; row++) length += point(row - 1, kept).distanceTo(point(row, here)) || 0;
   const spacing = Math.max(length / (0.75 * most), 1e-6);
   const out: number[] = [];
   point(0, kept);
@@ -78,7 +87,9 @@ export function thinPath(xyz: readonly Float32Array[], most: number): number[] {
     point(row, here);
     const gone = here.distanceTo(kept);
     const corner = gone > 0.2 * spacing && row + 1 < rows && turns(before.subVectors(here, kept), point(row + 1, ahead).sub(here));
-    if (row > 0 && row < rows - 1 && gone < spacing && !corner) continue;
+    if (missing(xyz, row)) continue;
+    const inside = row > 0 && row < rows - 1 && !missing(xyz, row - 1) && !missing(xyz, row + 1);
+    if (inside && gone < spacing && !corner) continue;
     out.push(row);
     kept.copy(here);
   }
