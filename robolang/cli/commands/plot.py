@@ -38,7 +38,7 @@ def plot(run: Run, selections: Selections, output: _PlotOptions) -> None:
     Angles are drawn in deg, lengths in mm. Exit codes: 0 done; 2 the log, a signal or an option cannot be used; 4 the
     file cannot be written.
     """
-    if output.begin is not None and output.end is not None and output.begin > output.end:
+    if output.begin is not None and output.end is not None and not output.begin <= output.end:
         raise OptionValueError("--from, --to", f"{output.begin:g} s is after {output.end:g} s")
     path = output.out or _beside(run, selections)
     if path.suffix not in _SUFFIXES:
