@@ -75,7 +75,7 @@ def test_one_tick_over_a_limit_is_found():
     robot, _ = jogged(JogRequest(axis="J4", amount=math.inf))
     assert broken(check(robot, [], False)) == set()
     out = np.array(robot.spec.upper[3] + 0.01 * DEG)
-    robot.recorder._block.commands[robot.recorder.tick - robot.recorder._block.tick - 1, 3] = out
+    robot.recorder._data.commands[robot.recorder.tick - robot.recorder._block.tick - 1, 3] = out
     assert "range" in broken(check(robot, [], False))
 
 

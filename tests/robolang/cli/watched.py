@@ -102,7 +102,8 @@ def watched(program: str, seed: str) -> list[tuple[str, str]]:
         def printed(self, text: str) -> None:
             printed.append(text)
 
-    session = Session(project, physics=False, observer=Printed())
+    # as robolang run without --log: a log that is kept would go into a temporary file
+    session = Session(project, physics=False, observer=Printed(), log=False)
     shown_by = vars(evaluator)
     plain = shown_by["shown"]
     if seed:
