@@ -66,13 +66,13 @@ def _payloads(stream: IO[bytes]) -> Iterator[tuple[int, bytes]]:
     if stream.read(len(_MAGIC)) != _MAGIC:
         raise ValueError("it does not begin as an MCAP file")
     while left > 0:
-        if left < _HEAD.size:
+        if not left >= _HEAD.size:
             raise ValueError("the file is cut off")
         code, length = _HEAD.unpack(stream.read(_HEAD.size))
         left -= _HEAD.size + length
         if not length <= MOST_RECORD:
             raise ValueError(f"a record of {length} bytes")
-        if left < 0:
+        if not left >= 0:
             raise ValueError("the file is cut off")
         yield code, stream.read(length)
     if stream.read() != _MAGIC:
