@@ -52,7 +52,9 @@ class Terminal:
         **environment: str,
     ) -> None:
         env = dict(os.environ, TERM="xterm-256color", XDG_STATE_HOME=str(folder / "state"))
-        env.pop("NO_COLOR", None)
+        # a size in the environment, which workers of the tests have, would hide that of this terminal
+        for name in ("NO_COLOR", "COLUMNS", "LINES"):
+            env.pop(name, None)
         self.process = pexpect.spawn(
             COMMAND,
             [command, *([] if physics else ["--no-physics"]), *arguments],

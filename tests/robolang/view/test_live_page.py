@@ -251,10 +251,13 @@ def held(page, down, up):
 def test_a_jog_lasts_while_its_button_is_pressed(live):
     page, _, _ = live
     before = page.q()
-    press(page, "jog-Z+")
-    page.page.mouse.up()
-    after = page.rests()
-    assert after != before
+    # on a busy machine the page may stall for the dead-man before the first cycle of the jog; then once more
+    for _ in range(TRIALS):
+        press(page, "jog-Z+")
+        page.page.mouse.up()
+        if page.rests() != before:
+            return
+    raise AssertionError("the arm has not moved")
 
 
 RELEASES = {

@@ -84,8 +84,11 @@ class Solids:
         self.geoms = [int(self.model.geom(f"shape{k}").id) for k in range(len(scene.shapes))]
 
     def stand(self, stance: Stance) -> None:
-        for name, X in world_poses(self.scene, stance).items():
-            mocap = int(self.model.body(name).mocapid[0])
+        poses = world_poses(self.scene, stance)
+        # numbered in the model: names of a scene are free
+        for k, body in enumerate(self.scene.bodies):
+            X = poses[body.name]
+            mocap = int(self.model.body(f"body{k}").mocapid[0])
             self.data.mocap_pos[mocap] = X[:3, 3]
             mujoco.mju_mat2Quat(self.data.mocap_quat[mocap], X[:3, :3].ravel())
         mujoco.mj_kinematics(self.model, self.data)
