@@ -227,7 +227,7 @@ def _news(exchange: Exchange, page: Page) -> list[str | bytes]:
     newest frame."""
     found: list[str | bytes] = []
     # before the hello: a frame of another layout must not come after the one that it does not fit
-    count, frame = exchange.frame
+    newest, frame = exchange.frame
     hello = exchange.hello
     if page.hello != hello:
         page.hello = hello
@@ -248,8 +248,8 @@ def _news(exchange: Exchange, page: Page) -> list[str | bytes]:
     if page.status != mark:
         page.status = mark
         found.append(f'{{"kind":"status","control":"{control}",{status[1:]}')
-    if page.frame != count:
-        page.frame = count
+    if page.frame != newest:
+        page.frame = newest
         found.append(frame)
     return found
 

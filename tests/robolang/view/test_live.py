@@ -127,6 +127,17 @@ def test_a_page_that_reads_gets_all_that_is_text_and_frames_of_one_size(program)
     assert [each["text"] for each in found if each["kind"] == "printed"] == ["</script>4"]
 
 
+def test_every_new_frame_reaches_a_page_that_reads_whatever_else_is_new(program):
+    with live_of(program) as (live, _, url), as_page(url) as page:
+        texts(page, is_status())
+        size = 8 + 4 * sum(count for _, count in json.loads(live.exchange.hello)["layout"])
+        for value in (1, 2, 3):
+            sent = bytes([value]) * size
+            live.exchange.show_frame(sent)
+            while page.recv(timeout=HANG_S) != sent:
+                pass
+
+
 def test_a_page_that_comes_late_gets_the_whole_story(program):
     with live_of(program) as (live, session, url):
         session.run(Driver(session, live.exchange, live.frames).run_through)

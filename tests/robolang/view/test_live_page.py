@@ -248,7 +248,6 @@ def held(page, down, up):
     raise AssertionError("the arm does not move")
 
 
-@pytest.mark.xfail(reason="known defect: the page of a paused program gets no new row of q_link while a jog runs")
 def test_a_jog_lasts_while_its_button_is_pressed(live):
     page, _, _ = live
     before = page.q()
