@@ -46,12 +46,12 @@ export class Signal {
     return Number.isNaN(next) ? here : here + share * (next - here);
   }
 
-  /** Least and largest value of a column from one time to another, `t` to `to`; NaN where it has none. Of pairs, those of whole bins. */
-  range(values: ArrayLike<number>, t: number, to = t): readonly [least: number, most: number] {
+  /** Least and largest of the values of rows from one time to another, `t` to `to`; NaN where there is none. Of pairs, those of whole bins. */
+  range(valueOf: (row: number) => number, t: number, to = t): readonly [least: number, most: number] {
     const [first, last] = this.paired ? [this.row(t) & ~1, this.row(to) | 1] : [this.row(t), this.row(to)];
     let [least, most] = [NaN, NaN];
     for (let row = first; row <= last && row < this.rows; row++) {
-      const value = values[row] ?? NaN;
+      const value = valueOf(row);
       if (!(value >= least)) least = Number.isNaN(value) ? least : value;
       if (!(value <= most)) most = Number.isNaN(value) ? most : value;
     }
@@ -80,11 +80,29 @@ export class Signal {
   }
 }
 
-/** A curve of a chart: a column in the unit of the chart. */
-export interface Curve {
+/** A curve of a chart: a column in the unit of the chart, less another one where the series has one. */
+export class Curve {
   readonly head: SeriesHead;
   readonly signal: Signal;
+  /** Of the rows that there were when the curve was made; a run that goes on has more, and `value` knows them. */
   readonly values: Float32Array;
+  private readonly less: Signal | undefined;
+
+  constructor(head: SeriesHead, signal: Signal, less?: Signal) {
+    this.head = head;
+    this.signal = signal;
+    this.less = less;
+    const column = signal.columns[head.column] ?? new Float32Array(0);
+    // No copy of what is drawn as it is: the columns of a long run are large.
+    this.values = head.scale === 1 && !less ? column : Float32Array.from({ length: signal.rows }, (_, row) => this.value(row));
+  }
+
+  /** The value of a row, NaN without one. */
+  value(row: number): number {
+    const { column, scale, minus } = this.head;
+    const less = this.less && minus ? (this.less.columns[minus[1]]?.[row] ?? NaN) : 0;
+    return ((this.signal.columns[column]?.[row] ?? NaN) - less) * scale;
+  }
 }
 
 /** One run: its header, its signals by name, its statements. */
@@ -118,13 +136,7 @@ export class Run {
   /** The curve of a series, null where the run does not have its signal. */
   curve(head: SeriesHead): Curve | null {
     const signal = this.signals.get(head.signal);
-    const column = signal?.columns[head.column];
-    if (!signal || !column) return null;
-    if (head.scale === 1 && !head.minus) return { head, signal, values: column };
-    const minus = head.minus ? this.signals.get(head.minus[0])?.columns[head.minus[1]] : undefined;
-    const values = new Float32Array(signal.rows);
-    for (let k = 0; k < signal.rows; k++) values[k] = ((column[k] ?? NaN) - (minus ? (minus[k] ?? NaN) : 0)) * head.scale;
-    return { head, signal, values };
+    return signal?.columns[head.column] ? new Curve(head, signal, head.minus ? this.signals.get(head.minus[0]) : undefined) : null;
   }
 
   /** Largest finite value of the first column of a signal, 0 without one. */

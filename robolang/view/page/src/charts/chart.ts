@@ -291,17 +291,17 @@ export class Chart {
 }
 
 /** The value at a time; of a bin its least and its largest value, since it does not say which of them was when. */
-function valueText({ signal, values }: Curve, t: number, digits: number): string {
-  if (!signal.covers(t)) return fixed(NaN, digits);
-  const [least, most] = signal.range(values, t).map((value) => fixed(value, digits));
+function valueText(curve: Curve, t: number, digits: number): string {
+  if (!curve.signal.covers(t)) return fixed(NaN, digits);
+  const [least, most] = curve.signal.range((row) => curve.value(row), t).map((value) => fixed(value, digits));
   return least === most ? (least ?? "") : `${least} .. ${most}`;
 }
 
-/** Indices of values without a neighbour: no line shows them. */
+/** Indices of values without a neighbour: no line shows them. What is undefined is a row of another line, and no gap. */
 function isolated(values: ArrayLike<number | null | undefined>): number[] {
-  const alone: number[] = [];
-  for (let k = 0; k < values.length; k++) if (values[k] != null && values[k - 1] == null && values[k + 1] == null) alone.push(k);
-  return alone;
+  const own = Array.from({ length: values.length }, (_, k) => k).filter((k) => values[k] !== undefined);
+  const empty = (j: number): boolean => values[own[j] ?? -1] == null;
+  return own.filter((_, j) => !empty(j) && empty(j - 1) && empty(j + 1));
 }
 
 /** Digits after the point that the marks of an axis need to differ. */

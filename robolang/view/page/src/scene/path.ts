@@ -51,7 +51,7 @@ export class ToolPath {
         places.push(wanted + scale * (true_ - wanted));
       }
       // No peak between two samples is without colour; after the last one the run may have ticks of its own.
-      const [, most] = error?.range(error.columns[0] ?? [], before, k + 1 < this.samples.length ? t : Infinity) ?? [0, 0];
+      const [, most] = error?.range((row) => error.columns[0]?.[row] ?? NaN, before, k + 1 < this.samples.length ? t : Infinity) ?? [0, 0];
       onRamp(ramp, top > 0 ? most / top : 0, colour);
       colours.push(colour.r, colour.g, colour.b);
       before = t;
