@@ -17,7 +17,7 @@ settings.register_profile("ci", settings.get_profile("local"), derandomize=True)
 settings.load_profile("ci" if os.environ.get("CI") else "local")
 
 
-SHARED = ("experiments/test_identif", "programs/test_")
+SHARED = ("arch/test_", "experiments/test_identif", "programs/test_")
 """Beginnings of the names of files that share what they set up."""
 
 

@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 
 from tests import steps
+from tests.arch import parsed
+from tests.arch.parsed import nodes_of
 
 TESTS = Path(__file__).parents[1]
 CLOCKS = {
@@ -42,16 +44,16 @@ def clock(module: str | None, name: str) -> bool:
     return name.removesuffix("_ns") in CLOCKS.get(module or "", ())
 
 
-def faults(tree: ast.AST) -> list[str]:
+def faults(nodes: list[ast.AST]) -> list[str]:
     """Return what in a module depends on the speed of the machine, with its lines."""
     modules = {"time": "time", "os": "os", "resource": "resource"}
     found = []
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Import):
             modules |= {alias.asname or alias.name: alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             found += [f"{node.lineno}: {alias.name}" for alias in node.names if clock(node.module, alias.name)]
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
             if clock(modules.get(node.value.id), node.attr):
                 found.append(f"{node.lineno}: {node.value.id}.{node.attr}")
@@ -85,7 +87,7 @@ def too_short(value: ast.expr | None) -> bool:
 
 @pytest.mark.parametrize("name", sorted(path.relative_to(TESTS).as_posix() for path in TESTS.rglob("*.py")))
 def test_no_test_reads_a_clock_or_ends_a_wait_early(name):
-    found = faults(ast.parse((TESTS / name).read_text("utf-8")))
+    found = faults(nodes_of(TESTS / name))
     assert bool(found) == (name in MEASURING), found
 
 
@@ -118,7 +120,7 @@ def test_a_hang_is_a_failed_test(tmp_path, monkeypatch):
     ],
 )
 def test_a_clock_is_found(text):
-    assert len(faults(ast.parse(text))) == 1
+    assert len(faults(parsed.nodes(text))) == 1
 
 
 @pytest.mark.parametrize(
@@ -134,4 +136,4 @@ def test_a_clock_is_found(text):
     ],
 )
 def test_no_clock_is_no_fault(text):
-    assert faults(ast.parse(text)) == []
+    assert faults(parsed.nodes(text)) == []

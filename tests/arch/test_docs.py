@@ -9,21 +9,17 @@ import inspect
 import io
 import pkgutil
 import re
-import shlex
 import tomllib
 from contextlib import redirect_stdout
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from typer.main import get_command
 
 import robolang
 import runtime
 from robolang.analysis.checker import check
-from robolang.cli.main import app
 from robolang.cli.run_table import print_result
 from robolang.core.diagnostics import has_errors
 from robolang.core.source import Source
@@ -32,6 +28,7 @@ from runtime.control.recorder import Recorder
 from runtime.control.signals import Signals
 from runtime.core.faults import all_codes
 from runtime.robot.kinematics.chain import Chain
+from tests.arch.parsed import nodes_of
 from tests.robolang.helpers import cell_with
 
 ROOT = Path(__file__).parents[2]
@@ -80,9 +77,6 @@ MODULE = re.compile(r"[a-z]\w*\.(?:py|lark)")
 MEMBER = re.compile(r"([A-Z]\w+)\.([a-z]\w*)")
 ELSEWHERE = {"lark.py", "typer.py", "ctypes.py"}
 """Modules of libraries, which docs/testing.md names."""
-COMMAND = re.compile(r"`(robolang(?: [^`]*)?)`")
-OPTION = re.compile(r"`(--[a-z-]+)")
-MAKE = re.compile(r"`(make [\w-]+)`")
 CITED = re.compile(r"docs/[\w/-]*\w(?:\.md)?")
 
 
@@ -215,8 +209,8 @@ def test_a_name_that_does_not_exist_is_noticed():
 def members() -> dict[str, set[str]]:
     """Return the classes of both packages, each with every name that its body defines, assigns or reads on self."""
     found: dict[str, set[str]] = {}
-    for tree in (ast.parse(path.read_text("utf-8")) for path in CODE if "tests" not in path.relative_to(ROOT).parts):
-        for item in ast.walk(tree):
+    for path in (path for path in CODE if "tests" not in path.relative_to(ROOT).parts):
+        for item in nodes_of(path):
             if isinstance(item, ast.ClassDef):
                 inner = list(ast.walk(item))
                 names = {node.name for node in inner if isinstance(node, ast.FunctionDef)}
@@ -438,64 +432,6 @@ def test_the_transcript_has_the_headings_and_notes_of_a_run(run_result):
         for lines in (transcript.splitlines(), printed)
     ]
     assert words[0] == words[1]
-
-
-def test_commands_exist():
-    lines = [(page, line) for page in PAGES for block in fenced(page, "sh") for line in block.splitlines() if line]
-    assert len(lines) > 10
-    # both sides of a pipe: a script of the prompt is piped into it
-    parts = [(page, part) for page, line in lines for part in line.split(" | ")]
-    for page, line in parts:
-        words = shlex.split(line)
-        command = words[0].removeprefix(".venv/bin/")
-        if command == "robolang":
-            parse_command(words[1:])
-        elif command == "make":
-            assert set(words[1:]) <= make_targets(), line
-        elif words[1:3] == ["-m", "pytest"]:
-            assert all((ROOT / target).exists() for target in words[3:]), line
-        elif words[1:2] == ["-m"]:
-            importlib.import_module(words[2])
-        elif words[1:2] == ["-c"]:
-            compile(words[2], line, "exec")
-        else:
-            assert command in ("mkdir", "printf"), (name(page), line)
-
-
-def test_commands_named_in_prose_exist():
-    names = {word for page in PAGES for word in COMMAND.findall(prose(page))}
-    assert len(names) > 5
-    for words in map(str.split, names):
-        command = get_command(app)
-        for word in words[1:]:
-            if not hasattr(command, "commands") or not word.islower() or word.startswith("-"):
-                break
-            assert word in command.commands, words
-            command = command.commands[word]
-        options = {name for parameter in command.params for name in parameter.opts}
-        assert {word for word in words if word.startswith("--")} <= options | {"--help"}, words
-    options = {name for command in commands(get_command(app)) for item in command.params for name in item.opts}
-    assert {word for page in PAGES for word in OPTION.findall(prose(page))} <= options | {"--help"}
-    targets = {word.split()[1] for page in PAGES for word in MAKE.findall(prose(page))}
-    assert targets
-    assert targets <= make_targets()
-
-
-def commands(command: object) -> list:
-    return [command, *(found for inner in getattr(command, "commands", {}).values() for found in commands(inner))]
-
-
-def parse_command(words: list[str]) -> None:
-    """Let the command line parse its arguments without doing anything; raises a usage error for wrong ones."""
-    command: Any = get_command(app)
-    while words and words[0] in getattr(command, "commands", {}):
-        command, words = command.commands[words[0]], words[1:]
-    assert not hasattr(command, "commands"), words
-    command.make_context("robolang", list(words))
-
-
-def make_targets() -> set[str]:
-    return set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE))
 
 
 if __name__ == "__main__":

@@ -14,6 +14,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.arch.parsed import nodes_of
+
 ROOT = Path(__file__).parents[2]
 WORDS = {
     "way (branch, path, joint curve, offset, stroke)": r"\bways?\b",
@@ -58,37 +60,35 @@ def found(text: str, words: dict[str, str] = READ) -> Counter[str]:
 
 
 @cache
-def code(package: str) -> tuple[tuple[str, str], ...]:
-    return tuple(
-        (path.relative_to(ROOT).as_posix(), path.read_text("utf-8")) for path in sorted((ROOT / package).rglob("*.py"))
-    )
+def code(package: str) -> tuple[Path, ...]:
+    return tuple(sorted((ROOT / package).rglob("*.py")))
 
 
-def notes(tree: ast.AST) -> set[int]:
+def notes(nodes: list[ast.AST]) -> set[int]:
     """Return the ids of the strings that stand as statements: docstrings of modules, classes, functions and names."""
-    return {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    return {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
 
 
-def texts(source: str) -> str:
+def texts(path: Path) -> str:
     """Return the strings of a module that a user can see: all but docstrings."""
-    tree = ast.parse(source)
-    skipped = notes(tree)
-    strings = (node for node in ast.walk(tree) if isinstance(node, ast.Constant) and id(node) not in skipped)
+    nodes = nodes_of(path)
+    skipped = notes(nodes)
+    strings = (node for node in nodes if isinstance(node, ast.Constant) and id(node) not in skipped)
     return "\n".join(node.value for node in strings if isinstance(node.value, str) and " " in node.value)
 
 
-def prose(source: str) -> str:
+def prose(path: Path) -> str:
     """Return the docstrings and comments of a module."""
-    tree = ast.parse(source)
-    skipped = notes(tree)
-    docs = [node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and id(node) in skipped]
-    tokens = tokenize.generate_tokens(io.StringIO(source).readline)
+    nodes = nodes_of(path)
+    skipped = notes(nodes)
+    docs = [node.value for node in nodes if isinstance(node, ast.Constant) and id(node) in skipped]
+    tokens = tokenize.generate_tokens(io.StringIO(path.read_text("utf-8")).readline)
     return "\n".join([*map(str, docs), *(token.string for token in tokens if token.type == tokenize.COMMENT)])
 
 
 @pytest.mark.parametrize("package", LEFT)
 def test_messages_and_help_are_plain(package):
-    assert {name: dict(words) for name, source in code(package) if (words := found(texts(source)))} == {}
+    assert {path: dict(words) for path in code(package) if (words := found(texts(path)))} == {}
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
@@ -98,7 +98,7 @@ def test_pages_are_plain(page):
 
 @pytest.mark.parametrize("package", LEFT)
 def test_docstrings_become_plainer(package):
-    words = sum((found(prose(source), WORDS) for _, source in code(package)), Counter())
+    words = sum((found(prose(path), WORDS) for path in code(package)), Counter())
     assert words.total() <= LEFT[package], words
 
 

@@ -7,9 +7,12 @@ what it is. Misuse from Python, ``ValueError`` and the like, is told to programm
 import ast
 import builtins
 import re
+from functools import cache
 from pathlib import Path
 
 import pytest
+
+from tests.arch import parsed
 
 TESTS = Path(__file__).parents[1]
 CHECKED = [path for path in sorted(TESTS.rglob("test_*.py")) if path.parent.name not in ("arch", "bench")]
@@ -33,10 +36,10 @@ def prose(text: str) -> bool:
     return PROSE.search(TERMS.sub("", text)) is not None
 
 
-def compared(tree: ast.AST) -> list[tuple[int, str]]:
+def compared(nodes: list[ast.AST]) -> list[tuple[int, str]]:
     """Return the texts with prose that are compared with a message, with their lines."""
     found = []
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Call) and ast.unparse(node.func) == "pytest.raises":
             of_python = ast.unparse(node.args[0]) in vars(builtins)
             sides = [word.value for word in node.keywords if word.arg == "match" and not of_python]
@@ -51,19 +54,20 @@ def compared(tree: ast.AST) -> list[tuple[int, str]]:
     return found
 
 
+@cache
+def compared_in(path: Path) -> list[tuple[int, str]]:
+    return compared(parsed.nodes_of(path))
+
+
 @pytest.mark.parametrize("path", CHECKED, ids=lambda path: path.relative_to(TESTS).as_posix())
 def test_no_prose_of_a_message_is_compared(path):
     name = path.relative_to(TESTS).as_posix()
-    found = compared(ast.parse(path.read_text("utf-8")))
+    found = compared_in(path)
     assert [(line, text) for line, text in found if f"{name}: {text}" not in NO_MESSAGE] == []
 
 
 def test_what_is_listed_is_compared_somewhere():
-    found = {
-        f"{path.relative_to(TESTS).as_posix()}: {text}"
-        for path in CHECKED
-        for _, text in compared(ast.parse(path.read_text("utf-8")))
-    }
+    found = {f"{path.relative_to(TESTS).as_posix()}: {text}" for path in CHECKED for _, text in compared_in(path)}
     assert set(NO_MESSAGE) <= found
 
 
@@ -78,7 +82,7 @@ def test_what_is_listed_is_compared_somewhere():
     ],
 )
 def test_prose_is_found(text):
-    assert compared(ast.parse(text))
+    assert compared(parsed.nodes(text))
 
 
 @pytest.mark.parametrize(
@@ -93,4 +97,4 @@ def test_prose_is_found(text):
     ],
 )
 def test_codes_places_and_fields_are_no_prose(text):
-    assert compared(ast.parse(text)) == []
+    assert compared(parsed.nodes(text)) == []

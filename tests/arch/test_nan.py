@@ -14,6 +14,8 @@ from types import ModuleType
 
 import pytest
 
+from tests.arch.parsed import nodes, nodes_of
+
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("robolang", "runtime", "tests/bench", "tests/faults")
 FILES = [path for folder in FOLDERS for path in sorted((ROOT / folder).rglob("*.py"))]
@@ -124,14 +126,14 @@ def key(path, node):
     return f"{path.relative_to(ROOT)}: {ast.unparse(node)}"
 
 
-def open_refusals(path, tree):
-    for node in ast.walk(tree):
+def open_refusals(path, found):
+    for node in found:
         if isinstance(node, ast.If) and refuses(node.body):
             yield from (key(path, each) for each in open_comparisons(node.test) if not whole(each, path))
 
 
-def open_masks(path, tree):
-    for node in ast.walk(tree):
+def open_masks(path, found):
+    for node in found:
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name) and node.targets[0].id in MASKS:
             yield from (key(path, each) for each in open_comparisons(node.value) if not whole(each, path))
 
@@ -147,8 +149,8 @@ def measures(node):
     )
 
 
-def blind_extremes(path, tree):
-    for node in ast.walk(tree):
+def blind_extremes(path, found):
+    for node in found:
         if isinstance(node, ast.Call) and called(node) in ("max", "min") and isinstance(node.func, ast.Name):
             guarded = any(item.arg == "key" and "badness" in ast.unparse(item.value) for item in node.keywords)
             if (
@@ -169,7 +171,7 @@ RULES = {
 @pytest.mark.parametrize("rule", RULES)
 def test_nan_passes_no_limit(rule):
     find, known = RULES[rule]
-    found = [each for path in FILES for each in find(path, ast.parse(path.read_text("utf-8")))]
+    found = [each for path in FILES for each in find(path, nodes_of(path))]
     assert set(found) - set(known) == set(), "NaN passes here: write 'not x <= limit', key=badness or np.maximum"
     assert set(known) - set(found) == set(), "listed and not there any more"
 
@@ -186,7 +188,7 @@ def test_nan_passes_no_limit(rule):
     ],
 )
 def test_what_nan_would_pass_is_noticed(rule, text):
-    assert list(RULES[rule][0](FILES[0], ast.parse(text)))
+    assert list(RULES[rule][0](FILES[0], nodes(text)))
 
 
 @pytest.mark.parametrize(
@@ -201,4 +203,4 @@ def test_what_nan_would_pass_is_noticed(rule, text):
     ],
 )
 def test_what_nan_would_fail_is_passed_over(rule, text):
-    assert not list(RULES[rule][0](FILES[0], ast.parse(text)))
+    assert not list(RULES[rule][0](FILES[0], nodes(text)))

@@ -9,13 +9,15 @@ from pathlib import Path
 
 import pytest
 
+from tests.arch.parsed import nodes, nodes_of
+
 TESTS = Path(__file__).parents[1]
 MODULES = [path for path in sorted(TESTS.rglob("test_*.py")) if path != Path(__file__)]
 
 
-def names_the_plant(tree: ast.AST) -> bool:
+def names_the_plant(found: list[ast.AST]) -> bool:
     """Return whether a module imports mujoco or calls the plant or its shapes; names in a text do not count."""
-    for node in ast.walk(tree):
+    for node in found:
         if isinstance(node, ast.Import) and any(alias.name == "mujoco" for alias in node.names):
             return True
         if isinstance(node, ast.Call) and ast.unparse(node.func).endswith(("MujocoPlant", "Shapes", "CellModel.of")):
@@ -26,11 +28,11 @@ def names_the_plant(tree: ast.AST) -> bool:
 @pytest.mark.parametrize("path", MODULES, ids=lambda path: path.relative_to(TESTS).as_posix())
 def test_what_makes_the_plant_of_mujoco_has_the_marker(path):
     text = path.read_text("utf-8")
-    assert "mark.physics" in text or not names_the_plant(ast.parse(text))
+    assert "mark.physics" in text or not names_the_plant(nodes_of(path))
 
 
 def test_the_plant_is_found():
-    assert names_the_plant(ast.parse("import mujoco"))
-    assert names_the_plant(ast.parse("plant = mujoco_plant.MujocoPlant(spec, cell, 1e-3)"))
-    assert names_the_plant(ast.parse("shapes = Shapes(spec, cell)"))
-    assert not names_the_plant(ast.parse("heavy = ('numpy', 'mujoco')\nname = 'MujocoPlant'"))
+    assert names_the_plant(nodes("import mujoco"))
+    assert names_the_plant(nodes("plant = mujoco_plant.MujocoPlant(spec, cell, 1e-3)"))
+    assert names_the_plant(nodes("shapes = Shapes(spec, cell)"))
+    assert not names_the_plant(nodes("heavy = ('numpy', 'mujoco')\nname = 'MujocoPlant'"))

@@ -13,6 +13,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.arch.parsed import children, nodes, nodes_of
+
 ROOT = Path(__file__).parents[2]
 FILES = [path for folder in ("robolang", "runtime") for path in sorted((ROOT / folder).rglob("*.py"))]
 COMPLEX = 10
@@ -27,13 +29,8 @@ LEAST_COMMENTS = 3.0
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
-@cache
-def tree(path: Path) -> ast.Module:
-    return ast.parse(path.read_text("utf-8"))
-
-
-def functions(node: ast.AST) -> Iterator[Function]:
-    return (item for item in ast.walk(node) if isinstance(item, Function))
+def functions(found: list[ast.AST]) -> Iterator[Function]:
+    return (item for item in found if isinstance(item, Function))
 
 
 def own(function: Function) -> Iterator[ast.AST]:
@@ -45,7 +42,7 @@ def own(function: Function) -> Iterator[ast.AST]:
             continue
         yield node
         if not isinstance(node, ast.Assert):
-            todo += ast.iter_child_nodes(node)
+            todo += children(node)
 
 
 def complexity(function: Function) -> int:
@@ -85,8 +82,9 @@ def comments(text: str) -> int:
     return sum(token.type == tokenize.COMMENT for token in tokenize.generate_tokens(io.StringIO(text).readline))
 
 
+@cache
 def every() -> list[tuple[str, Function]]:
-    return [(path.relative_to(ROOT).as_posix(), item) for path in FILES for item in functions(tree(path))]
+    return [(path.relative_to(ROOT).as_posix(), item) for path in FILES for item in functions(nodes_of(path))]
 
 
 def named(path: str, function: Function, size: int) -> str:
@@ -132,10 +130,10 @@ def test_comments_say_why_where_a_reader_would_stop():
     ],
 )
 def test_decisions_are_counted(body, expected):
-    (function,) = (item for item in functions(ast.parse(f"def f():\n {body}")) if item.name == "f")
+    (function,) = (item for item in functions(nodes(f"def f():\n {body}")) if item.name == "f")
     assert complexity(function) == expected
 
 
 def test_arguments_are_counted():
-    (function,) = functions(ast.parse("def f(self, a, /, b, *c, d, **e): pass"))
+    (function,) = functions(nodes("def f(self, a, /, b, *c, d, **e): pass"))
     assert arguments(function) == 5

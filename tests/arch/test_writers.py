@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.arch.parsed import nodes, nodes_of
+
 ROOT = Path(__file__).parents[2]
 FILES = [path for folder in ("robolang", "runtime") for path in sorted((ROOT / folder).rglob("*.py"))]
 WRITING = {
@@ -35,9 +37,9 @@ KNOWN = {
 }
 
 
-def writers(path, tree):
+def writers(path, found):
     """Yield the calls that write, make or rename a file, as ``owner.name``."""
-    for node in ast.walk(tree):
+    for node in found:
         if not isinstance(node, ast.Call):
             continue
         name = node.func.id if isinstance(node.func, ast.Name) else getattr(node.func, "attr", "")
@@ -53,7 +55,7 @@ def writers(path, tree):
 
 
 def test_files_are_written_in_one_place():
-    found = {each for path in FILES for each in writers(path, ast.parse(path.read_text("utf-8")))}
+    found = {each for path in FILES for each in writers(path, nodes_of(path))}
     assert {each for each in found if not each.startswith("robolang/core/storage.py: ")} == set(KNOWN)
 
 
@@ -61,9 +63,9 @@ def test_files_are_written_in_one_place():
     "text", ["path.write_text(x)", "open(name, 'w')", "path.open('wb')", "os.replace(a, b)", "np.savez(name, q=q)"]
 )
 def test_a_file_that_is_written_elsewhere_is_noticed(text):
-    assert list(writers(FILES[0], ast.parse(text)))
+    assert list(writers(FILES[0], nodes(text)))
 
 
 @pytest.mark.parametrize("text", ["open(name)", "text.replace('a', 'b')", "replace(item, x=1)", "path.open('rb')"])
 def test_what_writes_no_file_is_passed_over(text):
-    assert not list(writers(FILES[0], ast.parse(text)))
+    assert not list(writers(FILES[0], nodes(text)))

@@ -69,36 +69,52 @@ def browser():
 
 
 @contextmanager
-def viewed(browser, program, *words):
+def viewed(program, *words):
     process = subprocess.Popen(
         [sys.executable, "-m", "robolang", "view", str(program), "--no-physics", "--no-browser", *words],
         stderr=subprocess.PIPE,
         text=True,
     )
     try:
-        url = process.stderr.readline().split()[-1]
-        yield LivePage(browser, url), url, process
+        yield process.stderr.readline().split()[-1], process
     finally:
         process.kill()
         process.communicate()
 
 
-@pytest.fixture
-def program(tmp_path):
-    path = tmp_path / "p.rbl"
+def written(folder):
+    path = folder / "p.rbl"
     path.write_text(PROGRAM)
     return path
 
 
 @pytest.fixture
-def live(browser, program):
-    with viewed(browser, program) as found:
-        found[0].waits_for("Paused")
-        yield found
+def program(tmp_path):
+    return written(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def served(browser, tmp_path_factory):
+    """One process for all tests that leave its program paused; its address and its program."""
+    program = written(tmp_path_factory.mktemp("served"))
+    with viewed(program) as (url, _):
+        yield url, program
+
+
+@pytest.fixture
+def live(browser, served):
+    """A page of its own, which is alone and therefore has control."""
+    page = LivePage(browser, served[0])
+    page.waits_for("Paused")
+    page.page.wait_for_selector("[data-testid=start]:enabled", timeout=PATIENCE_MS)
+    yield page
+    for each in (each for context in browser.contexts for each in context.pages):
+        each.close()
 
 
 def test_a_program_is_run_from_the_page(browser, program):
-    with viewed(browser, program, "--speed", "5") as (live, _, process):
+    with viewed(program, "--speed", "5") as (url, process):
+        live = LivePage(browser, url)
         live.waits_for("Paused")
         assert live.page.evaluate("document.body.dataset.state") == "ready"
         # the token is neither in the address bar nor in what the page asks for besides itself and its socket
@@ -121,12 +137,11 @@ def test_a_program_is_run_from_the_page(browser, program):
 
 
 def test_a_live_page_says_that_its_charts_are_sampled_and_how_few_rows_it_keeps(live):
-    page, _, _ = live
-    assert page["thinned"].is_visible() and "ms" not in page["thinned"].inner_text()
-    units = page.page.locator("[data-testid=chart] .unit").all_inner_texts()
+    assert live["thinned"].is_visible() and "ms" not in live["thinned"].inner_text()
+    units = live.page.locator("[data-testid=chart] .unit").all_inner_texts()
     assert units and all("sampled" in unit for unit in units)
-    page.page.evaluate("robolang.runs[0].halve(); robolang.viewer.grew()")
-    assert "32 ms" in page["thinned"].inner_text()
+    live.page.evaluate("robolang.runs[0].halve(); robolang.viewer.grew()")
+    assert "32 ms" in live["thinned"].inner_text()
 
 
 REACHED = """() => {
@@ -143,18 +158,18 @@ REACHED = """() => {
 
 @pytest.mark.parametrize("size", [(1400, 900), (1024, 768), (1000, 700), (800, 500), (420, 800)], ids=str)
 def test_every_button_is_in_sight_and_covered_by_nothing(live, size):
-    page, _, _ = live
     width, height = size
-    page.page.set_viewport_size({"width": width, "height": height})
-    page.page.wait_for_timeout(100)
-    shown, covered = page.page.evaluate(REACHED)
+    live.page.set_viewport_size({"width": width, "height": height})
+    live.page.wait_for_timeout(100)
+    shown, covered = live.page.evaluate(REACHED)
     assert shown > 25
     assert covered == []
 
 
 def test_an_alarm_is_shown_until_it_is_acknowledged_and_stays_in_the_notes(browser, program):
     program.write_text("MOVEJ HERE + (0, 0, 20)\nMOVE HERE + (5000, 0, 0)\n")
-    with viewed(browser, program, "--speed", "5") as (live, _, _):
+    with viewed(program, "--speed", "5") as (url, _):
+        live = LivePage(browser, url)
         live.waits_for("Paused")
         live["start"].click()
         live.run_is("alarm")
@@ -180,7 +195,8 @@ SQUEEZED = """() => [...document.querySelectorAll(".chip")].filter(
 
 
 def test_a_page_that_comes_late_shows_nothing_for_the_time_before(browser, program):
-    with viewed(browser, program, "--speed", "5") as (live, url, _):
+    with viewed(program, "--speed", "5") as (url, _):
+        live = LivePage(browser, url)
         live.waits_for("Paused")
         live["start"].click()
         live.run_is("done")
@@ -212,21 +228,19 @@ ADD = """(times) => {
 
 
 def test_frames_far_apart_are_not_joined(live):
-    page, _, _ = live
-    page.page.evaluate(ADD, [1.0, 1.05, 2.0, 2.05, 2.1])
+    live.page.evaluate(ADD, [1.0, 1.05, 2.0, 2.05, 2.1])
     times = [0.5, 1.02, 1.5, 1.9, 2.03]
-    q = page.page.evaluate("(times) => times.map((t) => robolang.runs[0].signals.get('q_link').at(0, t))", times)
+    q = live.page.evaluate("(times) => times.map((t) => robolang.runs[0].signals.get('q_link').at(0, t))", times)
     assert q == pytest.approx([math.nan, 1.02, math.nan, math.nan, 2.03], abs=0.02, nan_ok=True)
-    known = page.page.evaluate("(times) => times.map((t) => robolang.runs[0].recorded(t))", times)
+    known = live.page.evaluate("(times) => times.map((t) => robolang.runs[0].recorded(t))", times)
     # the last frame before each
     assert known == pytest.approx([0.0, 1.02, 1.05, 1.05, 2.03], abs=0.02)
 
 
 def test_a_step_goes_to_the_next_line(live):
-    page, _, _ = live
     for line in (2, 3):
-        page["step"].click()
-        page.page.wait_for_selector(f".line.due[data-line='{line}']", timeout=PATIENCE_MS)
+        live["step"].click()
+        live.page.wait_for_selector(f".line.due[data-line='{line}']", timeout=PATIENCE_MS)
 
 
 def press(page, name):
@@ -249,15 +263,14 @@ def held(page, down, up):
 
 
 def test_a_jog_lasts_while_its_button_is_pressed(live):
-    page, _, _ = live
-    before = page.q()
+    before = live.q()
     # on a busy machine the page may stall for the dead-man before the first cycle of the jog; then once more
     for _ in range(TRIALS):
-        press(page, "jog-Z+")
+        press(live, "jog-Z+")
         # at 1 % of the speed the first cycles move less than a frame can show
-        page.page.wait_for_timeout(500)
-        page.page.mouse.up()
-        if page.rests() != before:
+        live.page.wait_for_timeout(500)
+        live.page.mouse.up()
+        if live.rests() != before:
             return
     raise AssertionError("the arm has not moved")
 
@@ -275,65 +288,62 @@ RELEASES = {
 
 @pytest.mark.parametrize("how", RELEASES.values(), ids=RELEASES)
 def test_a_jog_ends_however_its_button_is_lost(live, how):
-    page, _, _ = live
-    press(page, "jog-Z+")
-    page.page.evaluate(how)
-    page.waits_for("Paused")
+    press(live, "jog-Z+")
+    live.page.evaluate(how)
+    live.waits_for("Paused")
 
 
 def test_a_jog_by_the_keyboard_lasts_while_the_key_is_down(live):
-    page, _, _ = live
-    page["jog-speed"].select_option("1")
-    page["jog-Z+"].focus()
-    held(page, lambda: page.page.keyboard.down("Enter"), lambda: page.page.keyboard.up("Enter"))
-    page.page.keyboard.up("Enter")
-    page.waits_for("Paused")
-    held(page, lambda: page.page.keyboard.down(" "), lambda: page.page.keyboard.up(" "))
-    page.page.keyboard.press("Escape")
-    page.waits_for("Paused")
+    live["jog-speed"].select_option("1")
+    live["jog-Z+"].focus()
+    held(live, lambda: live.page.keyboard.down("Enter"), lambda: live.page.keyboard.up("Enter"))
+    live.page.keyboard.up("Enter")
+    live.waits_for("Paused")
+    held(live, lambda: live.page.keyboard.down(" "), lambda: live.page.keyboard.up(" "))
+    live.page.keyboard.press("Escape")
+    live.waits_for("Paused")
 
 
-def test_a_step_jog_is_of_its_size(live, program):
-    page, _, _ = live
-    page["jog-frame"].select_option("joint")
-    page["jog-angular"].select_option("5")
+def test_a_step_jog_is_of_its_size(live, served):
+    live["jog-frame"].select_option("joint")
+    live["jog-angular"].select_option("5")
     for _ in range(TRIALS):
-        before = page.q()
+        before = live.q()
         with suppress(TimeoutError):
-            page["jog-J1+"].click()
-            page.page.wait_for_selector("[data-testid=state]:has-text('Jog')", timeout=A_WHILE_MS)
-        moved = page.rests()[0] - before[0]
+            live["jog-J1+"].click()
+            live.page.wait_for_selector("[data-testid=state]:has-text('Jog')", timeout=A_WHILE_MS)
+        moved = live.rests()[0] - before[0]
         if moved == pytest.approx(0.0872665, abs=1e-4):
             break
     assert moved == pytest.approx(0.0872665, abs=1e-4)
-    page["teach-name"].fill("P77")
-    page["teach"].click()
-    page.page.wait_for_selector("[data-testid=pendant-said]:has-text('P77')", timeout=PATIENCE_MS)
-    assert load_project(program).points.get("P77") is not None
-    page["teach"].click()
-    page["replace"].click(timeout=PATIENCE_MS)
-    page.page.wait_for_selector("[data-testid=pendant-said]:not(.refused):has-text('P77')", timeout=PATIENCE_MS)
+    live["teach-name"].fill("P77")
+    live["teach"].click()
+    live.page.wait_for_selector("[data-testid=pendant-said]:has-text('P77')", timeout=PATIENCE_MS)
+    assert load_project(served[1]).points.get("P77") is not None
+    live["teach"].click()
+    live["replace"].click(timeout=PATIENCE_MS)
+    live.page.wait_for_selector("[data-testid=pendant-said]:not(.refused):has-text('P77')", timeout=PATIENCE_MS)
 
 
-def test_a_second_page_stops_a_jog_watches_and_takes_over_by_hand(live, browser):
-    page, url, _ = live
-    press(page, "jog-Z+")
+def test_a_second_page_stops_a_jog_watches_and_takes_over_by_hand(live, served, browser):
+    url, _ = served
+    press(live, "jog-Z+")
     second = LivePage(browser, url)
-    page.waits_for("Paused")
-    page.page.mouse.up()
+    live.waits_for("Paused")
+    live.page.mouse.up()
     second.waits_for("Paused")
     assert second["start"].is_disabled()
     assert second["jog-Z+"].is_disabled()
-    page["give"].click()
+    live["give"].click()
     second["take"].click(timeout=PATIENCE_MS)
     second["jog-Z+"].click(timeout=PATIENCE_MS)
-    page.page.wait_for_selector("[data-testid=jog-Z\\+]:disabled", timeout=PATIENCE_MS)
+    live.page.wait_for_selector("[data-testid=jog-Z\\+]:disabled", timeout=PATIENCE_MS)
 
 
-def test_a_page_that_is_closed_stops_its_jog_and_frees_control(live, browser):
-    page, url, _ = live
-    press(page, "jog-Z+")
-    page.page.close()
+def test_a_page_that_is_closed_stops_its_jog_and_frees_control(live, served, browser):
+    url, _ = served
+    press(live, "jog-Z+")
+    live.page.close()
     second = LivePage(browser, url)
     second.waits_for("Paused")
     # alone again: it has control
@@ -367,8 +377,8 @@ def test_beside_the_prompt_a_page_takes_back_and_opens_anew_for_another_program(
         prompted.pendant.pictures.close()
 
 
-def test_an_address_without_its_token_shows_no_page(live, browser):
-    _, url, _ = live
+def test_an_address_without_its_token_shows_no_page(served, browser):
+    url, _ = served
     page = browser.new_page()
     assert page.goto(url.partition("?")[0]).status == 401
     assert page.goto(url.replace("127.0.0.1", "localhost")).status == 200
