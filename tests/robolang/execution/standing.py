@@ -10,6 +10,7 @@ from robolang.execution.status import ENDED, State
 from robolang.interpreter.arrays import Array
 from robolang.interpreter.effects import Origin
 from robolang.project.project import load_project
+from tests.runtime.recorded import rows_of
 
 
 def session_of(tmp_path, text, physics=False, observer=None):
@@ -39,8 +40,8 @@ def stops_at(session, *lines):
 
 
 def log_of(session):
-    signals = session.controller.signals()
-    return {name: values.tobytes() for name, values in signals.items()}
+    """All that is recorded so far, as bytes."""
+    return rows_of(session.controller.recorder)
 
 
 def ended(session):

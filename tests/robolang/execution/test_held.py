@@ -1,5 +1,7 @@
 """What is done while a motion rests on its path: fed statements, set-points of one's own, the return to the path."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from robolang.execution.status import ENDED, State
 from robolang.project.project import load_project
 from runtime.core.faults import Fault
 from runtime.core.units import DEG
+from tests.campaign import some
 from tests.programs.runs import ROOT
 from tests.robolang.execution.standing import (
     by_hand,
@@ -172,8 +175,12 @@ def test_an_alarm_while_set_points_are_played_ends_the_program_and_it_can_be_beg
 # --- a motion that is set aside --------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("cycle", [40, 110, 150, 200, 260])
-@pytest.mark.parametrize("what", ["PRINT 1", "X = 5", "HAND ON, 0.1", "OUT(1) = 1"])
+FED = [
+    (cycle, what) for cycle in (40, 110, 150, 200, 260) for what in ("PRINT 1", "X = 5", "HAND ON, 0.1", "OUT(1) = 1")
+]
+
+
+@pytest.mark.parametrize(("cycle", "what"), some(FED, 0, 5, 10, 15, 18))
 def test_what_is_fed_within_a_move_leaves_the_path_as_it_is(tmp_path, cycle, what):
     """The same set-points, and the same rows of the record, as of a pause alone."""
     alone = session_of(tmp_path, MOVES)
@@ -202,8 +209,7 @@ def test_what_is_fed_within_a_move_leaves_the_path_as_it_is(tmp_path, cycle, wha
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("physics", [False, True])
-@pytest.mark.parametrize("cycle", [60, 150, 200])
+@pytest.mark.parametrize(("cycle", "physics"), some([*product((60, 150, 200), (False, True))], 0, 3, 4))
 def test_a_displaced_arm_regains_its_path_and_goes_on_as_planned(tmp_path, cycle, physics):
     session = session_of(tmp_path, MOVES, physics)
     executor = session.executor
@@ -304,9 +310,9 @@ def stopped_at(session, cycles):
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("physics", [False, True])
-@pytest.mark.parametrize(("cycles", "line"), [(40, 2), (110, 3), (160, 5)])
-def test_a_move_of_a_chain_is_begun_again_with_the_names_as_they_were(tmp_path, physics, cycles, line):
+@pytest.mark.parametrize(("at", "physics"), some([*product(((40, 2), (110, 3), (160, 5)), (False, True))], 0, 3, 4))
+def test_a_move_of_a_chain_is_begun_again_with_the_names_as_they_were(tmp_path, physics, at):
+    cycles, line = at
     text = "X = 1\nMOVE P1\nMOVE P1 + (0, 60, 0), ZONE 20\nX = X + 1\nMOVE P2, ZONE 20\nX = X + 1\nMOVE P1\nPRINT X\n"
     session = session_of(tmp_path, text, physics)
     executor = stopped_at(session, cycles)

@@ -17,10 +17,10 @@ from runtime.control.spill import Spill
 from runtime.core.faults import Fault
 from runtime.core.units import DEG, MM, PERCENT
 from runtime.servo.motor import torque_limit
+from tests.programs.runs import some_programs
 from tests.robolang.cli.commands import dry
 
-ROOT = Path(__file__).parents[3]
-PROGRAMS = sorted((ROOT / "programs").rglob("*.rbl"))
+PROGRAMS = some_programs("palletise", "recover", "seam")
 OF_THE_HOST = ("wall_time_s", "realtime_factor", "overruns")
 
 

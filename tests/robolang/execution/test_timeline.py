@@ -11,7 +11,7 @@ from robolang.execution.timeline import Timeline
 from robolang.project.project import load_project
 from runtime.core.faults import Fault
 from tests.campaign import size
-from tests.programs.runs import ROOT
+from tests.programs.runs import PROGRAMS
 from tests.robolang.execution.standing import (
     dump,
     ended,
@@ -25,7 +25,7 @@ from tests.robolang.execution.standing import (
     stops_at,
 )
 
-PROGRAMS = sorted(ROOT.rglob("*.rbl"))[:10]
+FOLLOWED = PROGRAMS[:10]
 STOPS = size(200, 4)
 
 
@@ -49,7 +49,7 @@ def stepped(session):
 def test_back_restores_the_very_state(number):
     """From a random stop the program goes on for some statements, to its end or to an alarm, and comes back."""
     chance = random.Random(number)
-    session = Session(load_project(PROGRAMS[number % len(PROGRAMS)]))
+    session = Session(load_project(FOLLOWED[number % len(FOLLOWED)]))
     executor, timeline = followed(session)
     stop, count = chance.randrange(1, 12), 0
     stepped(session)

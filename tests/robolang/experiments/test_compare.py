@@ -92,8 +92,15 @@ def test_a_wrong_load_never_changes_the_commanded_path():
         assert all(np.array_equal(q, same[0]) for q in same), line
 
 
-def test_two_processes_give_what_one_gives():
-    request, two = Request(program=PROGRAM, physics=False), (VARIANTS[0], VARIANTS[3])
+def short(folder):
+    """Return a program of two short moves, with a load each."""
+    program = folder / "short.rbl"
+    program.write_text("LOAD (0, 0, 60), 0.8\nMOVE P2\nLOAD (0, 0, 95), 2.3\nMOVE P4\n")
+    return str(program)
+
+
+def test_two_processes_give_what_one_gives(tmp_path):
+    request, two = Request(program=short(tmp_path), physics=False), (VARIANTS[0], VARIANTS[3])
     told = []
     assert compare(request, two, jobs=2, done=told.append) == compare(request, two)
     assert told == [variant.title for variant in two]
@@ -176,15 +183,16 @@ def test_a_command_that_passes_its_end_and_comes_back_is_no_overshoot(sign):
     assert np.isnan(last_approach(q_cmd, broken, t)[0])
 
 
-def test_the_command_prints_every_variant_and_says_how_far_it_is():
-    shown = robolang("compare", "--no-physics", "--only", "scheduled,fixed-max", PROGRAM)
+def test_the_command_prints_every_variant_and_says_how_far_it_is(tmp_path):
+    program = short(tmp_path)
+    shown = robolang("compare", "--no-physics", "--only", "scheduled,fixed-max", program)
     (title,) = (variant.title for variant in variants("fixed-max"))
     assert title in shown.stdout
     assert f"2/2 {title}" in shown.stderr
-    found = json.loads(robolang("compare", "--no-physics", "--json", "--only", "scheduled", PROGRAM).stdout)
+    found = json.loads(robolang("compare", "--no-physics", "--json", "--only", "scheduled", program).stdout)
     assert [row["variant"] for row in found["variants"]] == ["scheduled"]
     assert len(found["variants"][0]["per_axis"]["droop_deg"]) == 6
-    assert "RBL703 --only" in robolang("compare", "--only", "nothing", PROGRAM, code=2).stderr
+    assert "RBL703 --only" in robolang("compare", "--only", "nothing", program, code=2).stderr
 
 
 def test_a_program_with_errors_is_not_compared(tmp_path):

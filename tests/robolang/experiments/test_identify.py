@@ -201,14 +201,15 @@ def test_a_table_on_mujoco_finds_what_the_plant_has_at_each_posture():
 def test_a_table_leaves_the_positions_as_they_were():
     """They come first and are told first; other axes have no table."""
     told = []
-    requests = [Request(robot=SPEC, axes=(1, 5), plant="rigid", positions=2, table=table) for table in (0, 2)]
+    many = size(2, 1)
+    requests = [Request(robot=SPEC, axes=(1, 5), plant="rigid", positions=many, table=table) for table in (0, 2)]
     without = identify(requests[0])
     with_it = identify(requests[1], lambda axis, number, q: told.append((axis, number)))
     for a, b in zip(without, with_it, strict=True):
         assert (a.identified.tobytes(), a.spread, a.model) == (b.identified.tobytes(), b.spread, b.model)
     assert with_it[1].table is None
-    assert told == [(1, 1), (1, 2), (1, 3), (1, 4), (5, 1), (5, 2)]
-    assert [requests[1].places(axis) for axis in (0, 1, 2, 5)] == [6, 4, 2, 2]
+    assert told == [(1, k + 1) for k in range(many + 2)] + [(5, k + 1) for k in range(many)]
+    assert [requests[1].places(axis) - many for axis in (0, 1, 2, 5)] == [4, 2, 0, 0]
 
 
 def test_errors_are_physical_and_of_their_size():

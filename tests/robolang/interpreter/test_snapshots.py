@@ -94,7 +94,7 @@ def followed(driver, most=LONGEST):
 
 
 @given(programs, refusals, st.integers(0, 2))
-@examples(300)
+@examples(300, 30)
 def test_after_a_snapshot_the_events_are_the_same(program, refused, seed):
     driver = Driver(program, refused, seed, Decisions())
     events, states = followed(driver)

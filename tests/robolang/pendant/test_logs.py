@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 
 from robolang.pendant.failure import Failure
+from tests.campaign import some
+from tests.programs.runs import some_programs
 from tests.robolang.cli.commands import ROOT, robolang
 from tests.robolang.pendant.prompting import Requests, played, prompt
 
-PROGRAMS = sorted((ROOT / "programs").rglob("*.rbl"))
+PROGRAMS = some_programs("palletise", "recover", "seam")
+PHYSICS = [ROOT / "programs" / "manutec_pick_and_place.rbl", ROOT / "programs" / "shop" / "tend.rbl"]
 WALL = ("wall_time_s", "realtime_factor")
 
 
@@ -46,7 +49,7 @@ def test_run_at_the_prompt_is_that_of_the_command(program, tmp_path):
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("program", [PROGRAMS[0], ROOT / "programs" / "shop" / "tend.rbl"], ids=_names)
+@pytest.mark.parametrize("program", some(PHYSICS, 1), ids=_names)
 def test_run_with_physics_at_the_prompt_is_that_of_the_command(program, tmp_path):
     _same_files(program, tmp_path, physics=True)
 

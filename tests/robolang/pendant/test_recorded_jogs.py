@@ -57,7 +57,7 @@ LINES = st.lists(
 )
 
 
-@examples(200, 6)
+@examples(200, 4)
 @given(lines=LINES)
 def test_whatever_was_done_is_done_again(lines, tmp_path_factory):
     folder = tmp_path_factory.mktemp("random")

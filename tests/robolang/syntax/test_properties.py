@@ -134,7 +134,7 @@ def without_numbers(program):
     st.integers(0, 500),
     st.integers(1, 70),
 )
-@examples(200)
+@examples(200, 20)
 def test_new_line_numbers_change_nothing_else(text, start, step):
     before = parse(source(text)).program
     found = renumber(source(text), start=start, step=step)

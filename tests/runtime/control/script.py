@@ -19,6 +19,7 @@ from runtime.motion.seam import SeamTracker
 from runtime.plant.rigid_plant import RigidPlant
 from runtime.robot.model.payload import Payload
 from runtime.settings.profile import Profile, ServoOptions
+from tests.runtime.recorded import rows_of
 
 CELL = builtin_cell()
 EMPTY = Payload(mass=CELL.hand.mass, cog=CELL.hand.cog)
@@ -159,8 +160,8 @@ class Script:
 
 
 def log_of(robot: Controller) -> dict[str, bytes]:
-    """Return every recorded signal as bytes."""
-    return {name: values.tobytes() for name, values in robot.signals().items()}
+    """Return all that is recorded as bytes."""
+    return rows_of(robot.recorder)
 
 
 def outcome(robot: Controller) -> tuple[object, ...]:

@@ -18,7 +18,7 @@ from tests.runtime.control.script import PLANTS, SENSOR, STEPS, Script, controll
 
 AHEAD = 50
 """Cycles that are run before the controller is taken back."""
-STOPS = size(200, 24)
+STOPS = size(200, 16)
 
 
 @cache
@@ -57,7 +57,7 @@ def test_a_run_that_is_taken_back_again_and_again_is_the_run_that_never_was(plan
 def test_a_new_controller_takes_a_run_over_with_its_log(plant):
     cycles, log, rest = uninterrupted(plant)
     first = Script(controller(plant))
-    for stop in sorted(np.random.default_rng(15).choice(cycles, size(20, 5), replace=False)):
+    for stop in sorted(np.random.default_rng(15).choice(cycles, size(20, 3), replace=False)):
         while first.robot.recorder.cycle < stop:
             first.cycle()
         second = Script(controller(plant))
