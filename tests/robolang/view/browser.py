@@ -31,14 +31,22 @@ def require() -> None:
 
 
 @contextmanager
-def chromium(gl: list[str] = SOFTWARE_GL) -> Iterator[Browser]:
+def browsers(*kinds: list[str]) -> Iterator[list[Browser]]:
+    """Start a browser of each kind; together, since Playwright runs one loop a thread."""
     require()
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=QUIET + gl)
+        started = [playwright.chromium.launch(executable_path=str(CHROMIUM), args=QUIET + gl) for gl in kinds]
         try:
-            yield browser
+            yield started
         finally:
-            browser.close()
+            for browser in started:
+                browser.close()
+
+
+@contextmanager
+def chromium(gl: list[str] = SOFTWARE_GL) -> Iterator[Browser]:
+    with browsers(gl) as (browser,):
+        yield browser
 
 
 class Tab:

@@ -1,6 +1,7 @@
 """Pages of real runs and plans in a browser: robot, part and program against the log, hostile texts, odd runs."""
 
 import math
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -36,14 +37,14 @@ def recorded():
     return run(PICK).log
 
 
-@pytest.fixture
-def shown(browser, tmp_path):
+@contextmanager
+def pages(browser, folder):
     """Opens a page of packed runs, which has to be ready without a complaint and with one request."""
     tab = Tab(browser)
 
     def opened(*runs):
-        write_page(tmp_path / "page.html", runs, Bundle.installed())
-        page = tab.open(tmp_path / "page.html")
+        write_page(folder / "page.html", runs, Bundle.installed())
+        page = tab.open(folder / "page.html")
         assert tab.complaints == [] and len(tab.requests) == 1
         assert page.get_attribute("body", "data-state") == "ready"
         return page
@@ -53,21 +54,40 @@ def shown(browser, tmp_path):
     tab.close()
 
 
-def test_robot_and_part_of_the_page_are_where_the_log_has_them(shown, recorded):
-    page = shown(pack_run(recorded, "a"))
+@pytest.fixture
+def shown(browser, tmp_path):
+    with pages(browser, tmp_path) as opened:
+        yield opened
+
+
+@pytest.fixture(scope="module")
+def page(browser, recorded, tmp_path_factory):
+    """The page of the recorded run, opened once."""
+    with pages(browser, tmp_path_factory.mktemp("run")) as opened:
+        yield opened(pack_run(recorded, "a"))
+
+
+PLACES = f"""(times) => times.map((t) => {{
+  robolang.seek(t);
+  return [robolang.bodyAt(0, 'tool'), robolang.bodyAt(0, 'part:part'), {TURN}];
+}})"""
+
+
+def places(page, ticks):
+    """Tool point, part and its turn at some ticks."""
+    return [[np.array(each) for each in found] for found in page.evaluate(PLACES, [tick * 0.001 for tick in ticks])]
+
+
+def test_robot_and_part_of_the_page_are_where_the_log_has_them(page, recorded):
     ticks, X, parts = len(recorded["t"]), recorded["X_world_tool"], recorded["parts"]
-    for tick in range(0, ticks, 16 * 13):
-        page.evaluate("t => robolang.seek(t)", tick * 0.001)
-        tool = np.array(page.evaluate("robolang.bodyAt(0, 'tool')"))
+    at = range(0, ticks, 16 * 13)
+    for tick, (tool, part, _) in zip(at, places(page, at), strict=True):
         assert np.abs(tool - X[tick, :3, 3]).max() <= 0.01 * MM
-        part = np.array(page.evaluate("robolang.bodyAt(0, 'part:part')"))
         assert np.abs(part - parts[tick // 16, 0, :3]).max() <= 0.01 * MM
     # between two frames of the log: the part goes with the hand, as in a picture of `render`
-    replay, most = Replay(recorded), 0.0
-    for tick in range(5, ticks - 16, 16 * 7 + 3):
-        page.evaluate("t => robolang.seek(t)", tick * 0.001)
-        part = np.array(page.evaluate("robolang.bodyAt(0, 'part:part')"))
-        pose, turn = replay.at(tick * 0.001).parts[0], page.evaluate(TURN)
+    replay, most, at = Replay(recorded), 0.0, range(5, ticks - 16, 16 * 7 + 3)
+    for tick, (_, part, turn) in zip(at, places(page, at), strict=True):
+        pose = replay.at(tick * 0.001).parts[0]
         assert np.abs(part - pose[:3]).max() <= 0.01 * MM
         most = max(most, np.abs(parts[tick // 16, 0, :3] - pose[:3]).max())
         assert abs(np.dot(turn, pose[3:])) / np.linalg.norm(pose[3:]) == pytest.approx(1.0, abs=1e-8)
@@ -76,8 +96,7 @@ def test_robot_and_part_of_the_page_are_where_the_log_has_them(shown, recorded):
     assert carried > 0.1
 
 
-def test_a_click_on_line_60_leads_to_its_start(shown, recorded):
-    page = shown(pack_run(recorded, "a"))
+def test_a_click_on_line_60_leads_to_its_start(page, recorded):
     (statement,) = [each for each in recorded.meta["report"]["statements"] if each["number"] == 60]
     page.click(LINE.format(statement["line"]))
     assert time_of(page) == pytest.approx(statement["start_s"], abs=1e-5)
@@ -85,8 +104,7 @@ def test_a_click_on_line_60_leads_to_its_start(shown, recorded):
     assert "MOVE P2" in page.inner_text("[data-testid=now]")
 
 
-def test_every_chart_of_the_run_is_in_the_page(shown, recorded):
-    page = shown(pack_run(recorded, "a"))
+def test_every_chart_of_the_run_is_in_the_page(page):
     ids = [each.get_attribute("data-signal") for each in page.locator("[data-testid=chart]").all()]
     assert {"tool_error", "joint_error", "torque_pct", "joints", "payload", "inertia", "age", "tool", "hand"} <= set(
         ids
