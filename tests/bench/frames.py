@@ -12,7 +12,8 @@ from tests.bench.figures import Row
 from tests.robolang.view import made_up
 from tests.robolang.view.browser import Tab, chromium
 
-SHORT_S, LONG_S = 5.0, 60.0
+LENGTHS_S = (5.0, 60.0)
+"""Of the short and the long run."""
 FEWEST = 5
 """Frames of a round; a busy machine draws few of them."""
 MOST = 1.3
@@ -29,25 +30,30 @@ def frame_ms(page: Page, plays_ms: int) -> float:
     return page.evaluate("(robolang.cost.ms + robolang.cost.robot) / robolang.cost.frames")
 
 
-def costs(folder: Path, rounds: int, plays_ms: int) -> tuple[float, float]:
-    """Return the medians of both runs, ms; they take turns, so that a slow moment of the machine meets both."""
-    found: dict[float, list[float]] = {SHORT_S: [], LONG_S: []}
+def costs(folder: Path, smallest: bool) -> list[float]:
+    """Return the medians of both runs, ms; they take turns, so that a slow moment of the machine meets both.
+
+    Smallest: shorter runs on a small page.
+    """
+    found: dict[float, list[float]] = {duration: [] for duration in ((0.5, 2.0) if smallest else LENGTHS_S)}
+    rounds, plays_ms = (1, 20) if smallest else (7, 2500)
+    size = (320, 240) if smallest else (1280, 800)
     with chromium() as browser:
         tabs = {}
         for duration in found:
-            path = made_up.page(folder / f"{duration:.0f}.html", made_up.run(duration))
-            tabs[duration] = Tab(browser).open(path)
+            path = made_up.page(folder / f"{duration}.html", made_up.run(duration))
+            tabs[duration] = Tab(browser, *size).open(path)
         for _ in range(rounds):
             for duration, page in tabs.items():
                 page.bring_to_front()
                 found[duration].append(frame_ms(page, plays_ms))
                 page.evaluate("robolang.pause()")
-    return statistics.median(found[SHORT_S]), statistics.median(found[LONG_S])
+    return [statistics.median(each) for each in found.values()]
 
 
 def rows(smallest: bool) -> Iterator[Row]:
     with tempfile.TemporaryDirectory() as folder:
-        short, long = costs(Path(folder), rounds=1 if smallest else 7, plays_ms=300 if smallest else 2500)
+        short, long = costs(Path(folder), smallest)
     yield Row(
         figure="work of the page in a frame while a run of 5 s plays, with the robot",
         form="{:.2f} ms",

@@ -33,18 +33,18 @@ print(count)
 FIGURE = "CPU time of the run's thread with a page that reads, against without"
 
 
-def plain(project: Project) -> float:
+def plain(project: Project, physics: bool) -> float:
     """Return the CPU time of a run, s."""
-    session = Session(project)
+    session = Session(project, physics=physics)
     began = time.thread_time()
     session.run()
     return time.thread_time() - began
 
 
-def followed(project: Project) -> tuple[float, int, float]:
+def followed(project: Project, physics: bool) -> tuple[float, int, float]:
     """Return the CPU time of a run that a page follows, s, how many frames the page got, and the wall time, s."""
     live = Live(PAGE)
-    session = Session(project, observer=live.frames)
+    session = Session(project, physics=physics, observer=live.frames)
     with live.serve(session) as url:
         reader = subprocess.Popen([sys.executable, "-c", READER, url], stdout=subprocess.PIPE, text=True)
         while not live.exchange.pages:
@@ -62,8 +62,8 @@ def rows(smallest: bool) -> Iterator[Row]:
     project = load_project(PROGRAM)
     without, beside = [], []
     for _ in range(1 if smallest else 20):
-        without.append(plain(project))
-        beside.append(followed(project))
+        without.append(plain(project, not smallest))
+        beside.append(followed(project, not smallest))
     ratio = min(took for took, _, _ in beside) / min(without)
     rates = [frames / lasted for _, frames, lasted in beside]
     yield Row(

@@ -85,11 +85,11 @@ def written(log: Log, folder: Path) -> tuple[float, float]:
     return (folder / "page.html").stat().st_size / 1e6, time.perf_counter() - began
 
 
-def share(project: Project, folder: Path, rounds: int) -> tuple[Log, float]:
+def share(project: Project, folder: Path, rounds: int, physics: bool) -> tuple[Log, float]:
     """Return the log of a run, and the median time of a page as a share of that of its run, the two in turn."""
     shares = []
     for _ in range(rounds):
-        session, began = Session(project), time.perf_counter()
+        session, began = Session(project, physics=physics), time.perf_counter()
         log = session.run().log
         took = time.perf_counter() - began
         shares.append(written(log, folder)[1] / took)
@@ -110,8 +110,8 @@ def rows(smallest: bool) -> Iterator[Row]:
     """Measure the pages of three runs."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        short, short_share = share(load_project(PROGRAM), folder, 1 if smallest else 5)
-        long, long_share = share(minute(folder, 1 if smallest else 15), folder, 1 if smallest else 3)
+        short, short_share = share(load_project(PROGRAM), folder, 1 if smallest else 5, not smallest)
+        long, long_share = share(minute(folder, 1 if smallest else 15), folder, 1 if smallest else 3, not smallest)
         hours = repeated(long, 2 if smallest else -(-1_800_000 // long.count("t")))
         for what, log in (("short", short), ("minute", long), ("half an hour", hours)):
             size, took = written(log, folder)

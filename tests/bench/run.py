@@ -109,7 +109,7 @@ def whole_run(rounds: int) -> Row:
     )
 
 
-def wrist_seconds(rounds: int) -> dict[str, tuple[float, float]]:
+def wrist_seconds(rounds: int, physics: bool) -> dict[str, tuple[float, float]]:
     """Return by method the median time of a cycle, run and planning together, and of planning alone, of move E1, s."""
     base = load_project(WRIST)
     projects = {
@@ -119,14 +119,18 @@ def wrist_seconds(rounds: int) -> dict[str, tuple[float, float]]:
     times: dict[str, list[tuple[float, float]]] = {way: [] for way in WAYS}
     for _ in range(rounds):
         for way, project in projects.items():
-            times[way].append(wrist_run(project, way))
+            times[way].append(wrist_run(project, way, physics))
     return {way: tuple(statistics.median(column) for column in zip(*rows, strict=True)) for way, rows in times.items()}
 
 
-def wrist_run(project: Project, way: str) -> tuple[float, float]:
+def wrist_run(project: Project, way: str, physics: bool) -> tuple[float, float]:
     """Return the time of a cycle, run and planning together, and of planning alone, s."""
     said = {"held": ("TILT",) if way == "HOLD" else (), "wrist": "keep" if way == "KEEP" else "auto"}
-    session = Session(project, alter=lambda effect: replace(effect, **said) if isinstance(effect, MoveTo) else effect)
+    session = Session(
+        project,
+        physics=physics,
+        alter=lambda effect: replace(effect, **said) if isinstance(effect, MoveTo) else effect,
+    )
     planner, spent = session.controller.requests.planner, 0.0
     plan = planner.plan
 
@@ -143,9 +147,9 @@ def wrist_run(project: Project, way: str) -> tuple[float, float]:
     return whole / session.controller.recorder.cycle, spent
 
 
-def wrist(rounds: int) -> Iterator[Row]:
+def wrist(rounds: int, physics: bool) -> Iterator[Row]:
     """Measure a move through the wrist by each method."""
-    found = wrist_seconds(rounds)
+    found = wrist_seconds(rounds, physics)
     details = tuple(
         f"{way}: {1e6 * cycle:.0f} us a cycle, {cycle / found['KEEP'][0]:.2f} of KEEP"
         for way, (cycle, _) in found.items()
@@ -194,15 +198,15 @@ def process_seconds(processes: int, *command: str) -> float:
     return statistics.median(times[1:] or times)
 
 
-STATEMENTS = "FOR I = 1 TO 250\nX = X0 + I\nDELAY 0.016\nIF X > 0 THEN Y = X\nNEXT\n".replace("X0", "1")
-"""A thousand statements and two, a quarter of which takes two cycles."""
+STATEMENTS = "FOR I = 1 TO {rounds}\nX = 1 + I\nDELAY 0.016\nIF X > 0 THEN Y = X\nNEXT\n"
+"""Four statements a round, one of which takes two cycles."""
 
 
-def back_ratio(stops: bool) -> float:
-    """Return the time of going back over 1,000 statements as a share of running them, with physics."""
+def back_ratio(stops: bool, rounds: int) -> float:
+    """Return the time of going back over all but two statements as a share of running them, with physics."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "long.rbl")
-        path.write_text(STATEMENTS)
+        path.write_text(STATEMENTS.format(rounds=rounds))
         session = Session(load_project(path))
     executor, timeline = session.executor, Timeline(session.executor)
     executor.stops_before = lambda begun: stops
@@ -211,7 +215,7 @@ def back_ratio(stops: bool) -> float:
         executor.resume()
     ran = time.perf_counter() - started
     started = time.perf_counter()
-    timeline.back(1000)
+    timeline.back(4 * rounds)
     return (time.perf_counter() - started) / ran
 
 
@@ -246,16 +250,17 @@ def rows(smallest: bool) -> Iterator[Row]:
     """Measure everything; small machines differ, so nothing is promised here."""
     yield whole_run(1 if smallest else 11)
     for stops in (False, True):
-        ratios = [back_ratio(stops) for _ in range(1 if smallest else 5)]
+        ratios = [back_ratio(stops, 25 if smallest else 250) for _ in range(1 if smallest else 5)]
         yield Row(
             figure=f"back over 1,000 statements against running them, {'with' if stops else 'without'} stops",
             form="{:.4f} (at most 0.1)",
             values=(statistics.median(ratios),),
         )
     yield logged(1 if smallest else 15)
-    yield from wrist(1 if smallest else 7)
+    yield from wrist(1 if smallest else 7, not smallest)
     for figure, command in COMMANDS.items():
-        yield Row(figure=figure, form="{:.0f} ms", values=(1e3 * process_seconds(1 if smallest else 8, *command),))
+        words = [*command, *(["--no-physics"] if smallest and command[0] == "run" else [])]
+        yield Row(figure=figure, form="{:.0f} ms", values=(1e3 * process_seconds(1 if smallest else 8, *words),))
 
 
 if __name__ == "__main__":
