@@ -23,7 +23,9 @@ def program(tmp_path):
     need_graphics()
     for file in DEMO.parent.glob("pick_and_place.*"):
         shutil.copy(file, tmp_path)
-    return tmp_path / DEMO.name
+    path = tmp_path / DEMO.name
+    path.write_text("30 MOVE P1\n")  # 0.7 s of motion
+    return path
 
 
 def image(path):
@@ -43,8 +45,8 @@ def test_a_program_is_run_and_drawn(program):
 def test_a_log_gives_the_picture_of_its_program(program, tmp_path):
     log = tmp_path / "run.npz"
     dry(program, "--quiet", "--log", log)
-    robolang("render", log, "-o", tmp_path / "log.png", "--at", 2, *SMALL)
-    robolang("render", program, "--no-physics", "-o", tmp_path / "program.png", "--at", 2, *SMALL)
+    robolang("render", log, "-o", tmp_path / "log.png", "--at", 0.2, *SMALL)
+    robolang("render", program, "--no-physics", "-o", tmp_path / "program.png", "--at", 0.2, *SMALL)
     robolang("render", log, "-o", tmp_path / "end.png", *SMALL)
     assert np.array_equal(image(tmp_path / "log.png"), image(tmp_path / "program.png"))
     assert not np.array_equal(image(tmp_path / "log.png"), image(tmp_path / "end.png"))
@@ -54,10 +56,10 @@ def test_a_log_gives_the_picture_of_its_program(program, tmp_path):
 def test_a_film_shows_how_far_it_is(program, tmp_path):
     log = tmp_path / "run.npz"
     dry(program, "--quiet", "--log", log)
-    result = robolang("render", log, "-o", tmp_path / "x.webp", "--fps", 4, "--size", "48x32")
+    result = robolang("render", log, "-o", tmp_path / "x.webp", "--fps", 30, "--size", "48x32")
     lines = result.stderr.splitlines()
     count = int(lines[0].split()[1])
-    assert count == int(read_log(log)["t"][-1] * 4) + 2
+    assert count == int(read_log(log)["t"][-1] * 30) + 2
     assert lines[-1] == f"{count} of {count} pictures"
     assert len(lines) == 11
 

@@ -15,6 +15,7 @@ from robolang.execution.outlook import Outlook, TimeLeft
 from robolang.execution.result import StatementRun
 from robolang.interpreter.effects import Origin
 from runtime.core.faults import Alarm
+from tests.campaign import size, some
 from tests.robolang.cli.commands import dry
 from tests.robolang.pendant.terminal import Terminal
 
@@ -153,7 +154,8 @@ def test_an_alarm_is_kept_for_the_next_turn(monkeypatch):
 
 # --- through a terminal ----------------------------------------------------------------------------------------------
 
-COUNTED = """FOR I = 1 TO 40
+ROWS = size(40, 16)
+COUNTED = f"""FOR I = 1 TO {ROWS}
   PRINT "row "; I
   MOVEJ JOINT(0, 77, -183, 0, -74 + I, 0)
 NEXT I
@@ -167,13 +169,13 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize(("columns", "rows"), [(100, 30), (40, 12), (30, 4)])
+@pytest.mark.parametrize(("columns", "rows"), some([(100, 30), (40, 12), (30, 4)], 0, 2))
 def test_what_is_printed_stays_whole_and_the_panel_goes(folder, columns, rows):
     terminal = Terminal(folder, "p.rbl", "--report", "r.json", columns=columns, rows=rows, command="run")
     terminal.screen.resize(400, columns)
     assert terminal.ended() == 0
     shown = [line for line in terminal.lines if line.startswith("row")]
-    assert shown == [f"row {k}" for k in range(1, 41)]
+    assert shown == [f"row {k}" for k in range(1, ROWS + 1)]
     assert not terminal.shows("mm/s   ")
     assert not any("━" in line and "%" in line for line in terminal.lines)
     assert not terminal.screen.cursor.hidden
@@ -197,11 +199,11 @@ def test_the_log_is_the_same_as_without_it(folder):
     assert (folder / "a.npz").read_bytes() == (folder / "b.npz").read_bytes()
 
 
-@pytest.mark.parametrize("words", [{"TERM": "dumb"}, {"TERM": "unknown"}, {"quiet": "--quiet"}])
+@pytest.mark.parametrize("words", some([{"TERM": "dumb"}, {"TERM": "unknown"}, {"quiet": "--quiet"}], 0, 2))
 def test_a_terminal_of_lines_gets_lines_and_a_quiet_run_nothing(folder, words):
     quiet = [words.pop("quiet")] if "quiet" in words else []
     terminal = Terminal(folder, "p.rbl", *quiet, command="run", **words)
     assert terminal.ended() == 0
     assert b"\x1b" not in terminal.raw
     begun = [line for line in terminal.raw.decode().splitlines() if " s  line " in line]
-    assert len(begun) == (0 if quiet else 80)
+    assert len(begun) == (0 if quiet else 2 * ROWS)

@@ -19,6 +19,7 @@ import pytest
 from robolang.core import storage
 from robolang.core.storage import write_atomic, write_folder
 from runtime.core.faults import Fault
+from tests.campaign import some
 from tests.robolang.cli.commands import robolang
 
 OLD = "10  move P1  ' noqa: RBL119\n20 DELAY 1\n"
@@ -135,7 +136,7 @@ def in_a_child(call):
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == -signal.SIGKILL
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", some(list(COMMANDS), 0))
 def test_a_save_that_is_killed_leaves_the_old_file_or_the_new_one(command, program):
     new, names = saved(command, program)
     assert {"mkstemp", "write", "fchmod", "fsync", "replace"} <= set(names)

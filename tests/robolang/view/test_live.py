@@ -19,6 +19,7 @@ from robolang.execution.session import Session
 from robolang.project.project import load_project
 from robolang.view.driver import Driver
 from robolang.view.live import Live, header_of, open_page
+from tests.robolang.cli.commands import dry, robolang
 from tests.robolang.execution.standing import log_of
 from tests.robolang.view.live_server import PAGE, upgrade
 from tests.steps import HANG_S
@@ -241,9 +242,7 @@ def test_run_is_followed_and_ends_by_itself(program, tmp_path):
         started.process.communicate(timeout=HANG_S)
         assert started.process.returncode == 0
     plain = tmp_path / "b.npz"
-    subprocess.run(
-        [sys.executable, "-m", "robolang", "run", program, "--no-physics", "--quiet", "--log", plain], check=True
-    )
+    dry(program, "--quiet", "--log", plain)
     assert log.read_bytes() == plain.read_bytes()
 
 
@@ -307,14 +306,13 @@ def test_a_stop_is_not_kept_by_the_commands_before_it(program):
 def test_a_program_with_errors_and_a_port_that_is_taken_are_refused(program, tmp_path):
     wrong = tmp_path / "wrong.rbl"
     wrong.write_text("MOVE NOWHERE\n")
-    with command("view", wrong, "--no-browser") as started:
-        assert (started.url, started.process.wait(HANG_S)) == ("", 1)
+    assert "http" not in robolang("view", wrong, "--no-browser", code=1).stderr
     with live_of(program) as (_, _, url):
         port = re.search(r":(\d+)/", url)[1]
         for words in (("view", program, "--no-physics"), ("run", program, "--no-physics", "--view")):
-            with command(*words, "--no-browser", "--port", port) as started:
-                assert (started.url, started.process.wait(HANG_S)) == ("", 2)
-                assert any("RBL834" in line and port in line for line in started.said)
+            refused = robolang(*words, "--no-browser", "--port", port, code=2).stderr
+            assert any("RBL834" in line and port in line for line in refused.splitlines())
+            assert "http" not in refused
 
 
 def test_a_browser_that_would_take_the_terminal_is_not_opened(monkeypatch):
