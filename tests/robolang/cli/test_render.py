@@ -56,10 +56,10 @@ def test_a_log_gives_the_picture_of_its_program(program, tmp_path):
 def test_a_film_shows_how_far_it_is(program, tmp_path):
     log = tmp_path / "run.npz"
     dry(program, "--quiet", "--log", log)
-    result = robolang("render", log, "-o", tmp_path / "x.webp", "--fps", 30, "--size", "48x32")
+    result = robolang("render", log, "-o", tmp_path / "x.webp", "--fps", 14, "--size", "48x32")
     lines = result.stderr.splitlines()
     count = int(lines[0].split()[1])
-    assert count == int(read_log(log)["t"][-1] * 30) + 2
+    assert count == int(read_log(log)["t"][-1] * 14) + 2
     assert lines[-1] == f"{count} of {count} pictures"
     assert len(lines) == 11
 
