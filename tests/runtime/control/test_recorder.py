@@ -2,7 +2,7 @@
 
 import errno
 import os
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -55,18 +55,25 @@ def begun(spill: Spill | None = None) -> Recorder:
     return made
 
 
+@cache
+def rows(phase: int, salt: float):
+    """Return the numbers of a cycle, and of them what is recorded of it and of its ticks."""
+    row = np.roll(NUMBERS, phase) + salt
+    ticks = [tuple(np.resize(np.roll(row, k + tick), 6) for k in range(5)) for tick in range(8)]
+    return row, ticks[0], np.resize(row, (3, 8, 6)), ticks
+
+
 def go(made: Recorder, cycles: int, salt: float = 0.0) -> Recorder:
     """Record cycles whose numbers depend on the time and the salt."""
     for _ in range(cycles):
-        row = np.roll(NUMBERS, made.cycle) + salt
+        row, vectors, block, ticks = rows(made.cycle % len(NUMBERS), salt)
         tool = np.eye(4)
         tool[0, 3] = made.cycle // 200
         made.use_tool(tool)
-        vectors = tuple(np.resize(np.roll(row, k), 6) for k in range(5))
         scalars = (float(row[0]), made.cycle % 50, made.cycle % 7, made.cycle % 3)
-        made.begin_cycle(vectors, np.resize(row, (3, 8, 6)), scalars, partial(np.resize, row, 9))
-        for tick in range(8):
-            made.record(tuple(np.resize(np.roll(row, k + tick), 6) for k in range(5)))
+        made.begin_cycle(vectors, block, scalars, partial(np.resize, row, 9))
+        for tick in ticks:
+            made.record(tick)
     return made
 
 
