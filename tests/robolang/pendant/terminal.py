@@ -78,7 +78,8 @@ class Terminal:
         return [line.rstrip() for line in self.screen.display]
 
     def shows(self, *texts: str) -> bool:
-        return all(any(text in line for line in self.lines) for text in texts)
+        lines = self.lines
+        return all(any(text in line for line in lines) for text in texts)
 
     def until(self, *texts: str) -> list[str]:
         """Read until every text is on the screen, each within one line; return the lines."""

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.robolang.cli.commands import shell
+from tests.robolang.cli.commands import robolang
 from tests.robolang.pendant.terminal import Terminal
 
 TAUGHT = [
@@ -29,7 +29,7 @@ PROGRAM = """\
 
 
 @pytest.mark.physics
-def test_a_session_from_an_empty_folder_equals_a_run_of_its_files(tmp_path):
+def test_a_session_from_an_empty_folder_equals_a_run_of_its_files(tmp_path, monkeypatch):
     terminal = Terminal(tmp_path, physics=True, columns=120, rows=40)
 
     typed = terminal.enter
@@ -60,6 +60,6 @@ def test_a_session_from_an_empty_folder_equals_a_run_of_its_files(tmp_path):
         terminal.process.close(force=True)
     saved = [line.split() for line in (tmp_path / "job.rbl").read_text().splitlines()]
     assert saved == [line.split() for line in PROGRAM.splitlines()]  # the formatter aligns the numbers
-    result = shell("run", "job.rbl", "--log", "run.npz", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
+    monkeypatch.chdir(tmp_path)
+    robolang("run", "job.rbl", "--log", "run.npz")
     assert (tmp_path / "run.npz").read_bytes() == (tmp_path / "session.npz").read_bytes()
