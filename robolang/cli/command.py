@@ -79,8 +79,18 @@ def _parameters(group: type[Group]) -> Iterator[inspect.Parameter]:
             min=option.low,
             max=option.high,
             rich_help_panel=panel,
+            autocompletion=None if option.choices is None else _beginning(option.choices),
         )
         yield _parameter(name, Annotated[kind, shown], group.DEFAULTS.get(name, inspect.Parameter.empty))
+
+
+def _beginning(choices: tuple[str, ...]) -> Callable[[str], list[str]]:
+    """Return what a shell asks for the choices that a word begins."""
+
+    def beginning(incomplete: str) -> list[str]:
+        return [choice for choice in choices if choice.startswith(incomplete)]
+
+    return beginning
 
 
 def _unwrapped(paragraph: str) -> str:

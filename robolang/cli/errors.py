@@ -5,7 +5,6 @@ Exit codes: 0 clean, 1 diagnostics found, 2 usage or configuration, 3 motion fau
 """
 
 import errno
-import io
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
@@ -110,9 +109,3 @@ def _left_with_exit_code() -> Iterator[None]:
         raise SystemExit(say(Fault("RBL706", message))) from None
     except Exception as error:
         raise SystemExit(say(internal(error))) from None
-
-
-def escape_what_a_terminal_lacks() -> None:
-    """Let stdout escape letters that its encoding lacks, as stderr does: excerpts of programs hold them."""
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="backslashreplace")

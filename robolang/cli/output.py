@@ -4,6 +4,7 @@ A reader may close its pipe (``| head``) while a command works. What is printed 
 does its work, writes its files and leaves with the exit code that it has without a pipe (docs/decisions/0005).
 """
 
+import io
 import os
 import sys
 from contextlib import suppress
@@ -33,3 +34,9 @@ def drop(stream: TextIO) -> None:
     with suppress(OSError, ValueError, AttributeError):
         # under the stream, not in its place: Python flushes the same object when it ends
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+def escape_what_a_terminal_lacks() -> None:
+    """Let stdout escape letters that its encoding lacks, as stderr does: excerpts of programs hold them."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")

@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, get_args
 
-from robolang.cli.errors import escape_what_a_terminal_lacks
 from robolang.cli.options import CellOptions, Group, Option
+from robolang.cli.output import escape_what_a_terminal_lacks
 from robolang.cli.usage import OptionValueError
 
 

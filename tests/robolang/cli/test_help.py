@@ -2,6 +2,8 @@
 
 import re
 import signal
+import subprocess
+import sys
 from typing import Annotated
 
 import pytest
@@ -9,6 +11,7 @@ import typer
 from typer.testing import CliRunner
 
 from robolang.cli.command import command
+from robolang.cli.command_table import TABLE
 from robolang.cli.errors import DIAGNOSTICS, INTERNAL, INTERRUPTED, MOTION, STORAGE, USAGE
 from robolang.cli.main import app
 from robolang.cli.options import Group, Option
@@ -59,6 +62,36 @@ def test_no_word_of_a_help_text_is_lost(words, found):
         assert not re.search(r"\[[a-z]", parameter.help or ""), parameter.name
     shown = flat(robolang(*words, "--help").stdout)
     assert all(word in shown for word in re.findall(r"\[\w+\]", found.help))
+
+
+@pytest.mark.parametrize("entry", TABLE, ids=lambda entry: entry.name)
+def test_the_list_of_commands_says_what_the_command_says(entry):
+    found = typer.main.get_command(app).commands[entry.name]
+    assert found.help.replace(r"\[", "[").partition("\n\n")[0] == entry.help
+    assert f" {entry.panel} " in robolang("--help").stdout
+
+
+@pytest.mark.parametrize("words", [("run",), ("robot", "import")], ids=" ".join)
+def test_help_is_asked_for_in_three_forms(words):
+    shown = {flat(robolang(*typed).stdout) for typed in (("help", *words), (*words, "-h"), (*words, "--help"))}
+    assert len(shown) == 1
+    assert f"robolang {' '.join(words)} [OPTIONS]" in shown.pop()
+
+
+def test_help_of_what_is_no_command_explains_it_or_says_that_it_is_unknown():
+    assert robolang("help", "rbl412").stdout == robolang("explain", "RBL412").stdout
+    assert "RBL703" in robolang("help", "zzzzzz", code=2).stderr
+    assert robolang("help").stdout == robolang("--help").stdout
+
+
+def test_the_list_of_commands_imports_none_of_them():
+    code = (
+        "import sys; from typer.testing import CliRunner; from robolang.cli.main import app;"
+        "assert CliRunner().invoke(app, ['--help']).exit_code == 0;"
+        "print([name for name in sys.modules if name.startswith('robolang.cli.commands.')])"
+    )
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert shown.strip() == "['robolang.cli.commands.completion']"
 
 
 def test_all_exit_codes_are_in_the_help_of_the_program():
