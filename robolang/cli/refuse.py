@@ -33,18 +33,20 @@ def refuse_text(project: "Project", *, warnings: bool = True) -> None:
         raise SystemExit(DIAGNOSTICS)
 
 
-def refuse(project: "Project", *, warnings: bool = True, plans: "PlanMemory | None" = None) -> Accepted:
+def refuse(
+    project: "Project", *, warnings: bool = True, plans: "PlanMemory | None" = None, most_us: int | None = None
+) -> Accepted:
     """Print the diagnostics and what is unlikely about the robot and the cell.
 
     Leave when the text has errors or a motion cannot be planned. ``warnings`` False: print errors only. ``plans``
-    keeps what is planned, for the run.
+    keeps what is planned, for the run. ``most_us``: the longest simulated time, us; None: the usual one.
     """
     from robolang.core.diagnostics import Severity, render
 
     refuse_text(project, warnings=warnings)
     from robolang.execution.dry_run import rehearse
 
-    rehearsal = rehearse(project, plans=plans)
+    rehearsal = rehearse(project, plans=plans, most_us=most_us)
     for item in rehearsal.preventing:
         echo(render(item, project.source), err=True)
     if rehearsal.preventing:

@@ -1,10 +1,12 @@
-"""The tables that ``robolang run`` prints: one row per statement, one line per fact of the run.
+"""The tables that ``robolang run`` prints: one row for each line of the program, one line for each fact of the run.
 
+A line that was carried out several times has one row: when it first began, the sum of its times, its largest errors.
 The columns of numbers are as wide as their widest number; the statements get what is left of the line and are the
 only thing that is ever cut.
 """
 
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 from rich import box
 from rich.table import Table
@@ -13,41 +15,76 @@ from robolang.cli import lines
 from robolang.cli.console import Console
 from robolang.core.diagnostics import safe
 
+
+class _Column(NamedTuple):
+    """A column of numbers: heading, key of a statement, how it is printed, and the one number of several."""
+
+    heading: str
+    key: str
+    form: str
+    of: Callable[[Sequence[float]], float] = max
+
+
 _COLUMNS = (
-    ("start\n\ns", "start_s", "{:.3f}"),
-    ("time\n\ns", "duration_s", "{:.3f}"),
-    ("joint\nerror\ndeg", "joint_error_deg", "{:.4f}"),
-    ("tool\nerror\nmm", "tool_error_mm", "{:.3f}"),
-    ("path\nerror\nmm", "path_deviation_mm", "{:.3f}"),
-    ("peak\ntorque\n%", "peak_torque_pct", "{:.0f}"),
+    _Column("start\n\ns", "start_s", "{:.3f}", min),
+    _Column("time\n\ns", "duration_s", "{:.3f}", sum),
+    _Column("joint\nerror\ndeg", "joint_error_deg", "{:.4f}"),
+    _Column("tool\nerror\nmm", "tool_error_mm", "{:.3f}"),
+    _Column("path\nerror\nmm", "path_deviation_mm", "{:.3f}"),
+    _Column("peak\ntorque\n%", "peak_torque_pct", "{:.0f}"),
 )
+_TIMES = _Column("times\n\n", "times", "{:.0f}", sum)
 _NARROWEST, _WIDEST = 12, 40
 
 
-def print_result(report: dict[str, Any]) -> None:
-    """Print the report of a run."""
+def print_result(report: dict[str, Any], *, every: bool = False, worst: bool = False) -> None:
+    """Print the report of a run; ``every``: each statement that was carried out, ``worst``: the largest tool error
+    first."""
     console = Console()
     console.print(safe(f"{report['program']} on {report['robot']}"), style="italic", soft_wrap=True)
-    console.print(_statements(report, console.width))
-    for statement in report["statements"]:
-        for note in statement["notes"]:
-            console.print(f"  {lines.name(statement)}: {note}")
+    rows = [{**statement, "times": 1} for statement in report["statements"]]
+    rows = rows if every else _by_line(rows)
+    if worst:
+        # what has no error has taken no time, and comes last
+        rows.sort(key=lambda row: -1.0 if row["tool_error_mm"] is None else row["tool_error_mm"], reverse=True)
+    console.print(_statements(rows, console.width))
+    for note in dict.fromkeys(f"  {lines.name(row)}: {note}" for row in rows for note in row["notes"]):
+        console.print(note)
     for line in _facts(report):
         console.print(line)
 
 
-def _statements(report: dict[str, Any], width: int) -> Table:
+def _by_line(statements: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Return one row for each line and text, in the order in which they were first reached."""
+    found: dict[tuple[Any, ...], list[Mapping[str, Any]]] = {}
+    for statement in statements:
+        # one that was cut off before it began says so in a row of its own
+        found.setdefault((statement["line"], statement["text"], statement["begun"]), []).append(statement)
+    return [_together(rows) for rows in found.values()]
+
+
+def _together(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    together = dict(rows[0])
+    for column in (_TIMES, *_COLUMNS):
+        numbers = [row[column.key] for row in rows if row[column.key] is not None]
+        together[column.key] = column.of(numbers) if numbers else None
+    return {**together, "notes": [note for row in rows for note in row["notes"]]}
+
+
+def _statements(statements: Sequence[Mapping[str, Any]], width: int) -> Table:
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    statements = report["statements"]
     where = lines.headings(statements)
+    # a program without loops has no need of it
+    columns = (_TIMES, *_COLUMNS) if any(row["times"] > 1 for row in statements) else _COLUMNS
     for heading in where:
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("statement", no_wrap=True)
-    for heading, _, _ in _COLUMNS:
-        table.add_column(heading, justify="right", no_wrap=True)
-    rows = [[*lines.cells(statement, where), *_cells(statement)] for statement in statements]
+    for column in columns:
+        table.add_column(column.heading, justify="right", no_wrap=True)
+    rows = [[*lines.cells(statement, where), *_cells(statement, columns)] for statement in statements]
     # cut here and not by rich, which would shrink the columns of numbers too
-    room, at = _room(rows, where, width), len(where)
+    headings = [*where, "", *(max(column.heading.split("\n"), key=len) for column in columns)]
+    room, at = _room(rows, headings, len(where), width), len(where)
     for row in rows:
         text = row[at]
         row[at] = text if len(text) <= room else f"{text[: room - 1]}…"
@@ -55,38 +92,36 @@ def _statements(report: dict[str, Any], width: int) -> Table:
     return table
 
 
-def _cells(statement: dict[str, Any]) -> list[str]:
-    numbers = ["" if statement[key] is None else form.format(statement[key]) for _, key, form in _COLUMNS]
+def _cells(statement: Mapping[str, Any], columns: Sequence[_Column]) -> list[str]:
+    numbers = ["" if statement[column.key] is None else column.form.format(statement[column.key]) for column in columns]
     # a move may be planned ahead and be cut off by an alarm or a stop before it
     if not statement["begun"]:
-        numbers[0] = "not begun"
+        numbers[columns.index(_COLUMNS[0])] = "not begun"
     return [safe(statement["text"]), *numbers]
 
 
-def _room(rows: list[list[str]], where: tuple[str, ...], width: int) -> int:
-    """Return how wide a statement may be so that the table is not wider than the console."""
-    headings = [*where, "", *(max(heading.split("\n"), key=len) for heading, _, _ in _COLUMNS)]
+def _room(rows: list[list[str]], headings: list[str], at: int, width: int) -> int:
+    """Return how wide the statements, in column ``at``, may be so that the table is not wider than the console."""
     widths = [max(map(len, column)) for column in zip(headings, *rows, strict=True)]
-    taken = sum(widths) - widths[len(where)] + 2 * len(widths) + 1  # two spaces between columns, and those at the edges
+    taken = sum(widths) - widths[at] + 2 * len(widths) + 1  # two spaces between columns, and those at the edges
     return min(max(width - taken, _NARROWEST), _WIDEST)
 
 
-def _counted(count: int, noun: str) -> str:
+def counted(count: int, noun: str) -> str:
+    """Return a count with its noun."""
     return f"{count} {noun}{'s' * (count != 1)}"
 
 
 def _facts(report: dict[str, Any]) -> list[str]:
-    dynamics = report["dynamics"]
+    dynamics, cycles = report["dynamics"], report["cycles"]
     lines = [
-        f"{report['sim_time_s']:.3f} s simulated in {report['wall_time_s']:.2f} s "
-        f"({report['realtime_factor']:.1f} x real time), {_counted(report['cycles'], 'cycle')} of 8 ms, "
-        f"{_counted(report['overruns'], 'overrun')}"
+        f"cycle time {report['sim_time_s']:.3f} s; simulated in {report['wall_time_s']:.2f} s "
+        f"({report['realtime_factor']:.1f} x real time)"
     ]
-    if report["cycles"]:
-        lines.append(
-            f"dynamics task: each axis refreshed every {dynamics['refresh_mean_ms']:.1f} ms, "
-            f"at most {dynamics['refresh_max_ms']:.1f} ms"
-        )
+    ran = f"{counted(cycles, 'cycle')} of 8 ms, {counted(report['overruns'], 'overrun')}"
+    if cycles:
+        ran += f"; inertia of each axis every {dynamics['refresh_mean_ms']:.1f} to {dynamics['refresh_max_ms']:.1f} ms"
+    lines.append(ran)
     for name, entry in report["objects"].items():
         # adding zero turns a rounded -0.0 into 0.0
         x, y, z, rx, ry, rz = (round(value, 3) + 0.0 for value in entry["pose_mm_deg"])

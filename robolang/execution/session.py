@@ -58,11 +58,13 @@ class Session:
         alter: Alter | None = None,
         plans: PlanMemory | None = None,
         log: Path | bool = True,
+        most_us: int | None = None,
     ) -> None:
         """``plans`` are those of the check before the run: what begins as it did there is not planned again.
 
         ``log``: whether the log is kept; what is old of it goes into a temporary file, a folder says where. False: the
-        report alone is made, the signals cannot be read (RBL822), and nothing can be taken back.
+        report alone is made, the signals cannot be read (RBL822), and nothing can be taken back. ``most_us``: the
+        longest simulated time, us (RBL509); None: that of ``run_bounds``.
         """
         if not project.ok:
             raise ProgramError(project, project.diagnostics)
@@ -79,7 +81,7 @@ class Session:
             controller.recorder.fold = self._measures.take
         observer = observer or Observer()
         target = ControllerTarget(self.record, plans.kinematics, observer)
-        self.executor = Executor(project, target, alter=alter, observer=observer)
+        self.executor = Executor(project, target, alter=alter, observer=observer, most_us=most_us)
 
     @property
     def controller(self) -> Controller:

@@ -11,9 +11,13 @@ from typing import TypeAlias, assert_never
 
 from robolang.core.source import Source
 from robolang.execution.executor import Executor
+from robolang.execution.status import ENDED, State
 from robolang.execution.watching import expression
 from robolang.interpreter.events import LineBegun
 from runtime.core.faults import Fault
+
+_CYCLES = 100
+"""Cycles between two checks whether a program has stopped; it stops where it has to in any case."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,6 +76,14 @@ def over(executor: Executor) -> Over:
 def out(executor: Executor) -> Out:
     """Return the step out of the call in which a program stands."""
     return Out(level=executor.level)
+
+
+def run_to(executor: Executor, line: int) -> None:
+    """Run a program until the statement of a line of the file, from 1, is due, or it ends."""
+    executor.stops_before = StopsAt(executor, [To(line=line)])
+    while executor.advance(_CYCLES).state not in ENDED | {State.PAUSED}:
+        pass
+    executor.stops_before = None
 
 
 def hit(executor: Executor, begun: LineBegun, stops: Sequence[Stop]) -> Hit | None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import robolang.core.codes  # noqa: F401 - the codes raised here must be registered
 from robolang.analysis.analysis import Analysis
+from robolang.analysis.named_lines import has_numbers, line_of
 from robolang.core.diagnostics import Diagnostic, has_errors
 from robolang.core.source import Source
 from robolang.pendant.checking import errors_of
@@ -20,7 +21,6 @@ from robolang.pendant.failure import Failure, failure, of_diagnostics, of_fault
 from robolang.pendant.interrupts import Interrupts
 from robolang.pendant.keeping import Keeping
 from robolang.pendant.line_moves import LineMoves, moved_breaks
-from robolang.pendant.lines import has_numbers, line_of
 from robolang.pendant.numbers import pose_text
 from robolang.pendant.output import Output
 from robolang.pendant.pictures import Pictures

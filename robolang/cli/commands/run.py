@@ -4,25 +4,28 @@ Progress, warnings and errors go to stderr, the table to stdout. Output files ar
 ``--quiet`` leaves warnings out, but not with ``--strict``: what makes the exit code 1 is shown.
 """
 
+import json
 import signal
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 from robolang.cli.controller_settings import settings_of
 from robolang.cli.errors import DIAGNOSTICS, MOTION, STORAGE, reported, say
 from robolang.cli.live_options import FollowOptions, followed, pages_of, remain
-from robolang.cli.options import CellOptions, Group, Option, Program, RunControllerOptions, SimulationOptions, Strict
+from robolang.cli.options import CellOptions, Program, RunControllerOptions
 from robolang.cli.output import echo
 from robolang.cli.outputs import check_outputs
 from robolang.cli.refuse import refuse
+from robolang.cli.run_options import OutputOptions, RunOptions
 from robolang.cli.signals import handled
 from robolang.cli.usage import OptionValueError
 
 if TYPE_CHECKING:
+    from robolang.cli.refuse import Accepted
     from robolang.core.diagnostics import Diagnostic
     from robolang.execution.outlook import PlannedStep
     from robolang.execution.plan_memory import PlanMemory
@@ -34,35 +37,12 @@ _MOST_SHOWN = 3
 """Warnings of one code that are printed for one statement; a loop may raise thousands. The report has all."""
 
 
-class _OutputOptions(Group):
-    """What a run prints and writes."""
-
-    PANEL: ClassVar[str] = "Output and exit code"
-    report: Annotated[Path | None, Option("--report", metavar="FILE", help="Write the report to this file (JSON).")] = (
-        None
-    )
-    log: Annotated[
-        Path | None,
-        Option("--log", metavar="FILE", help="Write all signals: .npz (numpy) or .mcap (log viewers)."),
-    ] = None
-    html: Annotated[
-        Path | None, Option("--html", metavar="FILE.html", help="Write a page that shows the run in a browser.")
-    ] = None
-    strict: Strict = False
-    quiet: Annotated[bool, Option("--quiet", help="Print errors only; with --strict warnings too.")] = False
-
-    @property
-    def warnings(self) -> bool:
-        """Whether warnings are printed."""
-        return self.strict or not self.quiet
-
-
 def run(
     program: Program,
     files: CellOptions,
     controller: RunControllerOptions,
-    simulation: SimulationOptions,
-    output: _OutputOptions,
+    simulation: RunOptions,
+    output: OutputOptions,
     follow: FollowOptions,
 ) -> None:
     """Run a program on the controller and the simulated arm.
@@ -73,6 +53,8 @@ def run(
     settings = settings_of(controller)
     with reported():
         _check_outputs(program, files, output)
+        if simulation.until_line is not None and follow.view:
+            raise OptionValueError("--until-line", "a page that follows the run pauses it; leave out --view")
         from robolang.project.project import load_project
 
         # planning a long program takes its time, and there is no session yet that a signal could stop
@@ -81,19 +63,33 @@ def run(
             from robolang.execution.plan_memory import PlanMemory
 
             plans = PlanMemory(project)
-            accepted = refuse(project, warnings=output.warnings, plans=plans)
-        with _ran(project, plans, accepted.steps, simulation, output, follow) as (result, code):
-            if not output.quiet:
-                from robolang.cli.run_table import print_result
+            accepted = _accepted(project, plans, simulation, output)
+        with _ran(project, plans, accepted.steps, simulation, output, follow) as (result, ended, code):
+            code = code or _code_of(result, output, warned=accepted.warned)
+            _print(project, result, output)
+            if not output.quiet and not output.as_json:
+                from robolang.cli.verdict import verdict
 
-                print_result(result.report)
-            _print_alarms(project, result, warnings=output.warnings)
-    # a file that is lost or a signal says more than the alarm, which is printed in any case
-    code = code or _code_of(result)
-    if not code and output.strict and (accepted.warned or result.warnings):
-        code = DIAGNOSTICS
+                echo(verdict(result, ended, code))
     if code:
         raise SystemExit(code)
+
+
+def _accepted(project: "Project", plans: "PlanMemory", simulation: RunOptions, output: OutputOptions) -> "Accepted":
+    """Return what is known of a program that may run; leave with what is wrong of one that may not."""
+    if simulation.until_line is not None:
+        from robolang.analysis.named_lines import stop_of
+
+        # a line that is none is found before the motion is planned
+        stop_of(project.analysis, simulation.until_line)
+    try:
+        return refuse(project, warnings=output.warnings, plans=plans, most_us=simulation.most_us)
+    except SystemExit:
+        if not output.quiet:
+            from robolang.cli.verdict import REFUSED
+
+            echo(REFUSED, err=True)
+        raise
 
 
 @contextmanager
@@ -101,11 +97,12 @@ def _ran(
     project: "Project",
     plans: "PlanMemory",
     steps: "tuple[PlannedStep, ...]",
-    simulation: SimulationOptions,
-    output: _OutputOptions,
+    simulation: RunOptions,
+    output: OutputOptions,
     follow: FollowOptions,
-) -> "Iterator[tuple[RunResult, int]]":
-    """Run the program and write its files; yield the result, and the exit code of a file or a signal, or 0.
+) -> "Iterator[tuple[RunResult, str, int]]":
+    """Run the program and write its files; yield the result, how it ended, and the exit code of a file or a
+    signal, or 0.
 
     Pages of a live view that are still there then show the end of the run.
     """
@@ -121,21 +118,52 @@ def _ran(
             beside = output.log or output.html
             kept = pages is not None if beside is None else beside.absolute().parent
             physics, realtime = not simulation.no_physics, simulation.realtime
-            session = Session(project, physics=physics, realtime=realtime, observer=observer, plans=plans, log=kept)
+            session = Session(
+                project,
+                physics=physics,
+                realtime=realtime,
+                observer=observer,
+                plans=plans,
+                log=kept,
+                most_us=simulation.most_us,
+            )
             progress.follow(session.controller)
             # a page is waited for
             with handled(_left_before_motion):
                 run_session = serving.enter_context(followed(session, pages, follow))
+            if simulation.until_line is not None:
+                run_session = _until(session, simulation.until_line)
             # until the files are written: a signal must not cut them off
             with _signals(session) as stopped:
                 result = run_session()
                 code = _write(result, output)
-        yield result, code or (128 + stopped[0] if stopped else 0)
+        yield result, _ended(session, simulation), code or (128 + stopped[0] if stopped else 0)
         if pages is not None and not stopped:
             remain(pages)
 
 
-def _check_outputs(program: str, files: CellOptions, output: _OutputOptions) -> None:
+def _until(session: "Session", line: str) -> "Callable[[], RunResult]":
+    """Return what runs a session until a line is due."""
+    from robolang.analysis.named_lines import stop_of
+    from robolang.execution.stepping import run_to
+
+    row = stop_of(session.project.analysis, line)
+    return lambda: session.run(lambda: run_to(session.executor, row))
+
+
+def _ended(session: "Session", simulation: RunOptions) -> str:
+    """Return how a run ended, in words."""
+    from robolang.execution.status import State
+
+    status, line = session.executor.status, simulation.until_line
+    if status.state is State.PAUSED:
+        return f"ended before line {line}"
+    if session.record.alarms:
+        return f"ended with {session.record.alarms[0].code}"
+    return "ran to its end" if line is None else f"ran to its end, never to line {line},"
+
+
+def _check_outputs(program: str, files: CellOptions, output: OutputOptions) -> None:
     """Refuse outputs of a wrong kind or that would overwrite an input or each other, and try to write them."""
     report, log, html = output.report, output.log, output.html
     if html is not None and html.suffix != ".html":
@@ -148,13 +176,16 @@ def _check_outputs(program: str, files: CellOptions, output: _OutputOptions) -> 
     check_outputs({"--report": report, "--log": log, "--html": html}, [program, files.cell, files.robot])
 
 
-def _code_of(result: "RunResult") -> int:
+def _code_of(result: "RunResult", output: OutputOptions, *, warned: bool) -> int:
+    """Return the exit code of a run; ``warned``: there were warnings before it."""
     if any(alarm.code == "RBL706" for alarm in result.alarms):
         return STORAGE
-    return 0 if result.ok else MOTION
+    if not result.ok:
+        return MOTION
+    return DIAGNOSTICS if output.strict and (warned or result.warnings) else 0
 
 
-def _write(result: "RunResult", output: _OutputOptions) -> int:
+def _write(result: "RunResult", output: OutputOptions) -> int:
     """Write report, log and page, each of them even if another cannot be written; return the exit code."""
     from robolang.core.storage import write_json
     from robolang.logs.files import write_log
@@ -181,6 +212,20 @@ def _write_page(path: Path, result: "RunResult") -> None:
 
     name = str(result.log.needed_meta()["program"]["name"])
     write_page(path, [pack_run(result.log, name)], Bundle.installed())
+
+
+def _print(project: "Project", result: "RunResult", output: OutputOptions) -> None:
+    """Print the table or the report, then what went wrong."""
+    if output.as_json:
+        from robolang.core.storage import strict
+
+        # one line: a report of a long program is for programs to read
+        echo(json.dumps(strict(result.report), ensure_ascii=False, allow_nan=False))
+    elif not output.quiet:
+        from robolang.cli.run_table import print_result
+
+        print_result(result.report, every=output.every, worst=output.worst)
+    _print_alarms(project, result, warnings=output.warnings)
 
 
 def _print_alarms(project: "Project", result: "RunResult", *, warnings: bool) -> None:

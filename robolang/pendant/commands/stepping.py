@@ -2,8 +2,8 @@
 
 from typing import TYPE_CHECKING
 
+from robolang.analysis.named_lines import name_of, stop_of
 from robolang.pendant.command import Command, Group, Offer
-from robolang.pendant.lines import name_of, stop_of
 from robolang.pendant.output import Column, Table
 from robolang.pendant.words import misused, values
 

@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING, cast
 
+from robolang.analysis.named_lines import name_of
 from robolang.pendant.command import Command, Group, Offer
 from robolang.pendant.failure import failure
-from robolang.pendant.lines import name_of
 from robolang.pendant.output import Column, Table
 from robolang.pendant.words import misused, nothing, without_flag
 

@@ -1,5 +1,6 @@
 """What ``robolang run`` prints: the table at 80 columns, progress on a terminal and elsewhere, and odd streams."""
 
+import json
 import os
 import pty
 import re
@@ -81,7 +82,7 @@ def report(**changes):
 @pytest.mark.parametrize("width", [60, 80, 100, 200])
 def test_only_a_statement_is_ever_cut(width, monkeypatch, capsys):
     monkeypatch.setenv("COLUMNS", str(width))
-    run_table.print_result(report())
+    run_table.print_result(report(), every=True)
     lines = capsys.readouterr().out.splitlines()
     assert max(map(len, lines)) <= max(width, 74)
     if width >= 80:
@@ -96,11 +97,102 @@ def test_only_a_statement_is_ever_cut(width, monkeypatch, capsys):
 
 def test_a_short_statement_is_not_cut_and_a_wide_terminal_shows_more(monkeypatch, capsys):
     monkeypatch.setenv("COLUMNS", "80")
-    run_table.print_result(report(text="MOVE P1, SPEED 100", start_s=0.0, duration_s=1.0))
+    run_table.print_result(report(text="MOVE P1, SPEED 100", start_s=0.0, duration_s=1.0), every=True)
     assert "…" not in capsys.readouterr().out
     monkeypatch.setenv("COLUMNS", "120")
-    run_table.print_result(report(text=LONG[4 : 4 + 40]))
+    run_table.print_result(report(text=LONG[4 : 4 + 40]), every=True)
     assert "…" not in capsys.readouterr().out
+
+
+LOOP = "FOR k = 1 TO 3\nMOVEJ HERE + (0, 0, 10 * k)\nMOVEJ HERE + (0, 0, -10 * k)\nNEXT k\nMOVEJ HERE + (0, 0, 5)\n"
+
+
+def table_rows(text):
+    """The rows of a table as their fields, without the statement."""
+    return [re.split(r"  +", line.strip()) for line in text.splitlines() if re.match(r" +\d+ +MOVEJ", line)]
+
+
+def statements(report_of, line):
+    return [each for each in report_of["statements"] if each["line"] == line]
+
+
+def test_a_line_that_ran_several_times_has_one_row_with_its_first_start_its_sum_and_its_largest_errors(program):
+    program.write_text(LOOP)
+    rows = {int(row[0]): row for row in table_rows(dry("p.rbl", "--report", "r.json").stdout)}
+    found = json.loads((program.parent / "r.json").read_text())
+    assert sorted(rows) == [2, 3, 5]
+    for line, row in rows.items():
+        runs = statements(found, line)
+        times, start, spent, joint, tool = map(float, row[2:7])
+        assert times == len(runs) == (1 if line == 5 else 3)
+        assert start == pytest.approx(runs[0]["start_s"], abs=1e-3)
+        assert spent == pytest.approx(sum(each["duration_s"] for each in runs), abs=2e-3)
+        assert joint == pytest.approx(max(each["joint_error_deg"] for each in runs), abs=1e-4)
+        assert tool == pytest.approx(max(each["tool_error_mm"] for each in runs), abs=1e-3)
+
+
+def test_all_prints_each_statement_and_worst_the_largest_tool_error_first(program):
+    program.write_text(LOOP)
+    assert [int(row[0]) for row in table_rows(dry("p.rbl", "--all").stdout)] == [2, 3, 2, 3, 2, 3, 5]
+    errors = [float(row[6]) for row in table_rows(dry("p.rbl", "--worst").stdout)]
+    assert errors == sorted(errors, reverse=True)
+    assert errors[0] > errors[-1]
+
+
+def test_the_report_is_printed_in_place_of_the_table(program):
+    printed = json.loads(dry("p.rbl", "--json", "--report", "r.json").stdout)
+    assert printed == json.loads((program.parent / "r.json").read_text())
+
+
+def last_word(text):
+    return text.split()[-1]
+
+
+def test_the_last_word_is_how_it_came_out(program):
+    assert last_word(dry("p.rbl").stdout) == "OK"
+    program.write_text("MOVE P1 + (5000, 0, 0)\n")
+    assert last_word(dry("p.rbl", code=3).stderr) == "FAILED"
+    program.write_text("MOVE P1\nx = 1 / INT(DIST(HERE, HERE))\n")
+    assert last_word(dry("p.rbl", code=3).stdout) == "FAILED"
+    # a warning is none of the two, unless it is an error by request
+    program.write_text("' nothing to do\n")
+    assert last_word(dry("p.rbl").stdout) == "OK"
+    assert last_word(dry("p.rbl", "--strict", code=1).stdout) == "FAILED"
+
+
+def test_a_run_ends_before_a_line(program):
+    program.write_text("10 MOVEJ P1\n20 *THERE\n30 MOVEJ P5\n40 END\n")
+    for line in ("30", "20", "*THERE", "there"):
+        result = dry("p.rbl", "--until-line", line, "--report", "r.json")
+        found = json.loads((program.parent / "r.json").read_text())
+        assert [each["number"] for each in found["statements"]] == [10]
+        assert last_word(result.stdout) == "OK"
+    whole = dry("p.rbl", "--until-line", "40", "--report", "r.json").stdout
+    assert [each["number"] for each in json.loads((program.parent / "r.json").read_text())["statements"]][:2] == [
+        10,
+        30,
+    ]
+    assert "30" in fields(whole)
+
+
+@pytest.mark.parametrize(
+    ("words", "code"), [(["--until-line", "31"], "RBL803"), (["--until-line", "30", "--view"], "RBL703")]
+)
+def test_a_line_that_is_none_and_a_page_that_pauses_are_refused(program, words, code):
+    assert code in dry("p.rbl", *words, code=2).stderr
+
+
+@pytest.mark.parametrize("seconds", ["0", "-1", "nan", "inf", "x"])
+def test_a_time_that_is_none_is_refused(program, seconds):
+    assert "RBL703" in dry("p.rbl", "--max-time", seconds, code=2).stderr
+
+
+def test_a_run_has_at_most_its_time(program, monkeypatch):
+    monkeypatch.setattr("robolang.execution.run_bounds.MAX_RUN_US", 400_000)
+    program.write_text("DELAY 0.5\n")
+    assert "RBL509" in dry("p.rbl", code=3).stderr
+    assert last_word(dry("p.rbl", "--max-time", "0.6").stdout) == "OK"
+    assert "RBL509" in dry("p.rbl", "--max-time", "0.3", code=3).stderr
 
 
 def test_words_of_other_people_are_printed_and_not_obeyed(tmp_path, monkeypatch):

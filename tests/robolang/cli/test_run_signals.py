@@ -125,7 +125,7 @@ def test_a_signal_while_the_motion_is_checked_says_that_nothing_has_moved(tmp_pa
     program = tmp_path / "p.rbl"
     program.write_text("MOVE P1\n")
     monkeypatch.setattr(
-        "robolang.execution.dry_run.rehearse", lambda project, plans: os.kill(os.getpid(), number) or ()
+        "robolang.execution.dry_run.rehearse", lambda project, plans, most_us: os.kill(os.getpid(), number) or ()
     )
     handlers = [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)]
     found = CliRunner().invoke(app, ["run", "--no-physics", str(program), "--report", str(tmp_path / "r.json")])

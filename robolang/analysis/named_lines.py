@@ -1,13 +1,13 @@
-"""Lines of the program as they are named at the prompt: by line number, by label, else by the line of the file."""
+"""Lines of the program as people name them: by line number, by label, else by the line of the file."""
 
 from robolang.analysis.analysis import Analysis
-from robolang.pendant.failure import failure
 from robolang.syntax.ast import Line, Program
 from robolang.syntax.keywords import near
+from runtime.core.faults import Fault
 
 
 def has_numbers(program: Program) -> bool:
-    """Return whether lines of a program have line numbers, so that a number at the prompt means one of them."""
+    """Return whether lines of a program have line numbers, so that a number means one of them."""
     return any(line.number is not None for line in program.lines)
 
 
@@ -18,7 +18,7 @@ def name_of(program: Program, row: int) -> str:
 
 
 def line_of(analysis: Analysis, word: str) -> Line:
-    """Return the line that a word names; ``Failure`` RBL803 where there is none."""
+    """Return the line that a word names; ``Fault`` RBL803 where there is none."""
     program = analysis.program
     label = word.removeprefix("*").upper()
     numbered = has_numbers(program)
@@ -29,7 +29,7 @@ def line_of(analysis: Analysis, word: str) -> Line:
             line.label is not None and line.label.key == label
         ):
             return line
-    raise failure("RBL803", f"the program has no line {word}", _hint(program, word, numbered))
+    raise Fault("RBL803", f"the program has no line {word}", _hint(program, word, numbered))
 
 
 def _is_number(word: str) -> bool:
@@ -40,13 +40,13 @@ def _is_number(word: str) -> bool:
 def stop_of(analysis: Analysis, word: str) -> int:
     """Return the line of the file before which a program stops that shall come to a named one: it has a statement.
 
-    A line with a comment or a label alone is no stop: the next one is. ``Failure`` RBL803 where none follows.
+    A line with a comment or a label alone is no stop: the next one is. ``Fault`` RBL803 where none follows.
     """
     row = line_of(analysis, word).source_line
     for line in analysis.program.statements:
         if line.source_line >= row:
             return line.source_line
-    raise failure("RBL803", f"no statement follows line {word}", "list shows the program")
+    raise Fault("RBL803", f"no statement follows line {word}", "Name a line that has a statement, or one before it.")
 
 
 def _hint(program: Program, word: str, numbered: bool) -> str:
@@ -54,11 +54,11 @@ def _hint(program: Program, word: str, numbered: bool) -> str:
         rows = [line.number if numbered else line.source_line for line in program.lines]
         known = [row for row in rows if row is not None]
         if not known:
-            return "the program has no lines"
+            return "The program has no lines."
         # the nearest one is the line that was meant more often than one of similar digits
         nearest = min(known, key=lambda row: abs(row - int(word[:9])))
         what = "line number" if numbered else "line of the file"
-        return f"the nearest {what} is {nearest}; list shows the program"
+        return f"The nearest {what} is {nearest}."
     labels = [line.label.text for line in program.lines if line.label is not None]
     guess = near(word.removeprefix("*"), labels)
-    return f"did you mean *{guess}?" if guess else "list shows the program"
+    return f"did you mean *{guess}?" if guess else "A line is named by its number or by a label, as *NAME."
