@@ -34,6 +34,8 @@ def check(
 ) -> None:
     """Find errors in programs without running them, and correct those that have one correction.
 
+    Example: robolang check --motion programs
+
     Exit codes: 0 no errors; 1 errors, with --strict also warnings, with --diff something to correct; 2 a file or an
     option cannot be used; 4 a file cannot be written. The largest counts.
     """

@@ -40,6 +40,8 @@ def compare(
     Supervision is off, so that wrong LOADs and gains run to the end: alarms of supervision, such as RBL517, end a run
     of robolang run only.
 
+    Example: robolang compare pick_and_place.rbl
+
     Exit codes: 0 all ran to the end; 1 the program has errors; 2 a file or an option cannot be used; 3 a move was
     refused, or a run ended with an alarm that is not one of supervision.
     """

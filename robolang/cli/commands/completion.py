@@ -21,6 +21,8 @@ def completion(shell: _Shell) -> None:
     config.fish, robolang completion fish | source. PowerShell: in the profile, robolang completion powershell |
     Out-String | Invoke-Expression.
 
+    Example: robolang completion bash
+
     Exit codes: 0 done; 2 there is no such shell.
     """
     with reported():

@@ -29,6 +29,8 @@ def config() -> None:
 def show(program: OptionalProgram, files: CellOptions, controller: ControllerOptions, output: JsonOptions) -> None:
     """Show every controller setting in force, and the file or option that it comes from.
 
+    Example: robolang config show pick_and_place.rbl
+
     Exit codes: 0 done; 2 a file or an option cannot be used.
     """
     settings = settings_of(controller)

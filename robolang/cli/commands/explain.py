@@ -18,6 +18,8 @@ _Code = Annotated[str | None, Argument("CODE", "Code such as RBL412, or its name
 def explain(code: _Code) -> None:
     """Explain the code of an error, a warning or an alarm, and what to do.
 
+    Example: robolang explain RBL412
+
     Exit codes: 0 done; 2 there is no such code.
     """
     import robolang.lint.registry  # noqa: F401 - every code there is

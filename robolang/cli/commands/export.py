@@ -70,6 +70,8 @@ class _OutputOptions(PlotOptions):
 def pulses(program: Program, files: CellOptions, tables: _TableOptions, output: _OutputOptions) -> None:
     """Write a program as pulse tables: steps of equal time for the pulse channels of a PLC.
 
+    Example: robolang export pulses pick_and_place.rbl -o out
+
     Exit codes: 0 done; 1 the program has errors; 2 a file or an option cannot be used; 3 a move cannot be exported; 4
     the folder cannot be written.
     """

@@ -27,6 +27,8 @@ _Paths = Annotated[
 def fmt(paths: _Paths, output: RewriteOptions) -> None:
     """Format programs: keywords in capitals, blocks indented, comments aligned.
 
+    Example: robolang fmt --check programs
+
     Exit codes: 0 done; 1 with --check or --diff, a file would change; 2 a file has errors or cannot be read, and is
     left as it is; 4 a file cannot be written.
     """

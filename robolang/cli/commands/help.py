@@ -13,6 +13,8 @@ _Words = Annotated[
 def help(words: _Words) -> None:
     """Show the help of a command, or explain a code.
 
+    Example: robolang help run
+
     Exit codes: 0 done; 2 there is no such command and no such code.
     """
     from robolang.cli.command_table import TABLE

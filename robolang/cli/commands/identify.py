@@ -80,6 +80,8 @@ class _OutputOptions(JsonOptions):
 def identify(subject: _Subject, options: _ExperimentOptions, output: _OutputOptions) -> None:
     """Move each axis and identify its inertia at the motor and its weight; compare with the model.
 
+    Example: robolang identify puma560
+
     Exit codes: 0 done; 1 with --payload, no program may declare what was weighed; 2 a file or an option cannot be used;
     3 a motion was refused or ended with an alarm; 4 a file cannot be written.
     """

@@ -53,6 +53,8 @@ class _CompensationOptions(PostureOptions):
 def inertia(options: _CompensationOptions, chart: _MapOptions, output: JsonOptions) -> None:
     """Print the inertia of every axis at the joint and at the motor, and its gravity torque.
 
+    Example: robolang inertia --robot puma560 --joints 0,45,-180,0,45,0
+
     Exit codes: 0 done; 2 a value or a robot cannot be used; 4 the picture cannot be written.
     """
     _check_use(chart)

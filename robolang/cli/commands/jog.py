@@ -48,6 +48,8 @@ class _JogOptions(Group):
 def jog(words: _Words, options: _JogOptions, files: CellOptions, arm: PhysicsOptions, output: JsonOptions) -> None:
     """Jog the arm from the start state of a cell, and print where it stands after each jog.
 
+    Example: robolang jog Z -50 J1 10
+
     Exit codes: 0 done; 2 an argument, an option or a file cannot be used; 3 a jog was refused or ended with an alarm:
     those before it are printed; 130 stopped by a signal.
     """

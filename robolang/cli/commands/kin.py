@@ -64,6 +64,8 @@ class _PoseOptions(_ToolOptions):
 def fk(options: _JointsOptions, output: JsonOptions) -> None:
     """Print the pose of the tool for given joint angles.
 
+    Example: robolang kin fk --robot puma560 --joints 0,45,-180,0,45,0
+
     Exit codes: 0 done, also for angles outside the joint ranges (a warning); 2 a value or a robot cannot be used.
     """
     with reported():
@@ -94,6 +96,8 @@ def _fk(options: _JointsOptions, as_json: bool) -> None:
 @command
 def ik(options: _PoseOptions, output: JsonOptions) -> None:
     """Print every set of joint angles that puts the tool at a pose, the one farthest from the limits first.
+
+    Example: robolang kin ik --robot puma560 --pose 596.3,-150.05,657.65,0,90,0
 
     Exit codes: 0 done; 1 the pose is out of reach; 2 a value or a robot cannot be used.
     """

@@ -34,6 +34,8 @@ _MOST_EVENTS = 40
 def show(run: Run, output: JsonOptions) -> None:
     """Show what a log holds: program, robot, duration, signals with their units, events.
 
+    Example: robolang log show run.npz
+
     Exit codes: 0 done; 2 the log cannot be used.
     """
     with reported():
@@ -67,8 +69,11 @@ class _ExportOptions(Group):
 def export(run: Run, output: _ExportOptions) -> None:
     """Write signals of a log as a table with a row for each tick, for spreadsheets and data frames.
 
-    Poses of parts and fingers, of which a log has fewer rows, are repeated beside signals of ticks. Units are SI. Exit
-    codes: 0 done; 2 the log, a signal or an option cannot be used; 4 the file cannot be written.
+    Poses of parts and fingers, of which a log has fewer rows, are repeated beside signals of ticks. Units are SI.
+
+    Example: robolang log export run.npz --csv --signals q_fb,tool_error
+
+    Exit codes: 0 done; 2 the log, a signal or an option cannot be used; 4 the file cannot be written.
     """
     suffix = _suffix(output)
     path = output.out or run.with_suffix(suffix)

@@ -35,8 +35,11 @@ class _PlotOptions(Group):
 def plot(run: Run, selections: Selections, output: _PlotOptions) -> None:
     """Draw signals of a log: a panel for each, one time axis, the running statements marked.
 
-    Angles are drawn in deg, lengths in mm. Exit codes: 0 done; 2 the log, a signal or an option cannot be used; 4 the
-    file cannot be written.
+    Angles are drawn in deg, lengths in mm.
+
+    Example: robolang plot run.npz q_fb:2 tool_error -o run.svg
+
+    Exit codes: 0 done; 2 the log, a signal or an option cannot be used; 4 the file cannot be written.
     """
     if output.begin is not None and output.end is not None and not output.begin <= output.end:
         raise OptionValueError("--from, --to", f"{output.begin:g} s is after {output.end:g} s")

@@ -52,6 +52,8 @@ class _PictureOptions(Group):
 def render(subject: Subject, files: CellOptions, picture: _PictureOptions, physics: PhysicsOptions) -> None:
     """Draw a run: a .png at one time, a .gif, .webp or .mp4 of all of it. Films need the extra [video].
 
+    Example: robolang render run.npz -o run.png --at 2.0 --view side
+
     Exit codes: 0 done, also if the run of the program ended with an alarm, which is then 3; 1 the program has errors; 2
     a file or an option cannot be used, or nothing can draw; 4 the file cannot be written.
     """

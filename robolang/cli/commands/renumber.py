@@ -43,6 +43,8 @@ class _Output(RewriteOptions):
 def renumber(program: _File, numbers: _Numbers, output: _Output) -> None:
     """Number the lines of a program, and change the targets of its jumps.
 
+    Example: robolang renumber pick_and_place.rbl --diff
+
     Exit codes: 0 done; 1 with --check or --diff, the file would change; 2 the file has errors or cannot be read, and is
     left as it is; 4 the file cannot be written.
     """

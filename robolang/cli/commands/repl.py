@@ -32,6 +32,8 @@ def repl(program: _Program, files: CellOptions, options: PromptOptions) -> None:
 
     Lines that come from a pipe or a file are carried out one after the other, and the first that fails ends the script.
 
+    Example: robolang repl pick_and_place.rbl
+
     Exit codes: 0 done; 1 a statement or the program has errors, or a script ended with unsaved points; 2 a command, a
     file or an option cannot be used; 3 a motion was refused or ended with an alarm; 4 a file cannot be written; 130 or
     143 stopped by a signal.

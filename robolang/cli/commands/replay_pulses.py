@@ -54,6 +54,8 @@ class _ReplayOptions(Group):
 def replay_pulses(folder: _Folder, options: _ReplayOptions, output: PlotOptions) -> None:
     """Replay exported pulse tables: frequencies, path error, with --physics also the simulated arm.
 
+    Example: robolang replay-pulses out --plot out/path.svg
+
     Exit codes: 0 done; 1 a path error is larger than --max-error; 2 a value or a folder cannot be used, or is for
     another robot; 3 the simulated arm stopped with an alarm; 4 the plot cannot be written.
     """

@@ -32,6 +32,8 @@ class PageOptions(Group):
 def report(run: Run, other: OtherRun, page: PageOptions) -> None:
     """Write a page of a run that a browser shows without a network: robot, program, charts, notes.
 
+    Example: robolang report run.npz -o run.html
+
     Exit codes: 0 done; 2 a log or an option cannot be used; 4 the page cannot be written.
     """
     with reported():

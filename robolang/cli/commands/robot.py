@@ -29,6 +29,8 @@ app = typer.Typer(no_args_is_help=True, help="List and show robots, import robot
 def list_robots() -> None:
     """List the built-in robots.
 
+    Example: robolang robot list
+
     Exit codes: 0 done.
     """
     from runtime.robot.files.loader import load_builtin
@@ -64,6 +66,8 @@ class _SidecarOptions(Group):
 def show(robot: _Robot) -> None:
     """Show a robot: limits, drives, gear springs, bodies, corrections of published data, sources.
 
+    Example: robolang robot show puma560
+
     Exit codes: 0 done; 2 the robot cannot be used, or has a body that cannot exist.
     """
     worst = 0
@@ -85,6 +89,8 @@ def show(robot: _Robot) -> None:
 @command
 def import_model(file: _Model, options: _SidecarOptions) -> None:
     """Write a sidecar for a URDF or MJCF file: a robot file for the missing data, each marked MISSING.
+
+    Example: robolang robot import arm.urdf -o arm.robot.toml
 
     Exit codes: 0 done; 2 the model cannot be used; 4 the sidecar exists or cannot be written.
     """

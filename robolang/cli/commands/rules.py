@@ -19,6 +19,8 @@ class _RulesOptions(Group):
 def rules(output: _RulesOptions) -> None:
     """List the rules of robolang check; robolang explain CODE explains one of them.
 
+    Example: robolang rules
+
     Exit codes: 0 done.
     """
     from robolang.lint.registry import codes

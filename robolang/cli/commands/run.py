@@ -47,6 +47,8 @@ def run(
 ) -> None:
     """Run a program on the controller and the simulated arm.
 
+    Example: robolang run pick_and_place.rbl --log run.npz --html run.html
+
     Exit codes: 0 done; 1 the program has errors, with --strict also warnings; 2 a file or an option cannot be used; 3 a
     move was refused, or the run ended with an alarm; 4 a file cannot be written; 130 or 143 stopped by a signal.
     """

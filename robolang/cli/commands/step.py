@@ -59,6 +59,8 @@ class _ArmOptions(PlantOptions):
 def step(options: _StepOptions, arm: _ArmOptions, controller: ControllerOptions, output: PlotOptions) -> None:
     """Measure the step response of one axis: overshoot, settling, rise, droop.
 
+    Example: robolang step --robot puma560 --axis 2 --payload 2.5,0,0,100
+
     Exit codes: 0 done; 2 a value or a file cannot be used; 3 the axis does not come to rest, or an alarm stopped it; 4
     the plot cannot be written.
     """

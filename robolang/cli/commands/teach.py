@@ -96,6 +96,8 @@ def teach(
 ) -> None:
     """Teach one point: write it into the points file of a program, and print what changes.
 
+    Example: robolang teach pick_and_place.rbl P6 --pose 500,0,700,180,0,0
+
     Exit codes: 0 done; 2 an option or a file cannot be used, or the point is there already and --yes is not given: then
     nothing is written; 3 the pose is not reached; 4 the file cannot be written.
     """

@@ -58,6 +58,8 @@ class _TestOptions(Group):
 def test(paths: _Paths, options: _TestOptions) -> None:
     """Run programs and compare them with their test files (NAME.test.toml).
 
+    Example: robolang test programs --junit tests.xml
+
     Exit codes: 0 all as expected; 1 one is not; 2 a file cannot be used, or a path has no test; 4 a file cannot be
     written.
     """

@@ -35,6 +35,8 @@ def view(program: Program, files: CellOptions, page: PageOptions, physics: Physi
 
     Taught points are saved at once. End on the page, or Ctrl-C, brings the arm to rest and ends the command.
 
+    Example: robolang view pick_and_place.rbl --speed 0.5
+
     Exit codes: 0 ended by the page; 1 the program has errors; 2 a file, an option or the port cannot be used; 130 or
     143 ended by a signal.
     """

@@ -55,6 +55,8 @@ class _PayloadOptions(PlantOptions):
 def weigh(program: OptionalProgram, files: CellOptions, options: _PayloadOptions, output: JsonOptions) -> None:
     """Move the arm and weigh what it carries: mass, centre of gravity, and the LOAD to write.
 
+    Example: robolang weigh pick_and_place.rbl
+
     Exit codes: 0 done; 1 no program may declare what was weighed; 2 a value, a cell or a robot cannot be used; 3 the
     motion was refused or ended with an alarm.
     """

@@ -50,6 +50,8 @@ class _OutputOptions(JsonOptions):
 def wrist_demo(figures: _Figures, options: _DemoRobot, output: _OutputOptions) -> None:
     """Calculate the figures of CN103429397A: straight moves through a change of the wrist.
 
+    Example: robolang wrist-demo --out out
+
     Exit codes: 0 done; 2 a figure or a robot cannot be used; 3 a move was refused; 4 a file cannot be written.
     """
     out = output.out

@@ -1,6 +1,7 @@
 """``--help`` of every command: each option once, with its help text, in the panel of its group, at 80 columns."""
 
 import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -53,6 +54,15 @@ def test_the_help_is_for_people_who_know_no_python_and_names_the_exit_codes(word
     assert codes[0] == 0
     assert set(codes) <= EXIT_CODES
     assert "\n " not in found.help.partition("Exit codes")[2]  # wrapped where the terminal ends, not the source
+
+
+@pytest.mark.parametrize(("words", "found"), COMMANDS, ids=[" ".join(words) for words, _ in COMMANDS])
+def test_the_help_has_an_example_that_the_command_accepts(words, found):
+    (example,) = re.findall(r"(?m)^Example: robolang (.+)$", found.help.replace(r"\[", "["))
+    given = shlex.split(example)
+    assert given[: len(words)] == list(words)
+    found.make_context(words[-1], given[len(words) :])
+    assert flat(f"Example: robolang {example}") in flat(robolang(*words, "--help").stdout)
 
 
 @pytest.mark.parametrize(("words", "found"), COMMANDS, ids=[" ".join(words) for words, _ in COMMANDS])
