@@ -32,6 +32,22 @@ def _keep_others_from_it() -> None:
     os.environ.setdefault("MUJOCO_GL", "disable")
 
 
+def _take_colour() -> None:
+    """Obey ``--color`` wherever it stands; leave with 2 for a value that is none."""
+    # most command lines have none, and pay nothing
+    if not any(word.startswith("--color") for word in sys.argv):
+        return
+    from robolang.cli.colour import CHOICES, OPTION, take_option
+
+    wrong = take_option(sys.argv)
+    if wrong is not None:
+        from robolang.cli.usage import OptionValueError
+
+        error = OptionValueError(OPTION, f"{wrong!r} is not one of {', '.join(CHOICES)}")
+        sys.stderr.write(f"{error}\n")
+        sys.exit(2)
+
+
 def main() -> None:
     """Run the command line."""
     _keep_others_from_it()
@@ -41,6 +57,7 @@ def main() -> None:
         sys.stdout.write(f"robolang {__version__}\n")
         return
     try:
+        _take_colour()
         if sys.argv[1:2] in (["check"], ["repl"]):
             # What imports leave is never garbage, and looking through it again and again takes a tenth of a check.
             gc.disable()

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from robolang.cli.check_options import FixOptions, ReportOptions
 from robolang.cli.errors import DIAGNOSTICS, say, say_all, say_warnings
-from robolang.cli.output import echo
+from robolang.cli.output import echo, show_finding
 from robolang.cli.outputs import check_outputs
 from robolang.cli.rewrite import Loaded, load, store, unified
 from robolang.cli.usage import OptionValueError
@@ -307,7 +307,9 @@ def _print(job: Job, outcomes: Sequence[_Outcome]) -> None:
         return
     # a corrected program from the standard input goes to the standard output, so its report cannot
     corrected = job.fixes.fix and not job.fixes.diff and STANDARD_INPUT in job.paths
-    echo(text, nl=False, err=corrected)
+    # what other programs read has no colours
+    plain = job.report.output_format not in FOR_PEOPLE or job.fixes.diff
+    (echo if plain else show_finding)(text, nl=False, err=corrected)
 
 
 def _report(job: Job, outcomes: Sequence[_Outcome]) -> str:

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 
-from robolang.cli.output import drop, echo
+from robolang.cli.output import drop, show_finding
 from robolang.cli.usage import OptionValueError
 from robolang.core.defects import internal
 from robolang.core.diagnostics import Severity, render_fault, safe
@@ -49,21 +49,21 @@ def exit_code(code: str) -> int:
 def say(fault: Fault) -> int:
     """Print a fault to stderr, with its place when it has one, and return its exit code."""
     if isinstance(fault, FileFault):
-        echo(render_fault(fault), err=True)
+        show_finding(render_fault(fault))
     else:
-        echo(f"error {fault.code} {safe(fault.message)}\n  help: {safe(fault.hint)}", err=True)
+        show_finding(f"error {fault.code} {safe(fault.message)}\n  help: {safe(fault.hint)}")
     return exit_code(fault.code)
 
 
 def say_warning(code: str, place: str, message: str, hint: str) -> None:
     """Print a warning about an option to stderr; ``place`` names the option and, in a list, the number of the value."""
-    echo(f"warning {code} {place}: {safe(message)}\n  help: {safe(hint)}", err=True)
+    show_finding(f"warning {code} {place}: {safe(message)}\n  help: {safe(hint)}")
 
 
 def say_warnings(warnings: Iterable[FileFault]) -> None:
     """Print what is unlikely about files to stderr, each once: many programs may run in one cell."""
     for text in dict.fromkeys(render_fault(warning, Severity.WARNING) for warning in warnings):
-        echo(text, err=True)
+        show_finding(text)
 
 
 def say_all(fault: Fault) -> int:

@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from robolang.cli.colour import CHOICES
 from robolang.cli.commands.completion import VARIABLE
 from robolang.cli.lazy_group import LazyGroup
 from robolang.cli.output import escape_what_a_terminal_lacks
@@ -31,8 +32,14 @@ app = typer.Typer(
 @app.callback()
 def options(
     version: Annotated[bool, typer.Option("--version", help="Print the version and exit.")] = False,
+    color: Annotated[
+        str | None,
+        typer.Option("--color", metavar="|".join(CHOICES), help="Colours, also after a command; NO_COLOR=1 has none."),
+    ] = None,
 ) -> None:
     """Take the options that stand before a command."""
+    # ``__main__`` has obeyed --color and taken it away
+    del color
     if version:  # pragma: no cover - ``__main__`` answers before this module is imported
         raise SystemExit
 

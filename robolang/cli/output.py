@@ -10,6 +10,8 @@ import sys
 from contextlib import suppress
 from typing import TextIO
 
+from robolang.cli.colour import colours, painted
+
 
 def echo(text: str | bytes = "", *, nl: bool = True, err: bool = False) -> None:
     """Print a text, or the bytes of a file, and flush; a process without that stream prints nothing."""
@@ -26,6 +28,14 @@ def echo(text: str | bytes = "", *, nl: bool = True, err: bool = False) -> None:
             stream.flush()
     except BrokenPipeError:
         drop(stream)
+
+
+def show_finding(text: str, *, nl: bool = True, err: bool = True) -> None:
+    """Print findings, in colours where the stream shows them."""
+    stream = sys.stderr if err else sys.stdout
+    if stream is not None and colours(stream):
+        text = painted(text)
+    echo(text, nl=nl, err=err)
 
 
 def drop(stream: TextIO) -> None:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robolang.cli.errors import DIAGNOSTICS, exit_code, say_warnings
-from robolang.cli.output import echo
+from robolang.cli.output import show_finding
 
 if TYPE_CHECKING:
     from robolang.execution.outlook import PlannedStep
@@ -28,7 +28,7 @@ def refuse_text(project: "Project", *, warnings: bool = True) -> None:
         say_warnings(project.cell.warnings)
     for item in project.diagnostics:
         if warnings or item.severity is Severity.ERROR:
-            echo(render(item, project.source), err=True)
+            show_finding(render(item, project.source))
     if not project.ok:
         raise SystemExit(DIAGNOSTICS)
 
@@ -48,7 +48,7 @@ def refuse(
 
     rehearsal = rehearse(project, plans=plans, most_us=most_us)
     for item in rehearsal.preventing:
-        echo(render(item, project.source), err=True)
+        show_finding(render(item, project.source))
     if rehearsal.preventing:
         raise SystemExit(exit_code(rehearsal.preventing[0].code))
     # counted although not printed: --strict needs them with --quiet too

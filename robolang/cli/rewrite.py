@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robolang.cli.output import echo
+from robolang.cli.output import echo, show_finding
 from robolang.core.diagnostics import has_errors, render, safe
 from runtime.core.record import Record
 
@@ -94,7 +94,7 @@ def broken(loaded: Loaded, diagnostics: "Iterable[Diagnostic]") -> bool:
     if not has_errors(found):
         return False
     for item in found:
-        echo(render(item, loaded.source), err=True)
+        show_finding(render(item, loaded.source))
     return True
 
 

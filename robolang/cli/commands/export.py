@@ -16,7 +16,7 @@ from robolang.cli import lines
 from robolang.cli.command import PlainCommand, command
 from robolang.cli.errors import DIAGNOSTICS, exit_code, reported, say_warnings
 from robolang.cli.options import CellOptions, Group, Option, PlotOptions, Program
-from robolang.cli.output import echo
+from robolang.cli.output import echo, show_finding
 from robolang.cli.usage import OptionValueError
 from robolang.cli.values import check_plot
 from runtime.core.rounding import beside
@@ -119,7 +119,7 @@ def _exported(project: "Project", request: "ExportRequest") -> "Export":
     try:
         return export(project, request)
     except NotExportableError as error:
-        echo(render(error.diagnostic, project.source), err=True)
+        show_finding(render(error.diagnostic, project.source))
         raise SystemExit(exit_code(error.diagnostic.code)) from None
 
 
@@ -154,7 +154,7 @@ def _refuse(project: "Project") -> None:
 
     say_warnings(project.cell.warnings)
     for item in project.diagnostics:
-        echo(render(item, project.source), err=True)
+        show_finding(render(item, project.source))
     if not project.ok:
         raise SystemExit(DIAGNOSTICS)
 

@@ -17,7 +17,7 @@ from robolang.cli.controller_settings import settings_of
 from robolang.cli.errors import DIAGNOSTICS, MOTION, STORAGE, reported, say
 from robolang.cli.live_options import FollowOptions, followed, pages_of, remain
 from robolang.cli.options import CellOptions, Program, RunControllerOptions
-from robolang.cli.output import echo
+from robolang.cli.output import echo, show_finding
 from robolang.cli.outputs import check_outputs
 from robolang.cli.refuse import refuse
 from robolang.cli.run_options import OutputOptions, RunOptions
@@ -248,7 +248,7 @@ def _print_alarms(project: "Project", result: "RunResult", *, warnings: bool) ->
 def _print_at(project: "Project", item: "Diagnostic", when: str) -> None:
     from robolang.core.diagnostics import render
 
-    echo(render(item.replaced(message=f"{when}: {item.message}"), project.source), err=True)
+    show_finding(render(item.replaced(message=f"{when}: {item.message}"), project.source))
 
 
 @contextmanager
