@@ -27,7 +27,7 @@ class LazyGroup(CodedGroup):
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Return the names of all commands, in the order of ``--help``."""
-        # the names alone: typer's own looks at each command
+        # the names alone: typer's own asks for each command
         return list(_ENTRIES)
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
@@ -37,7 +37,7 @@ class LazyGroup(CodedGroup):
 
 
 class _Commands(MutableMapping[str, Any]):
-    """Commands by their names; each is imported when it is looked up."""
+    """Commands by their names; each is imported when it is asked for."""
 
     def __getitem__(self, name: str) -> Any:
         return _made(_ENTRIES[name])

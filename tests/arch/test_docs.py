@@ -21,6 +21,7 @@ import robolang
 import runtime
 from robolang.analysis.checker import check
 from robolang.cli.run_table import print_result
+from robolang.cli.verdict import verdict
 from robolang.core.diagnostics import has_errors
 from robolang.core.source import Source
 from robolang.syntax.parser import parse
@@ -426,6 +427,7 @@ def test_the_transcript_has_the_headings_and_notes_of_a_run(run_result):
     shown = io.StringIO()
     with redirect_stdout(shown):
         print_result({**run_result.report, "program": "programs/pick_and_place.rbl"})
+        print(verdict(run_result, "ran to its end", code=0))
     printed = [line.rstrip() for line in shown.getvalue().splitlines() if line.strip()]
     words = [
         [re.sub(r"\d+(\.\d+)?", "0", line).split() for line in lines if line.strip()]
