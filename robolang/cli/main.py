@@ -10,9 +10,9 @@ from typing import Annotated
 import typer
 
 from robolang.cli.colour import CHOICES
-from robolang.cli.commands.completion import VARIABLE
 from robolang.cli.lazy_group import LazyGroup
 from robolang.cli.output import escape_what_a_terminal_lacks
+from robolang.cli.shells import VARIABLE
 
 app = typer.Typer(
     name="robolang",

@@ -5,11 +5,8 @@ from typing import Annotated
 
 from robolang.cli.errors import reported
 from robolang.cli.options import Argument
+from robolang.cli.shells import SHELLS, VARIABLE
 from robolang.cli.usage import OptionValueError
-
-SHELLS = ("bash", "zsh", "fish", "powershell", "pwsh")
-VARIABLE = "_ROBOLANG_COMPLETE"
-"""The variable of the environment by which a shell asks for completions."""
 
 _Shell = Annotated[str, Argument("SHELL", f"One of {', '.join(SHELLS)}.")]
 

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from robolang.cli.command_table import TABLE
-from robolang.cli.commands.completion import SHELLS, VARIABLE
+from robolang.cli.shells import SHELLS, VARIABLE
 from tests.robolang.cli.commands import flat, robolang
 
 NAMES = {entry.name for entry in TABLE}

@@ -101,7 +101,7 @@ def test_the_list_of_commands_imports_none_of_them():
         "print([name for name in sys.modules if name.startswith('robolang.cli.commands.')])"
     )
     shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-    assert shown.strip() == "['robolang.cli.commands.completion']"
+    assert shown.strip() == "[]"
 
 
 def test_all_exit_codes_are_in_the_help_of_the_program():
