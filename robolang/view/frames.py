@@ -31,7 +31,7 @@ from robolang.execution.observer import Observer
 from robolang.execution.result import StatementRun
 from robolang.execution.session import Session
 from robolang.view.exchange import Exchange
-from robolang.view.notes import of_live
+from robolang.view.live_notes import LiveNotes
 from runtime.control.clock import wall_s
 from runtime.control.controller import Controller
 from runtime.core.faults import Alarm
@@ -56,14 +56,14 @@ class Frames(Observer):
     def __init__(self, exchange: Exchange) -> None:
         self._exchange = exchange
         self._session: Session | None = None
-        self._noted: tuple[Alarm | None, ...] | None = None
+        self._notes = LiveNotes()
         self._due_s = float("-inf")
         self.extra: Callable[[], Mapping[str, Any]] = dict
         """What whoever drives the run adds to its status."""
 
     def follow(self, session: Session) -> None:
         """Show this session from now on."""
-        self._session, self._noted = session, None
+        self._session, self._notes = session, LiveNotes()
         # of another session: no time has passed since, so nothing has moved
         start = _Tick.last(session.controller)
         self._shown = _Shown(time_us=start.time_us, q=start.q_link, X=np.eye(4), p=np.zeros(3))
@@ -97,17 +97,9 @@ class Frames(Observer):
         if session is not None:
             self._exchange.show_frame(self._frame(session.controller))
             self._exchange.show_status(json.dumps({**status_of(session), **self.extra()}, separators=(",", ":")))
-
-            self._show_notes(session)
-
-    def _show_notes(self, session: Session) -> None:
-        """Show what is noted of a session, if something new is."""
-        alarms, warnings = session.record.alarms, session.controller.warnings
-        # the newest ones and not their numbers: the prompt takes some back, and then there are others
-        newest = (*alarms[-1:], None, *warnings[-1:])
-        if newest != self._noted:
-            self._noted = newest
-            self._exchange.show_notes([asdict(note) for note in of_live(session)])
+            notes = self._notes.news(session)
+            if notes is not None:
+                self._exchange.show_notes([asdict(note) for note in notes])
 
     def _frame(self, controller: Controller) -> bytes:
         tick = _Tick.last(controller)

@@ -9,6 +9,7 @@ from robolang.core.diagnostics import Diagnostic
 from robolang.core.diagnostics import Severity as Rank
 from robolang.execution.alarms import as_json
 from robolang.execution.session import Session
+from robolang.execution.status import ENDED
 
 Severity = Literal["error", "warning", "note", "print"]
 
@@ -56,17 +57,24 @@ def of_finding(item: Mapping[str, Any], program: str, begins: Mapping[int, float
     )
 
 
-def of_live(session: Session) -> list[Note]:
-    """Return what is known of a session while it goes on: alarms, warnings, and what was found in its text before."""
-    source, tick_us = session.project.source, session.project.profile.tick_us
+def of_live(session: Session, stated: Iterable[Note] = ()) -> list[Note]:
+    """Return what is known of a session while it goes on: alarms, warnings, what was found in its text before.
+
+    ``stated``: the notes of its statements. What is touched is a warning once nothing changes it any more.
+    """
+    source, tick_us, controller = session.project.source, session.project.profile.tick_us, session.controller
+    touches = controller.touches
+    # what is still touched when the program has ended is as complete as in the report
+    ended = session.executor.status.state in ENDED
+    touched = [] if touches is None else touches.records if ended else touches.over()
     found: dict[str, list[dict[str, Any]]] = {
         key: [as_json(alarm, rank, source, tick_us) for alarm in alarms[-MOST_LIVE:]]
         for key, rank, alarms in (
             ("alarms", Rank.ERROR, session.record.alarms),
-            ("warnings", Rank.WARNING, session.controller.warnings),
+            ("warnings", Rank.WARNING, [*controller.warnings, *controller.touch_warnings(touched)]),
         )
     }
-    return in_order([*_events(found), *(_finding(session, item) for item in session.project.diagnostics)])
+    return in_order([*_events(found), *(_finding(session, item) for item in session.project.diagnostics), *stated])
 
 
 def _finding(session: Session, item: Diagnostic) -> Note:

@@ -17,7 +17,7 @@ the brakes; 0 at once. From then on ``cycle`` does nothing and returns False, un
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,7 +42,7 @@ from runtime.motion.commands import Command
 from runtime.motion.motion_planner import ChainPlan, MotionPlanner
 from runtime.motion.seam import SeamTracker
 from runtime.plant.plant import Plant
-from runtime.plant.touches import Touches
+from runtime.plant.touches import Touch, Touches
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import RobotSpec
@@ -287,13 +287,17 @@ class Controller:
 
     def warn_of_touches(self) -> None:
         """Take what has been touched so far and should not have been into ``warnings``; once, at the end of a run."""
-        for touch in [] if self.touches is None else self.touches.records:
-            if touch.noticed:
-                code = "RBL537" if touch.fixed else "RBL535"
-                found = Finding(code=code, message=touch.message, tick=touch.tick, warning=True)
-                self.warnings.append(self.stops.alarm_of(found, touch.place))
+        self.warnings.extend(self.touch_warnings([] if self.touches is None else self.touches.records))
         # touches are complete at the end only; the report lists warnings in the order of time
         self.warnings.sort(key=lambda alarm: alarm.tick)
+
+    def touch_warnings(self, touches: Iterable[Touch]) -> list[Alarm]:
+        """Return the warnings of those touches that are findings; nothing is kept."""
+        codes = ((touch, "RBL537" if touch.fixed else "RBL535") for touch in touches if touch.noticed)
+        return [
+            self.stops.alarm_of(Finding(code=code, message=touch.message, tick=touch.tick, warning=True), touch.place)
+            for touch, code in codes
+        ]
 
     def rename(self, name: Callable[[ProgramLine], ProgramLine]) -> None:
         """Name the statements of moves, alarms and warnings anew: the program that they are of has been edited."""

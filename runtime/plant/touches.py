@@ -196,6 +196,16 @@ class Touches:
         self._place: ProgramLine | None = None
         self._statement = 0
 
+    @property
+    def latest(self) -> tuple[Touch | None, int]:
+        """The last record and how many are still measured: what is equal in two cycles has ended no touch between."""
+        return (self.records[-1] if self.records else None), len(self._open)
+
+    def over(self) -> list[Touch]:
+        """Return the records so far that nothing changes any more."""
+        going = {id(each.touch) for each in self._open.values()}
+        return [touch for touch in self.records if id(touch) not in going]
+
     def snapshot(self) -> State:
         """Return what is held, lost, free and touched now, and all records so far."""
         twin = copy.copy(self)
