@@ -20,6 +20,8 @@ from tests.steps import HANG_S
 TRIALS = 10
 A_WHILE_MS = 4000
 POLL_MS = 50
+A_MOMENT_MS = 300
+"""Enough for what a page sends by itself."""
 PROGRAM = """MOVEJ HERE + (0, 0, 20)
 MOVE HERE + (0, 0, 60), SPEED 400
 MOVE HERE + (0, 0, -60), SPEED 400
@@ -34,6 +36,9 @@ class LivePage:
         self.page = browser.new_page(viewport={"width": 1400, "height": 900})
         self.requests, self.complaints = [], []
         self.page.on("request", lambda request: self.requests.append(request.url))
+        self.sent = []
+        """The words and fields of the commands that the page has sent."""
+        self.page.on("websocket", lambda it: it.on("framesent", lambda text: self.sent.append(json.loads(text))))
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("console", lambda message: self.complaints.append(f"{message.type}: {message.text}"))
         self.page.goto(url + mark)
@@ -306,6 +311,50 @@ def test_a_jog_by_the_keyboard_lasts_while_the_key_is_down(live):
     held(live, lambda: live.page.keyboard.down(" "), lambda: live.page.keyboard.up(" "))
     live.page.keyboard.press("Escape")
     live.waits_for("Paused")
+
+
+def test_a_second_button_is_held_by_its_first_press(live):
+    press(live, "jog-Z+")
+    live.page.mouse.up()
+    live.waits_for("Paused")
+    # the button that was pressed before loses the focus to this one
+    for name in ("jog-Y+", "jog-X-"):
+        live.sent.clear()
+        live[name].hover()
+        live.page.mouse.down()
+        live.page.wait_for_timeout(A_MOMENT_MS)
+        begun = [each["id"] for each in live.sent if each["do"] == "jog"]
+        released = [each for each in live.sent if each["do"] == "release"]
+        live.page.mouse.up()
+        assert (len(begun), released) == (1, [])
+        live.page.wait_for_timeout(A_MOMENT_MS)
+        assert begun[0] in [each["jog"] for each in live.sent if each["do"] == "release"]
+        live.waits_for("Paused")
+
+
+def test_keys_move_the_override_while_it_has_the_focus(live):
+    live["override"].fill("50")
+    live["override"].focus()
+    live.page.evaluate("robolang.seek(0)")
+    live.sent.clear()
+    for key in ("ArrowLeft", "PageUp", "ArrowRight", "End", "Home"):
+        live.page.keyboard.press(key)
+    live.page.wait_for_timeout(A_MOMENT_MS)
+    overrides = [each["percent"] for each in live.sent if each["do"] == "override"]
+    assert overrides == [49, 59, 60, 100, 1]
+    assert live["override"].input_value() == "1"
+    assert "following" not in live.page.get_attribute("#app", "class")
+
+
+def test_a_speed_of_the_command_line_is_one_of_those_of_the_page(browser, program):
+    with viewed(program, "--speed", "0.2") as (url, _):
+        live = LivePage(browser, url)
+        live.waits_for("Paused")
+        assert live["pace"].input_value() == "0.2"
+        live["pace"].select_option("0.25")
+        live.page.wait_for_timeout(A_MOMENT_MS)
+        assert live.sent[-1]["factor"] == 0.25
+        assert live["pace"].input_value() == "0.25"
 
 
 def test_a_step_jog_is_of_its_size(live, served):

@@ -28,8 +28,9 @@ export function select<T extends string | number>(
   choices: readonly (readonly [T, string])[],
   chosen: T,
   choose: (value: T) => void,
+  attributes: Attributes = {},
 ): HTMLSelectElement {
-  const made = el("select", { "aria-label": title, title });
+  const made = el("select", { "aria-label": title, title, ...attributes });
   for (const [value, text] of choices) made.append(el("option", { value, selected: value === chosen }, text));
   made.addEventListener("change", () => {
     const choice = choices[made.selectedIndex];

@@ -15,8 +15,14 @@ export function bindKeys(bindings: Bindings): void {
   });
 }
 
+const OF_SLIDERS = new Set(["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "PageUp", "PageDown", "Home", "End"]);
+
+/** Attributes of a slider that its keys move; that of the time goes by cycles and statements, as the whole page does. */
+export const OWN_KEYS = { "data-own-keys": true } as const;
+
 function keeps(target: HTMLElement, key: string): boolean {
   if (target.matches("select, textarea, input:not([type=range]):not([type=checkbox])")) return true;
+  if (OF_SLIDERS.has(key)) return target.matches("[data-own-keys]");
   if (key === " ") return target.matches("button, input[type=checkbox], [role=button]");
   return false;
 }

@@ -19,7 +19,6 @@ export class Jogging {
   private readonly told: (reply: Reply) => void;
   private id = 0;
   private timer = 0;
-  private step = false;
   private moves = false;
 
   /** `told` gets what the server answers. */
@@ -33,9 +32,9 @@ export class Jogging {
     });
   }
 
-  begin(fields: JogFields): void {
+  /** Begin a jog; what is returned ends it, and no other one, when its button is released. */
+  begin(fields: JogFields): () => void {
     this.end();
-    this.step = fields.step !== null;
     this.moves = false;
     const id = this.connection.command("jog", { ...fields }, (reply) => {
       this.told(reply);
@@ -43,11 +42,10 @@ export class Jogging {
     });
     this.id = id;
     this.timer = setInterval(() => this.connection.command("alive", { jog: this.id }), ALIVE_MS);
-  }
-
-  /** The button is released: a step goes to its end, everything else stops. */
-  release(): void {
-    if (!this.step) this.end();
+    // a step goes to its end
+    return () => {
+      if (this.id === id && fields.step === null) this.end();
+    };
   }
 
   /** Stop, whatever it is. */
@@ -69,22 +67,31 @@ export class Jogging {
   }
 }
 
-/** Let an element begin a jog when it is pressed, and end it by every event that may be the last one of a press. */
-export function hold(element: HTMLElement, press: () => void, release: () => void): void {
+/** Let an element begin something when it is pressed, and end it by every event that may be the last one of a press. */
+export function hold(element: HTMLElement, press: () => () => void): void {
+  // Of this element: it loses the focus only after another one has been pressed, whose press goes on.
+  let release: (() => void) | null = null;
+  const begin = (): void => {
+    release = press();
+  };
+  const end = (): void => {
+    release?.();
+    release = null;
+  };
   element.addEventListener("pointerdown", (event) => {
     if (event.button !== 0) return;
     element.setPointerCapture(event.pointerId);
-    press();
+    begin();
   });
-  for (const name of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) element.addEventListener(name, release);
+  for (const name of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) element.addEventListener(name, end);
   element.addEventListener("contextmenu", (event) => event.preventDefault());
   element.addEventListener("keydown", (event) => {
     if (event.key !== " " && event.key !== "Enter") return;
     event.preventDefault();
     event.stopPropagation();
-    if (!event.repeat) press();
+    if (!event.repeat) begin();
   });
   element.addEventListener("keyup", (event) => {
-    if (event.key === " " || event.key === "Enter") release();
+    if (event.key === " " || event.key === "Enter") end();
   });
 }

@@ -1,8 +1,10 @@
 import { button, el, select } from "../dom";
+import { OWN_KEYS } from "../keys";
 import type { Connection } from "./connection";
 import type { Reply, Status } from "./messages";
 
-const PACES = [0.1, 0.25, 0.5, 1, 2, 5, 10] as const;
+/** `view --speed` may add one. */
+const PACES: readonly number[] = [0.1, 0.25, 0.5, 1, 2, 5, 10];
 const STATES: Readonly<Record<Status["state"], string>> = {
   starting: "Starting",
   running: "Running",
@@ -20,16 +22,19 @@ export class RunPanel {
   private readonly connection: Connection;
   private readonly state = el("span", { class: "outcome", "data-testid": "state", role: "status" });
   private readonly buttons: Readonly<Record<string, HTMLButtonElement>>;
-  private readonly override = el("input", { type: "range", min: 1, max: 100, value: 100, "aria-label": "Override, %", "data-testid": "override" });
+  private readonly override = el("input", { type: "range", min: 1, max: 100, value: 100, "aria-label": "Override, %", "data-testid": "override", ...OWN_KEYS });
   private readonly percent = el("output", {}, "100 %");
-  private readonly pace: HTMLSelectElement;
+  private paces = PACES;
+  private pace = this.choosePace();
   private readonly signals = el("span", { class: "signals", "data-testid": "signals" });
   private readonly control = el("span", { class: "control", "data-testid": "control" });
   /** The alarm that is latched: it stays until it is acknowledged, whatever is answered meanwhile. */
   private readonly problem = el("p", { class: "problem", role: "alert", "data-testid": "problem" });
   private readonly words = el("p", { class: "words", role: "alert", "data-testid": "words" });
   private readonly printed = el("output", { class: "printed", "aria-live": "off", "data-testid": "printed" });
+  /** The slider is moved, and overrides are on their road: it must not jump back to what was before them. */
   private sliding = false;
+  private overrides = 0;
 
   constructor(connection: Connection) {
     this.connection = connection;
@@ -43,14 +48,14 @@ export class RunPanel {
       restart: button("Restart", "Put the program before its first statement. Arm, parts, signals and time stay as they are; to begin with a new cell, end the command and give it again.", send("restart"), { "data-testid": "restart" }),
       end: button("End", "End robolang view", send("end"), { "data-testid": "end" }),
     };
-    this.pace = select("Simulated seconds in one of wall time", PACES.map((each) => [each, `${each} × real time`] as const), 1, (factor) => this.send("pace", { factor }));
     this.override.addEventListener("input", () => {
       this.sliding = true;
       this.percent.textContent = `${this.override.value} %`;
     });
     this.override.addEventListener("change", () => {
       this.sliding = false;
-      this.send("override", { percent: Number(this.override.value) });
+      this.overrides += 1;
+      this.send("override", { percent: Number(this.override.value) }, () => (this.overrides -= 1));
     });
     this.element.append(
       this.state,
@@ -75,12 +80,12 @@ export class RunPanel {
     // Written when it changes only: a reader of screens says it each time.
     if (this.problem.textContent !== problem) this.problem.textContent = problem;
     this.enable(status, doing);
-    if (!this.sliding && status.override !== undefined) {
+    if (!this.sliding && this.overrides === 0 && status.override !== undefined) {
       this.override.value = String(status.override);
       this.percent.textContent = `${Math.round(status.override)} %`;
     }
     this.pace.hidden = status.pace === null || status.pace === undefined;
-    if (status.pace && this.pace.value !== String(status.pace)) this.pace.value = String(status.pace);
+    if (status.pace) this.showPace(status.pace);
     this.showSignals(status);
     this.showControl(status);
     if (status.finished) this.end("The run is over. Its command ends when this page is closed.");
@@ -123,6 +128,21 @@ export class RunPanel {
     this.override.disabled = this.pace.disabled = status.control !== "yours";
   }
 
+  private choosePace(): HTMLSelectElement {
+    return select("Simulated seconds in one of wall time", this.paces.map((each) => [each, `${each} × real time`] as const), 1, (factor) => this.send("pace", { factor }), { "data-testid": "pace" });
+  }
+
+  private showPace(pace: number): void {
+    if (!this.paces.includes(pace)) {
+      this.paces = [...this.paces, pace].sort((a, b) => a - b);
+      const { hidden, disabled } = this.pace;
+      const made = Object.assign(this.choosePace(), { hidden, disabled });
+      this.pace.replaceWith(made);
+      this.pace = made;
+    }
+    if (this.pace.value !== String(pace)) this.pace.value = String(pace);
+  }
+
   private showSignals(status: Status): void {
     const key = JSON.stringify([status.inputs, status.outputs, status.holding, status.control]);
     if (this.signals.dataset.of === key) return;
@@ -151,9 +171,12 @@ export class RunPanel {
     this.control.replaceChildren(...made);
   }
 
-  private send(word: string, fields: Parameters<Connection["command"]>[1] = {}): void {
+  private send(word: string, fields: Parameters<Connection["command"]>[1] = {}, done?: () => void): void {
     this.words.textContent = "";
-    this.connection.command(word, fields, (reply) => this.answered(reply));
+    this.connection.command(word, fields, (reply) => {
+      this.answered(reply);
+      done?.();
+    });
   }
 
   private answered(reply: Reply): void {

@@ -79,7 +79,7 @@ export class Pendant {
     const word = sign > 0 ? "+" : "−";
     const made = el("button", { type: "button", class: "jog", "aria-label": `Jog ${axis} ${word}`, "data-testid": `jog-${axis}${sign > 0 ? "+" : "-"}` }, word);
     const linear = axis.length === 1;
-    hold(made, () => this.jogging.begin({ axis, sign, frame: this.frame, speed: this.speed, step: linear ? this.linear : this.angular }), () => this.jogging.release());
+    hold(made, () => this.jogging.begin({ axis, sign, frame: this.frame, speed: this.speed, step: linear ? this.linear : this.angular }));
     return made;
   }
 
