@@ -15,6 +15,7 @@ from robolang.view.live_page import live_page
 from robolang.view.page import Bundle
 from tests.robolang.pendant.prompting import prompt
 from tests.robolang.view.browser import PATIENCE_MS, WITHOUT_GL, chromium
+from tests.robolang.view.reaching import assert_all_can_be_reached
 from tests.steps import HANG_S
 
 TRIALS = 10
@@ -142,35 +143,31 @@ def test_a_program_is_run_from_the_page(browser, program):
 
 
 def test_a_live_page_says_that_its_charts_are_sampled_and_how_few_rows_it_keeps(live):
-    assert live["thinned"].is_visible() and "ms" not in live["thinned"].inner_text()
+    assert live["thinned"].is_hidden()
+    assert live["sampled"].count() == 1
     units = live.page.locator("[data-testid=chart] .unit").all_inner_texts()
     assert units and all("sampled" in unit for unit in units)
     live.page.evaluate("robolang.runs[0].halve(); robolang.viewer.grew()")
-    assert "32 ms" in live["thinned"].inner_text()
+    assert live["thinned"].is_visible() and "32 ms" in live["thinned"].inner_text()
 
 
-REACHED = """() => {
-  const found = [...document.querySelectorAll(":is(.strip, .pendant) :is(button, input, select)")];
-  const shown = found.filter((one) => one.getClientRects().length > 0);
-  const covered = shown.filter((one) => {
-    one.scrollIntoView({ block: "nearest" });
-    const { left, top, width, height } = one.getBoundingClientRect();
-    return document.elementFromPoint(left + width / 2, top + height / 2) !== one;
-  });
-  return [shown.length, covered.map((one) => one.dataset.testid ?? one.title)];
+def test_every_button_can_be_reached_and_is_covered_by_nothing(live):
+    assert_all_can_be_reached(live.page, 40, ["pause", "stop"])
+
+
+SAY = """([long, longer]) => {
+  document.querySelector("[data-testid=problem]").textContent = long;
+  document.querySelector("[data-testid=pendant-said]").textContent = longer;
 }"""
 
 
-SIZES = ((1400, 900), (1024, 768), (1000, 700), (800, 500), (420, 800))
-
-
-def test_every_button_is_in_sight_and_covered_by_nothing(live):
-    for width, height in SIZES:
-        live.page.set_viewport_size({"width": width, "height": height})
-        live.page.wait_for_timeout(100)
-        shown, covered = live.page.evaluate(REACHED)
-        assert shown > 25, width
-        assert covered == [], width
+def test_long_messages_cover_no_button_and_do_not_move_the_one_that_is_held(live):
+    live.page.set_viewport_size({"width": 1000, "height": 700})
+    before = live["jog-Z+"].bounding_box()
+    live.page.evaluate(SAY, ["", "a message of two lines " * 8])
+    assert live["jog-Z+"].bounding_box() == before
+    live.page.evaluate(SAY, ["an alarm of two lines " * 9, "a message of two lines " * 8])
+    assert_all_can_be_reached(live.page, 40, ["pause", "stop"])
 
 
 def test_an_alarm_is_shown_until_it_is_acknowledged_and_stays_in_the_notes(browser, program):
@@ -224,7 +221,7 @@ def test_a_page_that_comes_late_shows_nothing_for_the_time_before(browser, progr
         assert set(late.page.locator(".joint .value").all_inner_texts()) == {"–"}
         late.page.evaluate("robolang.seek(1e9)")
         assert late["unknown"].is_hidden()
-        assert all("–" not in text for text in late.page.locator(".joint .value").all_inner_texts())
+        late.page.wait_for_selector(".joint .value:has-text('–')", state="detached", timeout=PATIENCE_MS)
 
 
 ADD = """(times) => {

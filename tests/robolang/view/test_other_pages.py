@@ -8,6 +8,7 @@ import pytest
 
 from tests.robolang.view import made_up
 from tests.robolang.view.browser import SOFTWARE_GL, WITHOUT_GL, Tab, browsers
+from tests.robolang.view.reaching import assert_all_can_be_reached
 from tests.robolang.view.test_page_browser import DURATION_S, LINE, PICTURE, running, time_of, until
 
 
@@ -247,6 +248,24 @@ def test_paper_gets_every_chart_the_whole_text_and_a_picture(browser, tmp_path):
     page.evaluate("dispatchEvent(new Event('afterprint'))")
     assert page.evaluate("document.documentElement.dataset.theme") == "dark"
     assert tab.complaints == []
+    tab.close()
+
+
+def test_every_button_can_be_reached_and_is_covered_by_nothing(browser, tmp_path):
+    tab = Tab(browser)
+    page = tab.open(made_up.page(tmp_path / "run.html", made_up.run(DURATION_S)))
+    assert_all_can_be_reached(page, 15)
+    tab.close()
+
+
+def test_a_page_begins_at_the_first_line_also_where_another_one_runs_first(plain, tmp_path):
+    tab = Tab(plain)
+    header, signals = made_up.run(DURATION_S)
+    # longer than its panel
+    header["meta"]["program"]["text"] += "\n" * 100
+    page = tab.open(made_up.page(tmp_path / "first.html", (header, signals)))
+    assert running(page) > 1
+    assert page.evaluate("document.querySelector('.program').scrollTop") == 0
     tab.close()
 
 

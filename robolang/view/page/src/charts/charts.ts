@@ -5,6 +5,7 @@ import { Chart } from "./chart";
 
 /** Half of the width that a sheet has between its margins, px. */
 const PAPER_WIDTH = 340;
+const SAMPLED = "These charts show samples. A peak between two of them is in the log alone.";
 
 /** All charts of the page. A chart that nobody sees is neither built nor redrawn. */
 export class Charts {
@@ -17,6 +18,7 @@ export class Charts {
     this.player = player;
     this.charts = player.first.header.charts.map((head) => new Chart(player, head));
     const list = el("div", { class: "list" }, ...this.charts.map((chart) => chart.element));
+    if (player.first.header.kind === "live") list.append(el("p", { class: "empty", "data-testid": "sampled" }, SAMPLED));
     const jump = select("Go to a chart", [["", "Go to chart …"] as const, ...this.charts.map(({ head }) => [head.id, head.title] as const)], "", (id) => this.goTo(id, jump));
     const keys = player.runs.length < 2 ? [] : player.runs.map((run, k) => el("span", { class: "run-key", title: run.header.label }, el("i", { class: k === 0 ? "key" : "key second", "aria-hidden": "true" }), run.header.label));
     this.element.append(el("div", { class: "bar" }, el("h2", {}, "Charts"), ...keys, this.shown, jump), list);

@@ -78,8 +78,7 @@ export class GrowingRun extends Run {
 
   override get thinned(): string {
     const dt = this.any?.dt ?? GRID_S;
-    const kept = dt > GRID_S ? ` Of a long run one value every ${Math.round(dt * 1000)} ms is kept.` : "";
-    return `Live: the charts show samples. A peak between two of them is in the log alone.${kept}`;
+    return dt > GRID_S ? `Of a long run one value every ${Math.round(dt * 1000)} ms is kept.` : "";
   }
 
   private get any(): Signal | undefined {

@@ -57,7 +57,10 @@ export class SocketSource implements Source {
     this.viewer = viewer;
     const host = viewer.stage.element.parentElement;
     host?.classList.add("live");
-    host?.append(this.panel.element, ...(this.pendant ? [this.pendant.element] : []));
+    document.body.classList.add("live");
+    // Above the grid, whose rows would not let it stay in sight.
+    host?.before(...host.querySelectorAll(":scope > .head"), this.panel.element);
+    if (this.pendant) host?.append(this.pendant.element);
     viewer.player.on("time", () => {
       if (!this.moving) this.following = viewer.player.t >= viewer.player.end - NEAR_S;
       host?.classList.toggle("following", this.following);

@@ -202,6 +202,8 @@ export class ProgramText {
   private scrollTo(line: number): void {
     const top = (line - 1) * this.rowHeight;
     const shown = this.element.scrollTop;
+    // The first line is marked before the panel has been measured.
+    this.height ||= this.element.clientHeight;
     if (top < shown || top > shown + this.height - 2 * this.rowHeight) this.element.scrollTop = top - this.height / 2;
     this.window();
   }
