@@ -13,6 +13,7 @@ from robolang.core.diagnostics import Severity
 from robolang.execution.alarms import as_json
 from robolang.execution.measures import Measured
 from robolang.execution.result import RunRecord, StatementRun
+from robolang.execution.run_report import Report, report_of
 from runtime.control.controller import Controller
 from runtime.core.faults import Alarm
 from runtime.core.frames import Array, xyzrpy_from_pose
@@ -20,14 +21,14 @@ from runtime.core.units import DEG, MM, PERCENT
 from runtime.plant.touches import shape_text
 
 
-def build_report(record: RunRecord, measured: Sequence[Measured], wall_s: float) -> dict[str, Any]:
+def build_report(record: RunRecord, measured: Sequence[Measured], wall_s: float) -> Report:
     """Return the report of a finished run (docs/signals.md explains every key).
 
     ``measured`` is of each statement, as ``Measures.complete`` gives it.
     """
     controller = record.controller
     sim_s = controller.time_us / 1_000_000
-    return {
+    found = {
         "program": record.project.source.path,
         "robot": controller.spec.name,
         "ok": not record.alarms,
@@ -49,6 +50,7 @@ def build_report(record: RunRecord, measured: Sequence[Measured], wall_s: float)
         "alarms": _events(record, record.alarms, Severity.ERROR),
         "warnings": _events(record, controller.warnings, Severity.WARNING),
     }
+    return report_of(found)
 
 
 def _events(record: RunRecord, found: list[Alarm], severity: Severity) -> list[dict[str, object]]:

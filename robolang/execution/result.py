@@ -1,9 +1,9 @@
 """The record of a run: its statements, payloads and controller while it goes on, its result when it ends."""
 
 from dataclasses import dataclass, field
-from typing import Any
 
 from robolang.core.diagnostics import Diagnostic
+from robolang.execution.run_report import Report
 from robolang.interpreter.effects import Effect, Origin
 from robolang.logs.log import Log
 from robolang.project.points import Point
@@ -53,7 +53,7 @@ class StatementRun:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunResult:
-    """Outcome of a run: ``report`` of plain JSON types, ``log`` arrays by signal name.
+    """Outcome of a run: ``report`` of plain JSON types with attributes, ``log`` arrays by signal name.
 
     ``ok``: the program ran to its end. ``alarms`` ended it otherwise, the one that stopped the arm first; ``warnings``
     did not: both at the statements that ran.
@@ -62,7 +62,7 @@ class RunResult:
     ok: bool
     alarms: tuple[Diagnostic, ...]
     warnings: tuple[Diagnostic, ...]
-    report: dict[str, Any]
+    report: Report
     log: Log
 
 
