@@ -19,7 +19,9 @@ __all__ = [
     *("Analysis", "Diagnostic", "Edit", "Line", "Source", "Span", "read_program"),
     *("Executor", "ExecutorSnapshot", "State", "Status", "Timeline", "ENDED", "Fault", "FileFault"),
     *("Observer", "ProgramError", "Project", "RunResult", "Session", "load_project", "run"),
-    *("Log", "read_log"),
+    *("Log", "Excerpt", "read_log", "Report", "StatementReport"),
+    *("Checked", "check", "check_text", "Plan", "plan", "JointSolution", "Pose", "forward", "inverse"),
+    *("Comparison", "compare", "identify", "step", "weigh"),
 ]
 
 

@@ -6,12 +6,10 @@ stands still; the plans are kept for the run.
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypedDict, Unpack
 
 from robolang.core.diagnostics import Diagnostic, Severity, render
 from robolang.execution.alarms import as_diagnostic
 from robolang.execution.controller_target import ControllerTarget
-from robolang.execution.dry_run import motion_check
 from robolang.execution.executor import Alter, Executor
 from robolang.execution.log_meta import meta_of
 from robolang.execution.measures import Measures
@@ -24,11 +22,10 @@ from robolang.execution.status import ENDED
 from robolang.execution.world import RobotWorld
 from robolang.logs.log import Log
 from robolang.logs.not_kept import NotKept
-from robolang.project.project import Project, load_project
+from robolang.project.project import Project
 from runtime.control.clock import wall_s
 from runtime.control.controller import Controller
 from runtime.control.spill import Spill
-from runtime.settings.profile import ServoMode
 
 
 class ProgramError(Exception):
@@ -139,38 +136,4 @@ class Session:
         return RunResult(ok=not alarms, alarms=alarms, warnings=warnings, report=report, log=log)
 
 
-class Replaced(TypedDict, total=False):
-    """What a run may take in place of the files beside its program, as ``load_project`` does."""
-
-    cell: Path | str | None
-    robot: str | None
-    servo: ServoMode | None
-
-
-def run(
-    program: Path | str,
-    *,
-    physics: bool = True,
-    realtime: bool = False,
-    observer: Observer | None = None,
-    **replaced: Unpack[Replaced],
-) -> RunResult:
-    """Run a program file and return its result.
-
-    ``cell``, ``robot`` and ``servo`` replace what the files beside the program say (see ``load_project``); ``physics``
-    False runs on the ideal arm without MuJoCo; ``realtime`` keeps wall time; ``observer`` sees what happens.
-
-    Raises ``ProgramError`` when the program has errors or a move cannot be planned, ``FileFault`` or ``Fault`` when a
-    file cannot be used: in all these cases nothing has moved. A fault while running gives ``ok = False``.
-    """
-    project = load_project(program, **replaced)
-    if not project.ok:
-        raise ProgramError(project, project.diagnostics)
-    plans = PlanMemory(project)
-    refused = motion_check(project, plans)
-    if refused:
-        raise ProgramError(project, refused, planned=True)
-    return Session(project, physics=physics, realtime=realtime, observer=observer, plans=plans).run()
-
-
-__all__ = ["ProgramError", "RunResult", "Session", "StatementRun", "run"]
+__all__ = ["ProgramError", "RunResult", "Session", "StatementRun"]

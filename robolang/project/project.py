@@ -4,15 +4,16 @@ Which files those are is in ``discovery``. With none of them a program runs on t
 hand, a table and a part, with P1 to P5 taught (docs/language.md).
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 from robolang.analysis.analysis import Analysis
 from robolang.core.diagnostics import Diagnostic, has_errors
 from robolang.core.source import Source, read_program
 from robolang.project import discovery
+from robolang.project.arguments import Files, PathLike, options_of, points_text
 from robolang.project.discovery import CellFiles, Typed, controller_settings, read_beside
 from robolang.project.points import PointStore
 from robolang.syntax.ast import Program
@@ -50,6 +51,40 @@ class Project:
     points: PointStore
     settings: Settings
 
+    @classmethod
+    def load(cls, program: PathLike, **files: Unpack[Files]) -> "Project":
+        """Read a program and the files beside it, or those that are named.
+
+        Raises ``FileFault`` or ``Fault`` for a file or an argument that cannot be used; errors of the program itself
+        are in ``diagnostics``.
+        """
+        return _given(program, files.get("cell"), files)
+
+    @classmethod
+    def from_text(
+        cls,
+        text: str,
+        *,
+        points: Mapping[str, Sequence[float]] | None = None,
+        name: str = "program.rbl",
+        **files: Unpack[Files],
+    ) -> "Project":
+        """Return the project of a text; nothing of it need be on the disk.
+
+        ``points``: name to x, y, z mm and rx, ry, rz deg of the tool in the world; None: those of the built-in cell.
+        ``cell`` is the text of a cell file here; None: the built-in cell. ``name`` stands in messages. Raises as
+        ``load``.
+        """
+        where, cell = Path(name), files.get("cell")
+        texts = {
+            discovery.points_file(where): None if points is None else points_text(points),
+            discovery.own_cell(where): None if cell is None else str(cell),
+            # what happens to lie in the working folder is not meant
+            where.with_name("cell.toml"): None,
+        }
+        typed = Typed(analysis=Analysis(source=Source(name, text)), texts=texts)
+        return _given(typed, None, files)
+
     @property
     def source(self) -> Source:
         """The text of the program."""
@@ -75,6 +110,13 @@ class Project:
         return not has_errors(self.diagnostics)
 
 
+def _given(program: PathLike | Typed, cell: PathLike | None, files: Files) -> Project:
+    robot = files.get("robot")
+    return load_project(
+        program, cell, None if robot is None else str(robot), profile=files.get("profile"), options=options_of(files)
+    )
+
+
 def load_project(
     program: Path | str | Analysis | Typed,
     cell: Path | str | None = None,
@@ -94,7 +136,7 @@ def load_project(
     """
     typed = _typed(program)
     analysis, where = typed.analysis, Path(typed.analysis.source.path)
-    given = {**({} if servo is None else {"servo.mode": ("--servo", servo)}), **(options or {})}
+    given = {**({} if servo is None else {"servo.mode": ("servo", servo)}), **(options or {})}
     files, cell = CellFiles(typed.texts), typed.cell if cell is None else Path(cell)
     found = read_beside(where, files, cell=cell, robot=robot, layers=_layers(profile, given))
     # all of them, as a check reports them; the first alone would need one run for each error

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robolang.execution.session import run
+from robolang.api.running import run
 from tests.robolang.cli.commands import dry, places, robolang
 
 HERE = Path(__file__).parent

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robolang.execution.session import run
+from robolang.api.running import run
 
 HERE = Path(__file__).parent
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from robolang.api.running import run
 from robolang.cli.main import app
-from robolang.execution.session import run
 
 pytestmark = pytest.mark.physics
 

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from robolang.api.running import run
 from robolang.core.diagnostics import to_json
 from robolang.core.source import read_program
-from robolang.execution.session import run
 from tests.robolang.cli.commands import dry
 
 CASES = Path(__file__).parent

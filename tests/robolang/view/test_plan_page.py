@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from robolang.api.running import run
 from robolang.core.diagnostics import Diagnostic, Severity
 from robolang.core.source import Span
 from robolang.execution.dry_run import rehearse
-from robolang.execution.session import run
 from robolang.planning.motion_findings import findings
 from robolang.planning.path_coverage import explore
 from robolang.project.project import load_project

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 
-from robolang.execution.session import run
+from robolang.api.running import run
 from robolang.logs.log import Log
 from robolang.project.project import load_project
 from robolang.view import thinning
