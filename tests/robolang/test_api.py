@@ -159,22 +159,7 @@ def printed(*words):
 def test_experiments_give_what_their_commands_print(monkeypatch):
     monkeypatch.chdir(ROOT.parent)
     response = robolang.step("puma560", 2, payload=(2.5, 0, 0, 100), size_deg=0.4, seconds=0.5)
-    shown = printed(
-        *[
-            "step",
-            "--robot",
-            "puma560",
-            "--axis",
-            "2",
-            "--payload",
-            "2.5,0,0,100",
-            "--size",
-            "0.4",
-            "--seconds",
-            "0.5",
-            "--json",
-        ]
-    )
+    shown = printed("step", "--robot", "puma560", "--axis", "2", "--payload", "2.5,0,0,100", *STEP)
     assert (response.inertia, response.peak_torque) == (shown["inertia_kg_m2"], shown["peak_torque_nm"])
     assert np.rad2deg(response.droop) == pytest.approx(shown["droop_deg"], rel=1e-12)
     program = "programs/pick_and_place.rbl"
