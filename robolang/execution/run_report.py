@@ -4,6 +4,8 @@ import html
 from collections.abc import Sequence
 from typing import Any, Generic, TypeVar, overload
 
+import numpy as np
+
 from robolang.core import tables
 
 _SHOWN = ("line", "number", "text", "start_s", "duration_s", "joint_error_deg", "tool_error_mm", "peak_torque_pct")
@@ -117,7 +119,7 @@ class Report(dict[str, Any]):
 
     def _largest(self, name: str) -> float:
         numbers = [each[name] for each in self.statements if each[name] is not None]
-        return max(numbers, default=float("nan"))
+        return float(np.max(numbers)) if numbers else float("nan")
 
     def __repr__(self) -> str:
         """Return one line: a report of a long program would fill a screen."""

@@ -13,6 +13,7 @@ import pytest
 
 import robolang
 from robolang import api
+from robolang.execution.run_report import report_of
 from tests.programs.runs import ROOT
 from tests.robolang.cli.commands import robolang as robolang_command
 
@@ -210,6 +211,12 @@ def test_a_report_without_motion_has_no_largest_error():
     report = robolang.run(robolang.Project.from_text("x = 1\n"), physics=False).report
     assert math.isnan(report.tool_error_mm)
     assert math.isnan(report.peak_torque_pct)
+
+
+def test_an_error_that_is_no_number_is_no_small_one(ran):
+    broken = report_of(json.loads(json.dumps(ran.report)))
+    broken.statements[2]["tool_error_mm"] = math.nan
+    assert math.isnan(broken.tool_error_mm)
 
 
 def test_texts_of_programs_are_shown_and_not_obeyed_in_a_notebook():
