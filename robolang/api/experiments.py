@@ -132,14 +132,12 @@ def identify(
     axes: Sequence[int] | None = None,
     positions: int = 5,
     payload: PayloadLike | None = None,
-    real: RobotSpec | None = None,
     plant: PlantName = "mujoco",
     table: int = 0,
 ) -> list[AxisResult]:
     """Move each axis and identify its inertia at the motor and its weight; ``axes`` from 1, None: all.
 
-    ``real`` is the arm that is moved, None: the same as the controller's model. ``payload`` as of ``step``, carried and
-    declared.
+    ``payload`` as of ``step``, carried and declared. ``table``: angles of J2 and of J3 that a table is made over; 0: none.
     """
     spec = robot_of(robot)
     chosen = range(1, spec.n + 1) if axes is None else axes
@@ -151,7 +149,6 @@ def identify(
         axes=tuple(sorted({axis - 1 for axis in chosen})),
         positions=positions,
         plant=plant,
-        real=real,
         payload=payload_of(payload, spec, "payload", heavier=False),
         table=table,
     )
