@@ -137,7 +137,7 @@ def identify(
 ) -> list[AxisResult]:
     """Move each axis and identify its inertia at the motor and its weight; ``axes`` from 1, None: all.
 
-    ``payload`` as of ``step``, carried and declared. ``table``: angles of J2 and of J3 that a table is made over; 0: none.
+    ``payload`` as of ``step``, carried and declared. ``table``: angles of J2 and of J3 of a table; 0: none.
     """
     spec = robot_of(robot)
     chosen = range(1, spec.n + 1) if axes is None else axes
