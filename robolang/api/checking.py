@@ -21,6 +21,7 @@ def check(*paths: PathLike, select: Sequence[str] | None = None, ignore: Sequenc
     ``robolang.toml``. Nothing is planned: ``plan`` does that. ``Fault`` RBL703 for an unknown code.
     """
     layer = Layer(select=None if select is None else _selectors(select, "select"), ignore=_selectors(ignore, "ignore"))
+    # read once: many programs of a folder have one cell and one robolang.toml
     settings, files = Settings(), CellFiles()
     names = programs([str(path) for path in paths or (".",)], SUFFIX, settings.excludes)
     return [_checked(name, Selection(layers=(settings.layer(Path(name).parent), layer)), files) for name in names]

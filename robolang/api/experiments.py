@@ -51,6 +51,7 @@ def step(
     something.
     """
     spec = robot_of(robot)
+    # the tool decides where the rated payload sits, and with it whether gains are stable
     point = np.array(numbers(tool, "tool", ("x mm", "y mm", "z mm"))) * MM
     options = options_of({"settings": settings, "servo": servo})
     in_force = load_settings(spec, pose(point, np.eye(3)), profile, options)
@@ -69,6 +70,7 @@ def step(
         seconds=seconds,
         tool=point,
     )
+    # an axis and a posture are judged together, where the range of the joint is known
     try:
         return step_once(request)
     except ValueError as error:
@@ -116,6 +118,7 @@ def compare(
     )
     variants = [variant for variant in VARIANTS if only is None or variant.name in only]
     first = request.project(variants[0] if variants else VARIANTS[0])
+    # before twelve runs, each of which would end in the same refusal
     if not first.ok:
         raise ProgramError(first, first.diagnostics)
     if refused := motion_check(first):

@@ -97,6 +97,7 @@ def run(
     file or an argument cannot be used: in all these cases nothing has moved. A fault while running gives ``ok`` False.
     """
     read, most_us = _runnable(read_project(program, files)), _most_us(max_time_s)
+    # before the planning, which takes its time
     row = None if until_line is None else stop_of(read.analysis, str(until_line))
     plans = PlanMemory(read)
     refused = rehearse(read, plans=plans, most_us=most_us).preventing
@@ -117,6 +118,7 @@ def _runnable(read: Project) -> Project:
 def _most_us(seconds: float | None) -> int | None:
     if seconds is None:
         return None
+    # written so that NaN is refused too
     most = seconds * 1e6
     if not 1.0 <= most < math.inf:
         refuse("max_time_s", f"{seconds:g} s is no time that a run can take")

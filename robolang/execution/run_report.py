@@ -32,6 +32,7 @@ class Key(Generic[T]):
         """Return the value of the key."""
         if found is None:
             return self
+        # the JSON is believed: its keys are those that build_report writes
         value: T = found[self._name]
         return value
 
@@ -118,6 +119,7 @@ class Report(dict[str, Any]):
         return {name: [each[name] for each in self.statements] for name in names}
 
     def _largest(self, name: str) -> float:
+        # numpy's, which does not pass over NaN
         numbers = [each[name] for each in self.statements if each[name] is not None]
         return float(np.max(numbers)) if numbers else float("nan")
 

@@ -81,6 +81,7 @@ def out(executor: Executor) -> Out:
 def run_to(executor: Executor, line: int) -> None:
     """Run a program until the statement of a line of the file, from 1, is due, or it ends."""
     executor.stops_before = StopsAt(executor, [To(line=line)])
+    # paused where it is due, and nothing is left to be done there
     while executor.advance(_CYCLES).state not in ENDED | {State.PAUSED}:
         pass
     executor.stops_before = None

@@ -46,6 +46,7 @@ def numbers(values: Sequence[float], argument: str, names: Sequence[str]) -> tup
 
 def options_of(files: Files) -> dict[str, tuple[str, Any]]:
     """Return the settings among ``files`` as ``load_project`` takes them, each with the argument that it comes from."""
+    # the second of each pair is what a message calls the setting
     found = {key: (f'settings["{key}"]', value) for key, value in (files.get("settings") or {}).items()}
     servo = files.get("servo")
     return found if servo is None else found | {"servo.mode": ("servo", servo)}
