@@ -62,6 +62,7 @@ def _shown(entry: Entry) -> TyperCommand:
 
 def _made(entry: Entry) -> TyperCommand | TyperGroup:
     """Return the command itself."""
+    # by name, so that no import of this file says what a command needs
     module = import_module(entry.module)
     if entry.group:
         app: typer.Typer = module.app

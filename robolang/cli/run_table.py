@@ -64,6 +64,7 @@ def _by_line(statements: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _together(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    # what is no number is the same in all rows of a line
     together = dict(rows[0])
     for column in (_TIMES, *_COLUMNS):
         numbers = [row[column.key] for row in rows if row[column.key] is not None]

@@ -16,6 +16,7 @@ def to_polars(columns: Mapping[str, Any]) -> Any:
 
 
 def _library(name: str) -> Any:
+    # imported by name: no type checker asks for a library that is no dependency
     try:
         return import_module(name)
     except ImportError as error:

@@ -73,6 +73,7 @@ class Excerpt(HumanUnits, Mapping[str, Array]):
 
     def _columns(self, signals: tuple[str, ...]) -> dict[str, Array]:
         chosen = [column for text in signals or ("t", *self) for column in selected(self.log, self, text)]
+        # the time first, whatever is chosen: rows of a line may lie far apart
         made: dict[str, Array] = {"t": self["t"]}
         for column in chosen:
             values = self[column.signal]
