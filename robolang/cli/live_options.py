@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 from robolang.cli.options import Group, Option
 from robolang.cli.output import echo
 from robolang.cli.signals import handled
+from robolang.cli.usage import OptionValueError
 
 if TYPE_CHECKING:
     from robolang.execution.session import RunResult, Session
@@ -18,8 +19,9 @@ class PageOptions(Group):
 
     PANEL: ClassVar[str] = "Live view"
     port: Annotated[
-        int, Option("--port", metavar="N", low=0, high=65535, help="Port on 127.0.0.1; 0: any that is free.")
-    ] = 0
+        int | None,
+        Option("--port", metavar="N", low=0, high=65535, help="Port on 127.0.0.1; default: 0, any that is free."),
+    ] = None
     no_browser: Annotated[bool, Option("--no-browser", help="Open no browser: the address is printed only.")] = False
 
 
@@ -27,6 +29,13 @@ class FollowOptions(PageOptions):
     """Whether a run is followed by a live page."""
 
     view: Annotated[bool, Option("--view", help="Follow the run in a browser.")] = False
+
+
+def check_follow(options: FollowOptions) -> None:
+    """Raise ``OptionValueError`` for an option of a page that no page would follow."""
+    for name, given in {"--port": options.port is not None, "--no-browser": options.no_browser}.items():
+        if given and not options.view:
+            raise OptionValueError(name, "is for a page that follows the run; add --view")
 
 
 def announce(url: str, options: PageOptions) -> None:
@@ -47,7 +56,7 @@ def pages_of(options: FollowOptions) -> "Live | None":
     from robolang.view.live_page import live_page
     from robolang.view.page import Bundle
 
-    return Live(live_page(Bundle.installed()), options.port)
+    return Live(live_page(Bundle.installed()), options.port or 0)
 
 
 @contextmanager

@@ -12,14 +12,13 @@ device is refused and never waited for.
 import errno
 import os
 import re
-import stat
 from bisect import bisect_right
 from functools import cached_property
 from pathlib import Path
 from typing import NoReturn
 
 import robolang.core.codes  # noqa: F401 - the codes raised here must be registered
-from runtime.core.bounded_files import RefusedError, read_bounded
+from runtime.core.bounded_files import RefusedError, kind_text, read_bounded
 from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault, FilePlace
 
@@ -134,7 +133,7 @@ def _refuse(name: str, refused: RefusedError) -> NoReturn:
     error = refused.error
     # before the size: a folder or a pipe opens without an error, too
     if refused.mode is not None:
-        _fail("RBL702", f"{name} is {_kind(refused.mode)}, not a file", path=name)
+        _fail("RBL702", f"{name} is {kind_text(refused.mode)}, not a file", path=name)
     if error is None:
         _fail("RBL106", f"{name} has {refused.size} bytes, more than {MAX_BYTES}", path=name)
     if refused.opened:
@@ -182,13 +181,3 @@ def _neighbour(name: str) -> str:
     except OSError:  # a name of 255 bytes can exist, and is too long with the ending
         there = False
     return f"did you mean {name}.rbl?" if there else ""
-
-
-def _kind(mode: int) -> str:
-    kinds = {
-        stat.S_IFDIR: "a folder",
-        stat.S_IFIFO: "a pipe",
-        stat.S_IFCHR: "a device",
-        stat.S_IFBLK: "a device",
-    }
-    return kinds.get(stat.S_IFMT(mode), "a special file")

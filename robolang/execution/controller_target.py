@@ -193,7 +193,9 @@ class ControllerTarget:
         failed, controller.recorder.failed = controller.recorder.failed, None
         if failed is not None and not self.alarms:
             why = failed.strerror or failed
-            hint = "Make room for the log, or run without --log; the log up to here is complete."
+            kept_for = self._record.kept_for
+            without = f", or run without {kept_for}" if kept_for else ""
+            hint = f"Make room for the log{without}; the log up to here is complete."
             controller.alarm("RBL706", f"cannot write the temporary file of the log: {why}", hint=hint)
 
     def finish(self) -> None:

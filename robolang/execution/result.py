@@ -79,6 +79,8 @@ class RunRecord:
     shown: list[tuple[float, str]] = field(default_factory=list)
     acknowledged: list[Alarm] = field(default_factory=list)
     """Alarms that the controller no longer holds."""
+    kept_for: str = ""
+    """The options for which the log is kept, in words; empty: no option leaves it out."""
 
     @property
     def alarms(self) -> list[Alarm]:

@@ -131,7 +131,7 @@ class Archive:
     def packed(self, name: str) -> bytes:
         """Return the bytes of a packed array (K,) of uint8; ``Fault`` RBL619."""
         try:
-            entry = self._zip.getinfo(f"{name}.npy")
+            entry = self._entry(name)
             if not max(entry.file_size, entry.compress_size) <= MOST_PACKED:
                 raise ValueError(f"{name} has {entry.file_size} bytes")
             with self._zip.open(entry) as stream:
@@ -143,8 +143,14 @@ class Archive:
         except (*_DAMAGE, OSError) as error:
             raise self.damaged(error) from None
 
+    def _entry(self, name: str) -> zipfile.ZipInfo:
+        entry = self._zip.NameToInfo.get(f"{name}.npy")
+        if entry is None:
+            raise ValueError(f"it has no array '{name}'")
+        return entry
+
     def _checked(self, name: str) -> Stored:
-        entry = self._zip.getinfo(f"{name}.npy")
+        entry = self._entry(name)
         if entry.compress_type != zipfile.ZIP_STORED or entry.flag_bits & 1 or entry.file_size != entry.compress_size:
             raise ValueError(f"{name} is packed")
         self._file.seek(entry.header_offset)

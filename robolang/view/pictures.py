@@ -41,6 +41,10 @@ class Postures(Protocol):
         """Return postures by which a view is framed."""
 
 
+USUAL_RATE = 15
+"""Pictures of a film per second."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Order:
     """A picture or film that is to be made: its file, view (None: that of the cell, else ``iso``), the time ``at`` of a
@@ -51,7 +55,7 @@ class Order:
     view: str | None = None
     at: float | None = None
     size: tuple[int, int] | None = None
-    rate: int = 15
+    rate: int = USUAL_RATE
     labels: bool = True
 
     @property

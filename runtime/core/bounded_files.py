@@ -33,6 +33,17 @@ def resolved_inside(path: Path, folder: Path, *, strict: bool = False) -> Path |
     return target if target.is_relative_to(folder.resolve(strict=strict)) else None
 
 
+def kind_text(mode: int) -> str:
+    """Return what a file is that is not regular."""
+    kinds = {
+        stat.S_IFDIR: "a folder",
+        stat.S_IFIFO: "a pipe",
+        stat.S_IFCHR: "a device",
+        stat.S_IFBLK: "a device",
+    }
+    return kinds.get(stat.S_IFMT(mode), "a special file")
+
+
 class RefusedError(Exception):
     """A file that is not read. One of three is given: ``error`` where it cannot be opened or read, ``mode`` where it is
     not regular, ``size`` where it is too large."""
@@ -44,7 +55,11 @@ class RefusedError(Exception):
 
     @property
     def reason(self) -> str:
-        """The reason that the system gives, without the path that an ``OSError`` names too."""
+        """The reason in words; that of the system without the path that an ``OSError`` names too."""
+        if self.mode is not None:
+            return f"it is {kind_text(self.mode)}, not a file"
+        if self.error is None:
+            return f"it has {self.size} bytes, more than are read"
         return str(getattr(self.error, "strerror", None) or self.error)
 
 

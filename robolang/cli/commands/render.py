@@ -43,7 +43,9 @@ class _PictureOptions(Group):
         str | None,
         Option("--size", metavar="WxH", help="Pixels; default: 1280x720, of a .gif or .webp 640x360."),
     ] = None
-    fps: Annotated[int, Option("--fps", metavar="N", low=1, high=60, help="Pictures of a film per second.")] = 15
+    fps: Annotated[
+        int | None, Option("--fps", metavar="N", low=1, high=60, help="Pictures of a film per second; default: 15.")
+    ] = None
     no_labels: Annotated[
         bool, Option("--no-labels", help="Leave out the names of the points, as a picture below 480 pixels does.")
     ] = False
@@ -60,13 +62,17 @@ def render(subject: Subject, files: CellOptions, picture: _PictureOptions, physi
     out = picture.out if picture.out is not None else Path(subject).with_suffix(".png")
     if out.suffix in (".rbl", ".toml", ".npz"):
         raise OptionValueError("--out", f"'{out}' would be a program, a cell or a log; name a picture")
+    if picture.fps is not None and out.suffix == ".png":
+        raise OptionValueError("--fps", f"'{out}' is one picture; name a .gif, .webp or .mp4 for a film")
     size = _size(picture.size)
     with reported():
-        from robolang.view.pictures import Order
+        from robolang.view.pictures import USUAL_RATE, Order
         from robolang.view.pictures import render as draw
 
         labels = not picture.no_labels
-        order = Order(path=out, view=picture.view, at=picture.at, size=size, rate=picture.fps, labels=labels)
+        order = Order(
+            path=out, view=picture.view, at=picture.at, size=size, rate=picture.fps or USUAL_RATE, labels=labels
+        )
         # before a run that takes its time
         order.check()
         check_outputs({"--out": out}, [subject, files.cell, files.robot])

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from robolang.cli.controller_settings import settings_of
 from robolang.cli.errors import DIAGNOSTICS, MOTION, STORAGE, reported, say
-from robolang.cli.live_options import FollowOptions, followed, pages_of, remain
+from robolang.cli.live_options import FollowOptions, check_follow, followed, pages_of, remain
 from robolang.cli.options import CellOptions, Program, RunControllerOptions
 from robolang.cli.output import echo, show_finding
 from robolang.cli.outputs import check_outputs
@@ -55,6 +55,7 @@ def run(
     settings = settings_of(controller)
     with reported():
         _check_outputs(program, files, output)
+        check_follow(follow)
         if simulation.until_line is not None and follow.view:
             raise OptionValueError("--until-line", "a page that follows the run pauses it; leave out --view")
         from robolang.project.project import load_project
@@ -129,6 +130,7 @@ def _ran(
                 log=kept,
                 most_us=simulation.most_us,
             )
+            session.record.kept_for = _kept_for(output, follow)
             progress.follow(session.controller)
             # a page is waited for
             with handled(_left_before_motion):
@@ -142,6 +144,12 @@ def _ran(
         yield result, _ended(session, simulation), code or (128 + stopped[0] if stopped else 0)
         if pages is not None and not stopped:
             remain(pages)
+
+
+def _kept_for(output: OutputOptions, follow: FollowOptions) -> str:
+    """Return the options for which what is recorded is kept, in words."""
+    given = {"--log": output.log is not None, "--html": output.html is not None, "--view": follow.view}
+    return " and ".join(name for name, one in given.items() if one)
 
 
 def _until(session: "Session", line: str) -> "Callable[[], RunResult]":

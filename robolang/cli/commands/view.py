@@ -59,7 +59,7 @@ def view(program: Program, files: CellOptions, page: PageOptions, physics: Physi
         project = teaching.project()
         # not its motion: what cannot be planned is an alarm at its place, and the pendant can mend the point
         refuse_text(project)
-        live = Live(live_page(Bundle.installed()), page.port)
+        live = Live(live_page(Bundle.installed()), page.port or 0)
         session = Session(project, physics=not physics.no_physics, observer=live.frames)
         driver = Driver(session, live.exchange, live.frames, pace=Pace(pace.speed), teaching=teaching)
         with live.serve(session) as url, _left_by_signals(driver, session) as received:

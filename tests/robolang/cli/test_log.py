@@ -191,6 +191,22 @@ def test_a_log_that_is_missing_is_no_text_of_a_megabyte(tmp_path, monkeypatch, n
     assert "RBL600" in said and "UTF-8" not in said and "--log FILE.npz" in said and "FILE.mcap" in said
 
 
+@pytest.mark.parametrize("command", ["log show {}", "report {}", "plot {} q_fb", "log export {} --csv -o x.csv"])
+@pytest.mark.parametrize("name", ["folder", "folder.mcap"])
+def test_a_folder_is_no_log(tmp_path, monkeypatch, command, name):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / name).mkdir()
+    said = flat(robolang(*command.format(name).split(), code=2).stderr)
+    assert "RBL600" in said and "a folder" in said and "None" not in said
+
+
+def test_arrays_of_something_else_are_no_log(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    np.savez(tmp_path / "other.npz", a=np.zeros(3))
+    said = robolang("log", "show", "other.npz", code=2).stderr
+    assert {"RBL619", "other.npz", "t"} <= fields(said) and "archive" not in said
+
+
 @pytest.mark.parametrize("command", ["run run.npz", "check run.npz", "fmt run.npz", "view run.npz"])
 @pytest.mark.usefixtures("run")
 def test_a_log_in_place_of_a_program_is_called_a_log(command):

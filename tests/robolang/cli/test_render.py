@@ -115,6 +115,7 @@ def test_a_program_with_an_error_is_not_drawn(program):
         (("--at", "nan"), 2, "RBL832"),
         (("--at", "99"), 2, "RBL832"),
         (("--fps", "0"), 2, "--fps"),
+        (("-o", "x.png", "--fps", "5"), 2, "RBL703"),
         (("--view", "below"), 2, "--view"),
         (("-o", "nowhere/x.png"), 4, "RBL706"),
     ],

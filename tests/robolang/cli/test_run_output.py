@@ -12,7 +12,7 @@ import pytest
 from robolang.cli import run_table
 from tests.campaign import some
 from tests.messages import fields, heads
-from tests.robolang.cli.commands import ROOT, dry, robolang, shell
+from tests.robolang.cli.commands import ROOT, dry, flat, robolang, shell
 from tests.steps import HANG_S
 
 LONG = "100 MOVE P1, SPEED 123.456789, ACCEL 12.345678901"
@@ -176,10 +176,21 @@ def test_a_run_ends_before_a_line(program):
 
 
 @pytest.mark.parametrize(
-    ("words", "code"), [(["--until-line", "31"], "RBL803"), (["--until-line", "30", "--view"], "RBL703")]
+    ("words", "code"),
+    [
+        (["--until-line", "31"], "RBL803"),
+        (["--until-line", "30", "--view"], "RBL703"),
+    ],
 )
 def test_a_line_that_is_none_and_a_page_that_pauses_are_refused(program, words, code):
     assert code in dry("p.rbl", *words, code=2).stderr
+
+
+@pytest.mark.parametrize("words", [["--port", "0"], ["--no-browser"]])
+def test_an_option_of_a_page_that_is_not_there_is_refused(program, words):
+    result = dry("p.rbl", *words, code=2)
+    assert {"RBL703", words[0], "--view"} <= fields(flat(result.stderr))
+    assert result.stdout == ""
 
 
 @pytest.mark.parametrize("seconds", ["0", "-1", "nan", "inf", "x"])

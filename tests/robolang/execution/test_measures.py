@@ -17,6 +17,7 @@ from runtime.control.spill import Spill
 from runtime.core.faults import Fault
 from runtime.core.units import DEG, MM, PERCENT
 from runtime.servo.motor import torque_limit
+from tests.messages import fields
 from tests.programs.runs import some_programs
 from tests.robolang.cli.commands import dry
 
@@ -123,6 +124,8 @@ def test_a_full_disk_ends_the_command_with_its_code(small_blocks, tmp_path, monk
     monkeypatch.setattr(Spill, "put", full)
     (tmp_path / "p.rbl").write_text("MOVE P1\n")
     result = dry(tmp_path / "p.rbl", "--quiet", "--log", tmp_path / "l.npz", code=4)
-    assert "RBL706" in result.stderr
+    assert {"RBL706", "--log"} <= fields(result.stderr) and "--html" not in result.stderr
     assert sorted(os.listdir(tmp_path)) == ["l.npz", "p.rbl"]  # whole, up to where the arm stands
+    result = dry(tmp_path / "p.rbl", "--quiet", "--html", tmp_path / "l.html", code=4)
+    assert {"RBL706", "--html"} <= fields(result.stderr) and "--log" not in result.stderr
     dry(tmp_path / "p.rbl", "--quiet", code=0)
