@@ -24,6 +24,8 @@ LONGEST_TARGET = 512
 """Longest path with its query, bytes."""
 
 _QUERY = "token="
+# the page takes the token out of the address bar, so a reload comes without it
+_REMEDIES = {HTTPStatus.UNAUTHORIZED: "Open the address that the command has printed: it ends with ?token=...\n"}
 _NOTHING = "default-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 
 
@@ -72,9 +74,8 @@ class Guard:
         """Return the reply to a request; None: it may open the socket."""
         refused = self._refused(asked)
         if refused is not None:
-            return _answer(
-                refused, f"{refused.value} {refused.phrase}\n".encode(), "text/plain; charset=utf-8", _NOTHING
-            )
+            text = f"{refused.value} {refused.phrase}\n{_REMEDIES.get(refused, '')}"
+            return _answer(refused, text.encode(), "text/plain; charset=utf-8", _NOTHING)
         if _path(asked) == SOCKET_PATH:
             return None
         return _answer(HTTPStatus.OK, self.page.html, "text/html; charset=utf-8", self._policy)

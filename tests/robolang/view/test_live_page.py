@@ -430,5 +430,7 @@ def test_beside_the_prompt_a_page_takes_back_and_opens_anew_for_another_program(
 def test_an_address_without_its_token_shows_no_page(served, browser):
     url, _ = served
     page = browser.new_page()
-    assert page.goto(url.partition("?")[0]).status == 401
+    refused = page.goto(url.partition("?")[0])
+    assert refused.status == 401
+    assert "?token=" in refused.text() and url.partition("=")[2] not in refused.text()
     assert page.goto(url.replace("127.0.0.1", "localhost")).status == 200
