@@ -18,6 +18,7 @@
 # make large              time and memory of check and fmt on programs of 1 MB of every kind (minutes)
 # make mutants   mutants of supervision, stops, payload and areas: those that no test finds, and how many one finds (minutes)
 # make figures  the pictures of README and docs, taken anew from runs
+# make docs   the documentation as a site in out/site, checked for dead links
 # make measured   the figures of docs/measured.md that repeat exactly
 # make viewer   the script of the pages, built anew from robolang/view/page (needs node)
 # make help   these lines
@@ -73,6 +74,10 @@ $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
 	touch $@
+
+docs: $(READY)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[docs]'
+	$(BIN)/zensical build --clean --strict
 
 measured: $(READY)
 	$(BIN)/python -m tests.bench.measure
