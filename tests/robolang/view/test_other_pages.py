@@ -255,6 +255,10 @@ def test_every_button_can_be_reached_and_is_covered_by_nothing(browser, tmp_path
     tab = Tab(browser)
     page = tab.open(made_up.page(tmp_path / "run.html", made_up.run(DURATION_S)))
     assert_all_can_be_reached(page, 15)
+    # of a small picture as little as possible is covered
+    page.set_viewport_size({"width": 800, "height": 500})
+    page.evaluate("document.querySelector('.ramp small:last-child').textContent = '0.088 mm'")
+    assert page.locator("[data-testid=legend]").bounding_box()["height"] < 40
     tab.close()
 
 
