@@ -98,7 +98,8 @@ class ExpressionCheck:
         points = self._symbols.points
         if points is not None and node.key not in points and self._defined.is_missing(node):
             message = f"{node.text} has no value: no statement assigns it first, and it is not a taught point"
-            hint = other_languages.VALUES.get(node.key) or hint_for(node, self._known) or self._to_give_value(node.text)
+            elsewhere = other_languages.value(node.key) or other_languages.function(node.key)
+            hint = elsewhere or hint_for(node, self._known) or self._to_give_value(node.text)
             if self._defined.is_of_a_sub(node.key):
                 message = (
                     f"{node.text} has no value here: only a SUB assigns it, and variables of a SUB exist only inside it"
@@ -126,8 +127,9 @@ class ExpressionCheck:
         elif self._defined.has_array(node.name.key):
             yield from self._array(node)
         elif self._defined.is_missing(node.name):
-            guess = other_languages.function(node.name.key) or near(node.name.key, FUNCTIONS)
-            hint = f"did you mean {guess}?" if guess else f"DIM {node.name.text}(n) makes an array"
+            known = other_languages.function(node.name.key)
+            guess = "" if other_languages.is_known(node.name.key) else near(node.name.key, FUNCTIONS)
+            hint = known or (f"did you mean {guess}?" if guess else f"DIM {node.name.text}(n) makes an array")
             message = f"{node.name.text} is neither an array nor a function"
             yield Diagnostic(code="RBL215", message=message, span=node.name.span, hint=hint)
 

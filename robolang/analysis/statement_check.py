@@ -50,6 +50,7 @@ from robolang.syntax.ast import (
 )
 from robolang.syntax.declaration import Declaration, Operand, Role
 from robolang.syntax.statements import declaration
+from robolang.syntax.unparse import describe
 from robolang.values.kinds import Kind
 from runtime.core import limits
 from runtime.core.faults import Fault
@@ -78,6 +79,10 @@ class StatementCheck:
                     yield from self.check(part)
             return
         if isinstance(node, Unparsed):
+            return
+        if found := _as_elsewhere(node):
+            # the names in it are none of this program, and nothing else is said of them
+            yield found
             return
         declared = declaration(node)
         yield from self._operands(node, declared)
@@ -208,7 +213,7 @@ class StatementCheck:
         is_element = isinstance(node.target, Call) and not self._defined.has_array(name.key)
         if is_element and self._defined.is_missing(name):
             message = f"there is no array {name.text}"
-            hint = other_languages.assigned(name.key, element=True) or f"DIM {name.text}(n) makes one"
+            hint = _assigned_elsewhere(node, name) or f"DIM {name.text}(n) makes one"
             yield Diagnostic(code="RBL215", message=message, span=name.span, hint=hint)
         elif isinstance(node.target, Call) and not is_element and len(node.target.arguments) == 1:
             yield from self._expressions.element(node.target)
@@ -310,6 +315,28 @@ _RULES: dict[type, Callable[..., Iterator[Diagnostic]]] = {
     Head: _Check._head,
     Block: _Check._block,
 }
+
+
+def _as_elsewhere(node: Statement) -> Diagnostic | None:
+    """Return RBL217 for a move with all operands in parentheses, as ``movej(home, tool, fast)`` of VAL3."""
+    target = getattr(node, "target", None)
+    if not isinstance(node, Moving) or not isinstance(target, Vector):
+        return None
+    from robolang.syntax import foreign_lines
+
+    hint = foreign_lines.advice(describe(node))
+    message = "a pose is needed here, not values in parentheses"
+    return Diagnostic(code="RBL217", message=message, span=target.span, hint=hint) if hint else None
+
+
+def _assigned_elsewhere(node: Assign, name: Name) -> str:
+    """Return what to write for an element that other languages assign to, as ``M_Out(1) = 1``, or ``""``."""
+    known = other_languages.assigned(name.key, element=True)
+    if not known:
+        return ""
+    from robolang.syntax import foreign_lines
+
+    return foreign_lines.advice(describe(node)) or known
 
 
 def _expressions(node: Node, declared: Declaration) -> Iterator[Expression]:

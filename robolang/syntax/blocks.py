@@ -333,8 +333,8 @@ def _seeming_word(text: str) -> str:
     first = _FIRST.match(text)
     upper = first[1].upper() if first else ""
     # a word that is known is not a misspelt one: END resembles WEND, EXIT resembles NEXT
-    if upper in other_languages.WORDS or upper in KEYWORDS - _WORDS:
-        return other_languages.ENDS.get(upper, "")
+    if upper in KEYWORDS - _WORDS or other_languages.is_known(upper):
+        return other_languages.end(upper)
     word = near(upper, _WORDS, cutoff=_LIKENESS)
     if word == "IF":
         return _seeming_if(upper, text)
@@ -357,7 +357,7 @@ def _may_be_anything(statement: Statement | None) -> bool:
     if first is None:
         return isinstance(statement, Unparsed)
     upper = first[1].upper()
-    if upper in other_languages.WORDS or upper in KEYWORDS:
+    if upper in KEYWORDS or other_languages.is_known(upper):
         return False
     meant = near(upper, INSTRUCTIONS)
     return not meant or meant in _WORDS

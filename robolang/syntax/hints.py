@@ -32,7 +32,7 @@ _OPTIONS = frozenset(OPTIONS)
 _HAND_WORDS = frozenset({"OPEN", "CLOSE", "GRASP", "GRIP", "RELEASE"})
 ASSIGNS = re.compile(r":[ \t]*(?:\Z|'|=)|([-+*/])(?:=|\1[ \t]*\Z)")
 """What follows the name in an assignment or a label of another language: ``:=``, ``+=``, ``++``, ``:`` at the end."""
-_ASSIGNMENT = re.compile(r"\w+\$?[ \t]*(?:\([^=]*\)[ \t]*)?=")
+ASSIGNMENT = re.compile(r"\w+\$?[ \t]*(?:\([^=]*\)[ \t]*)?=")
 _SETTINGS = frozenset(
     {"SPEED", "SPEEDJ", "ACCEL", "OVERRIDE", "ZONE", "TOOL", "FRAME", "DELAY", "LOAD", "TIME", "TIMEOUT"}
 )
@@ -219,7 +219,7 @@ def _other_sign(found: Unexpected) -> str | None:
 
 
 def _value(found: Unexpected) -> str | None:
-    return other_languages.VALUES.get(found.word) if found.takes_value else None
+    return (other_languages.value(found.word) or None) if found.takes_value else None
 
 
 def _first_word(found: Unexpected) -> str | None:
@@ -273,7 +273,7 @@ def _speed_or_zone(found: Unexpected) -> str | None:
 
 def _of_instruction(found: Unexpected) -> str:
     """Return what replaces the word that begins a statement; an ordinary name where a value is assigned to it."""
-    return "" if _ASSIGNMENT.match(found.before) else other_languages.instruction(found.instruction)
+    return "" if ASSIGNMENT.match(found.before) else other_languages.instruction(found.instruction)
 
 
 _OTHER_LANGUAGES: tuple[_Question, ...] = (
@@ -331,7 +331,9 @@ def _hand(found: Unexpected) -> str | None:
 
 
 def _misspelt(found: Unexpected) -> str | None:
-    guess = near(found.word, found.accepts & KEYWORDS) if found.kind == "NAME" else ""
+    if found.kind != "NAME" or other_languages.is_known(found.word):
+        return None
+    guess = near(found.word, found.accepts & KEYWORDS)
     return f"did you mean {guess}?" if guess else None
 
 

@@ -9,7 +9,8 @@ import re
 
 from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import Span
-from robolang.syntax.hints import ASSIGNS, hint_of, unit_hint
+from robolang.syntax import foreign_lines, other_languages
+from robolang.syntax.hints import ASSIGNMENT, ASSIGNS, hint_of, unit_hint
 from robolang.syntax.keywords import COMPONENTS6, KEYWORDS, code_point, instruction_hint, look_alike
 from robolang.syntax.unexpected import END, Unexpected, expected, last_word, quote
 
@@ -21,10 +22,8 @@ def explain(found: Unexpected) -> Diagnostic:
     if found.kind == "HUGE":
         message = f"the number {quote(found.text)} is too large"
         return Diagnostic(code="RBL114", message=message, span=found.span)
-    if found.kind == "MALFORMED":
-        return _malformed(found)
     # the component first: P1 of P1.X = 5 would be called an unknown instruction
-    return _component(found) or _unknown(found) or _unexpected(found)
+    return _component(found) or _call(found) or _malformed(found) or _unknown(found) or _unexpected(found)
 
 
 def suspicious(text: str, start: int) -> Diagnostic:
@@ -37,9 +36,14 @@ def suspicious(text: str, start: int) -> Diagnostic:
     return Diagnostic(code="RBL103", message=f"suspicious character {code_point(character)}", span=span, hint=hint)
 
 
-def _malformed(found: Unexpected) -> Diagnostic:
-    text, hint = found.text, ""
-    if found.is_first and re.fullmatch(r"[0-9]+[A-Za-z]+", text):
+def _malformed(found: Unexpected) -> Diagnostic | None:
+    """Return RBL115 for what begins as a number and is none."""
+    if found.kind != "MALFORMED":
+        return None
+    text, hint = found.text, foreign_lines.advice(found.line)
+    if hint:
+        pass  # 250mm/sec of a line that is known as a whole
+    elif found.is_first and re.fullmatch(r"[0-9]+[A-Za-z]+", text):
         hint = "leave a space between the line number and the instruction"
     elif re.fullmatch(r"[0-9.]*[0-9][0-9_.]*", text) and "_" in text:
         hint = f"write {quote(text.replace('_', ''))}"
@@ -73,25 +77,38 @@ def _component(found: Unexpected) -> Diagnostic | None:
     )
 
 
+def _call(found: Unexpected) -> Diagnostic | None:
+    """Return RBL112 for a line as ``sleep(0.5)`` of other languages: up to its end it could be one of this language."""
+    call = re.match(r"[A-Za-z]\w*(?=[ \t]*\()", found.before)
+    if call is None or ASSIGNMENT.match(found.line) or not other_languages.instruction(call[0]):
+        return None
+    return _unknown_word(found, call[0], found.span.start - len(found.before))
+
+
 def _unknown(found: Unexpected) -> Diagnostic | None:
     """Return RBL112 for a name that begins a statement and is not assigned to."""
     word = last_word(found.before)
     if not _is_after_first_name(found) or ASSIGNS.match(found.text + found.after):
         return None
     # the word is the mistake, not the token that follows it and stopped the parser
-    start = found.span.start - len(found.before) + len(found.before.rstrip(" \t")) - len(word)
+    return _unknown_word(found, word, found.span.start - len(found.before) + len(found.head) - len(word))
+
+
+def _unknown_word(found: Unexpected, word: str, start: int) -> Diagnostic:
     message = f"unknown instruction '{quote(word)}'"
-    return Diagnostic(code="RBL112", message=message, span=Span(start, start + len(word)), hint=instruction_hint(word))
+    hint = foreign_lines.advice(found.line) or instruction_hint(word)
+    return Diagnostic(code="RBL112", message=message, span=Span(start, start + len(word)), hint=hint)
 
 
 def _unexpected(found: Unexpected) -> Diagnostic:
     message = f"expected {expected(found)}{_after(found.before)}"
+    hint = foreign_lines.advice(found.line) or hint_of(found)
     if found.kind in END:
         # nothing stands there, so the place has no width
         end = found.span.start
-        return Diagnostic(code="RBL111", message=message, span=Span(end, end), hint=hint_of(found))
+        return Diagnostic(code="RBL111", message=message, span=Span(end, end), hint=hint)
     shown = quote(found.text) if re.match(r"\w", found.text) else f"'{found.text}'"
-    return Diagnostic(code="RBL111", message=f"{message}, not {shown}", span=found.span, hint=hint_of(found))
+    return Diagnostic(code="RBL111", message=f"{message}, not {shown}", span=found.span, hint=hint)
 
 
 def _after(before: str) -> str:

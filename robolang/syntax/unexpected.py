@@ -62,6 +62,12 @@ class Unexpected:
         return self.text + self.after
 
     @property
+    def line(self) -> str:
+        """The statement as it was typed."""
+        # the place of an end is before the comment, which is in the text after it
+        return self.before + ("" if self.kind in END else self.text) + self.after
+
+    @property
     def takes_value(self) -> bool:
         """Whether a value can stand in place of the token."""
         return self.accepts >= VALUE

@@ -36,9 +36,10 @@ def find(facts: Facts) -> Iterator[Diagnostic]:
         read.update(reads(node))
     for key, name in given.items():
         if key not in read:
+            known = other_languages.assigned(key)
             # guessed among the names that are read: a name that nothing reads is no help
-            guess = near(key, read)
-            hint = f"did you mean {guess}?" if guess else other_languages.assigned(key)
+            guess = "" if known else near(key, read)
+            hint = f"did you mean {guess}?" if guess else known
             yield UNREAD.at(name.span, f"nothing reads {name.text}", hint=hint)
 
 

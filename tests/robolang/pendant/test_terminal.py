@@ -58,7 +58,7 @@ def test_every_fact_is_on_screens_of_any_width(opened, columns, rows):
     for fact in ("MANUAL", "not armed", "frame WORLD", "tool hand", "load 0", "0.000 s", "77.0", "840.0", "overhead"):
         assert terminal.shows(fact), lines
     terminal.send("MOV P4\r")
-    terminal.until("error RBL112", "1 | MOV P4", "    | ^^^", "did you mean MOVE?")
+    terminal.until("error RBL112", "1 | MOV P4", "    | ^^^", "MOVEJ P4")
 
 
 def test_completion_shows_points_with_their_meaning_and_enter_carries_out(terminal):
@@ -210,7 +210,7 @@ def test_without_colours_everything_is_a_word(opened):
     terminal = opened(NO_COLOR="1")
     terminal.until(READY)
     terminal.send("MOV P4\r")
-    terminal.until("error RBL112", "help: did you mean MOVE?")
+    terminal.until("error RBL112", "help: write MOVEJ ")
     assert not COLOURS.search(terminal.raw)
 
 

@@ -1,0 +1,1 @@
+"""Words and lines of other robot languages, what they mean there, and the statement to write here."""

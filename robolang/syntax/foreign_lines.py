@@ -1,0 +1,70 @@
+"""Whole lines of other languages as statements of this one, numbers carried over where that is sure.
+
+A statement is proposed only where the reader of this language takes it, and as ``fmt`` would print it.
+"""
+
+import re
+
+from robolang.syntax.foreign.readings import filled
+from robolang.syntax.foreign.shape import Shape
+from robolang.syntax.foreign.shapes import FIRST, compiled, of
+from robolang.syntax.line_reader import Stopped, line_reader
+from robolang.syntax.unparse import describe
+from runtime.core.record import Record
+
+_MOST = 200
+"""Characters of a line that is still compared with the shapes: what is longer is no statement by hand."""
+_LABEL = re.compile(r"[ \t]*\*\w+(?=[ \t]+\S)")
+_END = re.compile(r"[ \t]*;?[ \t]*\Z")
+
+
+class Proposal(Record):
+    """The statements to write for a line, and the kind of line that it is."""
+
+    shape: Shape
+    statements: tuple[str, ...]
+
+    @property
+    def advice(self) -> str:
+        """What to write here, as a hint."""
+        write = f"write {' and '.join(self.statements)}" if self.statements else "remove the line"
+        return f"{write}; {self.shape.note}" if self.shape.note else write
+
+
+def proposal(code: str) -> Proposal | None:
+    """Return what to write for a line of another language, without its line number; None for a line that is none."""
+    if len(code) > _MOST:
+        return None
+    label = _LABEL.match(code)
+    # JMP LBL[1]; of TP and RAPID: no sign ends a line here
+    text = _END.sub("", code[label.end() :] if label else code, count=1)
+    first = FIRST.match(text)
+    if first is None:
+        return None
+    for shape in of(first[1]):
+        found = compiled(shape).fullmatch(text, first.end())
+        if found is None:
+            continue
+        statements = filled(shape.write, {**found.groupdict(), "word": first[1]}).splitlines()
+        shown = tuple(map(_canonical, statements))
+        if all(shown):
+            return Proposal(shape=shape, statements=shown)
+    return None
+
+
+def advice(code: str) -> str:
+    """Return what to write for a line of another language as a hint; ``""`` for a line that is none."""
+    found = proposal(code)
+    return found.advice if found else ""
+
+
+def _canonical(statement: str) -> str:
+    """Return a statement as this language prints it; ``""`` for what is none."""
+    reader = line_reader()
+    read = reader.read(statement, 0) if reader else None
+    # what is not carried over whole is no advice: a part of a line would be proposed as the line
+    if read is None or isinstance(read, Stopped):
+        return ""
+    label, parsed, comment = read
+    parts = (label and f"*{label.text}", parsed and describe(parsed), comment and comment.text)
+    return " ".join(part for part in parts if part)
