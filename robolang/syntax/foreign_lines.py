@@ -35,6 +35,7 @@ def proposal(code: str) -> Proposal | None:
     """Return what to write for a line of another language, without its line number; None for a line that is none."""
     if len(code) > _MOST:
         return None
+    # a label is of this language, and a line of another one may have been typed after it
     label = _LABEL.match(code)
     # JMP LBL[1]; of TP and RAPID: no sign ends a line here
     text = _END.sub("", code[label.end() :] if label else code, count=1)

@@ -57,6 +57,7 @@ def is_known(word: str) -> bool:
     from robolang.syntax.foreign import words
 
     key = word.upper()
+    # words of this language that mean something else elsewhere are not among them: they are no mistake
     return key in words.instructions() or key in words.functions() or key in words.values()
 
 

@@ -98,7 +98,7 @@ RULES = (
         why="An instruction that does not exist cannot be executed. Nothing is guessed, because the most similar word "
         "may be another motion. The program does not run.",
         bad="10 MOV P1\n",
-        good="10 MOVE P1\n",
+        good="10 MOVEJ P1\n",
     ),
     Rule(
         code="RBL113",

@@ -98,6 +98,7 @@ def listed(words: tuple[str, ...]) -> str:
 
 def sentence(word: str, entries: tuple[Entry, ...]) -> str:
     """Return the hint for a word: each of its meanings, with what to write; ``""`` without a meaning."""
+    # a word may stand for different things: each is named, since no program says which one its writer knows
     if not entries:
         return ""
     return f"{word.upper()} {', '.join(f'{entry.meaning}: {entry.advice}' for entry in entries)}"

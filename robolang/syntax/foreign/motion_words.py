@@ -50,6 +50,7 @@ MOVES = (
     Entry("MOVEEXTJ", (RAPID,), "moves external axes", missing=True, note="the robot of a cell has no further axes"),
     Entry("SEARCHL SEARCHC", (RAPID,), "moves until an input changes", "MOVE P1, SPEED 20", missing=True),
     Entry("MOVEP", (UR,), "moves straight at constant speed, blending", "MOVE P1, SPEED 200, ZONE 10"),
+    # every motion is planned and checked before it starts, so none follows values that come later
     Entry("SERVOJ SERVOC SPEEDL", (UR,), "follows set-points of the program", _LINE, missing=True),
     Entry("STOPJ STOPL", (UR,), "brakes a motion", missing=True, note="a move without ZONE stops at its end"),
     Entry("MOV", (MELFA,), JOINTS, _JOINTS),
@@ -86,6 +87,7 @@ MOVES = (
     Entry("G2 G3 G02 G03", (G_CODE,), ARC, _ARC),
     Entry("WAITENDMOVE", (VAL3,), "waits for the end of motion", note="what reads or acts waits for it here"),
     Entry("RESETMOTION", (VAL3,), "stops and clears motion", missing=True, note="STOP ends the program"),
+    # an output ends the motion before it: it is set at the end of a move at the earliest
     Entry("TRIGGER", (KRL,), "sets an output during a move", f"{_LINE}\nOUT(1) = 1", missing=True),
     Entry("TRIGGL TRIGGJ TRIGGIO", (RAPID,), "sets an output during a move", f"{_LINE}\nOUT(1) = 1", missing=True),
     Entry("WTH WTHIF", (MELFA,), "acts during a move", f"{_LINE}\nOUT(1) = 1", missing=True),
@@ -162,6 +164,7 @@ CELL = (
     Entry("OPENI", (AS, VPLUS), OPENS, "HAND OFF"),
     Entry("CLOSEI", (AS, VPLUS), CLOSES, "HAND ON"),
     Entry("RELAX RELAXI", (AS, VPLUS), "lets the hand go", "HAND OFF"),
+    # names that cells give to their own subroutines
     Entry("GRASP GRIP", (OTHERS,), CLOSES, "HAND ON"),
     Entry("RELEASE", (OTHERS,), OPENS, "HAND OFF"),
     Entry("GRIPPER CLAMP VACUUM", (OTHERS,), "is the hand", "HAND ON", note="HAND OFF opens it"),

@@ -100,6 +100,7 @@ CONTROL = (
     Entry("FUNCTION", (PAC, OTHERS), "begins a function", "SUB pick", note="a SUB returns no value"),
     Entry("ROUTINE", (KAREL,), BEGINS, "SUB pick"),
     Entry("PROCEDURE", (OTHERS,), BEGINS, "SUB pick"),
+    # a main program has no head here, so what begins one is left out and not replaced
     Entry(
         "PROGRAM",
         (KAREL, AS, VPLUS, VAL3),
@@ -135,6 +136,7 @@ CONTROL = (
     Entry("LABEL", (OTHERS,), LABEL, "*L1"),
     Entry("JMP", (TP,), GOTO, "GOTO *L1"),
     Entry("JUMP", (INFORM,), GOTO, "GOTO *L1"),
+    # no statement leaves a loop here: a jump does, and its label is what the reader has to add
     Entry("EXIT", (KRL, VPLUS, RAPID), "leaves a loop, in RAPID the program", _NO_LEAVE, note=_AFTER),
     Entry("BREAK", (UR, MELFA, VAL3, C), "leaves a loop", _NO_LEAVE, note=_AFTER),
     Entry("BREAK", (AS, VPLUS), "waits for the end of motion", note="what reads or acts waits for it here"),
@@ -185,6 +187,7 @@ CONTROL = (
     Entry("GETM RELM", (MELFA,), "takes or gives the arm", note=_ALONE),
     Entry("TAKEARM GIVEARM", (PAC,), "takes or gives the arm", note=_ALONE),
     Entry("ATTACH DETACH", (VPLUS, KAREL), "takes or gives the arm", note=_ALONE),
+    # what reacts at once elsewhere is read between moves: a motion is planned whole before it begins
     Entry("TRAP CONNECT ISIGNALDI IWATCH ISLEEP", (RAPID,), "is an interrupt", _POLL, _POLLED, missing=True),
     Entry("INTERRUPT", (KRL,), "is an interrupt", _POLL, _POLLED, missing=True),
     Entry("ACT", (MELFA,), "is an interrupt", _POLL, _POLLED, missing=True),
@@ -194,6 +197,7 @@ CONTROL = (
     Entry("MONITOR", (TP,), "is an interrupt", _POLL, _POLLED, missing=True),
     Entry("CONDITION", (KAREL,), "is an interrupt", _POLL, _POLLED, missing=True),
     Entry("BRAKE", (KRL,), "brakes in an interrupt", "STOP", missing=True),
+    # a cell has no moving belt, and its parts lie where they are until the hand takes them
     Entry(
         "ACTUNIT WAITWOBJ DROPWOBJ",
         (RAPID,),
@@ -222,6 +226,7 @@ CONTROL = (
     Entry("FORCE_MODE END_FORCE_MODE", (UR,), "controls the force of the tool", missing=True),
     Entry("CMP", (MELFA,), "makes the arm compliant", missing=True),
     Entry("SOFTACT SOFTDEACT", (RAPID,), "makes the arm compliant", missing=True),
+    # places of a pallet are computed: a pose may be shifted by expressions
     Entry(
         "PLT", (MELFA,), "is a place of a pallet", "P10 = P1 + (50 * i, 40 * j, 0)", note="two FOR loops count i and j"
     ),
@@ -234,6 +239,7 @@ DATA = (
     Entry("DOUBLE FLOAT SHARED", (OTHERS,), "declares a variable", "x = 5", note="names need no declaration"),
     Entry("GLOBAL LOCAL", (UR,), "declares a variable", "x = 5", note="names need no declaration"),
     Entry("DEFPOS DEFJNT", (PAC,), "declares a variable", "x = 5", note="names need no declaration"),
+    # a register becomes a name of its own: an array would need its DIM and its size
     Entry("R", (TP,), "is a register", "R1 = 5", note="a register is a name; DIM a(n) makes an array"),
     Entry("PR", (TP,), "is a register of a position", "PR1 = P1", note="a register is a name, as P1 is"),
     Entry("SR", (TP,), "is a register of a text", 's$ = "part"', note="names of texts end in $"),
@@ -265,6 +271,7 @@ FUNCTIONS = (
     Entry("TRUNC", (RAPID, KAREL, VAL3), "cuts a number", "n = INT(2.5)", note="INT rounds down"),
     Entry("SIGN", (VAL3, OTHERS), "is the sign", "n = SGN(-2)"),
     Entry("POW", (RAPID, UR), "is a power", "x = 2 ^ 3"),
+    # this language has one inverse function, that of two sides, which has no gaps
     Entry("ACOS", (KRL, RAPID, KAREL, UR, PAC), "is an angle by its cosine", "a = ATN2(SQR(1 - c ^ 2), c)"),
     Entry("ASIN", (RAPID, KAREL, UR, PAC), "is an angle by its sine", "a = ATN2(s, SQR(1 - s ^ 2))"),
     Entry("D2R", (UR,), "gives radians", "x = RAD(90)", note="angles are in degrees here"),

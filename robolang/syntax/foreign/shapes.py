@@ -31,6 +31,7 @@ def compiled(shape: Shape) -> re.Pattern[str]:
 @cache
 def _by_word() -> dict[str, list[Shape]]:
     found: dict[str, list[Shape]] = {}
+    # 200 patterns and a line with an error: those of other first words are not even compiled
     for shape in SHAPES:
         first = FIRST.match(shape.example)
         for word in (shape.words or (first[1].upper() if first else "")).split():
