@@ -15,8 +15,10 @@ register(
     Code(
         code="RBL541",
         name="too-far-to-return",
-        meaning="The arm is too far from the path that it has left, so that it does not return by itself.",
-        remedy="Jog the arm closer to where its path was left; the message states how far that is.",
+        meaning="The arm is too far from the path that it has left, or from where the program stood between two "
+        "statements, so that it does not return by itself.",
+        remedy="Jog the arm closer to that place, the message states how far it is; or put the program before its "
+        "first statement (restart).",
     ),
     Code(
         code="RBL542",

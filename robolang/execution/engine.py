@@ -213,6 +213,7 @@ class Engine:
             case Done() | Failed() | FedEnded():
                 self._after_motion(event)
             case _:
+                now.begun = now.begun or self.machine.depth == 0
                 now.request = effect = self._alter(event)
                 if effect is not None:
                     self.target.begin(effect)
@@ -308,6 +309,13 @@ class Engine:
         here = stands and aside is not None and aside.depth == self.machine.depth
         return aside if here else None
 
+    @property
+    def stands_between(self) -> bool:
+        """Whether the program has begun and stands between two statements, or in a wait: no motion is interrupted."""
+        now, held = self.now, self.held
+        begun = now.begun and not self.machine.over and self.machine.depth == 0
+        return begun and not now.moves and (held is None or not held.is_motion)
+
     def _take_up(self, *, led: bool = False) -> None:
         """Go on with the wait that was interrupted, if there is one; where a jump has ``led`` elsewhere it is left."""
         now, depth = self.now, self.machine.depth
@@ -400,6 +408,7 @@ class Engine:
     def _move(self, effect: MoveTo) -> None:
         """Start a move, or keep it where the next one may blend into it; it begins where the one before ends."""
         now, world = self.now, self.world
+        now.stood = None
         command = lowering.move(effect, world.around)
         if now.tracked:
             command = tracked(command)

@@ -13,7 +13,7 @@ from robolang.execution import adopting, regain, run_bounds
 from robolang.execution.adopting import Edit
 from robolang.execution.engine import Alter, Engine, StopsBefore
 from robolang.execution.observer import Observer
-from robolang.execution.progress import Phase, PlayEnded, Progress
+from robolang.execution.progress import BY_HAND, Phase, PlayEnded, Progress
 from robolang.execution.regain import DEFAULT_LIMITS, Displaced, RegainLimits
 from robolang.execution.status import ENDED, State, Status
 from robolang.execution.target import Target
@@ -153,6 +153,12 @@ class Executor:
         return self._engine.now.failed is not None
 
     @property
+    def interrupted_line(self) -> int | None:
+        """The line of the file with the statement that ``begin_again`` goes back to; None: nothing is interrupted."""
+        failed = self._engine.now.failed
+        return None if failed is None else self._engine.machine.line_of(failed)
+
+    @property
     def plays(self) -> bool:
         """Whether a motion of ``play`` has not ended."""
         return self._engine.now.playing
@@ -165,6 +171,15 @@ class Executor:
             return Displaced()
         held = engine.held
         return None if held is None or not held.is_motion else regain.displacement(self.world, held.q, engine.target.q)
+
+    @property
+    def strayed(self) -> Displaced | None:
+        """How far set-points have brought the arm from where the program stood between two statements; None: nowhere.
+
+        A program that has not begun may begin anywhere; a move that is fed is meant to leave that place.
+        """
+        now = self._engine.now
+        return None if now.stood is None else regain.displacement(self.world, now.stood, self._engine.target.q)
 
     # --- stops -------------------------------------------------------------------------------------------------------
 
@@ -230,6 +245,8 @@ class Executor:
         if held is not None:
             self._refuse_displaced()
         self._leaves("")
+        if not now.playing:
+            now.stood = None
         if now.fault is not None and now.fault.fed:
             now.fault = None  # of a statement that was fed, and no reason why what comes now should have failed
         if held is not None:
@@ -312,9 +329,10 @@ class Executor:
         engine, now = self._engine, self._engine.now
         self._leaves(text)
         interrupts, before = now.phase is Phase.BUSY, self.snapshot()
+        stood = engine.target.q if now.stood is None and engine.stands_between else now.stood
         if interrupts:
             engine.set_aside(engine.machine.depth, engine.interrupted_at())
-        place = origin or Origin(line=0, span=Span(0, len(text)), source=Source("by hand", text))
+        place = origin or Origin(line=0, span=Span(0, len(text)), source=Source(BY_HAND, text))
         try:
             engine.target.play(rows, place, text)
         except Exception:  # whatever it is: a refusal must leave the motion where it rests
@@ -322,7 +340,7 @@ class Executor:
                 self.restore(before)
             raise
         self._act(Phase.BUSY)
-        engine.now.playing, engine.now.due = True, PlayEnded()
+        engine.now.playing, engine.now.due, engine.now.stood = True, PlayEnded(), stood
 
     def abandon(self) -> None:
         """Forget what is left of ``play`` where the arm rests; ``RuntimeError`` while it moves."""
@@ -335,19 +353,21 @@ class Executor:
     def regain(self, limits: RegainLimits = DEFAULT_LIMITS) -> bool:
         """Bring the arm slowly back to where it has left the path of the interrupted motion; False: it is there.
 
-        The program is paused there, and ``resume`` goes on as planned. ``Fault`` RBL541 where the arm is farther away
-        than the limits; RBL4xx where it cannot return; ``RuntimeError`` where no motion is interrupted. Nothing has
-        changed then.
+        Between two statements to where it stood before set-points moved it (``strayed``). The program is paused there,
+        and ``resume`` goes on as planned. ``Fault`` RBL541 where the arm is farther away than the limits; RBL4xx where
+        it cannot return; ``RuntimeError`` where there is no such place. Nothing has changed then.
         """
-        far = self.displaced
+        held, stood = self._engine.held, self._engine.now.stood
+        on_path = self.displaced
+        far = on_path or self.strayed
         if far is None:
-            raise RuntimeError("no motion is interrupted")
-        held = self._engine.held
-        if not far.is_away or held is None or held.statement is None:
+            raise RuntimeError("no motion is interrupted, and the arm was not moved between two statements")
+        q, origin = (stood, None) if held is None or on_path is None else (held.q, held.statement)
+        if not far.is_away or q is None:
             return False
-        regain.refuse_beyond(limits, far)
-        rows = regain.returning(self._engine.target, held.q, self.project.profile.period_s)
-        self.play(rows, held.statement, "regain the path")
+        regain.refuse_beyond(limits, far, "its path was left" if on_path else "the program stood")
+        rows = regain.returning(self._engine.target, q, self.project.profile.period_s)
+        self.play(rows, origin, "regain the path" if on_path else "return to where the program stood")
         return True
 
     def acknowledge(self) -> None:
@@ -373,6 +393,8 @@ class Executor:
             phase=Phase.OVER,
             ends_us=engine.target.time_us + self._most_us,
             failed=now.failed if was_done else place,
+            begun=now.begun,
+            stood=now.stood,
         )
 
     def begin_again(self) -> None:

@@ -11,6 +11,9 @@ from robolang.interpreter.positions import Suspended
 from robolang.interpreter.snapshot import MachineSnapshot
 from runtime.core.frames import Array
 
+BY_HAND = "by hand"
+"""The name of the text in which set-points of no statement have their place."""
+
 
 class Phase(Enum):
     """What an executor does next."""
@@ -64,6 +67,9 @@ class Progress:
     ``playing``: set-points that were given are being sent. ``ends_us``: the simulated time at which the run is too
     long.
 
+    ``begun``: an effect of the program has been requested; ``stood`` (n,) rad: where the arm was when it was moved by
+    set-points between two statements, until the program goes on.
+
     ``again``: the machine at the statement that an alarm has interrupted, None: where it is; ``failed``: that place,
     once the alarm has been acknowledged.
     """
@@ -77,6 +83,8 @@ class Progress:
     due: Effect | End | None = None
     aside: tuple[Aside, ...] = ()
     playing: bool = False
+    begun: bool = False
+    stood: Array | None = None
     tracked: bool = False
     pausing: bool = False
     resting: bool = False

@@ -1,4 +1,4 @@
-"""Back to where a motion was interrupted: how far the arm is from there, and the slow motion that returns.
+"""Back to where a program was interrupted: how far the arm is from there, and the slow motion that returns.
 
 A motion that rests on its path is resumed only there, on the very rows of its plan. The arm returns with all joints
 together, on the shortest path of the joints, which no program has planned: so it is slow, and refused from afar.
@@ -61,12 +61,12 @@ def displacement(world: RobotWorld, q_left: Array, q: Array) -> Displaced:
     )
 
 
-def refuse_beyond(limits: RegainLimits, far: Displaced) -> None:
-    """Refuse to return from so far away; ``Fault`` RBL541."""
+def refuse_beyond(limits: RegainLimits, far: Displaced, where: str) -> None:
+    """Refuse to return from so far away of ``where`` something was; ``Fault`` RBL541."""
     if not (far.distance_mm <= limits.distance_mm and far.joint_deg <= limits.joint_deg):
         raise Fault(
             "RBL541",
-            f"the arm is {far} away from where its path was left, more than {limits.distance_mm:g} mm or "
+            f"the arm is {far} away from where {where}, more than {limits.distance_mm:g} mm or "
             f"{limits.joint_deg:g} deg in a joint",
         )
 

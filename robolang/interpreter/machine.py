@@ -289,6 +289,11 @@ class Machine:
         run.cursor = place.cursor.copy()
         return True
 
+    def line_of(self, place: Suspended) -> int | None:
+        """Return the line of the file of a place that ``end`` has returned; None after the last one."""
+        at = place.cursor.at
+        return self._run.lines[at].source_line if 0 <= at < len(self._run.lines) else None
+
     def successor(self, program: Program, points: Collection[str]) -> "Machine":
         """Return a machine of another program in the same world, at its beginning."""
         return Machine(program, self._run.world, points, self._run.decisions)

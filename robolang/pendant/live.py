@@ -212,18 +212,19 @@ class Live:
             self.executor.stops_before = None
 
     def take_up(self) -> bool:
-        """Put the program back where it was interrupted: the arm on its path, or before the statement of an alarm.
+        """Put the program back where it was interrupted: the arm where it was left, or before what an alarm has ended.
 
         Returns False where the arm was stopped on its return. ``Fault`` RBL541 where it is too far from the path.
         """
         executor = self.executor
-        if executor.displaced is not None:
+        if (executor.displaced or executor.strayed) is not None:
             if executor.regain():
                 self.drive()
             # whoever stops the return does not want the program to run
             stopped = executor.plays
             self.drop()
-            return not stopped
+            if stopped:
+                return False
         if executor.interrupted:
             executor.begin_again()
         return True

@@ -9,6 +9,7 @@ Two threads share a ``HeldButton``: one hands over what the page sends, the othe
 is one frozen value, replaced by one assignment. The caller gives the time of every event; no clock is read here. s.
 """
 
+import math
 from dataclasses import dataclass, replace
 
 from robolang.teaching.dead_man import ALIVE_S
@@ -45,8 +46,10 @@ class HeldButton:
         # also a sign that comes after its release: it must not begin the jog anew
         if press is None or (press.page, press.jog) != (page, jog):
             return False
-        self._press = replace(press, seen_s=now_s) if press.alive(now_s) else None
-        return self._press is not None
+        alive = press.alive(now_s)
+        # one that was never seen: no time revives it, and it is known that nobody has released it
+        self._press = replace(press, seen_s=now_s if alive else -math.inf)
+        return alive
 
     def release(self, page: int | None = None, jog: int | None = None) -> None:
         """Release the button of a jog, of a page, or whichever is held."""
@@ -59,3 +62,9 @@ class HeldButton:
         # read once: the other thread may replace it in between
         press = self._press
         return press is not None and (press.page, press.jog) == (begun.page, begun.jog) and press.alive(now_s)
+
+    def lapsed(self, begun: Press, now_s: float) -> bool:
+        """Return whether the jog of a press has to stop at ``now_s`` since signs are missing, and not by a release."""
+        press = self._press
+        same = press is not None and (press.page, press.jog) == (begun.page, begun.jog)
+        return same and not self.holds(begun, now_s)

@@ -1,5 +1,8 @@
 """What a planned jog has to say: how far it goes, what ends it, and where and why it is slow."""
 
+import math
+
+from robolang.execution.regain import Displaced
 from robolang.teaching.jogging import JogRequest, is_linear
 from runtime.core.units import DEG, MM
 from runtime.motion.jog import JogPlan
@@ -8,6 +11,22 @@ from runtime.motion.jog import JogPlan
 def remarks(request: JogRequest, plan: JogPlan) -> tuple[str, ...]:
     """Return a line for each thing that a programmer has not typed: the end of a jog as far as it goes, slow places."""
     return tuple(line for line in (_end(request, plan), _slow(request, plan)) if line)
+
+
+def cut_short(request: JogRequest, moved: Displaced, *, late: bool) -> str | None:
+    """Return what is to be known of a jog that was stopped after it has ``moved``; None: it ended as it was meant to.
+
+    ``late``: its page has not shown in time that the button is held. Without that a jog as far as it goes ends by its
+    release, while one by an amount goes to its end.
+    """
+    endless = math.isinf(request.amount)
+    if endless and not late:
+        return None
+    joint_deg = moved.joint_deg if request.axis.startswith("J") else moved.angle_deg
+    goes = moved.distance_mm if is_linear(request.axis) else joint_deg
+    of = "" if endless else f" of {abs(request.amount):g}"
+    reason = ": the page was too slow" if late else ""
+    return f"the jog was stopped after {goes:.1f}{of} {request.unit}{reason}"
 
 
 def _end(request: JogRequest, plan: JogPlan) -> str:

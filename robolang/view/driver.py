@@ -9,15 +9,17 @@ Without a page a run that is driven here is the run of ``Session.run``, to the b
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
 from robolang.execution import lowering
+from robolang.execution.regain import displacement
 from robolang.execution.session import Session
 from robolang.execution.status import ENDED, State, Status
 from robolang.execution.stepping import StopsAt, over
 from robolang.teaching.held_button import Press
-from robolang.teaching.jog_remarks import remarks
+from robolang.teaching.jog_remarks import cut_short, remarks
 from robolang.teaching.jogging import JogRequest, JogSettings, axes_of, plan_jog, read_jog
 from robolang.view.exchange import Exchange, Order
 from robolang.view.frames import Frames
@@ -26,6 +28,7 @@ from robolang.view.pace import Pace
 from robolang.view.page_teaching import PageTeaching
 from runtime.control.clock import wall_s
 from runtime.core.faults import Fault
+from runtime.core.frames import Array
 from runtime.core.units import PERCENT
 from runtime.motion.speed_cap import MANUAL_SPEED
 
@@ -40,6 +43,15 @@ class Doing(Enum):
     PROGRAM = "program"
     JOG = "jog"
     REGAIN = "return"
+
+
+@dataclass(slots=True, kw_only=True)
+class Jogged:
+    """A jog that goes on: what was ordered, joints ``q`` (n,) at its start, and whether its page was too slow."""
+
+    request: JogRequest
+    q: Array
+    late: bool = False
 
 
 _STANDING = ENDED | {State.PAUSED}
@@ -67,6 +79,8 @@ class Driver:
         # what was begun here, and not what the executor does: a run that is followed begins by itself
         self._doing = Doing.NOTHING
         self._press: Press | None = None
+        self._jogged: Jogged | None = None
+        self._remark: str | None = None
         self._steps = False
         self._left = False
         self._words: dict[str, Callable[[], None]] = {
@@ -130,9 +144,12 @@ class Driver:
     def _judge_button(self) -> None:
         """Bring a jog to rest whose button is no longer held."""
         press = self._press
-        if press is not None and not self._exchange.button.holds(press, wall_s()):
+        now_s = wall_s()
+        if press is not None and not self._exchange.button.holds(press, now_s):
             # once: a second pause would be one of what comes after this jog
             self._press = None
+            if self._jogged is not None:
+                self._jogged.late = self._exchange.button.lapsed(press, now_s)
             self._executor.pause()
 
     def _stood(self) -> None:
@@ -141,10 +158,17 @@ class Driver:
         # what is stepped by hand next must not stop at the stops of this run
         self._executor.stops_before = None
         # stopped before its end: nothing of a motion by hand follows once its button is released
-        cut_short = self._executor.plays
-        if cut_short:
+        stopped = self._executor.plays
+        if stopped:
             self._executor.abandon()
-        if doing is Doing.REGAIN and not cut_short and self._executor.status.state is State.PAUSED:
+        jogged, self._jogged = self._jogged, None
+        if stopped and jogged is not None:
+            self._remark = cut_short(
+                jogged.request,
+                displacement(self._executor.world, jogged.q, self._session.controller.areas.ina),
+                late=jogged.late,
+            )
+        if doing is Doing.REGAIN and not stopped and self._executor.status.state is State.PAUSED:
             self._go_on()
         self._frames.show()
 
@@ -152,6 +176,7 @@ class Driver:
 
     def _answer(self, order: Order) -> None:
         """Carry a command out and answer it; a refusal has changed nothing."""
+        self._remark = None
         try:
             notes = self._carry_out(order)
         except Fault as fault:
@@ -193,25 +218,23 @@ class Driver:
         # AUTO, with the programmed speeds; the return to a path is slow by itself
         cap, controller.speed_cap = controller.speed_cap, None
         try:
-            returns = self._put_back()
+            if self._returns():
+                self._doing = Doing.REGAIN
+            else:
+                self._go_on()
         except Fault:
             controller.speed_cap = cap
             raise
-        if returns:
-            self._doing = Doing.REGAIN
-        else:
-            self._go_on()
 
-    def _put_back(self) -> bool:
-        """Put the program where it was interrupted; return whether the arm has to return to its path first."""
+    def _returns(self) -> bool:
+        """Bring the arm back to where the program was left, where jogs have moved it; return whether it moves."""
         executor = self._executor
-        if executor.interrupted:
-            executor.begin_again()
-            return False
-        return executor.displaced is not None and executor.regain()
+        return (executor.displaced or executor.strayed) is not None and executor.regain()
 
     def _go_on(self) -> None:
         executor = self._executor
+        if executor.interrupted:
+            executor.begin_again()
         executor.stops_before = StopsAt(executor, [over(executor)]) if self._steps else None
         self._session.controller.restart_clock()
         executor.resume()
@@ -268,10 +291,13 @@ class Driver:
         X_world_frame = lowering.frame_pose(executor.frame, self._session.project.cell)
         plan = plan_jog(controller, request, settings, X_world_frame)
         # planning takes its time, in which buttons are released
-        if not self._exchange.button.holds(press, wall_s()):
-            raise Fault("RBL836", "the button was released before the arm moved")
+        now_s = wall_s()
+        if not self._exchange.button.holds(press, now_s):
+            late = self._exchange.button.lapsed(press, now_s)
+            raise Fault("RBL836", "the page was too slow" if late else "the button was released before the arm moved")
+        jogged = Jogged(request=request, q=controller.areas.ina.copy())
         executor.play(plan.rows, None, _text(jog))
-        self._doing, self._press = Doing.JOG, press
+        self._doing, self._press, self._jogged = Doing.JOG, press, jogged
         return remarks(request, plan)
 
     # --- what is refused ---------------------------------------------------------------------------------------------
@@ -291,6 +317,7 @@ class Driver:
             "doing": self._doing.value,
             "pace": None if self._pace is None else self._pace.factor,
             "by_hand": self._teaching is not None,
+            "remark": self._remark,
         }
 
 

@@ -162,12 +162,12 @@ def status_of(session: Session) -> dict[str, Any]:
     executor, controller = session.executor, session.controller
     status, world = executor.status, executor.world
     signals, now_us = world.signals, executor.time_us
-    due = executor.origin
+    due, ended = executor.origin, executor.is_over
     return {
         "state": status.state.value,
-        "over": executor.is_over,
+        "over": ended,
         # a statement that was typed is in no line of the file
-        "next": None if due is None or executor.is_over else due.line or None,
+        "next": executor.interrupted_line if ended else None if due is None else due.line or None,
         "alarm": None if status.alarm is None else _alarm(status.alarm),
         "fault": None if status.fault is None else f"{status.fault.code} {status.fault.message}",
         "can_continue": executor.interrupted,

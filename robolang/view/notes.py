@@ -7,9 +7,13 @@ from typing import Any, Literal
 
 from robolang.core.diagnostics import Diagnostic
 from robolang.core.diagnostics import Severity as Rank
+from robolang.core.source import Source
 from robolang.execution.alarms import as_json
+from robolang.execution.progress import BY_HAND
 from robolang.execution.session import Session
 from robolang.execution.status import ENDED
+from robolang.interpreter.effects import Origin
+from runtime.core.faults import Alarm
 
 Severity = Literal["error", "warning", "note", "print"]
 
@@ -37,7 +41,9 @@ class Note:
 def of_run(meta: Mapping[str, Any]) -> list[Note]:
     """Return the notes of a run from the ``meta`` of its log (docs/signals.md), by time."""
     report = meta["report"]
-    return in_order([*_events(report), *_findings(meta), *_statements(report), *_printed(report)])
+    return in_order(
+        [*_events(report, meta["program"]["name"]), *_findings(meta), *_statements(report), *_printed(report)]
+    )
 
 
 def of_finding(item: Mapping[str, Any], program: str, begins: Mapping[int, float]) -> Note:
@@ -68,13 +74,23 @@ def of_live(session: Session, stated: Iterable[Note] = ()) -> list[Note]:
     ended = session.executor.status.state in ENDED
     touched = [] if touches is None else touches.records if ended else touches.over()
     found: dict[str, list[dict[str, Any]]] = {
-        key: [as_json(alarm, rank, source, tick_us) for alarm in alarms[-MOST_LIVE:]]
+        key: [_as_json(alarm, rank, source, tick_us) for alarm in alarms[-MOST_LIVE:]]
         for key, rank, alarms in (
             ("alarms", Rank.ERROR, session.record.alarms),
             ("warnings", Rank.WARNING, [*controller.warnings, *controller.touch_warnings(touched)]),
         )
     }
-    return in_order([*_events(found), *(_finding(session, item) for item in session.project.diagnostics), *stated])
+    return in_order(
+        [*_events(found, source.path), *(_finding(session, item) for item in session.project.diagnostics), *stated]
+    )
+
+
+def _as_json(alarm: Alarm, severity: Rank, source: Source, tick_us: int) -> dict[str, Any]:
+    """Return an alarm as ``as_json`` does; one of set-points has the place that they have in the record: their name."""
+    item, of = as_json(alarm, severity, source, tick_us), alarm.statement
+    if isinstance(of, Origin) and of.source is not None and of.source.path == BY_HAND:
+        item["file"] = of.source.text
+    return item
 
 
 def _finding(session: Session, item: Diagnostic) -> Note:
@@ -94,12 +110,15 @@ def in_order(notes: Iterable[Note]) -> list[Note]:
     return sorted(notes, key=lambda note: math.inf if note.time_s is None else note.time_s)
 
 
-def _events(report: Mapping[str, Any]) -> Iterator[Note]:
+def _events(report: Mapping[str, Any], program: str) -> Iterator[Note]:
     kinds: tuple[tuple[str, Severity], ...] = (("alarms", "error"), ("warnings", "warning"))
     for key, severity in kinds:
         for item in report[key]:
             text = "\n".join(filter(None, (item["message"], item["hint"])))
-            yield Note(time_s=item["time_s"], line=item["line"], code=item["code"], severity=severity, text=text)
+            # a line of what was jogged or typed is no line of the program
+            here = item.get("file", program) == program
+            line, text = (item["line"], text) if here else (None, f"{item['file']}: {text}")
+            yield Note(time_s=item["time_s"], line=line, code=item["code"], severity=severity, text=text)
 
 
 def _findings(meta: Mapping[str, Any]) -> Iterator[Note]:

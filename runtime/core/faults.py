@@ -336,7 +336,8 @@ register(
         code="RBL530",
         name="stopped-by-user",
         meaning="The run was stopped from outside (Ctrl-C or SIGTERM).",
-        remedy="Nothing is to be corrected: the log and the report are complete up to the stop.",
+        remedy="Nothing is to be corrected. Where the program can go on, acknowledge the stop (Reset), then go on "
+        "(Start) or begin anew (Restart); of a run, log and report are complete up to the stop.",
     ),
     Code(
         code="RBL535",

@@ -36,7 +36,7 @@ def _hold(pendant: "Pendant", rest: str) -> None:
     nothing(rest, "hold")
     far = pendant.live.executor.displaced
     if far is None:
-        pendant.output.line("no motion is interrupted")
+        pendant.output.line(_strayed(pendant) or "no motion is interrupted")
     elif far.is_away:
         pendant.output.line(f"a motion is held; the arm is {far} away from its path")
     else:
@@ -57,6 +57,14 @@ def _where(pendant: "Pendant", rest: str) -> None:
     far = live.executor.displaced
     if far is not None and far.is_away:
         pendant.output.line(f"a motion is held; the arm is {far} away from its path")
+    elif far is None and (said := _strayed(pendant)):
+        pendant.output.line(said)
+
+
+def _strayed(pendant: "Pendant") -> str:
+    """Return how far jogs have brought the arm from where the program stood between two statements, "": nowhere."""
+    far = pendant.live.executor.strayed
+    return "" if far is None or not far.is_away else f"the arm is {far} away from where the program stood"
 
 
 def _again(pendant: "Pendant", rest: str) -> None:
@@ -108,7 +116,8 @@ COMMANDS = (
         help="Go on with what was interrupted: from its path, or with its statement.",
         group=Group.RUN,
         do=_continue,
-        more="The arm first returns slowly to the path that it has left, from 50 mm and 10 deg in a joint at most.\n"
+        more="The arm first returns slowly to the path that it has left, or to where the program stood between two\n"
+        "statements before a jog, from 50 mm and 10 deg in a joint at most.\n"
         "After an alarm and reset the interrupted statement begins again, from where the arm stands.",
     ),
     Command(

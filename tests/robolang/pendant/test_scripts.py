@@ -381,6 +381,39 @@ def test_a_jog_within_a_held_move_leaves_its_path(folder):
     assert "ended" in session.do("continue")
 
 
+def test_after_a_jog_between_two_statements_continue_returns_and_step_goes_on_from_there(folder):
+    session = prompt(folder / PICK)
+    session.do("step", "step", "step")
+    stood = joints(session)
+    session.do("jog Z 8", "jog J6 2")
+    assert "where the program stood" in session.do("where")
+    here = session.do("hold")
+    assert "8.0 mm" in here and "2.0 deg" in here
+    jogged = joints(session)
+    session.do("step")
+    assert (joints(session) == jogged).all()
+    session.do("back", "break 50")
+    assert "2.0 deg" in session.do("hold")
+    session.do("continue")
+    assert "next: 50" in session.do("where")
+    assert (joints(session) == stood).all()
+
+
+@pytest.mark.parametrize("jog", ["jog Z 60", "jog J1 -12"])
+def test_continue_does_not_return_from_too_far_between_two_statements(folder, jog):
+    session = prompt(folder / PICK)
+    session.do("step", "step", "step", jog)
+    with pytest.raises(Failure) as refused:
+        session.do("continue")
+    assert refused.value.codes == ("RBL541",)
+    session.do("PRINT 1")
+    with pytest.raises(Failure):
+        session.do("continue")
+    # a typed move is meant to leave the place
+    session.do("break 50", "MOVE HERE + (0, 0, 1)", "continue")
+    assert "next: 50" in session.do("where")
+
+
 def test_jogs_are_taken_back(folder):
     session = prompt(folder / PICK)
     start = session.do("pos")

@@ -39,6 +39,8 @@ class Bench:
         self._ids = 0
         if by_hand:
             self.driver.come_to_first()
+        self.stood = self.q
+        """Where the arm stood before it was jogged."""
 
     def send(self, word, page=None, **fields):
         """Send a command; its number."""
@@ -55,6 +57,12 @@ class Bench:
 
     def jog(self, axis="X", sign=1, frame="world", speed=25, step=None):
         return self.send("jog", axis=axis, sign=sign, frame=frame, speed=speed, step=step)
+
+    def jogged(self, axis, step):
+        """Jog by a step to its end, away from where the arm stood."""
+        number = self.jog(axis, sign=1 if step > 0 else -1, step=abs(step), speed=100)
+        self.rest(alive=number)
+        assert abs(self.q - self.stood).max() > 1e-3
 
     def answer(self, number):
         found = [json.loads(text) for text in self.page.said]

@@ -1,3 +1,5 @@
+import json
+
 import numpy as np
 import pytest
 
@@ -365,6 +367,163 @@ def test_a_pause_on_the_return_leaves_the_program_where_it_stands(bench):
     bench.turns(10)
     assert bench.do("pause") is None
     assert bench.facts.state == "paused"
+
+
+STANDING = """MOVEJ HERE + (0, 0, 20)
+OUT(1) = 1
+WAIT IN(1) = 1
+MOVE HERE + (0, 0, 20), SPEED 400
+"""
+
+
+@pytest.fixture
+def standing(tmp_path, monkeypatch):
+    """Stands before its second statement."""
+    bench = Bench(tmp_path, monkeypatch, STANDING, cell=INPUT)
+    assert bench.do("step") is None
+    bench.stood = bench.q
+    return bench
+
+
+@pytest.mark.parametrize("word", ["start", "step"])
+def test_after_a_jog_between_two_statements_the_arm_returns_before_the_next(standing, word):
+    standing.jogged("Z", 40)
+    standing.jogged("X", 5)
+    standing.send(word)
+    standing.turns(2)
+    assert (standing.facts.doing, standing.facts.outputs) == ("return", [])
+    while standing.facts.doing == "return":
+        standing.turn()
+    while standing.facts.outputs == []:
+        standing.turn()
+    assert (standing.q == standing.stood).all()
+
+
+def test_a_jog_in_a_wait_is_taken_back_as_well(standing):
+    standing.send("start")
+    standing.turns(30)
+    assert standing.do("pause") is None
+    standing.jogged("Z", 40)
+    standing.send("start")
+    standing.turns(2)
+    assert standing.facts.doing == "return"
+    standing.turns(500)
+    assert (standing.facts.state, standing.facts.doing) == ("waiting", "program")
+    assert (standing.q == standing.stood).all()
+
+
+@pytest.mark.parametrize(("axis", "step"), [("Z", 51), ("J1", 11), ("J6", -11)])
+def test_a_return_from_too_far_between_two_statements_is_refused(standing, axis, step):
+    standing.jogged(axis, step)
+    before = standing.q
+    for word in ("start", "step"):
+        assert standing.do(word) == "RBL541"
+    assert (standing.facts.mode, standing.facts.next, standing.facts.outputs) == ("MANUAL", 2, [])
+    assert (standing.q == before).all()
+    # jogged back to within the limits
+    standing.jogged(axis, -0.6 * step)
+    assert standing.do("step") is None
+    assert (standing.q == standing.stood).all()
+
+
+def test_a_program_that_has_not_begun_begins_where_the_arm_is(bench):
+    for again in (False, True):
+        if again:
+            assert bench.do("step") is None
+            assert bench.do("restart") is None
+        number = bench.jog("Z", step=60, speed=100)
+        bench.rest(alive=number)
+        bench.send("step")
+        bench.turns(2)
+        assert bench.facts.doing == "program"
+        bench.rest()
+
+
+def test_a_return_that_is_stopped_begins_anew(standing):
+    standing.jogged("Z", 40)
+    standing.send("start")
+    standing.turns(20)
+    assert standing.do("pause") is None
+    assert (standing.facts.state, standing.facts.outputs) == ("paused", [])
+    assert standing.do("step") is None
+    assert (standing.q == standing.stood).all()
+
+
+def test_after_an_alarm_in_a_jog_the_arm_returns_to_where_the_program_stood(standing):
+    number = standing.jog("Z", step=40, speed=100)
+    standing.turns(100, alive=number)
+    assert standing.do("stop") is None
+    assert standing.do("reset") is None
+    assert (standing.facts.next, standing.facts.over, standing.facts.can_continue) == (2, True, True)
+    assert np.abs(standing.q - standing.stood).max() > 1e-3
+    assert standing.do("step") is None
+    assert standing.facts.outputs == [[1, 1.0]]
+    assert (standing.q == standing.stood).all()
+
+
+# --- remarks ---------------------------------------------------------------------------------------------------------
+
+
+def test_after_a_stop_and_a_reset_the_line_is_known_at_which_it_goes_on(bench):
+    bench.send("start")
+    bench.turns(90)
+    line = bench.facts.next
+    assert line == 3
+    assert bench.do("stop") is None
+    assert bench.facts.can_continue is False
+    assert bench.do("reset") is None
+    assert (bench.facts.over, bench.facts.can_continue, bench.facts.next) == (True, True, line)
+    number = bench.jog("Z", step=5)
+    bench.rest(alive=number)
+    assert (bench.facts.can_continue, bench.facts.next) == (True, line)
+    assert bench.do("restart") is None
+    assert (bench.facts.can_continue, bench.facts.next) == (False, 1)
+
+
+@pytest.mark.parametrize(
+    ("axis", "step", "said"),
+    [
+        ("Z", 10, " of 10 mm: the page"),
+        ("J1", 5, " of 5 deg: the page"),
+        ("RZ", 5, " of 5 deg"),
+        ("X", None, " mm: the"),
+    ],
+)
+def test_a_jog_whose_page_is_too_slow_says_how_far_it_went(bench, axis, step, said):
+    number = bench.jog(axis, step=step)
+    bench.turns(60, alive=number)
+    # a sign comes too late, and revives nothing
+    bench.now += 0.5
+    bench.rest(alive=number)
+    assert said in bench.facts.remark
+    bench.send("override", percent=50)
+    bench.turns(2)
+    assert bench.facts.remark is None
+
+
+def test_a_jog_that_was_released_or_has_come_to_its_end_says_nothing(bench):
+    number = bench.jog("X")
+    bench.turns(60, alive=number)
+    bench.send("release", jog=number)
+    bench.rest()
+    assert bench.facts.remark is None
+    number = bench.jog("Z", step=1, speed=100)
+    bench.rest(alive=number)
+    assert bench.facts.remark is None
+    number = bench.jog("Z", step=100)
+    bench.turns(60, alive=number)
+    bench.exchange.join()
+    bench.rest(alive=number)
+    assert str(bench.facts.remark).endswith(" of 100 mm")
+
+
+def test_an_alarm_in_a_jog_is_of_no_line(bench):
+    number = bench.jog("Z", step=40)
+    bench.turns(40, alive=number)
+    assert bench.do("stop") is None
+    (note,) = [each for each in json.loads(bench.exchange.notes[1])["rows"] if each["code"] == "RBL530"]
+    assert (note["line"], note["text"].startswith("jog Z +40: ")) == (None, True)
+    assert bench.facts.alarm["line"] is None
 
 
 # --- teaching --------------------------------------------------------------------------------------------------------

@@ -334,12 +334,12 @@ def test_keys_move_the_override_while_it_has_the_focus(live):
     live["override"].focus()
     live.page.evaluate("robolang.seek(0)")
     live.sent.clear()
-    for key in ("ArrowLeft", "PageUp", "ArrowRight", "End", "Home"):
+    for key in ("ArrowLeft", "PageUp", "ArrowRight", "Home", "End"):
         live.page.keyboard.press(key)
     live.page.wait_for_timeout(A_MOMENT_MS)
     overrides = [each["percent"] for each in live.sent if each["do"] == "override"]
-    assert overrides == [49, 59, 60, 100, 1]
-    assert live["override"].input_value() == "1"
+    assert overrides == [49, 59, 60, 1, 100]
+    assert live["override"].input_value() == "100"
     assert "following" not in live.page.get_attribute("#app", "class")
 
 
@@ -373,6 +373,54 @@ def test_a_step_jog_is_of_its_size(live, served):
     live["teach"].click()
     live["replace"].click(timeout=PATIENCE_MS)
     live.page.wait_for_selector("[data-testid=pendant-said]:not(.refused):has-text('P77')", timeout=PATIENCE_MS)
+
+
+STALLS = "(() => { const end = performance.now() + 1000; while (performance.now() < end); })()"
+
+
+def test_what_was_said_of_a_jog_goes_with_the_next_command(live):
+    live["jog-linear"].select_option("100")
+    press(live, "jog-Z+")
+    live.page.evaluate(STALLS)
+    live.page.mouse.up()
+    said = live["pendant-said"]
+    live.page.wait_for_selector("[data-testid=pendant-said].refused:has-text('of 100 mm')", timeout=A_WHILE_MS)
+    live["override"].press("Home")
+    assert said.inner_text() == ""
+    live["override"].press("End")
+    live["teach-name"].fill("1P")
+    live["teach"].click()
+    live.page.wait_for_selector("[data-testid=pendant-said].refused:has-text('RBL')", timeout=A_WHILE_MS)
+    live["teach-name"].fill("P1")
+    live["teach"].click()
+    live["replace"].wait_for(state="visible", timeout=A_WHILE_MS)
+    live.page.keyboard.press("Escape")
+    assert (said.inner_text(), live["replace"].is_visible()) == ("", False)
+
+
+def test_a_stop_in_a_jog_is_of_no_line_and_the_page_says_where_the_program_goes_on(browser, program):
+    with viewed(program) as (url, _):
+        live = LivePage(browser, url)
+        live.waits_for("Paused")
+        for line in (2, 3):
+            live["step"].click()
+            live.page.wait_for_selector(f".line.due[data-line='{line}']", timeout=A_WHILE_MS)
+        flags = live.page.locator(".line .flag")
+        before = flags.all_inner_texts()
+        press(live, "jog-Z+")
+        live["stop"].dispatch_event("click")
+        live.page.mouse.up()
+        live.run_is("stopped")
+        live["reset"].click()
+        live.waits_for("Stopped at line 3")
+        assert live.page.locator(".line.due").get_attribute("data-line") == "3"
+        assert live["start"].is_enabled()
+        assert flags.all_inner_texts() == before
+        live["tab-notes"].click()
+        note = live["note"].filter(has_text="RBL530").inner_text()
+        assert "jog Z +" in note and "line" not in note
+        live["restart"].click()
+        live.waits_for("Paused")
 
 
 def test_a_second_page_stops_a_jog_watches_and_takes_over_by_hand(live, served, browser):

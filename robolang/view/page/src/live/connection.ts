@@ -9,6 +9,7 @@ export class Connection implements Sink {
   message: (message: FromServer) => void = () => undefined;
   frame: (bytes: ArrayBuffer) => void = () => undefined;
   ended: () => void = () => undefined;
+  private readonly commanded: (() => void)[] = [];
   private readonly token: string;
   private readonly socket: WebSocket;
   private readonly waiting = new Map<number, (reply: Reply) => void>();
@@ -29,12 +30,24 @@ export class Connection implements Sink {
     location.replace(`${location.pathname}?token=${this.token}${location.hash}`);
   }
 
+  /** Call this before each command, so that what was answered to the one before goes. */
+  on(commanded: () => void): void {
+    this.commanded.push(commanded);
+  }
+
   /** Send a command; returns its number, by which its reply is known. */
   command(name: string, fields: Fields = {}, answered?: (reply: Reply) => void): number {
+    for (const each of this.commanded) each();
+    const id = this.last + 1;
+    if (answered) this.waiting.set(id, answered);
+    this.sign(name, fields);
+    return id;
+  }
+
+  /** Send a sign that belongs to a command; nothing is answered. */
+  sign(name: string, fields: Fields): void {
     this.last += 1;
-    if (answered) this.waiting.set(this.last, answered);
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify({ do: name, id: this.last, ...fields }));
-    return this.last;
   }
 
   private receive(data: unknown): void {

@@ -41,7 +41,7 @@ export class Jogging {
       if (!reply.ok && this.id === id) this.forget();
     });
     this.id = id;
-    this.timer = setInterval(() => this.connection.command("alive", { jog: this.id }), ALIVE_MS);
+    this.timer = setInterval(() => this.connection.sign("alive", { jog: this.id }), ALIVE_MS);
     // a step goes to its end
     return () => {
       if (this.id === id && fields.step === null) this.end();
@@ -51,7 +51,7 @@ export class Jogging {
   /** Stop, whatever it is. */
   end(): void {
     if (this.id === 0) return;
-    this.connection.command("release", { jog: this.id });
+    this.connection.sign("release", { jog: this.id });
     this.forget();
   }
 

@@ -30,6 +30,7 @@ export interface Status {
   readonly over?: boolean;
   /** The run is over, and nothing is carried out any more. */
   readonly finished?: boolean;
+  /** The line that comes next; of a program that was interrupted the one at which it goes on. */
   readonly next?: number | null;
   readonly alarm?: Alarm | null;
   readonly fault?: string | null;
@@ -38,6 +39,8 @@ export interface Status {
   readonly override?: number;
   readonly pace?: number | null;
   readonly by_hand?: boolean;
+  /** Of the jog that has ended last, until the next command. */
+  readonly remark?: string | null;
   readonly holding?: string | null;
   /** Number, state, and whether it is held in that state. */
   readonly inputs?: readonly (readonly [number, number, boolean])[];

@@ -16,6 +16,13 @@ const STATES: Readonly<Record<Status["state"], string>> = {
 };
 const MOST_PRINTED = 200;
 
+/** Where the run stands; a program that a stop or an alarm has interrupted can go on, so it has not ended. */
+function wordsOf({ state, doing, over, can_continue, next }: Status): string {
+  if (doing === "jog") return "Jog";
+  if (doing === "return") return "Returning to where it was left";
+  return over && can_continue && state !== "alarm" ? `Stopped at line ${next ?? "1"}` : STATES[state];
+}
+
 /** The strip under the head: where the run stands, its buttons, its signals, and who has control. */
 export class RunPanel {
   readonly element = el("section", { class: "strip", "aria-label": "Run", "data-testid": "strip" });
@@ -38,12 +45,13 @@ export class RunPanel {
 
   constructor(connection: Connection) {
     this.connection = connection;
+    connection.on(() => (this.words.textContent = ""));
     const send = (word: string) => (): void => void this.send(word);
     this.buttons = {
-      start: button("Start", "Go on with the program", send("start"), { "data-testid": "start" }),
+      start: button("Start", "Go on with the program; after a stop or an alarm the statement that was interrupted begins anew", send("start"), { "data-testid": "start" }),
       pause: button("Pause", "Bring the arm to rest on its path (Esc)", send("pause"), { "data-testid": "pause" }),
       step: button("Step", "Carry out one statement", send("step"), { "data-testid": "step" }),
-      stop: button("Stop", "Stop the arm and end the program", send("stop"), { "data-testid": "stop" }),
+      stop: button("Stop", "Stop the arm and interrupt the program. After Reset, Start begins the interrupted statement anew, Restart goes to the first one.", send("stop"), { "data-testid": "stop" }),
       reset: button("Reset", "Acknowledge the alarm", send("reset"), { "data-testid": "reset" }),
       restart: button("Restart", "Put the program before its first statement. Arm, parts, signals and time stay as they are; to begin with a new cell, end the command and give it again.", send("restart"), { "data-testid": "restart" }),
       end: button("End", "End robolang view", send("end"), { "data-testid": "end" }),
@@ -73,9 +81,9 @@ export class RunPanel {
   follow(status: Status): void {
     const { state, alarm, fault } = status;
     const doing = status.doing ?? "nothing";
-    const words = doing === "jog" ? "Jog" : doing === "return" ? "Returning to its path" : STATES[state];
+    const words = wordsOf(status);
     this.state.textContent = status.mode ? `${words} · ${status.mode}` : words;
-    this.state.className = `outcome ${alarm ? "error" : state === "paused" || state === "stopped" ? "warning" : "ok"}`;
+    this.state.className = `outcome ${alarm ? "error" : state === "paused" || words.startsWith("Stopped") ? "warning" : "ok"}`;
     const problem = alarm ? `${alarm.code} ${alarm.message}${alarm.line ? `, line ${alarm.line}` : ""}. ${alarm.hint}` : (fault ?? "");
     // Written when it changes only: a reader of screens says it each time.
     if (this.problem.textContent !== problem) this.problem.textContent = problem;
@@ -172,7 +180,6 @@ export class RunPanel {
   }
 
   private send(word: string, fields: Parameters<Connection["command"]>[1] = {}, done?: () => void): void {
-    this.words.textContent = "";
     this.connection.command(word, fields, (reply) => {
       this.answered(reply);
       done?.();

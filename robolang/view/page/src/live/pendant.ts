@@ -23,6 +23,7 @@ export class Pendant {
   private speed: number = 25;
   private linear: number | null = null;
   private angular: number | null = null;
+  private remark: string | null = null;
 
   constructor(connection: Connection, joints: number) {
     this.connection = connection;
@@ -30,6 +31,7 @@ export class Pendant {
     this.jogging = new Jogging(connection, (reply) => this.say(reply));
     const teach = button("Teach", "Teach the point where the arm stands", () => this.teach(false), { "data-testid": "teach" });
     this.replace = button("Replace it", "Replace the point that is there", () => this.teach(true), { "data-testid": "replace", hidden: true });
+    connection.on(() => this.forget());
     this.name.addEventListener("input", () => (this.replace.hidden = true));
     this.element.append(
       el("div", { class: "how" }, el("h2", {}, "Jog"), ...this.choices()),
@@ -45,6 +47,9 @@ export class Pendant {
   follow(status: Status): void {
     this.element.hidden = !status.by_hand;
     this.jogging.follow(status);
+    const remark = status.remark ?? null;
+    if (remark !== this.remark && remark !== null) this.show(remark, true);
+    this.remark = remark;
     const free = status.control === "yours" && status.doing !== "program" && status.doing !== "return" && !status.alarm;
     for (const one of this.element.querySelectorAll<HTMLButtonElement | HTMLInputElement>("button, input")) one.disabled = !free;
   }
@@ -94,7 +99,17 @@ export class Pendant {
   }
 
   private say(reply: Reply): void {
-    this.said.textContent = reply.ok ? (reply.notes ?? []).join("; ") : `${reply.code ?? ""} ${reply.message ?? ""}. ${reply.hint ?? ""}`;
-    this.said.classList.toggle("refused", !reply.ok);
+    this.show(reply.ok ? (reply.notes ?? []).join("; ") : `${reply.code ?? ""} ${reply.message ?? ""}. ${reply.hint ?? ""}`, !reply.ok);
+  }
+
+  private show(text: string, refused: boolean): void {
+    this.said.textContent = text;
+    this.said.classList.toggle("refused", refused);
+  }
+
+  /** What was said of a command goes with the next one, also a question that nobody has answered. */
+  private forget(): void {
+    this.show("", false);
+    this.replace.hidden = true;
   }
 }

@@ -116,7 +116,8 @@ export class SocketSource implements Source {
 
   /** Mark the line whose statement comes next, while the program stands. */
   private markDue(status: Status): void {
-    const line = status.state === "paused" ? (status.next ?? 0) : 0;
+    const stands = status.state === "paused" || (status.can_continue ?? false);
+    const line = stands ? (status.next ?? 0) : 0;
     for (const row of document.querySelectorAll<HTMLElement>(".line.due")) row.classList.remove("due");
     document.querySelector(`.line[data-line="${line}"]`)?.classList.add("due");
   }
