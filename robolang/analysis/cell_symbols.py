@@ -55,7 +55,7 @@ class CellSymbols(Record):
                 limits=arm.limits,
                 rated_payload=arm.rated_payload,
                 # in mm/s as in the text: planners convert back to compare (``Limit.fault``)
-                max_speed_mm_s=arm.path.max_speed / MM,
+                max_speed_mm_s=None if arm.path is None else arm.path.max_speed / MM,
             )
         if not isinstance(cell, CellFile):
             return found

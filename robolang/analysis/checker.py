@@ -33,7 +33,7 @@ MAX_LEVELS = 150
 def check(program: Program, symbols: CellSymbols = NOTHING_KNOWN, facts: Facts | None = None) -> tuple[Diagnostic, ...]:
     """Return what is wrong with a program in its cell, by place.
 
-    ``Unparsed`` statements are passed over, the parser has reported them. What is not known of the cell is not checked.
+    ``Unparsed`` statements are left out, the parser has reported them. What is not known of the cell is not checked.
     ``facts`` are those of the program, where they are kept.
     """
     facts = Facts(program) if facts is None else facts

@@ -66,6 +66,13 @@ def say_warnings(warnings: Iterable[FileFault]) -> None:
         show_finding(text)
 
 
+def say_notes(notes: Iterable[FileFault]) -> None:
+    """Print notes about files to stderr, a line each: they ask for nothing."""
+    for note in notes:
+        place = f"{note.path}:{note.line}:{note.column}"
+        show_finding(safe(f"{place}: {Severity.INFO.value} {note.code} {note.message}"))
+
+
 def say_all(fault: Fault) -> int:
     """Print a fault and what else was found with it, and return the worst exit code."""
     return max(say(each) for each in fault.all)

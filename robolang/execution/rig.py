@@ -65,9 +65,15 @@ class Rig:
 
 
 def plant_of(cell: CellSpec, tick_s: float, physics: bool, ideal: IdealArm = RigidPlant) -> Plant:
-    """Return the robot of a cell, at home with an open hand: MuJoCo, or without physics what ``ideal`` makes."""
+    """Return the robot of a cell, at home with an open hand: MuJoCo, or without physics what ``ideal`` makes.
+
+    ``FileFault`` RBL608 for physics with an arm whose drives no file states.
+    """
     if not physics:
         return ideal(cell.robot, cell, tick_s)
+    # here and not when the file is read: planning and the ideal arm do without drives
+    if cell.robot.undriven is not None:
+        raise cell.robot.undriven
     from runtime.plant.mujoco_plant import MujocoPlant  # only here: it takes longer to import than all the rest
 
     return MujocoPlant(cell.robot, cell, tick_s)

@@ -1,6 +1,6 @@
 """Which programs a list of paths means: files as they are named, folders with every ``*.rbl`` below them.
 
-In a folder hidden files, hidden folders and what the configuration excludes are passed over, links to folders are not
+In a folder hidden files, hidden folders and what the configuration excludes are left out, links to folders are not
 followed, and the order is that of the names. A file that is named itself is never excluded. A file is there once,
 however often it is named. Nothing is opened here.
 """
@@ -12,7 +12,7 @@ SUFFIX = ".rbl"
 STANDARD_INPUT = "-"
 
 Excludes = Callable[[str], bool]
-"""Whether a file or a folder below one of the paths is passed over: ``robolang.lint.settings.Settings.excludes``."""
+"""Whether a file or a folder below one of the paths is left out: ``robolang.lint.settings.Settings.excludes``."""
 
 
 def programs(paths: Iterable[str], suffix: str = SUFFIX, excludes: Excludes = lambda path: False) -> list[str]:

@@ -2,7 +2,7 @@
 
 ``NAME.rbl`` takes ``NAME.cell.toml``, else ``cell.toml`` of its folder, and ``NAME.points.toml``. With no cell and no
 points it gets the built-in ones (docs/language.md). A link that leads nowhere is there all the same: it is reported,
-not passed over. ``check`` and a run read these files here, so what one refuses the other refuses. Imports no numpy.
+not left out. ``check`` and a run read these files here, so what one refuses the other refuses. Imports no numpy.
 """
 
 import os

@@ -170,7 +170,11 @@ def load_any_robot(name: str) -> RobotSpec:
     if name in robot_file.library():
         return loader.load_builtin(name)
     if name.lower().endswith(ROBOT_ENDINGS):
-        return importer.load_file(Path(name))
+        spec = importer.load_file(Path(name))
+        # for a robot by itself, as for a step response or an identification, the drives are what matters
+        if spec.undriven is not None:
+            raise spec.undriven
+        return spec
     raise discovery.no_robot(name)
 
 

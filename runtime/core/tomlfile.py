@@ -20,6 +20,7 @@ from runtime.core.record import Record
 from runtime.core.rounding import beside
 from runtime.core.toml_places import clash, lines_of, locate
 
+Prepare = Callable[[dict[str, Any]], dict[str, Any]]
 MAX_BYTES = 1_000_000
 """Files of this kind are written by hand: some kilobytes."""
 MAX_ABS = 1e9
@@ -98,13 +99,13 @@ def _not_text(path: Path, raw: bytes, start: int, code: str) -> NoReturn:
     raise FileFault(code, message, "", FilePlace(str(path), len(before), len(before[-1]) + 1, excerpt))
 
 
-def load_table(source: Source, code: str = "RBL601", *, gather: bool = False) -> "Table":
-    """Parse TOML; ``FileFault`` with ``code`` at the line of a syntax error. ``gather``: see ``Table``."""
+def load_table(source: Source, code: str = "RBL601", *, gather: bool = False, prepare: Prepare = dict) -> "Table":
+    """Parse TOML; ``FileFault`` with ``code`` at the line of a syntax error. ``gather``: see ``Table``; ``prepare``
+    gives the content in the form that is read, its keys where they are."""
     try:
-        return Table(source, tomllib.loads(source.text), (), [] if gather else None)
+        return Table(source, prepare(tomllib.loads(source.text)), (), [] if gather else None)
     except tomllib.TOMLDecodeError as error:
-        # tomllib has the place in its message only (attributes from Python 3.14 on)
-        text = str(error)
+        text = str(error)  # tomllib has the place in its message only (attributes from Python 3.14 on)
         found = re.search(r"at line (\d+), column (\d+)", text)
         lines = lines_of(source.text)
         line, column = (int(found[1]), int(found[2])) if found else (len(lines), len(lines[-1]) + 1)

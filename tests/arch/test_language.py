@@ -34,7 +34,7 @@ READ = {
     "likewise (the same, also)": r"\blikewise\b",
     "goes by (uses)": r"\bgo(?:es)? by\b",
     "goes over (overrides)": r"\bgo(?:es)? over (?:it|them)\b",
-    "passed over (skipped, left out)": r"\bpass(?:es|ed)? over\b",
+    "left out (skipped, left out)": r"\bpass(?:es|ed)? over\b",
     "believes (computes with)": r"\bbeliev\w+",
     "in itself (touches itself)": r"\barm (?:is |would be )?(?:in|out of) itself\b",
     "no body has (is physically impossible)": r"\bno body (?:has|can have)\b",

@@ -202,5 +202,5 @@ def test_what_nan_would_pass_is_noticed(rule, text):
         ("blind_extremes", "worst = np.maximum(a.error_mm, b.error_mm)"),
     ],
 )
-def test_what_nan_would_fail_is_passed_over(rule, text):
+def test_what_nan_would_fail_is_left_out(rule, text):
     assert not list(RULES[rule][0](FILES[0], nodes(text)))

@@ -67,5 +67,5 @@ def test_a_file_that_is_written_elsewhere_is_noticed(text):
 
 
 @pytest.mark.parametrize("text", ["open(name)", "text.replace('a', 'b')", "replace(item, x=1)", "path.open('rb')"])
-def test_what_writes_no_file_is_passed_over(text):
+def test_what_writes_no_file_is_left_out(text):
     assert not list(writers(FILES[0], nodes(text)))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import typer
 
 from robolang.cli.command import PlainCommand, command
-from robolang.cli.errors import reported, say, say_warnings
+from robolang.cli.errors import reported, say, say_notes, say_warnings
 from robolang.cli.options import ROBOT, Argument, Group, Option
 from robolang.cli.output import echo
 from robolang.core.diagnostics import safe
@@ -59,6 +59,9 @@ class _SidecarOptions(Group):
         str | None, Option("--flange", metavar="NAME", help="Frame that carries the tool; default: the last one.")
     ] = None
     force: Annotated[bool, Option("--force", help="Replace an existing file.")] = False
+    estimate: Annotated[
+        bool, Option("--estimate", help="Estimate what is missing from mass, reach and torque, each value marked.")
+    ] = False
 
 
 @app.command(cls=PlainCommand)
@@ -88,7 +91,7 @@ def show(robot: _Robot) -> None:
 @app.command("import", cls=PlainCommand)
 @command
 def import_model(file: _Model, options: _SidecarOptions) -> None:
-    """Write a sidecar for a URDF or MJCF file: a robot file for the missing data, each marked MISSING.
+    """Write a sidecar for a URDF or MJCF file: a robot file for the missing data, each marked MISSING or estimated.
 
     Example: robolang robot import arm.urdf -o arm.robot.toml
 
@@ -96,19 +99,26 @@ def import_model(file: _Model, options: _SidecarOptions) -> None:
     """
     with reported():
         from robolang.core.storage import write_atomic
+        from runtime.robot.files.estimate import estimate
         from runtime.robot.files.importer import read_model
+        from runtime.robot.files.known import known_of
         from runtime.robot.files.sidecar import template
         from runtime.robot.files.sidecar_file import NO_OVERLAY, sidecar_path
 
         target = options.output if options.output is not None else sidecar_path(file)
         arm = read_model(file, replace(NO_OVERLAY, flange=options.flange))
         say_warnings(arm.warnings)
-        text = template(arm).encode()
+        say_notes(arm.notes)
+        estimates = estimate(known_of(arm)) if options.estimate else {}
+        text = template(arm, estimates).encode()
         if not options.force and os.path.lexists(target):
             raise Fault("RBL706", f"{target} exists already", "Give another name with -o, or --force to replace it.")
         write_atomic(target, lambda stream: stream.write(text))
-        gaps = text.count(b"MISSING:")
-        echo(safe(f"wrote {target}: {gaps} values to fill in, marked MISSING"))
+        if options.estimate:
+            echo(safe(f"wrote {target}: {len(estimates)} values are estimates, each with its rule"))
+        else:
+            gaps = text.count(b"MISSING:")
+            echo(safe(f"wrote {target}: {gaps} values to fill in, marked MISSING"))
 
 
 def _show_robot(spec: "RobotSpec") -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault, Source, read_source
 from runtime.robot.files import robot_file
+from runtime.robot.files.joint_ranges import ranges_of
 from runtime.robot.files.plausibility import doubt_axes
 from runtime.robot.files.robot_file import RobotFile
 from runtime.robot.files.sidecar_file import SidecarFile, read_sidecar, sidecar_path
@@ -23,31 +24,33 @@ _TAGS = ("robot", "mujoco")
 
 
 class ModelFile(Record):
-    """A model file, well-formed, and its sidecar."""
+    """A model file, well-formed, and its sidecar. Without one it is an ideal arm: what it lacks is estimated by
+    ``importer``, and not known here."""
 
     source: Source
     name: str
-    sidecar: SidecarFile
+    ranges: tuple[Limits, ...]
+    sidecar: SidecarFile | None
 
     @property
-    def rated_payload(self) -> float:
-        """Heaviest load at the flange, kg."""
-        return self.sidecar.rated_payload
+    def rated_payload(self) -> float | None:
+        """Heaviest load at the flange, kg; None without a sidecar."""
+        return None if self.sidecar is None else self.sidecar.rated_payload
 
     @property
-    def path(self) -> PathLimits:
-        """Limits of the tool point."""
-        return self.sidecar.path
+    def path(self) -> PathLimits | None:
+        """Limits of the tool point; None without a sidecar."""
+        return None if self.sidecar is None else self.sidecar.path
 
     @property
     def limits(self) -> tuple[Limits, ...]:
-        """Limits of every axis."""
-        return tuple(axis.limits for axis in self.sidecar.axes)
+        """Limits of every axis; of a model without a sidecar the ranges alone, the others without end."""
+        return self.ranges if self.sidecar is None else tuple(axis.limits for axis in self.sidecar.axes)
 
     @property
     def warnings(self) -> tuple[FileFault, ...]:
         """Doubts about the ranges, speeds and gears of its sidecar (RBL627, RBL629)."""
-        return doubt_axes(self.sidecar.axes)
+        return () if self.sidecar is None else doubt_axes(self.sidecar.axes)
 
 
 ArmFile = RobotFile | ModelFile
@@ -59,21 +62,19 @@ def is_model(name: str) -> bool:
 
 
 def read_arm_file(path: Path) -> ArmFile:
-    """Return the content of the file of an arm; ``FileFault`` RBL6xx, RBL608 for a model without a complete sidecar."""
+    """Return the content of the file of an arm; ``FileFault`` RBL6xx, RBL608 where its sidecar lacks values."""
     source = read_source(path)
     if not is_model(path.name):
         return robot_file.parse(source)
     root = model_root(source)
     sidecar = sidecar_source(path)
-    if sidecar is None:
-        beside = sidecar_path(path).name
-        first_joint(root).fail(
-            "RBL608",
-            f"no drives, path limits and rated payload: there is no {beside}",
-            f"'robolang robot import {path.name}' writes {beside}; fill in what it marks MISSING",
-        )
     key = "name" if root.tag == "robot" else "model"  # the attribute with the name in URDF and in MJCF
-    return ModelFile(source=source, name=root.text(key, "robot"), sidecar=read_sidecar(sidecar, path.name))
+    return ModelFile(
+        source=source,
+        name=root.text(key, "robot"),
+        ranges=ranges_of(root),
+        sidecar=None if sidecar is None else read_sidecar(sidecar, path.name),
+    )
 
 
 def model_root(source: Source) -> Element:
@@ -89,8 +90,3 @@ def sidecar_source(model: Path) -> Source | None:
     # a symbolic link that leads nowhere does not exist; it is read, and refused, rather than taken for no sidecar
     beside = sidecar_path(model)
     return read_source(beside) if beside.is_symlink() or beside.exists() else None
-
-
-def first_joint(root: Element) -> Element:
-    """Return the element at which a missing sidecar is reported: the first joint, the root where there is none."""
-    return next((element for element in root.walk() if element.tag == "joint"), root)

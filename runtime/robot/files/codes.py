@@ -24,8 +24,23 @@ register(
     Code(
         code="RBL614",
         name="plugin-refused",
-        meaning="A robot file asks for a plugin. Code that a data file names is never loaded.",
+        meaning="An MJCF file asks for a plugin. Code that a data file names is never loaded. Plugins of a URDF are "
+        "left out.",
         remedy="Remove the plugin element.",
+    ),
+    Code(
+        code="RBL641",
+        name="element-left-out",
+        meaning="A URDF holds elements or attributes that the import does not read, of a simulator or another program. "
+        "They change nothing of the arm.",
+        remedy="Nothing; without them there is no note.",
+    ),
+    Code(
+        code="RBL642",
+        name="values-alike",
+        meaning="All links of an arm have the same mass and inertia, or all joints the same torque. No arm is built "
+        "like that: the file has placeholders.",
+        remedy="State the real values in the sidecar; 'robolang robot import --estimate' estimates them.",
     ),
     Code(
         code="RBL627",

@@ -43,7 +43,8 @@ class Hinge:
     """A revolute joint: unit ``axis`` (3,) and ``anchor`` (3,) m in its node's frame; its values in the file.
 
     None for a value that the file leaves out. ``lower`` and ``upper`` rad, ``speed`` rad/s, ``effort`` N m, ``damping``
-    N m s/rad, ``friction`` N m, ``armature`` kg m2, all at the joint. ``in_degrees``: the file has degrees.
+    N m s/rad, ``friction`` N m, ``armature`` kg m2, all at the joint. ``in_degrees``: the file has degrees;
+    ``endless``: the joint has no end stops.
     """
 
     name: str
@@ -58,6 +59,7 @@ class Hinge:
     friction: float
     armature: float
     in_degrees: bool
+    endless: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -91,7 +93,7 @@ class ImportedAxis:
     """One axis: ``placement`` (4, 4) as in ``AxisSpec``, ``body`` in the axis frame, ``hinge`` as the file has it.
 
     ``impossible``: the fault, at its place, of a body that cannot exist; None for one that can. ``link`` is the element
-    that turns with the joint.
+    that turns with the joint. ``bodiless``: no part of the link has an inertial in the file.
     """
 
     name: str
@@ -100,13 +102,14 @@ class ImportedAxis:
     body: Body
     hinge: Hinge
     impossible: FileFault | None
+    bodiless: bool
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ImportedArm:
     """A serial arm of a URDF or MJCF file. ``lower``, ``upper`` (n,) rad; ``flange`` names its last frame.
 
-    ``warnings`` are the doubts about it (``plausibility``).
+    ``warnings`` are the doubts about it (``plausibility``), ``notes`` name what is left out in its file.
     """
 
     name: str
@@ -118,6 +121,7 @@ class ImportedArm:
     upper: Array
     opw: OpwParameters | None = None
     warnings: tuple[FileFault, ...] = ()
+    notes: tuple[FileFault, ...] = ()
     meshes: tuple[LinkMesh, ...] = ()
 
     @property
@@ -245,7 +249,13 @@ def _limits(axes: list[ImportedAxis], side: str) -> Array:
 
 def _axis(node: Node, hinge: Hinge, placement: Array) -> ImportedAxis:
     return ImportedAxis(
-        name=hinge.name, link=node.element, placement=frozen(placement), body=combined([]), hinge=hinge, impossible=None
+        name=hinge.name,
+        link=node.element,
+        placement=frozen(placement),
+        body=combined([]),
+        hinge=hinge,
+        impossible=None,
+        bodiless=True,
     )
 
 
@@ -261,7 +271,7 @@ def _with_body(axis: ImportedAxis, cluster: list[tuple[Array, Node]], index: int
         impossible = axis.hinge.element.fault("RBL606", f"{what} has no mass")
     elif impossible is None and flat(body.inertia):
         impossible = axis.link.fault("RBL606", f"{what} has {body.mass:g} kg and no inertia about some axis")
-    return replace(axis, body=body, impossible=impossible)
+    return replace(axis, body=body, impossible=impossible, bodiless=all(node.body is None for _, node in cluster))
 
 
 def _fixed(node: Node, X: Array) -> Iterator[tuple[Array, Node]]:

@@ -10,23 +10,25 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import NoReturn
 
 import numpy as np
 
+from runtime.core.faults import raise_all
 from runtime.core.frames import Array, frozen
 from runtime.core.tomlfile import FileFault, Source, read_source
-from runtime.robot.files import loader
-from runtime.robot.files.arm_file import ArmFile, is_model, model_root, read_arm_file, sidecar_source
+from runtime.robot.files import left_out, loader
+from runtime.robot.files.arm_file import ArmFile, model_root, read_arm_file, sidecar_source
 from runtime.robot.files.body_plausibility import doubt_bodies, doubt_torques, offsets, weight_moment
+from runtime.robot.files.estimate import estimate
 from runtime.robot.files.imported import ImportedArm, serial_chain
+from runtime.robot.files.known import doubt_bodies_alike, doubt_torques_alike, known_of
+from runtime.robot.files.loader import body_of
 from runtime.robot.files.mjcf_import import read_mjcf
 from runtime.robot.files.plausibility import Turning, What, doubt_turning
 from runtime.robot.files.robot_file import RobotFile
-from runtime.robot.files.sidecar import complete, missing_in_template
-from runtime.robot.files.sidecar_file import NO_OVERLAY, Overlay, read_overlay, sidecar_path
+from runtime.robot.files.sidecar import complete, missing_in_template, template
+from runtime.robot.files.sidecar_file import NO_OVERLAY, Overlay, read_overlay, read_sidecar, sidecar_path
 from runtime.robot.files.urdf import read_urdf
-from runtime.robot.files.xmlfile import fault_at
 from runtime.robot.kinematics.closed_form import find_opw
 from runtime.robot.model.drives import joint_label
 from runtime.robot.model.spec import RobotSpec
@@ -36,22 +38,25 @@ UNIT_SLACK = 1e-3
 
 
 def load_file(path: Path) -> RobotSpec:
-    """Return the robot of a file, by its ending; ``FileFault`` RBL6xx, RBL608 without a complete sidecar."""
-    if is_model(path.name):
-        arm, sidecar = _with_sidecar(path)
-        if sidecar is None:  # the chain is known here, so every gap can be named
-            _refuse_without_sidecar(arm, path)
+    """Return the robot of a file, by its ending; ``FileFault`` RBL6xx, RBL608 with a sidecar that lacks values."""
     return build(read_arm_file(path))
 
 
 def build(file: ArmFile) -> RobotSpec:
-    """Return the robot of a file that has been read; ``FileFault`` RBL6xx where its arm cannot be."""
+    """Return the robot of a file that has been read; ``FileFault`` RBL6xx where its arm cannot be.
+
+    A model without a sidecar has no drives: what an ideal arm needs beyond its limits is estimated, and physics are
+    refused (``RobotSpec.undriven``).
+    """
     if isinstance(file, RobotFile):
         return loader.build(file)
+    if file.sidecar is None:
+        return _ideal(file.source)
     # read once more as an overlay: a chain is built with the ranges and the flange that the sidecar states
     overlay = read_overlay(file.sidecar.table.source)
     arm = parse_model(file.source, overlay)
     _check(arm, overlay)
+    _check_bodies(arm, overlay)
     return complete(arm, file.sidecar)
 
 
@@ -75,7 +80,7 @@ def parse_model(source: Source, overlay: Overlay = NO_OVERLAY) -> ImportedArm:
     """
     root = model_root(source)
     name, tree = read_urdf(root) if root.tag == "robot" else read_mjcf(root, Path(source.path).name)
-    arm = serial_chain(tree, source.path, name, overlay.flange)
+    arm = _with_bodies(serial_chain(tree, source.path, name, overlay.flange), overlay)
     # ranges of the sidecar replace those of the model before anything is computed from them
     ranges = [
         overlay.ranges.get(axis.name, (low, high))
@@ -87,8 +92,20 @@ def parse_model(source: Source, overlay: Overlay = NO_OVERLAY) -> ImportedArm:
         lower=frozen(lower),
         upper=frozen(upper),
         opw=find_opw(arm.axes, arm.X_last_flange),
-        warnings=(*_doubted_axes(arm), *_doubted_bodies(arm)),
+        warnings=(*_doubted_axes(arm), *_doubted_bodies(arm), *doubt_bodies_alike(arm)),
+        notes=left_out.notes(root),
     )
+
+
+def _with_bodies(arm: ImportedArm, overlay: Overlay) -> ImportedArm:
+    """Return the arm with the bodies that its sidecar states; whether they can be is judged there (``complete``)."""
+    axes = [
+        replace(axis, body=body_of(overlay.bodies[axis.name]), impossible=None, bodiless=False)
+        if axis.name in overlay.bodies
+        else axis
+        for axis in arm.axes
+    ]
+    return replace(arm, axes=tuple(axes))
 
 
 def _doubted_axes(arm: ImportedArm) -> Iterator[FileFault]:
@@ -143,7 +160,17 @@ def _with_limits_doubted(arm: ImportedArm, overlay: Overlay) -> ImportedArm:
     torques = [math.nan if axis.hinge.effort is None else axis.hinge.effort for axis in arm.axes]
     labels = [joint.label for joint in joints]
     doubts = (*doubt_turning(joints, place), *doubt_torques(labels, torques, weight, place))
-    return replace(arm, warnings=(*arm.warnings, *doubts))
+    return replace(arm, warnings=(*arm.warnings, *doubts, *doubt_torques_alike(arm)))
+
+
+def _ideal(source: Source) -> RobotSpec:
+    """Return the arm of a model file alone, what it lacks estimated, for runs without physics; ``FileFault`` RBL6xx."""
+    arm, path = parse_model(source), Path(source.path)
+    _check(arm, NO_OVERLAY)
+    # through the text of a sidecar: an ideal arm is then the arm that the import of the same file makes
+    sidecar = Source(str(sidecar_path(path)), template(arm, estimate(known_of(arm))))
+    spec = complete(parse_model(source, read_overlay(sidecar)), read_sidecar(sidecar, path.name))
+    return replace(spec, undriven=_undriven(arm, path))
 
 
 def _with_sidecar(path: Path) -> tuple[ImportedArm, Source | None]:
@@ -152,28 +179,46 @@ def _with_sidecar(path: Path) -> tuple[ImportedArm, Source | None]:
 
 
 def _check(arm: ImportedArm, overlay: Overlay) -> None:
-    """Refuse impossible bodies without a correction (RBL606), and joints without a range (RBL608)."""
-    for axis in arm.axes:
-        if axis.impossible is not None and axis.name not in overlay.corrected:
-            raise axis.impossible
-    open_ended = [i for i, axis in enumerate(arm.axes) if not np.isfinite(arm.lower[i] + arm.upper[i])]
-    if open_ended:
-        names = ", ".join(joint_label(i, arm.axes[i].name) for i in open_ended)
-        arm.axes[open_ended[0]].hinge.element.fail(
-            "RBL608",
-            f"no position limits for {names}",
-            f"write them there, or range_deg in {sidecar_path(Path(arm.path)).name} ('robolang robot import')",
-        )
+    """Refuse impossible bodies without a correction (RBL606), and joints without a range (RBL608), all of them."""
+    faults = [
+        axis.impossible
+        for axis in arm.axes
+        if axis.impossible is not None and not axis.bodiless and axis.name not in overlay.corrected
+    ]
+    raise_all([*faults, *_open_ended(arm)])
 
 
-def _refuse_without_sidecar(arm: ImportedArm, path: Path) -> NoReturn:
+def _check_bodies(arm: ImportedArm, overlay: Overlay) -> None:
+    """Refuse moving links that have no inertial in the file, in one fault (RBL606) at the first joint."""
+    axes = [axis for axis in arm.axes if axis.bodiless and axis.name not in overlay.corrected]
+    if axes:
+        names = _names(arm, {axis.name for axis in axes})
+        axes[0].hinge.element.fail("RBL606", f"links of {names} have no mass and no inertia", _estimates(arm))
+
+
+def _open_ended(arm: ImportedArm) -> list[FileFault]:
+    """Return the one fault of joints without a range (RBL608), at the first of them."""
+    axes = [axis for k, axis in enumerate(arm.axes) if not np.isfinite(arm.lower[k] + arm.upper[k])]
+    if not axes:
+        return []
+    message = f"no position limits for {_names(arm, {axis.name for axis in axes})}"
+    hint = f"write them there, or range_deg in {sidecar_path(Path(arm.path)).name}; {_estimates(arm)}"
+    return [axes[0].hinge.element.fault("RBL608", message, hint)]
+
+
+def _names(arm: ImportedArm, names: set[str]) -> str:
+    return ", ".join(joint_label(k, axis.name) for k, axis in enumerate(arm.axes) if axis.name in names)
+
+
+def _estimates(arm: ImportedArm) -> str:
+    return f"'robolang robot import {Path(arm.path).name} --estimate' estimates what is missing"
+
+
+def _undriven(arm: ImportedArm, path: Path) -> FileFault:
     beside = sidecar_path(path).name
-    place = arm.axes[0].hinge.element
-    raise fault_at(
-        place.source,
-        place.line,
-        place.column,
+    return arm.axes[0].hinge.element.fault(
         "RBL608",
         f"no drives, path limits and rated payload: there is no {beside}; missing for {missing_in_template(arm)}",
-        f"'robolang robot import {path.name}' writes {beside}; fill in what it marks MISSING",
+        f"'robolang robot import {path.name} --estimate' writes {beside} with estimates; an ideal arm (--no-physics) "
+        "needs none",
     )

@@ -20,6 +20,7 @@ from runtime.robot.files.corrections import check_bodies, correct
 from runtime.robot.files.geometry import Geometry, geometry_of
 from runtime.robot.files.plausibility import in_tables
 from runtime.robot.files.robot_file import AxisDrive, AxisFile, OpwRow, RobotFile
+from runtime.robot.files.sidecar_file import BodyRow
 from runtime.robot.model.drives import joint_label
 from runtime.robot.model.spec import AxisSpec, Body, Correction, OpwParameters, RobotSpec
 
@@ -48,6 +49,7 @@ def build(file: RobotFile) -> RobotSpec:
         corrections=corrections,
         published=published,
         link_radii=file.link_radii,
+        estimated=file.estimated,
         warnings=_doubts(file, axes, published, corrections, geometry),
     )
     _check_opw(spec, file.table)
@@ -121,6 +123,11 @@ def _body(file: AxisFile, X_joint_body: Array) -> Body:
     inertia = matmul(R, inertia_matrix(file.inertia_kg_m2), R.T)
     cog = matmul(R, np.array(file.cog_m)) + X_joint_body[:3, 3]
     return Body(mass=file.mass_kg, cog=frozen(cog), inertia=frozen(inertia))
+
+
+def body_of(row: BodyRow) -> Body:
+    """Return the body that a sidecar states, in the frame of its axis."""
+    return Body(mass=row.mass_kg, cog=frozen(row.cog_m), inertia=frozen(inertia_matrix(row.inertia_kg_m2)))
 
 
 def inertia_matrix(values: tuple[float, ...]) -> Array:

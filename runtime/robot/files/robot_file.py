@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import Literal, cast
 
 from runtime.core.record import Record
-from runtime.core.tomlfile import FileFault, Source, Table, load_table
+from runtime.core.tomlfile import FileFault, Source, Table
+from runtime.robot.files.marks import load_marked
 from runtime.robot.files.plausibility import doubt_axes
 from runtime.robot.model import drives
 from runtime.robot.model.drives import Bandwidths, Limits, Motor, PathLimits
@@ -26,6 +27,7 @@ SHORTEST_DIRECTION = 1e-6
 
 # a path and no importlib.resources, which would import tempfile and zipfile: 6 ms of every check
 _LIBRARY = Path(__file__).parents[1] / "library"
+INERTIA_FORMS = "xx, yy, zz or xx, yy, zz, xy, xz, yz"
 _LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
 
 
@@ -94,7 +96,8 @@ class AxisFile(Record):
 class RobotFile(Record):
     """A robot file; ``flange`` is given in the form of lines only. ``table`` is the whole file, for places.
 
-    ``link_radii`` m are those of the capsules that stand for the links; empty: the file gives none.
+    ``link_radii`` m are those of the capsules that stand for the links; empty: the file gives none. ``estimated`` has
+    the rules of the values that are marked as estimates (``marks``).
     """
 
     name: str
@@ -107,6 +110,7 @@ class RobotFile(Record):
     path: PathLimits
     opw: OpwRow | None
     link_radii: tuple[float, ...]
+    estimated: dict[str, str]
     table: Table
 
     @property
@@ -137,7 +141,7 @@ def builtin(name: str) -> RobotFile:
 
 def parse(source: Source) -> RobotFile:
     """Return the content of a robot file; ``FileFault`` (RBL6xx) at the line that is wrong."""
-    table = load_table(source)
+    table, estimated = load_marked(source)
     table.integer("schema", low=SCHEMA, high=SCHEMA)
     name, title = table.text("name"), table.text("title")
     kinematics = table.table("kinematics")
@@ -162,6 +166,7 @@ def parse(source: Source) -> RobotFile:
         axes=tuple(_axis(each, form, names) for each in tables),
         path=path,
         opw=opw,
+        estimated=estimated,
         table=table,
     )
     table.done()
@@ -218,9 +223,7 @@ def _axis(table: Table, form: Literal["dh", "lines"], names: set[str]) -> AxisFi
     cog = table.numbers("cog_m", 3, low=-10.0, high=10.0)
     inertia = table.numbers("inertia_kg_m2", None, low=-1e5, high=1e5)
     if len(inertia) not in (3, 6):
-        table.fail(
-            "RBL613", f"'{table.name('inertia_kg_m2')}' needs xx, yy, zz or xx, yy, zz, xy, xz, yz", key="inertia_kg_m2"
-        )
+        table.fail("RBL613", f"'{table.name('inertia_kg_m2')}' needs {INERTIA_FORMS}", key="inertia_kg_m2")
     return AxisFile(row=row, mass_kg=mass, cog_m=cog, inertia_kg_m2=inertia, drive=axis_drive(table))
 
 

@@ -1,18 +1,23 @@
 """An arm of a model file with the drives of its sidecar, and the template of a sidecar.
 
-``sidecar_file`` reads the sidecar. A template has the values of the model file and a line marked MISSING, commented
-out, for every other one: such a file is refused until a person has filled it in (RBL608, every gap listed), because
-drive data are never guessed (docs/decisions/0016).
+``sidecar_file`` reads the sidecar. A template has the values of the model file, and for every other one either an
+estimate that is marked as one (``marks``), where somebody asked for estimates, or a line marked MISSING, commented out:
+such a file is refused until a person has filled it in (RBL608, every gap listed).
 """
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 from runtime.core.tomlfile import FileFault
 from runtime.core.units import DEG
 from runtime.robot.files import corrections as rules
 from runtime.robot.files.body_plausibility import doubt_torques, offsets, weight_moment
+from runtime.robot.files.estimate import Estimate
 from runtime.robot.files.imported import ImportedArm, ImportedAxis
 from runtime.robot.files.loader import axis_spec
+from runtime.robot.files.marks import ESTIMATE, RULE
 from runtime.robot.files.plausibility import doubt_axes, in_tables
 from runtime.robot.files.sidecar_file import (
     GROUPS,
@@ -28,7 +33,7 @@ from runtime.robot.model.drives import WIDEST, joint_label
 from runtime.robot.model.spec import AxisSpec, Correction, RobotSpec
 
 TYPED = 1e-9
-"""An angle nearer to six decimals of a degree was typed with them, deg."""
+"""An angle that is this near to a number of deg with few decimals was typed as that number, deg."""
 
 
 def complete(arm: ImportedArm, file: SidecarFile) -> RobotSpec:
@@ -48,6 +53,7 @@ def complete(arm: ImportedArm, file: SidecarFile) -> RobotSpec:
         corrections=corrections,
         published=tuple(axis.body for axis in arm.axes),
         link_radii=file.link_radii,
+        estimated=file.estimated,
         meshes=arm.meshes,
         warnings=(*arm.warnings, *doubt_axes(file.axes), *_doubted_torques(arm, file)),
     )
@@ -92,7 +98,7 @@ def missing_in_template(arm: ImportedArm) -> str:
 
 _HEAD = """\
 # Drives and limits of {model}. Written by 'robolang robot import', to be completed by a person.
-# A line marked MISSING is refused until it is filled in: take the '#' before the key away and write the value.
+{how}
 # Values that are there come from {model}. A value here rules over the one in that file.
 schema = 1
 robot = {robot}
@@ -100,34 +106,68 @@ flange = {flange}  # the frame that tools are mounted on
 # title = "..."
 # sources = ["where the drive data come from; which of them are estimates"]
 """
+_TO_FILL_IN = (
+    "# A line marked MISSING is refused until it is filled in: take the '#' before the key away and write the value."
+)
+_ESTIMATED = "# {{ estimate = ... }} is an estimate by its rule. Write the real value in its place: key = value."
+_BODY_UNITS = {"mass_kg": "kg", "cog_m": "m, in the frame of the axis", "inertia_kg_m2": "xx, yy, zz, xy, xz, yz"}
 
 
-def template(arm: ImportedArm) -> str:
-    """Return the text of a sidecar with what the model file gives filled in and the rest marked MISSING."""
+def template(arm: ImportedArm, estimates: Mapping[str, Estimate] = MappingProxyType({})) -> str:
+    """Return the text of a sidecar with what the model file gives filled in, and the rest estimated or marked MISSING.
+
+    ``estimates`` by their dotted names, axes counted from 1 (``estimate``).
+    """
     model = Path(arm.path).name
-    lines = [_HEAD.format(model=_one_line(model), robot=quoted(model), flange=quoted(arm.flange))]
-    lines += [_gap(PAYLOAD_KEY, "heaviest load at the flange, kg"), "", "# Limits of the tool point.", "[path]"]
-    lines += [_gap(key, unit) for key, unit in PATH_KEYS.items()]
+    how = _ESTIMATED.format() if estimates else _TO_FILL_IN
+    lines = [_HEAD.format(model=_one_line(model), how=how, robot=quoted(model), flange=quoted(arm.flange))]
+    gaps = _Gaps(estimates, "")
+    lines += [gaps.line(PAYLOAD_KEY, "heaviest load at the flange, kg"), "", "# Limits of the tool point.", "[path]"]
+    lines += [_Gaps(estimates, "path.").line(key, unit) for key, unit in PATH_KEYS.items()]
     for index, axis in enumerate(arm.axes):
-        lines += ["", f"# J{index + 1}", "[[axes]]", f"name = {quoted(axis.name)}", *_limit_lines(axis)]
-        lines += ["# link_radius_mm = ...  # of the link, of all axes or none: to check the arm against itself"]
-        if axis.impossible is not None:
-            lines += _correction_lines(axis)
-        lines += ["[axes.motor]", *_motor_notes(axis)]
-        lines += [_gap(key, unit) for key, unit in MOTOR_KEYS.items()]
-        lines += ["# joint_stiffness_nm_rad and joint_damping_nm_s_rad, at the joint: only for an elastic gear"]
-        lines += ["[axes.servo]", *(_gap(key, unit) for key, unit in SERVO_KEYS.items())]
+        lines += _axis_lines(index, axis, _Gaps(estimates, f"axes.{index + 1}."))
     return "\n".join(lines) + "\n"
 
 
-def _gap(key: str, unit: str) -> str:
-    return f"# {key} =   # MISSING: {unit}"
+def _axis_lines(index: int, axis: ImportedAxis, gaps: "_Gaps") -> list[str]:
+    lines = ["", f"# J{index + 1}", "[[axes]]", f"name = {quoted(axis.name)}", *_limit_lines(axis, gaps)]
+    lines += gaps.some(_BODY_UNITS)
+    radius = gaps.some({"link_radius_mm": "of the link, to check the arm against itself"})
+    lines += radius or ["# link_radius_mm = ...  # of the link, of all axes or none: to check the arm against itself"]
+    if axis.impossible is not None and not gaps.some(_BODY_UNITS):
+        lines += _correction_lines(axis)
+    lines += ["[axes.motor]", *_motor_notes(axis)]
+    lines += [gaps.line(key, unit, "motor.") for key, unit in MOTOR_KEYS.items()]
+    lines += ["# joint_stiffness_nm_rad and joint_damping_nm_s_rad, at the joint: only for an elastic gear"]
+    return [*lines, "[axes.servo]", *(gaps.line(key, unit, "servo.") for key, unit in SERVO_KEYS.items())]
 
 
-def _limit_lines(axis: ImportedAxis) -> list[str]:
+@dataclass(frozen=True, slots=True)
+class _Gaps:
+    """Lines for the keys that a model file does not give: ``estimates``, of which those of a table have ``prefix``."""
+
+    estimates: Mapping[str, Estimate]
+    prefix: str
+
+    def line(self, key: str, unit: str, table: str = "") -> str:
+        """Return the line of a key: its estimate, or a mark that it is missing."""
+        found = self.estimates.get(f"{self.prefix}{table}{key}")
+        if found is None:
+            return f"# {key} =   # MISSING: {unit}"
+        value = list(found.value) if isinstance(found.value, tuple) else found.value
+        return f"{key} = {{ {ESTIMATE} = {value}, {RULE} = {quoted(found.rule)} }}  # {unit}"
+
+    def some(self, units: Mapping[str, str]) -> list[str]:
+        """Return the lines of those keys that are estimated."""
+        return [self.line(key, unit) for key, unit in units.items() if f"{self.prefix}{key}" in self.estimates]
+
+
+def _limit_lines(axis: ImportedAxis, gaps: _Gaps) -> list[str]:
     values = _given_limits(axis)
+    estimated = {key for key in LIMIT_KEYS if f"{gaps.prefix}{key}" in gaps.estimates}
     return [
-        f"{key} = {values[key]}  # {unit}" if key in values else _gap(key, unit) for key, unit in LIMIT_KEYS.items()
+        f"{key} = {values[key]}  # {unit}" if key in values and key not in estimated else gaps.line(key, unit)
+        for key, unit in LIMIT_KEYS.items()
     ]
 
 
@@ -137,19 +177,26 @@ def _given_limits(axis: ImportedAxis) -> dict[str, str]:
     values: dict[str, str] = {}
     widest = max(abs(hinge.lower or 0.0), abs(hinge.upper or 0.0))
     if hinge.lower is not None and hinge.upper is not None and widest <= WIDEST:  # else it is not read back
-        values["range_deg"] = f"[{_degrees(hinge.lower)}, {_degrees(hinge.upper)}]"
+        values["range_deg"] = f"[{as_typed(hinge.lower)}, {as_typed(hinge.upper)}]"
     if hinge.speed is not None:
-        values["max_speed_deg_s"] = _degrees(hinge.speed)
+        values["max_speed_deg_s"] = as_typed(hinge.speed)
     if hinge.effort is not None:
         values["max_torque_nm"] = repr(hinge.effort)
     return values
 
 
-def _degrees(angle: float) -> str:
-    # as it was typed: 185 deg that a file has with 14 digits of rad must not become 185.000000000028
+def as_typed(angle: float) -> str:
+    """Return rad in deg as somebody typed them: the shortest number that is the same angle.
+
+    The shortest that gives the same float again, else the shortest within ``TYPED`` deg: 185 deg that a file has with
+    14 digits of rad must not become 185.000000000028. What has no such number keeps 15 digits.
+    """
     degrees = angle / DEG
-    near = round(degrees, 6)
-    return repr(near + 0.0 if abs(degrees - near) <= TYPED else float(f"{degrees:.15g}"))
+    for places in range(7):
+        near = round(degrees, places) + 0.0
+        if near * DEG == angle or abs(degrees - near) <= TYPED:
+            return repr(near)
+    return repr(float(f"{degrees:.15g}"))
 
 
 def _motor_notes(axis: ImportedAxis) -> list[str]:

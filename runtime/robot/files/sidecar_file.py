@@ -9,9 +9,10 @@ from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 
 from runtime.core.record import Record
-from runtime.core.tomlfile import Source, Table, load_table
+from runtime.core.tomlfile import Source, Table
 from runtime.robot.files.gaps import listed, whole
-from runtime.robot.files.robot_file import AxisDrive, axis_drive, rated_payload
+from runtime.robot.files.marks import load_marked
+from runtime.robot.files.robot_file import INERTIA_FORMS, AxisDrive, axis_drive, rated_payload
 from runtime.robot.model import drives
 from runtime.robot.model.drives import PathLimits
 
@@ -48,6 +49,8 @@ PATH_KEYS = {
     "rotation_jerk_deg_s3": "deg/s3",
 }
 PAYLOAD_KEY = "rated_payload_kg"
+BODY_KEYS = ("mass_kg", "cog_m", "inertia_kg_m2")
+"""Optional keys of an axis, all or none: a body that replaces that of the model, in the frame of the axis."""
 GROUPS = {"motor": MOTOR_KEYS, "servo": SERVO_KEYS}
 
 
@@ -56,19 +59,28 @@ def sidecar_path(model: Path) -> Path:
     return model.with_name(f"{model.stem}{ENDING}")
 
 
+class BodyRow(Record):
+    """A body that a sidecar states: kg, (3,) m and (3 or 6,) kg m2 in the frame of its axis."""
+
+    mass_kg: float
+    cog_m: tuple[float, ...]
+    inertia_kg_m2: tuple[float, ...]
+
+
 class Overlay(Record):
     """What the geometry of an arm takes from its sidecar: flange, ranges (rad) by joint, joints with a correction.
 
-    ``tables`` are where the ranges stand, by joint.
+    ``tables`` are where the ranges stand, by joint; ``bodies`` replace those of the model.
     """
 
     flange: str | None
     ranges: dict[str, tuple[float, float]]
     tables: dict[str, Table]
     corrected: frozenset[str]
+    bodies: dict[str, BodyRow]
 
 
-NO_OVERLAY = Overlay(flange=None, ranges={}, tables={}, corrected=frozenset())
+NO_OVERLAY = Overlay(flange=None, ranges={}, tables={}, corrected=frozenset(), bodies={})
 
 
 def read_overlay(source: Source) -> Overlay:
@@ -76,7 +88,8 @@ def read_overlay(source: Source) -> Overlay:
 
     Kinematics needs ranges before the drives are known: 'robolang kin' works with a template that is not filled in.
     """
-    table = load_table(source)
+    table, _ = load_marked(source)
+    bodies: dict[str, BodyRow] = {}
     ranges: dict[str, tuple[float, float]] = {}
     tables: dict[str, Table] = {}
     corrected: set[str] = set()
@@ -86,12 +99,32 @@ def read_overlay(source: Source) -> Overlay:
             ranges[name], tables[name] = drives.joint_range(axis), axis
         if "correction" in axis:
             corrected.add(name)
+        if (body := body_row(axis)) is not None:
+            bodies[name] = body
     flange = table.text("flange") if "flange" in table else None
-    return Overlay(flange=flange, ranges=ranges, tables=tables, corrected=frozenset(corrected))
+    return Overlay(flange=flange, ranges=ranges, tables=tables, corrected=frozenset(corrected), bodies=bodies)
+
+
+def body_row(axis: Table) -> BodyRow | None:
+    """Return the body that an axis of a sidecar states, None without one; ``FileFault`` RBL60x, RBL613."""
+    axis.ask(*BODY_KEYS)
+    if not any(key in axis for key in BODY_KEYS):
+        return None
+    inertia = axis.numbers("inertia_kg_m2", None, low=-1e5, high=1e5)
+    if len(inertia) not in (3, 6):
+        axis.fail("RBL613", f"'{axis.name('inertia_kg_m2')}' needs {INERTIA_FORMS}", key="inertia_kg_m2")
+    return BodyRow(
+        mass_kg=axis.number("mass_kg", low=0.0, high=10000.0),
+        cog_m=axis.numbers("cog_m", 3, low=-10.0, high=10.0),
+        inertia_kg_m2=inertia,
+    )
 
 
 class SidecarFile(Record):
-    """A sidecar that is filled in; texts that it does not have are empty. ``table`` is the whole file."""
+    """A sidecar that is filled in; texts that it does not have are empty. ``table`` is the whole file.
+
+    ``estimated`` has the rules of the values that are marked as estimates (``marks``).
+    """
 
     title: str
     sources: tuple[str, ...]
@@ -100,26 +133,28 @@ class SidecarFile(Record):
     axes: tuple[AxisDrive, ...]
     path: PathLimits
     link_radii: tuple[float, ...]
+    estimated: dict[str, str]
     table: Table
 
 
 def read_sidecar(source: Source, model: str) -> SidecarFile:
     """Return the sidecar of the file named ``model``; ``FileFault`` RBL6xx, RBL608 lists all missing keys."""
-    table = load_table(source)
+    table, estimated = load_marked(source)
     table.integer("schema", low=SCHEMA, high=SCHEMA)
     if (named := table.text("robot")) != model:
         table.fail("RBL610", f"this sidecar is for '{named}', not for '{model}'", key="robot")
     axes = table.tables("axes")
     # before anything is read: a template lacks some hundred values, and one error a key would show the first alone
-    _check_complete(table, axes)
+    _check_complete(table, axes, model)
     found = SidecarFile(
         title=table.text("title", ""),
         sources=drives.texts(table, "sources"),
         notes=drives.texts(table, "notes"),
         rated_payload=rated_payload(table),
         link_radii=drives.link_radii(axes),
-        axes=tuple(axis_drive(axis) for axis in axes),
+        axes=tuple(_axis(axis) for axis in axes),
         path=drives.path_limits(table.table("path")),
+        estimated=estimated,
         table=table,
     )
     table.text("flange", "")  # read by ``read_overlay``; named here so that it is a known key
@@ -127,7 +162,12 @@ def read_sidecar(source: Source, model: str) -> SidecarFile:
     return found
 
 
-def _check_complete(table: Table, axes: list[Table]) -> None:
+def _axis(table: Table) -> AxisDrive:
+    body_row(table)  # read by ``read_overlay``; here so that its keys are known
+    return axis_drive(table)
+
+
+def _check_complete(table: Table, axes: list[Table], model: str) -> None:
     """Refuse a sidecar with keys still to be filled in: one ``FileFault`` RBL608 that names all of them."""
     own = [] if PAYLOAD_KEY in table else [PAYLOAD_KEY]
     own += _lacking_in(table, "path", PATH_KEYS)
@@ -139,7 +179,7 @@ def _check_complete(table: Table, axes: list[Table]) -> None:
         incomplete[0].fail(
             "RBL608",
             f"missing in this file: {'; '.join(gap for gap in gaps if gap)}",
-            "fill in the lines marked MISSING",
+            f"fill in the lines marked MISSING, or 'robolang robot import {model} --estimate --force'",
         )
 
 

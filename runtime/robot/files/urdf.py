@@ -4,8 +4,9 @@ A joint's ``origin`` places its child link's frame in the parent's at angle zero
 Rx); ``axis`` is in that frame, through its origin, x when it is left out. The inertia is about the centre of
 gravity, in the frame of the inertial's own origin. Source: the URDF specification, wiki.ros.org/urdf/XML.
 
-``revolute`` and ``continuous`` joints turn, ``fixed`` ones join; anything else is refused (RBL621). A continuous joint
-has no range, and none is invented for it. Of shapes only the meshes of ``visual`` are kept, by name, for pictures; a
+``revolute`` and ``continuous`` joints turn, ``fixed`` ones join; another kind of joint is refused (RBL621), and so are
+springs. Elements of other programs are left out (``left_out``). A continuous joint has no range, and none is
+invented for it. Of shapes only the meshes of ``visual`` are kept, by name, for pictures; a
 mesh outside the folder is refused (RBL602).
 """
 
@@ -16,19 +17,14 @@ import numpy as np
 from runtime.core.frames import Array, frozen, pose, rotation_from_rpy
 from runtime.core.linear import dot, matmul
 from runtime.robot.files.imported import Hinge, Node, NodeMesh
-from runtime.robot.files.xmlfile import HEAVIEST_LINK, Element
+from runtime.robot.files.xmlfile import HEAVIEST_LINK, Element, is_elsewhere
 from runtime.robot.model.spec import MESH_ENDINGS, Body
 
-_IGNORED = ("gazebo", "transmission", "material", "sensor", "ros2_control")
 _TURNING = ("revolute", "continuous")
 
 
 def read_urdf(robot: Element) -> tuple[str, Node]:
     """Return the robot's name and the root of its tree; ``FileFault`` at the element that is wrong."""
-    for child in robot.children:
-        # a closed list: what is not known may matter to the motion, and nothing is guessed (docs/decisions/0016)
-        if child.tag not in ("link", "joint", *_IGNORED):
-            child.fail("RBL621", f"<{child.tag}> is not read")
     links = _by_name(robot.all("link"))
     joints = _by_name(robot.all("joint"))
     if not links:
@@ -109,6 +105,8 @@ def _join(joint: Element, parent: Node, child: Node) -> None:
 def _hinge(joint: Element, ranged: bool) -> Hinge:
     """Return what a turning joint says of itself; ``ranged`` False: it has no end stops."""
     name, limit, dynamics, axis = joint.text("name"), joint.one("limit"), joint.one("dynamics"), joint.one("axis")
+    if dynamics is not None and dynamics.number("spring_stiffness", 0.0) != 0.0:
+        dynamics.fail("RBL621", f"joint {name!r} has a spring, which is not read")
     lower, upper = _range(limit, name) if limit is not None and ranged else (None, None)
     speed, effort = _most(limit, "velocity", name), _most(limit, "effort", name)
     return Hinge(
@@ -125,6 +123,7 @@ def _hinge(joint: Element, ranged: bool) -> Hinge:
         friction=dynamics.number("friction", 0.0, low=0.0) if dynamics is not None else 0.0,
         armature=0.0,
         in_degrees=False,
+        endless=not ranged,
     )
 
 
@@ -203,7 +202,7 @@ def _of_shapes(shapes: list[Element]) -> tuple[NodeMesh, ...]:
     for visual in shapes:
         geometry = visual.one("geometry")
         mesh = None if geometry is None else geometry.one("mesh")
-        if mesh is not None and "filename" in mesh.attributes:
+        if mesh is not None and "filename" in mesh.attributes and not is_elsewhere(mesh):
             scale = frozen(mesh.numbers("scale", 3, (1.0, 1.0, 1.0)))
             found.append(NodeMesh(file=mesh.text("filename"), X_node_mesh=frozen(_origin(visual)), scale=scale))
     return tuple(found)

@@ -3,8 +3,9 @@
 The text is parsed by expat with a handler for every start tag, so that each element keeps its line and column and
 every error is a ``FileFault`` at its place. Refused while reading: a document type (RBL601: with it go entities,
 the only means by which XML can name other files or to grow without bound), more than ``MAX_DEPTH`` levels or
-``MAX_ELEMENTS`` elements (RBL612), a plugin (RBL614), a number that is not finite (RBL604) and a file name that
-leads out of the folder (RBL602). Nothing that a file names is ever opened. Standard library only.
+``MAX_ELEMENTS`` elements (RBL612), a plugin of an MJCF (RBL614), a number that is not finite (RBL604) and a file name
+that leads out of the folder (RBL602). Of a URDF only the elements that are read are judged (``urdf_elements``). Nothing
+that a file names is ever opened. Standard library only.
 """
 
 import math
@@ -18,6 +19,7 @@ from runtime.core.bounded_files import stays_inside
 from runtime.core.numerals import number_in, why_none
 from runtime.core.record import Record, default
 from runtime.core.tomlfile import MAX_ABS, FileFault, FilePlace, Source
+from runtime.robot.files.urdf_elements import MACROS, URDF
 
 _LINE_END = re.compile(r"\r\n?|\n")  # XML 2.11: a CR alone ends a line, too
 MAX_DEPTH = 100
@@ -104,6 +106,14 @@ class Element(Record, kw_only=False):
             yield element
             todo.extend(reversed(element.children))
 
+    def walk_read(self) -> "Iterator[Element]":
+        """Yield this element of a URDF and what is read of it, in file order; what is left out is left out."""
+        todo = [self]
+        while todo:
+            element = todo.pop()
+            yield element
+            todo.extend(child for child in reversed(element.children) if child.tag in URDF[element.tag].children)
+
     def text(self, key: str, default: str | None = None) -> str:
         """Return an attribute; RBL608 when it is missing and has no default."""
         value = self.attributes.get(key, default)
@@ -166,9 +176,23 @@ def fault_at(source: Source, line: int, column: int, code: str, message: str, hi
 def parse_xml(source: Source) -> Element:
     """Return the root element of a bounded, inert XML text; ``FileFault`` RBL601, 602, 604, 612 or 614."""
     root = _parse(source)
-    for element in root.walk():
+    if root.tag == "robot":
+        _check_expanded(root)
+    for element in root.walk_read() if root.tag == "robot" else root.walk():
         _check(element)
     return root
+
+
+def _check_expanded(robot: Element) -> None:
+    """Refuse the macros of xacro, wherever they stand in a URDF: they may stand for links (RBL621)."""
+    # other names with a colon belong to simulators and are left out
+    old = [element for element in robot.children if element.tag in MACROS]
+    for element in (*old, *(each for each in robot.walk() if each.tag.startswith("xacro:"))):
+        element.fail(
+            "RBL621",
+            f"<{element.tag}> is a macro of xacro, which is not expanded here",
+            "expand the file first, where its package is installed: xacro arm.urdf.xacro > arm.urdf",
+        )
 
 
 def _parse(source: Source) -> Element:
@@ -218,14 +242,22 @@ def _check(element: Element) -> None:
     if element.tag in ("plugin", "extension"):
         element.fail("RBL614", f"<{element.tag}> asks for code to be loaded")
     if ":" in element.tag:
-        element.fail(
-            "RBL621", f"<{element.tag}> is of another language than URDF or MJCF", "expand macros first, as with xacro"
-        )
+        element.fail("RBL621", f"<{element.tag}> is of another language than MJCF", "remove it")
     for key, value in element.attributes.items():
+        if is_elsewhere(element):
+            continue
         if key in _FILES:
             check_path(element, key, value)
         elif key not in _TEXTS:
             _check_finite(element, key, value)
+
+
+def is_elsewhere(element: Element) -> bool:
+    """Return whether an element is a mesh at an absolute place of another computer, which is left out.
+
+    ROS writes ``file:///opt/ros/...`` when it expands macros. Such a mesh is never opened, and pictures do without it.
+    """
+    return element.tag == "mesh" and element.attributes.get("filename", "").startswith("file://")
 
 
 def _check_finite(element: Element, key: str, text: str) -> None:

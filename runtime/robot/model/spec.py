@@ -10,8 +10,8 @@ Robot files give standard Denavit-Hartenberg rows (``form = "dh"``) or joint lin
 """
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -114,6 +114,8 @@ class RobotSpec:
     ``published`` holds the bodies as the source prints them, before ``corrections``. ``warnings`` are the doubts
     about its files, each at its place (``plausibility``). ``link_radii`` m, one for each axis: of the capsules from
     joint to joint that stand for the links; empty: the shapes of the arm are not known. ``meshes`` show the links.
+    ``estimated`` has the values that are estimates, by their names in the file (``axes.1.motor.gear_ratio``), with the
+    rule of each. ``undriven``: the fault of physics with an arm whose drives no file states; None for others.
     """
 
     name: str
@@ -130,6 +132,8 @@ class RobotSpec:
     warnings: tuple[FileFault, ...] = ()
     link_radii: tuple[float, ...] = ()
     meshes: tuple[LinkMesh, ...] = ()
+    estimated: Mapping[str, str] = field(default_factory=dict)
+    undriven: FileFault | None = None
 
     @property
     def n(self) -> int:

@@ -14,7 +14,7 @@ from runtime.core.frames import frozen
 from runtime.core.tomlfile import FileFault, Source, load_table
 from tests.messages import fields, numbers
 from tests.robolang.cli.commands import flat, places, robolang
-from tests.runtime.robot.models import ANGLES, SEVEN, fill
+from tests.runtime.robot.models import ANGLES, SEVEN, SIX, fill
 
 HOME = np.array([0.0, 0.5, 0.0, -1.4, 0.0, 0.9, 0.0])
 
@@ -94,11 +94,39 @@ def test_a_model_with_impossible_bodies_is_shown_and_called_an_error(seven):
     assert {"RBL606", "J4", "joint_4"} <= fields(flat(found.stdout))  # the tables are printed all the same
 
 
-def test_a_run_without_drives_is_refused_with_what_is_missing(seven):
-    program = seven.with_name("a.rbl")
-    program.write_text("HAND ON\n")
-    error = robolang("run", "--robot", seven, "--no-physics", program, code=2).stderr
-    assert "seven.urdf:5:3: error RBL608" in error
+CELL = """\
+schema = 1
+robot = "six.urdf"
+[home]
+joints_deg = [0, 20, 30, 0, -60, 0]
+[hand]
+mass_kg = 0.2
+cog_mm = [0, 0, 60]
+tcp_mm_deg = [0, 0, 113.7, 0, 0, 0]
+stroke_mm = 80
+grip_force_n = 120
+dwell_s = 0.3
+pad_mm = [20, 8, 40]
+finger_length_mm = 52
+"""
+
+
+def test_an_arm_without_drives_moves_as_an_ideal_one_and_physics_are_refused(tmp_path):
+    arm = tmp_path / "six.urdf"
+    arm.write_text(SIX)
+    program = tmp_path / "a.rbl"
+    program.write_text("MOVEJ JOINT(10, 0, 0, 0, -90, 0)\n")
+    error = robolang("run", "--robot", arm, program, code=2).stderr
+    assert "six.urdf:3:1: error RBL608" in error
+    assert {"robolang robot import six.urdf --estimate", "six.robot.toml", "--no-physics"} <= fields(error)
+    robolang("run", "--robot", arm, "--no-physics", program)
+    program.with_suffix(".cell.toml").write_text(CELL)
+    robolang("check", "--motion", program)
+    assert robolang("run", program, code=2).stderr == error
+    with pytest.raises(FileFault, match="RBL608"):
+        load_any_robot(str(arm))
+    robolang("robot", "import", arm, "--estimate")
+    robolang("run", program)
 
 
 SENSOR = 'kind = "ramp"\ndeviation_mm_deg = [3, 0, 2, 0, 0, 0]\nover_mm = 200\n'

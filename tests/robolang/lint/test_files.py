@@ -42,7 +42,7 @@ def test_a_file_is_taken_whatever_its_name():
     assert programs(["a.txt", ".hidden.rbl", "none.rbl"]) == ["a.txt", ".hidden.rbl", "none.rbl"]
 
 
-def test_a_hidden_folder_that_is_named_is_not_passed_over():
+def test_a_hidden_folder_that_is_named_is_not_left_out():
     assert programs([".git"]) == [".git/e.rbl"]
 
 
@@ -66,7 +66,7 @@ def test_the_standard_input_and_impossible_names_stand_for_themselves():
     assert programs(["-", "a\0b.rbl", "-"]) == ["-", "a\0b.rbl"]
 
 
-def test_a_folder_that_cannot_be_listed_is_not_passed_over(monkeypatch):
+def test_a_folder_that_cannot_be_listed_is_not_left_out(monkeypatch):
     real = os.scandir
 
     def scandir(path):

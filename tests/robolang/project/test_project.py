@@ -67,7 +67,7 @@ def test_points_beside_the_program_replace_the_built_in_ones(program):
 
 
 @pytest.mark.parametrize("name", ["cell.toml", "pick.cell.toml", "pick.points.toml"])
-def test_a_link_that_leads_nowhere_is_not_passed_over(program, name):
+def test_a_link_that_leads_nowhere_is_not_left_out(program, name):
     (program.parent / name).symlink_to("none.toml")
     found = refused("RBL302" if "points" in name else "RBL600", program)
     assert isinstance(found, FileFault)

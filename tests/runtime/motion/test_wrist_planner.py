@@ -318,7 +318,7 @@ def test_a_hold_is_said_with_what_it_came_to():
     assert re.search(r"\bTILT\b.* \d+\.\d deg$", found.notes[0])
 
 
-def test_a_whole_turn_of_the_waist_is_not_passed_over():
+def test_a_whole_turn_of_the_waist_is_not_left_out():
     move = (-180, 20, 10, 30, 40, 50), (180, 20, 10, 30, 40, 50)
     with pytest.raises(Fault, match="RBL412"):
         plan(move, speed=0.1)

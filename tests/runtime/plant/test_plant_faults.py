@@ -76,7 +76,7 @@ def test_a_healthy_run_raises_no_alarm() -> None:
     assert plant.why_invalid() == ""
 
 
-def test_a_full_contact_buffer_is_not_passed_over() -> None:
+def test_a_full_contact_buffer_is_not_left_out() -> None:
     plant = moving_plant()
     plant._data.warning[int(mujoco.mjtWarning.mjWARN_CONTACTFULL)].number += 1
     assert plant.step(GRAVITY) is False

@@ -1,5 +1,6 @@
 """URDF texts for the tests, and sidecars with the gaps of a template filled in."""
 
+import math
 import re
 from pathlib import Path
 
@@ -86,3 +87,19 @@ def chain(frames, last=None, bodies=None, limit='lower="-3" upper="3" velocity="
             '<link name="flange"/>',
         ]
     return urdf(*parts)
+
+
+SIX = chain(
+    [
+        ((0, 0, 0.4), (0, 0, 0), (0, 0, 1)),
+        ((0, 0, 0), (0, 0, 0), (0, 1, 0)),
+        ((0, 0, 0.4), (0, 0, 0), (0, 1, 0)),
+        ((0.35, 0, 0), (0, 0, 0), (1, 0, 0)),
+        ((0, 0, 0), (0, 0, 0), (0, 1, 0)),
+        ((0.08, 0, 0), (0, 0, 0), (1, 0, 0)),
+    ],
+    ((0.02, 0, 0), (0, math.pi / 2, 0)),
+    [inertial(mass, (0.0, 0.0, 0.05), (0.02, 0.02, 0.015, 0, 0, 0)) for mass in (9.0, 7.0, 4.0, 2.5, 1.5, 0.4)],
+    limit='lower="-3.5" upper="3.5" velocity="3"',
+)
+"""A six-axis arm made up for the tests: bodies, ranges and speeds, no torques."""
