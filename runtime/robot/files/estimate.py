@@ -218,6 +218,7 @@ def _whole(known: Known, filled: _Filled) -> Iterator[tuple[str, Estimate]]:
     """Yield rated payload and path limits."""
     if not np.isfinite(known.payload):
         yield "rated_payload_kg", _value(filled.payload, f"{rules.PAYLOAD_SHARE:.0%} of the mass that moves")
+    # the slowest axis of either kind: the tool may move along any direction
     axes = rules.arm_axes(len(filled.bodies))
     arm, wrist = filled.speed[:axes], filled.speed[axes:]
     tip = _round(rules.TIP_SHARE * float(arm.min()) * filled.reach / MM, 2)
@@ -274,6 +275,7 @@ def _drive(known: Known, filled: _Filled, axis: int) -> Iterator[tuple[str, Esti
             else _value(rules.rotor_inertia(T, N), "1.1e-4 kg m2 per N m of the motor")
         ),
     )
+    # the current only scales what is reported as torque: any limit of the right size serves
     current = _round(rules.max_current(T, N), 2)
     yield "motor.torque_constant_nm_a", _value(T / N / current, "motor torque over current limit", 4)
     yield "motor.max_current_a", _value(current, "8 A (T / 2 N m)^0.25 of the motor")
@@ -290,6 +292,7 @@ def _drive(known: Known, filled: _Filled, axis: int) -> Iterator[tuple[str, Esti
     yield "motor.coulomb_friction_nm", Estimate(value=(coulomb, coulomb), rule=rule)
     yield "motor.encoder_counts", Estimate(value=rules.ENCODER_COUNTS, rule="17 bit")
     yield "motor.current_bandwidth_hz", _value(rules.CURRENT_BANDWIDTH, "usual for servo drives")
+    # the same for all axes: loops of different speed bend a straight path
     Kp = _round(rules.position_bandwidth(_lowest_resonance(filled)), 2)
     yield "servo.position_bandwidth_rad_s", _value(Kp, "a quarter of the lowest resonance")
     yield "servo.velocity_bandwidth_rad_s", _value(rules.LOOP_RATIO * Kp, "four times Kp")

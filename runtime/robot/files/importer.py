@@ -99,6 +99,7 @@ def parse_model(source: Source, overlay: Overlay = NO_OVERLAY) -> ImportedArm:
 
 def _with_bodies(arm: ImportedArm, overlay: Overlay) -> ImportedArm:
     """Return the arm with the bodies that its sidecar states; whether they can be is judged there (``complete``)."""
+    # before the doubts: those are about the bodies that count
     axes = [
         replace(axis, body=body_of(overlay.bodies[axis.name]), impossible=None, bodiless=False)
         if axis.name in overlay.bodies

@@ -12,6 +12,7 @@ def notes(robot: Element) -> tuple[FileFault, ...]:
     """Return one note (RBL641) for each kind, at the first place where it stands; none for an MJCF."""
     if robot.tag != "robot":
         return ()
+    # by kind and not by place: a file of a maker has hundreds of such elements
     found: dict[str, list[Element]] = {}
     for element in robot.walk_read():
         known = URDF[element.tag]

@@ -163,6 +163,7 @@ class _Gaps:
 
 
 def _limit_lines(axis: ImportedAxis, gaps: _Gaps) -> list[str]:
+    # an estimate rules over a value of the file that is a placeholder
     values = _given_limits(axis)
     estimated = {key for key in LIMIT_KEYS if f"{gaps.prefix}{key}" in gaps.estimates}
     return [
@@ -192,6 +193,7 @@ def as_typed(angle: float) -> str:
     14 digits of rad must not become 185.000000000028. What has no such number keeps 15 digits.
     """
     degrees = angle / DEG
+    # few decimals first: a drawing has whole degrees more often than tenths
     for places in range(7):
         near = round(degrees, places) + 0.0
         if near * DEG == angle or abs(degrees - near) <= TYPED:
