@@ -6,6 +6,7 @@ code keeps its number and its meaning for ever; a message may be reworded. Calle
 """
 
 import robolang.core.pendant_codes
+import robolang.core.project_codes
 import robolang.core.run_codes
 import robolang.core.view_codes  # noqa: F401
 import runtime.appearance.codes

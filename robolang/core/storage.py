@@ -216,6 +216,8 @@ def check_folder(path: Path, ours: Callable[[str], bool]) -> None:
 def write_folder(path: Path, files: Mapping[str, bytes], ours: Callable[[str], bool]) -> None:
     """Make a folder with these files, whole or not at all; ``Fault`` RBL706, with what was there untouched.
 
+    A name may have folders before it, with ``/`` between them.
+
     A folder that is there is replaced when ``ours`` says of all names in it that they were written here, in one step
     where the system has one (Linux); elsewhere the old one has another name for a moment, ``.robolang-….old``.
     """
@@ -223,6 +225,7 @@ def write_folder(path: Path, files: Mapping[str, bytes], ours: Callable[[str], b
     try:
         with _folder(path.absolute().parent) as flush, _temporary_folder(path.absolute().parent) as (handle, made):
             for name, data in files.items():
+                (made / name).parent.mkdir(parents=True, exist_ok=True)
                 with (made / name).open("wb") as stream:
                     stream.write(data)
                     stream.flush()
@@ -238,6 +241,30 @@ def write_folder(path: Path, files: Mapping[str, bytes], ours: Callable[[str], b
             flush()
     except OSError as error:
         _refuse(path, error)
+
+
+def add_files(folder: Path, files: Mapping[str, bytes]) -> None:
+    """Write files into a folder, all or none, with the folders that their names have; ``Fault`` RBL706.
+
+    The caller has seen that none of them is there; what has been written is removed where another one cannot be.
+    """
+    undo: list[Callable[[], object]] = []
+    try:
+        for name, data in files.items():
+            path = folder / name
+            for missing in reversed([each for each in path.parents if not each.exists()]):
+                missing.mkdir()
+                undo.append(missing.rmdir)
+            undo.append(path.unlink)
+            write_atomic(path, lambda stream, data=data: stream.write(data))  # type: ignore[misc]
+    # Ctrl-C as well
+    except BaseException as error:
+        for each in reversed(undo):
+            with suppress(OSError):
+                each()
+        if isinstance(error, OSError):
+            _refuse(folder, error)
+        raise
 
 
 @contextmanager

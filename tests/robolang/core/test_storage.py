@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robolang.core.storage import check_writable, write_atomic, write_json
+from robolang.core.storage import add_files, check_writable, write_atomic, write_json
 from robolang.logs.files import write_log
 from runtime.core.faults import Fault
 from tests.robolang.logs.made import log
@@ -178,3 +178,22 @@ def test_json_is_strict_whatever_it_is_given(tmp_path):
     assert json.loads(text) == {"a": None, "b": [None, [None, 1.0]], "c": None, "d": "NaN", "e": 0.1 + 0.2}
     write_json(tmp_path / "r.json", {"name": "p\udcff.rbl"})
     assert json.loads((tmp_path / "r.json").read_bytes().decode("utf-8")) == {"name": "p\udcff.rbl"}
+
+
+def test_files_are_added_with_the_folders_that_they_are_in(tmp_path):
+    add_files(tmp_path, {"a": b"1", "x/y/b": b"2", "x/c": b"3"})
+    assert [(tmp_path / name).read_bytes() for name in ("a", "x/y/b", "x/c")] == [b"1", b"2", b"3"]
+
+
+def test_of_files_that_cannot_all_be_added_none_is_left(tmp_path):
+    (tmp_path / "x").mkdir()
+    (tmp_path / "mine").write_bytes(b"mine")
+    with small_files(100):
+        refused(add_files, tmp_path, {"a": b"1", "x/y/b": b"2", "z/c": bytes(200)})
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["mine", "x"]
+
+
+def test_a_folder_that_is_a_file_keeps_files_from_being_added(tmp_path):
+    (tmp_path / "x").write_bytes(b"mine")
+    refused(add_files, tmp_path, {"a": b"1", "x/b": b"2"})
+    assert [path.name for path in tmp_path.iterdir()] == ["x"]

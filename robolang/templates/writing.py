@@ -1,0 +1,70 @@
+"""New projects: in a folder of their own, or in one that is there. All files are written or none; none is replaced."""
+
+import os
+import re
+from collections.abc import Iterable
+from pathlib import Path
+
+from robolang.core.storage import add_files, only_one, write_folder
+from robolang.templates.arm import choose
+from robolang.templates.files import ProjectFiles, project_files
+from robolang.templates.template import template
+from runtime.core.faults import Fault
+from runtime.core.record import Record
+
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,63}")
+
+
+class Written(Record):
+    """A project that was written: its folder, its name, the files, and those that were there and were kept."""
+
+    folder: Path
+    name: str
+    files: tuple[str, ...]
+    kept: tuple[str, ...]
+
+
+def new_project(folder: Path, kind: str, robot: str) -> Written:
+    """Write a project into a new folder; ``Fault`` RBL706, RBL708, RBL840 to RBL843, ``FileFault`` for a robot file."""
+    name = checked_name(folder.name)
+    if os.path.lexists(folder):
+        raise Fault("RBL841", f"{folder} exists already", "Give another name, or call 'robolang init' in that folder.")
+    made = _made(name, folder, kind, robot)
+    files = {**made.job, **made.beside}
+    write_folder(folder, files, ours=lambda _: False)
+    return Written(folder=folder, name=name, files=tuple(files), kept=())
+
+
+def init_project(folder: Path, name: str, kind: str, robot: str) -> Written:
+    """Write a project into a folder that is there; faults as ``new_project``."""
+    name = checked_name(name)
+    made = _made(name, folder, kind, robot)
+    with only_one(folder):
+        # after the placing, which takes its time, and not before: a file may have come in between
+        refuse_existing(folder, made.job)
+        kept = tuple(each for each in made.beside if os.path.lexists(folder / each))
+        files = {**made.job, **{each: data for each, data in made.beside.items() if each not in kept}}
+        add_files(folder, files)
+    return Written(folder=folder, name=name, files=tuple(files), kept=kept)
+
+
+def checked_name(name: str) -> str:
+    """Return a name of a project; ``Fault`` RBL842 for a text that is none."""
+    if not _NAME.fullmatch(name):
+        raise Fault("RBL842", f"'{name}' is no name of a project")
+    return name
+
+
+def refuse_existing(folder: Path, names: Iterable[str]) -> None:
+    """Raise ``Fault`` RBL841 where files of these names are in a folder."""
+    there = [name for name in names if os.path.lexists(folder / name)]
+    if there:
+        raise Fault("RBL841", f"{', '.join(there)} would be overwritten in {folder}")
+
+
+def _made(name: str, folder: Path, kind: str, robot: str) -> ProjectFiles:
+    chosen, arm = template(kind), choose(robot, folder)
+    # not before: its numerics take longer to import than a misspelt name to refuse
+    from robolang.templates.fitting import fitted
+
+    return project_files(name, chosen, arm, fitted(chosen, arm))

@@ -1,0 +1,54 @@
+"""The robot of a project: a name, or a file that the project has or gets."""
+
+import pytest
+
+from robolang.templates.arm import choose
+from robolang.templates.writing import init_project, new_project
+from runtime.core.faults import Fault
+from tests.robolang.cli.commands import PUMA, robolang
+from tests.runtime.robot.models import ANGLES
+
+
+@pytest.fixture
+def mine(tmp_path):
+    path = tmp_path / "arms" / "mine.toml"
+    path.parent.mkdir()
+    path.write_text(PUMA.read_text("utf-8").replace('name = "puma560"', 'name = "mine"', 1), "utf-8")
+    return path
+
+
+def cell(folder):
+    return (folder / "cell1.cell.toml").read_text("utf-8")
+
+
+def test_a_built_in_robot_is_named_and_nothing_is_copied(tmp_path):
+    arm = choose("irb2400", tmp_path)
+    assert (arm.name, arm.reference, dict(arm.files)) == ("irb2400", "irb2400", {})
+
+
+def test_a_file_from_elsewhere_is_copied_and_the_project_runs_without_it(tmp_path, mine):
+    folder = new_project(tmp_path / "cell1", "pick-place", str(mine)).folder
+    assert (folder / "mine.toml").read_bytes() == mine.read_bytes()
+    assert 'robot = "mine.toml"' in cell(folder)
+    mine.unlink()
+    robolang("check", "--strict", "--motion", folder)
+
+
+def test_a_file_in_the_folder_is_named_from_there(tmp_path, mine):
+    written = init_project(tmp_path, "cell1", "pick-place", str(mine))
+    assert 'robot = "arms/mine.toml"' in cell(tmp_path)
+    assert not any("mine" in name for name in written.files)
+    robolang("check", "--strict", "--motion", tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("robot", "code"), [("pumma560", "RBL708"), ("none.toml", "RBL600"), ("bad.toml", "RBL608"), ("bad.urdf", "RBL608")]
+)
+def test_what_is_no_robot_is_refused_before_anything_is_written(tmp_path, monkeypatch, robot, code):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "bad.toml").write_text("schema = 1\n")
+    (tmp_path / "bad.urdf").write_text(ANGLES.read_text())
+    with pytest.raises(Fault) as caught:
+        new_project(tmp_path / "cell1", "pick-place", robot)
+    assert caught.value.code == code
+    assert not (tmp_path / "cell1").exists()
