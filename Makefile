@@ -20,6 +20,7 @@
 # make figures  the pictures of README and docs, taken anew from runs
 # make docs   the documentation as a site in out/site, checked for dead links
 # make measured   the figures of docs/measured.md that repeat exactly
+# make wheel-test   sdist and wheel, and the wheel in an environment of its own: every command, examples, a new project (a minute)
 # make viewer   the script of the pages, built anew from robolang/view/page (needs node)
 # make help   these lines
 
@@ -125,6 +126,9 @@ mutants: $(READY)
 	$(BIN)/mutmut run
 	$(BIN)/mutmut results
 	$(BIN)/python -m tests.bench.mutants
+
+wheel-test: $(READY)
+	$(BIN)/python -m tests.wheel
 
 viewer:
 	cd robolang/view/page && npm ci --ignore-scripts --no-audit --no-fund && npx --no-install tsc --noEmit && node build.mjs

@@ -44,6 +44,17 @@ _HELP = "Help and settings"
 
 # in the order of `--help`
 TABLE = (
+    Entry(
+        "new",
+        _PROGRAMS,
+        "Make a folder with a job that runs: program, points, cell, test, CI workflow, editor settings.",
+    ),
+    Entry(
+        "init",
+        _PROGRAMS,
+        "Put a job that runs into an existing folder, as 'robolang new' does, and overwrite nothing.",
+    ),
+    Entry("examples", _PROGRAMS, "List the example programs, and copy one with its files.", group=True),
     Entry("run", _PROGRAMS, "Run a program on the controller and the simulated arm."),
     Entry(
         "check", _PROGRAMS, "Find errors in programs without running them, and correct those that have one correction."

@@ -29,6 +29,7 @@ _OF_CODE = {
     "RBL809": MOTION,
     "RBL811": MOTION,
     "RBL810": STORAGE,
+    "RBL841": STORAGE,
 }
 # A group of two digits counts before one of one: 40x is about the text, the rest of 4xx a motion (decision 0005).
 _OF_GROUP = {"1": DIAGNOSTICS, "2": DIAGNOSTICS, "40": DIAGNOSTICS, "4": MOTION, "5": MOTION, "9": INTERNAL}

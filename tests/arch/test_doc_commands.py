@@ -65,7 +65,7 @@ def parse_command(words: list[str]) -> None:
     command: Any = get_command(app)
     while words and words[0] in getattr(command, "commands", {}):
         command, words = command.commands[words[0]], words[1:]
-    assert not hasattr(command, "commands"), words
+    assert not hasattr(command, "commands") or command.invoke_without_command, words
     command.make_context("robolang", list(words))
 
 
