@@ -255,6 +255,7 @@ def add_files(folder: Path, files: Mapping[str, bytes]) -> None:
             for missing in reversed([each for each in path.parents if not each.exists()]):
                 missing.mkdir()
                 undo.append(missing.rmdir)
+            # before it is written: a disk that did not confirm the file may have it all the same
             undo.append(path.unlink)
             write_atomic(path, lambda stream, data=data: stream.write(data))  # type: ignore[misc]
     # Ctrl-C as well

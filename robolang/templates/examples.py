@@ -40,6 +40,7 @@ def examples() -> list[Example]:
 def example(name: str) -> Example:
     """Return an example by its name; ``Fault`` RBL844 where none has it."""
     known = {each.name: each for each in examples()}
+    # as a file it has its ending, and that is how one types it
     wanted = name.removesuffix(PROGRAM)
     if wanted not in known:
         near = difflib.get_close_matches(wanted.lower(), known, n=1)
@@ -55,6 +56,7 @@ def copy_example(name: str, folder: Path) -> list[Path]:
     """
     found = example(name)
     files = {f"{found.name}{ending}": read_bounded(path, MOST_BYTES) for ending, path in found.files.items()}
+    # read before the lock and before a folder is made: a program that cannot be read leaves nothing
     with only_one(folder):
         refuse_existing(folder, files)
         add_files(folder, files)

@@ -38,6 +38,7 @@ class Placement(Record):
     def pose(self, pose_mm_deg: Numbers) -> list[float]:
         """Return where a pose (6,) mm and deg that is turned about the upright only comes to."""
         *position, rx, ry, rz = pose_mm_deg
+        # R = Rz Ry Rx: a turn about the upright of the world adds to rz alone
         return [*self.position(position), rx, ry, _turned(rz + self.heading_deg)]
 
     def files(self, texts: Mapping[str, str], robot: str, name: str, cycle_s: Numbers) -> dict[str, str]:
@@ -81,6 +82,7 @@ class Placement(Record):
 
 def _plain(value: float) -> float:
     """Return a number as one writes it: without rests of a sum, and whole where it is."""
+    # three decimals of a mm or deg, as points are taught
     rounded = round(float(value), 3)
     return int(rounded) if rounded == int(rounded) else rounded
 

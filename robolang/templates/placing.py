@@ -72,7 +72,7 @@ def placements(kinematics: Kinematics, job: Job) -> Iterator[Placement]:
     for heading in HEADINGS:
         found: list[_Place] = []
         for place in _examined(kinematics, job, heading):
-            # in order of preference, so that one without a fault needs no comparison
+            # in order of preference, so that one without a fault needs no comparison with those that follow
             if place.rating >= 1.0:
                 yield place.placement
             else:
@@ -112,6 +112,7 @@ def _tables(reach: float, height: float) -> Iterator[Position]:
     """Yield where the middle of a table may be (3,), mm, what suits most arms first."""
     ahead = np.arange(NEAREST, FURTHEST, STEPS[0])
     above = np.arange(LOWEST, HIGHEST, STEPS[1])
+    # the sum of both deviations: neither a table at the right height far away nor a near one overhead comes early
     by_fit = sorted(
         ((x, z) for x in ahead for z in above), key=lambda site: abs(site[0] - BEST_AHEAD) + abs(site[1] - BEST_HEIGHT)
     )

@@ -34,6 +34,7 @@ class Template(Record):
 
 def template(name: str) -> Template:
     """Return a template; ``Fault`` RBL840 for a name that none has."""
+    # by the list, and never by the file: a name could lead out of the library
     if name not in NAMES:
         near = difflib.get_close_matches(name.lower(), NAMES, n=1)
         guess = f"did you mean {near[0]}? " if near else ""
@@ -43,6 +44,7 @@ def template(name: str) -> Template:
 
 def title_of(program: str) -> str:
     """Return the first sentence of the comment with which a program begins; empty without one."""
+    # a sentence may go on in the next line of the comment
     comment = itertools.takewhile(lambda line: line.startswith("'"), program.splitlines())
     sentence, end, _ = " ".join(line.removeprefix("'").strip() for line in comment).partition(". ")
     return sentence + end.strip()
