@@ -115,8 +115,8 @@ TABLE = (
         _OTHER,
         "Replay exported pulse tables: frequencies, path error, with --physics also the simulated arm.",
     ),
-    Entry("help", _HELP, "Show the help of a command, or explain a code."),
-    Entry("explain", _HELP, "Explain the code of an error, a warning or an alarm, and what to do."),
+    Entry("help", _HELP, "Show the help of a command, or explain a code or a word."),
+    Entry("explain", _HELP, "Explain a code and what to do, or a word of this language or another one."),
     Entry("rules", _HELP, "List the rules of robolang check; robolang explain CODE explains one of them."),
     Entry("config", _HELP, "Show the settings of the controller.", group=True),
     Entry(

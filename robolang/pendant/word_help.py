@@ -4,9 +4,8 @@ import re
 
 from robolang.pendant.command import Commands
 from robolang.pendant.known import Known
-from robolang.syntax.completion import completions
 from robolang.syntax.keywords import MOTIONS
-from robolang.values.functions import FUNCTIONS
+from robolang.syntax.word_help import of_function, of_other_languages, of_statement
 
 _WORDS = re.compile(r"[A-Za-z_]\w*\$?")
 
@@ -24,7 +23,8 @@ def explained(word: str, text: str, known: Known, commands: Commands) -> str:
     of_command = "" if command is None else "\n  ".join(filter(None, (command.form, command.help, command.more)))
     if text.lstrip().lower().startswith(word.lower()) and of_command:
         return of_command
-    return _of_name(key, known) or _of_function(key) or _of_statement(key, text) or of_command
+    own = _of_name(key, known) or of_function(key) or _of_statement(key, text) or of_command
+    return own or of_other_languages(word)
 
 
 def _of_name(key: str, known: Known) -> str:
@@ -35,19 +35,10 @@ def _of_name(key: str, known: Known) -> str:
     return f"{name.name}\n  {kind}{name.meaning}"
 
 
-def _of_function(key: str) -> str:
-    function = FUNCTIONS.get(key)
-    return "" if function is None else f"{function.form}\n  {function.help}"
-
-
 def _of_statement(key: str, text: str) -> str:
     """Return forms and meanings of the statements that a keyword begins; of the option, where it is one of a move."""
     first = next(iter(_WORDS.findall(text)), "").upper()
     after = first if first in MOTIONS and key != first else ""
     # THEN, TO and the like are explained by their statement
-    return _forms(key, after) or _forms(key, "") or _forms(first, "")
-
-
-def _forms(word: str, after: str) -> str:
-    found = (each for each in completions() if word in each.words.split() and each.after == after)
-    return "\n".join(dict.fromkeys(f"{each.form}\n  {each.help}" for each in found))
+    of_option = of_statement(key, after) if after else ""
+    return of_option or of_statement(key) or of_statement(first)

@@ -1,4 +1,4 @@
-"""``robolang explain CODE``: what a code means and what to do about it."""
+"""``robolang explain CODE``: what a code means and what to do about it, or what a word means and what to write."""
 
 import difflib
 from typing import TYPE_CHECKING, Annotated
@@ -12,15 +12,17 @@ if TYPE_CHECKING:
     from runtime.core.faults import Code
 
 
-_Code = Annotated[str | None, Argument("CODE", "Code such as RBL412, or its name; default: list all codes.")]
+_Code = Annotated[str | None, Argument("CODE", "Code such as RBL412, or a word as PTP; default: list codes.")]
 
 
 def explain(code: _Code) -> None:
-    """Explain the code of an error, a warning or an alarm, and what to do.
+    """Explain a code and what to do, or a word of this language or another one.
+
+    A line of another language in quotes is translated.
 
     Example: robolang explain RBL412
 
-    Exit codes: 0 done; 2 there is no such code.
+    Exit codes: 0 done; 2 there is no such code and no such word.
     """
     import robolang.lint.registry  # noqa: F401 - every code there is
     from runtime.core.faults import all_codes
@@ -30,20 +32,34 @@ def explain(code: _Code) -> None:
         if code is None:
             _print_all(entries)
         else:
-            _print(_find(code, entries))
+            _print_of(code, entries)
 
 
-def _find(text: str, entries: "list[Code]") -> "Code":
-    """Return the entry of a code, its number or its name, in any case; a usage error with the nearest otherwise."""
+def _print_of(text: str, entries: "list[Code]") -> None:
+    """Print the page of a code, or what a word means; a usage error with the nearest code for what is neither."""
+    from robolang.syntax.word_help import explained
+
+    entry = _find(text, entries)
+    if entry is not None:
+        _print(entry)
+    elif of_word := explained(text):
+        _print_lines(of_word)
+    else:
+        near = _near(_as_code(text), entries)
+        hint = f"did you mean {near}?" if near else "robolang explain lists the codes"
+        raise OptionValueError("CODE", f"there is no code and no word '{text}'; {hint}")
+
+
+def _find(text: str, entries: "list[Code]") -> "Code | None":
+    """Return the entry of a code, its number or its name, in any case."""
+    word = _as_code(text)
+    return next((entry for entry in entries if word in (entry.code, entry.name.upper())), None)
+
+
+def _as_code(text: str) -> str:
     word = text.strip().upper()
     # robolang explain 412
-    word = f"RBL{word}" if word.isdecimal() else word
-    for entry in entries:
-        if word in (entry.code, entry.name.upper()):
-            return entry
-    near = _near(word, entries)
-    hint = f"did you mean {near}?" if near else "robolang explain lists them"
-    raise OptionValueError("CODE", f"there is no code '{text}'; {hint}")
+    return f"RBL{word}" if word.isdecimal() else word
 
 
 def _near(word: str, entries: "list[Code]") -> str:
@@ -54,6 +70,15 @@ def _near(word: str, entries: "list[Code]") -> str:
     known = [form for entry in entries for form in (entry.code, entry.name.upper())]
     found = difflib.get_close_matches(word, known, n=1, cutoff=0.7)
     return found[0] if found and found[0].startswith("RBL") else "".join(found).lower()
+
+
+def _print_lines(text: str) -> None:
+    from robolang.cli.console import Console
+
+    console = Console()
+    for line in text.splitlines():
+        # a statement that is wrapped is not the one to copy
+        console.print(line, soft_wrap=True)
 
 
 def _print(entry: "Code") -> None:

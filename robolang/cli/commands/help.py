@@ -5,17 +5,15 @@ from typing import Annotated
 from robolang.cli.errors import reported
 from robolang.cli.options import Argument
 
-_Words = Annotated[
-    list[str] | None, Argument("[WORD]...", "A command, a code or its name; default: list all commands.")
-]
+_Words = Annotated[list[str] | None, Argument("[WORD]...", "A command, a code or a word; default: list all commands.")]
 
 
 def help(words: _Words) -> None:
-    """Show the help of a command, or explain a code.
+    """Show the help of a command, or explain a code or a word.
 
     Example: robolang help run
 
-    Exit codes: 0 done; 2 there is no such command and no such code.
+    Exit codes: 0 done; 2 there is no such command, code or word.
     """
     from robolang.cli.command_table import TABLE
     from robolang.cli.commands.explain import explain

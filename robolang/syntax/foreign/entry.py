@@ -29,11 +29,8 @@ MAKERS = {
     PAC: "Denso",
     VAL3: "Staubli",
     VPLUS: "Staubli, Adept",
-    C: "C and its relatives",
-    PYTHON: "Python",
-    G_CODE: "machine tools",
 }
-"""Whose language each one is."""
+"""Whose language each of the robot languages is."""
 
 # what many words mean; the tests know by these which node of the tree the statement to write has to be
 JOINTS = "moves all joints together"

@@ -97,4 +97,8 @@ _COMMENTS = (
     Shape((TP,), "--eg:pick the part", r" eg : <rest>", "' {rest}"),
     Shape((UR, PYTHON), "# go home", r" <rest>", "' {rest}"),
 )
-PROGRAM = (*_SUBS, *_JUMPS, *_BLOCKS, *_DATA, *_TEXTS, *reversed(_COMMENTS))
+_VALUES = (
+    Shape((TP, KAREL), "OUT(1) = ON", r" \( <n> \) = <state>", "OUT({n}) = {state}"),
+    Shape((KRL, RAPID), "ready = TRUE", r" = <state>", "{word} = {state}", words=_ANY),
+)
+PROGRAM = (*_SUBS, *_JUMPS, *_BLOCKS, *_DATA, *_VALUES, *_TEXTS, *reversed(_COMMENTS))

@@ -301,12 +301,12 @@ FUNCTIONS = (
 
 # ON and OFF are words of this language after HAND and SEAM, and values nowhere
 VALUES = (
-    Entry("TRUE", (KRL, RAPID, KAREL, UR, AS, VAL3), "is the value 1", _ON, note="what is not 0 is true"),
-    Entry("FALSE", (KRL, RAPID, KAREL, UR, AS, VAL3), "is the value 0", _OFF),
-    Entry("ON", (TP, INFORM, KAREL, AS, PAC), "is the value 1", _ON, note="what is not 0 is true"),
-    Entry("OFF", (TP, INFORM, KAREL, AS, PAC), "is the value 0", _OFF),
-    Entry("HIGH YES", (OTHERS,), "is the value 1", _ON, note="what is not 0 is true"),
-    Entry("LOW NO", (OTHERS,), "is the value 0", _OFF),
+    Entry("TRUE", (KRL, RAPID, KAREL, UR, AS, VAL3), "is the value 1", "x = 1", note="what is not 0 is true"),
+    Entry("FALSE", (KRL, RAPID, KAREL, UR, AS, VAL3), "is the value 0", "x = 0"),
+    Entry("ON", (TP, INFORM, KAREL, AS, PAC), "is the value 1", "x = 1", note="what is not 0 is true"),
+    Entry("OFF", (TP, INFORM, KAREL, AS, PAC), "is the value 0", "x = 0"),
+    Entry("HIGH YES", (OTHERS,), "is the value 1", "x = 1", note="what is not 0 is true"),
+    Entry("LOW NO", (OTHERS,), "is the value 0", "x = 0"),
     Entry(
         "PI M_PI",
         (RAPID, MELFA, AS, VPLUS, OTHERS),
@@ -319,8 +319,8 @@ VALUES = (
 
 OWN = (
     Entry("MOVE", (VPLUS,), "moves all joints together", "MOVEJ P1, SPEED 50"),
-    Entry("MOVE", (PAC,), "moves all joints with P, straight with L", "MOVEJ P1\nMOVE P2"),
-    Entry("MOVE", (KAREL,), "moves as $MOTYPE says", "MOVEJ P1\nMOVE P2"),
+    Entry("MOVE", (PAC,), "moves all joints with P, straight with L", "MOVEJ P1", note="with L: MOVE P1"),
+    Entry("MOVE", (KAREL,), "moves as $MOTYPE says", "MOVEJ P1", note="with LINEAR: MOVE P1"),
     Entry("MOVEJ", (RAPID, UR, VAL3), "moves all joints together", "MOVEJ P1, SPEED 50", note="SPEED is a percentage"),
     Entry("DEPART", (VPLUS,), "moves the joints back along the tool", "MOVEJ HERE * (0, 0, -50)"),
     Entry("APPROACH", (PAC,), "moves the joints with P, straight with L", "APPROACH P1, 50"),

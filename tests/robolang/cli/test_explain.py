@@ -71,3 +71,37 @@ def test_a_fresh_process_knows_every_code_of_the_page():
 
 def test_a_whole_code_that_does_not_exist_has_no_nearest():
     assert re.findall(r"RBL\d+", robolang("explain", "RBL999", code=2).stderr) == ["RBL703", "RBL999"]
+
+
+@pytest.mark.parametrize(
+    ("word", "parts"),
+    [
+        ("PTP", ("KRL", "KUKA", "MOVEJ P1")),
+        ("mov", ("MELFA", "Mitsubishi", "MOVEJ P1")),
+        ("set", ("RAPID", "OUT(1) = 1", "INFORM", "x = 5")),
+        ("MOVE", ("MOVE point", "V+", "MOVEJ P1")),
+        ("sin", ("SIN(x)",)),
+        ("fine", ("ZONE mm or FINE", "MELFA")),
+        ("tilt", ("WRIST HOLD component",)),
+        ("offs", ("RAPID", "P1 + (0, 0, 50)")),
+        ("==", ("==", "IF x = 1 THEN")),
+        ("MoveL p10, v1000, z50, tool0;", ("RAPID", "MOVE p10, SPEED 1000, ZONE 50")),
+        (" DO[1]=ON ", ("TP", "OUT(1) = 1")),
+    ],
+)
+def test_a_word_or_a_line_is_explained(word, parts):
+    said = robolang("explain", word).stdout
+    assert [part for part in parts if part not in said] == []
+
+
+def test_a_statement_to_copy_is_on_one_line():
+    lines = robolang("explain", "movej([0,-1.57,1.57,0,1.57,0], a=1.4, v=1.05)").stdout.splitlines()
+    assert any("MOVEJ JOINT(0, -89.954, 89.954, 0, 89.954, 0);" in line for line in lines)
+
+
+def test_no_word_is_the_name_of_a_code():
+    from robolang.syntax.foreign import words
+    from robolang.syntax.keywords import FUNCTIONS, KEYWORDS
+
+    names = {entry.name.upper() for entry in all_codes()}
+    assert names & (KEYWORDS | FUNCTIONS | words.instructions().keys() | words.functions().keys()) == set()
