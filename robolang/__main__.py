@@ -73,6 +73,12 @@ def main() -> None:
             run_app()
     except KeyboardInterrupt:
         sys.exit(130)
+    except ModuleNotFoundError as error:
+        # typer itself; what a command needs is answered within it
+        from robolang.cli.errors import say
+        from robolang.core.defects import internal
+
+        sys.exit(say(internal(error)))
 
 
 if __name__ == "__main__":

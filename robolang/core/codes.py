@@ -352,6 +352,12 @@ register(
         remedy="Give J1 to J7, X, Y, Z, RX, RY or RZ and a number of mm or deg, when the arm stands.",
     ),
     Code(
+        code="RBL845",
+        name="library-missing",
+        meaning="A library that the command needs is not installed: an install that only checks text has none of them.",
+        remedy="Install robolang with its dependencies: pip install robolang.",
+    ),
+    Code(
         code="RBL900",
         name="internal-error",
         meaning="robolang has an internal error; the program is not the cause.",
