@@ -5,6 +5,7 @@ import sys
 
 import pytest
 
+from tests.messages import fields
 from tests.programs.runs import ROOT
 
 HEAVY = ("google", "mcap", "mcap_protobuf", "mujoco", "numpy", "pinocchio", "prompt_toolkit", "ruckig", "websockets")
@@ -23,7 +24,7 @@ def run(missing, *words):
 @pytest.mark.parametrize("form", ["full", "sarif", "junit", "github", "json"])
 def test_text_is_checked_with_lark_alone(form):
     done = run((*HEAVY, *TABLES), "check", "programs", "--output-format", form)
-    assert (done.returncode, done.stderr.count("error")) == (0, 0)
+    assert done.returncode == 0
 
 
 @pytest.mark.parametrize(
@@ -48,5 +49,5 @@ def test_what_needs_no_numbers_works_with_typer(words):
 def test_what_needs_more_says_so(missing, words, library):
     done = run(missing, *words)
     assert done.returncode == 2
-    assert done.stderr.startswith(f"error RBL845 this command needs {library}")
+    assert {"RBL845", library} <= fields(done.stderr)
     assert "Traceback" not in done.stderr
