@@ -1,11 +1,11 @@
 """An install with few libraries: what checks text works, everything else says what it needs."""
 
+import re
 import subprocess
 import sys
 
 import pytest
 
-from tests.messages import fields
 from tests.programs.runs import ROOT
 
 HEAVY = ("google", "mcap", "mcap_protobuf", "mujoco", "numpy", "pinocchio", "prompt_toolkit", "ruckig", "websockets")
@@ -49,5 +49,5 @@ def test_what_needs_no_numbers_works_with_typer(words):
 def test_what_needs_more_says_so(missing, words, library):
     done = run(missing, *words)
     assert done.returncode == 2
-    assert {"RBL845", library} <= fields(done.stderr)
+    assert {"RBL845", library} <= set(re.findall(r"\w+", done.stderr.splitlines()[0]))
     assert "Traceback" not in done.stderr
