@@ -78,6 +78,7 @@ class Group(Record):
 
 
 Program = Annotated[str, Argument("PROG", "Program file (.rbl).")]
+RunProgram = Annotated[str, Argument("PROG", "Program file (.rbl), or - for stdin.")]
 OptionalProgram = Annotated[
     str | None, Argument("[PROG]", "Program file (.rbl), for its cell; default: the built-in cell.")
 ]

@@ -17,6 +17,7 @@ from runtime.core.record import Record
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from robolang.analysis.analysis import Analysis
     from robolang.core.diagnostics import Diagnostic
     from robolang.core.source import Source
 
@@ -45,6 +46,15 @@ def load(name: str, shown: str = "<stdin>") -> Loaded:
     raw, shown = (_standard_input(), shown) if name == STDIO else (read_bytes(name), name)
     mark = _MARK if raw.startswith(_MARK) else b""
     return Loaded(name=name, mark=mark, source=decode_program(shown, raw))
+
+
+def read(name: str) -> "str | Analysis":
+    """Return a program as ``load_project`` takes it: its path, and the text of the standard input for ``-``."""
+    if name != STDIO:
+        return name
+    from robolang.analysis.analysis import Analysis
+
+    return Analysis(source=load(name).source)
 
 
 def _standard_input() -> bytes:

@@ -16,10 +16,11 @@ from typing import TYPE_CHECKING, Any
 from robolang.cli.controller_settings import settings_of
 from robolang.cli.errors import DIAGNOSTICS, MOTION, STORAGE, reported, say
 from robolang.cli.live_options import FollowOptions, check_follow, followed, pages_of, remain
-from robolang.cli.options import CellOptions, Program, RunControllerOptions
+from robolang.cli.options import CellOptions, RunControllerOptions, RunProgram
 from robolang.cli.output import echo, show_finding
 from robolang.cli.outputs import check_outputs
 from robolang.cli.refuse import refuse
+from robolang.cli.rewrite import read
 from robolang.cli.run_options import OutputOptions, RunOptions
 from robolang.cli.signals import handled
 from robolang.cli.usage import OptionValueError
@@ -38,7 +39,7 @@ _MOST_SHOWN = 3
 
 
 def run(
-    program: Program,
+    program: RunProgram,
     files: CellOptions,
     controller: RunControllerOptions,
     simulation: RunOptions,
@@ -62,7 +63,7 @@ def run(
 
         # planning a long program takes its time, and there is no session yet that a signal could stop
         with handled(_left_before_motion):
-            project = load_project(program, files.cell, files.robot, profile=controller.profile, options=settings)
+            project = load_project(read(program), files.cell, files.robot, profile=controller.profile, options=settings)
             from robolang.execution.plan_memory import PlanMemory
 
             plans = PlanMemory(project)

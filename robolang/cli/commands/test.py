@@ -4,10 +4,11 @@
 all the same. ``--junit FILE`` writes the report, of one test suite for each program.
 """
 
+import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from robolang.cli.errors import DIAGNOSTICS, USAGE, reported, say_all
 from robolang.cli.options import AllowEmpty, Argument, Group, Option
@@ -53,6 +54,7 @@ class _TestOptions(Group):
     update: Annotated[bool, Option("--update", help="Replace the golden logs by the logs of these runs.")] = False
     junit: Annotated[Path | None, Option("--junit", metavar="FILE", help="Write a JUnit report to this file.")] = None
     allow_empty: AllowEmpty = False
+    as_json: Annotated[bool, Option("--json", help="Print one JSON object in place of the lines.")] = False
 
 
 def test(paths: _Paths, options: _TestOptions) -> None:
@@ -72,13 +74,16 @@ def test(paths: _Paths, options: _TestOptions) -> None:
         outcomes, worst = [], 0
         for found in _files(paths or ["."], options.allow_empty):
             outcome = _run(found, options.update) if isinstance(found, Path) else found
-            worst = max(worst, _tell(outcome))
+            worst = max(worst, _tell(outcome, quiet=options.as_json))
             outcomes.append(outcome)
         if junit is not None:
             text = _as_junit(outcomes)
             write_atomic(junit, lambda stream: stream.write(text.encode("utf-8")))
         good = sum(outcome.ok for outcome in outcomes)
-        echo(f"{good} of {len(outcomes)} programs as expected" if outcomes else "no test files (NAME.test.toml)")
+        if options.as_json:
+            echo(json.dumps({"ok": good == len(outcomes), "programs": [_as_json(each) for each in outcomes]}))
+        else:
+            echo(f"{good} of {len(outcomes)} programs as expected" if outcomes else "no test files (NAME.test.toml)")
     if worst:
         raise SystemExit(worst)
 
@@ -162,17 +167,24 @@ def _shown(project: "Project", item: "Diagnostic") -> str:
     return f"{project.source.path}:{place.line}:{place.column}: {item.code} {item.message}"
 
 
-def _tell(outcome: _Outcome) -> int:
-    """Print an outcome, the faults of its files to stderr, and return its exit code."""
+def _as_json(outcome: _Outcome) -> dict[str, Any]:
+    """Return an outcome in plain types: each verdict with its place where it has one."""
+    verdicts = [{"name": each.name, "ok": each.ok, "detail": outcome.line(each)} for each in outcome.verdicts]
+    return {"program": outcome.name, "ok": outcome.ok, "seconds": outcome.seconds, "verdicts": verdicts}
+
+
+def _tell(outcome: _Outcome, *, quiet: bool) -> int:
+    """Print an outcome unless ``quiet``, the faults of its files to stderr, and return its exit code."""
     from robolang.core.diagnostics import safe
 
     code = 0 if outcome.ok else DIAGNOSTICS
-    echo(safe(f"{'ok  ' if outcome.ok else 'FAIL'} {outcome.name}, {outcome.seconds:.3f} s"))
+    if not quiet:
+        echo(safe(f"{'ok  ' if outcome.ok else 'FAIL'} {outcome.name}, {outcome.seconds:.3f} s"))
     for verdict in outcome.verdicts:
         if verdict.fault is not None:
             # 2 at least: a text with errors is 1, and this is a test that was not carried out
             code = max(code, USAGE, say_all(verdict.fault))
-        elif not verdict.ok or verdict.noted:
+        elif (not verdict.ok or verdict.noted) and not quiet:
             echo(safe(f"     {outcome.line(verdict)}"))
     return code
 

@@ -8,8 +8,10 @@ import subprocess
 import sys
 
 import pytest
+from typer.testing import CliRunner
 
 from robolang.cli import run_table
+from robolang.cli.main import app
 from tests.campaign import some
 from tests.messages import fields, heads
 from tests.robolang.cli.commands import ROOT, dry, flat, robolang, shell
@@ -142,6 +144,17 @@ def test_all_prints_each_statement_and_worst_the_largest_tool_error_first(progra
 def test_the_report_is_printed_in_place_of_the_table(program):
     printed = json.loads(dry("p.rbl", "--json", "--report", "r.json").stdout)
     assert printed == json.loads((program.parent / "r.json").read_text())
+
+
+def test_a_program_comes_from_the_standard_input(program):
+    text = "10 MOVEJ P1\n20 PRINT 5\n"
+    runner = CliRunner(env={"COLUMNS": "80"})
+    found = runner.invoke(app, ["run", "-", "--no-physics", "--json", "--quiet"], input=text)
+    assert found.exit_code == 0
+    made = json.loads(found.stdout.split("\n", 1)[1])
+    assert [each["number"] for each in made["statements"]] == [10, 20]
+    wrong = runner.invoke(app, ["run", "-", "--no-physics"], input="MOVV P1\n")
+    assert (wrong.exit_code, heads(wrong.stderr)) == (1, ["<stdin>:1:1: error RBL112"])
 
 
 def last_word(text):

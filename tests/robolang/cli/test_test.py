@@ -1,5 +1,6 @@
 """``robolang test``: programs with expectations, the report, and golden logs that name where a run differs."""
 
+import json
 import shutil
 import xml.etree.ElementTree as ET
 from dataclasses import fields
@@ -45,6 +46,19 @@ def test_an_alarm_and_a_warning_are_placed_in_the_program_also_in_the_report(tmp
     assert place in failure.get("message")
     program = copied(tmp_path, "warnings = []", "2 MOVE P1\n3 MOVE P5\n")
     assert f"{program}:1:3: RBL517 " in robolang("test", program, code=1).stdout
+
+
+def test_outcomes_are_printed_as_json(tmp_path):
+    program = copied(tmp_path, "cycle_s = [1, 2]", "DELAY 3\n")
+    result = robolang("test", program, "--json", code=1)
+    found = json.loads(result.stdout)
+    assert not found["ok"]
+    (job,) = found["programs"]
+    assert (job["program"], job["ok"], job["seconds"]) == (str(program), False, 3.0)
+    assert {each["name"]: each["ok"] for each in job["verdicts"]}["cycle"] is False
+    (tmp_path / "job.test.toml").write_text("schema = 2\n")
+    broken = json.loads(robolang("test", program, "--json", code=2).stdout)
+    assert [each["name"] for each in broken["programs"][0]["verdicts"]] == ["files"]
 
 
 def test_what_is_not_as_expected_is_named(tmp_path):
