@@ -79,11 +79,7 @@ def test(paths: _Paths, options: _TestOptions) -> None:
         if junit is not None:
             text = _as_junit(outcomes)
             write_atomic(junit, lambda stream: stream.write(text.encode("utf-8")))
-        good = sum(outcome.ok for outcome in outcomes)
-        if options.as_json:
-            echo(json.dumps({"ok": good == len(outcomes), "programs": [_as_json(each) for each in outcomes]}))
-        else:
-            echo(f"{good} of {len(outcomes)} programs as expected" if outcomes else "no test files (NAME.test.toml)")
+        _sum_up(outcomes, as_json=options.as_json)
     if worst:
         raise SystemExit(worst)
 
@@ -175,18 +171,31 @@ def _as_json(outcome: _Outcome) -> dict[str, Any]:
 
 def _tell(outcome: _Outcome, *, quiet: bool) -> int:
     """Print an outcome unless ``quiet``, the faults of its files to stderr, and return its exit code."""
-    from robolang.core.diagnostics import safe
-
-    code = 0 if outcome.ok else DIAGNOSTICS
     if not quiet:
-        echo(safe(f"{'ok  ' if outcome.ok else 'FAIL'} {outcome.name}, {outcome.seconds:.3f} s"))
+        _show(outcome)
+    code = 0 if outcome.ok else DIAGNOSTICS
     for verdict in outcome.verdicts:
         if verdict.fault is not None:
             # 2 at least: a text with errors is 1, and this is a test that was not carried out
             code = max(code, USAGE, say_all(verdict.fault))
-        elif (not verdict.ok or verdict.noted) and not quiet:
-            echo(safe(f"     {outcome.line(verdict)}"))
     return code
+
+
+def _show(outcome: _Outcome) -> None:
+    from robolang.core.diagnostics import safe
+
+    echo(safe(f"{'ok  ' if outcome.ok else 'FAIL'} {outcome.name}, {outcome.seconds:.3f} s"))
+    for verdict in outcome.verdicts:
+        if verdict.fault is None and (not verdict.ok or verdict.noted):
+            echo(safe(f"     {outcome.line(verdict)}"))
+
+
+def _sum_up(outcomes: list[_Outcome], *, as_json: bool) -> None:
+    good = sum(outcome.ok for outcome in outcomes)
+    if as_json:
+        echo(json.dumps({"ok": good == len(outcomes), "programs": [_as_json(each) for each in outcomes]}))
+    else:
+        echo(f"{good} of {len(outcomes)} programs as expected" if outcomes else "no test files (NAME.test.toml)")
 
 
 def _as_junit(outcomes: list[_Outcome]) -> str:
