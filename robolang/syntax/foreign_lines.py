@@ -14,7 +14,8 @@ from runtime.core.record import Record
 
 _MOST = 200
 """Characters of a line that is still compared with the shapes: what is longer is no statement by hand."""
-_LABEL = re.compile(r"[ \t]*\*\w+(?=[ \t]+\S)")
+_BEFORE = re.compile(r"[ \t]*(?:\*\w+(?=[ \t]+\S)|:)?")
+"""What stands before a line: a label of this language, or the colon after the number of a line of TP."""
 _END = re.compile(r"[ \t]*;?[ \t]*\Z")
 
 
@@ -23,12 +24,13 @@ class Proposal(Record):
 
     shape: Shape
     statements: tuple[str, ...]
+    note: str
 
     @property
     def advice(self) -> str:
         """What to write here, as a hint."""
         write = f"write {' and '.join(self.statements)}" if self.statements else "remove the line"
-        return f"{write}; {self.shape.note}" if self.shape.note else write
+        return f"{write}; {self.note}" if self.note else write
 
 
 def proposal(code: str) -> Proposal | None:
@@ -36,9 +38,9 @@ def proposal(code: str) -> Proposal | None:
     if len(code) > _MOST:
         return None
     # a label is of this language, and a line of another one may have been typed after it
-    label = _LABEL.match(code)
+    before = _BEFORE.match(code)
     # JMP LBL[1]; of TP and RAPID: no sign ends a line here
-    text = _END.sub("", code[label.end() :] if label else code, count=1)
+    text = _END.sub("", code[before.end() :] if before else code, count=1)
     first = FIRST.match(text)
     if first is None:
         return None
@@ -46,10 +48,10 @@ def proposal(code: str) -> Proposal | None:
         found = compiled(shape).fullmatch(text, first.end())
         if found is None:
             continue
-        statements = filled(shape.write, {**found.groupdict(), "word": first[1]}).splitlines()
-        shown = tuple(map(_canonical, statements))
+        words = {**found.groupdict(), "word": first[1]}
+        shown = tuple(map(_canonical, filled(shape.write, words).splitlines()))
         if all(shown):
-            return Proposal(shape=shape, statements=shown)
+            return Proposal(shape=shape, statements=shown, note=filled(shape.note, words))
     return None
 
 

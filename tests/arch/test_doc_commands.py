@@ -11,7 +11,8 @@ from robolang.cli.main import app
 from tests.arch.test_docs import PAGES, ROOT, fenced, name, prose
 
 COMMAND = re.compile(r"`(robolang(?: [^`]*)?)`")
-OPTION = re.compile(r"`(--[a-z-]+)")
+OPTION = re.compile(r"`(--[a-z-]+)(?!:)\b")
+"""What begins as an option; ``--eg:`` is a remark of FANUC TP."""
 MAKE = re.compile(r"`(make [\w-]+)`")
 
 

@@ -4,7 +4,7 @@ from robolang.syntax.foreign.entry import AS, INFORM, KAREL, KRL, MELFA, PAC, RA
 from robolang.syntax.foreign.shape import Shape
 
 _CONT = "ZONE is a radius in mm, write one to blend"
-_CNT = "CNT50 is a percentage: ZONE is a radius in mm"
+_CNT = "CNT{num} is a percentage: ZONE is a radius in mm"
 _PL = "PL is a level, ZONE a radius in mm"
 _PCT = "SPEED of MOVEJ is a percentage, the speed of this line is none"
 _SPEED = "SPEED of MOVE is in mm/s, the speed of this line is not"
@@ -140,9 +140,9 @@ _INFORM = (
 # CNT is no length: how far from the corner the arm turns depends on its speed
 _TP = (
     Shape((TP,), "J P[1] 100% FINE", r" <point> <pct> % <fine>.*", "MOVEJ {point}{pct}{fine}"),
-    Shape((TP,), "J P[1] 100% CNT50", r" <point> <pct> % CNT \d+.*", "MOVEJ {point}{pct}", _CNT),
+    Shape((TP,), "J P[1] 100% CNT50", r" <point> <pct> % CNT <num>.*", "MOVEJ {point}{pct}", _CNT),
     Shape((TP,), "L P[2] 250mm/sec FINE", r" <point> <mms> mm/sec <fine>.*", "MOVE {point}{mms}{fine}"),
-    Shape((TP,), "L P[2] 250mm/sec CNT50", r" <point> <mms> mm/sec CNT \d+.*", "MOVE {point}{mms}", _CNT),
+    Shape((TP,), "L P[2] 250mm/sec CNT50", r" <point> <mms> mm/sec CNT <num>.*", "MOVE {point}{mms}", _CNT),
     Shape(
         (TP,),
         "C P[2] P[3] 250mm/sec FINE",
@@ -152,7 +152,7 @@ _TP = (
     Shape(
         (TP,),
         "C P[2] P[3] 250mm/sec CNT50",
-        r" <point1>[ \t,:]+<point2> <mms> mm/sec CNT.*",
+        r" <point1>[ \t,:]+<point2> <mms> mm/sec CNT <num>.*",
         "MOVEC {point1}, {point2}{mms}",
         _CNT,
     ),

@@ -4,7 +4,7 @@ from robolang.syntax.foreign.entry import AS, INFORM, KAREL, KRL, MELFA, PYTHON,
 from robolang.syntax.foreign.shape import Shape
 
 _MAIN = "the main program has no head, it is what stands in no SUB"
-_HEAD = f"remove the line where it begins the main program: {_MAIN}"
+_HEAD = "or remove the line: a main program has no head"
 _ANY = "*"
 
 # which DEF of KRL begins the main program the line does not say: it has the name of its file

@@ -38,6 +38,7 @@ _POLL = "IF IN(1) = 1 THEN GOTO *STOPPED"
 _POLLED = "an input is read between moves, not during one"
 _NO_LEAVE = "GOTO *AFTER"
 _AFTER = "the label is after the end of the loop"
+_FROM_1 = "numbers begin at 1 here"
 _ALONE = "a program runs alone"
 
 # SET stands twice: the same word gives a variable a value in INFORM
@@ -61,8 +62,8 @@ SIGNALS = (
     Entry("M_OUT M_OUTB M_OUTW", (MELFA,), OUTPUT, _ON),
     Entry("M_IN M_INB M_INW", (MELFA,), INPUT, _READ),
     Entry("IO", (PAC,), "is an input or an output", _ON, note="IN(1) is an input"),
-    Entry("SET_DIGITAL_OUT SET_STANDARD_DIGITAL_OUT SET_TOOL_DIGITAL_OUT SET_ANALOG_OUT", (UR,), OUTPUT, _ON),
-    Entry("GET_DIGITAL_IN GET_STANDARD_DIGITAL_IN GET_TOOL_DIGITAL_IN GET_ANALOG_IN", (UR,), INPUT, _READ),
+    Entry("SET_DIGITAL_OUT SET_STANDARD_DIGITAL_OUT SET_TOOL_DIGITAL_OUT SET_ANALOG_OUT", (UR,), OUTPUT, _ON, _FROM_1),
+    Entry("GET_DIGITAL_IN GET_STANDARD_DIGITAL_IN GET_TOOL_DIGITAL_IN GET_ANALOG_IN", (UR,), INPUT, _READ, _FROM_1),
     Entry("WAITTIME", (RAPID,), TIME, "DELAY 0.5"),
     Entry("WAITDI WAITDO WAITGI WAITUNTIL", (RAPID,), CONDITION, _UNTIL),
     Entry("WAITROB", (RAPID,), "waits for the end of motion", note="what reads or acts waits for it here"),
@@ -71,6 +72,7 @@ SIGNALS = (
     Entry("SWAIT", (AS,), CONDITION, _UNTIL, note="1001 there is input 1"),
     Entry("SLEEP", (UR, PYTHON), TIME, "DELAY 0.5"),
     Entry("DWELL G4 G04", (G_CODE,), TIME, "DELAY 0.5"),
+    Entry("SYNC", (UR,), "waits for a cycle", note="WAIT lets time pass"),
     Entry("WAITSIG", (OTHERS,), CONDITION, _UNTIL),
     Entry(
         "CLKRESET CLKSTART CLKSTOP", (RAPID,), "is a stopwatch", "t0 = TIMER", note="TIMER - t0 are the seconds since"

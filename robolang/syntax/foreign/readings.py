@@ -15,8 +15,9 @@ _POINT = r"#?[A-Za-z_]\w*(?:[ ]*\[[ ]*\d+[ ]*(?::[^\]]*)?\])?"
 _SHIFTED = rf"(?:OFFS|RELTOOL)[ ]*\([ ]*[A-Za-z_]\w*[ ]*,[ ]*{_LIST}[ ]*\)"
 _IO = re.compile(
     r"(?i)(?:\$IN|\bS?DI|\bDIN|\bRI|\bGI|\bM_IN|\bIN#|\bIN|\bIO|\bget_(?:standard_|tool_)?digital_in)"
-    r"[ ]*[\[(][ ]*(\d+)[ ]*(?::[^\])]*)?[\])]"
+    r"[ ]*[\[(][ ]*(0*[1-9]\d*)[ ]*(?::[^\])]*)?[\])]"
 )
+# numbers begin at 1 here: input 0 of URScript is another one, and is not carried over
 _SIG = re.compile(r"(?i)\bSIG[ ]*\([ ]*1(\d{3})[ ]*\)")
 # an output of a robot is read nowhere in this language, so IO of PacScript in a condition is an input
 _STATES = {**dict.fromkeys(("ON", "TRUE", "HIGH", "1"), "1"), **dict.fromkeys(("OFF", "FALSE", "LOW", "0"), "0")}
@@ -117,7 +118,7 @@ READINGS = {
     "point": Reading(_POINT, point),
     "place": Reading(rf"(?:{_SHIFTED}|{_POINT})", place),
     "name": Reading(r"[A-Za-z_]\w*"),
-    "n": Reading(r"\d{1,6}", lambda text: str(int(text))),
+    "n": Reading(r"0*[1-9]\d{0,5}", lambda text: str(int(text))),
     "num": Reading(_NUMBER, number),
     "away": Reading(rf"-[ ]*{_NUMBER}", lambda text: number(text.lstrip("- "))),
     "s": Reading(_NUMBER, number),

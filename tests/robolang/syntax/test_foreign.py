@@ -6,7 +6,7 @@ import pytest
 
 from robolang.analysis import expression_check
 from robolang.analysis.checker import check
-from robolang.core.diagnostics import in_order
+from robolang.core.diagnostics import Severity, in_order
 from robolang.syntax import hints, keywords, other_languages
 from robolang.syntax.ast import (
     Approach,
@@ -63,7 +63,7 @@ def found(text):
     """Everything in a text that is worth more than a remark."""
     parsed = parse(source(text))
     items = in_order((*parsed.diagnostics, *check(parsed.program, cell_with(points=["P1", "P2"]))))
-    return [item for item in items if item.severity != "info"]
+    return [item for item in items if item.severity is not Severity.INFO]
 
 
 def statements(text):
@@ -71,6 +71,12 @@ def statements(text):
     result = parse(source(text))
     assert result.diagnostics == (), text
     return [line.statement for line in result.program.lines]
+
+
+def refused(text):
+    """The codes of what a check refuses in statements; blocks, names and labels are those of another program."""
+    of_others = {"RBL201", "RBL202", "RBL211", "RBL212", "RBL213", "RBL215", "RBL301", "RBL305", "RBL306"}
+    return [item.code for item in found(text) if item.severity is Severity.ERROR and item.code not in of_others]
 
 
 # --- lines as somebody types them by mistake --------------------------------------------------------------------------
@@ -113,6 +119,7 @@ def test_the_table_has_words_of_all_languages():
 def test_what_a_word_stands_for_is_read_and_does_the_same(each):
     assert each.write or each.note or each.missing
     nodes = statements(each.write)
+    assert refused(each.write) == []
     if kinds := NODES.get(each.means):
         assert isinstance(nodes[0], kinds)
     if each.means in (meanings.CLOSES, meanings.OPENS):
@@ -165,7 +172,8 @@ def test_the_example_of_a_shape_has_that_shape(shape):
     result = proposal(shape.example)
     assert result is not None
     assert result.shape == shape
-    assert statements("\n".join(result.statements)) or shape.note
+    assert statements("\n".join(result.statements)) or result.note
+    assert refused("\n".join(result.statements)) == []
     assert bool(result.statements) == bool(shape.write)
 
 
