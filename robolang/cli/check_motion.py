@@ -8,9 +8,11 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from textwrap import wrap
 
 from robolang.analysis.analysis import Analysis
 from robolang.cli import lines
+from robolang.cli.run_table import estimates
 from robolang.core.bounds import Bounds
 from robolang.core.diagnostics import Diagnostic, safe
 from robolang.execution.dry_run import Rehearsal
@@ -19,6 +21,8 @@ from robolang.planning.motion_findings import DEFAULTS, LoadShare, findings, wor
 from robolang.planning.path_coverage import Exploration, explore
 from robolang.project.project import Project, load_project
 from runtime.core.tomlfile import FileFault
+from runtime.robot.model.estimated import axis_key, mark
+from runtime.robot.model.spec import RobotSpec
 
 _WIDTH = 80
 """Columns of the table. Not those of the terminal: it stands in report files too."""
@@ -105,6 +109,7 @@ def _times(project: Project, explored: Exploration, rows: Sequence[LineTime]) ->
     return {
         "program": project.source.path,
         "robot": project.cell.robot.name,
+        "robot_estimated": list(project.cell.robot.estimated),
         "total_s": explored.rehearsal.total_us / 1e6,
         "complete": not explored.rehearsal.refused,
         "lines": [asdict(row) for row in rows],
@@ -135,13 +140,16 @@ def _table(project: Project, rehearsal: Rehearsal, rows: Sequence[LineTime]) -> 
     cells = [
         [*where, "statement", *names],
         [*blank, "", *units],
-        *([*lines.cells(asdict(row), where), safe(row.text), *_cells(row)] for row in rows),
+        *([*lines.cells(asdict(row), where), safe(row.text), *_cells(row, project.cell.robot)] for row in rows),
         [*blank, "total", "", f"{rehearsal.total_us / 1e6:.3f}", *[""] * (len(names) - 2)],
     ]
+    facts = estimates(list(project.cell.robot.estimated))
+    wrapped = [each for line in facts for each in wrap(line, _WIDTH)]
     table = [
         f"{safe(project.source.path)} on {project.cell.robot.name}, planned without physics",
         *_aligned(cells, len(where)),
         *_wrist(project, rehearsal),
+        *wrapped,
     ]
     return "\n".join(line.rstrip() for line in table) + "\n"
 
@@ -205,12 +213,14 @@ def _share(share: LoadShare) -> str:
     return f"J{share.axis + 1} {value:.3g} of {'' if share.given else '~'}{share.limit:.3g}"
 
 
-def _cells(row: LineTime) -> tuple[str, ...]:
+def _cells(row: LineTime, robot: RobotSpec) -> tuple[str, ...]:
+    # the share of a limit that is an estimate is no better than the limit
+    known = "" if row.joint == "" else mark(robot.estimated, axis_key(int(row.joint[1:]) - 1, "max_speed_deg_s"))
     return (
         str(row.count),
         f"{row.seconds:.3f}",
         "" if row.length_mm is None else f"{row.length_mm:.1f}",
-        "" if row.speed_pct is None else f"{row.joint} {row.speed_pct:4.0f}",
+        "" if row.speed_pct is None else f"{row.joint} {f'{known}{row.speed_pct:.0f}':>4}",
         "" if row.margin_deg is None else f"{row.margin_deg:.1f}",
         "" if row.wrist_deg is None else f"{row.wrist_deg:.1f}",
     )

@@ -14,6 +14,7 @@ from rich.table import Table
 from robolang.cli import lines
 from robolang.cli.console import Console
 from robolang.core.diagnostics import safe
+from runtime.robot.model.estimated import decisive, groups
 
 
 class _Column(NamedTuple):
@@ -113,6 +114,12 @@ def counted(count: int, noun: str) -> str:
     return f"{count} {noun}{'s' * (count != 1)}"
 
 
+def estimates(names: Sequence[str]) -> list[str]:
+    """Return the line about the values of a robot that are estimates, none where no torque and no error follows from
+    them; ``names`` as in ``RobotSpec.estimated``."""
+    return [f"estimated ({len(names)} values): {', '.join(groups(names))}"] if decisive(names) else []
+
+
 def _facts(report: dict[str, Any]) -> list[str]:
     dynamics, cycles = report["dynamics"], report["cycles"]
     lines = [
@@ -123,6 +130,7 @@ def _facts(report: dict[str, Any]) -> list[str]:
     if cycles:
         ran += f"; inertia of each axis every {dynamics['refresh_mean_ms']:.1f} to {dynamics['refresh_max_ms']:.1f} ms"
     lines.append(ran)
+    lines += estimates(report["robot_estimated"])
     for name, entry in report["objects"].items():
         # adding zero turns a rounded -0.0 into 0.0
         x, y, z, rx, ry, rz = (round(value, 3) + 0.0 for value in entry["pose_mm_deg"])

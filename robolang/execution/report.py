@@ -31,6 +31,7 @@ def build_report(record: RunRecord, measured: Sequence[Measured], wall_s: float)
     found = {
         "program": record.project.source.path,
         "robot": controller.spec.name,
+        "robot_estimated": list(controller.spec.estimated),
         "ok": not record.alarms,
         "physics": record.physics,
         "servo": record.project.profile.servo.mode,

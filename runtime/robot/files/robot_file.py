@@ -141,7 +141,8 @@ def builtin(name: str) -> RobotFile:
 
 def parse(source: Source) -> RobotFile:
     """Return the content of a robot file; ``FileFault`` (RBL6xx) at the line that is wrong."""
-    table, estimated = load_marked(source)
+    marked = load_marked(source)
+    table = marked.table
     table.integer("schema", low=SCHEMA, high=SCHEMA)
     name, title = table.text("name"), table.text("title")
     kinematics = table.table("kinematics")
@@ -166,14 +167,15 @@ def parse(source: Source) -> RobotFile:
         axes=tuple(_axis(each, form, names) for each in tables),
         path=path,
         opw=opw,
-        estimated=estimated,
+        estimated={},
         table=table,
     )
+    table.ask("estimated")
     table.done()
     # whether the parameters fit the axes needs numerics and is judged by ``loader``; their number does not
     if opw is not None and len(tables) != 6:
         table.fail("RBL615", f"the closed form is for 6 axes, not {len(tables)}", key="kinematics")
-    return found
+    return found.replaced(estimated=marked.estimated())
 
 
 def rated_payload(table: Table) -> float:

@@ -88,7 +88,7 @@ def read_overlay(source: Source) -> Overlay:
 
     Kinematics needs ranges before the drives are known: 'robolang kin' works with a template that is not filled in.
     """
-    table, _ = load_marked(source)
+    table = load_marked(source).table
     bodies: dict[str, BodyRow] = {}
     ranges: dict[str, tuple[float, float]] = {}
     tables: dict[str, Table] = {}
@@ -139,7 +139,8 @@ class SidecarFile(Record):
 
 def read_sidecar(source: Source, model: str) -> SidecarFile:
     """Return the sidecar of the file named ``model``; ``FileFault`` RBL6xx, RBL608 lists all missing keys."""
-    table, estimated = load_marked(source)
+    marked = load_marked(source)
+    table = marked.table
     table.integer("schema", low=SCHEMA, high=SCHEMA)
     if (named := table.text("robot")) != model:
         table.fail("RBL610", f"this sidecar is for '{named}', not for '{model}'", key="robot")
@@ -154,7 +155,7 @@ def read_sidecar(source: Source, model: str) -> SidecarFile:
         link_radii=drives.link_radii(axes),
         axes=tuple(_axis(axis) for axis in axes),
         path=drives.path_limits(table.table("path")),
-        estimated=estimated,
+        estimated=marked.estimated(),
         table=table,
     )
     table.text("flange", "")  # read by ``read_overlay``; named here so that it is a known key

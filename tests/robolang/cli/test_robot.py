@@ -1,3 +1,4 @@
+import json
 import os
 
 import pytest
@@ -6,14 +7,65 @@ from runtime.robot.files.loader import load_builtin
 from runtime.robot.files.robot_file import library
 from tests.messages import fields
 from tests.robolang.cli.commands import PUMA, robolang
+from tests.runtime.robot.models import SIX
 
 
 def test_the_library_is_listed():
-    assert robolang("robot", "list").stdout.splitlines() == [
-        "irb2400     ABB IRB 2400/10, 6 axes, 10 kg",
-        "manutec_r3  Manutec r3, 6 axes, 15 kg",
-        "puma560     Unimation Puma 560, 6 axes, 2.5 kg",
-    ]
+    text = robolang("robot", "list").stdout
+    assert max(map(len, text.splitlines())) <= 80
+    rows = [line.split() for line in text.splitlines()]
+    assert ["irb2400", "ABB", "IRB", "2400/10", "6", "1630", "10", "bodies,", "accelerations,"] in rows
+    assert ["manutec_r3", "Manutec", "r3", "6", "1690", "15", "ranges,", "drives,", "loops,"] in rows
+    found = json.loads(robolang("robot", "list", "--json").stdout)
+    assert [row["name"] for row in found] == library()
+    assert found[2] == {
+        "name": "puma560",
+        "title": "Unimation Puma 560",
+        "axes": 6,
+        "reach_mm": 880.0,
+        "rated_payload_kg": 2.5,
+        "estimated": ["speeds", "accelerations", "drives", "loops", "path limits", "link radii"],
+    }
+
+
+def test_a_robot_is_given_as_json(tmp_path):
+    found = json.loads(robolang("robot", "show", "puma560", "--json").stdout)
+    axis = found["axes"][1]
+    assert axis["motor"]["gear_ratio"] == 107.815
+    assert axis["mass_kg"] == 17.4
+    assert axis["range_deg"] == pytest.approx([-45.0, 225.0])
+    assert axis["motor"]["joint_stiffness_nm_rad"] is None
+    assert found["estimated"]["axes.6.servo.position_bandwidth_rad_s"] == ""
+    assert "axes.2.motor.torque_constant_nm_a" not in found["estimated"]
+    assert found["drives"] is True
+    arm = tmp_path / "six.urdf"
+    arm.write_text(SIX)
+    found = json.loads(robolang("robot", "show", arm, "--json").stdout)
+    assert found["drives"] is False
+    assert found["estimated"]["axes.1.motor.gear_ratio"]
+
+
+def test_estimates_are_marked_and_their_rules_are_listed(tmp_path):
+    arm = tmp_path / "six.urdf"
+    arm.write_text(SIX)
+    robolang("robot", "import", arm, "--estimate")
+    text = robolang("robot", "show", arm).stdout
+    assert max(map(len, text.splitlines())) <= 80
+    rows = [line.split() for line in text.splitlines()]
+    limits = next(row for row in rows if row[:2] == ["J1", "j1"])
+    assert limits[5] == "171.887"  # the speed of the file
+    assert limits[6].startswith("~")
+    assert ["J6", "~35", "~140", "~500", "~131072"] in rows
+    assert "motor.gear_ratio of J1 to J6 (6): motor at 315 rad/s" in " ".join(text.split())
+
+
+def test_a_name_of_no_value_in_the_list_of_estimates_is_refused(tmp_path):
+    path = tmp_path / "r.toml"
+    for name in ("axes.*.gears", "axes.7.max_torque_nm"):
+        path.write_text(PUMA.read_text().replace('"path.*"', f'"{name}"'))
+        error = robolang("robot", "show", path, code=2).stderr
+        assert "r.toml:17:1: error RBL610" in error
+        assert name in fields(error)
 
 
 def test_every_column_fits_80_characters_uncut():
@@ -24,13 +76,13 @@ def test_every_column_fits_80_characters_uncut():
     for axis in spec.axes:
         motor = axis.motor
         for number in (motor.gear_ratio, motor.rotor_inertia, motor.viscous_friction, axis.limits.torque):
-            assert f" {number:g} " in text
+            assert f" {number:g} " in text.replace("~", " ")
         assert " {:g}/{:g} ".format(*motor.coulomb_friction) in text
         assert f"{axis.name} " in text
     loops = next(
         line for line in text.splitlines()[text.splitlines().index("Servo loops ".ljust(60)) :] if " J1 " in line
     )
-    assert loops.split() == ["J1", "30", "120", "300", "131072"]
+    assert loops.split() == ["J1", "~30", "~120", "~300", "~131072"]
     bodies = [line.split() for line in text.splitlines() if line.startswith(" J3 ")][-1]
     assert bodies == ["J3", "4.8", "0", "70", "164.15", "0.066", "0.0125", "0.086", "0.06975", "0.01625", "0.086"]
 

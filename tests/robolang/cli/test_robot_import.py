@@ -1,5 +1,6 @@
 """``robolang robot import`` and the way of a model file through the commands."""
 
+import json
 import re
 from dataclasses import replace
 
@@ -126,7 +127,18 @@ def test_an_arm_without_drives_moves_as_an_ideal_one_and_physics_are_refused(tmp
     with pytest.raises(FileFault, match="RBL608"):
         load_any_robot(str(arm))
     robolang("robot", "import", arm, "--estimate")
-    robolang("run", program)
+    said = robolang("run", program, "--report", tmp_path / "r.json").stdout
+    names = json.loads((tmp_path / "r.json").read_text())["robot_estimated"]
+    assert len(names) == 86
+    assert "axes.1.motor.gear_ratio" in names
+    assert "axes.1.max_speed_deg_s" not in names
+    assert "estimated (86 values)" in flat(said)
+    plan = robolang("check", "--motion", program).stdout
+    assert "estimated (86 values)" in plan
+    arm.write_text(SIX.replace(' velocity="3.0"', "").replace(' velocity="3"', ""))
+    robolang("robot", "import", arm, "--estimate", "--force")
+    assert re.search(r" J\d +~\d+ ", robolang("check", "--motion", program).stdout)
+    assert "axes.1.max_speed_deg_s" in json.loads(robolang("robot", "show", arm, "--json").stdout)["estimated"]
 
 
 SENSOR = 'kind = "ramp"\ndeviation_mm_deg = [3, 0, 2, 0, 0, 0]\nover_mm = 200\n'

@@ -70,6 +70,7 @@ def report(**changes):
     return {
         "program": "p.rbl",
         "robot": "puma560",
+        "robot_estimated": [],
         "sim_time_s": 0.0,
         "wall_time_s": 0.0,
         "realtime_factor": 0.0,

@@ -16,6 +16,7 @@ from tests.robolang.cli.commands import dry, robolang
 REPORT_KEYS = {
     "program",
     "robot",
+    "robot_estimated",
     "ok",
     "physics",
     "servo",
