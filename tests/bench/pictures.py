@@ -3,6 +3,7 @@
 Every picture comes from a command that a reader has too; pages are opened in a browser without a network.
 """
 
+import os
 import re
 import shutil
 import subprocess
@@ -122,7 +123,16 @@ def plot(work: Path) -> None:
     robolang("plot", work / "run.npz", "tool_error", "D:1", "-o", FOLDER / "plot.svg")
 
 
-PICTURES: tuple[Callable[[Path], None], ...] = (page_of_a_run, two_runs, plan, live, robots, plot)
+def tutorial(work: Path) -> None:
+    """The job of the tutorial after its last step, by the commands of the page itself."""
+    root = FOLDER.parents[1]
+    blocks = re.findall(r"^```sh\n(.*?)^```", (root / "docs" / "tutorial.md").read_text("utf-8"), re.M | re.S)
+    path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+    subprocess.run(["bash", "-eu", "-c", "".join(blocks)], cwd=root, env={**os.environ, "PATH": path}, check=True)
+    shutil.copy(root / "out" / "tutorial" / "post.png", FOLDER / "tutorial.png")
+
+
+PICTURES: tuple[Callable[[Path], None], ...] = (page_of_a_run, two_runs, plan, live, robots, plot, tutorial)
 
 
 if __name__ == "__main__":
