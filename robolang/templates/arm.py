@@ -11,7 +11,7 @@ from robolang.project.discovery import no_robot
 from runtime.core.record import Record
 from runtime.core.tomlfile import read_source
 from runtime.robot.files import robot_file
-from runtime.robot.files.arm_file import ROBOT_ENDINGS, is_model, read_arm_file
+from runtime.robot.files.arm_file import ROBOT_ENDINGS, is_model, read_arm_file, sidecar_source
 from runtime.robot.files.sidecar_file import sidecar_path
 
 
@@ -65,5 +65,7 @@ def _inside(path: Path, project: Path) -> str | None:
 
 
 def _copied(path: Path) -> dict[str, bytes]:
-    sources = [path, *([sidecar_path(path)] if is_model(path.name) else [])]
-    return {each.name: read_source(each).text.encode() for each in sources}
+    files = {path.name: read_source(path).text.encode()}
+    # a model without a sidecar is an ideal arm
+    sidecar = sidecar_source(path) if is_model(path.name) else None
+    return files if sidecar is None else {**files, sidecar_path(path).name: sidecar.text.encode()}

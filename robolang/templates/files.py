@@ -4,7 +4,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from robolang.templates.arm import Arm
+from robolang.templates.fitting import Fitted
 from robolang.templates.template import Template
+from runtime.core.faults import Fault
 from runtime.core.record import Record
 
 _FOLDER = Path(__file__).parent / "folder"
@@ -18,14 +20,18 @@ _BESIDE = {
 
 
 class ProjectFiles(Record):
-    """Contents by the name in the folder: ``job`` is what runs, ``beside`` what a folder may have already."""
+    """Contents by the name in the folder: ``job`` is what runs, ``beside`` what a folder may have already.
+
+    ``notes``: what a user has to know about the arm.
+    """
 
     job: Mapping[str, bytes]
     beside: Mapping[str, bytes]
+    notes: tuple[str, ...]
 
 
-def project_files(name: str, template: Template, arm: Arm, texts: Mapping[str, str]) -> ProjectFiles:
-    """Return the files of a project; ``texts`` are those of the template, placed, by ending."""
+def project_files(name: str, template: Template, arm: Arm, fitted: Fitted) -> ProjectFiles:
+    """Return the files of a project; ``Fault`` RBL842 where its name clashes with a file of the arm."""
     words = {"@NAME@": name, "@TITLE@": template.title, "@ROBOT@": arm.name}
     beside = {}
     # replaced word by word: $ and braces belong to the workflow
@@ -34,5 +40,8 @@ def project_files(name: str, template: Template, arm: Arm, texts: Mapping[str, s
         for word, value in words.items():
             text = text.replace(word, value)
         beside[target] = text.encode()
-    job = {f"{name}{ending}": text.encode() for ending, text in texts.items()}
-    return ProjectFiles(job={**job, **arm.files}, beside=beside)
+    job = {f"{name}{ending}": text.encode() for ending, text in fitted.texts.items()}
+    for file in arm.files:
+        if file in job or file in beside:
+            raise Fault("RBL842", f"the robot file {file} has the name of a file of the project", "Give another name.")
+    return ProjectFiles(job={**job, **arm.files}, beside=beside, notes=fitted.notes)

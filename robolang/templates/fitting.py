@@ -18,15 +18,20 @@ from robolang.planning.motion_findings import findings as motion_findings
 from robolang.planning.path_coverage import explore
 from robolang.project.discovery import Typed
 from robolang.project.points import Point
-from robolang.project.project import Project, load_any_robot, load_project
+from robolang.project.project import Project, load_project
 from robolang.templates.arm import Arm
 from robolang.templates.placing import Job, placements
-from robolang.templates.template import CELL, POINTS, PROGRAM, Template
+from robolang.templates.template import CELL, POINTS, PROGRAM, TEST, Template
+from robolang.templates.trial import Outcome, tried
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, pose, pose_from_xyzrpy
 from runtime.core.linear import matmul
+from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault
 from runtime.core.units import DEG, MM
+from runtime.robot.files import importer
+from runtime.robot.files.arm_file import read_arm_file
+from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
 
 TABLE = "table"
@@ -35,16 +40,22 @@ LIFT = 0.08
 """How far over its points a job goes, m."""
 MOST_REHEARSED = 12
 """Places whose rehearsal is made."""
-SHORTER, LONGER = 0.95, 1.1
-"""A run may take so much of the planned time."""
 
 
-def fitted(template: Template, arm: Arm) -> dict[str, str]:
-    """Return the files of a template by ending for a robot; ``Fault`` RBL843 where it has no place.
+class Fitted(Record):
+    """The files of a template by ending, and what a user has to know about the arm."""
+
+    texts: Mapping[str, str]
+    notes: tuple[str, ...] = ()
+
+
+def fitted(template: Template, arm: Arm) -> Fitted:
+    """Return a template for a robot; ``Fault`` RBL843 where it has no place.
 
     ``FileFault`` RBL6xx for a robot file that cannot be used.
     """
-    robot = load_any_robot(arm.source)
+    # not load_any_robot: planning does without the drives that it asks for
+    robot = load_builtin(arm.source) if arm.is_builtin else importer.build(read_arm_file(Path(arm.source)))
     here = _project(template.texts, Path())
     heaviest = max(load.mass for load in here.cell.loads.values())
     # before the search: a hand that is too heavy is so in every place
@@ -53,14 +64,24 @@ def fitted(template: Template, arm: Arm) -> dict[str, str]:
         raise _unfit(template, arm, weight)
     why = "nowhere before it does it reach every point with room to the ends of its ranges"
     for placement in islice(placements(Kinematics(robot), _job(here)), MOST_REHEARSED):
-        trial = placement.files(template.texts, arm.read_as, arm.name, (0.0, 600.0))
-        project = _project(trial, arm.folder)
+        project = _project(placement.files(template.texts, arm.read_as, arm.name), arm.folder)
         worst = next(_findings(project), None)
         if worst is None:
-            planned_s = rehearse(project).total_us / 1e6
-            return placement.files(template.texts, arm.reference, arm.name, _bounds(planned_s))
+            texts = placement.files(template.texts, arm.reference, arm.name)
+            return _tested(template, arm, project, texts)
         why = f"{worst.code} in the place that was examined last: {worst.message}"
     raise _unfit(template, arm, why)
+
+
+def _tested(template: Template, arm: Arm, project: Project, texts: Mapping[str, str]) -> Fitted:
+    """Return files whose test states what a run of this arm does; ``Fault`` RBL843 where it does not do its job."""
+    planned_s, expected = rehearse(project).total_us / 1e6, Outcome()
+    # the built-in arms are known to do all jobs; the drives of a file may be estimates
+    if not arm.is_builtin:
+        expected = tried(project, texts[TEST])
+        if not expected.done:
+            raise _unfit(template, arm, expected.why)
+    return Fitted(texts={**texts, TEST: expected.stated(texts[TEST], planned_s)}, notes=expected.notes)
 
 
 def _unfit(template: Template, arm: Arm, why: str) -> Fault:
@@ -107,8 +128,3 @@ def _findings(project: Project) -> Iterator[Diagnostic | FileFault]:
     yield from project.cell.doubts
     explored = explore(project)
     yield from motion_findings(project, explored.rehearsal, detours=explored.detours)
-
-
-def _bounds(planned_s: float) -> tuple[float, float]:
-    """Return the shortest and the longest time of a run, s."""
-    return round(SHORTER * planned_s, 1), round(LONGER * planned_s + 0.5, 1)

@@ -41,16 +41,13 @@ class Placement(Record):
         # R = Rz Ry Rx: a turn about the upright of the world adds to rz alone
         return [*self.position(position), rx, ry, _turned(rz + self.heading_deg)]
 
-    def files(self, texts: Mapping[str, str], robot: str, name: str, cycle_s: Numbers) -> dict[str, str]:
-        """Return the files of a template by ending, for a ``robot`` as the cell names it and its ``name``.
-
-        ``cycle_s``: shortest and longest time of a run, s.
-        """
+    def files(self, texts: Mapping[str, str], robot: str, name: str) -> dict[str, str]:
+        """Return the files of a template by ending, for a ``robot`` as the cell names it and its ``name``."""
         return {
             **texts,
             CELL: self._cell(texts[CELL], robot),
             POINTS: self._points(texts[POINTS], name),
-            TEST: self._test(texts[TEST], cycle_s),
+            TEST: self._test(texts[TEST]),
         }
 
     def _cell(self, text: str, robot: str) -> str:
@@ -70,11 +67,9 @@ class Placement(Record):
             point["pose"] = [*rest, _turned(rz + self.yaw_deg)]
         return tomlkit.dumps(table)
 
-    def _test(self, text: str, cycle_s: Numbers) -> str:
+    def _test(self, text: str) -> str:
         table = cast(dict[str, Any], tomlkit.parse(text))
-        expected = table["expect"]
-        expected["cycle_s"] = list(cycle_s)
-        parts = expected.get("parts", {})
+        parts = table["expect"].get("parts", {})
         for name in [name for name in parts if name != "part_mm"]:
             parts[name] = self.position(parts[name])
         return tomlkit.dumps(table)

@@ -4,10 +4,10 @@ import os
 import re
 from collections.abc import Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from robolang.core.storage import add_files, only_one, write_folder
 from robolang.templates.arm import choose
-from robolang.templates.files import ProjectFiles, project_files
 from robolang.templates.template import template
 from runtime.core.faults import Fault
 from runtime.core.record import Record
@@ -15,13 +15,21 @@ from runtime.core.record import Record
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,63}")
 
 
+if TYPE_CHECKING:
+    from robolang.templates.files import ProjectFiles
+
+
 class Written(Record):
-    """A project that was written: its folder, its name, the files, and those that were there and were kept."""
+    """A project that was written: its folder, its name, the files, and those that were there and were kept.
+
+    ``notes``: what a user has to know about the arm.
+    """
 
     folder: Path
     name: str
     files: tuple[str, ...]
-    kept: tuple[str, ...]
+    kept: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 def new_project(folder: Path, kind: str, robot: str) -> Written:
@@ -32,7 +40,7 @@ def new_project(folder: Path, kind: str, robot: str) -> Written:
     made = _made(name, folder, kind, robot)
     files = {**made.job, **made.beside}
     write_folder(folder, files, ours=lambda _: False)
-    return Written(folder=folder, name=name, files=tuple(files), kept=())
+    return Written(folder=folder, name=name, files=tuple(files), notes=made.notes)
 
 
 def init_project(folder: Path, name: str, kind: str, robot: str) -> Written:
@@ -45,7 +53,7 @@ def init_project(folder: Path, name: str, kind: str, robot: str) -> Written:
         kept = tuple(each for each in made.beside if os.path.lexists(folder / each))
         files = {**made.job, **{each: data for each, data in made.beside.items() if each not in kept}}
         add_files(folder, files)
-    return Written(folder=folder, name=name, files=tuple(files), kept=kept)
+    return Written(folder=folder, name=name, files=tuple(files), kept=kept, notes=made.notes)
 
 
 def checked_name(name: str) -> str:
@@ -62,9 +70,10 @@ def refuse_existing(folder: Path, names: Iterable[str]) -> None:
         raise Fault("RBL841", f"{', '.join(there)} would be overwritten in {folder}")
 
 
-def _made(name: str, folder: Path, kind: str, robot: str) -> ProjectFiles:
+def _made(name: str, folder: Path, kind: str, robot: str) -> "ProjectFiles":
     chosen, arm = template(kind), choose(robot, folder)
     # not before: its numerics take longer to import than a misspelt name to refuse
+    from robolang.templates.files import project_files
     from robolang.templates.fitting import fitted
 
     return project_files(name, chosen, arm, fitted(chosen, arm))

@@ -75,7 +75,11 @@ class Expectation:
 
 def load_expectation(path: Path) -> Expectation:
     """Read a test file; ``FileFault`` RBL6xx at the first line that is wrong, with all others."""
-    source = read_source(path)
+    return read_expectation(read_source(path))
+
+
+def read_expectation(source: Source) -> Expectation:
+    """Return the contents of a test file; faults as ``load_expectation``."""
     table = load_table(source, gather=True)
     table.attempt(lambda: _schema(table))
     expect = table.table("expect", required=False)

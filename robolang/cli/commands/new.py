@@ -48,6 +48,8 @@ def tell(written: "Written") -> None:
         echo(safe(f"wrote {written.folder / file}"))
     for file in written.kept:
         echo(safe(f"kept  {written.folder / file}, which was there"))
+    for note in written.notes:
+        echo(safe(f"note: {note}"), err=True)
     program = written.folder / f"{written.name}.rbl"
     echo(safe(f"go on with: robolang check --motion {program}"))
     echo(safe(f"            robolang run {program}"))

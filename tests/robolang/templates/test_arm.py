@@ -6,7 +6,7 @@ from robolang.templates.arm import choose
 from robolang.templates.writing import init_project, new_project
 from runtime.core.faults import Fault
 from tests.robolang.cli.commands import PUMA, robolang
-from tests.runtime.robot.models import ANGLES
+from tests.runtime.robot.models import SEVEN
 
 
 @pytest.fixture
@@ -42,13 +42,24 @@ def test_a_file_in_the_folder_is_named_from_there(tmp_path, mine):
 
 
 @pytest.mark.parametrize(
-    ("robot", "code"), [("pumma560", "RBL708"), ("none.toml", "RBL600"), ("bad.toml", "RBL608"), ("bad.urdf", "RBL608")]
+    ("robot", "code"), [("pumma560", "RBL708"), ("none.toml", "RBL600"), ("bad.toml", "RBL608"), ("bad.urdf", "RBL621")]
 )
 def test_what_is_no_robot_is_refused_before_anything_is_written(tmp_path, monkeypatch, robot, code):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "bad.toml").write_text("schema = 1\n")
-    (tmp_path / "bad.urdf").write_text(ANGLES.read_text())
+    (tmp_path / "bad.urdf").write_text("<html/>")
     with pytest.raises(Fault) as caught:
         new_project(tmp_path / "cell1", "pick-place", robot)
     assert caught.value.code == code
     assert not (tmp_path / "cell1").exists()
+
+
+def test_a_model_without_drives_gets_a_project_for_the_ideal_arm(tmp_path):
+    path = tmp_path / "seven.urdf"
+    path.write_bytes(SEVEN.read_bytes())
+    written = new_project(tmp_path / "cell1", "pick-place", str(path))
+    assert [name for name in written.files if "seven" in name] == ["seven.urdf"]
+    assert "--no-physics" in written.notes[0]
+    robolang("check", "--strict", "--motion", written.folder)
+    robolang("test", written.folder)
+    robolang("run", "--no-physics", written.folder / "cell1.rbl")

@@ -83,7 +83,7 @@ def test_a_table_may_stand_on_any_side_of_an_arm(tmp_path):
     # J1 looks to the left only
     turned = fitted(template("tend"), arm(tmp_path, ("range_deg = [-160, 160]", "range_deg = [20, 160]")))
     path = tmp_path / "job.rbl"
-    for ending, text in turned.items():
+    for ending, text in turned.texts.items():
         path.with_suffix(ending).write_text(text, "utf-8")
     cell = load_project(path).cell
     (table,) = (each.X_world_obstacle for each in cell.obstacles if each.name == "table")
