@@ -22,12 +22,12 @@ _BESIDE = {
 class ProjectFiles(Record):
     """Contents by the name in the folder: ``job`` is what runs, ``beside`` what a folder may have already.
 
-    ``notes``: what a user has to know about the arm.
+    ``fitted`` is the template before its arm.
     """
 
     job: Mapping[str, bytes]
     beside: Mapping[str, bytes]
-    notes: tuple[str, ...]
+    fitted: Fitted
 
 
 def project_files(name: str, template: Template, arm: Arm, fitted: Fitted) -> ProjectFiles:
@@ -44,4 +44,4 @@ def project_files(name: str, template: Template, arm: Arm, fitted: Fitted) -> Pr
     for file in arm.files:
         if file in job or file in beside:
             raise Fault("RBL842", f"the robot file {file} has the name of a file of the project", "Give another name.")
-    return ProjectFiles(job={**job, **arm.files}, beside=beside, notes=fitted.notes)
+    return ProjectFiles(job={**job, **arm.files}, beside=beside, fitted=fitted)

@@ -43,10 +43,14 @@ MOST_REHEARSED = 12
 
 
 class Fitted(Record):
-    """The files of a template by ending, and what a user has to know about the arm."""
+    """The files of a template by ending, and what a user has to know about the arm.
+
+    ``physics``: its drives do the job, or are not asked to.
+    """
 
     texts: Mapping[str, str]
-    notes: tuple[str, ...] = ()
+    physics: bool
+    notes: tuple[str, ...]
 
 
 def fitted(template: Template, arm: Arm) -> Fitted:
@@ -81,7 +85,8 @@ def _tested(template: Template, arm: Arm, project: Project, texts: Mapping[str, 
         expected = tried(project, texts[TEST])
         if not expected.done:
             raise _unfit(template, arm, expected.why)
-    return Fitted(texts={**texts, TEST: expected.stated(texts[TEST], planned_s)}, notes=expected.notes)
+    stated = {**texts, TEST: expected.stated(texts[TEST], planned_s)}
+    return Fitted(texts=stated, physics=expected.physics, notes=expected.notes)
 
 
 def _unfit(template: Template, arm: Arm, why: str) -> Fault:

@@ -38,8 +38,7 @@ class Outcome(Record):
     def notes(self) -> tuple[str, ...]:
         """What a user has to know."""
         if not self.physics:
-            drives = "so the test runs on the ideal arm (physics = false), as 'robolang run --no-physics' does"
-            return (f"with its drives the arm does not do the job: {self.why}; {drives}",)
+            return (f"the test runs on the ideal arm (physics = false), since with drives: {self.why}",)
         if self.warnings:
             return (f"a run has the warnings {', '.join(self.warnings)}, which the test expects",)
         return ()
@@ -78,5 +77,6 @@ def _run(project: Project, test: str, *, physics: bool) -> Outcome:
         done=not failed,
         warnings=tuple(sorted({row["code"] for row in result.report["warnings"]})),
         seconds=result.report["sim_time_s"],
-        why=failed[0].detail if failed else "",
+        # the program has no file yet, and its name here would be looked for
+        why=failed[0].detail.replace(project.source.path, "the program") if failed else "",
     )

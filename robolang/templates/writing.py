@@ -17,19 +17,21 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,63}")
 
 if TYPE_CHECKING:
     from robolang.templates.files import ProjectFiles
+    from robolang.templates.fitting import Fitted
 
 
 class Written(Record):
     """A project that was written: its folder, its name, the files, and those that were there and were kept.
 
-    ``notes``: what a user has to know about the arm.
+    ``notes``: what a user has to know about the arm; ``physics``: whether it is run with its drives.
     """
 
     folder: Path
     name: str
     files: tuple[str, ...]
-    kept: tuple[str, ...] = ()
-    notes: tuple[str, ...] = ()
+    kept: tuple[str, ...]
+    notes: tuple[str, ...]
+    physics: bool
 
 
 def new_project(folder: Path, kind: str, robot: str) -> Written:
@@ -40,7 +42,7 @@ def new_project(folder: Path, kind: str, robot: str) -> Written:
     made = _made(name, folder, kind, robot)
     files = {**made.job, **made.beside}
     write_folder(folder, files, ours=lambda _: False)
-    return Written(folder=folder, name=name, files=tuple(files), notes=made.notes)
+    return _written(folder, name, files, (), made.fitted)
 
 
 def init_project(folder: Path, name: str, kind: str, robot: str) -> Written:
@@ -53,7 +55,7 @@ def init_project(folder: Path, name: str, kind: str, robot: str) -> Written:
         kept = tuple(each for each in made.beside if os.path.lexists(folder / each))
         files = {**made.job, **{each: data for each, data in made.beside.items() if each not in kept}}
         add_files(folder, files)
-    return Written(folder=folder, name=name, files=tuple(files), kept=kept, notes=made.notes)
+    return _written(folder, name, files, kept, made.fitted)
 
 
 def checked_name(name: str) -> str:
@@ -68,6 +70,10 @@ def refuse_existing(folder: Path, names: Iterable[str]) -> None:
     there = [name for name in names if os.path.lexists(folder / name)]
     if there:
         raise Fault("RBL841", f"{', '.join(there)} would be overwritten in {folder}")
+
+
+def _written(folder: Path, name: str, files: Iterable[str], kept: tuple[str, ...], fitted: "Fitted") -> Written:
+    return Written(folder=folder, name=name, files=tuple(files), kept=kept, notes=fitted.notes, physics=fitted.physics)
 
 
 def _made(name: str, folder: Path, kind: str, robot: str) -> "ProjectFiles":

@@ -52,5 +52,5 @@ def tell(written: "Written") -> None:
         echo(safe(f"note: {note}"), err=True)
     program = written.folder / f"{written.name}.rbl"
     echo(safe(f"go on with: robolang check --motion {program}"))
-    echo(safe(f"            robolang run {program}"))
+    echo(safe(f"            robolang run {'' if written.physics else '--no-physics '}{program}"))
     echo(safe(f"            robolang test {program}"))

@@ -6,7 +6,7 @@ from robolang.templates.arm import choose
 from robolang.templates.writing import init_project, new_project
 from runtime.core.faults import Fault
 from tests.robolang.cli.commands import PUMA, robolang
-from tests.runtime.robot.models import SEVEN
+from tests.runtime.robot.models import SIX
 
 
 @pytest.fixture
@@ -55,11 +55,11 @@ def test_what_is_no_robot_is_refused_before_anything_is_written(tmp_path, monkey
 
 
 def test_a_model_without_drives_gets_a_project_for_the_ideal_arm(tmp_path):
-    path = tmp_path / "seven.urdf"
-    path.write_bytes(SEVEN.read_bytes())
+    path = tmp_path / "six.urdf"
+    path.write_text(SIX)
     written = new_project(tmp_path / "cell1", "pick-place", str(path))
-    assert [name for name in written.files if "seven" in name] == ["seven.urdf"]
-    assert "--no-physics" in written.notes[0]
+    assert [name for name in written.files if "six" in name] == ["six.urdf"]
+    assert not written.physics
     robolang("check", "--strict", "--motion", written.folder)
     robolang("test", written.folder)
     robolang("run", "--no-physics", written.folder / "cell1.rbl")

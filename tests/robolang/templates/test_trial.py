@@ -40,8 +40,8 @@ def test_an_arm_whose_drives_cannot_do_the_job_is_tested_as_an_ideal_one(tmp_pat
     written = new_project(tmp_path / "cell1", "pick-place", str(robot))
     expected = tomllib.loads((written.folder / "cell1.test.toml").read_text("utf-8"))
     assert expected["physics"] is False
-    (note,) = written.notes
-    assert "--no-physics" in note
+    assert not written.physics
+    assert "RBL515" in written.notes[0]
     robolang("test", written.folder)
 
 
