@@ -128,6 +128,8 @@ class ExpressionCheck:
             yield from self._array(node)
         elif self._defined.is_missing(node.name):
             known = other_languages.function(node.name.key)
+            written = other_languages.as_input(print_expression(node)) if known else ""
+            known = f"write {written}" if written else known
             guess = "" if other_languages.is_known(node.name.key) else near(node.name.key, FUNCTIONS)
             hint = known or (f"did you mean {guess}?" if guess else f"DIM {node.name.text}(n) makes an array")
             message = f"{node.name.text} is neither an array nor a function"

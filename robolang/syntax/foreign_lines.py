@@ -51,8 +51,14 @@ def proposal(code: str) -> Proposal | None:
         words = {**found.groupdict(), "word": first[1]}
         shown = tuple(map(_canonical, filled(shape.write, words).splitlines()))
         if all(shown):
-            return Proposal(shape=shape, statements=shown, note=filled(shape.note, words))
+            return Proposal(shape=shape, statements=shown, note=_noted(shape, words))
     return None
+
+
+def _noted(shape: Shape, words: dict[str, str | None]) -> str:
+    """Return what the hint adds: the note of the shape, and what of the line is not carried over."""
+    more = (words.get("more") or "").strip(" \t,")
+    return "; ".join(filter(None, (filled(shape.note, words), more and f"left out: {more}")))
 
 
 def advice(code: str) -> str:

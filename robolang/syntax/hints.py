@@ -226,17 +226,22 @@ def _first_word(found: Unexpected) -> str | None:
     if not found.is_first:
         return None
     # INT i declares a variable elsewhere; INT(x) is the function of this language
-    if found.word == "INT" and not found.after.lstrip().startswith(("=", "(")):
-        return other_languages.instruction("VAR")
-    return "IN reads an input: x = IN(1)" if found.word == "IN" else ""
+    is_call = found.after.lstrip().startswith(("=", "("))
+    return "" if found.word == "INT" and is_call else other_languages.own(found.word)
+
+
+def _empty_call(found: Unexpected) -> str | None:
+    # get_actual_tcp_pose() of others is HERE, which has no parentheses
+    call = re.search(r"(\w+)[ \t]*\(\Z", found.head[-100:]) if found.kind == "RPAR" else None
+    return (other_languages.function(call[1]) or None) if call else None
 
 
 def _wait(found: Unexpected) -> str | None:
     if found.instruction != "WAIT":
         return None
     if found.word == "FOR":
-        return other_languages.instruction("WAITUNTIL")
-    return other_languages.instruction("SLEEP") if _WAIT_TIME.fullmatch(found.head) else None
+        return "WAIT waits for a condition: WAIT IN(1) = 1, TIMEOUT 5"
+    return "DELAY s waits for a time: DELAY 0.5" if _WAIT_TIME.fullmatch(found.head) else None
 
 
 def _print_comma(found: Unexpected) -> str | None:
@@ -284,6 +289,7 @@ _OTHER_LANGUAGES: tuple[_Question, ...] = (
     _other_sign,
     _value,
     _first_word,
+    _empty_call,
     _wait,
     _print_comma,
     _then,

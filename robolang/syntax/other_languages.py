@@ -52,6 +52,22 @@ def instruction(word: str) -> str:
     return sentence(word, words.instructions().get(word.upper(), ()))
 
 
+def own(word: str) -> str:
+    """Return what a word of this language means in other ones, for a place where it cannot stand here, or ``""``."""
+    from robolang.syntax.foreign import words
+    from robolang.syntax.foreign.entry import sentence
+
+    return sentence(word, words.own().get(word.upper(), ()))
+
+
+def as_input(expression: str) -> str:
+    """Return an input of another language, as ``M_IN(2)``, as that of this one, or ``""``."""
+    from robolang.syntax.foreign.readings import inputs
+
+    written = inputs(expression)
+    return "" if written == expression else written
+
+
 def is_known(word: str) -> bool:
     """Return whether a word is one of another language: then what is meant is known, and nothing is guessed."""
     from robolang.syntax.foreign import words

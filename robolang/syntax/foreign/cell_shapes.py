@@ -81,6 +81,15 @@ _TOOLS_AND_LOADS = (
 )
 # a signal of RAPID has a name; which output it is, its line does not say
 _OUTPUTS = (
+    Shape((KRL,), "OUT 5 'grip' State=TRUE", r" <n> '[^']*' State = <state><more>", "OUT({n}) = {state}"),
+    Shape(
+        (KRL,),
+        "PULSE 3 '' State=TRUE Time=0.5 sec",
+        r" <n> '[^']*' State = TRUE(?: CONT)? Time = <s> sec",
+        "PULSE {n}, {s}",
+    ),
+    Shape((INFORM,), "PULSE OT#(3)", r" OT# \( <n> \)", "PULSE {n}, 0.3"),
+    Shape((INFORM,), "DIN B000 IN#(1)", r" <name> <in>", "{name} = {in}"),
     Shape((KRL,), "PULSE($OUT[1],TRUE,0.5)", r" \( \$OUT \[ <n> \] , TRUE , <s> \)", "PULSE {n}, {s}"),
     Shape((KRL,), "$OUT[3]=TRUE", rf" \[{_STATE} \] = <state>", "OUT({n}) = {state}"),
     Shape((TP,), "DO[1]=PULSE,0.5sec", rf" \[{_STATE} \] = PULSE , <s> sec", "PULSE {n}, {s}", words="DO RO"),
@@ -112,6 +121,7 @@ _OUTPUTS = (
 )
 # the exact forms first: the last pattern takes any condition
 _WAITS = (
+    Shape((KRL,), "WAIT FOR ( IN 1 'part' )", r" FOR \( IN <n> '[^']*' \)", "WAIT IN({n}) = 1"),
     Shape((KRL,), "WAIT SEC 0.5", r" SEC <s>", "DELAY {s}"),
     Shape((TP,), "WAIT 0.50(sec)", r" <s> \(? sec \)?", "DELAY {s}"),
     Shape((KAREL,), "WAIT FOR DIN[1]", r" FOR <condition>", "WAIT {condition}"),
@@ -127,7 +137,7 @@ _WAITS = (
     Shape((RAPID,), "WaitTime 0.5;", r"(?: \\InPos ,)? <s>", "DELAY {s}"),
     Shape((RAPID,), "WaitDI diPart, 1;", r" <name> , <state>(?: .*)?", "WAIT IN(n) = {state}", _NUMBERED),
     Shape((RAPID,), "WaitUntil diPart=1;", r" [A-Za-z_]\w* = <state>", "WAIT IN(n) = {state}", _NUMBERED),
-    Shape((RAPID,), "WaitUntil count>3;", r" <condition>", "WAIT {condition}"),
+    Shape((RAPID,), "WaitUntil count>3;", r" <condition>", "WAIT {condition}", "a signal is IN(n)"),
     Shape((MELFA,), "Dly 0.5", r" <s>", "DELAY {s}"),
     Shape((INFORM,), "TIMER T=0.5", r" T = <s>", "DELAY {s}"),
     Shape((UR,), "sleep(0.5)", r" \( <s> \)", "DELAY {s}"),

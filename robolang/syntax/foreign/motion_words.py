@@ -105,6 +105,7 @@ SETTINGS = (
     Entry("JOVRD", (MELFA,), "sets the speed of joint moves", "SPEEDJ 50"),
     Entry("OVRD", (MELFA,), "scales every speed", "OVERRIDE 50"),
     Entry("OV", (OTHERS,), "scales every speed", "OVERRIDE 50"),
+    Entry("EXTSPEED", (PAC,), "scales every speed", "OVERRIDE 50"),
     Entry("VELSET", (RAPID,), "scales every speed", "OVERRIDE 50"),
     Entry("SPEEDREFRESH", (RAPID,), "scales every speed", "OVERRIDE 50"),
     Entry("ACCSET", (RAPID,), "sets acceleration", "ACCEL 50"),

@@ -1,6 +1,6 @@
 """Lines of other languages on control, data, texts and comments. Data alone."""
 
-from robolang.syntax.foreign.entry import AS, INFORM, KAREL, KRL, MELFA, PYTHON, RAPID, TP, UR, VAL3, VPLUS, C
+from robolang.syntax.foreign.entry import AS, INFORM, KAREL, KRL, MELFA, PAC, PYTHON, RAPID, TP, UR, VAL3, VPLUS, C
 from robolang.syntax.foreign.shape import Shape
 
 _MAIN = "the main program has no head, it is what stands in no SUB"
@@ -12,6 +12,7 @@ _SUBS = (
     Shape((RAPID,), "PROC main()", r" main \( \)", "", _MAIN, "PROC DEF"),
     Shape((RAPID,), "PROC pick()", r" <name> \( \)", "SUB {name}"),
     Shape((RAPID,), "PROC pick(num a)", r" <name> \( \w+ <name1> \)", "SUB {name}({name1})"),
+    Shape((KRL,), "GLOBAL DEF pick( )", r" DEF <name> \( \)", "SUB {name}"),
     Shape((KRL,), "DEF prog( )", r" <name> \( \)", "SUB {name}", _HEAD),
     Shape(
         (MELFA,),
@@ -53,6 +54,14 @@ _BLOCKS = (
     Shape((UR, PYTHON), "while x < 3:", r" <condition> :", "WHILE {condition}"),
     Shape((RAPID, KAREL, AS), "WHILE x == 1 DO", r" <condition> DO", "WHILE {condition}"),
     Shape((KRL, C), "WHILE $IN[1]==FALSE", r" <condition>", "WHILE {condition}"),
+    Shape((PAC,), "Do While IO[1] = OFF", r" While <condition>", "WHILE {condition}"),
+    Shape(
+        (RAPID,),
+        "FOR i FROM 1 TO 9 STEP 2 DO",
+        r" <name> FROM <num1> TO <num2> STEP <num3> DO",
+        "FOR {name} = {num1} TO {num2} STEP {num3}",
+    ),
+    Shape((AS, VPLUS), "VALUE 1:", r" <values> :", "CASE {values}"),
     Shape((RAPID,), "FOR i FROM 1 TO 10 DO", r" <name> FROM <num1> TO <num2> DO", "FOR {name} = {num1} TO {num2}"),
     Shape((KAREL, AS), "FOR i = 1 TO 10 DO", r" <name> = <num1> TO <num2> DO", "FOR {name} = {num1} TO {num2}"),
     Shape((TP,), "FOR R[1]=1 TO 10", r" <point> = <num1> TO <num2>", "FOR {point} = {num1} TO {num2}"),
@@ -64,11 +73,23 @@ _BLOCKS = (
 )
 # a line with := may begin with any word, so this shape is compared with every line with an error
 _DATA = (
+    Shape(
+        (RAPID,),
+        "CONST robtarget p10 := [[600,0,500],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];",
+        r" robtarget <name> := \[ \[ <mm> \].*",
+        "{name} = POSE({mm}, rx, ry, rz)",
+        "or teach the point; rx, ry and rz are angles in degrees, not a quaternion",
+        "CONST PERS VAR",
+    ),
+    Shape((PAC,), "Dim I As Integer", r" \w+ As .*", "", "names need no declaration"),
+    Shape((TP,), "PR[1]=LPOS", r" \[ <n>(?: :[^\]]*)? \] = LPOS", "PR{n} = HERE"),
+    Shape((TP,), "PR[1]=P[2]", r" \[ <n>(?: :[^\]]*)? \] = <point>", "PR{n} = {point}"),
     Shape((RAPID,), "VAR num x := 5;", r" \w+ <name> := <rest>", "{name} = {rest}", words="VAR PERS CONST LOCAL"),
     Shape((KRL,), "DECL INT x = 5", r" \w+ <name> = <num>", "{name} = {num}"),
     Shape((UR,), "global x = 5", r" <name> = <rest>", "{name} = {rest}", words="GLOBAL LOCAL LET INT NUM"),
     Shape((TP,), "R[1]=R[1]+1", r" \[ <n>(?: :[^\]]*)? \] = <registers>", "R{n} = {registers}"),
     Shape((INFORM,), "SET B000 5", r" <name1> <num>", "{name1} = {num}"),
+    Shape((INFORM,), "SET B001 IN#(2)", r" <name> <in>", "{name} = {in}"),
     Shape((INFORM,), "SET B000 B001", r" <name1>[ \t]+<name2>", "{name1} = {name2}"),
     Shape((INFORM,), "INC B000", r" <name>", "{name} = {name} + 1"),
     Shape((INFORM,), "DEC B000", r" <name>", "{name} = {name} - 1"),
@@ -84,7 +105,13 @@ _TEXTS = (
     Shape((RAPID,), 'TPWrite "ready";', r" <texts>", "PRINT {texts}"),
     Shape((AS, VPLUS), 'TYPE "part ", n', r" <texts>", "PRINT {texts}"),
     Shape((INFORM,), 'MSG "ready"', r" <texts>", "PRINT {texts}", words="MSG PRINTMSG PRINTDBG"),
-    Shape((UR,), 'textmsg("x ", x)', r" \( <texts> \)", "PRINT {texts}", words="TEXTMSG POPUP PUTLN PUT PRINTF"),
+    Shape(
+        (UR,),
+        'textmsg("x ", x)',
+        r" \( <texts>(?: , \w+ = .*)? \)",
+        "PRINT {texts}",
+        words="TEXTMSG POPUP PUTLN PUT PRINTF",
+    ),
     Shape((KAREL,), "WRITE('part ', n, CR)", r" \( <texts> \)", "PRINT {texts}"),
     Shape((TP,), "MESSAGE[ready]", r" \[ <rest> \]", 'PRINT "{rest}"'),
     Shape((AS, C), 'PRINT "x ", x', r" <texts>", "PRINT {texts}"),

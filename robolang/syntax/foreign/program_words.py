@@ -159,6 +159,8 @@ CONTROL = (
         "WHILE IN(1) = 0",
         note="WHILE has the condition to go on",
     ),
+    Entry("DO", (AS, VPLUS, VAL3, PAC), "begins a loop", "WHILE IN(1) = 0", note="WHILE has the condition to go on"),
+    Entry("LOOP", (PAC,), "ends a loop", "WEND"),
     Entry("LOOP", (KRL, OTHERS), "begins a loop without end", "WHILE 1", note="WEND ends it"),
     Entry("DOWHILE", (OTHERS,), "begins a loop", "WHILE IN(1) = 0", note="WEND ends it"),
     Entry("ENDLOOP", (KRL,), "ends a loop", "WEND"),
@@ -171,6 +173,7 @@ CONTROL = (
     Entry("OTHERWISE", (OTHERS,), "is the CASE of all other values", "CASE ELSE"),
     Entry("ANY", (AS, VPLUS), "is the CASE of all other values", "CASE ELSE"),
     Entry("SWITCH", (KRL, VAL3, C), "chooses by a value", "SELECT n"),
+    Entry("VALUE", (AS, VPLUS), "is a CASE", "CASE 1"),
     Entry("TEST", (RAPID,), "chooses by a value", "SELECT n"),
     Entry("ELIF", (UR, PYTHON), "is another condition of an IF", "ELSEIF IN(1) = 1 THEN"),
     Entry("ELSIF", (OTHERS,), "is another condition of an IF", "ELSEIF IN(1) = 1 THEN"),
@@ -182,6 +185,10 @@ CONTROL = (
     Entry("TRYNEXT", (RAPID,), "goes on after what failed", "RESUME NEXT"),
     Entry("RAISE", (RAPID, PYTHON), "makes an error", "STOP", missing=True),
     Entry("UALM", (TP,), "makes an alarm", "STOP", missing=True),
+    Entry("BEGIN", (KAREL, VAL3), "begins the statements", note="a program begins at its first line"),
+    Entry("WITH", (KAREL,), "sets values for one move", "MOVE P1, SPEED 200", note="they are options of the move"),
+    Entry("OFFSET", (TP,), "shifts points", "MOVE P1 + (0, 0, 50)"),
+    Entry("SKIP", (TP,), "ends a move by an input", "MOVE P1, SPEED 20", missing=True),
     Entry("NOP", (INFORM,), "does nothing", note="a program begins at its first line"),
     Entry("INI BAS", (KRL,), "sets the robot up", note="SPEED, ACCEL and ZONE set what holds from there on"),
     Entry("SERVO", (MELFA,), "switches the drives on", note="they are on when a run begins"),
@@ -235,6 +242,7 @@ CONTROL = (
 )
 
 DATA = (
+    Entry("VAR", (KAREL, VAL3), "declares variables", "x = 5", note="names need no declaration"),
     Entry("VAR PERS NUM ROBTARGET LOCAL", (RAPID,), "declares a variable", "x = 5", note="names need no declaration"),
     Entry("DECL REAL E6POS POS GLOBAL", (KRL,), "declares a variable", "x = 5", note="names need no declaration"),
     Entry("BOOL STRING", (RAPID, VAL3), "declares a variable", "x = 5", note="names need no declaration"),
@@ -355,6 +363,8 @@ OWN = (
     Entry("SUB", (INFORM,), "subtracts from a variable", "x = x - 5"),
     Entry("SUB", (PAC,), "begins a subroutine", "SUB pick"),
     Entry("HERE", (AS, VPLUS), "keeps where the tool is", "P10 = HERE"),
+    Entry("ERROR", (RAPID,), "begins what handles errors", "ON ERROR GOTO *FAILED"),
+    Entry("ERROR", (MELFA,), "makes an error", "STOP", note="there is no error of a program's own"),
     Entry("CASE", (AS, VPLUS), "chooses by a value", "SELECT n", note="CASE 1 is what VALUE 1: is there"),
     Entry("INT", (KRL, VAL3, PAC), "declares a variable", "x = 5", note="names need no declaration"),
 )

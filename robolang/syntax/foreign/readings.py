@@ -52,9 +52,14 @@ def place(text: str) -> str:
     return f"{found[2]} {sign} ({', '.join(map(number, found[3].split(',')[:3]))})"
 
 
+def inputs(text: str) -> str:
+    """Return an expression with the inputs of this language in place of those of others."""
+    return _SIG.sub(lambda found: f"IN({int(found[1])})", _IO.sub(lambda found: f"IN({int(found[1])})", text))
+
+
 def condition(text: str) -> str:
     """Return a condition with the inputs, signs and values of this language."""
-    text = _SIG.sub(lambda found: f"IN({int(found[1])})", _IO.sub(lambda found: f"IN({int(found[1])})", text))
+    text = registers(inputs(text))
     text = _STATE_WORD.sub(lambda found: _STATES[found[1].upper()], text)
     text = _SIGN.sub(lambda found: dict(_SIGNS)[found[0]], text)
     # IN(1) alone would do; with = 1 the line shows how 0 is compared
@@ -82,6 +87,11 @@ def _list(unit: float, digits: int, least: int) -> Callable[[str], str]:
         return ", ".join(map(plain, numbers[:least]))
 
     return write
+
+
+def passing(text: str) -> str:
+    """Return the note on how a move of PacScript ends: @P and a distance blend, @E and @0 do not."""
+    return "" if text.upper() in ("@0", "@E") else f"{text} blends: write ZONE mm for it"
 
 
 def texts(text: str) -> str:
@@ -132,8 +142,9 @@ READINGS = {
     "fine": Reading(r"FINE\b", lambda _: ", FINE"),
     "radius": Reading(_NUMBER, _scaled(1000, "ZONE")),
     "condition": Reading(r"[^;'\"{}]+", condition),
+    "in": Reading(r"IN#[ ]*\([ ]*0*[1-9]\d*[ ]*\)", inputs),
     "rest": Reading(r".+", str.strip),
-    "texts": Reading(r".+", texts),
+    "texts": Reading(r".+?", texts),
     "values": Reading(_LIST, _list(1, 9, 6)),
     "mm": Reading(_LIST, _list(1, 9, 3)),
     "m": Reading(_LIST, _list(1000, 6, 3)),
@@ -141,6 +152,8 @@ READINGS = {
     "input": Reading(r"[+-]?1\d{3}", awaited),
     "registers": Reading(r"[^'\";]+", registers),
     "rad": Reading(_LIST, _list(180 / math.pi, 3, 20)),
+    "pass": Reading(r"@\w+", passing),
+    "more": Reading(r"(?:[ \t,;\\].*)?"),
     "word": Reading(r"[A-Za-z_]\w*"),
 }
 _MACRO = re.compile(r"<([a-z]+)(\d?)>")
