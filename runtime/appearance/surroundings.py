@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from runtime.appearance.scene import SceneBody, SceneJoint, Shape
-from runtime.appearance.solids import box
+from runtime.appearance.solids import Z, box, cylinder
 from runtime.cell.cell import ObstacleSpec, PartSpec
-from runtime.core.frames import pose
+from runtime.core.frames import Array, pose
 
 LEG = 0.045
 """Edge of a table's leg, m."""
@@ -28,7 +28,7 @@ def obstacle_bodies(obstacles: Sequence[ObstacleSpec]) -> list[SceneBody]:
 
 
 def obstacle_shapes(obstacles: Sequence[ObstacleSpec]) -> list[Shape]:
-    """Return the box of each obstacle, and legs to the floor where it is a table."""
+    """Return the shape of each obstacle, and legs to the floor where it is a table."""
     return [shape for each in obstacles for shape in _obstacle(each)]
 
 
@@ -38,6 +38,8 @@ def _name(obstacle: ObstacleSpec) -> str:
 
 def _obstacle(obstacle: ObstacleSpec) -> list[Shape]:
     name, size = _name(obstacle), obstacle.size
+    if obstacle.shape == "cylinder":
+        return [_upright(name, size, "obstacle", obstacle.name)]
     under = float(obstacle.X_world_obstacle[2, 3] - size[2] / 2.0)
     level = obstacle.X_world_obstacle[2, 2] >= LEVEL
     if not (level and under >= LOWEST_TABLE and size[2] <= THICKEST_TABLE and min(size[:2]) >= 4.0 * LEG_INSET):
@@ -66,8 +68,19 @@ def part_bodies(parts: Sequence[PartSpec]) -> list[SceneBody]:
 
 
 def part_shapes(parts: Sequence[PartSpec]) -> list[Shape]:
-    """Return the box of each part."""
-    return [box(_part_name(part), np.eye(4), part.size, "part", part.name) for part in parts]
+    """Return the shape of each part."""
+    return [
+        _upright(_part_name(part), part.size, "part", part.name)
+        if part.shape == "cylinder"
+        else box(_part_name(part), np.eye(4), part.size, "part", part.name)
+        for part in parts
+    ]
+
+
+def _upright(body: str, size: Array, role: str, name: str) -> Shape:
+    """Return the cylinder along z in a box of ``size`` (3,) m."""
+    radius, half = float(size[0]) / 2.0, float(size[2]) / 2.0
+    return cylinder(body, -half * Z, half * Z, (radius, radius), role, name)
 
 
 def _part_name(part: PartSpec) -> str:

@@ -50,22 +50,27 @@ class HandSpec:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PartSpec:
-    """A loose box: ``size`` (3,) m, true ``mass`` kg, ``X_world_part`` (4, 4) of its centre, sliding ``friction``."""
+    """A loose body: ``size`` (3,) m, true ``mass`` kg, ``X_world_part`` (4, 4) of its centre, sliding ``friction``.
+
+    ``shape``: the box of that size, or the cylinder along z that it encloses.
+    """
 
     name: str
     size: Array
     mass: float
     X_world_part: Array
     friction: float
+    shape: str = "box"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ObstacleSpec:
-    """A fixed box: ``size`` (3,) m and ``X_world_obstacle`` (4, 4) of its centre."""
+    """A fixed body: ``size`` (3,) m and ``X_world_obstacle`` (4, 4) of its centre; ``shape`` as of a part."""
 
     name: str
     size: Array
     X_world_obstacle: Array
+    shape: str = "box"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -132,6 +137,7 @@ def build(file: CellFile) -> CellSpec:
         parts=tuple(
             PartSpec(
                 name=part.name,
+                shape=part.shape,
                 size=_lengths(part.size_mm),
                 mass=part.mass_kg,
                 friction=part.friction,
@@ -140,8 +146,13 @@ def build(file: CellFile) -> CellSpec:
             for part in file.parts
         ),
         obstacles=tuple(
-            ObstacleSpec(name=box.name, size=_lengths(box.size_mm), X_world_obstacle=_pose(box.pose_mm_deg))
-            for box in file.obstacles
+            ObstacleSpec(
+                name=each.name,
+                shape=each.shape,
+                size=_lengths(each.size_mm),
+                X_world_obstacle=_pose(each.pose_mm_deg),
+            )
+            for each in file.obstacles
         ),
         loads=_each(file.loads, lambda load: LoadSpec(mass=load.mass_kg, cog=_lengths(load.cog_mm))),
         tools=_each(file.tools, _pose),

@@ -28,6 +28,8 @@ REACH_MM = 20_000.0
 
 HEAVIEST_KG = 5000.0
 """Heaviest hand, part or load, as heavy as the heaviest rated payload of a robot file."""
+SHAPES = ("box", "cylinder")
+"""Shapes of parts and obstacles."""
 NEAREST_MM = 50.0
 """A camera is no nearer to what it looks to, mm."""
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,62}")
@@ -50,9 +52,10 @@ class HandFile(Record):
 
 
 class PartFile(Record):
-    """One ``[[parts]]``: a loose box."""
+    """One ``[[parts]]``: a loose body; ``size_mm`` are the edges of the box, or of the one that encloses a cylinder."""
 
     name: str
+    shape: str
     size_mm: Numbers
     pose_mm_deg: Numbers
     mass_kg: float
@@ -60,9 +63,10 @@ class PartFile(Record):
 
 
 class ObstacleFile(Record):
-    """One ``[[obstacles]]``: a fixed box."""
+    """One ``[[obstacles]]``: a fixed body, ``size_mm`` as of a part."""
 
     name: str
+    shape: str
     size_mm: Numbers
     pose_mm_deg: Numbers
 
@@ -176,12 +180,15 @@ def _doubts(
 ) -> Iterator[FileFault]:
     """Yield RBL640 for every part that cannot rest where it is; of two that overlap, at the later one."""
     # obstacles and earlier parts may not be overlapped; any part may support, also one that comes later in the file
-    fixed = [Box.of(f"obstacle '{each.name}'", each.size_mm, each.pose_mm_deg) for each in obstacles]
-    loose = [Box.of(f"part '{each.name}'", each.size_mm, each.pose_mm_deg) for each in parts]
+    fixed, loose = [_box("obstacle", each) for each in obstacles], [_box("part", each) for each in parts]
     for index, (part, item) in enumerate(zip(loose, items, strict=True)):
         others = [*fixed, *loose[:index]]
         if why := unrest(part, others, [*others, *loose[index + 1 :]]):
             yield item.fault("RBL640", why, key="pose_mm_deg")
+
+
+def _box(kind: str, body: PartFile | ObstacleFile) -> Box:
+    return Box.of(f"{kind} '{body.name}'", body.size_mm, body.pose_mm_deg, body.shape == "cylinder")
 
 
 def _arm(table: Table, folder: Path | None) -> ArmFile:
@@ -225,9 +232,11 @@ def _hand(table: Table) -> HandFile:
 
 
 def _part(table: Table) -> PartFile:
+    shape, size_mm = _solid(table)
     part = PartFile(
         name=table.text("name"),
-        size_mm=_size(table, "size_mm"),
+        shape=shape,
+        size_mm=size_mm,
         # above 0: the physics cannot move a body without mass
         mass_kg=table.number("mass_kg", low=1e-4, high=HEAVIEST_KG),
         pose_mm_deg=_pose(table, "pose_mm_deg"),
@@ -238,11 +247,21 @@ def _part(table: Table) -> PartFile:
 
 
 def _obstacle(table: Table) -> ObstacleFile:
+    shape, size_mm = _solid(table)
     obstacle = ObstacleFile(
-        name=table.text("name"), size_mm=_size(table, "size_mm"), pose_mm_deg=_pose(table, "pose_mm_deg")
+        name=table.text("name"), shape=shape, size_mm=size_mm, pose_mm_deg=_pose(table, "pose_mm_deg")
     )
     table.done()
     return obstacle
+
+
+def _solid(table: Table) -> tuple[str, Numbers]:
+    """Return the shape of a body and the edges of the box around it, mm."""
+    shape = table.text("shape", "box", choices=SHAPES)
+    if shape == "cylinder":
+        diameter = table.number("diameter_mm", low=0.1, high=REACH_MM)
+        return shape, (diameter, diameter, table.number("height_mm", low=0.1, high=REACH_MM))
+    return shape, _size(table, "size_mm")
 
 
 def _load(table: Table) -> LoadFile:

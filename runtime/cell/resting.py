@@ -1,9 +1,11 @@
-"""Whether the parts of a cell can rest where its file puts them: boxes against boxes, the floor and their supports.
+"""Whether the parts of a cell can rest where its file puts them: boxes and cylinders, the floor and their supports.
 
 Two boxes overlap by the least distance that one must move to leave the other: the least overlap of their shadows on
 the 15 axes of the separating axis theorem, the normals of their faces and the products of their edges (S. Gottschalk,
-M. C. Lin and D. Manocha, "OBBTree", SIGGRAPH 1996). Poses are ``[x, y, z, rx, ry, rz]`` in mm and deg with
-``R = Rz @ Ry @ Rx``. No numerics: ``robolang check`` examines every cell.
+M. C. Lin and D. Manocha, "OBBTree", SIGGRAPH 1996). For a cylinder no finite list of axes is complete: with those of
+``_directions`` the overlap is exact where the axes of both bodies are parallel, and elsewhere never too small. Poses
+are ``[x, y, z, rx, ry, rz]`` in mm and deg with ``R = Rz @ Ry @ Rx``. No numerics: ``robolang check`` examines every
+cell.
 """
 
 import math
@@ -22,16 +24,20 @@ Vector = tuple[float, float, float]
 
 
 class Box(Record):
-    """A box: its name in messages, centre mm, unit vectors of its edges in the world, half of their lengths mm."""
+    """A box: its name in messages, centre mm, unit vectors of its edges in the world, half of their lengths mm.
+
+    ``is_round``: the cylinder along z that such a box encloses.
+    """
 
     name: str
     centre: Vector
     axes: tuple[Vector, Vector, Vector]
     halves: Vector
+    is_round: bool = False
 
     @classmethod
-    def of(cls, name: str, size_mm: Sequence[float], pose_mm_deg: Sequence[float]) -> Self:
-        """Return the box of a size (3,) and the pose (6,) of its centre."""
+    def of(cls, name: str, size_mm: Sequence[float], pose_mm_deg: Sequence[float], is_round: bool = False) -> Self:
+        """Return the box or cylinder of a size (3,) and the pose (6,) of its centre."""
         x, y, z, *angles = pose_mm_deg
         # the columns of Rz Ry Rx, written out: numpy is not imported here
         (cx, sx), (cy, sy), (cz, sz) = ((math.cos(a), math.sin(a)) for a in map(math.radians, angles))
@@ -41,16 +47,29 @@ class Box(Record):
             (cz * sy * cx + sz * sx, sz * sy * cx - cz * sx, cy * cx),
         )
         length, width, height = size_mm
-        return cls(name=name, centre=(x, y, z), axes=axes, halves=(length / 2.0, width / 2.0, height / 2.0))
+        halves = (length / 2.0, width / 2.0, height / 2.0)
+        return cls(name=name, centre=(x, y, z), axes=axes, halves=halves, is_round=is_round)
 
     def lowered(self, by: float) -> "Box":
         """Return the box further down, mm."""
         x, y, z = self.centre
-        return Box(name=self.name, centre=(x, y, z - by), axes=self.axes, halves=self.halves)
+        return self.replaced(centre=(x, y, z - by))
 
     def half_shadow(self, direction: Vector) -> float:
         """Return half of the length of the shadow on a unit vector, mm."""
+        if self.is_round:
+            along = abs(_dot(self.axes[2], direction))
+            return self.halves[2] * along + self.halves[0] * math.sqrt(max(0.0, 1.0 - along * along))
         return sum(half * abs(_dot(axis, direction)) for half, axis in zip(self.halves, self.axes, strict=True))
+
+    def rims(self) -> list[Vector]:
+        """Return the points from which another body is nearest: the corners, or the ends of the axis, mm."""
+        signs = ((0.0, 0.0),) if self.is_round else tuple(product((-1.0, 1.0), repeat=2))
+        return [
+            _plus(self.centre, self.axes, (x * self.halves[0], y * self.halves[1], z * self.halves[2]))
+            for x, y in signs
+            for z in (-1.0, 1.0)
+        ]
 
     @property
     def bottom(self) -> float:
@@ -81,10 +100,32 @@ def overlap(one: Box, other: Box) -> float:
     apart = _minus(other.centre, one.centre)
     if math.hypot(*apart) >= math.hypot(*one.halves) + math.hypot(*other.halves):
         return 0.0
-    # parallel edges give no direction of their own: the faces have it
-    crossed = (_unit(_cross(a, b)) for a, b in product(one.axes, other.axes))
-    directions = [*one.axes, *other.axes, *(each for each in crossed if each is not None)]
+    directions = _directions(one, other)
     return max(0.0, min(one.half_shadow(d) + other.half_shadow(d) - abs(_dot(apart, d)) for d in directions))
+
+
+def _directions(one: Box, other: Box) -> list[Vector]:
+    """Return the directions in which two bodies may be apart."""
+    # parallel edges give no direction of their own: the faces have it
+    found = [_unit(_cross(a, b)) for a, b in product(one.axes, other.axes)]
+    for body, beside in ((one, other), (other, one)):
+        if body.is_round:
+            found += [_unit(_across(body, point)) for point in beside.rims()]
+    return [*one.axes, *other.axes, *(each for each in found if each is not None)]
+
+
+def _across(body: Box, point: Vector) -> Vector:
+    """Return the vector from the axis of a cylinder to a point, at right angles to the axis, mm."""
+    to, axis = _minus(point, body.centre), body.axes[2]
+    along = _dot(to, axis)
+    return to[0] - along * axis[0], to[1] - along * axis[1], to[2] - along * axis[2]
+
+
+def _plus(point: Vector, axes: tuple[Vector, Vector, Vector], steps: Vector) -> Vector:
+    x, y, z = (
+        start + sum(step * axis[k] for step, axis in zip(steps, axes, strict=True)) for k, start in enumerate(point)
+    )
+    return x, y, z
 
 
 def _dot(a: Vector, b: Vector) -> float:

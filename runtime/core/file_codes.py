@@ -111,7 +111,6 @@ register(
         code="RBL640",
         name="part-not-at-rest",
         meaning="A part of the cell overlaps another part, an obstacle or the floor, or nothing supports it.",
-        remedy="Correct its pose (the centre of the box, mm) or its size; in a run with physics it would be pushed "
-        "away or fall.",
+        remedy="Correct its pose (its centre, mm) or its size; in a run with physics it would be pushed away or fall.",
     ),
 )

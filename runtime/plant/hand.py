@@ -12,15 +12,10 @@ from runtime.cell.cell import HandSpec
 from runtime.cell.gripper import FINGERS, finger_sign, palm_box
 from runtime.core.frames import Array
 from runtime.core.linear import dot, matmul
+from runtime.plant.inertia import box_inertia
 from runtime.robot.model.spec import Body
 
 FINGER_SHARE = 0.125
-
-
-def box_inertia(mass: float, size: Array) -> Array:
-    """Return the inertia (3, 3) kg m2 of a uniform box of ``size`` (3,) m about its centre."""
-    squares = np.asarray(size, dtype=np.float64) ** 2
-    return np.diag(mass / 12.0 * (squares.sum() - squares))
 
 
 def finger_body(hand: HandSpec, side: str) -> Body:

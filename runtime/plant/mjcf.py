@@ -46,7 +46,8 @@ from runtime.core.decompositions import symmetric_eigen
 from runtime.core.frames import Array, pose
 from runtime.core.linear import matmul, norm
 from runtime.core.units import GRAVITY
-from runtime.plant.hand import box_inertia, finger_body, palm_body
+from runtime.plant.hand import finger_body, palm_body
+from runtime.plant.inertia import solid_inertia
 from runtime.robot.model.spec import AxisSpec, Body, RobotSpec
 
 # who meets whom: a geom collides where its contype meets the other's conaffinity, in either order
@@ -100,7 +101,7 @@ def build_mjcf(
     """
     root = ET.Element("mujoco", model=spec.name)
     # the order of bodies and joints is relied on: CellModel counts places in the state by it
-    _options(root, timestep)
+    _options(root, timestep, cell is not None and _has_curves(cell))
     world = ET.SubElement(root, "worldbody")
     _surroundings(world, cell.obstacles if cell else ())
     last = _arm(world, spec, timestep)
@@ -138,7 +139,13 @@ def friction_bias(spec: RobotSpec) -> Array:
     return np.array([(tb - tf) / 2.0 for tf, tb in (axis.motor.joint_coulomb_friction for axis in spec.axes)])
 
 
-def _options(root: ET.Element, timestep: float) -> None:
+def _has_curves(cell: CellSpec) -> bool:
+    """Return whether a cell has bodies other than boxes."""
+    shapes = {part.shape for part in cell.parts} | {obstacle.shape for obstacle in cell.obstacles}
+    return bool(shapes - {"box"})
+
+
+def _options(root: ET.Element, timestep: float, curves: bool) -> None:
     # the bodies of the robot file as they are: MuJoCo must neither infer nor correct mass and inertia
     ET.SubElement(
         root,
@@ -164,7 +171,8 @@ def _options(root: ET.Element, timestep: float) -> None:
         tolerance="1e-10",
     )
     # a reset would teleport the arm: the plant stops at the last valid state instead
-    ET.SubElement(option, "flag", autoreset="disable")
+    # multiccd: with the one point of contact that MuJoCo finds otherwise, a cylinder rocks on its table and never rests
+    ET.SubElement(option, "flag", {"autoreset": "disable"} | ({"multiccd": "enable"} if curves else {}))
     default = ET.SubElement(root, "default")
     ET.SubElement(
         default,
@@ -179,15 +187,14 @@ def _options(root: ET.Element, timestep: float) -> None:
 def _surroundings(world: ET.Element, obstacles: Iterable[ObstacleSpec]) -> None:
     ET.SubElement(world, "light", pos="0 -1 3", dir="0 0.3 -1", diffuse="0.7 0.7 0.7")
     _geom(world, "floor", "environment", type="plane", size="3 3 0.1", rgba="0.85 0.86 0.88 1")
-    for box in obstacles:
+    for each in obstacles:
         _geom(
             world,
-            f"obstacle:{box.name}",
+            f"obstacle:{each.name}",
             "environment",
-            box.X_world_obstacle,
-            type="box",
-            size=row(box.size / 2.0),
+            each.X_world_obstacle,
             rgba="0.55 0.47 0.38 1",
+            **_solid(each),
         )
 
 
@@ -360,18 +367,26 @@ def _coupling(root: ET.Element, timestep: float) -> None:
 def _part(world: ET.Element, part: PartSpec) -> None:
     body = _body(world, f"part:{part.name}", part.X_world_part)
     ET.SubElement(body, "freejoint", name=f"part:{part.name}")
-    _inertial(body, Body(mass=part.mass, cog=np.zeros(3), inertia=box_inertia(part.mass, part.size)))
+    _inertial(body, Body(mass=part.mass, cog=np.zeros(3), inertia=solid_inertia(part.shape, part.mass, part.size)))
     # priority: the friction of a contact is that of the part, not the larger of the two
     _geom(
         body,
         f"part:{part.name}",
         "part",
-        type="box",
-        size=row(part.size / 2.0),
+        None,
         priority="1",
         friction=f"{part.friction!r} 0.005 0.0001",
         rgba="0.45 0.55 0.7 1",
+        **_solid(part),
     )
+
+
+def _solid(body: PartSpec | ObstacleSpec) -> dict[str, str]:
+    """Return the attributes of the shape of a part or an obstacle."""
+    half = body.size / 2.0
+    if body.shape == "cylinder":
+        return {"type": "cylinder", "size": row(half[1:])}
+    return {"type": "box", "size": row(half)}
 
 
 def _actuators(root: ET.Element, spec: RobotSpec, with_hand: bool) -> None:

@@ -40,6 +40,14 @@ def test_what_a_program_is_there_for_is_no_finding(tmp_path, case):
     assert found(tmp_path, text, *parts) == ([], [])
 
 
+ROUND_POST = """
+[[obstacles]]
+name = "post"
+shape = "cylinder"
+diameter_mm = 60
+height_mm = 80
+pose_mm_deg = [{}, {}, {}, 0, 0, 0]
+"""
 OTHER = ("other", 60, 40, 40, 0.5, 480, -150, 620)
 PUSHED = {
     "open fingers push a neighbour": (BESIDE + "MOVE P1 + (0, 55, 0)\n", [OWN], 4, "right finger.*part"),
@@ -201,3 +209,16 @@ def test_the_links_of_an_elastic_arm_stand_at_the_set_points(raised_mm, codes):
     raised = replace(table, X_world_obstacle=pose([0.0, 0.0, raised_mm * MM]) @ table.X_world_obstacle)
     project = replace(project, cell=replace(project.cell, obstacles=(raised,), parts=()))
     assert {item.code for item in findings(project, rehearse(project))} == codes
+
+
+def test_a_cylinder_is_met_where_it_is_and_not_where_its_box_would_be(tmp_path):
+    """A post of 60 mm beside the path of the open hand: its box would reach into it, the post does not."""
+    text = "MOVE P5\nMOVE P1\n"
+    side = 10.0 + 30.0 / 2.0**0.5 + 3.0  # the edges of pads and shanks are at x = 10, y = 48 mm from P1
+    where = (480.0 + side, -220.0 + 48.0 + 30.0 / 2.0**0.5 + 3.0, 640.0)
+    post = ROUND_POST.format(*where)
+    assert found(tmp_path, text, OWN, obstacles=post) == ([], [])
+    box = post.replace('shape = "cylinder"', "size_mm = [60, 60, 80]").replace("diameter_mm = 60\nheight_mm = 80\n", "")
+    assert [row[0] for row in found(tmp_path, text, OWN, obstacles=box)[0]] == ["RBL421"]
+    nearer = ROUND_POST.format(where[0] - 6.0, where[1] - 6.0, where[2])
+    assert [row[0] for row in found(tmp_path, text, OWN, obstacles=nearer)[0]] == ["RBL421"]

@@ -186,6 +186,15 @@ def test_more_vertices_than_a_picture_can_have_are_refused():
     assert (refused.value.code, refused.value.message.split(" ")[0]) == ("RBL833", "scene.meshes.n")
 
 
+def test_a_cylinder_is_drawn_as_one():
+    part = replace(CELL.parts[0], shape="cylinder", size=np.array([0.04, 0.04, 0.1]))
+    post = replace(CELL.obstacles[0], shape="cylinder", size=np.array([0.06, 0.06, 0.2]))
+    shapes = {shape.body: shape for shape in scene_of(replace(CELL, parts=(part,), obstacles=(post,))).shapes}
+    for body, size in ((f"part:{part.name}", (0.02, 0.02, 0.1)), (f"obstacle:{post.name}", (0.03, 0.03, 0.2))):
+        assert (shapes[body].kind, shapes[body].size) == ("cylinder", pytest.approx(size))
+        np.testing.assert_allclose(shapes[body].X_body_shape, np.eye(4), atol=1e-12)
+
+
 def test_whatever_a_cell_holds_its_scene_can_be_read_again():
     robot = replace(CELL.robot, name="n" * 5000)
     obstacles = tuple(replace(CELL.obstacles[0], name=f"o{k}") for k in range(1500))

@@ -59,6 +59,12 @@ def test_builtin_load_is_the_hand_with_its_part() -> None:
     np.testing.assert_allclose(cell.loads["hand_and_part"].cog, cog, atol=5e-5)
 
 
+def test_a_cylinder_in_si() -> None:
+    cell = parse(edited("size_mm = [60, 40, 80]", 'shape = "cylinder"\ndiameter_mm = 40\nheight_mm = 80'))
+    assert cell.parts[0].shape == "cylinder"
+    np.testing.assert_allclose(cell.parts[0].size, [0.04, 0.04, 0.08])
+
+
 def test_arrays_are_read_only() -> None:
     cell = parse(cell_text())
     for array in (cell.home, cell.hand.cog, cell.hand.X_flange_tool, cell.parts[0].size, cell.tools["grip"]):
@@ -87,6 +93,9 @@ def test_frames_and_controller_are_handed_on() -> None:
         ("friction = 0.6", "friction = 0", "RBL605"),
         ("size_mm = [60, 40, 80]", "size_mm = [60, -40, 80]", "RBL605"),
         ("size_mm = [60, 40, 80]", "size_mm = [60, 40]", "RBL613"),
+        ("size_mm = [60, 40, 80]", 'shape = "sphere"\nsize_mm = [60, 40, 80]', "RBL610"),
+        ("size_mm = [60, 40, 80]", 'diameter_mm = nan\nheight_mm = 80\nshape = "cylinder"', "RBL604"),
+        ("size_mm = [60, 40, 80]", 'height_mm = 0\ndiameter_mm = 40\nshape = "cylinder"', "RBL605"),
         ("pose_mm_deg = [480, -220, 640, 0, 0, 0]", "pose_mm_deg = [480, -220, nan, 0, 0, 0]", "RBL604"),
         ("pose_mm_deg = [480, -220, 640, 0, 0, 0]", "pose_mm_deg = [480, -220, 640]", "RBL613"),
         ("dwell_s = 0.3", "dwell_s = 1e9", "RBL605"),

@@ -54,6 +54,34 @@ def test_bars_that_cross_edge_over_edge(gap, expected):
     assert overlap(lower, upper) == pytest.approx(expected, abs=1e-9)
 
 
+def can(*pose, size=(100.0, 100.0, 100.0)):
+    return Box.of("a can", size, pose, is_round=True)
+
+
+@pytest.mark.parametrize(
+    ("pose", "other", "expected"),
+    [
+        ((0, 0, 90, 0, 0, 0), can, 10.0),
+        ((70, 70, 0, 0, 0, 0), can, 100.0 - 70.0 * math.sqrt(2.0)),
+        ((75, 75, 0, 0, 0, 0), can, 0.0),
+        ((90, 90, 0, 0, 0, 0), cube, 0.0),
+        ((80, 80, 0, 0, 0, 0), cube, 50.0 - 30.0 * math.sqrt(2.0)),
+        ((0, 97, 0, 90, 0, 0), cube, 3.0),
+        ((0, 0, 97, 90, 0, 0), can, 3.0),
+        ((0, 0, 100 - 1, 0, 90, 0), cube, 1.0),
+    ],
+)
+def test_the_overlap_with_a_cylinder(pose, other, expected):
+    assert overlap(other(0, 0, 0, 0, 0, 0), can(*pose)) == pytest.approx(expected, abs=1e-9)
+    assert overlap(can(*pose), other(0, 0, 0, 0, 0, 0)) == pytest.approx(expected, abs=1e-9)
+
+
+def test_a_cylinder_rests_on_its_side_and_on_its_end():
+    assert unrest(can(0, 0, 50, 0, 0, 0, size=(40.0, 40.0, 100.0)), [], []) == ""
+    assert unrest(can(0, 0, 20, 30, 90, 0, size=(40.0, 40.0, 100.0)), [], []) == ""
+    assert unrest(can(0, 0, 40, 0, 90, 0, size=(40.0, 40.0, 100.0)), [], [])
+
+
 def test_a_box_that_is_nowhere_cannot_lie_there():
     assert unrest(cube(0, 0, math.nan, 0, 0, 0), [], [])
 

@@ -14,7 +14,8 @@ from runtime.cell.gripper import FINGERS
 from runtime.core.frames import Array, inverse, pose_from_xyzrpy, rotation_angle
 from runtime.core.tomlfile import Source
 from runtime.core.units import DEG
-from runtime.plant.hand import box_inertia, hand_body
+from runtime.plant.hand import hand_body
+from runtime.plant.inertia import box_inertia
 from runtime.plant.mujoco_plant import MujocoPlant
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
