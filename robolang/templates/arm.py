@@ -1,7 +1,7 @@
 """The robot of a project: a built-in one, or a file that the project holds in its own folder.
 
-A cell opens nothing outside of its folder, so a file from elsewhere is copied, with its sidecar; one that is in the
-folder already is named from there.
+A cell opens nothing outside of its folder, so a file from elsewhere is copied, with its sidecar and its meshes; one
+that is in the folder already is named from there.
 """
 
 from collections.abc import Mapping

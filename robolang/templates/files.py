@@ -41,7 +41,8 @@ def project_files(name: str, template: Template, arm: Arm, fitted: Fitted) -> Pr
             text = text.replace(word, value)
         beside[target] = text.encode()
     job = {f"{name}{ending}": text.encode() for ending, text in fitted.texts.items()}
-    for file in arm.files:
+    copied = {**fitted.meshes, **arm.files}
+    for file in copied:
         if file in job or file in beside:
             raise Fault("RBL842", f"the robot file {file} has the name of a file of the project", "Give another name.")
-    return ProjectFiles(job={**job, **arm.files}, beside=beside, fitted=fitted)
+    return ProjectFiles(job={**job, **copied}, beside=beside, fitted=fitted)

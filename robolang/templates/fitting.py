@@ -23,6 +23,7 @@ from robolang.templates.arm import Arm
 from robolang.templates.placing import Job, placements
 from robolang.templates.template import CELL, POINTS, PROGRAM, TEST, Template
 from robolang.templates.trial import Outcome, tried
+from runtime.appearance.own_meshes import mesh_files
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, pose, pose_from_xyzrpy
 from runtime.core.linear import matmul
@@ -45,12 +46,13 @@ MOST_REHEARSED = 12
 class Fitted(Record):
     """The files of a template by ending, and what a user has to know about the arm.
 
-    ``physics``: its drives do the job, or are not asked to.
+    ``physics``: its drives do the job, or are not asked to. ``meshes``: files to copy with its model, by name.
     """
 
     texts: Mapping[str, str]
     physics: bool
     notes: tuple[str, ...]
+    meshes: Mapping[str, bytes]
 
 
 def fitted(template: Template, arm: Arm) -> Fitted:
@@ -86,7 +88,9 @@ def _tested(template: Template, arm: Arm, project: Project, texts: Mapping[str, 
         if not expected.done:
             raise _unfit(template, arm, expected.why)
     stated = {**texts, TEST: expected.stated(texts[TEST], planned_s)}
-    return Fitted(texts=stated, physics=expected.physics, notes=expected.notes)
+    # as the model: what is in the folder of the project is there already
+    meshes = mesh_files(project.cell.robot.meshes) if arm.files else {}
+    return Fitted(texts=stated, physics=expected.physics, notes=expected.notes, meshes=meshes)
 
 
 def _unfit(template: Template, arm: Arm, why: str) -> Fault:

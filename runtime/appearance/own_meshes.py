@@ -12,17 +12,19 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from runtime.appearance.mesh_files import MeshError, read_mesh
+from runtime.appearance.mesh_files import MOST_BYTES, MeshError, read_mesh
 from runtime.appearance.scene import MOST_MESHES, Mesh
-from runtime.core.bounded_files import resolved_inside, stays_inside
+from runtime.core.bounded_files import RefusedError, read_bounded, resolved_inside, stays_inside
 from runtime.core.frames import Array, frozen
 from runtime.core.linear import matmul
-from runtime.robot.model.spec import LinkMesh
+from runtime.robot.model.spec import MESH_ENDINGS, LinkMesh
 
 MOST_FACES = 30_000
 """Triangles of all meshes of a robot that are kept: about 0.3 MB in a log."""
 FINEST, GROWTH = 1e-3, 1.1
 """Cell of the finest grid that makes meshes coarser, m, and the least factor from one to the next."""
+MOST_COPIED = 100_000_000
+"""Bytes of all mesh files that a copy of a model gets."""
 LARGEST = 20.0
 """A mesh that is larger, m, is in another unit than its scale says."""
 
@@ -56,7 +58,7 @@ def own_meshes(meshes: tuple[LinkMesh, ...]) -> OwnMeshes:
 
 def _placed(mesh: LinkMesh) -> Mesh:
     """Return a mesh in the frame of its link, m; ``MeshError``."""
-    read = read_mesh(_located(mesh))
+    read = read_mesh(_located(mesh)[1])
     vertices = read.vertices * mesh.scale
     if not np.ptp(vertices, axis=0).max() <= LARGEST:
         raise MeshError(f"is larger than {LARGEST:g} m: its scale is that of another unit")
@@ -67,8 +69,26 @@ def _placed(mesh: LinkMesh) -> Mesh:
     return Mesh(vertices=placed, faces=read.faces[:, ::-1] if mirrored else read.faces)
 
 
-def _located(mesh: LinkMesh) -> Path:
-    """Return the path of a mesh file inside of the folder of its model; ``MeshError``.
+def mesh_files(meshes: tuple[LinkMesh, ...]) -> dict[str, bytes]:
+    """Return the mesh files of a robot by their names in the folder of its model.
+
+    What cannot be drawn is left out, and so is what comes after ``MOST_COPIED`` bytes.
+    """
+    found: dict[str, bytes] = {}
+    for each in meshes[:MOST_MESHES]:
+        try:
+            name, path = _located(each)
+            data = read_bounded(path, MOST_BYTES) if path.suffix.lower() in MESH_ENDINGS else b""
+        # RefusedError: own_meshes notes it where the mesh would be drawn
+        except (MeshError, RefusedError):
+            continue
+        if data and sum(map(len, found.values())) + len(data) <= MOST_COPIED:
+            found[name] = data
+    return found
+
+
+def _located(mesh: LinkMesh) -> tuple[str, Path]:
+    """Return name and path of a mesh file inside of the folder of its model; ``MeshError``.
 
     A name with ``package://`` counts from a folder of that name, or from the model's own.
     """
@@ -87,7 +107,7 @@ def _located(mesh: LinkMesh) -> Path:
             continue
         if path is None:
             raise MeshError("is a link that leads out of the folder of the model")
-        return path
+        return each, path
     raise MeshError("is not in the folder of the model")
 
 

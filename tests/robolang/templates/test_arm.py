@@ -1,11 +1,16 @@
 """The robot of a project: a name, or a file that the project has or gets."""
 
+import re
+
 import pytest
 
+from robolang.project.project import load_project
 from robolang.templates.arm import choose
 from robolang.templates.writing import init_project, new_project
+from runtime.appearance.own_meshes import own_meshes
 from runtime.core.faults import Fault
 from tests.robolang.cli.commands import PUMA, robolang
+from tests.runtime.appearance.robots import binary_stl, box_mesh
 from tests.runtime.robot.models import SIX
 
 
@@ -63,3 +68,15 @@ def test_a_model_without_drives_gets_a_project_for_the_ideal_arm(tmp_path):
     robolang("check", "--strict", "--motion", written.folder)
     robolang("test", written.folder)
     robolang("run", "--no-physics", written.folder / "cell1.rbl")
+
+
+def test_meshes_of_a_model_are_copied_with_it(tmp_path):
+    folder = tmp_path / "model"
+    (folder / "meshes").mkdir(parents=True)
+    box = binary_stl(box_mesh((0.1, 0.1, 0.1)))
+    (folder / "meshes" / "box.stl").write_bytes(box)
+    shown = '<visual><geometry><mesh filename="package://mine/meshes/box.stl"/></geometry></visual>'
+    (folder / "six.urdf").write_text(re.sub(r'(<link name="[^"]+">)', rf"\1{shown}", SIX))
+    project = new_project(tmp_path / "cell1", "pick-place", str(folder / "six.urdf")).folder
+    assert (project / "meshes" / "box.stl").read_bytes() == box
+    assert own_meshes(load_project(project / "cell1.rbl").cell.robot.meshes).notes == ()

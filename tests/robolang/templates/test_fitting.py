@@ -76,6 +76,8 @@ def test_a_robot_that_a_template_does_not_fit_is_refused_with_the_reason(tmp_pat
         fitted(template("pick-place"), arm(tmp_path, *changes))
     assert caught.value.code == "RBL843"
     assert all(each in caught.value.message for each in says)
+    # no finding of a rehearsal: none was made
+    assert "RBL" not in caught.value.message
     assert list(tmp_path.iterdir()) == [tmp_path / "mine.toml"]
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from runtime.appearance import own_meshes as module
 from runtime.appearance.cell_scene import scene_of
-from runtime.appearance.own_meshes import own_meshes
+from runtime.appearance.own_meshes import mesh_files, own_meshes
 from runtime.core.frames import frozen, pose, rotation_about
 from runtime.core.tomlfile import Source
 from runtime.robot.files.importer import load_file, parse_model
@@ -61,8 +61,19 @@ def test_nothing_outside_of_the_folder_is_opened(folder, file):
     (folder / "meshes" / "link.stl").symlink_to(folder.parent / "secret.stl")
     found = own_meshes((named(folder, file),))
     assert found.links == ()
+    assert mesh_files((named(folder, file),)) == {}
     assert len(found.notes) == 1
     assert found.notes[0].startswith(file)
+
+
+def test_the_files_of_meshes_are_named_from_the_folder_of_the_model(folder, monkeypatch):
+    (folder / "meshes" / "other.obj").write_bytes(b"v 0 0 0")
+    (folder / "meshes" / "notes.txt").write_bytes(b"not a mesh")
+    files = ("package://arm/meshes/box.stl", "meshes/box.stl", "meshes/other.obj", "meshes/notes.txt")
+    meshes = tuple(named(folder, file) for file in files)
+    assert mesh_files(meshes) == {"meshes/box.stl": BOX, "meshes/other.obj": b"v 0 0 0"}
+    monkeypatch.setattr(module, "MOST_COPIED", len(BOX))
+    assert mesh_files(meshes) == {"meshes/box.stl": BOX}
 
 
 def test_a_link_that_lacks_one_of_its_meshes_has_none(folder):
