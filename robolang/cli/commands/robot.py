@@ -105,11 +105,12 @@ def import_model(file: _Model, options: _SidecarOptions) -> None:
     """
     with reported():
         from robolang.core.storage import write_atomic
+        from runtime.core.tomlfile import Source, read_source
         from runtime.robot.files.estimate import estimate
-        from runtime.robot.files.importer import read_model
+        from runtime.robot.files.importer import read_model, with_sidecar
         from runtime.robot.files.known import known_of
         from runtime.robot.files.sidecar import template
-        from runtime.robot.files.sidecar_file import NO_OVERLAY, sidecar_path
+        from runtime.robot.files.sidecar_file import NO_OVERLAY, read_sidecar, sidecar_path
 
         target = options.output if options.output is not None else sidecar_path(file)
         arm = read_model(file, replace(NO_OVERLAY, flange=options.flange))
@@ -122,6 +123,7 @@ def import_model(file: _Model, options: _SidecarOptions) -> None:
         write_atomic(target, lambda stream: stream.write(text))
         if options.estimate:
             echo(safe(f"wrote {target}: {len(estimates)} values are estimates, each with its rule"))
+            _say_weights(with_sidecar(read_source(file), read_sidecar(Source(str(target), text.decode()), file.name)))
         else:
             gaps = text.count(b"MISSING:")
             echo(safe(f"wrote {target}: {gaps} values to fill in, marked MISSING"))
@@ -137,6 +139,24 @@ def _show_json(robot: str) -> None:
     spec = load_file(Path(robot)) if is_model(robot) else load_any_robot(robot)
     say_warnings(spec.warnings)
     echo(json.dumps(whole(spec), indent=2))
+
+
+_MOST = 3
+"""Estimates that the summary of an import names."""
+
+
+def _say_weights(spec: "RobotSpec") -> None:
+    """Print which estimates matter most; nothing for an arm that cannot make the move by which they are compared."""
+    from robolang.cli.console import Console
+    from robolang.experiments.estimate_weights import weights
+
+    with Console(stderr=True).status("comparing the estimates"):
+        found = weights(spec)[:_MOST]
+    if found:
+        echo("what matters most, by runs with each estimate halved and doubled:")
+    for weight in found:
+        change = "halved" if weight.scale < 1.0 else "doubled"
+        echo(f"  {weight.key} {change}: {weight.text}")
 
 
 def _show_robot(spec: "RobotSpec") -> None:

@@ -172,7 +172,13 @@ def impossible_inertia(element: Element, inertia: Array, what: str) -> FileFault
     defect = inertia_defect(inertia)
     if defect <= INERTIA_SLACK:
         return None
-    return element.fault("RBL606", f"the inertia of {what} {inertia_text(defect)}")
+    return element.fault("RBL606", f"the inertia of {what} {inertia_text(defect)}", _mended(element))
+
+
+def _mended(element: Element) -> str:
+    """Return what to do about a body that cannot be."""
+    model = PurePath(element.source.path).name
+    return f"correct it there, or 'robolang robot import {model} --estimate' writes a body that can be"
 
 
 def serial_chain(root: Node, path: str, name: str, flange: str | None) -> ImportedArm:
@@ -268,9 +274,10 @@ def _with_body(axis: ImportedAxis, cluster: list[tuple[Array, Node]], index: int
         if node.body is not None:  # an impossible part would pass unseen beside a large one
             impossible = impossible or impossible_inertia(node.element, node.body.inertia, repr(node.name))
     if not body.mass > 0.0:
-        impossible = axis.hinge.element.fault("RBL606", f"{what} has no mass")
+        impossible = axis.hinge.element.fault("RBL606", f"{what} has no mass", _mended(axis.hinge.element))
     elif impossible is None and flat(body.inertia):
-        impossible = axis.link.fault("RBL606", f"{what} has {body.mass:g} kg and no inertia about some axis")
+        message = f"{what} has {body.mass:g} kg and no inertia about some axis"
+        impossible = axis.link.fault("RBL606", message, _mended(axis.link))
     return replace(axis, body=body, impossible=impossible, bodiless=all(node.body is None for _, node in cluster))
 
 

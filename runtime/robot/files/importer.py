@@ -27,7 +27,7 @@ from runtime.robot.files.mjcf_import import read_mjcf
 from runtime.robot.files.plausibility import Turning, What, doubt_turning
 from runtime.robot.files.robot_file import RobotFile
 from runtime.robot.files.sidecar import complete, missing_in_template, template
-from runtime.robot.files.sidecar_file import NO_OVERLAY, Overlay, read_overlay, read_sidecar, sidecar_path
+from runtime.robot.files.sidecar_file import NO_OVERLAY, Overlay, SidecarFile, read_overlay, read_sidecar, sidecar_path
 from runtime.robot.files.urdf import read_urdf
 from runtime.robot.kinematics.closed_form import find_opw
 from runtime.robot.model.drives import joint_label
@@ -52,12 +52,17 @@ def build(file: ArmFile) -> RobotSpec:
         return loader.build(file)
     if file.sidecar is None:
         return _ideal(file.source)
+    return with_sidecar(file.source, file.sidecar)
+
+
+def with_sidecar(source: Source, sidecar: SidecarFile) -> RobotSpec:
+    """Return the robot of the text of a model file and a sidecar that is filled in; ``FileFault`` RBL6xx."""
     # read once more as an overlay: a chain is built with the ranges and the flange that the sidecar states
-    overlay = read_overlay(file.sidecar.table.source)
-    arm = parse_model(file.source, overlay)
+    overlay = read_overlay(sidecar.table.source)
+    arm = parse_model(source, overlay)
     _check(arm, overlay)
     _check_bodies(arm, overlay)
-    return complete(arm, file.sidecar)
+    return complete(arm, sidecar)
 
 
 def read_arm(path: Path) -> ImportedArm:
@@ -169,8 +174,8 @@ def _ideal(source: Source) -> RobotSpec:
     arm, path = parse_model(source), Path(source.path)
     _check(arm, NO_OVERLAY)
     # through the text of a sidecar: an ideal arm is then the arm that the import of the same file makes
-    sidecar = Source(str(sidecar_path(path)), template(arm, estimate(known_of(arm))))
-    spec = complete(parse_model(source, read_overlay(sidecar)), read_sidecar(sidecar, path.name))
+    text = template(arm, estimate(known_of(arm)))
+    spec = with_sidecar(source, read_sidecar(Source(str(sidecar_path(path)), text), path.name))
     return replace(spec, undriven=_undriven(arm, path))
 
 

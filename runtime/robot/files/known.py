@@ -14,6 +14,7 @@ from runtime.robot.files.corrections import flat, shifted, smallest_shift
 from runtime.robot.files.estimate import Known
 from runtime.robot.files.imported import ImportedArm, ImportedAxis
 from runtime.robot.kinematics.chain import Chain
+from runtime.robot.model.drives import WIDEST
 from runtime.robot.model.spec import Body
 
 FEWEST_ALIKE = 4
@@ -25,13 +26,15 @@ def known_of(arm: ImportedArm) -> Known:
     # NaN, not 0: a value that is missing must not compare as small
     efforts = [math.nan if axis.hinge.effort is None else axis.hinge.effort for axis in arm.axes]
     bodies: tuple[Body | None, ...] = tuple(_body(axis) for axis in arm.axes)
+    # a range that no sidecar may state is none
+    within = np.maximum(np.abs(arm.lower), np.abs(arm.upper)) <= WIDEST
     hinges = [axis.hinge for axis in arm.axes]
     return Known(
         chain=Chain(placements=tuple(axis.placement for axis in arm.axes), X_last_flange=arm.X_last_flange),
         bodies=(None,) * arm.n if _bodies_alike(arm) else bodies,
         mended=tuple(axis.impossible is not None for axis in arm.axes),
-        lower=arm.lower,
-        upper=arm.upper,
+        lower=np.where(within, arm.lower, math.nan),
+        upper=np.where(within, arm.upper, math.nan),
         endless=[axis.hinge.endless for axis in arm.axes],
         speed=np.array([math.nan if hinge.speed is None else hinge.speed for hinge in hinges]),
         torque=np.full(arm.n, math.nan) if alike(efforts) else np.array(efforts),

@@ -126,7 +126,9 @@ def test_an_arm_without_drives_moves_as_an_ideal_one_and_physics_are_refused(tmp
     assert robolang("run", program, code=2).stderr == error
     with pytest.raises(FileFault, match="RBL608"):
         load_any_robot(str(arm))
-    robolang("robot", "import", arm, "--estimate")
+    lines = robolang("robot", "import", arm, "--estimate").stdout.splitlines()
+    assert len(lines) == 5  # what was written, a heading, and the three that matter most
+    assert all(re.search(r"^  [a-z_.]+ (halved|doubled): .* becomes ", line) for line in lines[2:])
     said = robolang("run", program, "--report", tmp_path / "r.json").stdout
     names = json.loads((tmp_path / "r.json").read_text())["robot_estimated"]
     assert len(names) == 86

@@ -140,6 +140,13 @@ def test_joints_without_end_stops_get_a_turn(tmp_path):
     assert (spec.lower[0], spec.upper[0]) == pytest.approx((-2 * math.pi, 2 * math.pi))
 
 
+def test_a_range_that_no_sidecar_may_state_is_estimated(tmp_path):
+    spec, sidecar = imported(tmp_path, SIX.replace('lower="-3.5"', 'lower="-170"', 1))
+    assert "MISSING" not in sidecar
+    assert spec.estimated["axes.1.range_deg"]
+    assert (spec.lower[0], spec.upper[0]) == pytest.approx((-math.pi, math.pi))
+
+
 def test_what_a_model_gives_at_the_joint_is_taken_over_the_gear(tmp_path):
     spec, _ = imported(tmp_path, ANGLES.read_text(), "a.xml")
     motors = [axis.motor for axis in spec.axes]
