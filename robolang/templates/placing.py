@@ -31,8 +31,10 @@ LEAST = 0.25
 HEADINGS, YAWS = (0, 90, -90, 180), (0, 180)
 NEAREST, BEST_AHEAD, FURTHEST = 0.25, 0.5, 0.85
 """Distances of the middle of the table from the base, as shares of the reach."""
-LOWEST, BEST_HEIGHT, HIGHEST = -0.9, -0.1, 0.3
-"""Heights of the table over the second axis, as shares of the reach."""
+BELOW, LOWEST, HIGHEST = 0.1, -0.8, 0.4
+"""The height that suits an arm, below its second axis, and heights of tables over that one, as shares of the reach."""
+ABOUT_DOWN = 0.999
+"""Cosine of the angle from straight down within which a tool points down."""
 STEPS = 0.05, 0.03
 """Of distance and height, as shares of the reach."""
 GRID_MM = 10.0
@@ -82,7 +84,8 @@ def placements(kinematics: Kinematics, job: Job) -> Iterator[Placement]:
 
 
 def _examined(kinematics: Kinematics, job: Job, heading: int) -> Iterator[_Place]:
-    reach, height = _size(kinematics)
+    reach = _reach(kinematics)
+    height = _best_height(kinematics, job, reach)
     nearest_mm = 0.5 * job.depth_mm + BASE_MM
     tables = [table for table in _tables(reach, height) if table[0] >= nearest_mm]
     # a search by Newton's method takes a hundred times as long as the closed form
@@ -99,13 +102,24 @@ def _examined(kinematics: Kinematics, job: Job, heading: int) -> Iterator[_Place
                 yield _Place(rating=float(ratings[best]), placement=placement)
 
 
-def _size(kinematics: Kinematics) -> tuple[float, float]:
-    """Return the reach of an arm from its second axis, stretched, and the height of that axis, m."""
-    spec = kinematics.spec
+def _reach(kinematics: Kinematics) -> float:
+    """Return how far the flange of an arm is from its first axis at most, m."""
     # stretched, since the angles at which an arm reaches furthest are not known without its kinematics
-    links = [axis.placement[:3, 3] for axis in spec.axes[2:]] + [spec.X_last_flange[:3, 3]]
-    second = spec.axes[0].placement[2, 3] + (spec.axes[1].placement[2, 3] if spec.n > 1 else 0.0)
-    return float(sum(np.linalg.norm(link) for link in links)), float(second)
+    links = [axis.placement[:3, 3] for axis in kinematics.spec.axes[2:]] + [kinematics.spec.X_last_flange[:3, 3]]
+    first = kinematics.spec.axes[1].placement[:2, 3]
+    return float(np.linalg.norm(first) + sum(np.linalg.norm(link) for link in links))
+
+
+def _best_height(kinematics: Kinematics, job: Job, reach: float) -> float:
+    """Return how high a table suits an arm, m."""
+    spec = kinematics.spec
+    X = kinematics.forward(0.5 * (spec.lower + spec.upper))
+    # a SCARA: its tool points down everywhere, and the middle of its stroke is the middle of the job
+    if -X[2, 2] >= ABOUT_DOWN:
+        heights = job.X_table_tool[:, 2, 3]
+        return float(X[2, 3] - job.X_flange_tool[2, 3] - 0.5 * (heights.min() + heights.max()))
+    second = spec.axes[0].placement[2, 3] + spec.axes[1].placement[2, 3]
+    return float(second - BELOW * reach)
 
 
 def _tables(reach: float, height: float) -> Iterator[Position]:
@@ -113,9 +127,7 @@ def _tables(reach: float, height: float) -> Iterator[Position]:
     ahead = np.arange(NEAREST, FURTHEST, STEPS[0])
     above = np.arange(LOWEST, HIGHEST, STEPS[1])
     # the sum of both deviations: neither a table at the right height far away nor a near one overhead comes early
-    by_fit = sorted(
-        ((x, z) for x in ahead for z in above), key=lambda site: abs(site[0] - BEST_AHEAD) + abs(site[1] - BEST_HEIGHT)
-    )
+    by_fit = sorted(((x, z) for x in ahead for z in above), key=lambda site: abs(site[0] - BEST_AHEAD) + abs(site[1]))
     seen = set()
     for x, z in by_fit:
         table = (_on_grid(x * reach), 0.0, max(_on_grid(z * reach + height), SLAB_MM))

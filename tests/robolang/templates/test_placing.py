@@ -91,3 +91,31 @@ def test_an_arm_without_a_closed_form_gets_the_same_kind_of_place():
     (place,) = first(arm, count=1)
     tool = arm.forward(np.array(place.home_deg) * DEG) @ JOB.X_flange_tool
     assert np.allclose(inverse(tool)[:3, :3] @ np.array([0, 0, -1.0]), [0, 0, 1], atol=1e-6)
+
+
+class Pointing:
+    """An arm whose flange is 400 mm up in the middle of its ranges, the tool tilted there."""
+
+    def __init__(self, tilt_deg):
+        self.spec, self.tilt = load_builtin("puma560"), tilt_deg * DEG
+
+    def forward(self, q):
+        assert np.allclose(q, 0.5 * (self.spec.lower + self.spec.upper))
+        return pose_from_xyzrpy([0.3, 0.0, 0.4, np.pi - self.tilt, 0.0, 0.0])
+
+
+def test_the_table_of_an_arm_that_always_points_down_is_below_the_middle_of_its_stroke():
+    assert placing._best_height(Pointing(0.0), JOB, 1.0) == pytest.approx(0.4 - 0.1 - 0.1)
+    # any other arm: below its second axis
+    assert placing._best_height(Pointing(10.0), JOB, 1.0) == pytest.approx(0.672 - 0.1)
+
+
+def test_the_reach_counts_from_the_first_axis():
+    spec = load_builtin("irb2400")
+    # 100 mm to the second axis, 705 mm, 135 and 755 mm across one another, 85 mm
+    assert placing._reach(Kinematics(spec)) == pytest.approx(0.1 + 0.705 + np.hypot(0.135, 0.755) + 0.085, abs=0.03)
+    axes = list(spec.axes)
+    axes[1] = replace(axes[1], placement=pose((0.3, 0.4, 0.615), axes[1].placement[:3, :3]))
+    assert placing._reach(Kinematics(replace(spec, axes=tuple(axes), opw=None))) == pytest.approx(
+        placing._reach(Kinematics(spec)) + 0.4
+    )
