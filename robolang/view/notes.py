@@ -1,7 +1,7 @@
 """What happened in a run beside its motion, at its time and its line: alarms, warnings, notes, what PRINT showed."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -14,6 +14,7 @@ from robolang.execution.session import Session
 from robolang.execution.status import ENDED
 from robolang.interpreter.effects import Origin
 from runtime.core.faults import Alarm
+from runtime.robot.model.estimated import decisive, groups
 
 Severity = Literal["error", "warning", "note", "print"]
 
@@ -41,9 +42,19 @@ class Note:
 def of_run(meta: Mapping[str, Any]) -> list[Note]:
     """Return the notes of a run from the ``meta`` of its log (docs/signals.md), by time."""
     report = meta["report"]
-    return in_order(
-        [*_events(report, meta["program"]["name"]), *_findings(meta), *_statements(report), *_printed(report)]
-    )
+    # a log of an earlier version has no list of estimates
+    estimated = of_estimates(report.get("robot_estimated", ()))
+    events = _events(report, meta["program"]["name"])
+    return in_order([*estimated, *events, *_findings(meta), *_statements(report), *_printed(report)])
+
+
+def of_estimates(names: Sequence[str]) -> list[Note]:
+    """Return the note about values of the robot that are estimates (``RobotSpec.estimated``), where results follow
+    from them; it has no time."""
+    if not decisive(names):
+        return []
+    text = f"{len(names)} values of the robot are estimates: {', '.join(groups(names))}"
+    return [Note(time_s=None, line=None, code=None, severity="note", text=text)]
 
 
 def of_finding(item: Mapping[str, Any], program: str, begins: Mapping[int, float]) -> Note:

@@ -131,4 +131,5 @@ def _notes(
             note = replace(note, p=item.p, time_s=None if item.time_us is None else item.time_us / 1e6)
         made.append(note)
     made += [notes.of_finding(of_doubt(doubt), program, begins) for doubt in doubts]
+    made += notes.of_estimates(list(project.cell.robot.estimated))
     return notes.in_order(made)

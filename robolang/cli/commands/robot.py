@@ -78,18 +78,17 @@ def show(robot: _Robot, output: JsonOptions) -> None:
     """
     worst = 0
     with reported():
-        from robolang.project.project import load_any_robot
         from runtime.robot.files.arm_file import is_model
         from runtime.robot.files.sidecar_file import sidecar_path
 
         if output.as_json:
             _show_json(robot)
             return
-        # lexists: of a link that leads nowhere load_any_robot says so, where exists() would show a robot without drives
+        # lexists: of a link that leads nowhere ``_loaded`` says so, where exists() would show a robot without drives
         if is_model(robot) and not os.path.lexists(sidecar_path(Path(robot))):
             worst = _show_model(robot)
         else:
-            _show_robot(load_any_robot(robot))
+            _show_robot(_loaded(robot))
     if worst:
         raise SystemExit(worst)
 
@@ -129,14 +128,20 @@ def import_model(file: _Model, options: _SidecarOptions) -> None:
             echo(safe(f"wrote {target}: {gaps} values to fill in, marked MISSING"))
 
 
-def _show_json(robot: str) -> None:
-    """Print a robot as JSON; of a model without a sidecar as the ideal arm that it is, with everything estimated."""
-    from robolang.cli.robot_data import whole
+def _loaded(robot: str) -> "RobotSpec":
+    """Return a robot, of a model file without drives too: what it lacks is estimated."""
     from robolang.project.project import load_any_robot
     from runtime.robot.files.arm_file import is_model
     from runtime.robot.files.importer import load_file
 
-    spec = load_file(Path(robot)) if is_model(robot) else load_any_robot(robot)
+    return load_file(Path(robot)) if is_model(robot) else load_any_robot(robot)
+
+
+def _show_json(robot: str) -> None:
+    """Print a robot as JSON; of a model without a sidecar as the ideal arm that it is, with everything estimated."""
+    from robolang.cli.robot_data import whole
+
+    spec = _loaded(robot)
     say_warnings(spec.warnings)
     echo(json.dumps(whole(spec), indent=2))
 
@@ -173,6 +178,7 @@ def _show_robot(spec: "RobotSpec") -> None:
     for table in [*(each(spec) for each in ordered[:3]), *tables.springs(spec), *(each(spec) for each in ordered[3:])]:
         console.print(table)
     for title, lines in (
+        ("No drives: an ideal arm", [] if spec.undriven is None else [spec.undriven.message]),
         ("Estimates (~)", tables.estimates(spec)),
         ("Corrections of published data", tables.corrections(spec)),
         ("Sources", list(spec.sources)),

@@ -12,7 +12,7 @@ from runtime.robot.files import robot_file
 from runtime.robot.files.joint_ranges import ranges_of
 from runtime.robot.files.plausibility import doubt_axes
 from runtime.robot.files.robot_file import RobotFile
-from runtime.robot.files.sidecar_file import SidecarFile, read_sidecar, sidecar_path
+from runtime.robot.files.sidecar_file import SidecarFile, lacking_of, read_overlay, read_sidecar, sidecar_path
 from runtime.robot.files.xmlfile import Element, parse_xml
 from runtime.robot.model.drives import Limits, PathLimits
 
@@ -24,13 +24,14 @@ _TAGS = ("robot", "mujoco")
 
 
 class ModelFile(Record):
-    """A model file, well-formed, and its sidecar. Without one it is an ideal arm: what it lacks is estimated by
-    ``importer``, and not known here."""
+    """A model file, well-formed, and its sidecar. Without a complete one it is an ideal arm: what it lacks is estimated
+    by ``importer``, and not known here. ``partial`` is the text of a sidecar that lacks values."""
 
     source: Source
     name: str
     ranges: tuple[Limits, ...]
     sidecar: SidecarFile | None
+    partial: Source | None
 
     @property
     def rated_payload(self) -> float | None:
@@ -62,18 +63,20 @@ def is_model(name: str) -> bool:
 
 
 def read_arm_file(path: Path) -> ArmFile:
-    """Return the content of the file of an arm; ``FileFault`` RBL6xx, RBL608 where its sidecar lacks values."""
+    """Return the content of the file of an arm; ``FileFault`` RBL6xx."""
     source = read_source(path)
     if not is_model(path.name):
         return robot_file.parse(source)
     root = model_root(source)
-    sidecar = sidecar_source(path)
+    text = sidecar_source(path)
+    complete = text is not None and lacking_of(text, path.name) is None
     key = "name" if root.tag == "robot" else "model"  # the attribute with the name in URDF and in MJCF
     return ModelFile(
         source=source,
         name=root.text(key, "robot"),
-        ranges=ranges_of(root),
-        sidecar=None if sidecar is None else read_sidecar(sidecar, path.name),
+        ranges=ranges_of(root, {} if text is None else read_overlay(text).ranges),
+        sidecar=read_sidecar(text, path.name) if text is not None and complete else None,
+        partial=None if complete else text,
     )
 
 

@@ -7,6 +7,7 @@ in full (``xmlfile``, ``urdf``, ``mjcf_import``, ``imported``); neither Pinocchi
 """
 
 import math
+import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -17,7 +18,7 @@ from runtime.core.faults import raise_all
 from runtime.core.frames import Array, frozen
 from runtime.core.tomlfile import FileFault, Source, read_source
 from runtime.robot.files import left_out, loader
-from runtime.robot.files.arm_file import ArmFile, model_root, read_arm_file, sidecar_source
+from runtime.robot.files.arm_file import ArmFile, ModelFile, model_root, read_arm_file, sidecar_source
 from runtime.robot.files.body_plausibility import doubt_bodies, doubt_torques, offsets, weight_moment
 from runtime.robot.files.estimate import estimate
 from runtime.robot.files.imported import ImportedArm, serial_chain
@@ -27,7 +28,16 @@ from runtime.robot.files.mjcf_import import read_mjcf
 from runtime.robot.files.plausibility import Turning, What, doubt_turning
 from runtime.robot.files.robot_file import RobotFile
 from runtime.robot.files.sidecar import complete, missing_in_template, template
-from runtime.robot.files.sidecar_file import NO_OVERLAY, Overlay, SidecarFile, read_overlay, read_sidecar, sidecar_path
+from runtime.robot.files.sidecar_file import (
+    ESTIMATED_KEYS,
+    NO_OVERLAY,
+    Overlay,
+    SidecarFile,
+    lacking_of,
+    read_overlay,
+    read_sidecar,
+    sidecar_path,
+)
 from runtime.robot.files.urdf import read_urdf
 from runtime.robot.kinematics.closed_form import find_opw
 from runtime.robot.model.drives import joint_label
@@ -38,7 +48,7 @@ UNIT_SLACK = 1e-3
 
 
 def load_file(path: Path) -> RobotSpec:
-    """Return the robot of a file, by its ending; ``FileFault`` RBL6xx, RBL608 with a sidecar that lacks values."""
+    """Return the robot of a file, by its ending; ``FileFault`` RBL6xx."""
     return build(read_arm_file(path))
 
 
@@ -51,7 +61,7 @@ def build(file: ArmFile) -> RobotSpec:
     if isinstance(file, RobotFile):
         return loader.build(file)
     if file.sidecar is None:
-        return _ideal(file.source)
+        return _ideal(file)
     return with_sidecar(file.source, file.sidecar)
 
 
@@ -169,14 +179,26 @@ def _with_limits_doubted(arm: ImportedArm, overlay: Overlay) -> ImportedArm:
     return replace(arm, warnings=(*arm.warnings, *doubts, *doubt_torques_alike(arm)))
 
 
-def _ideal(source: Source) -> RobotSpec:
-    """Return the arm of a model file alone, what it lacks estimated, for runs without physics; ``FileFault`` RBL6xx."""
-    arm, path = parse_model(source), Path(source.path)
-    _check(arm, NO_OVERLAY)
+def _ideal(file: ModelFile) -> RobotSpec:
+    """Return the arm of a model file without a complete sidecar, for runs without physics; ``FileFault`` RBL6xx.
+
+    What neither file states is estimated.
+    """
+    partial, path = file.partial, Path(file.source.path)
+    stated = NO_OVERLAY if partial is None else read_overlay(partial)
+    arm = parse_model(file.source, stated)
+    _check(arm, stated)
     # through the text of a sidecar: an ideal arm is then the arm that the import of the same file makes
-    text = template(arm, estimate(known_of(arm)))
-    spec = with_sidecar(source, read_sidecar(Source(str(sidecar_path(path)), text), path.name))
-    return replace(spec, undriven=_undriven(arm, path))
+    text = Source(str(sidecar_path(path)), template(arm, estimate(known_of(arm))))
+    if partial is None:
+        return replace(with_sidecar(file.source, read_sidecar(text, path.name)), undriven=_undriven(arm, path))
+    # a body that the sidecar corrects is known, although it cannot be as it is published
+    guessed = {name: body for name, body in read_overlay(text).bodies.items() if name not in stated.corrected}
+    built = parse_model(file.source, stated.replaced(bodies={**guessed, **stated.bodies}))
+    # not its head: a sidecar that does not name its model and its schema is refused as ever
+    values = {key: value for key, value in tomllib.loads(text.text).items() if key in ESTIMATED_KEYS}
+    known = read_sidecar(partial, path.name, values)
+    return replace(complete(built, known), undriven=lacking_of(partial, path.name))
 
 
 def _with_sidecar(path: Path) -> tuple[ImportedArm, Source | None]:

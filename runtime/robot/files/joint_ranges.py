@@ -5,17 +5,25 @@ moves, so a file with a fault gives fewer axes here, or none.
 """
 
 import math
+from collections.abc import Mapping
 
 from runtime.robot.files.xmlfile import Element
 from runtime.robot.model.drives import Limits
 
 
-def ranges_of(root: Element) -> tuple[Limits, ...]:
-    """Return the ranges of the joints in the order of the chain, rad; speeds, accelerations and torques have no end."""
-    if root.tag == "robot":
-        return tuple(_of_urdf(joint) for joint in _chain(root))
+def ranges_of(root: Element, stated: Mapping[str, tuple[float, float]]) -> tuple[Limits, ...]:
+    """Return the ranges of the joints in the order of the chain, rad; speeds, accelerations and torques have no end.
+
+    ``stated`` are those of a sidecar, by joint: they rule.
+    """
     # an MJCF nests its bodies: the order of the file is that of the chain; units and defaults are left to the reader
-    return tuple(_limits(-math.inf, math.inf) for world in root.all("worldbody") for _ in _hinges(world))
+    urdf = root.tag == "robot"
+    joints = _chain(root) if urdf else [joint for world in root.all("worldbody") for joint in _hinges(world)]
+    found = []
+    for joint in joints:
+        ends = stated.get(joint.attributes.get("name", ""))
+        found.append(_limits(*ends) if ends is not None else _of_urdf(joint) if urdf else _limits(-math.inf, math.inf))
+    return tuple(found)
 
 
 def _hinges(world: Element) -> list[Element]:

@@ -7,8 +7,9 @@ that is written by hand may name them together instead, ``*`` for any part of a 
     estimated = ["path.*", "axes.[456].max_speed_deg_s"]
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from fnmatch import fnmatchcase
+from types import MappingProxyType
 from typing import Any
 
 from runtime.core.record import Record
@@ -43,13 +44,16 @@ class Marked(Record):
         return {**found, **self.rules}
 
 
-def load_marked(source: Source) -> Marked:
-    """Return a TOML file with its estimates; ``FileFault`` RBL601."""
+def load_marked(source: Source, estimates: Mapping[str, Any] = MappingProxyType({})) -> Marked:
+    """Return a TOML file with its estimates; ``FileFault`` RBL601.
+
+    ``estimates`` is the content of a file of the same form: what ``source`` lacks is taken from there.
+    """
     rules: dict[str, str] = {}
     content: dict[str, Any] = {}
 
     def prepare(data: dict[str, Any]) -> dict[str, Any]:
-        content.update(_plain(data, "", rules))
+        content.update(_plain(_filled(data, estimates), "", rules))
         return content
 
     return Marked(table=load_table(source, prepare=prepare), content=content, rules=rules)
@@ -65,6 +69,16 @@ def _names(value: Any, name: str) -> Iterator[str]:
             yield from _names(each, f"{name}.{k}")
     else:
         yield name
+
+
+def _filled(data: Any, estimates: Any) -> Any:
+    """Return content with what it lacks; lists of tables are filled table by table, other values are kept."""
+    if isinstance(data, dict) and isinstance(estimates, Mapping) and ESTIMATE not in data:
+        return {**estimates, **{key: _filled(each, estimates.get(key)) for key, each in data.items()}}
+    tables = isinstance(data, list) and isinstance(estimates, list) and len(data) == len(estimates)
+    if tables and all(isinstance(each, dict) for each in data):
+        return [_filled(each, other) for each, other in zip(data, estimates, strict=True)]
+    return data
 
 
 def _plain(value: Any, name: str, rules: dict[str, str]) -> Any:

@@ -5,11 +5,13 @@ for each joint in the order of the chain. Its ranges, speeds and torques replace
 no numerics: ``robolang check`` reads it, and a run reads the same.
 """
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 from runtime.core.record import Record
-from runtime.core.tomlfile import Source, Table
+from runtime.core.tomlfile import FileFault, Source, Table
 from runtime.robot.files.gaps import listed, whole
 from runtime.robot.files.marks import load_marked
 from runtime.robot.files.robot_file import INERTIA_FORMS, AxisDrive, axis_drive, rated_payload
@@ -51,6 +53,8 @@ PATH_KEYS = {
 PAYLOAD_KEY = "rated_payload_kg"
 BODY_KEYS = ("mass_kg", "cog_m", "inertia_kg_m2")
 """Optional keys of an axis, all or none: a body that replaces that of the model, in the frame of the axis."""
+ESTIMATED_KEYS = (PAYLOAD_KEY, "path", "axes")
+"""What an ideal arm takes from estimates where its sidecar lacks values."""
 GROUPS = {"motor": MOTOR_KEYS, "servo": SERVO_KEYS}
 
 
@@ -137,16 +141,26 @@ class SidecarFile(Record):
     table: Table
 
 
-def read_sidecar(source: Source, model: str) -> SidecarFile:
-    """Return the sidecar of the file named ``model``; ``FileFault`` RBL6xx, RBL608 lists all missing keys."""
-    marked = load_marked(source)
+def lacking_of(source: Source, model: str) -> FileFault | None:
+    """Return the one fault (RBL608) that lists all keys which a sidecar lacks, None where it lacks none."""
+    table = load_marked(source).table
+    return _gaps(table, table.tables("axes", required=False), model)
+
+
+def read_sidecar(source: Source, model: str, estimates: Mapping[str, Any] = MappingProxyType({})) -> SidecarFile:
+    """Return the sidecar of the file named ``model``; ``FileFault`` RBL6xx, RBL608 lists all missing keys.
+
+    ``estimates`` is the content of another sidecar of that model, from which keys are taken that this one lacks.
+    """
+    marked = load_marked(source, estimates)
     table = marked.table
     table.integer("schema", low=SCHEMA, high=SCHEMA)
     if (named := table.text("robot")) != model:
         table.fail("RBL610", f"this sidecar is for '{named}', not for '{model}'", key="robot")
     axes = table.tables("axes")
     # before anything is read: a template lacks some hundred values, and one error a key would show the first alone
-    _check_complete(table, axes, model)
+    if (gaps := _gaps(table, axes, model)) is not None:
+        raise gaps
     found = SidecarFile(
         title=table.text("title", ""),
         sources=drives.texts(table, "sources"),
@@ -168,20 +182,22 @@ def _axis(table: Table) -> AxisDrive:
     return axis_drive(table)
 
 
-def _check_complete(table: Table, axes: list[Table], model: str) -> None:
-    """Refuse a sidecar with keys still to be filled in: one ``FileFault`` RBL608 that names all of them."""
+def _gaps(table: Table, axes: list[Table], model: str) -> FileFault | None:
+    """Return one ``FileFault`` RBL608 that names all keys still to be filled in, None where there are none."""
     own = [] if PAYLOAD_KEY in table else [PAYLOAD_KEY]
     own += _lacking_in(table, "path", PATH_KEYS)
     missing = [_lacking_of(axis) for axis in axes]
     # at the first table that lacks something; the message names the keys of all
     incomplete = [table] if own else [axis for axis, here in zip(axes, missing, strict=True) if here]
-    if incomplete:
-        gaps = [*whole(own, {"path": [f"path.{key}" for key in PATH_KEYS]}), lacking(missing)]
-        incomplete[0].fail(
-            "RBL608",
-            f"missing in this file: {'; '.join(gap for gap in gaps if gap)}",
-            f"fill in the lines marked MISSING, or 'robolang robot import {model} --estimate --force'",
-        )
+    if not incomplete:
+        return None
+    gaps = [*whole(own, {"path": [f"path.{key}" for key in PATH_KEYS]}), lacking(missing)]
+    return incomplete[0].fault(
+        "RBL608",
+        f"missing in this file: {'; '.join(gap for gap in gaps if gap)}",
+        f"fill in the lines marked MISSING, or 'robolang robot import {model} --estimate --force'; an ideal arm "
+        "(--no-physics) needs none",
+    )
 
 
 def _lacking_of(axis: Table) -> set[str]:
