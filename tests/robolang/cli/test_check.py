@@ -29,7 +29,7 @@ def test_a_good_program_is_silent():
 def test_a_bad_program_is_exit_code_1():
     result = robolang("check", "bad.rbl", code=1)
     assert places(result.stdout) == [(1, 4, "RBL112"), (2, 21, "RBL401")]
-    assert "MOVE" in fields(result.stdout)
+    assert "MOVEJ" in fields(result.stdout)
     assert result.stderr == ""
 
 

@@ -33,6 +33,7 @@ def test_every_registered_code_has_the_exit_code_of_its_group(code):
         "RBL809": 3,
         "RBL810": 4,
         "RBL811": 3,
+        "RBL841": 4,
     }
     assert exit_code(code) == special.get(code, EXPECTED.get(code[3:5], EXPECTED[code[3]]))
 
@@ -103,7 +104,7 @@ def test_a_fault_that_cannot_be_shown_is_an_internal_error(error, capsys, monkey
 @pytest.mark.parametrize("error", [Fault("RBL510", "x"), ValueError("x")])
 def test_where_nothing_can_be_shown_the_exit_code_is_left(error, monkeypatch):
     monkeypatch.delenv("ROBOLANG_DEBUG", raising=False)
-    monkeypatch.setattr(errors, "echo", lambda *_, **__: 1 / 0)
+    monkeypatch.setattr(errors, "show_finding", lambda *_, **__: 1 / 0)
     assert left_with(error) == 70
 
 

@@ -27,7 +27,7 @@ def refused(name, *words, code):
 
 
 BAD_TEXT = [
-    ("10 MOV P1", (1, 4, "RBL112"), "MOVE"),
+    ("10 MOV P1", (1, 4, "RBL112"), "MOVEJ P1"),
     ("10 FROB P1", (1, 4, "RBL112"), "MOVE LOAD HAND IF"),
     ("10 HAND OM", (1, 9, "RBL111"), ""),
     ("10 LOAD (0, 0, 60), -1", (1, 21, "RBL401"), ""),

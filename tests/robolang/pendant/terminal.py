@@ -4,6 +4,7 @@ import os
 import re
 import signal
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pexpect
@@ -13,6 +14,9 @@ COMMAND = str(Path(sys.executable).with_name("robolang"))
 WAIT_S = 120
 """The longest wait for something new on the screen; it ends a hang and measures nothing."""
 
+
+MOST_READS = 1000
+"""The most that is read for one answer: the keys of a jog paint the screen twice a second as long as they are open."""
 
 _ESCAPES = re.compile(rb"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|[@-Z\\-_])")
 
@@ -83,9 +87,15 @@ class Terminal:
 
     def until(self, *texts: str) -> list[str]:
         """Read until every text is on the screen, each within one line; return the lines."""
-        while not self.shows(*texts):
-            self.read(f"{texts} not on the screen")
-        return self.lines
+        return self._until(lambda: self.shows(*texts), f"{texts} not on the screen")
+
+    def _until(self, holds: Callable[[], bool], why: str) -> list[str]:
+        """Read until a condition holds, ``MOST_READS`` times at most: a screen that is painted again is no progress."""
+        for _ in range(MOST_READS):
+            if holds():
+                return self.lines
+            self.read(why)
+        raise AssertionError("\n".join([f"{why}: too late", *self.lines]))
 
     def enter(self, line: str, *texts: str, then: str = "armed") -> None:
         """Type a line, and read until its answers are there, in their order, and what comes ``then``: the status."""
@@ -93,22 +103,22 @@ class Terminal:
         self.until(line)
         start = len(self.raw)
         self.send("\r")
-        while not _in_order(_plain(self.raw[start:]), (*texts, then)):
-            self.read(f"{line}: {texts} not shown")
+        self._until(lambda: _in_order(_plain(self.raw[start:]), (*texts, then)), f"{line}: {texts} not shown")
 
     def until_gone(self, text: str) -> None:
-        while self.shows(text):
-            self.read(f"{text} stays on the screen")
+        self._until(lambda: not self.shows(text), f"{text} stays on the screen")
 
     def ended(self) -> int:
         """Read until the process ends; return its exit code."""
-        while True:
+        for _ in range(MOST_READS):
             try:
                 data = self.process.read_nonblocking(65536, timeout=WAIT_S)
             except pexpect.EOF:
                 break
             self.raw += data
             self._stream.feed(data)
+        else:
+            raise AssertionError("\n".join(["it does not end", *self.lines]))
         self.process.wait()
         return self.process.exitstatus if self.process.signalstatus is None else -self.process.signalstatus
 
