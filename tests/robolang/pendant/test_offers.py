@@ -186,6 +186,7 @@ def test_the_word_at_the_cursor(text, cursor, word):
         ("ROUND", "x = ROUND(1)", "ROUND(x [, digits])"),
         ("P1", "MOVE P1", "taught point: 480 -220 640 mm"),
         ("teach", "teach P1", "Teach a point"),
+        ("ptp", "ptp P1", "MOVEJ P1, SPEED 50"),
         ("nothing", "nothing", ""),
     ],
 )

@@ -225,6 +225,50 @@ def test_what_is_no_whole_line_has_no_statement(text):
     assert proposal(text) is None
 
 
+@pytest.mark.parametrize(
+    ("text", "write", "lost"),
+    [
+        ("CIRC XP2, XP3, CA 360", "MOVEC XP2, XP3", "CA 360"),
+        ("MOVL P002 V=23.0 UNTIL IN#(1)=ON", "MOVE P002, SPEED 23", "UNTIL IN#(1)=ON"),
+        ("MoveL p1, v300, z1, tGrip\\WObj:=wTray;", "MOVE p1, SPEED 300, ZONE 1", "tGrip\\WObj:=wTray"),
+        ("L P[3] 1000mm/sec FINE ACC50", "MOVE P3, SPEED 1000, FINE", "ACC50"),
+        ("Move L, @P P2", "MOVE P2", "@P"),
+        ("J P[1] 50% CNT80", "MOVEJ P1, SPEED 50", "CNT80"),
+    ],
+)
+def test_what_is_not_carried_over_is_named(text, write, lost):
+    result = proposal(text)
+    assert result is not None
+    assert result.statements == (write,)
+    assert lost in result.note
+
+
+@pytest.mark.parametrize("text", ["Move L, @E P2", "PTP P1", "DO[1]=ON", "MOVS", "LMOVE p2"])
+def test_where_nothing_is_lost_nothing_is_noted(text):
+    result = proposal(text)
+    assert result is None or result.note == ""
+
+
+@pytest.mark.parametrize(
+    ("text", "at", "parts"),
+    [
+        ("x = M_In(2)", 4, ("IN(2)",)),
+        ("WAIT SIG(1005)", 5, ("IN(5)",)),
+        ("x = get_actual_tcp_pose()", 24, ("URScript", "HERE")),
+        ("x = P_Curr", 4, ("MELFA", "HERE")),
+        ("HERE p1", 0, ("AS", "P10 = HERE")),
+        ("INT i", 0, ("KRL", "x = 5")),
+        ("movej(get_inverse_kin(p1), a=1, v=1)", 5, ("MOVEJ p1",)),
+        ("set_digital_out(0, True)", 0, ("URScript", "OUT(1)")),
+        ("EXTSPEED 50", 0, ("PacScript", "OVERRIDE 50")),
+    ],
+)
+def test_words_inside_a_line_have_their_advice_too(text, at, parts):
+    (item,) = found(text)
+    assert item.span.start == at
+    assert [part for part in parts if part not in item.hint] == []
+
+
 def test_nothing_that_is_proposed_needs_a_line_longer_than_one_by_hand():
     assert proposal(f"! {'x' * 100}") is not None
     assert proposal(f"! {'x' * 1000}") is None
