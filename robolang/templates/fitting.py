@@ -3,7 +3,7 @@
 The files are those that are written, checked as ``check`` and ``check --motion`` check them, on no disk.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from itertools import islice
 from pathlib import Path
 
@@ -12,7 +12,6 @@ import numpy as np
 from robolang.analysis.analysis import Analysis
 from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import Source
-from robolang.execution.dry_run import rehearse
 from robolang.lint.engine import findings as text_findings
 from robolang.planning.motion_findings import findings as motion_findings
 from robolang.planning.path_coverage import explore
@@ -71,17 +70,17 @@ def fitted(template: Template, arm: Arm) -> Fitted:
     why = "nowhere before it does it reach every point with room to the ends of its ranges"
     for placement in islice(placements(Kinematics(robot), _job(here)), MOST_REHEARSED):
         project = _project(placement.files(template.texts, arm.read_as, arm.name), arm.folder)
-        worst = next(_findings(project), None)
+        worst, planned_s = _checked(project)
         if worst is None:
             texts = placement.files(template.texts, arm.reference, arm.name)
-            return _tested(template, arm, project, texts)
+            return _tested(template, arm, project, texts, planned_s)
         why = f"{worst.code} in the place that was examined last: {worst.message}"
     raise _unfit(template, arm, why)
 
 
-def _tested(template: Template, arm: Arm, project: Project, texts: Mapping[str, str]) -> Fitted:
+def _tested(template: Template, arm: Arm, project: Project, texts: Mapping[str, str], planned_s: float) -> Fitted:
     """Return files whose test states what a run of this arm does; ``Fault`` RBL843 where it does not do its job."""
-    planned_s, expected = rehearse(project).total_us / 1e6, Outcome()
+    expected = Outcome()
     # the built-in arms are known to do all jobs; the drives of a file may be estimates
     if not arm.is_builtin:
         expected = tried(project, texts[TEST])
@@ -130,10 +129,12 @@ def _taught(point: Point, frames: Mapping[str, Array]) -> Array:
     return np.asarray(matmul(frames[point.frame], X_frame_tool))
 
 
-def _findings(project: Project) -> Iterator[Diagnostic | FileFault]:
-    """Yield what ``check`` and ``check --motion`` report of a project."""
+def _checked(project: Project) -> tuple[Diagnostic | FileFault | None, float]:
+    """Return the first that ``check`` and ``check --motion`` report of a project, None without any, and its time, s."""
     # the text first: where it has errors nothing can be planned
-    yield from text_findings(project.analysis)
-    yield from project.cell.doubts
+    doubts: tuple[Diagnostic | FileFault, ...] = (*text_findings(project.analysis), *project.cell.doubts)
+    if doubts:
+        return doubts[0], 0.0
     explored = explore(project)
-    yield from motion_findings(project, explored.rehearsal, detours=explored.detours)
+    motion = motion_findings(project, explored.rehearsal, detours=explored.detours)
+    return next(iter(motion), None), explored.rehearsal.total_us / 1e6

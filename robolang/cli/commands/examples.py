@@ -15,7 +15,9 @@ from robolang.core.diagnostics import safe
 if TYPE_CHECKING:
     from robolang.templates.examples import Example
 
-app = typer.Typer(invoke_without_command=True, help="List the example programs, and copy one with its files.")
+app = typer.Typer(
+    add_completion=False, invoke_without_command=True, help="List the example programs, and copy one with its files."
+)
 
 
 @app.callback()

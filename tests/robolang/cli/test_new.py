@@ -6,6 +6,9 @@ import pytest
 
 from tests.robolang.cli.commands import robolang
 
+# a place is checked with the shapes of MuJoCo
+pytestmark = pytest.mark.physics
+
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
@@ -13,7 +16,6 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.physics
 def test_four_commands_from_nothing_to_a_passing_test():
     robolang("new", "cell1")
     robolang("check", "--strict", "--motion", "cell1")

@@ -13,6 +13,9 @@ from tests.robolang.cli.commands import PUMA, robolang
 from tests.runtime.appearance.robots import binary_stl, box_mesh
 from tests.runtime.robot.models import SIX
 
+# a place is checked with the shapes of MuJoCo
+pytestmark = pytest.mark.physics
+
 
 @pytest.fixture
 def mine(tmp_path):

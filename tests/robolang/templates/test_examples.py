@@ -24,6 +24,7 @@ def test_a_copy_has_all_that_the_program_needs(tmp_path, name):
     robolang("check", files[0])
 
 
+@pytest.mark.physics
 def test_copies_of_two_programs_that_share_a_cell_stand_side_by_side(tmp_path):
     for name in ("tend", "palletise"):
         copy_example(name, tmp_path)

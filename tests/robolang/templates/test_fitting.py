@@ -18,6 +18,9 @@ from runtime.robot.files import robot_file
 from tests.campaign import some
 from tests.robolang.cli.commands import PUMA, robolang
 
+# a place is checked with the shapes of MuJoCo
+pytestmark = pytest.mark.physics
+
 PAIRS = list(product(NAMES, robot_file.library()))
 
 
@@ -39,7 +42,6 @@ def test_a_new_project_has_no_finding_and_the_layout_of_fmt(tmp_path, kind, robo
     robolang("fmt", "--check", program.parent)
 
 
-@pytest.mark.physics
 @pytest.mark.parametrize(("kind", "robot"), some(PAIRS, 0, 4, 8, 9))
 def test_a_run_of_a_new_project_is_as_its_test_expects(tmp_path, kind, robot):
     assert judged(made(tmp_path, kind, robot), True) == []

@@ -15,6 +15,9 @@ from robolang.templates.writing import new_project
 from runtime.core.faults import Fault
 from tests.robolang.cli.commands import PUMA, robolang
 
+# a place is checked with the shapes of MuJoCo
+pytestmark = pytest.mark.physics
+
 TEXT = template("pick-place").texts[TEST]
 
 
@@ -31,7 +34,6 @@ def puma(path, **changed):
     return str(path)
 
 
-@pytest.mark.physics
 def test_an_arm_whose_drives_cannot_do_the_job_is_tested_as_an_ideal_one(tmp_path):
     robot = tmp_path / "mine.toml"
     puma(robot)
@@ -45,7 +47,6 @@ def test_an_arm_whose_drives_cannot_do_the_job_is_tested_as_an_ideal_one(tmp_pat
     robolang("test", written.folder)
 
 
-@pytest.mark.physics
 def test_an_arm_that_settles_slowly_is_expected_to_warn_of_it(tmp_path):
     robot = puma(tmp_path / "mine.toml", position_bandwidth_rad_s=lambda value: 0.1 * value)
     written = new_project(tmp_path / "cell1", "pick-place", robot)

@@ -13,6 +13,9 @@ from tests.robolang.core.test_storage import small_files
 from tests.robolang.lint.schemas import problems, validator
 from tests.robolang.lint.test_hooks import parse, read
 
+# a place is checked with the shapes of MuJoCo
+pytestmark = pytest.mark.physics
+
 FILES = [
     ".editorconfig",
     ".github/workflows/robolang.yml",
