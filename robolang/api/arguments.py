@@ -23,10 +23,10 @@ def robot_of(robot: str | Path | RobotSpec) -> RobotSpec:
 
 
 def joints_of(joints: Sequence[float] | None, robot: RobotSpec, argument: str = "joints") -> Array:
-    """Return joint angles (n,) rad of angles in deg; None: 0, or the nearest angle in the range."""
+    """Return joints (n,) rad of angles in deg, m of mm where an axis slides; None: 0, or the nearest in the range."""
     if joints is None:
         return np.clip(np.zeros(robot.n), robot.lower, robot.upper)
-    return np.array(numbers(joints, argument, [f"J{i + 1}" for i in range(robot.n)])) * DEG
+    return np.array(numbers(joints, argument, [f"J{i + 1}" for i in range(robot.n)])) * robot.units
 
 
 def pose_of(pose: Sequence[float] | None, argument: str) -> Array:

@@ -29,7 +29,8 @@ class Pose(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointSolution:
-    """Joint angles of a pose, deg; ``margin_deg``: distance of the nearest joint from its limit, negative outside."""
+    """Joints of a pose, deg, mm of an axis that slides; ``margin_deg``: distance of the nearest joint from its limit,
+    negative outside, a mm of an axis that slides counted as a deg."""
 
     joints: tuple[float, ...]
     branch: str
@@ -37,7 +38,7 @@ class JointSolution:
 
 
 def forward(robot: str | Path | RobotSpec, joints: Sequence[float], *, tool: Sequence[float] | None = None) -> Pose:
-    """Return the pose of the tool in the base at joint angles, deg.
+    """Return the pose of the tool in the base at joints, deg, of an axis that slides mm.
 
     ``tool``: x, y, z mm and rx, ry, rz deg in the flange; None: the flange. ``Fault`` RBL703 for a wrong argument,
     RBL6xx for a file.
@@ -57,10 +58,11 @@ def inverse(
     """
     kinematics = Kinematics(robot_of(robot))
     X = matmul(pose_of(pose, "pose"), inverted(pose_of(tool, "tool")))
+    slides = kinematics.turning == 0.0
     found = sorted(kinematics.solutions(X), key=lambda each: -each.limit_margin)
     return [
         JointSolution(
-            joints=tuple(_plain(np.rad2deg(each.q))),
+            joints=tuple(_plain(np.where(slides, each.q / kinematics.units, np.rad2deg(each.q)))),
             branch=str(each.branch),
             margin_deg=float(np.rad2deg(each.limit_margin)),
         )

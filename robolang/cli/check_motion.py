@@ -116,7 +116,7 @@ def _times(project: Project, explored: Exploration, rows: Sequence[LineTime]) ->
         "payload": [
             {
                 "joint": f"J{share.axis + 1}",
-                share.what: share.value,
+                share.name: share.value,
                 "limit": share.limit,
                 "unit": share.unit,
                 "estimated": not share.given,
@@ -201,9 +201,9 @@ def _wrist(project: Project, rehearsal: Rehearsal) -> list[str]:
     """Return the lines with moment and inertia of the payload at the wrist in its worst posture, and their limits."""
     shares = worst_loads(project, rehearsal.kinematics, rehearsal.moves)
     found = [
-        f"  {what:<8} {', '.join(map(_share, of_it))} {of_it[0].unit}"
-        for what in ("moment", "inertia")
-        if (of_it := [share for share in shares if share.what == what])
+        f"  {name:<8} {', '.join(map(_share, of_it))} {of_it[0].unit}"
+        for name in ("moment", "inertia", "weight", "mass")
+        if (of_it := [share for share in shares if share.name == name])
     ]
     return ["payload at the wrist, worst posture (~: limit estimated from the drive)", *found] if found else []
 
@@ -221,6 +221,8 @@ def _cells(row: LineTime, robot: RobotSpec) -> tuple[str, ...]:
         f"{row.seconds:.3f}",
         "" if row.length_mm is None else f"{row.length_mm:.1f}",
         "" if row.speed_pct is None else f"{row.joint} {f'{known}{row.speed_pct:.0f}':>4}",
-        "" if row.margin_deg is None else f"{row.margin_deg:.1f}",
+        ", ".join(
+            f"{least:.1f}{mm}" for least, mm in ((row.margin_deg, ""), (row.margin_mm, " mm")) if least is not None
+        ),
         "" if row.wrist_deg is None else f"{row.wrist_deg:.1f}",
     )

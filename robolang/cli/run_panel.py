@@ -25,7 +25,7 @@ from runtime.control.clock import wall_s
 from runtime.control.controller import Controller
 from runtime.core.faults import Alarm
 from runtime.core.program_line import named
-from runtime.core.units import DEG, MM
+from runtime.core.units import MM
 from runtime.robot.model.drives import Limits
 
 _EACH_S = 0.1
@@ -183,8 +183,8 @@ def _joint(number: int, limits: Limits, angle: float, torque_pct: float) -> Join
     share = (angle - limits.lower) / (limits.upper - limits.lower)
     return JointShown(
         name=f"J{number}",
-        value=angle / DEG,
-        unit="deg",
+        value=angle / limits.kind.size,
+        unit=limits.kind.unit,
         # an arm whose state is no longer valid is shown as long as it stops
         share=share if np.isfinite(share) else None,
         torque_pct=torque_pct,

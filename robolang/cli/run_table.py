@@ -30,6 +30,7 @@ _COLUMNS = (
     _Column("start\n\ns", "start_s", "{:.3f}", min),
     _Column("time\n\ns", "duration_s", "{:.3f}", sum),
     _Column("joint\nerror\ndeg", "joint_error_deg", "{:.4f}"),
+    _Column("slide\nerror\nmm", "joint_error_mm", "{:.4f}"),
     _Column("tool\nerror\nmm", "tool_error_mm", "{:.3f}"),
     _Column("path\nerror\nmm", "path_deviation_mm", "{:.3f}"),
     _Column("peak\ntorque\n%", "peak_torque_pct", "{:.0f}"),
@@ -67,17 +68,23 @@ def _by_line(statements: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
 def _together(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     # what is no number is the same in all rows of a line
     together = dict(rows[0])
-    for column in (_TIMES, *_COLUMNS):
+    for column in (_TIMES, *_columns(rows)):
         numbers = [row[column.key] for row in rows if row[column.key] is not None]
         together[column.key] = column.of(numbers) if numbers else None
     return {**together, "notes": [note for row in rows for note in row["notes"]]}
+
+
+def _columns(statements: Sequence[Mapping[str, Any]]) -> tuple[_Column, ...]:
+    """Return the columns that these statements have: an arm whose axes all turn has no error of a slide."""
+    return tuple(column for column in _COLUMNS if not statements or column.key in statements[0])
 
 
 def _statements(statements: Sequence[Mapping[str, Any]], width: int) -> Table:
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
     where = lines.headings(statements)
     # a program without loops has no need of it
-    columns = (_TIMES, *_COLUMNS) if any(row["times"] > 1 for row in statements) else _COLUMNS
+    columns = _columns(statements)
+    columns = (_TIMES, *columns) if any(row["times"] > 1 for row in statements) else columns
     for heading in where:
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("statement", no_wrap=True)

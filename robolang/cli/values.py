@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from runtime.core.frames import Array
+    from runtime.robot.kinematics.opw import Geometry
     from runtime.robot.model.payload import Payload
     from runtime.robot.model.spec import RobotSpec
 
@@ -46,27 +47,28 @@ def posture(text: str | None, spec: "RobotSpec") -> "Array":
     if text is None:  # zero is outside the range of some joints, such as J4 of a Franka arm
         return np.clip(np.zeros(spec.n), spec.lower, spec.upper)
     names = tuple(f"J{i}" for i in range(1, spec.n + 1))
-    return np.deg2rad(numbers(text, option="--joints", names=names))
+    return np.array(numbers(text, option="--joints", names=names)) * spec.units
 
 
-def outside(q: "Array", lower: "Array", upper: "Array") -> "Iterator[tuple[int, str]]":
+def outside(q: "Array", arm: "Geometry") -> "Iterator[tuple[int, str]]":
     """Yield each joint (0-based) whose angle in q (n,) rad is outside its range, and a sentence about it, in deg."""
-    from runtime.core.units import DEG
     from runtime.robot.model.drives import RANGE_ROUNDING
 
-    for joint, (angle, low, high) in enumerate(zip(q, lower, upper, strict=True)):
+    for joint, (angle, low, high) in enumerate(zip(q, arm.lower, arm.upper, strict=True)):
+        kind = arm.axes[joint].kind
         # the rounding that points and JOINT(...) are granted: an angle that check accepts is accepted here
         if not low - RANGE_ROUNDING <= angle <= high + RANGE_ROUNDING:
-            shown, least, most = beside(angle / DEG, low / DEG, high / DEG)
-            yield joint, f"J{joint + 1} at {shown} deg is outside its range of {least} to {most} deg"
+            shown, least, most = beside(angle / kind.size, low / kind.size, high / kind.size)
+            unit = kind.unit
+            yield joint, f"J{joint + 1} at {shown} {unit} is outside its range of {least} to {most} {unit}"
 
 
-def warn_outside(q: "Array", lower: "Array", upper: "Array") -> None:
+def warn_outside(q: "Array", arm: "Geometry") -> None:
     """Print a warning for each angle of ``--joints`` outside its range (RBL309).
 
     It is calculated all the same: ``kin ik`` lists such postures, and ``kin fk`` must lead back from each of them.
     """
-    for joint, sentence in outside(q, lower, upper):
+    for joint, sentence in outside(q, arm):
         say_warning("RBL309", f"--joints, number {joint + 1}", sentence, _OUTSIDE)
 
 

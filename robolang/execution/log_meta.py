@@ -102,7 +102,7 @@ def robot_of(spec: RobotSpec, X_flange_tool: Array) -> dict[str, Any]:
             {
                 "name": f"J{number}",  # as messages and the language name it
                 "title": axis.name,
-                "kind": "revolute",
+                "kind": axis.kind.name,
                 "placement": axis.placement.tolist(),
                 "lower": float(axis.limits.lower),
                 "upper": float(axis.limits.upper),

@@ -207,7 +207,7 @@ def _base(place: Place, around: Surroundings) -> _Goal:
         beyond = beyond_range(place.joints, [axis.limits for axis in around.cell.robot.axes])
         if beyond:
             raise Fault("RBL309", beyond)
-        q = np.array(place.joints) * DEG
+        q = np.array(place.joints) * around.cell.robot.units
         return _Goal(X=_forward(q, around), q_end=q)
     if place.last:
         return _Goal(X=_forward(around.q_last, around))
@@ -220,7 +220,7 @@ def _forward(q: Array, around: Surroundings) -> Array:
 
 
 def _at_point(point: Point, around: Surroundings, X: Array | None = None) -> _Goal:
-    joints = None if point.joints is None else np.array(point.joints) * DEG
+    joints = None if point.joints is None else np.array(point.joints) * around.cell.robot.units
     return _Goal(X=_taught(point, around, X), q_end=joints, configuration=point.configuration, turns=point.turns)
 
 
@@ -234,7 +234,7 @@ def _taught(point: Point, around: Surroundings, X: Array | None = None) -> Array
     if point.joints is not None:
         if len(point.joints) != cell.robot.n:
             raise Fault("RBL307", f"point {point.name} has {len(point.joints)} joints, the robot {cell.robot.n}")
-        return _forward(np.array(point.joints) * DEG, around)
+        return _forward(np.array(point.joints) * cell.robot.units, around)
     assert point.pose is not None  # the store admits exactly one of the two
     X = pose_si(point.pose) if X is None else X
     if point.frame:

@@ -12,7 +12,6 @@ import numpy as np
 
 from runtime.control.controller import Controller
 from runtime.core.frames import Array
-from runtime.core.units import DEG
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,16 +29,16 @@ def _torque(controller: Controller) -> Array:
 
 
 def _angle(controller: Controller) -> Array:
-    return np.asarray(controller.servo.alpha / DEG)
+    return np.asarray(controller.servo.alpha / controller.spec.units)
 
 
 def _error(controller: Controller) -> Array:
     servo = controller.servo
-    return np.asarray((servo.q_ref - servo.alpha) / DEG)
+    return np.asarray((servo.q_ref - servo.alpha) / controller.spec.units)
 
 
 def _rate(controller: Controller) -> Array:
-    return np.asarray(_last(controller, 3) / DEG)
+    return np.asarray(_last(controller, 3) / controller.spec.units)
 
 
 def _last(controller: Controller, group: int) -> Array:

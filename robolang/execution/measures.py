@@ -27,6 +27,7 @@ class Measured:
     the wrist did not follow the path."""
 
     joint_deg: float | None = None
+    joint_mm: float | None = None
     tool_mm: float | None = None
     path_mm: float | None = None
     torque_pct: float | None = None
@@ -82,11 +83,14 @@ class _Piece:
     """Measures of each tick of a piece of a run."""
 
     def __init__(self, recorded: Recorded, record: RunRecord, torque: Array, first: int, last: int) -> None:
+        spec = record.controller.spec
         log = Signals(recorded, record.controller.kinematics.chain)
         self._first, self._last = first, last
         self._p_tool = log.span("X_world_tool", first, last)[:, :3, 3]
         self._tool_mm = np.linalg.norm(log.span("tool_cmd", first, last) - self._p_tool, axis=1) / MM
-        self._joint_deg = np.abs(log.span("q_cmd", first, last) - log.span("q_link", first, last)).max(axis=1) / DEG
+        joints, slides = np.abs(log.span("q_cmd", first, last) - log.span("q_link", first, last)), spec.slides
+        self._joint_deg = joints[:, ~slides].max(axis=1) / DEG if not slides.all() else None
+        self._joint_mm = joints[:, slides].max(axis=1) / MM if slides.any() else None
         self._torque_pct = np.abs(log.span("tau_sat", first, last) / torque).max(axis=1) / PERCENT
         self._wrist_mode = log.span("wrist_mode", first, last)
         self._deviation = log.span("seam_deviation", first, last)
@@ -98,7 +102,10 @@ class _Piece:
         span = slice(begin - self._first, min(end, self._last) - self._first)
         if span.stop <= span.start:
             return
-        found.joint_deg = _larger(found.joint_deg, self._joint_deg[span])
+        if self._joint_deg is not None:
+            found.joint_deg = _larger(found.joint_deg, self._joint_deg[span])
+        if self._joint_mm is not None:
+            found.joint_mm = _larger(found.joint_mm, self._joint_mm[span])
         found.tool_mm = _larger(found.tool_mm, self._tool_mm[span])
         found.torque_pct = _larger(found.torque_pct, self._torque_pct[span])
         if run.path is not None:

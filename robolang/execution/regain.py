@@ -25,7 +25,8 @@ AT_REST = 1e-9
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Displaced:
-    """How far the arm is from where its path was left: of the tool point mm and deg, of the joints the largest deg."""
+    """How far the arm is from where its path was left: of the tool point mm and deg, of the joints the largest deg,
+    a mm of one that slides counted as a deg."""
 
     distance_mm: float = 0.0
     angle_deg: float = 0.0
@@ -57,7 +58,7 @@ def displacement(world: RobotWorld, q_left: Array, q: Array) -> Displaced:
     return Displaced(
         distance_mm=float(np.linalg.norm(X[:3, 3] - X_left[:3, 3])) / MM,
         angle_deg=rotation_angle(X_left[:3, :3], X[:3, :3]) / DEG,
-        joint_deg=float(np.abs(q - q_left).max()) / DEG,
+        joint_deg=float((np.abs(q - q_left) / world.around.cell.robot.units).max()),
     )
 
 

@@ -70,6 +70,7 @@ _MEASURED = (
     "duration_s",
     "planned_s",
     "joint_error_deg",
+    "joint_error_mm",
     "tool_error_mm",
     "path_deviation_mm",
     "peak_torque_pct",
@@ -81,16 +82,18 @@ _MEASURED = (
 
 def _statement(run: StatementRun, measured: Measured, controller: Controller) -> dict[str, Any]:
     if not run.begun:
-        return {**_head(run), **dict.fromkeys(_MEASURED), "notes": []}
+        found = {**_head(run), **dict.fromkeys(_MEASURED), "notes": []}
+        return found if controller.spec.slides.any() else _without_mm(found)
     tick_us = controller.profile.tick_us
     # a statement that still goes on has no end yet: what it has done so far is measured
     end = run.end_tick if run.ended else controller.recorder.tick
-    return {
+    found = {
         **_head(run),
         "start_s": run.first_tick * tick_us / 1_000_000,
         "duration_s": (end - run.first_tick) * tick_us / 1_000_000,
         "planned_s": run.planned_s,
         "joint_error_deg": measured.joint_deg,
+        "joint_error_mm": measured.joint_mm,
         "tool_error_mm": measured.tool_mm,
         "path_deviation_mm": measured.path_mm,
         "peak_torque_pct": measured.torque_pct,
@@ -98,6 +101,12 @@ def _statement(run: StatementRun, measured: Measured, controller: Controller) ->
         "seam": _seam(run, measured),
         "notes": list(run.notes),
     }
+    return found if controller.spec.slides.any() else _without_mm(found)
+
+
+def _without_mm(statement: dict[str, Any]) -> dict[str, Any]:
+    """Return a statement of an arm whose axes all turn: it has no error of a joint in mm."""
+    return {key: value for key, value in statement.items() if key != "joint_error_mm"}
 
 
 def _touched(run: StatementRun, controller: Controller) -> list[dict[str, object]]:

@@ -52,6 +52,9 @@ class StatementReport(dict[str, Any]):
     duration_s = Key[float | None]("How long it took, s.")
     planned_s = Key[float | None]("How long its motion was planned to take, s; None without motion.")
     joint_error_deg = Key[float | None]("Largest distance of a joint from its command, deg.")
+    joint_error_mm = Key[float | None](
+        "Largest distance of a joint that slides from its command, mm; no key where all joints turn."
+    )
     tool_error_mm = Key[float | None]("Largest distance of the tool point from its command, mm.")
     path_deviation_mm = Key[float | None](
         "Largest distance of the tool point from the straight line, mm; None where there is none."

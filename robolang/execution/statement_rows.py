@@ -13,7 +13,7 @@ from robolang.syntax.unparse import describe
 from robolang.values.poses import Place
 from runtime.core.frames import Array
 from runtime.core.linear import matmul
-from runtime.core.units import DEG, MM
+from runtime.core.units import MM
 from runtime.motion.path import LinePath, Path
 
 _SAMPLES = 1001
@@ -83,7 +83,7 @@ def rest_of(run: StatementRun, q: Array, around: Surroundings) -> Effect | None:
 def note_rest(run: StatementRun, q: Array, around: Surroundings) -> None:
     """Note that the arm came to rest at joints q (n,) rad, short of the end of a move: its effect is the part up to
     there, but for its target."""
-    run.rest = tuple(float(angle) for angle in q / DEG)
+    run.rest = tuple(float(angle) for angle in q / around.cell.robot.units)
     if isinstance(run.effect, MoveTo) and run.path is not None:
         run.effect = _arc_between(run.effect, run.path, 0.0, _parameter(run.path, _tool(q, around)))
 

@@ -106,7 +106,9 @@ class Log(HumanUnits, Signals):
 def chain_of(robot: Mapping[str, Any]) -> Chain:
     """Return the joint frames of the robot in a ``meta``."""
     placements = tuple(np.array(axis["placement"], dtype=np.float64) for axis in robot["axes"])
-    return Chain(placements=placements, X_last_flange=np.array(robot["flange"], dtype=np.float64))
+    # a log from before axes could slide does not say that they turn
+    sliding = frozenset(index for index, axis in enumerate(robot["axes"]) if axis.get("kind") == "prismatic")
+    return Chain(placements=placements, X_last_flange=np.array(robot["flange"], dtype=np.float64), sliding=sliding)
 
 
 _NO_CHAIN = Chain(placements=(), X_last_flange=np.eye(4))

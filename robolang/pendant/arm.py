@@ -10,15 +10,16 @@ from robolang.project.project import Project
 from robolang.values.poses import Frame, Place, Six
 from runtime.control.controller import Controller
 from runtime.core.frames import Array
-from runtime.core.units import DEG
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmView:
-    """Commanded joints (deg) with their ranges, the tool pose in the frame in force and in the world (mm, deg)."""
+    """Commanded joints with their ranges, in ``units`` (deg, mm of an axis that slides), the tool pose in the frame in
+    force and in the world (mm, deg)."""
 
-    joints_deg: tuple[float, ...]
-    ranges_deg: tuple[tuple[float, float], ...]
+    joints: tuple[float, ...]
+    ranges: tuple[tuple[float, float], ...]
+    units: tuple[str, ...]
     tool_in_frame: Six
     tool_in_world: Six
     frame: Frame
@@ -32,12 +33,14 @@ def view(project: Project, controller: Controller, executor: Executor) -> ArmVie
     robot, kinematics = project.cell.robot, controller.kinematics
     world = executor.world
     # as the language takes a place, so that the prompt shows the numbers that HERE and P.X would give
-    place = Place(joints=tuple(float(value) for value in q / DEG))
+    place = Place(joints=tuple(float(value) for value in q / robot.units))
     return ArmView(
-        joints_deg=tuple(float(value) for value in q / DEG),
-        ranges_deg=tuple(
-            (float(low), float(high)) for low, high in zip(robot.lower / DEG, robot.upper / DEG, strict=True)
+        joints=tuple(float(value) for value in q / robot.units),
+        ranges=tuple(
+            (float(low), float(high))
+            for low, high in zip(robot.lower / robot.units, robot.upper / robot.units, strict=True)
         ),
+        units=tuple(axis.kind.unit for axis in robot.axes),
         tool_in_frame=lowering.components(place, executor.frame, world.around),
         tool_in_world=lowering.components(place, "", world.around),
         frame=executor.frame,

@@ -52,7 +52,7 @@ class Gathering:
             tool=shown(arm.tool, "hand"),
             declared_kg=controller.areas.sda.mass,
             felt_kg=self._felt_kg(live),
-            joints=arm.joints_deg,
+            joints=arm.joints,
             pose=arm.tool_in_frame,
             limit=f"J{near.limit.joint + 1} {near.limit.margin:.1f} deg",
             singular="" if singular is None else f"{singular.name} {singular.distance:.1f} {singular.unit}",

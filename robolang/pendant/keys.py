@@ -107,12 +107,17 @@ class KeyMode:
         else:
             self._pendant.jog = self._set(self._pendant.jog, key)
 
+    def _sliding(self) -> "frozenset[str]":
+        from robolang.teaching.jogging import sliding_of
+
+        return sliding_of(self._pendant.project.cell.robot)
+
     def _set(self, settings: "JogSettings", key: str) -> "JogSettings":
         """Return the settings after a key that changes them."""
         from robolang.teaching.jogging import is_linear
 
         if key in ("+", "-"):
-            return settings.stepped(1 if key == "+" else -1, angular=not is_linear(self._axis))
+            return settings.stepped(1 if key == "+" else -1, angular=not is_linear(self._axis, self._sliding()))
         if key in _FRAMES:
             return settings.with_frame(_FRAMES[key])
         if key == "f":
@@ -149,8 +154,8 @@ class KeyMode:
 
         pendant = self._pendant
         pendant.live.refuse_latched()
-        amount = math.inf if as_far else pendant.jog.step(self._axis)
-        request = JogRequest(axis=self._axis, amount=sign * amount)
+        amount = math.inf if as_far else pendant.jog.step(self._axis, self._sliding())
+        request = JogRequest(axis=self._axis, amount=sign * amount, slides=self._axis in self._sliding())
         plan = pendant.plan_jog(request)
         if not self._is_still_meant(sign, as_far=as_far):
             return
@@ -212,11 +217,12 @@ class KeyMode:
     def _paint(self) -> None:
         self._painted_s = wall_s()
         settings, axis = self._pendant.jog, self._axis
-        unit = "mm" if axis in ("X", "Y", "Z") else "deg"
+        sliding = self._sliding()
+        unit = "mm" if axis in ("X", "Y", "Z") or axis in sliding else "deg"
         keys = KeyFacts(
             armed=self._pendant.armed,
             axis=axis,
-            step=f"{settings.step(axis):g} {unit}",
+            step=f"{settings.step(axis, sliding):g} {unit}",
             frame=settings.frame,
             speed=settings.speed,
             held=self._dead_man.continuous,

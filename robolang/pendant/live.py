@@ -35,7 +35,6 @@ from runtime.control.controller import Controller
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.program_line import named
-from runtime.core.units import DEG
 from runtime.motion.speed_cap import MANUAL_SPEED
 
 
@@ -120,9 +119,10 @@ class Live:
         return view(self.project, self.controller, self.executor)
 
     @property
-    def home_deg(self) -> tuple[float, ...]:
-        """The home position of the cell, deg."""
-        return tuple(float(value) for value in np.asarray(self.project.cell.home) / DEG)
+    def home(self) -> tuple[float, ...]:
+        """The home position of the cell, deg, of an axis that slides mm."""
+        cell = self.project.cell
+        return tuple(float(value) for value in np.asarray(cell.home) / cell.robot.units)
 
     @property
     def seconds(self) -> float:

@@ -148,7 +148,7 @@ def _recorded(pendant: Recordable) -> "Recorded | None":
     # late, as all that imports numerics
     from robolang.teaching.recorded import recorded
 
-    return recorded(live.session.record, live.arm.joints_deg)
+    return recorded(live.session.record, live.arm.joints)
 
 
 def _texts(path: Path, found: "Recorded | None", pendant: Recordable) -> dict[Path, str]:

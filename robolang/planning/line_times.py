@@ -10,14 +10,15 @@ from robolang.syntax.unparse import describe
 from runtime.core.frames import Array
 from runtime.core.units import DEG, MM
 from runtime.robot.kinematics.singularity import singularities
-from runtime.robot.model.spec import OpwParameters
+from runtime.robot.model.spec import OpwParameters, RobotSpec
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LineTime:
     """What a line of the program takes: how often it ran, its time s, the length of its paths mm, and the name of its
     fastest joint with the share of its speed limit in %; ``margin_deg``: the least distance of a joint from the ends of
-    its range; ``wrist_deg``: how far the wrist is from straight, where it is singular, on a path of the tool."""
+    its range, ``margin_mm`` that of one that slides; ``wrist_deg``: how far the wrist is from straight, where it is
+    singular, on a path of the tool."""
 
     line: int
     number: int | None
@@ -28,6 +29,7 @@ class LineTime:
     joint: str
     speed_pct: float | None
     margin_deg: float | None
+    margin_mm: float | None
     wrist_deg: float | None
 
 
@@ -42,7 +44,7 @@ def line_times(project: Project, rehearsal: Rehearsal) -> list[LineTime]:
             continue
         moves = [move for move in rehearsal.moves if move.effect.line == line.source_line]
         joint, share = _fastest(moves, speed, project.profile.period_s) if moves else ("", None)
-        margins = [range_margin(move, spec.lower, spec.upper)[0] for move in moves]
+        margin_deg, margin_mm = _margins(moves, spec)
         rows.append(
             LineTime(
                 line=line.source_line,
@@ -53,7 +55,8 @@ def line_times(project: Project, rehearsal: Rehearsal) -> list[LineTime]:
                 length_mm=_length_mm(moves),
                 joint=joint,
                 speed_pct=share,
-                margin_deg=float(np.min(margins)) / DEG if margins else None,
+                margin_deg=margin_deg,
+                margin_mm=margin_mm,
                 wrist_deg=_wrist_deg(opw, moves),
             )
         )
@@ -74,6 +77,17 @@ def _length_mm(moves: list[RehearsedMove]) -> float | None:
     return sum(lengths) / MM if lengths else None
 
 
+def _margins(moves: list[RehearsedMove], spec: RobotSpec) -> tuple[float | None, float | None]:
+    """Return the least distance of joints from the ends of their ranges: of those that turn, deg, and slide, mm."""
+    if not moves:
+        return None, None
+    each = np.min([np.minimum(move.q - spec.lower, spec.upper - move.q).min(axis=0) for move in moves], axis=0)
+    slides = spec.slides
+    of = (each[~slides] / DEG, each[slides] / MM)
+    turning, sliding = (float(margins.min()) if len(margins) else None for margins in of)
+    return turning, sliding
+
+
 def _wrist_deg(opw: OpwParameters | None, moves: list[RehearsedMove]) -> float | None:
     paths = [move for move in moves if move.plan.path is not None]
     # no closed form, no such measure of its singular postures
@@ -82,8 +96,11 @@ def _wrist_deg(opw: OpwParameters | None, moves: list[RehearsedMove]) -> float |
     return float(np.min([singularities(opw, move.q).wrist.min() for move in paths])) / DEG
 
 
-def range_margin(move: RehearsedMove, lower: object, upper: object) -> tuple[float, int, int]:
-    """Return the smallest distance of a joint from the ends of its range, rad, its axis and the row."""
-    inside = np.minimum(move.q - np.asarray(lower), np.asarray(upper) - move.q)
-    row, axis = np.unravel_index(int(np.argmin(inside)), inside.shape)
+def range_margin(move: RehearsedMove, spec: RobotSpec) -> tuple[float, int, int]:
+    """Return the smallest distance of a joint from the ends of its range, rad or m, its axis and the row.
+
+    Of axes that turn and axes that slide a mm counts as a deg, as in ``RobotSpec.bound``.
+    """
+    inside = np.minimum(move.q - spec.lower, spec.upper - move.q)
+    row, axis = np.unravel_index(int(np.argmin(inside / spec.bound(1.0))), inside.shape)
     return float(inside[row, axis]), int(axis), int(row)

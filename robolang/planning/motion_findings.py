@@ -34,6 +34,7 @@ from runtime.motion.cartesian_planner import FOLLOWS
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.kinematics.singularity import singularities
 from runtime.robot.kinematics.wrist_load import ratings, wrist_load
+from runtime.robot.model.axis_kind import AxisKind
 
 DEFAULTS = Bounds()
 OVERLOAD, NOTHING = 1e-3, 1e-6
@@ -156,15 +157,16 @@ class _Moves:
     def near_range(self, move: RehearsedMove) -> Found:
         """Report the joint that comes nearest to the end of its range."""
         spec = self._spec
-        margin, axis, row = range_margin(move, spec.lower, spec.upper)
-        if not margin >= self._bounds[RANGE_MARGIN] * DEG:
-            ends = f"{spec.lower[axis] / DEG:g} to {spec.upper[axis] / DEG:g} deg"
-            at = float(move.q[row, axis]) / DEG
+        margin, axis, row = range_margin(move, spec)
+        kind = spec.axes[axis].kind
+        if not margin >= self._bounds[RANGE_MARGIN] * kind.size:
+            ends = f"{spec.lower[axis] / kind.size:g} to {kind.text(spec.upper[axis])}"
+            at = kind.text(float(move.q[row, axis]), ".2f")
             yield self._places.at(
                 "RBL422",
                 move,
-                f"at {move.share(row):.1f} % of the path J{axis + 1} is at {at:.2f} deg, "
-                f"{margin / DEG:.2f} deg from an end of its range {ends}",
+                f"at {move.share(row):.1f} % of the path J{axis + 1} is at {at}, "
+                f"{kind.text(margin, '.2f')} from an end of its range {ends}",
                 row=row,
             )
 
@@ -196,7 +198,8 @@ class _Moves:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoadShare:
-    """The ``moment`` or ``inertia`` of a payload about an axis of the wrist (0-based) in its worst posture.
+    """The ``moment`` or ``inertia`` of a payload about an axis of the wrist (0-based) in its worst posture; along one
+    that slides its weight and its mass.
 
     ``given``: the limit is in the robot file, else it is an estimate. ``move`` and ``row`` are where the posture is.
     """
@@ -208,11 +211,24 @@ class LoadShare:
     given: bool
     move: RehearsedMove
     row: int
+    kind: AxisKind
 
     @property
     def unit(self) -> str:
         """Unit of value and limit."""
-        return "N m" if self.what == "moment" else "kg m2"
+        return self.kind.force if self.what == "moment" else self.kind.inertia
+
+    @property
+    def beside(self) -> str:
+        """Where the load is: about an axis, or along one that slides."""
+        return "along" if self.kind.slides else "about"
+
+    @property
+    def name(self) -> str:
+        """What is loaded, in words."""
+        if self.kind.slides:
+            return "weight" if self.what == "moment" else "mass"
+        return self.what
 
 
 def worst_loads(project: Project, kinematics: Kinematics, moves: Sequence[RehearsedMove]) -> list[LoadShare]:
@@ -229,7 +245,14 @@ def worst_loads(project: Project, kinematics: Kinematics, moves: Sequence[Rehear
                 if not value <= 0.0 and ((what, k) not in worst or not value <= worst[what, k].value):
                     given = getattr(spec.axes[axis].limits, f"rated_{what}") is not None
                     worst[what, k] = LoadShare(
-                        axis=axis, what=what, value=value, limit=float(limits[what][k]), given=given, move=move, row=row
+                        axis=axis,
+                        what=what,
+                        value=value,
+                        limit=float(limits[what][k]),
+                        given=given,
+                        move=move,
+                        row=row,
+                        kind=spec.axes[axis].kind,
                     )
     return sorted(worst.values(), key=lambda share: (share.what != "moment", share.axis))
 
@@ -244,8 +267,8 @@ def _loads(project: Project, kinematics: Kinematics, places: Places, moves: Sequ
             yield places.at(
                 code,
                 share.move,
-                f"at {share.move.share(share.row):.1f} % of the path the {share.what} of the "
-                f"payload of {share.move.payload.mass:g} kg about J{share.axis + 1} is {value} "
+                f"at {share.move.share(share.row):.1f} % of the path the {share.name} of the "
+                f"payload of {share.move.payload.mass:g} kg {share.beside} J{share.axis + 1} is {value} "
                 f"{share.unit}, {share.value - share.limit:.3g} {share.unit} above the limit of {limit} {share.unit}, "
                 f"which is {'its rating' if share.given else 'estimated from its drive'}",
                 row=share.row,

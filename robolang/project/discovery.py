@@ -20,7 +20,6 @@ from runtime.core.faults import Fault
 from runtime.core.record import Record
 from runtime.core.rounding import beside
 from runtime.core.tomlfile import FileFault, Source, read_source
-from runtime.core.units import DEG
 from runtime.robot.files import robot_file
 from runtime.robot.files.arm_file import ROBOT_ENDINGS, ArmFile, read_arm_file
 from runtime.settings.layers import Layer, Settings, check_axes, compensation_file, settle
@@ -195,17 +194,18 @@ def no_robot(name: str) -> Fault:
 
 def with_robot(cell: CellFile, arm: ArmFile) -> CellFile:
     """Return a cell with another robot; ``Fault`` RBL709 for one that cannot stand at home there."""
-    if len(arm.limits) != len(cell.home_deg):
+    if len(arm.limits) != len(cell.home):
         raise Fault(
-            "RBL709", f"{arm.name} has {len(arm.limits)} axes, the home position of the cell has {len(cell.home_deg)}"
+            "RBL709", f"{arm.name} has {len(arm.limits)} axes, the home position of the cell has {len(cell.home)}"
         )
-    for index, (angle, limits) in enumerate(zip(cell.home_deg, arm.limits, strict=True)):
-        if not limits.lower <= angle * DEG <= limits.upper:
-            shown, low, high = beside(angle, limits.lower / DEG, limits.upper / DEG)
+    for index, (angle, limits) in enumerate(zip(cell.home, arm.limits, strict=True)):
+        kind = limits.kind
+        if not limits.lower <= angle * kind.size <= limits.upper:
+            shown, low, high = beside(angle, limits.lower / kind.size, limits.upper / kind.size)
             raise Fault(
                 "RBL709",
-                f"the home position of the cell has J{index + 1} at {shown} deg; its range on {arm.name} is {low} to "
-                f"{high} deg",
+                f"the home position of the cell has J{index + 1} at {shown} {kind.unit}; its range on {arm.name} is "
+                f"{low} to {high} {kind.unit}",
             )
     return cell.replaced(arm=arm)
 

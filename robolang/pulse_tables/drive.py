@@ -24,7 +24,7 @@ from runtime.core.frames import Array, frozen
 from runtime.core.linear import norm
 from runtime.core.program_line import ProgramLine
 from runtime.core.rounding import beside
-from runtime.core.units import DEG, MM
+from runtime.core.units import MM
 from runtime.pulses.exported import Export, Load, Marker, Move
 from runtime.pulses.replay import distances, joint_values, positions
 from runtime.robot.model.payload import Payload, declared
@@ -110,9 +110,11 @@ def start_angles(export: Export, cell: CellSpec) -> Array:
                 "RBL634", f"{what} differs from that of {robot.name} in this cell by {off:.3g} (m, or of a rotation)"
             )
     start = joint_values(export, np.array([channel.start_pulses for channel in export.channels]))
-    for axis, (q, low, high) in enumerate(zip(start, robot.lower, robot.upper, strict=True), start=1):
+    for number, (q, axis) in enumerate(zip(start, robot.axes, strict=True), start=1):
+        low, high, kind = axis.limits.lower, axis.limits.upper, axis.kind
         if not low <= q <= high:
-            raise Fault("RBL634", f"J{axis} starts at {q / DEG:.3f} deg; its range is {low / DEG:g} to {high / DEG:g}")
+            at, ends = kind.text(float(q), ".3f"), f"{low / kind.size:g} to {high / kind.size:g}"
+            raise Fault("RBL634", f"J{number} starts at {at}; its range is {ends}")
     return frozen(start)
 
 
@@ -166,8 +168,8 @@ class _Arm:
         yield from self._send(set_points(self._export, move, self._profile.period_s))
         waited_s = yield from self._settle()
         if waited_s is not None:
-            error = np.degrees(self._controller.position_error)
-            self._controller.warn("RBL523", f"not in position: {error:.3f} deg left after {waited_s:g} s")
+            left = self._controller.not_in_position()
+            self._controller.warn("RBL523", f"not in position: {left} left after {waited_s:g} s")
 
     def _hand(self, marker: Marker) -> Iterator[None]:
         self._controller.hand(marker.hand == "on")

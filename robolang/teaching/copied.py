@@ -21,7 +21,6 @@ from robolang.teaching.postures import reached, reached_point
 from robolang.teaching.taught import Taught, pose_in, rounded, rounded_joints
 from robolang.values.poses import Frame, Place
 from runtime.core.faults import Fault
-from runtime.core.units import DEG
 
 _COPY = "COPY_"
 """A name to assign to; nothing is called so, and nothing reads it."""
@@ -64,7 +63,7 @@ def _place(text: str, around: Surroundings, frame: Frame, world: World) -> Place
 def _shifted_joints(copy: Point, old: Point, place: Place, around: Surroundings) -> Taught:
     """Return the joints of the shifted place: the posture that is nearest to that of the old point."""
     assert old.joints is not None
-    q_old = np.array(old.joints) * DEG
+    q_old = np.array(old.joints) * around.cell.robot.units
     q = reached(place, around, q_old)
     changes = ", ".join(f"{before} to {after}" for before, after in around.kinematics.changes(q_old, q))
     notes = (f"the configuration changes: {changes}",) if changes else ()

@@ -3,7 +3,7 @@
 import math
 
 from robolang.execution.regain import Displaced
-from robolang.teaching.jogging import JogRequest, is_linear
+from robolang.teaching.jogging import JogRequest
 from runtime.core.units import DEG, MM
 from runtime.motion.jog import JogPlan
 
@@ -32,8 +32,8 @@ def cut_short(request: JogRequest, moved: Displaced, *, late: bool) -> str | Non
 def _end(request: JogRequest, plan: JogPlan) -> str:
     goes = f"{request.axis} goes {_amount(request, plan.goes)} at most"
     end = plan.end
-    if end.kind == "limit" and end.axis is not None:
-        return f"{goes}: J{end.axis + 1} is limited to {end.limit / DEG:g} deg"
+    if end.kind == "limit":
+        return f"{goes}: {plan.limited}"
     if end.kind == "reach":
         return f"{goes}: there the reach of the arm ends"
     if end.kind == "singularity":
@@ -53,4 +53,4 @@ def _slow(request: JogRequest, plan: JogPlan) -> str:
 
 
 def _amount(request: JogRequest, value: float) -> str:
-    return f"{value / (MM if is_linear(request.axis) else DEG):.1f} {request.unit}"
+    return f"{value / request.size:.1f} {request.unit}"

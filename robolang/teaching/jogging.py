@@ -8,7 +8,7 @@ Used by prompt, page and editor. mm and deg outside, m and rad inside.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias, get_args
 
@@ -20,6 +20,7 @@ from runtime.core.frames import Array
 from runtime.core.rounding import beside
 from runtime.core.units import DEG, MM, PERCENT
 from runtime.motion.jog import Jog, JogPlan, JogPlanner, JointJog, ToolJog
+from runtime.robot.model.spec import RobotSpec
 
 JogFrame: TypeAlias = Literal["joint", "world", "base", "tool", "user"]
 """In what a jog counts; ``user`` is the FRAME in force."""
@@ -86,30 +87,42 @@ class JogSettings:
         step = steps[min(max(steps.index(here) + by, 0), len(steps) - 1)]
         return replace(self, angular_step=step) if angular else replace(self, linear_step=step)
 
-    def step(self, axis: str) -> float:
-        """Return the step of a key for an axis, mm or deg."""
-        return self.linear_step if is_linear(axis) else self.angular_step
+    def step(self, axis: str, sliding: Collection[str] = ()) -> float:
+        """Return the step of a key for an axis, mm or deg; ``sliding``: the joints that slide."""
+        return self.linear_step if is_linear(axis, sliding) else self.angular_step
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JogRequest:
-    """A jog as it is typed: ``axis`` (J1 to J7, or one of ``DIRECTIONS``) by ``amount`` mm or deg.
+    """A jog as it is typed: ``axis`` (J1 to J7, or one of ``DIRECTIONS``) by ``amount`` mm or deg; ``slides``: a joint
+    that slides, by mm.
 
     An infinite amount goes as far as it can in that direction: keys that are held.
     """
 
     axis: str
     amount: float
+    slides: bool = False
 
     @property
     def unit(self) -> str:
         """Unit of the amount."""
-        return "mm" if is_linear(self.axis) else "deg"
+        return "mm" if self.slides or is_linear(self.axis) else "deg"
+
+    @property
+    def size(self) -> float:
+        """The unit in SI."""
+        return MM if self.unit == "mm" else DEG
 
 
-def is_linear(axis: str) -> bool:
-    """Return whether a jog of an axis is counted in mm."""
-    return axis in ("X", "Y", "Z")
+def is_linear(axis: str, sliding: Collection[str] = ()) -> bool:
+    """Return whether a jog of an axis is counted in mm; ``sliding``: the joints that slide."""
+    return axis in ("X", "Y", "Z") or axis in sliding
+
+
+def sliding_of(robot: RobotSpec) -> frozenset[str]:
+    """Return the names of the joints that slide, such as J3."""
+    return frozenset(f"J{number}" for number, axis in enumerate(robot.axes, 1) if axis.kind.slides)
 
 
 def axes_of(joints: int) -> tuple[str, ...]:
@@ -117,8 +130,9 @@ def axes_of(joints: int) -> tuple[str, ...]:
     return (*(f"J{number}" for number in range(1, joints + 1)), *DIRECTIONS)
 
 
-def read_jog(text: str, joints: int) -> JogRequest:
-    """Return the jog of a text such as ``J3 +5``, ``X -10`` or ``RZ 2`` for an arm of so many joints.
+def read_jog(text: str, joints: int, sliding: Collection[str] = ()) -> JogRequest:
+    """Return the jog of a text such as ``J3 +5``, ``X -10`` or ``RZ 2`` for an arm of so many joints, of which those
+    named by ``sliding`` slide.
 
     ``Fault`` RBL720 where it names no axis of the arm or no number, RBL404 for an amount out of range.
     """
@@ -128,11 +142,12 @@ def read_jog(text: str, joints: int) -> JogRequest:
         named = f"{words[0]!r} is no axis of this arm" if words else "a jog names an axis"
         raise Fault("RBL720", named, f"Give J1 to J{joints}, X, Y, Z, RX, RY or RZ, then mm or deg: X -10.")
     # a sign may stand apart from its number, as in Z - 10
-    return JogRequest(axis=words[0].upper(), amount=_amount(words[0].upper(), "".join(words[1:])))
+    axis = words[0].upper()
+    return JogRequest(axis=axis, amount=_amount(axis, "".join(words[1:]), sliding), slides=axis in sliding)
 
 
-def _amount(axis: str, text: str) -> float:
-    unit, most = ("mm", FARTHEST) if is_linear(axis) else ("deg", FARTHEST_TURN)
+def _amount(axis: str, text: str, sliding: Collection[str]) -> float:
+    unit, most = ("mm", FARTHEST) if is_linear(axis, sliding) else ("deg", FARTHEST_TURN)
     try:
         amount = float(text)
     except ValueError:
@@ -150,10 +165,9 @@ def _amount(axis: str, text: str) -> float:
 def jog_of(request: JogRequest, frames: Mapping[JogFrame, Array], frame: JogFrame) -> Jog:
     """Return a request in SI; ``frames`` are the poses (4, 4) in the base of all frames but ``joint``."""
     if request.axis.startswith("J"):
-        return JointJog(axis=int(request.axis[1:]) - 1, amount=request.amount * DEG)
+        return JointJog(axis=int(request.axis[1:]) - 1, amount=request.amount * request.size)
     X_base_frame = frames["world" if frame == "joint" else frame]
-    unit = MM if is_linear(request.axis) else DEG
-    return ToolJog.along(X_base_frame, DIRECTIONS.index(request.axis), request.amount * unit)
+    return ToolJog.along(X_base_frame, DIRECTIONS.index(request.axis), request.amount * request.size)
 
 
 def plan_jog(

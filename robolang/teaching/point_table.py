@@ -83,7 +83,7 @@ def _reached(row: PointRow, q: Array, near: Posture, kinematics: Kinematics) -> 
     branch = kinematics.branch_of(q)
     # an arm without branches keeps the words that somebody wrote
     words = row.configuration if branch == NUMERIC else str(branch)
-    return replace(row, joints=tuple((q / DEG).tolist()), posture=near, configuration=words)
+    return replace(row, joints=tuple((q / kinematics.units).tolist()), posture=near, configuration=words)
 
 
 def uses(analysis: Analysis) -> Mapping[str, tuple[int, ...]]:

@@ -73,12 +73,12 @@ def postures(q: Array, kinematics: Kinematics) -> list[Posture]:
 def _limits(q: Array, kinematics: Kinematics) -> list[NearLimit]:
     below, above = q - kinematics.spec.lower, kinematics.spec.upper - q
     # NaN first: an angle that is not known has no margin that could be shown
-    joints = np.argmin(np.minimum(below, above), axis=1).tolist()
+    joints = np.argmin(np.minimum(below, above) / kinematics.units, axis=1).tolist()
     return [
         NearLimit(
             joint=joint,
             side="upper" if above[row, joint] < below[row, joint] else "lower",
-            margin=float(min(below[row, joint], above[row, joint]) / DEG),
+            margin=float(min(below[row, joint], above[row, joint]) / kinematics.units[joint]),
         )
         for row, joint in enumerate(joints)
     ]

@@ -72,7 +72,7 @@ def taught_point(
         tool, about_tool = _named_tool(around)
         notes += about_tool
     point = Point(name=name, pose=(0.0,) * 6, frame=named, tool=tool, comment=comment)
-    point = point.replaced(configuration=_configuration(q, around), turns=_turns(q, around.cell.robot))
+    point = point.replaced(configuration=_configuration(q, around), turns=_turns(q, around))
     return _as_pose(point, q, around, notes)
 
 
@@ -89,7 +89,7 @@ def _check_name(name: str) -> None:
 def _check_joints(q: Array, robot: RobotSpec) -> None:
     if q.shape != (robot.n,):
         raise Fault("RBL307", f"{q.size} joint angles are given, the robot has {robot.n} axes")
-    beyond = beyond_range((q / DEG).tolist(), [axis.limits for axis in robot.axes])
+    beyond = beyond_range((q / robot.units).tolist(), [axis.limits for axis in robot.axes])
     if beyond:
         raise Fault("RBL309", beyond)
 
@@ -126,10 +126,11 @@ def _configuration(q: Array, around: Surroundings) -> tuple[str, ...]:
     return () if branch == NUMERIC else tuple(str(branch).split())
 
 
-def _turns(q: Array, robot: RobotSpec) -> tuple[int, ...]:
+def _turns(q: Array, around: Surroundings) -> tuple[int, ...]:
     """Return the whole turns of the joints, as far as one has a range in which an angle comes twice."""
+    robot = around.cell.robot
     # of other joints the range decides, and a number that says the same is only more to read
-    several = np.flatnonzero(robot.upper - robot.lower >= TURN)
+    several = np.flatnonzero(around.kinematics.turning * (robot.upper - robot.lower) >= TURN)
     count = int(several[-1]) + 1 if len(several) else 0
     return tuple(int(turns) for turns in np.round(q / TURN)[:count])
 
@@ -141,11 +142,14 @@ def rounded(pose: Six, digits: tuple[int, int] = DIGITS) -> Six:
 
 
 def rounded_joints(q: Array, robot: RobotSpec) -> tuple[float, ...]:
-    """Return joint angles q (n,) rad in deg with the decimals of a point, none of them rounded out of its range."""
+    """Return joints q (n,) rad, m in deg, mm with the decimals of a point, none of them rounded out of its range."""
     # an end of a range may have more decimals than a point
     scale = 10.0**DEG_DIGITS
-    least, most = np.ceil(robot.lower / DEG * scale) / scale, np.floor(robot.upper / DEG * scale) / scale
-    nearest = np.round(q / DEG, DEG_DIGITS)
+    least, most = (
+        np.ceil(robot.lower / robot.units * scale) / scale,
+        np.floor(robot.upper / robot.units * scale) / scale,
+    )
+    nearest = np.round(q / robot.units, DEG_DIGITS)
     return tuple(_plain(value, DEG_DIGITS) for value in np.clip(nearest, least, most))
 
 
@@ -188,10 +192,9 @@ def _read_back(point: Point, q: Array, around: Surroundings) -> str:
             apart = np.abs(reached_point(point, around, np.asarray(start)) - q)
         except Fault as fault:
             return f"as a pose it is not reached again ({fault.code}: {fault.message}); teach it as joints"
-        axis = int(np.argmax(apart))
-        if not apart[axis] <= SAME:
-            return (
-                f"as a pose it does not keep the posture: J{axis + 1} may end {apart[axis] / DEG:.1f} deg elsewhere; "
-                "teach it as joints"
-            )
+        robot = around.cell.robot
+        axis = int(np.argmax(apart / robot.units))
+        if not apart[axis] <= robot.bound(SAME)[axis]:
+            off = robot.axes[axis].kind.text(apart[axis], ".1f")
+            return f"as a pose it does not keep the posture: J{axis + 1} may end {off} elsewhere; teach it as joints"
     return ""

@@ -62,7 +62,7 @@ def _turned(
         q_old = reached_point(old, around, q)
     except Fault as fault:
         return None, (), fault
-    return tuple(((q - q_old) / DEG).tolist()), around.kinematics.changes(q_old, q), None
+    return tuple(((q - q_old) / around.cell.robot.units).tolist()), around.kinematics.changes(q_old, q), None
 
 
 def _between(X_old: Array, X_new: Array) -> Six:

@@ -20,7 +20,7 @@ from robolang.execution.status import ENDED, State, Status
 from robolang.execution.stepping import StopsAt, over
 from robolang.teaching.held_button import Press
 from robolang.teaching.jog_remarks import cut_short, remarks
-from robolang.teaching.jogging import JogRequest, JogSettings, axes_of, plan_jog, read_jog
+from robolang.teaching.jogging import JogRequest, JogSettings, axes_of, plan_jog, read_jog, sliding_of
 from robolang.view.exchange import Exchange, Order
 from robolang.view.frames import Frames
 from robolang.view.messages import Go, Input, Jog, Override, Pacing, Teach
@@ -31,6 +31,7 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.units import PERCENT
 from runtime.motion.speed_cap import MANUAL_SPEED
+from runtime.robot.model.spec import RobotSpec
 
 IDLE_S = 0.25
 """How long a command is waited for at a time while nothing moves, s."""
@@ -284,7 +285,7 @@ class Driver:
         _ = self._by_hand
         self._refuse_moving()
         self._refuse_latched()
-        request = _request(jog, controller.spec.n)
+        request = _request(jog, controller.spec)
         # MANUAL from here on, until the program is started again: somebody stands beside the arm
         controller.speed_cap = MANUAL_SPEED
         settings = JogSettings(frame=jog.frame, speed=jog.speed)
@@ -327,11 +328,11 @@ def _text(jog: Jog) -> str:
     return f"jog {jog.axis} {sign}{'' if jog.step is None else f'{jog.step:g}'}"
 
 
-def _request(jog: Jog, joints: int) -> JogRequest:
+def _request(jog: Jog, robot: RobotSpec) -> JogRequest:
     """Return the jog of a button; ``Fault`` RBL720 for an axis that the arm lacks, RBL404 for the amount."""
     # a typed jog has the same bounds, so it is read by the same code
     if jog.step is not None:
-        return read_jog(f"{jog.axis} {jog.amount:.10g}", joints)
-    if jog.axis not in axes_of(joints):
+        return read_jog(f"{jog.axis} {jog.amount:.10g}", robot.n, sliding_of(robot))
+    if jog.axis not in axes_of(robot.n):
         raise Fault("RBL720", f"'{jog.axis}' is no axis of this arm")
-    return JogRequest(axis=jog.axis, amount=jog.amount)
+    return JogRequest(axis=jog.axis, amount=jog.amount, slides=jog.axis in sliding_of(robot))

@@ -54,7 +54,7 @@ def arm_bodies(spec: RobotSpec) -> list[SceneBody]:
             name=link(index),
             parent=link(index - 1),
             X_parent_body=axis.placement,
-            joint=SceneJoint(kind="revolute", axis=Z, source="axis", index=index),
+            joint=SceneJoint(kind=axis.kind.name, axis=Z, source="axis", index=index),
         )
         for index, axis in enumerate(spec.axes)
     ]

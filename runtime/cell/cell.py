@@ -120,10 +120,10 @@ class CellSpec:
 
 def build(file: CellFile) -> CellSpec:
     """Return the cell of a file that has been read; ``FileFault`` RBL6xx where its arm cannot be."""
-    hand = file.hand
+    hand, robot = file.hand, _robot(file)
     return CellSpec(
-        robot=_robot(file),
-        home=frozen(np.array(file.home_deg) * DEG),
+        robot=robot,
+        home=frozen(np.array(file.home) * robot.units),
         hand=HandSpec(
             mass=hand.mass_kg,
             cog=_lengths(hand.cog_mm),

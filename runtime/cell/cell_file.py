@@ -17,7 +17,6 @@ from runtime.cell.sensor_file import SensorFile, read_sensor_file
 from runtime.cell.signals import InputSpec, read_inputs
 from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault, Source, Table, inside, load_table, read_source
-from runtime.core.units import DEG
 from runtime.robot.files import robot_file
 from runtime.robot.files.arm_file import ROBOT_ENDINGS, ArmFile, read_arm_file
 from runtime.settings.layers import Layer, read_layer
@@ -86,13 +85,14 @@ class CameraFile(Record):
 
 
 class CellFile(Record):
-    """A cell file and its ``text``. ``tools``, ``frames``: poses (6,) mm and deg by name, FLANGE and WORLD among them;
-    ``controller``: the settings of ``[controller]``; ``doubts``: parts that cannot rest where they are (RBL640)."""
+    """A cell file and its ``text``. ``home`` is deg, of a sliding axis mm. ``tools``, ``frames``: poses (6,) mm and
+    deg by name, FLANGE and WORLD among them; ``controller``: the settings of ``[controller]``; ``doubts``: parts that
+    cannot rest where they are (RBL640)."""
 
     path: str
     text: str
     arm: ArmFile
-    home_deg: Numbers
+    home: Numbers
     hand: HandFile
     parts: tuple[PartFile, ...]
     obstacles: tuple[ObstacleFile, ...]
@@ -153,7 +153,7 @@ def parse_cell_file(source: Source, folder: Path | None = None) -> CellFile:
         text=source.text,
         path=source.path,
         arm=arm,
-        home_deg=home,
+        home=home,
         hand=hand,
         parts=lying,
         obstacles=fixed,
@@ -202,18 +202,22 @@ def _arm(table: Table, folder: Path | None) -> ArmFile:
 
 def _home(table: Table, arm: ArmFile | None) -> Numbers:
     # without an arm, whose file may be what is wrong, any number of joints is accepted
-    q_deg = table.numbers("joints_deg", None if arm is None else len(arm.limits), low=-3600.0, high=3600.0)
+    # mm are not written under deg: an arm with an axis that slides has a key of its own
+    slides = "joints" in table if arm is None else any(limits.kind.slides for limits in arm.limits)
+    key = "joints" if slides else "joints_deg"
+    home = table.numbers(key, None if arm is None else len(arm.limits), low=-20000.0, high=20000.0)
     table.done()
     # not strict: without an arm there is no limit to compare with, and the error of the arm is reported instead
-    for index, (angle, limits) in enumerate(zip(q_deg, arm.limits if arm else (), strict=False)):
-        if not limits.lower <= angle * DEG <= limits.upper:
+    for index, (value, limits) in enumerate(zip(home, arm.limits if arm else (), strict=False)):
+        kind = limits.kind
+        if not limits.lower <= value * kind.size <= limits.upper:
             table.fail(
                 "RBL605",
-                f"J{index + 1} at home is {angle:g} deg and must be between {limits.lower / DEG:g} "
-                f"and {limits.upper / DEG:g}",
-                key="joints_deg",
+                f"J{index + 1} at home is {value:g} {kind.unit} and must be between {limits.lower / kind.size:g} "
+                f"and {limits.upper / kind.size:g}",
+                key=key,
             )
-    return q_deg
+    return home
 
 
 def _hand(table: Table) -> HandFile:

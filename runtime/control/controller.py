@@ -36,7 +36,7 @@ from runtime.core.limits import OVERRIDE
 from runtime.core.linear import matmul
 from runtime.core.program_line import ProgramLine
 from runtime.core.state import State
-from runtime.core.units import PERCENT
+from runtime.core.units import DEG, PERCENT
 from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.commands import Command
 from runtime.motion.motion_planner import ChainPlan, MotionPlanner
@@ -441,9 +441,18 @@ class Controller:
 
     @property
     def position_error(self) -> float:
-        """Largest distance of a detected joint angle from its command and lead, rad."""
+        """Largest distance of a detected joint angle from its command and lead, rad; a mm counts as a deg."""
+        return float(self._off().max())
+
+    def not_in_position(self) -> str:
+        """Return how far the joint that is furthest from its command still is, in its unit."""
+        axis = int(np.argmax(self._off()))
+        kind = self.spec.axes[axis].kind
+        return kind.text(float(self._off()[axis] * kind.size / DEG), ".3f")
+
+    def _off(self) -> Array:
         servo = self.servo
-        return float(np.abs(servo.q_ref - servo.alpha).max())
+        return np.asarray(np.abs(servo.q_ref - servo.alpha) / self.spec.bound(1.0))
 
     @property
     def overruns(self) -> int:

@@ -26,15 +26,16 @@ There a link's acceleration ``(dv, dw)`` and its load ``(f, n)`` are columns of 
     (dv, dw)_j = Rot' X_j (dv, dw)_{j-1}              X_j = [[R0', -R0'[P]x], [0, R0']]
     (f, n)_j   = X_{j+1}' Rot (f, n)_{j+1} + A_j (dv, dw)_j      A_j = [[m E, -[Pm]x], [[Pm]x, I]]
 
-Range of validity: open chains of revolute axes with rigid links and gears, in any posture. Speeds do not matter: the
-mass matrix depends on the posture alone. SI throughout.
+Range of validity: open chains with rigid links and gears, in any posture. Speeds do not matter: the mass matrix depends
+on the posture alone. SI throughout. The document has axes that turn. One that slides starts the pass with dv_i = Z,
+takes P_j + q_j Z_j for P_j, and its element is f_j . Z: a mass, kg.
 """
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -59,7 +60,7 @@ class LinkChain:
 
     ``rotations`` (n, 3, 3) and ``offsets`` (n, 3) m: R0_j and P_j, frame j at angle zero in frame j-1. ``masses`` (n,)
     kg, ``moments`` (n, 3) kg m (first moments Pm_j), ``inertias`` (n, 3, 3) kg m2 about the frame's origin.
-    ``gear_ratios`` (n,): N, signed.
+    ``gear_ratios`` (n,): N, signed. ``sliding``: the indices of the axes that slide.
     """
 
     rotations: Array
@@ -68,6 +69,7 @@ class LinkChain:
     moments: Array
     inertias: Array
     gear_ratios: Array
+    sliding: frozenset[int] = frozenset()
 
     @property
     def n(self) -> int:
@@ -111,6 +113,7 @@ def link_chain(spec: RobotSpec, payload: Payload = NO_PAYLOAD, mode: "LoadMode" 
         moments=frozen([moment for _, moment, _ in parts]),
         inertias=frozen([inertia for _, _, inertia in parts]),
         gear_ratios=frozen(spec.per_axis("motor", "gear_ratio")),
+        sliding=frozenset(index for index, axis in enumerate(spec.axes) if axis.kind.slides),
     )
 
 
@@ -141,7 +144,7 @@ def axis_inertia(chain: LinkChain, q: Array, axis: int) -> float:
 
     3.4 as printed: links i+1 to n outward, n to i back.  Raises ``IndexError`` where there is no such axis.
     """
-    return dot(_moments(chain, q, axis, last=axis)[axis], _Z)
+    return dot(_loads(chain, q, axis, last=axis)[axis], _Z)
 
 
 def inertia_row(chain: LinkChain, q: Array, axis: int) -> Array:
@@ -150,27 +153,39 @@ def inertia_row(chain: LinkChain, q: Array, axis: int) -> Array:
     3.4 continued: the torque of every axis under the unit acceleration of one is M_ji = n_j . Z. Before link i nothing
     moves, and only the load of the links beyond is carried back to the base. M is symmetric: row and column are one.
     """
-    return frozen([matmul(n, _Z) for n in _moments(chain, q, axis, last=0)])
+    return frozen([matmul(load, _Z) for load in _loads(chain, q, axis, last=0)])
 
 
-def _moments(chain: LinkChain, q: Array, axis: int, last: int) -> list[Array]:
-    """Return n_j (3,) of links ``last`` to n in their frames, at their place in a list of n."""
+def _loads(chain: LinkChain, q: Array, axis: int, last: int) -> list[Array]:
+    """Return n_j (3,) of links ``last`` to n in their frames, f_j where it slides, at their place in a list."""
     if not 0 <= axis < chain.n:
         raise IndexError(f"axis {axis} of {chain.n}")
-    R = [matmul(R0, _about_z(angle)) for R0, angle in zip(chain.rotations, q.tolist(), strict=True)]
+    R, P = _frames(chain, q)
     # links before the axis stand still, so their accelerations stay zero and their own inertia does not enter
     dw, dv = [_NOTHING] * chain.n, [_NOTHING] * chain.n
-    dw[axis] = _Z
+    (dv if axis in chain.sliding else dw)[axis] = _Z
     for j in range(axis + 1, chain.n):
-        dw[j], dv[j] = outward(R[j], chain.offsets[j], dw[j - 1], dv[j - 1])
+        dw[j], dv[j] = outward(R[j], P[j], dw[j - 1], dv[j - 1])
     # no weight: the pass is at rest without gravity, T_i is computed apart (``equations``)
-    moments = [_NOTHING] * chain.n
+    loads = [_NOTHING] * chain.n
     Rf = Rn = _NOTHING  # R_{j+1} f_{j+1}, and R_{j+1} n_{j+1} + P_{j+1} x (R_{j+1} f_{j+1})
     for j in range(chain.n - 1, last - 1, -1):
-        f, moments[j] = back(chain, j, dw[j], dv[j], (Rf, Rn))
+        f, n = back(chain, j, dw[j], dv[j], (Rf, Rn))
+        loads[j] = f if j in chain.sliding else n
         Rf = matmul(R[j], f)
-        Rn = matmul(R[j], moments[j]) + cross(chain.offsets[j], Rf)
-    return moments
+        Rn = matmul(R[j], n) + cross(P[j], Rf)
+    return loads
+
+
+def _frames(chain: LinkChain, q: Array) -> tuple[list[Array], list[Array]]:
+    """Return R_j and P_j of every link at q (n,)."""
+    R, P = list(chain.rotations), list(chain.offsets)
+    for j, value in enumerate(q.tolist()):
+        if j in chain.sliding:
+            P[j] = P[j] + value * R[j][:, 2]
+        else:
+            R[j] = matmul(R[j], _about_z(value))
+    return R, P
 
 
 def outward(R: Array, P: Array, dw: Array, dv: Array) -> tuple[Array, Array]:
@@ -220,30 +235,78 @@ def link_inertia(chain: LinkChain, q: Array) -> Array:
 def _block(chain: LinkChain, q: Array) -> Array:
     """Return J (n, B) at q (n, B). Columns (6, k, B): of link k, under the unit acceleration of each axis up to k."""
     n, count = q.shape
-    c, s = np.cos(q), np.sin(q)
+    joints = [_Slide(row) if j in chain.sliding else _Turn(np.cos(row), np.sin(row)) for j, row in enumerate(q)]
+    own = [2 if j in chain.sliding else 5 for j in range(n)]  # f . Z or n . Z
     # a step back serves all axes before it: the load beyond link j is needed by each of them alike
-    moved = _accelerations(chain, c, s)
+    moved = _accelerations(chain, joints, own, count)
     J = np.empty((n, count))
     load = _product(chain.bodies[-1], moved[-1])
-    J[-1] = load[5, -1]
+    J[-1] = load[own[-1], -1]
     for j in range(n - 2, -1, -1):
-        beyond = _turned(load[:, : j + 1], c[j + 1], s[j + 1])
+        beyond = joints[j + 1].back(load[:, : j + 1])
         load = _product(chain.steps[j + 1].T, beyond) + _product(chain.bodies[j], moved[j])
-        J[j] = load[5, j]
+        J[j] = load[own[j], j]
     return J
 
 
-def _accelerations(chain: LinkChain, c: Array, s: Array) -> Sequence[Array]:
+def _accelerations(chain: LinkChain, joints: Sequence["_Joint"], own: Sequence[int], count: int) -> Sequence[Array]:
     """Return (dv, dw) of every link j as (6, j+1, B); that of its own axis, the last, is Z."""
-    n, count = c.shape
     moved: list[Array] = []
-    for j in range(n):
+    for j in range(chain.n):
         columns = np.zeros((6, j + 1, count))
         if j > 0:
-            _turned(_product(chain.steps[j], moved[j - 1]), c[j], -s[j], out=columns[:, :j])
-        columns[5, j] = 1.0
+            columns[:, :j] = joints[j].out(_product(chain.steps[j], moved[j - 1]))
+        # an acceleration has dv before dw and a load f before n, so one row serves both
+        columns[own[j], j] = 1.0
         moved.append(columns)
     return moved
+
+
+class _Joint(Protocol):
+    """A joint at many postures, between its frame at zero and its own."""
+
+    def out(self, columns: Array) -> Array:
+        """Return accelerations (6, k, B) in the joint's own frame."""
+
+    def back(self, columns: Array) -> Array:
+        """Return loads (6, k, B) in the frame of the joint at zero."""
+
+
+class _Turn:
+    """A joint that turns about z, by angles of cosine c and sine s (B,)."""
+
+    def __init__(self, c: Array, s: Array) -> None:
+        self._c, self._s = c, s
+
+    def out(self, columns: Array) -> Array:
+        """Return accelerations in the joint's own frame."""
+        return _turned(columns, self._c, -self._s)
+
+    def back(self, columns: Array) -> Array:
+        """Return loads in the frame of the joint at zero."""
+        return _turned(columns, self._c, self._s)
+
+
+class _Slide:
+    """A joint that slides along z, by ``shift`` (B,) m."""
+
+    def __init__(self, shift: Array) -> None:
+        self._shift = shift
+
+    def out(self, columns: Array) -> Array:
+        """Return accelerations in the joint's own frame: dv + dw x (q Z)."""
+        return self._crossed(columns, columns[3:], columns[:3], 0)
+
+    def back(self, columns: Array) -> Array:
+        """Return loads in the frame of the joint at zero: n + (q Z) x f."""
+        return self._crossed(columns, -columns[:3], columns[3:], 3)
+
+    def _crossed(self, columns: Array, vector: Array, added_to: Array, row: int) -> Array:
+        """Return columns with ``vector`` x (q Z) added to the three of them from ``row`` on."""
+        found = np.array(columns)
+        found[row] = added_to[0] + vector[1] * self._shift
+        found[row + 1] = added_to[1] - vector[0] * self._shift
+        return found
 
 
 def _product(matrix: Array, columns: Array) -> Array:
@@ -251,9 +314,9 @@ def _product(matrix: Array, columns: Array) -> Array:
     return np.asarray(matmul(matrix, columns.reshape(6, -1))).reshape(columns.shape)
 
 
-def _turned(columns: Array, c: Array, s: Array, out: Array | None = None) -> Array:
+def _turned(columns: Array, c: Array, s: Array) -> Array:
     """Return both 3-vectors of columns (6, k, B) turned about z, by angles of cosine c and sine s (B,)."""
-    out = np.empty(columns.shape) if out is None else out
+    out = np.empty(columns.shape)
     x, y = columns[0::3], columns[1::3]
     out[0::3] = c * x - s * y
     out[1::3] = s * x + c * y

@@ -138,7 +138,7 @@ def identify_payload(
     ``ticks`` of ``tick_s`` s. ``ValueError`` when too little of it is motion.
     """
     # the order matters: averages, then what the bare arm needs, then blocks of rows in which an axis turned throughout
-    rows = _averages(tau, q, ticks, tick_s)
+    rows = _averages(spec, tau, q, (ticks, tick_s))
     if int(rows.turning.sum()) < FEWEST:
         raise ValueError("the arm does not move enough to be weighed")
     friction, columns = _nuisances(spec, rows, known.friction)
@@ -151,12 +151,12 @@ def identify_payload(
     return _in_flange(spec, found, covariance, _per_axis(left, axis, spec.n))
 
 
-def _averages(tau: Array, q: Array, ticks: int, tick_s: float) -> _Rows:
-    """Return the averages over 2 ``ticks`` of ``tick_s`` s around every cycle; the same weights for both sides.
+def _averages(spec: RobotSpec, tau: Array, q: Array, cycle: tuple[int, float]) -> _Rows:
+    """Return the averages over 2 cycles around every cycle (ticks, seconds of one); the same weights for both sides.
 
     The triangle is the weight under which the mean of ddq is the second difference of q, exactly.
     """
-    m, h = ticks, ticks * tick_s
+    m, h = cycle[0], cycle[0] * cycle[1]
     at = np.arange(m, len(q) - m, m)
     before, now, after = q[at - m], q[at], q[at + m]
     ramp = (np.arange(m) + 0.5) / m**2
@@ -169,7 +169,7 @@ def _averages(tau: Array, q: Array, ticks: int, tick_s: float) -> _Rows:
         dq=(after - before) / (2.0 * h),
         ddq=(after - 2.0 * now + before) / h**2,
         tau=np.array([matmul(triangle, tau[k - m : k + m]) for k in at]).reshape(now.shape),
-        turning=slowest > TURNING,
+        turning=slowest > spec.bound(TURNING),
         step_s=h,
     )
 

@@ -10,7 +10,6 @@ import numpy as np
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.rounding import beside
-from runtime.core.units import DEG
 from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.path_ik import RANGE_TOLERANCE
 from runtime.robot.model.spec import RobotSpec
@@ -43,8 +42,8 @@ def check_motion(spec: RobotSpec, fine: FineInterpolator, rows: Array, here: Arr
     check_range(spec, rows, here)
     # the set-points keep the range to rounding; between them the command swings a little where it starts or stops
     check_range(spec, q, here, _BETWEEN)
-    _check_rate(dq, spec.per_axis("limits", "speed"), "turn at", "deg/s")
-    _check_rate(ddq, spec.per_axis("limits", "acceleration"), "accelerate at", "deg/s2")
+    _check_rate(spec, dq, spec.per_axis("limits", "speed"), "/s")
+    _check_rate(spec, ddq, spec.per_axis("limits", "acceleration"), "/s2")
 
 
 def check_range(spec: RobotSpec, q: Array, here: Array | None = None, tolerance: float = RANGE_TOLERANCE) -> None:
@@ -55,12 +54,15 @@ def check_range(spec: RobotSpec, q: Array, here: Array | None = None, tolerance:
     excess = np.maximum(lower - q, q - upper).max(axis=0)
     axis = int(np.argmax(excess))
     if not excess[axis] <= tolerance:
-        raise Fault("RBL411", f"J{axis + 1} would leave its range by {excess[axis] / DEG:.4g} deg")
+        raise Fault("RBL411", f"J{axis + 1} would leave its range by {spec.axes[axis].kind.text(excess[axis], '.4g')}")
 
 
-def _check_rate(rates: Array, limits: Array, verb: str, unit: str) -> None:
+def _check_rate(spec: RobotSpec, rates: Array, limits: Array, per: str) -> None:
     most = np.abs(rates).max(axis=0)
     axis = int(np.argmax(most / limits))
     if not most[axis] <= limits[axis] * _SLACK:
-        rate, limit = beside(most[axis] / DEG, limits[axis] / DEG, form=".1f")
-        raise Fault("RBL404", f"J{axis + 1} would {verb} {rate} {unit}, more than its {limit} {unit}")
+        kind = spec.axes[axis].kind
+        verb = "accelerate" if per == "/s2" else kind.moves.removesuffix("s")
+        unit = kind.unit + per
+        rate, limit = beside(most[axis] / kind.size, limits[axis] / kind.size, form=".1f")
+        raise Fault("RBL404", f"J{axis + 1} would {verb} at {rate} {unit}, more than its {limit} {unit}")

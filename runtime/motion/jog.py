@@ -28,7 +28,7 @@ from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import Profile
 
 JOINT_SPEED = 60.0 * DEG
-"""Speed of a joint jog at 100 %, rad/s; no more than half of the joint's limit."""
+"""Speed of a joint jog at 100 %, rad/s; no more than half of the joint's limit. One that slides goes at the cap."""
 
 TURN_SPEED = 60.0 * DEG
 """Speed of a turn of the tool at 100 %, rad/s."""
@@ -37,7 +37,7 @@ FOLLOW_SPEED = 180.0 * DEG
 """What a joint may turn at in a jog of the tool at 100 %, rad/s: beside a singularity the tool creeps instead."""
 
 STANDOFF = 0.1 * DEG
-"""How far before a joint's limit a jog as far as it goes ends, rad."""
+"""How far before a joint's limit a jog as far as it goes ends, rad; ``RobotSpec.bound`` of it where it slides."""
 
 STANDOFF_REACH = 1.0 * MM
 """And before the end of the reach, m; turns end ``STANDOFF`` before it."""
@@ -60,7 +60,7 @@ LEAST = 1e-7
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointJog:
-    """Turn joint ``axis`` (0-based) by ``amount`` rad; infinite: as far as it goes in that direction."""
+    """Move joint ``axis`` (0-based) by ``amount`` rad or m; infinite: as far as it goes in that direction."""
 
     axis: int
     amount: float
@@ -91,8 +91,8 @@ Jog: TypeAlias = JointJog | ToolJog
 class JogPlan:
     """A planned jog: set-points ``rows`` (K, n) rad, 8 ms apart from the cycle after the start, from rest to rest.
 
-    It ``goes`` so far (m or rad, signed as the jog), up to ``end``; ``slow`` says where and why it is slower than its
-    speed.
+    It ``goes`` so far (m or rad, signed as the jog), up to ``end``; ``limited`` says which limit of a joint that is.
+    ``slow`` says where and why it is slower than its speed.
     """
 
     rows: Array
@@ -100,6 +100,7 @@ class JogPlan:
     end: End
     slow: Slow | None
     period_s: float
+    limited: str = ""
 
     @property
     def seconds(self) -> float:
@@ -138,13 +139,20 @@ class JogPlanner:
         rows = np.clip(rows, lower, upper)
         slow = min((each.slow for each in timed if each.slow is not None), key=lambda each: each.share, default=None)
         goes = math.copysign(course.goes, jog.amount)
-        return JogPlan(rows=frozen(rows), goes=goes, end=course.end, slow=slow, period_s=self._period_s)
+        return JogPlan(
+            rows=frozen(rows),
+            goes=goes,
+            end=course.end,
+            slow=slow,
+            period_s=self._period_s,
+            limited=self._limited(course.end),
+        )
 
     def _course(self, q_start: Array, jog: Jog, X_flange_tool: Array, longest: float) -> Course:
         """Return where a jog leads; one as far as it goes no further than ``longest`` m or rad."""
         endless = math.isinf(jog.amount)
         amount = math.copysign(min(abs(jog.amount), longest), jog.amount) if endless else jog.amount
-        ranges = Ranges.of(self._spec.lower, self._spec.upper, q_start, STANDOFF if endless else EDGE)
+        ranges = Ranges.of(self._spec.lower, self._spec.upper, q_start, self._spec.bound(STANDOFF) if endless else EDGE)
         if isinstance(jog, JointJog):
             course = joint_course(q_start, jog.axis, amount, ranges)
             return replace(course, end=End(kind="time")) if endless and course.end.kind == "amount" else course
@@ -172,7 +180,8 @@ class JogPlanner:
             # the distance of tool and flange from the axis stays, so one speed keeps the cap all along
             turn = np.eye(self._spec.n)[jog.axis]
             lever = float(speeds(self._kinematics, q_start, turn, X_flange_tool).max())
-            own = np.minimum(JOINT_SPEED, 0.5 * self._speed[jog.axis]) * speed
+            usual = cap if self._spec.axes[jog.axis].kind.slides else JOINT_SPEED
+            own = np.minimum(usual, 0.5 * self._speed[jog.axis]) * speed
             rate = float(np.minimum(own, cap / np.maximum(lever, LEAST)))
             joints = self._speed
         return JogLimits(rate=rate, speed=joints, acceleration=self._acceleration, cap=cap, X_flange_tool=X_flange_tool)
@@ -185,22 +194,30 @@ class JogPlanner:
         elif course.end.kind == "amount":
             return
         code, why, hint = self._obstacle(course.end)
-        unit, name = (MM, "mm") if isinstance(jog, ToolJog) and not jog.turns else (DEG, "deg")
+        unit, name = self._unit(jog)
         goes = math.floor(course.goes / unit * 1e3) / 1e3
         if math.isinf(jog.amount):
             raise Fault(code, f"the jog cannot begin: {why}", hint)
         amount, most = beside(abs(jog.amount) / unit, goes, form="g")
         raise Fault(code, f"the jog of {amount} {name} can go {most} {name} only: {why}", hint)
 
+    def _unit(self, jog: Jog) -> tuple[float, str]:
+        """Return the unit of the amount of a jog in SI, and its name."""
+        if isinstance(jog, JointJog):
+            kind = self._spec.axes[jog.axis].kind
+            return kind.size, kind.unit
+        return (DEG, "deg") if jog.turns else (MM, "mm")
+
+    def _limited(self, end: End) -> str:
+        """Return the limit of a joint that ends a course, in words; empty where another thing does."""
+        if end.kind != "limit" or end.axis is None:
+            return ""
+        return f"J{end.axis + 1} is limited to {self._spec.axes[end.axis].kind.text(end.limit)}"
+
     def _obstacle(self, end: End) -> tuple[str, str, str]:
         """Return code, reason and advice for what ends a course."""
         if end.kind == "limit":
-            assert end.axis is not None  # a limit is that of a joint
-            return (
-                "RBL411",
-                f"J{end.axis + 1} is limited to {end.limit / DEG:g} deg",
-                "Jog less far, or in the other direction.",
-            )
+            return "RBL411", self._limited(end), "Jog less far, or in the other direction."
         if end.kind == "reach":
             return "RBL410", f"the rest is out of reach of {self._spec.name}", "Jog less far, or jog a joint."
         if end.kind == "turn":

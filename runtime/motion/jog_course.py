@@ -23,6 +23,9 @@ from runtime.core.units import DEG, MM
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.kinematics.opw import BRANCHES, Branch
 
+BEYOND = 1e3
+"""No range of a joint is as wide, rad or m."""
+
 FINEST = 1e-9
 """Samples are not nearer to each other than this, m or rad: what jumps between them is a jump."""
 
@@ -87,8 +90,8 @@ class Ranges:
     named: tuple[Array, Array]
 
     @classmethod
-    def of(cls, lower: Array, upper: Array, q_start: Array, inside: float) -> "Ranges":
-        """Return ranges that end ``inside`` rad before the limits, widened to where the arm is."""
+    def of(cls, lower: Array, upper: Array, q_start: Array, inside: Array | float) -> "Ranges":
+        """Return ranges that end ``inside`` rad, (n,) or one, before the limits, widened to where the arm is."""
         return cls(
             lower=np.minimum(lower + inside, q_start),
             upper=np.maximum(upper - inside, q_start),
@@ -112,9 +115,7 @@ def joint_course(q_start: Array, axis: int, turn: float, ranges: Ranges) -> Cour
     room = abs(float(bound - q_start[axis]))
     goes = min(abs(turn), room)
     end = (
-        End(kind="amount")
-        if abs(turn) <= room
-        else ranges.end(q_start + np.sign(turn) * 2.0 * math.pi * _one(q_start, axis))
+        End(kind="amount") if abs(turn) <= room else ranges.end(q_start + np.sign(turn) * BEYOND * _one(q_start, axis))
     )
     share = np.linspace(0.0, 1.0, 17)
     q = q_start + share[:, None] * (math.copysign(goes, turn) * _one(q_start, axis))

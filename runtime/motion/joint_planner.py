@@ -28,7 +28,7 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array, frozen, inverse
 from runtime.core.limits import ACCEL, SPEED_PCT, TIME
 from runtime.core.linear import matmul
-from runtime.core.units import DEG, MM, PERCENT
+from runtime.core.units import MM, PERCENT
 from runtime.motion.cartesian_planner import NOTHING_TO_DO, MovePlan
 from runtime.motion.commands import MoveJoint
 from runtime.motion.path_ik import RANGE_TOLERANCE, Arm, check_range
@@ -146,11 +146,12 @@ class JointPlanner:
         excess = np.maximum(self._spec.lower - q_end, q_end - self._spec.upper)
         axis = int(np.argmax(excess))
         if not excess[axis] <= RANGE_TOLERANCE:
-            limits, beyond = self._spec.axes[axis].limits, excess[axis] / DEG
+            limits = self._spec.axes[axis].limits
             limit = limits.lower if q_end[axis] < limits.lower else limits.upper
             raise Fault(
                 "RBL411",
-                f"J{axis + 1} would pass its limit of {limit / DEG:g} deg by {beyond:.4g} deg, at the end of the move",
+                f"J{axis + 1} would pass its limit of {limits.kind.text(limit)} by "
+                f"{limits.kind.text(excess[axis], '.4g')}, at the end of the move",
             )
 
     def _limits(self, turns: Array, speed: float, acceleration: float) -> SpeedLimits:

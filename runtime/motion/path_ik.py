@@ -17,7 +17,7 @@ import numpy as np
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, inverse
 from runtime.core.linear import matmul
-from runtime.core.units import DEG, MM
+from runtime.core.units import MM
 from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.path import Path
 from runtime.motion.wrist.hold import WristTable
@@ -180,10 +180,11 @@ class WristSolver:
         off = np.abs(q[-1] - self._q_end)
         if not off.max() <= SAME_ANGLES:
             worst = int(np.argmax(off))
+            kind = self._line.arm.spec.axes[worst].kind
             raise Fault(
                 "RBL412",
-                f"the move would end with J{worst + 1} at {q[-1, worst] / DEG:.1f} deg in another "
-                f"arm configuration, not at the taught {self._q_end[worst] / DEG:.1f} deg",
+                f"the move would end with J{worst + 1} at {kind.text(q[-1, worst], '.1f')} in another "
+                f"arm configuration, not at the taught {kind.text(self._q_end[worst], '.1f')}",
             )
         q[-1] = self._q_end
         check_range(self._line.arm, s, q)
@@ -227,6 +228,7 @@ def check_range(arm: Arm, s: Array, q: Array) -> None:
     limit = limits.lower if positions[worst, axis] < limits.lower else limits.upper
     raise Fault(
         "RBL411",
-        f"J{axis + 1} would pass its limit of {limit / DEG:g} deg by {excess[worst, axis] / DEG:.4g} deg, "
+        f"J{axis + 1} would pass its limit of {limits.kind.text(limit)} by "
+        f"{limits.kind.text(excess[worst, axis], '.4g')}, "
         f"first at {100 * s[min(first, len(s) - 1)]:.1f} % of the path",
     )

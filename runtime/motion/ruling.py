@@ -153,20 +153,20 @@ def _of_joints(plan: MovePlan, spec: RobotSpec) -> Ruling:
     """Return what rules a joint move: the joint that needs the longest time for its turn, or was slowed for."""
     turns = np.abs(plan.q[-1] - plan.q[0])
     axis = int(np.argmax(turns / spec.per_axis("limits", "speed")))
-    limits = spec.axes[axis].limits
+    limits, kind = spec.axes[axis].limits, spec.axes[axis].kind
     return Ruling(
-        why=f"J{axis + 1} turns by {turns[axis] / DEG:.1f} deg, at most at {limits.speed / DEG:g} deg/s and "
-        f"{limits.acceleration / DEG:g} deg/s2",
-        remedy=f"turn J{axis + 1} less",
+        why=f"J{axis + 1} {kind.moves} by {kind.text(turns[axis], '.1f')}, at most at {kind.text(limits.speed)}/s and "
+        f"{kind.text(limits.acceleration)}/s2",
+        remedy=f"{kind.moves.removesuffix('s')} J{axis + 1} less",
     )
 
 
 def _joint_limit(slowdown: Slowdown, spec: RobotSpec, override: float) -> str:
     """Return the joint limit for which a plan was slowed, in words."""
     limits = spec.axes[slowdown.axis].limits
-    value, unit = (limits.speed, "deg/s") if slowdown.quantity == "speed" else (limits.acceleration, "deg/s2")
+    value, per = (limits.speed, "/s") if slowdown.quantity == "speed" else (limits.acceleration, "/s2")
     under = f" under OVERRIDE {100.0 * override:g}" if override < 1.0 and slowdown.quantity == "speed" else ""
-    return f"J{slowdown.axis + 1} is at its {slowdown.quantity} limit of {value / DEG:g} {unit}{under}"
+    return f"J{slowdown.axis + 1} is at its {slowdown.quantity} limit of {limits.kind.text(value)}{per}{under}"
 
 
 def _slower(takes: Callable[[float], float], speed: float, seconds: float) -> float:

@@ -88,9 +88,9 @@ def turned(kinematics: Kinematics, q: Array, turns: tuple[int, ...], near: Array
         return q
     # joints without taught turns count from 0 here and are put back at the end
     middle = 2.0 * np.pi * np.array([*turns, *[0] * (q.shape[-1] - len(turns))])
-    within = Kinematics.nearest_turns(q, middle)
+    within = kinematics.nearest_turns(q, middle)
     half = is_half_turn(within - middle)
-    either = kinematics.freer_half_turn(Kinematics.nearest_turns(q, near), near)
+    either = kinematics.freer_half_turn(kinematics.nearest_turns(q, near), near)
     sides = np.sort([within, within - np.copysign(2.0 * np.pi, within - middle)], axis=0)
     within = np.where(half, np.clip(either, *sides), within)
     return np.concatenate([within[..., : len(turns)], q[..., len(turns) :]], axis=-1)

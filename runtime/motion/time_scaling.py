@@ -15,10 +15,10 @@ from typing import NoReturn, Protocol
 import numpy as np
 
 from runtime.core.frames import Array
-from runtime.core.units import DEG
 from runtime.motion.fine_interpolator import FineInterpolator
 from runtime.motion.path_ik import MOST_SLOWDOWN
 from runtime.motion.velocity_profile import SpeedLimits, profile
+from runtime.robot.model.axis_kind import AxisKind
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import Profile
 
@@ -55,13 +55,15 @@ class Curve(Protocol):
 class Pace:
     """The limits of timing: ``speed`` rad/s and ``acceleration`` rad/s2 (n,), as ``fine`` measures them.
 
-    ``speed`` is already at the share ``override`` of all speeds.
+    Of an axis that slides, by ``kinds``, they are m/s and m/s2. ``speed`` is already at the share ``override`` of all
+    speeds.
     """
 
     fine: FineInterpolator
     speed: Array
     acceleration: Array
     period_s: float
+    kinds: tuple[AxisKind, ...]
     override: float = 1.0
 
     @classmethod
@@ -72,6 +74,7 @@ class Pace:
             speed=spec.per_axis("limits", "speed"),
             acceleration=spec.per_axis("limits", "acceleration"),
             period_s=profile.period_s,
+            kinds=tuple(axis.kind for axis in spec.axes),
         )
 
     def overridden(self, override: float) -> "Pace":
@@ -135,13 +138,13 @@ class Pace:
         """Return the note of a move that was slowed to so many cycles."""
         if slowdown is None:
             return ()
-        limit = (self.speed if slowdown.quantity == "speed" else self.acceleration)[slowdown.axis] / DEG
-        unit = "deg/s" if slowdown.quantity == "speed" else "deg/s2"
+        limit = (self.speed if slowdown.quantity == "speed" else self.acceleration)[slowdown.axis]
+        per = "/s" if slowdown.quantity == "speed" else "/s2"
         # an override lowers the speeds and no acceleration (``cartesian_planner``)
-        under = f" under OVERRIDE {100.0 * self.override:g}" if self.override < 1.0 and unit == "deg/s" else ""
+        under = f" under OVERRIDE {100.0 * self.override:g}" if self.override < 1.0 and per == "/s" else ""
         return (
             f"slowed {slowdown.factor:.2f} times to {cycles * self.period_s:.3f} s: J{slowdown.axis + 1} "
-            f"{slowdown.quantity} is limited to {limit:g} {unit}{under}",
+            f"{slowdown.quantity} is limited to {self.kinds[slowdown.axis].text(limit)}{per}{under}",
         )
 
     def time_note(self, duration: float | None, cycles: int) -> tuple[str, ...]:

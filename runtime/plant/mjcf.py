@@ -13,7 +13,8 @@ Elastic gears. Where the robot file gives a spring, the joint is two hinges in s
 motor's, with rotor inertia N^2 J, friction and actuator, and the gear's, with spring K and damper C and nothing else.
 The first angle is the motor's at the joint side, the link stands at their sum. MuJoCo lets a body have several
 joints, so no massless body is needed between them: with M_l the inertia of what the link carries, the inertia of the
-two is [[M_l + N^2 J, M_l], [M_l, M_l]], which is regular whenever the rotor has inertia. Written out,
+two is [[M_l + N^2 J, M_l], [M_l, M_l]], which is regular whenever the rotor has inertia. An axis that slides has slides
+in their place. Written out,
 
     N^2 J ddq_m = tau - friction - K (q_m - q_l) - C (dq_m - dq_l),      M_l ddq_l + h = K (q_m - q_l) + C (dq_m - dq_l)
 
@@ -218,7 +219,7 @@ def _hinge(body: ET.Element, index: int, axis: AxisSpec, timestep: float) -> Non
         body,
         "joint",
         name=joint_name(index),
-        type="hinge",
+        type="slide" if axis.kind.slides else "hinge",
         axis="0 0 1",
         range=row([axis.limits.lower, axis.limits.upper]),
         armature=repr(axis.motor.reflected_inertia),
@@ -237,7 +238,7 @@ def _gear_spring(body: ET.Element, index: int, axis: AxisSpec) -> None:
         body,
         "joint",
         name=gear_joint(index),
-        type="hinge",
+        type="slide" if axis.kind.slides else "hinge",
         axis="0 0 1",
         limited="false",
         stiffness=repr(axis.motor.stiffness),

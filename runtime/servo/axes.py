@@ -20,7 +20,7 @@ from runtime.servo.servo_law import Gains, ServoLaw
 from runtime.settings.profile import ServoOptions
 
 SMOOTH = 0.01
-"""Speed over which the sign of the commanded speed is smoothed, rad/s."""
+"""Speed over which the sign of the commanded speed is smoothed, rad/s; of a sliding axis ``RobotSpec.bound`` of it."""
 
 
 class ServoAxes(Stateful):
@@ -51,6 +51,7 @@ class ServoAxes(Stateful):
         friction = np.array([axis.motor.joint_coulomb_friction for axis in spec.axes])
         self._forward, self._backward = friction[:, 0], friction[:, 1]
         self._viscous = spec.per_axis("motor", "joint_viscous_friction")
+        self._smooth = spec.bound(SMOOTH)
 
     def take(self, D: Array, T: Array, motion: Array, rows: Array | None = None) -> None:
         """Take the loads D kg m2, T N m (n,) and the motion (3, ticks, n) of the cycle that begins.
@@ -70,7 +71,7 @@ class ServoAxes(Stateful):
     def friction_current(self, dq: Array) -> Array:
         """Return the current (..., n) A that overcomes the published friction at speed dq (..., n) rad/s."""
         # tanh is 0 at rest, so that the term cannot make a resting axis creep
-        coulomb = np.where(dq > 0.0, self._forward, self._backward) * np.tanh(dq / SMOOTH)
+        coulomb = np.where(dq > 0.0, self._forward, self._backward) * np.tanh(dq / self._smooth)
         return np.asarray((coulomb + self._viscous * dq) * (self.options.friction_compensation / self._Ktn))
 
     def tick(self, k: int, q: Array) -> Array:

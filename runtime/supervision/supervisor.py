@@ -47,6 +47,7 @@ class Supervisor(Stateful):
         self.watch = Watch(spec, limits, drives)
         self.observer = Observer(spec, limits, drives, model)
         self._collision = limits.collision * drives.torque
+        self._kinds = [axis.kind for axis in spec.axes]
         self._top = spec.per_axis("limits", "speed")
         self.weighing = False
         """Whether the payload is being weighed, so that no declared one is judged; collisions are."""
@@ -108,12 +109,13 @@ class Supervisor(Stateful):
     def _collided(self, axis: int, tick: int) -> Finding:
         most = float(self._collision[axis] + 2.0 * self.observer.sigma[axis])
         torque, bound = beside(float(self.observer.residual[axis]), most, form="+.1f")
+        kind = self._kinds[axis]
         return Finding(
             code="RBL516",
             tick=tick,
             axis=axis,
-            message=f"the torque of J{axis + 1} differs by {torque} N m from what its motion and payload need; "
-            f"the limit is {bound} N m",
+            message=f"the {kind.effort} of J{axis + 1} differs by {torque} {kind.force} from what its motion and "
+            f"payload need; the limit is {bound} {kind.force}",
         )
 
     def _weigh(self, tick: int) -> Finding | None:
@@ -145,12 +147,13 @@ class Supervisor(Stateful):
         )
 
     def _unexplained(self, axis: int, tick: int) -> Finding:
+        kind = self._kinds[axis]
         return Finding(
             code="RBL516",
             tick=tick,
             axis=axis,
-            message=f"the torque of J{axis + 1} differs on average by {self.observer.unexplained[axis]:+.1f} N m from "
-            "what its motion needs with any payload, which is "
+            message=f"the {kind.effort} of J{axis + 1} differs on average by {self.observer.unexplained[axis]:+.1f} "
+            f"{kind.force} from what its motion needs with any payload, which is "
             f"{abs(self.observer.leftover[axis]):.1f} times the uncertainty of this average",
         )
 

@@ -20,7 +20,6 @@ from numpy import absolute, add, less_equal, logical_and, maximum, multiply, sub
 from runtime.core.frames import Array
 from runtime.core.rounding import beside
 from runtime.core.state import Stateful
-from runtime.core.units import DEG
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.supervision import SupervisionLimits
 from runtime.supervision.drive_data import DriveData
@@ -50,12 +49,13 @@ class Watch(Stateful):
         # a range is checked as a distance from its middle: all six checks are then |x| <= bound, one comparison
         self._centre = np.concatenate([np.zeros(2 * n), (spec.lower + spec.upper) / 2.0, np.zeros(n)])
         self._speed = spec.per_axis("limits", "speed")
-        half = (spec.upper - spec.lower) / 2.0 + limits.position_margin
+        self._kinds = [axis.kind for axis in spec.axes]
+        half = (spec.upper - spec.lower) / 2.0 + spec.bound(limits.position_margin)
         most = self._speed * (1.0 + limits.speed_margin)
         slack = 1.0 + 1e-9  # a current at its limit gives a torque that may exceed the limit by rounding
         self._fast = drives.resolution * STEPS / tick_s
-        first_limit = np.full(n, limits.following_error)
-        self._bound = np.concatenate([torque * slack, torque * slack, half, most, first_limit, self._fast])
+        self._first_limit = spec.bound(limits.following_error)
+        self._bound = np.concatenate([torque * slack, torque * slack, half, most, self._first_limit, self._fast])
         self._away = np.zeros((ticks, 6 * n))
         """Per tick: tau_cmd, tau_sat, q_fb, dq_fb, following error, and what shows a repeated reading."""
         self._inside = np.zeros((ticks, 6 * n), dtype=bool)
@@ -87,7 +87,7 @@ class Watch(Stateful):
         multiply(self.speed, self._hold, self.speed)
         maximum(self.speed, self.peak, out=self.speed)
         multiply(self.speed, self._lag, self.limit)
-        self.limit += self._limits.following_error
+        self.limit += self._first_limit
         subtract(q_cmd, rows[:, 2 * self._n : 3 * self._n], self._error)
         subtract(rows, self._centre, self._rows)
         absolute(self._signed, self._signed)
@@ -139,31 +139,34 @@ class Watch(Stateful):
         ):
             if bad.any():
                 axis = int(np.argmax(bad))
-                extra = f" by {speed[axis] * self._tick_s / DEG:.3f} deg in one tick" if what == "jumped" else ""
+                by = self._kinds[axis].text(speed[axis] * self._tick_s, ".3f")
+                extra = f" by {by} in one tick" if what == "jumped" else ""
                 return "RBL515", axis, f"the encoder of J{axis + 1} {what}{extra}"
         return None
 
     def _excursion(self, inside: Array, k: int) -> tuple[str, int, str] | None:
-        for row, code, what, unit in ((3, "RBL513", "turns at", "deg/s"), (2, "RBL514", "is", "deg from mid-range")):
+        for row, code, what, unit in ((3, "RBL513", "{} at", "/s"), (2, "RBL514", "is", " from mid-range")):
             if not inside[row].all():
                 axis = int(np.argmin(inside[row]))
-                at, most = beside(
-                    self._away[k, row * self._n + axis] / DEG, self._bound[row * self._n + axis] / DEG, form=".2f"
-                )
-                return code, axis, f"J{axis + 1} {what} {at} {unit}, more than {most} {unit}"
+                kind = self._kinds[axis]
+                away, bound = self._away[k, row * self._n + axis], self._bound[row * self._n + axis]
+                at, most = beside(away / kind.size, bound / kind.size, form=".2f")
+                unit = kind.unit + unit
+                return code, axis, f"J{axis + 1} {what.format(kind.moves)} {at} {unit}, more than {most} {unit}"
         return None
 
     def _following(self, follows: Array, k: int) -> tuple[str, int, str] | None:
         if follows.all():
             return None
         axis = int(np.argmax(self._error[k] / self.limit))
-        error, most = beside(self._error[k, axis] / DEG, self.limit[axis] / DEG, form=".3f")
+        kind = self._kinds[axis]
+        error, most = beside(self._error[k, axis] / kind.size, self.limit[axis] / kind.size, form=".3f")
         return (
             "RBL511",
             axis,
             (
-                f"J{axis + 1} is {error} deg from its command, "
-                f"more than {most} deg at {self.speed[axis] / DEG:.1f} deg/s"
+                f"J{axis + 1} is {error} {kind.unit} from its command, "
+                f"more than {most} {kind.unit} at {kind.text(self.speed[axis], '.1f')}/s"
             ),
         )
 
@@ -171,13 +174,14 @@ class Watch(Stateful):
         if (self._saturated <= self._most_saturated).all():
             return None
         axis = int(np.argmax(self._saturated))
+        kind = self._kinds[axis]
         last, most = beside(commanded[axis], self._bound[axis], form=".1f")
         return (
             "RBL512",
             axis,
             (
-                f"the torque command of J{axis + 1} was above {most} N m, at last {last} N m, for "
-                f"{1e3 * self._limits.saturation_s:g} ms"
+                f"the {kind.effort} command of J{axis + 1} was above {most} {kind.force}, at last {last} {kind.force}, "
+                f"for {1e3 * self._limits.saturation_s:g} ms"
             ),
         )
 

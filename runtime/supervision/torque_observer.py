@@ -44,7 +44,7 @@ from runtime.settings.supervision import SupervisionLimits
 from runtime.supervision.drive_data import DriveData
 
 TURNING = 0.05
-"""Speed above which the sign of the friction is known, rad/s."""
+"""Speed above which the sign of the friction is known, rad/s; of an axis that slides ``RobotSpec.bound`` of it."""
 COG = 0.1
 """Standard deviation of the centre of gravity of what is carried but not declared, m."""
 MEMORY = 12
@@ -107,6 +107,7 @@ class Observer(Stateful):
         self._viscous = friction * spec.per_axis("motor", "joint_viscous_friction")
         self._base = limits.torque_uncertainty * drives.torque
         self._share = limits.friction_uncertainty
+        self._turning, self._smooth = spec.bound(TURNING), spec.bound(0.01)
         self._rated = spec.rated_payload
         self._declared = Payload(mass=0.0, cog=np.zeros(3))
         self.residual = np.zeros(spec.n)
@@ -149,11 +150,11 @@ class Observer(Stateful):
         speed = (after - before) / (2.0 * self._period_s)
         acceleration = (after - 2.0 * now + before) / self._period_s**2
         # smoothed over the same 0.01 rad/s as the compensation of the servo (runtime.servo.axes.SMOOTH)
-        dry = np.where(speed > 0.0, self._forward, self._backward) * np.tanh(speed / 0.01)
+        dry = np.where(speed > 0.0, self._forward, self._backward) * np.tanh(speed / self._smooth)
         friction = dry + self._viscous * speed
         # a row has the reading at the start of its tick: the torques of 2 m ticks act between the outer readings
         self.residual = matmul(self._triangle, tau[: 2 * m]) - friction - self._model.torque(now, speed, acceleration)
-        resting = np.abs(speed) < TURNING
+        resting = np.abs(speed) < self._turning
         self.sigma = self._base + np.where(resting, self._coulomb, self._share * np.abs(friction))
         self._q = now
 

@@ -66,7 +66,7 @@ def inertia(options: _CompensationOptions, chart: _MapOptions, output: JsonOptio
         spec = load_any_robot(options.robot)
         say_warnings(spec.warnings)
         q, carried = values.posture(options.joints, spec), values.payload(options.payload, "--payload", spec)
-        values.warn_outside(q, spec.lower, spec.upper)
+        values.warn_outside(q, spec)
         values.note_overload(carried, "--payload", spec)
         if chart.over is None:
             found = _at_posture(spec, q, carried, options.compensation)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from robolang.pendant.live import Live
     from robolang.project.project import Project
     from robolang.teaching.jogging import JogRequest
+    from runtime.robot.model.spec import RobotSpec
 
 _AXIS = re.compile(r"(?:J[1-9]|R?[XYZ])", re.IGNORECASE)
 _POSE = ("X", "Y", "Z", "RX", "RY", "RZ")
@@ -59,7 +60,7 @@ def jog(words: _Words, options: _JogOptions, files: CellOptions, arm: PhysicsOpt
             raise OptionValueError("--speed", f"{options.speed:g} is not from 1 to 100")
         program, jogs = (None, words) if _AXIS.fullmatch(words[0]) else (words[0], words[1:])
         project = _project(program, files, options.joints)
-        requests = _requests(jogs, project.cell.robot.n)
+        requests = _requests(jogs, project.cell.robot)
         live = _live(project, physics=not arm.no_physics)
         rows, code = _jogged(live, requests, options)
         # also after a jog that was refused: those before it have been done
@@ -87,15 +88,16 @@ def _project(program: str | None, files: CellOptions, joints: str | None) -> "Pr
     if joints is None:
         return project
     robot = project.cell.robot
-    q = np.deg2rad(values.numbers(joints, option="--joints", names=tuple(f"J{i}" for i in range(1, robot.n + 1))))
-    for _, sentence in values.outside(q, robot.lower, robot.upper):
+    names = tuple(f"J{i}" for i in range(1, robot.n + 1))
+    q = np.array(values.numbers(joints, option="--joints", names=names)) * robot.units
+    for _, sentence in values.outside(q, robot):
         raise OptionValueError("--joints", sentence)
     return replace(project, cell=replace(project.cell, home=q))
 
 
-def _requests(words: list[str], joints: int) -> "list[JogRequest]":
+def _requests(words: list[str], robot: "RobotSpec") -> "list[JogRequest]":
     """Return the jogs of the command line; ``OptionValueError`` for one that is none."""
-    from robolang.teaching.jogging import read_jog
+    from robolang.teaching.jogging import read_jog, sliding_of
     from runtime.core.faults import Fault
 
     if not words:
@@ -104,7 +106,7 @@ def _requests(words: list[str], joints: int) -> "list[JogRequest]":
     for at in range(0, len(words), 2):
         pair = " ".join(words[at : at + 2])
         try:
-            requests.append(read_jog(pair, joints))
+            requests.append(read_jog(pair, robot.n, sliding_of(robot)))
         except Fault as fault:
             raise OptionValueError(f"'{pair}'", f"{fault.message}. {fault.hint}") from None
     return requests
@@ -155,7 +157,7 @@ def _jogged(live: "Live", requests: "list[JogRequest]", options: _JogOptions) ->
 
 def _row(live: "Live", jog: str | None = None, remarks: tuple[str, ...] = ()) -> dict[str, Any]:
     arm = live.arm
-    return {"jog": jog, "joints": [*arm.joints_deg], "pose": [*arm.tool_in_world], "remarks": [*remarks]}
+    return {"jog": jog, "joints": [*arm.joints], "pose": [*arm.tool_in_world], "remarks": [*remarks]}
 
 
 def _print(rows: list[dict[str, Any]], joints: int) -> None:

@@ -79,8 +79,8 @@ def _fk(options: _JointsOptions, as_json: bool) -> None:
     from runtime.core.linear import matmul
 
     kinematics = _kinematics(options.robot)
-    q = np.deg2rad(numbers(options.joints, option="--joints", names=_joint_names(kinematics.n)))
-    warn_outside(q, kinematics.spec.lower, kinematics.spec.upper)
+    q = np.array(numbers(options.joints, option="--joints", names=_joint_names(kinematics.n))) * kinematics.units
+    warn_outside(q, kinematics.spec)
     X_base_tool = matmul(kinematics.forward(q), _pose(options.tool, "--tool"))
     pose_mm_deg = _plain(xyzrpy_from_pose(X_base_tool) / _pose_scale())
     if as_json:
@@ -120,15 +120,15 @@ def _ik(options: _PoseOptions, as_json: bool) -> None:
     if not as_json:
         _print_table(
             f"Joint angles, {kinematics.spec.title}",
-            ["branch", *(f"{name}\ndeg" for name in _joint_names(kinematics.n)), "margin\ndeg"],
-            [row for solution in solutions for row in _solution_rows(solution)],
+            ["branch", *_headings(kinematics), "margin\ndeg" if kinematics.turning.all() else "margin\ndeg, mm"],
+            [row for solution in solutions for row in _solution_rows(solution, _keys(kinematics))],
             caption=_caption(kinematics, solutions, left),
         )
 
 
 def _caption(kinematics: "Kinematics", solutions: list[dict[str, Any]], left: int) -> str:
     lines = ["margin: distance to the nearest joint limit; negative: outside the range"]
-    if any(len(solution["turns_deg"]) > 1 for solution in solutions):
+    if any(len(solution[_keys(kinematics)[2]]) > 1 for solution in solutions):
         lines.append("rows without a branch: as the row above, with joints turned by whole turns")
     if left:
         lines.append(f"{left} more turns are not listed")
@@ -188,6 +188,11 @@ def _solutions_deg(kinematics: "Kinematics", X_base_flange: "Array") -> tuple[li
     """Return the solutions, best first, each with its turns, and how many turns are not listed."""
     import numpy as np
 
+    slides, names = kinematics.turning == 0.0, _keys(kinematics)
+
+    def shown(q: "Array") -> "Array":
+        return np.where(slides, q / kinematics.units, np.rad2deg(q))
+
     rows, room, left = [], MOST_TURNS, 0
     for found in sorted(kinematics.solutions(X_base_flange), key=lambda s: -s.limit_margin):
         # the best solutions use the room up first; `turn_count` counts without making them
@@ -195,13 +200,19 @@ def _solutions_deg(kinematics: "Kinematics", X_base_flange: "Array") -> tuple[li
         room, left = room - len(turns), left + kinematics.turn_count(found) - len(turns)
         rows.append(
             {
-                "joints_deg": _plain(np.rad2deg(found.q)),
+                names[0]: _plain(shown(found.q)),
                 "branch": str(found.branch),
-                "limit_margin_deg": float(np.rad2deg(found.limit_margin)),
-                "turns_deg": [_plain(np.rad2deg(each.q)) for each in (found, *turns)],
+                names[1]: float(np.rad2deg(found.limit_margin)),
+                names[2]: [_plain(shown(each.q)) for each in (found, *turns)],
             }
         )
     return rows, left
+
+
+def _keys(kinematics: "Kinematics") -> tuple[str, str, str]:
+    """Return the keys of joints, margin and turns of a solution; without deg where an axis slides."""
+    unit = "_deg" if kinematics.turning.all() else ""
+    return f"joints{unit}", f"limit_margin{unit}", f"turns{unit}"
 
 
 def _plain(values: "Array") -> list[float]:
@@ -213,10 +224,15 @@ def _joint_names(n: int) -> tuple[str, ...]:
     return tuple(f"J{i}" for i in range(1, n + 1))
 
 
-def _solution_rows(solution: dict[str, Any]) -> list[list[str]]:
+def _headings(kinematics: "Kinematics") -> list[str]:
+    axes = zip(_joint_names(kinematics.n), kinematics.spec.axes, strict=True)
+    return [f"{name}\n{axis.kind.unit}" for name, axis in axes]
+
+
+def _solution_rows(solution: dict[str, Any], keys: tuple[str, str, str]) -> list[list[str]]:
     """Return the row of a solution and those of its other turns, which have neither branch nor margin."""
-    first, *others = [[f"{round(value, 2) + 0.0:.2f}" for value in joints] for joints in solution["turns_deg"]]
-    margin = f"{round(solution['limit_margin_deg'], 2) + 0.0:.2f}"
+    first, *others = [[f"{round(value, 2) + 0.0:.2f}" for value in joints] for joints in solution[keys[2]]]
+    margin = f"{round(solution[keys[1]], 2) + 0.0:.2f}"
     return [[solution["branch"], *first, margin], *(["", *joints, ""] for joints in others)]
 
 

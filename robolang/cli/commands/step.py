@@ -99,14 +99,14 @@ def _request(options: _StepOptions, arm: _ArmOptions, profile: str | None, setti
     from robolang.experiments.step import StepRequest
     from robolang.project.project import load_any_robot, load_settings
     from runtime.core.frames import pose
-    from runtime.core.units import DEG, MM
+    from runtime.core.units import MM
 
     spec = load_any_robot(options.robot)
     say_warnings(spec.warnings)
     tool_point = np.array(numbers(options.tool, option="--tool", names=("x", "y", "z"))) * MM
     in_force = load_settings(spec, pose(tool_point, np.eye(3)), profile, settings)
     _check_numbers(options)
-    q, size = values.posture(options.joints, spec), options.size * DEG
+    q, size = values.posture(options.joints, spec), options.size * spec.axes[options.axis - 1].kind.size
     _check_range(q, options.axis - 1, size, spec)
     carried = _payload(options.payload, "--payload", spec)
     return StepRequest(
@@ -140,11 +140,11 @@ def _check_range(q: "Array", axis: int, size: float, spec: "RobotSpec") -> None:
 
     An axis that the robot has not is left to the experiment.
     """
-    for joint, sentence in values.outside(q, spec.lower, spec.upper):
+    for joint, sentence in values.outside(q, spec):
         raise OptionValueError("--joints", sentence, joint + 1)
     end = q.copy()
     end[axis : axis + 1] += size  # a slice, which an axis that is not there leaves empty
-    for _, sentence in values.outside(end, spec.lower, spec.upper):
+    for _, sentence in values.outside(end, spec):
         raise OptionValueError("--size", f"at the end of the step {sentence}")
 
 

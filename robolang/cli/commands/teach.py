@@ -141,7 +141,8 @@ def _joints(one: "OneOff", where: _WhereOptions) -> "Array":
 
     if where.joints is not None:
         names = tuple(f"J{i}" for i in range(1, one.axes + 1))
-        return np.deg2rad(values.numbers(where.joints, option="--joints", names=names))
+        units = one.around.cell.robot.units
+        return np.asarray(values.numbers(where.joints, option="--joints", names=names) * units)
     if where.pose is not None:
         return one.joints_of(cast("Six", values.numbers(where.pose, option="--pose", names=POSE)))
     from robolang.teaching.logged import joints_at, joints_at_end_of

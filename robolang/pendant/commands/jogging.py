@@ -12,7 +12,7 @@ _JOG, _FRAME, _SPEED = "jog [AXIS AMOUNT]", "jogframe joint|world|base|tool|user
 
 
 def _jog(pendant: "Pendant", rest: str) -> None:
-    from robolang.teaching.jogging import read_jog
+    from robolang.teaching.jogging import read_jog, sliding_of
 
     if not rest:
         # a script has no keys, and a jog without an amount is none
@@ -20,7 +20,8 @@ def _jog(pendant: "Pendant", rest: str) -> None:
             raise misused(_JOG, "an axis and an amount are expected; keys jog on a terminal only")
         pendant.key_mode()
         return
-    pendant.jog_by(read_jog(rest, pendant.project.cell.robot.n))
+    robot = pendant.project.cell.robot
+    pendant.jog_by(read_jog(rest, robot.n, sliding_of(robot)))
 
 
 def _jogframe(pendant: "Pendant", rest: str) -> None:

@@ -95,8 +95,8 @@ def _reset(pendant: "Pendant", rest: str) -> None:
 def _home(pendant: "Pendant", rest: str) -> None:
     nothing(rest, "home")
     # ten digits: three decimals would leave the arm beside its home, and the next run would begin there
-    degrees = ", ".join(f"{angle:.10g}" for angle in pendant.live.home_deg)
-    pendant.carry_out(f"MOVEJ JOINT({degrees})")
+    joints = ", ".join(f"{value:.10g}" for value in pendant.live.home)
+    pendant.carry_out(f"MOVEJ JOINT({joints})")
 
 
 COMMANDS = (

@@ -18,15 +18,23 @@ _AROUND = 10
 def _pos(pendant: "Pendant", rest: str) -> None:
     nothing(rest, "pos")
     arm = pendant.live.arm
+    # an arm with both kinds of axis names the unit in each row
+    unit, *others = dict.fromkeys(arm.units)
+    unit = "" if others else unit
     columns = (
         Column(heading="joint"),
-        Column(heading="angle", unit="deg", number=True),
-        Column(heading="range", unit="deg", number=True),
-        Column(heading="to the limit", unit="deg", number=True),
+        Column(heading="angle", unit=unit, number=True),
+        Column(heading="range", unit=unit, number=True),
+        Column(heading="to the limit", unit=unit, number=True),
     )
     rows = tuple(
-        (f"J{i + 1}", f"{angle:.3f}", f"{low:g} .. {high:g}", f"{min(angle - low, high - angle):.3f}")
-        for i, (angle, (low, high)) in enumerate(zip(arm.joints_deg, arm.ranges_deg, strict=True))
+        (
+            f"J{i + 1}" if unit else f"J{i + 1}, {arm.units[i]}",
+            f"{angle:.3f}",
+            f"{low:g} .. {high:g}",
+            f"{min(angle - low, high - angle):.3f}",
+        )
+        for i, (angle, (low, high)) in enumerate(zip(arm.joints, arm.ranges, strict=True))
     )
     pendant.output.table(Table(columns=columns, rows=rows))
     for name, six in (("tool in the frame", arm.tool_in_frame), ("tool in the world", arm.tool_in_world)):

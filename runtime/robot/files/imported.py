@@ -24,6 +24,7 @@ from runtime.core.linear import matmul
 from runtime.core.tomlfile import FileFault
 from runtime.robot.files.corrections import flat, inertia_text
 from runtime.robot.files.xmlfile import Element
+from runtime.robot.model.axis_kind import REVOLUTE, AxisKind
 from runtime.robot.model.drives import joint_label
 from runtime.robot.model.spec import Body, LinkMesh, OpwParameters, inertia_defect
 
@@ -103,6 +104,7 @@ class ImportedAxis:
     hinge: Hinge
     impossible: FileFault | None
     bodiless: bool
+    kind: AxisKind = REVOLUTE
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,6 +7,7 @@ named in the message (``corrections``). Read at start, no rate.
 
 from collections.abc import Sequence
 from functools import cache
+from math import nan
 
 import numpy as np
 
@@ -78,7 +79,8 @@ def _doubts(
     return (
         *doubt_bodies(labels, bodies, lengths, place),
         *file.warnings,
-        *doubt_torques(labels, [axis.limits.torque for axis in axes], weight, place),
+        # a force says nothing about N mm
+        *doubt_torques(labels, [nan if a.kind.slides else a.limits.torque for a in axes], weight, place),
     )
 
 

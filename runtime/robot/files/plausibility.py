@@ -136,20 +136,23 @@ class Driven(Protocol):
 def doubt_axes(axes: Sequence[Driven]) -> tuple[FileFault, ...]:
     """Return the doubts about ranges, speeds (RBL627) and gears (RBL629) of axes in TOML tables."""
     labels = [joint_label(k, axis.name) for k, axis in enumerate(axes)]
-    joints = [
-        Turning(label=label, lower=axis.limits.lower, upper=axis.limits.upper, speed=axis.limits.speed, in_degrees=True)
-        for label, axis in zip(labels, axes, strict=True)
-    ]
+    joints = [_turning(label, axis.limits) for label, axis in zip(labels, axes, strict=True)]
     place = in_tables([axis.table for axis in axes])
     # these files are in degrees by their keys; only a URDF or MJCF may be in radians
     doubts = doubt_turning(joints, place)
     # gears of arms reduce: a ratio below 1 is most likely joint turns per motor turn
-    slow = [k for k, axis in enumerate(axes) if not abs(axis.motor.gear_ratio) >= 1.0]
+    slow = [k for k, axis in enumerate(axes) if not (abs(axis.motor.gear_ratio) >= 1.0 or axis.limits.kind.slides)]
     if slow:
         listed = ", ".join(f"{labels[k]} {axes[k].motor.gear_ratio:g}" for k in slow)
         hint = "write motor turns per joint turn: 100 for 100:1, not 0.01"
         doubts.append(place("gear", slow[0])("RBL629", f"gears make the motor slower than the joint: {listed}", hint))
     return tuple(doubts)
+
+
+def _turning(label: str, limits: Limits) -> Turning:
+    """Return the range and speed of an axis; of one that slides NaN, since its file has no angle to doubt."""
+    found = Turning(label=label, lower=limits.lower, upper=limits.upper, speed=limits.speed, in_degrees=True)
+    return found.replaced(lower=math.nan, upper=math.nan, speed=math.nan) if limits.kind.slides else found
 
 
 _KEYS: dict[What, tuple[str, ...]] = {

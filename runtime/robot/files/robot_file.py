@@ -175,6 +175,8 @@ def parse(source: Source) -> RobotFile:
     # whether the parameters fit the axes needs numerics and is judged by ``loader``; their number does not
     if opw is not None and len(tables) != 6:
         table.fail("RBL615", f"the closed form is for 6 axes, not {len(tables)}", key="kinematics")
+    if opw is not None and any(axis.drive.limits.kind.slides for axis in found.axes):
+        table.fail("RBL615", "the closed form is for axes that turn", key="kinematics")
     return found.replaced(estimated=marked.estimated())
 
 
@@ -201,10 +203,11 @@ def correction(table: Table) -> CorrectionRow | None:
 
 def axis_drive(table: Table) -> AxisDrive:
     """Read the drive of an axis, the last that is read of its table; ``FileFault`` RBL60x, also for unknown keys."""
+    kind = drives.axis_kind(table)
     found = AxisDrive(
         name=table.text("name"),
-        motor=drives.motor(table.table("motor")),
-        limits=drives.limits(table),
+        motor=drives.motor(table.table("motor"), kind),
+        limits=drives.limits(table, kind),
         bandwidths=drives.bandwidths(table.table("servo")),
         correction=correction(table),
         table=table,

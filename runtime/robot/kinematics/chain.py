@@ -1,6 +1,6 @@
 """The joint frames of an arm, one after another: where its flange is at given joint angles, m and rad.
 
-    X_base_flange = prod_i (placement_i Rz(q_i)) X_last_flange
+    X_base_flange = prod_i (placement_i Rz(q_i)) X_last_flange,     Tz(q_i), m, for an axis that slides
 
 It needs nothing else of the robot, so that a log of a run, which has these frames alone, gives the same poses to the
 last bit.
@@ -18,10 +18,14 @@ from runtime.core.linear import matmul
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Chain:
-    """``placements``: X_before_axis (4, 4) of each axis at joint angle zero; ``X_last_flange`` (4, 4)."""
+    """``placements``: X_before_axis (4, 4) of each axis with its joint at zero; ``X_last_flange`` (4, 4).
+
+    ``sliding`` are the indices of the axes that slide along z; the others turn about it.
+    """
 
     placements: tuple[Array, ...]
     X_last_flange: Array
+    sliding: frozenset[int] = frozenset()
 
     def flange(self, q: ArrayLike) -> Array:
         """Return X_base_flange (..., 4, 4) of joint angles (..., n) rad."""
@@ -38,15 +42,22 @@ class Chain:
         fixed = [*self.placements, self.X_last_flange]
         x, y, z = np.broadcast_to(_moved(fixed[-1], p_flange[:, None]), (3, len(q)))
         for i in reversed(range(len(self.placements))):
+            if i in self.sliding:
+                x, y, z = _moved(fixed[i], np.stack([x, y, z + q[:, i]]))
+                continue
             c, s = np.cos(q[:, i]), np.sin(q[:, i])
             x, y, z = _moved(fixed[i], np.stack([c * x - s * y, s * x + c * y, z]))
         return np.stack([x, y, z], axis=1)
 
     def axis_frames(self, q: Array) -> Iterator[Array]:
-        """Yield the frame of each axis, turned, in the base frame (..., 4, 4)."""
+        """Yield the frame of each axis, turned or slid, in the base frame (..., 4, 4)."""
         X = np.eye(4)
         for i, placement in enumerate(self.placements):
             X = matmul(X.reshape(-1, 4), placement).reshape(X.shape)  # one product for all postures
+            if i in self.sliding:
+                X = _slid(X, q[..., i, None])
+                yield X
+                continue
             c, s = np.cos(q[..., i])[..., None], np.sin(q[..., i])[..., None]
             x, y = X[..., :, 0], X[..., :, 1]
             # a rotation about z mixes the first two columns only: cheaper than a product with a matrix
@@ -54,6 +65,13 @@ class Chain:
             turned[..., 0], turned[..., 1], turned[..., 2:] = c * x + s * y, c * y - s * x, X[..., :, 2:]
             X = turned
             yield X
+
+
+def _slid(X: Array, by: Array) -> Array:
+    """Return frames (..., 4, 4) slid along their own z by (..., 1) m."""
+    moved = np.empty((*by.shape[:-1], 4, 4))
+    moved[..., :3], moved[..., 3] = X[..., :3], X[..., 3] + by * X[..., 2]
+    return moved
 
 
 def _moved(X: Array, p: Array) -> Array:

@@ -57,7 +57,7 @@ class _Probe:
 
 def find_opw(axes: Sequence[Placed], X_last_flange: Array) -> OpwParameters | None:
     """Return the closed-form parameters of a chain of axes, or None when its geometry has none of this kind."""
-    if len(axes) != 6:
+    if len(axes) != 6 or any(axis.kind.slides for axis in axes):
         return None
     frames = []
     X = np.eye(4)

@@ -9,6 +9,8 @@ their only branch is ``NUMERIC``. All arrays are in the base frame, m and rad, a
     X_base_flange = prod_i (placement_i Rz(q_i)) X_last_flange
     column i of the Jacobian = [ z_i x (p_flange - p_i) ; z_i ],   z_i and p_i: direction of and a point on axis i
 
+An axis that slides has Tz(q_i) and the column [ z_i ; 0 ]; its coordinate is m, and nothing here turns it.
+
 Turns. Both solutions give each angle up to whole turns of 2 pi, and a joint with a range above one turn has several
 of them in it. Of those inside the range the one nearest to a reference is taken: the present joint angles, or the
 middle of the range. Where none is inside, the one nearest to the middle is returned, and the margin is negative. Half a
@@ -69,12 +71,19 @@ class Kinematics:
         self.spec = spec
         self.n = spec.n
         self._opw = spec.opw if spec.opw is not None else find_opw(spec.axes, spec.X_last_flange)
-        self.chain = Chain(placements=tuple(axis.placement for axis in spec.axes), X_last_flange=spec.X_last_flange)
+        sliding = frozenset(index for index, axis in enumerate(spec.axes) if axis.kind.slides)
+        self.chain = Chain(
+            placements=tuple(axis.placement for axis in spec.axes), X_last_flange=spec.X_last_flange, sliding=sliding
+        )
         """The joint frames."""
-        self.newton = NewtonSolver(self.chain.placements, spec.X_last_flange)
+        self.newton = NewtonSolver(self.chain.placements, spec.X_last_flange, sliding)
         """Solves what has no closed form."""
         self._lower, self._upper = frozen(spec.lower), frozen(spec.upper)
         self._middle = frozen(0.5 * (spec.lower + spec.upper))
+        self.turning = frozen(np.array([0.0 if index in sliding else 1.0 for index in range(spec.n)]))
+        """1 of each axis (n,) that turns, 0 of one that slides: what whole turns count for."""
+        self.units = frozen(np.array([axis.kind.size for axis in spec.axes]))
+        """What people type and read of each axis, as SI (n,): deg or mm."""
 
     @property
     def closed_form(self) -> bool:
@@ -98,7 +107,10 @@ class Kinematics:
         """Return the Jacobian (..., 6, n) and the rotation (..., 3, 3) of the flange at joint angles (..., n) rad."""
         frames = list(self.chain.axis_frames(np.asarray(q, dtype=np.float64)))
         X_base_flange = matmul(frames[-1], self.spec.X_last_flange)
-        columns = [_twist(X, X_base_flange[..., :3, 3]) for X in frames]
+        columns = [
+            _slide(X) if index in self.chain.sliding else _twist(X, X_base_flange[..., :3, 3])
+            for index, X in enumerate(frames)
+        ]
         return np.stack(columns, axis=-1), X_base_flange[..., :3, :3]
 
     def inverse_branch(self, X_base_flange: Array, branch: Branch, near: ArrayLike | None = None) -> Array:
@@ -184,21 +196,26 @@ class Kinematics:
         return () if self._opw is None else opw.changes(self._opw, q_from, q_to)
 
     def limit_margin(self, q: ArrayLike) -> Array:
-        """Return the smallest distance to a joint limit (...,) rad of joint angles (..., n), negative outside."""
-        angles = np.asarray(q, dtype=np.float64)
-        return np.asarray(np.minimum(angles - self._lower, self._upper - angles).min(axis=-1))
+        """Return the smallest distance to a joint limit (...,) rad of joint angles (..., n), negative outside.
 
-    @staticmethod
-    def nearest_turns(q: ArrayLike, near: ArrayLike) -> Array:
+        A mm of an axis that slides counts as a deg, as in ``RobotSpec.bound``.
+        """
+        angles = np.asarray(q, dtype=np.float64)
+        margins = np.minimum(angles - self._lower, self._upper - angles) / (self.units / DEG)
+        return np.asarray(margins.min(axis=-1))
+
+    def nearest_turns(self, q: ArrayLike, near: ArrayLike) -> Array:
         """Return q (..., n) rad turned by whole turns to within half a turn of ``near`` (..., n), limits or not."""
         angles = np.asarray(q, dtype=np.float64)
-        return np.asarray(angles + TURN * np.round((np.asarray(near, dtype=np.float64) - angles) / TURN))
+        turns = self.turning * np.round((np.asarray(near, dtype=np.float64) - angles) / TURN)
+        return np.asarray(angles + TURN * turns)
 
     def freer_half_turn(self, q: Array, near: Array) -> Array:
         """Return q (..., n) rad, each joint that is half a turn from ``near`` (..., n) on the side with more room."""
         low, high = np.where(q > near, q - TURN, q), np.where(q > near, q, q + TURN)
         room_low, room_high = (np.minimum(each - self._lower, self._upper - each) for each in (low, high))
-        return np.where(is_half_turn(q - near), np.where(room_low > room_high + SAME_ROOM, low, high), q)
+        freer = np.where(room_low > room_high + SAME_ROOM, low, high)
+        return np.where(is_half_turn(q - near) & (self.turning > 0.0), freer, q)
 
     def _start(self, near: ArrayLike | None) -> Array:
         return self._middle if near is None else np.asarray(near, dtype=np.float64)
@@ -220,9 +237,15 @@ class Kinematics:
         return np.where(fewest <= most, inside, self.nearest_turns(q, self._middle))
 
     def _fewest_and_most(self, q: Array) -> tuple[Array, Array]:
-        """Return the whole turns (..., n) from q on that still end inside the range."""
-        fewest = np.ceil((self._lower - LIMIT_ROUNDING - q) / TURN)
-        return fewest, np.floor((self._upper + LIMIT_ROUNDING - q) / TURN)
+        """Return the whole turns (..., n) from q on that still end inside the range; none of an axis that slides."""
+        fewest = self.turning * np.ceil((self._lower - LIMIT_ROUNDING - q) / TURN)
+        return fewest, self.turning * np.floor((self._upper + LIMIT_ROUNDING - q) / TURN)
+
+
+def _slide(X_base_axis: Array) -> Array:
+    """Return one column (..., 6) of the Jacobian: the flange's motion for 1 m/s of an axis that slides."""
+    z = X_base_axis[..., :3, 2]
+    return np.concatenate([z, np.zeros_like(z)], axis=-1)
 
 
 def _twist(X_base_axis: Array, p_flange: Array) -> Array:

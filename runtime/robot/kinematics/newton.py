@@ -32,7 +32,7 @@ TOLERANCE = 1e-10
 DAMPING = 1e-2
 """mu over |e|^2: small against J J', whose entries are about 1, as soon as the error is."""
 LARGEST_STEP = 0.5
-"""No joint turns further in one step, rad: beyond, the linear model says nothing."""
+"""No joint goes further in one step, rad or m: beyond, the linear model says nothing."""
 
 STEPS = 100
 """Most steps of one solve; those that were taken back and damped more count."""
@@ -48,14 +48,21 @@ _DETERMINED = 6
 
 
 class NewtonSolver:
-    """Solves poses for one chain of axes: ``placements`` n times (4, 4), ``X_last_flange`` (4, 4)."""
+    """Solves poses for one chain of axes: ``placements`` n times (4, 4), ``X_last_flange`` (4, 4).
 
-    def __init__(self, placements: Sequence[Array], X_last_flange: Array) -> None:
+    ``sliding`` are the indices of the axes that slide; they have no whole turns.
+    """
+
+    def __init__(
+        self, placements: Sequence[Array], X_last_flange: Array, sliding: frozenset[int] = frozenset()
+    ) -> None:
         self.n = len(placements)
+        self._turning = np.array([index not in sliding for index in range(self.n)])
         self._model = pin.Model()
         parent = 0
         for index, placement in enumerate(placements):
-            parent = self._model.addJoint(parent, pin.JointModelRZ(), pin.SE3(placement), f"axis{index}")
+            joint = pin.JointModelPZ() if index in sliding else pin.JointModelRZ()
+            parent = self._model.addJoint(parent, joint, pin.SE3(placement), f"axis{index}")
         self._flange = pin.SE3(X_last_flange)
         self._data = self._model.createData()
         self._eye = np.eye(min(self.n, _DETERMINED))
@@ -106,7 +113,8 @@ class NewtonSolver:
         in number, which they are nowhere but at a singularity. The starts are the same in every call.
         """
         # whole turns apart is the same start, so the points of a wide range lie within half a turn of its middle
-        middle, half = 0.5 * (lower + upper), np.minimum(0.5 * (upper - lower), math.pi)
+        middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
+        half = np.where(self._turning, np.minimum(half, math.pi), half)
         random = np.random.default_rng(1992)
         found: list[Array] = []
         met: list[int] = []
@@ -117,7 +125,7 @@ class NewtonSolver:
             q = self.solve(X_base_flange, start)
             if not np.isfinite(q).all():
                 continue
-            known = next((k for k, other in enumerate(found) if _apart(q, other) < SAME), None)
+            known = next((k for k, other in enumerate(found) if self._apart(q, other) < SAME), None)
             if known is None:
                 found.append(q)
                 met.append(1)
@@ -163,7 +171,8 @@ class NewtonSolver:
         moved[:3] += np.cross(J[3:], p, axis=0)
         return moved
 
-
-def _apart(q: Array, other: Array) -> float:
-    """Return how far two joint vectors (n,) are apart but for whole turns, rad."""
-    return float(np.abs(np.remainder(q - other + math.pi, 2.0 * math.pi) - math.pi).max())
+    def _apart(self, q: Array, other: Array) -> float:
+        """Return how far two joint vectors (n,) are apart but for whole turns, rad or m."""
+        apart = q - other
+        wrapped = np.remainder(apart + math.pi, 2.0 * math.pi) - math.pi
+        return float(np.abs(np.where(self._turning, wrapped, apart)).max())

@@ -66,6 +66,7 @@ from numpy.typing import ArrayLike
 from runtime.core.frames import Array, pose, rotation_about
 from runtime.core.frames import inverse as inverse_pose
 from runtime.core.linear import matmul
+from runtime.robot.model.axis_kind import AxisKind
 from runtime.robot.model.spec import OpwParameters
 
 ROUNDING = 5e-13
@@ -170,6 +171,8 @@ class Placed(Protocol):
 
     @property
     def placement(self) -> Array: ...  # noqa: D102
+    @property
+    def kind(self) -> AxisKind: ...  # noqa: D102
 
 
 class Geometry(Protocol):

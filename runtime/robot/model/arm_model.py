@@ -1,9 +1,10 @@
 """The controller's own model of the arm, on Pinocchio, with the payload that the program declared.
 
-``ArmModel`` is the typed adapter around Pinocchio (which has no type stubs): mass matrix, one column of it,
-gravity torque and forward dynamics, in SI, for one posture at a time. Rotor inertia is not in it: the servo adds
-N^2 J itself (docs/servo.md). With ``rotors`` it is in the model, for the ideal plant and the supervision. What an
-identification found beyond the bodies, first moments, is in ``gravity`` and ``torque`` alone (docs/identification.md).
+``ArmModel`` is the typed adapter around Pinocchio (which has no type stubs): mass matrix, one column of it, gravity
+torque and forward dynamics, in SI, for one posture at a time; the row of a sliding axis is in N and kg. Rotor inertia
+is not in it: the servo adds N^2 J itself (docs/servo.md). With ``rotors`` it is in the model, for the ideal plant and
+the supervision. What an identification found beyond the bodies, first moments, is in ``gravity`` and ``torque`` alone
+(docs/identification.md).
 """
 
 from typing import Any
@@ -109,7 +110,8 @@ def _build(spec: RobotSpec) -> Any:
     model.gravity = pin.Motion(np.array([0.0, 0.0, -GRAVITY]), np.zeros(3))
     parent = 0
     for axis in spec.axes:
-        parent = model.addJoint(parent, pin.JointModelRZ(), pin.SE3(axis.placement), axis.name)
+        joint = pin.JointModelPZ() if axis.kind.slides else pin.JointModelRZ()
+        parent = model.addJoint(parent, joint, pin.SE3(axis.placement), axis.name)
         model.appendBodyToJoint(parent, _inertia(axis.body), pin.SE3.Identity())
     return model
 

@@ -10,17 +10,18 @@ from collections.abc import Sequence
 from runtime.core.record import Record
 from runtime.core.tomlfile import Table
 from runtime.core.units import DEG, MM
+from runtime.robot.model.axis_kind import KINDS, REVOLUTE, AxisKind
 
 STIFFEST = 1e8
-"""No gear is stiffer than this at the joint, N m/rad."""
+"""No gear is stiffer than this at the joint, N m/rad or N/m."""
 
 FASTEST_SPRING = 1e4
 """A rotor that swings faster against its gear, rad/s, needs physics steps below 25 us: such a gear is rigid."""
 
 RANGE_ROUNDING = 1e-9
-"""An angle may pass the end of its range by as much, rad: rounding of deg."""
+"""A joint may pass the end of its range by as much, rad or m: rounding of deg and mm."""
 
-WIDEST = 3600.0 * DEG
+WIDEST = REVOLUTE.widest
 """No joint turns further than ten turns to a side, rad."""
 
 FASTEST_LOOP = 8000.0
@@ -30,6 +31,7 @@ FASTEST_LOOP = 8000.0
 class Motor(Record):
     """The drive of one axis, motor side.
 
+    An axis that slides has the same formulas with m for rad at the joint: N is rad/m, N^2 J a mass, torques are forces.
     ``gear_ratio`` N is signed (motor turns per joint turn), ``rotor_inertia`` kg m2, ``torque_constant`` N m/A,
     ``max_current`` A, ``viscous_friction`` N m s/rad, ``coulomb_friction`` N m (turning forward, backward, both
     positive), ``encoder_counts`` per motor turn, ``current_bandwidth`` rad/s. ``stiffness`` N m/rad and ``damping``
@@ -77,10 +79,10 @@ class Motor(Record):
 
 
 class Limits(Record):
-    """Joint limits: range rad, speed rad/s, acceleration rad/s2, torque N m (at the joint).
+    """Joint limits: range rad, speed rad/s, acceleration rad/s2, torque N m (at the joint), or m, m/s, m/s2 and N.
 
-    ``rated_moment`` N m and ``rated_inertia`` kg m2 that a payload may have about the axis; None: not published
-    (``runtime.robot.kinematics.wrist_load`` estimates them).
+    ``kind`` says which. ``rated_moment`` N m and ``rated_inertia`` kg m2 that a payload may have about the axis; None:
+    not published (``runtime.robot.kinematics.wrist_load`` estimates them).
     """
 
     lower: float
@@ -90,6 +92,7 @@ class Limits(Record):
     torque: float
     rated_moment: float | None = None
     rated_inertia: float | None = None
+    kind: AxisKind = REVOLUTE
 
 
 class Bandwidths(Record):
@@ -128,15 +131,18 @@ def path_limits(table: Table) -> PathLimits:
     return limits
 
 
-def motor(table: Table) -> Motor:
+def axis_kind(table: Table) -> AxisKind:
+    """Read the kind of an axis, revolute without the key; ``FileFault`` RBL60x."""
+    return KINDS[table.text("kind", REVOLUTE.name, choices=tuple(KINDS))]
+
+
+def motor(table: Table, kind: AxisKind = REVOLUTE) -> Motor:
     """Read ``[axes.motor]``, motor side; ``FileFault`` RBL60x."""
-    ratio = table.number("gear_ratio", low=-10000.0, high=10000.0)
-    if not abs(ratio) >= 1e-3:
-        table.fail("RBL605", f"'{table.name('gear_ratio')}' is {ratio:g} and must not be zero", key="gear_ratio")
+    ratio = _ratio(table, kind)
     # two numbers, since gears differ by direction; both positive, so that a sign cannot be read in two senses
     forward, backward = table.numbers("coulomb_friction_nm", 2, low=0.0)
     # one of the two makes the gear elastic and the other is then required: an undamped spring is not guessed
-    elastic = "joint_stiffness_nm_rad" in table or "joint_damping_nm_s_rad" in table
+    elastic = kind.stiffness_key in table or kind.damping_key in table
     motor = Motor(
         gear_ratio=ratio,
         rotor_inertia=table.number("rotor_inertia_kg_m2", low=0.0),
@@ -147,15 +153,26 @@ def motor(table: Table) -> Motor:
         encoder_counts=table.integer("encoder_counts", low=4, high=2**30),
         # Hz in the file, as data sheets have it
         current_bandwidth=table.number("current_bandwidth_hz", positive=True) * 2.0 * math.pi,
-        stiffness=table.number("joint_stiffness_nm_rad", positive=True, high=STIFFEST) if elastic else math.inf,
-        damping=table.number("joint_damping_nm_s_rad", low=0.0) if elastic else 0.0,
+        stiffness=table.number(kind.stiffness_key, positive=True, high=STIFFEST) if elastic else math.inf,
+        damping=table.number(kind.damping_key, low=0.0) if elastic else 0.0,
     )
-    _check_spring(table, motor)
+    _check_spring(table, motor, kind)
     table.done()
     return motor
 
 
-def _check_spring(table: Table, motor: Motor) -> None:
+def _ratio(table: Table, kind: AxisKind) -> float:
+    """Return N, rad of the motor per rad or m of the axis, signed."""
+    key = kind.transmission_key
+    most = 1000.0 if kind.slides else 10000.0
+    ratio = table.number(key, low=-most, high=most)
+    # a screw of 10 um a turn is the finest that positions; anything below is a slip of the unit
+    if not abs(ratio) >= (1e-2 if kind.slides else 1e-3):
+        table.fail("RBL605", f"'{table.name(key)}' is {ratio:g} and must not be zero", key=key)
+    return kind.motor_ratio(ratio) if kind.slides else ratio
+
+
+def _check_spring(table: Table, motor: Motor, kind: AxisKind) -> None:
     """Refuse a spring without a mass on the motor's side, or one that swings too fast to be simulated."""
     if not motor.elastic:
         return
@@ -169,36 +186,36 @@ def _check_spring(table: Table, motor: Motor) -> None:
     if not motor.stiffness <= motor.reflected_inertia * FASTEST_SPRING**2:
         table.fail(
             "RBL605",
-            f"the spring of {motor.stiffness:g} N m/rad swings the rotor too fast to be simulated",
-            "a gear as stiff as that is rigid: leave out joint_stiffness_nm_rad and joint_damping_nm_s_rad",
-            key="joint_stiffness_nm_rad",
+            f"the spring of {motor.stiffness:g} {kind.force}/{'m' if kind.slides else 'rad'} swings the rotor too fast "
+            "to be simulated",
+            f"a gear as stiff as that is rigid: leave out {kind.stiffness_key} and {kind.damping_key}",
+            key=kind.stiffness_key,
         )
 
 
-def limits(table: Table) -> Limits:
-    """Read the range, speed, acceleration and torque of an axis in deg and N m; ``FileFault`` RBL60x."""
-    lower, upper = joint_range(table)
+def limits(table: Table, kind: AxisKind = REVOLUTE) -> Limits:
+    """Read the range, speed, acceleration and torque of an axis in deg and N m, or mm and N; ``FileFault`` RBL60x."""
+    lower, upper = joint_range(table, kind)
     return Limits(
         lower=lower,
         upper=upper,
-        speed=table.number("max_speed_deg_s", positive=True) * DEG,
-        acceleration=table.number("max_acceleration_deg_s2", positive=True) * DEG,
-        torque=table.number("max_torque_nm", positive=True),
-        rated_moment=_optional(table, "rated_moment_nm"),
-        rated_inertia=_optional(table, "rated_inertia_kg_m2"),
+        speed=table.number(kind.speed_key, positive=True) * kind.size,
+        acceleration=table.number(kind.acceleration_key, positive=True) * kind.size,
+        torque=table.number(kind.force_key, positive=True),
+        # what a payload weighs about an axis is a moment: a sliding axis is rated by its force alone
+        rated_moment=None if kind.slides else _optional(table, "rated_moment_nm"),
+        rated_inertia=None if kind.slides else _optional(table, "rated_inertia_kg_m2"),
+        kind=kind,
     )
 
 
-def joint_range(table: Table) -> tuple[float, float]:
-    """Read ``range_deg`` of an axis, rad; ``FileFault`` RBL60x."""
-    lower, upper = table.numbers("range_deg", 2, low=-WIDEST / DEG, high=WIDEST / DEG)
+def joint_range(table: Table, kind: AxisKind = REVOLUTE) -> tuple[float, float]:
+    """Read ``range_deg`` or ``range_mm`` of an axis, rad or m; ``FileFault`` RBL60x."""
+    key = kind.range_key
+    lower, upper = table.numbers(key, 2, low=-kind.widest / kind.size, high=kind.widest / kind.size)
     if not lower < upper:
-        table.fail(
-            "RBL607",
-            f"'{table.name('range_deg')}' is [{lower:g}, {upper:g}]: the first must be smaller",
-            key="range_deg",
-        )
-    return lower * DEG, upper * DEG
+        table.fail("RBL607", f"'{table.name(key)}' is [{lower:g}, {upper:g}]: the first must be smaller", key=key)
+    return lower * kind.size, upper * kind.size
 
 
 def link_radii(tables: Sequence[Table]) -> tuple[float, ...]:
@@ -243,22 +260,23 @@ def texts(table: Table, key: str) -> tuple[str, ...]:
     return tuple(value)
 
 
-def beyond_range(q_deg: Sequence[float | None], limits: Sequence[Limits]) -> str:
-    """Return which joint is furthest outside of its range at angles (n,) deg, and by how much; empty for none.
+def beyond_range(joints: Sequence[float | None], limits: Sequence[Limits]) -> str:
+    """Return which joint is furthest outside of its range at joints (n,) deg or mm, and by how much; empty for none.
 
-    An angle of None is not known. With fewer ``limits`` than angles, or fewer angles, only the pairs are compared.
+    A joint of None is not known. With fewer ``limits`` than joints, or fewer joints, only the pairs are compared.
     """
     # the worst joint only: the others are often outside for the same reason
     worst, found = RANGE_ROUNDING, ""
-    for index, (angle, axis) in enumerate(zip(q_deg, limits, strict=False)):
-        if angle is None:
+    for index, (value, axis) in enumerate(zip(joints, limits, strict=False)):
+        if value is None:
             continue
-        excess = max(axis.lower - angle * DEG, angle * DEG - axis.upper)
+        size, unit = axis.kind.size, axis.kind.unit
+        excess = max(axis.lower - value * size, value * size - axis.upper)
         if not excess <= worst:
             worst = excess
             found = (
-                f"J{index + 1} is at {angle:g} deg, {excess / DEG:.4g} deg outside of its range of "
-                f"{axis.lower / DEG:g} to {axis.upper / DEG:g} deg"
+                f"J{index + 1} is at {value:g} {unit}, {excess / size:.4g} {unit} outside of its range of "
+                f"{axis.lower / size:g} to {axis.upper / size:g} {unit}"
             )
     return found
 

@@ -3,8 +3,9 @@
 One frozen ``RobotSpec`` feeds every consumer: the Pinocchio model of the controller, the MuJoCo model of the
 plant, the closed-form inverse kinematics, the servo gains and the planner's limits.
 
-Each axis is a revolute joint about the z axis of its own frame. ``placement`` is the pose of that frame, at joint
-angle zero, in the frame of the joint before it; body data are in the axis' own frame, which turns with the joint.
+Each axis is a joint that turns about the z axis of its own frame, or slides along it (``axis_kind``). ``placement`` is
+the pose of that frame, with the joint at zero, in the frame of the joint before it; body data are in the axis' own
+frame, which moves with the joint. Joint coordinates are rad, of a sliding axis m.
 Robot files give standard Denavit-Hartenberg rows (``form = "dh"``) or joint lines in space (``form = "lines"``);
 ``geometry`` turns either into these frames.
 """
@@ -14,9 +15,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runtime.core.frames import Array, frozen
 from runtime.core.tomlfile import FileFault
+from runtime.core.units import DEG
+from runtime.robot.model.axis_kind import AxisKind
 from runtime.robot.model.drives import Bandwidths, Limits, Motor, PathLimits
 from runtime.robot.model.load_rules import moments_defect
 
@@ -40,6 +44,11 @@ class AxisSpec:
     motor: Motor
     limits: Limits
     bandwidths: Bandwidths
+
+    @property
+    def kind(self) -> AxisKind:
+        """Whether it turns or slides."""
+        return self.limits.kind
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -146,13 +155,30 @@ class RobotSpec:
 
     @property
     def lower(self) -> Array:
-        """Lower joint limits (n,) rad."""
+        """Lower joint limits (n,) rad or m."""
         return self.per_axis("limits", "lower")
 
     @property
     def upper(self) -> Array:
-        """Upper joint limits (n,) rad."""
+        """Upper joint limits (n,) rad or m."""
         return self.per_axis("limits", "upper")
+
+    @property
+    def units(self) -> Array:
+        """What people type and read of each axis, as SI (n,): a degree, rad, or of a sliding axis a millimetre, m."""
+        return self.per_axis("kind", "size")
+
+    @property
+    def slides(self) -> NDArray[np.bool_]:
+        """Whether each axis slides (n,)."""
+        return np.array([axis.kind.slides for axis in self.axes])
+
+    def bound(self, angle: float) -> Array:
+        """Return a bound of ``angle`` rad for every axis (n,); for one that slides as many mm as the angle has deg, m.
+
+        A bound such as a following error is set once, in deg, for all axes of an arm.
+        """
+        return angle * (self.units / DEG)
 
 
 def dh_transform(d: float, a: float, alpha: float) -> Array:

@@ -3,6 +3,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from runtime.core.frames import pose_from_xyzrpy, xyzrpy_from_pose
 from runtime.core.units import DEG, MM
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.kinematics.kinematics import Kinematics
+from runtime.robot.model.axis_kind import REVOLUTE
 from tests.messages import fields
 from tests.messages import numbers as numbers_of
 from tests.robolang.cli.commands import flat, robolang
@@ -63,7 +65,8 @@ def test_fk_of_joints_outside_their_ranges_is_a_warning_at_each_of_them():
 
 def test_angles_outside_are_found_in_every_comparison_and_rounding_is_none():
     low, high = np.array([-1.0, -1.0, -1.0, np.nan]), np.array([1.0, 1.0, 1.0, 1.0])
-    found = outside(np.array([1.0 + 1e-12, np.nan, -1.1, 0.0]), low, high)
+    arm = SimpleNamespace(lower=low, upper=high, axes=[SimpleNamespace(kind=REVOLUTE)] * 4)
+    found = outside(np.array([1.0 + 1e-12, np.nan, -1.1, 0.0]), arm)
     assert [joint for joint, _ in found] == [1, 2, 3]
 
 

@@ -18,7 +18,7 @@ def test_the_library_is_listed():
     assert ["manutec_r3", "Manutec", "r3", "6", "1690", "15", "ranges,", "drives,", "loops,"] in rows
     found = json.loads(robolang("robot", "list", "--json").stdout)
     assert [row["name"] for row in found] == library()
-    assert found[2] == {
+    assert found[3] == {
         "name": "puma560",
         "title": "Unimation Puma 560",
         "axes": 6,

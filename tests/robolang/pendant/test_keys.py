@@ -113,7 +113,7 @@ def test_plus_and_minus_go_through_the_steps(jogged, presses, step):
 def test_a_joint_moves_by_the_angular_step(jogged):
     moved, _, mode = jogged((1.0, "1"), (1.2, "-"), (2.0, "right"))
     live = mode._pendant.live
-    assert live.arm.joints_deg[0] - live.home_deg[0] == pytest.approx(1.0, abs=1e-9)
+    assert live.arm.joints[0] - live.home[0] == pytest.approx(1.0, abs=1e-9)
     assert moved[5] != 0.0
 
 

@@ -14,6 +14,7 @@ from robolang.planning.motion_findings import LoadShare, findings, worst_loads
 from robolang.project.project import builtin_cell, load_project
 from runtime.core.units import DEG
 from runtime.plant.shapes import Shapes
+from runtime.robot.model.axis_kind import REVOLUTE
 from tests.messages import fields, numbers
 
 pytestmark = pytest.mark.physics
@@ -150,7 +151,9 @@ def test_a_payload_that_overloads_the_wrist(tmp_path):
 )
 def test_what_is_over_a_limit_is_over_it_in_the_digits_shown(tmp_path, monkeypatch, value, limit, over):
     project, rehearsal = looked_at(tmp_path, "LOAD empty\nMOVE P1\n")
-    share = LoadShare(axis=4, what="inertia", value=value, limit=limit, given=True, move=rehearsal.moves[0], row=0)
+    share = LoadShare(
+        axis=4, what="inertia", value=value, limit=limit, given=True, move=rehearsal.moves[0], row=0, kind=REVOLUTE
+    )
     monkeypatch.setattr(motion_findings, "worst_loads", lambda *_: [share])
     said = [item.message for item in findings(project, rehearsal) if item.code == "RBL426"]
     assert len(said) == over

@@ -37,8 +37,12 @@ def link(row: dict, theta: float) -> np.ndarray:
 
 
 def twist(row: dict) -> np.ndarray:
-    """Return the 4x4 velocity of a turn about the line of an axis at the zero pose: p -> w x (p - o)."""
+    """Return the 4x4 velocity of a turn about the line of an axis at the zero pose, p -> w x (p - o), or along it."""
     w = np.array(row["direction"], dtype=float)
+    if row.get("kind") == "prismatic":
+        along = np.zeros((4, 4))
+        along[:3, 3] = w / np.linalg.norm(w)
+        return along
     W = np.array([[0.0, -w[2], w[1]], [w[2], 0.0, -w[0]], [-w[1], w[0], 0.0]]) / np.linalg.norm(w)
     out = np.zeros((4, 4))
     out[:3, :3], out[:3, 3] = W, -W @ np.array(row["origin_m"])
@@ -46,8 +50,10 @@ def twist(row: dict) -> np.ndarray:
 
 
 def turn(row: dict, theta: float) -> np.ndarray:
-    """Return E = exp(twist theta) for a unit line, in closed form: I + S sin + S S (1 - cos)."""
+    """Return E = exp(twist theta) for a unit line, in closed form: I + S sin + S S (1 - cos); a slide has S S = 0."""
     S = twist(row)
+    if row.get("kind") == "prismatic":
+        return np.eye(4) + theta * S
     return np.eye(4) + math.sin(theta) * S + (1.0 - math.cos(theta)) * (S @ S)
 
 

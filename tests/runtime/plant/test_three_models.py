@@ -21,8 +21,14 @@ from tests.runtime.dynamics import lagrangian
 
 pytestmark = pytest.mark.physics
 
-ROBOTS = ["puma560", "manutec_r3"]
-LOADS = {"puma560": (2.3, (0.01, -0.02, 0.095)), "manutec_r3": (13.5, (0.02, -0.03, 0.14))}
+ROBOTS = ["puma560", "manutec_r3", "cobra600"]
+LOADS = {
+    "puma560": (2.3, (0.01, -0.02, 0.095)),
+    "manutec_r3": (13.5, (0.02, -0.03, 0.14)),
+    "cobra600": (1.8, (0.02, -0.03, 0.07)),
+}
+R_LAST_FLANGE = {"puma560": np.eye(3), "manutec_r3": np.eye(3), "cobra600": np.diag([1.0, -1.0, -1.0])}
+"""Of the flange in the frame of the last body: in a file of lines that is parallel to the base at zero."""
 POSTURES = size(25, 6)
 
 
@@ -42,13 +48,14 @@ class Models:
             self.pinocchio.set_payload(Payload(mass=load[0], cog=np.array(load[1])))
             # MuJoCo takes no point mass: the token moments of a body published as one
             body = Body(mass=load[0], cog=np.array(load[1]), inertia=1e-12 * np.eye(3))
+            self.load = (load[0], R_LAST_FLANGE[name] @ np.array(load[1]))
         self.mujoco = mujoco.MjModel.from_xml_string(build_mjcf(rigid(self.spec), payload=body))
         self.data = mujoco.MjData(self.mujoco)
         rng = np.random.default_rng(1990)
-        self.q = rng.uniform(self.spec.lower, self.spec.upper, (POSTURES, 6))
+        self.q = rng.uniform(self.spec.lower, self.spec.upper, (POSTURES, self.spec.n))
         speed = self.spec.per_axis("limits", "speed")
-        self.dq = rng.uniform(-speed, speed, (POSTURES, 6))
-        self.ddq = rng.uniform(-10.0, 10.0, (POSTURES, 6))
+        self.dq = rng.uniform(-speed, speed, (POSTURES, self.spec.n))
+        self.ddq = rng.uniform(-10.0, 10.0, (POSTURES, self.spec.n))
 
     def mass_matrices(self) -> list[np.ndarray]:
         return [
@@ -70,7 +77,7 @@ class Models:
     def _mujoco_mass(self, q: np.ndarray) -> np.ndarray:
         self.data.qpos[:] = q
         mujoco.mj_forward(self.mujoco, self.data)
-        M = np.zeros((6, 6))
+        M = np.zeros((self.spec.n, self.spec.n))
         mujoco.mj_fullM(self.mujoco, self.data, M)
         return M - np.diag(spec_rotors(self.spec))
 

@@ -12,6 +12,7 @@ from runtime.robot.kinematics import opw
 from runtime.robot.kinematics.closed_form import find_opw
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.kinematics.opw import BRANCHES, PlacedOpw
+from runtime.robot.model.axis_kind import REVOLUTE
 from tests.campaign import examples
 from tests.runtime.robot.models import chain
 
@@ -19,6 +20,8 @@ Y, Z = np.eye(3)[1:]
 
 
 class Axis:
+    kind = REVOLUTE
+
     def __init__(self, placement):
         self.placement = placement
 
