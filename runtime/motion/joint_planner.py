@@ -31,7 +31,7 @@ from runtime.core.linear import matmul
 from runtime.core.units import MM, PERCENT
 from runtime.motion.cartesian_planner import NOTHING_TO_DO, MovePlan
 from runtime.motion.commands import MoveJoint
-from runtime.motion.path_ik import RANGE_TOLERANCE, Arm, check_range
+from runtime.motion.path_ik import RANGE_TOLERANCE, Arm, check_range, few_axes
 from runtime.motion.taught_end import as_taught, turned
 from runtime.motion.time_scaling import Pace
 from runtime.motion.velocity_profile import SpeedLimits, bound, profile
@@ -131,7 +131,7 @@ class JointPlanner:
         """Return the solutions (n,) as the point is taught, in the ranges; ``Fault`` RBL410, 411 or 412 for none."""
         kinematics = self._kinematics
         if not solutions:
-            raise Fault("RBL410", f"{_point(command)} is out of reach of {self._spec.name}")
+            raise Fault("RBL410", f"{_point(command)} is out of reach of {self._spec.name}", few_axes(self._spec))
         found = turned(kinematics, np.array([each.q for each in solutions]), command.turns[: kinematics.n], q_start)
         fitting = [q for q in found if as_taught(kinematics, q, command)]
         if not fitting:

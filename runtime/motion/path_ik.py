@@ -33,6 +33,9 @@ RANGE_TOLERANCE = 1e-9
 MOST_SLOWDOWN = 20.0
 """A move that would have to be slowed more runs too close to a singularity: refused rather than crawled through."""
 
+FREE = 6
+"""Axes with which an arm can turn its tool in every direction."""
+
 JUMP = math.pi / 4.0
 """A joint that turns further from one sample to the next, rad, has changed its configuration."""
 
@@ -104,6 +107,7 @@ class LineSolver:
             "RBL410",
             f"the point ({place[0]:.1f}, {place[1]:.1f}, {place[2]:.1f}) mm at {100 * s[first]:.1f} % of the path is "
             f"out of reach of {self.arm.spec.name} ({self.branch})",
+            few_axes(self.arm.spec),
         )
 
     def _check_continuity(self, s: Array, q: Array) -> None:
@@ -197,6 +201,16 @@ class WristSolver:
             f"at {100 * _steepest(s, q, axis):.1f} % of the {self._line.path.name} J{axis + 1} would have to turn too "
             "fast while the wrist goes to its end angles",
         )
+
+
+def few_axes(spec: RobotSpec) -> str:
+    """Return what to know about poses out of reach of an arm that cannot turn its tool freely; empty for 6 axes."""
+    if spec.n >= FREE:
+        return ""
+    return (
+        f"The {spec.n} axes of {spec.name} cannot turn the tool in every direction: compare rx, ry and rz with those "
+        "of HERE."
+    )
 
 
 def _steepest(s: Array, q: Array, axis: int) -> float:

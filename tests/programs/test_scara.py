@@ -46,6 +46,7 @@ def planned(tmp_path, text):
 def test_a_pose_that_four_axes_cannot_take_is_refused(tmp_path, word, turn):
     refused = planned(tmp_path, f"{word} POSE(440, -160, 167, {turn})\n").refused
     assert [item.code for item in refused] == ["RBL410"]
+    assert "HERE" in refused[0].hint and "4 axes" in refused[0].hint
 
 
 def test_joints_and_limits_are_in_mm(tmp_path):

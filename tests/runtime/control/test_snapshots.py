@@ -215,12 +215,13 @@ CONSTANT = {
     "RequestQueue": "planner _spec _areas _fine _limits",
     "StopLogic": "_requests _drives _period_us",
     "DriveTrain": "_spec _profile _task _held_inertia",
-    "ServoAxes": "options coupled held_inertia encoders beta _Ktn _forward _backward _viscous",
+    "ServoAxes": "_smooth options coupled held_inertia encoders beta _Ktn _forward _backward _viscous",
     "Motors": "Ktn max_current _min_current _share",
     "ServoLaw": "gains _Kp _per_tick _tick_s _measured _sags _winds _rotor_rows _Ktn_column _Kv_row _windup_column",
-    "Supervisor": "_limits _ticks _rated _collision _top _stale_us",
-    "Watch": "_n _limits _ticks _tick_s _centre _speed _fast _moved _hold _longest_stand _lag _most_saturated",
-    "Observer": "_ticks _period_s _triangle _forward _backward _coulomb _viscous _base _share _rated",
+    "Supervisor": "_kinds _limits _ticks _rated _collision _top _stale_us",
+    "Watch": "_n _limits _ticks _tick_s _centre _speed _fast _moved _hold _longest_stand _lag _most_saturated"
+    " _kinds _first_limit",
+    "Observer": "_turning _smooth _ticks _period_s _triangle _forward _backward _coulomb _viscous _base _share _rated",
     "RigidPlant": "tick_s q_link _spec _cell",
 }
 """Attributes that are set once and never written, or that are another name of a part or a buffer."""
