@@ -213,9 +213,13 @@ def _share(share: LoadShare) -> str:
     return f"J{share.axis + 1} {value:.3g} of {'' if share.given else '~'}{share.limit:.3g}"
 
 
+def _mark(robot: RobotSpec, axis: int) -> str:
+    return mark(robot.estimated, axis_key(axis, robot.axes[axis].kind.speed_key))
+
+
 def _cells(row: LineTime, robot: RobotSpec) -> tuple[str, ...]:
     # the share of a limit that is an estimate is no better than the limit
-    known = "" if row.joint == "" else mark(robot.estimated, axis_key(int(row.joint[1:]) - 1, "max_speed_deg_s"))
+    known = "" if row.joint == "" else _mark(robot, int(row.joint[1:]) - 1)
     return (
         str(row.count),
         f"{row.seconds:.3f}",

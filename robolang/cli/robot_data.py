@@ -12,7 +12,9 @@ from runtime.robot.model.spec import AxisSpec, Body, RobotSpec
 
 def reach_mm(spec: RobotSpec) -> float:
     """Return the largest distance of the flange from axis 1, mm, rounded to 10 mm, within which it is found."""
-    chain = Chain(placements=tuple(axis.placement for axis in spec.axes), X_last_flange=spec.X_last_flange)
+    sliding = frozenset(index for index, axis in enumerate(spec.axes) if axis.kind.slides)
+    placements = tuple(axis.placement for axis in spec.axes)
+    chain = Chain(placements=placements, X_last_flange=spec.X_last_flange, sliding=sliding)
     return round(reach_of(chain, spec.lower, spec.upper) / MM, -1)
 
 
@@ -53,17 +55,18 @@ def whole(spec: RobotSpec) -> dict[str, Any]:
 
 
 def _axis(axis: AxisSpec) -> dict[str, Any]:
-    limits, motor = axis.limits, axis.motor
+    limits, motor, kind = axis.limits, axis.motor, axis.kind
     return {
         "name": axis.name,
+        **({"kind": kind.name} if kind.slides else {}),
         "placement": axis.placement.tolist(),
-        "range_deg": [limits.lower / DEG, limits.upper / DEG],
-        "max_speed_deg_s": limits.speed / DEG,
-        "max_acceleration_deg_s2": limits.acceleration / DEG,
-        "max_torque_nm": limits.torque,
+        kind.range_key: [limits.lower / kind.size, limits.upper / kind.size],
+        kind.speed_key: limits.speed / kind.size,
+        kind.acceleration_key: limits.acceleration / kind.size,
+        kind.force_key: limits.torque,
         **_body(axis.body),
         "motor": {
-            "gear_ratio": motor.gear_ratio,
+            kind.transmission_key: kind.transmission(motor.gear_ratio),
             "rotor_inertia_kg_m2": motor.rotor_inertia,
             "torque_constant_nm_a": motor.torque_constant,
             "max_current_a": motor.max_current,
@@ -72,8 +75,8 @@ def _axis(axis: AxisSpec) -> dict[str, Any]:
             "encoder_counts": motor.encoder_counts,
             "current_bandwidth_hz": motor.current_bandwidth / (2.0 * math.pi),
             # JSON has no infinity: a rigid gear has no spring
-            "joint_stiffness_nm_rad": motor.stiffness if motor.elastic else None,
-            "joint_damping_nm_s_rad": motor.damping if motor.elastic else None,
+            kind.stiffness_key: motor.stiffness if motor.elastic else None,
+            kind.damping_key: motor.damping if motor.elastic else None,
         },
         "servo": {
             "position_bandwidth_rad_s": axis.bandwidths.position,

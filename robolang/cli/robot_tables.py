@@ -107,15 +107,20 @@ def _table(title: str, *headings: str) -> Table:
 
 def limits(spec: "RobotSpec") -> Table:
     """Return ranges, speeds, accelerations and torques."""
-    table = _table("Limits", "range\ndeg", "speed\ndeg/s", "accel\ndeg/s2", "torque\nN m")
+    units = list(dict.fromkeys(axis.kind.unit for axis in spec.axes))
+    range_, speed, rate = (", ".join(f"{unit}{per}" for unit in units) for per in ("", "/s", "/s2"))
+    force = ", ".join(dict.fromkeys(axis.kind.force for axis in spec.axes))
+    table = _table("Limits", f"range\n{range_}", f"speed\n{speed}", f"accel\n{rate}", f"torque\n{force}")
     for index, axis in enumerate(spec.axes, start=1):
-        limits, shown = axis.limits, _Marked(spec, index - 1)
+        limits, kind, shown = axis.limits, axis.kind, _Marked(spec, index - 1)
+        # the unit of a row where the heading has two
+        own = f" {kind.unit}" if len(units) > 1 else ""
         table.add_row(
             safe(f"J{index} {axis.name}"),
-            shown("range_deg", f"{limits.lower / DEG:g} .. {limits.upper / DEG:g}"),
-            shown("max_speed_deg_s", limits.speed / DEG),
-            shown("max_acceleration_deg_s2", limits.acceleration / DEG),
-            shown("max_torque_nm", limits.torque),
+            shown(kind.range_key, f"{limits.lower / kind.size:g} .. {limits.upper / kind.size:g}{own}"),
+            shown(kind.speed_key, limits.speed / kind.size),
+            shown(kind.acceleration_key, limits.acceleration / kind.size),
+            shown(kind.force_key, limits.torque),
         )
     return table
 
@@ -124,7 +129,10 @@ def wrist(spec: "RobotSpec") -> Table:
     """Return what a payload may load the wrist with."""
     from runtime.robot.kinematics.wrist_load import WRIST_AXES, rated_inertia, rated_moment
 
-    table = _table("Payload at the wrist (~: estimated from the drive)", "moment\nN m", "inertia\nkg m2")
+    title = "Payload at the wrist (~: estimated from the drive)"
+    slides = any(axis.kind.slides for axis in spec.axes[-WRIST_AXES:])
+    headings = ("moment, weight\nN m, N", "inertia, mass\nkg m2, kg") if slides else ("moment\nN m", "inertia\nkg m2")
+    table = _table(title, *headings)
     # numbered before the cut: on seven axes the wrist begins at J5
     for index, axis in list(enumerate(spec.axes, start=1))[-WRIST_AXES:]:
         moment, inertia = axis.limits.rated_moment, axis.limits.rated_inertia
@@ -140,7 +148,7 @@ def drives(spec: "RobotSpec") -> Table:
     """Return the motors, with their rotors at the joint too."""
     table = _table(
         "Drives (motor side; N^2 J at the joint)",
-        "gear\nN",
+        "gear\nN, mm/turn" if spec.slides.any() else "gear\nN",
         "rotor J\nkg m2",
         "N^2 J\nkg m2",
         "Kt\nN m/A",
@@ -152,7 +160,7 @@ def drives(spec: "RobotSpec") -> Table:
         motor, shown = axis.motor, _Marked(spec, index - 1)
         table.add_row(
             f"J{index}",
-            shown("motor.gear_ratio", motor.gear_ratio),
+            shown(f"motor.{axis.kind.transmission_key}", axis.kind.transmission(motor.gear_ratio)),
             shown("motor.rotor_inertia_kg_m2", motor.rotor_inertia),
             shown("motor.rotor_inertia_kg_m2", f"{motor.reflected_inertia:.4f}"),
             shown("motor.torque_constant_nm_a", motor.torque_constant),
@@ -172,7 +180,7 @@ def springs(spec: "RobotSpec") -> list[Table]:
     )
     for index, axis in enumerate(spec.axes, start=1):
         motor = axis.motor
-        windup = math.degrees(axis.limits.torque / motor.stiffness)
+        windup = axis.limits.torque / motor.stiffness / axis.kind.size
         values = (f"{motor.stiffness:g}", f"{motor.damping:g}", f"{windup:.3f}") if motor.elastic else ("rigid", "", "")
         table.add_row(f"J{index}", *values)
     return [table]

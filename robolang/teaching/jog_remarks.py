@@ -3,8 +3,7 @@
 import math
 
 from robolang.execution.regain import Displaced
-from robolang.teaching.jogging import JogRequest
-from runtime.core.units import DEG, MM
+from robolang.teaching.jogging import JogRequest, is_linear
 from runtime.motion.jog import JogPlan
 
 
@@ -22,8 +21,9 @@ def cut_short(request: JogRequest, moved: Displaced, *, late: bool) -> str | Non
     endless = math.isinf(request.amount)
     if endless and not late:
         return None
-    joint_deg = moved.joint_deg if request.axis.startswith("J") else moved.angle_deg
-    goes = moved.distance_mm if is_linear(request.axis) else joint_deg
+    # of a joint that slides it is mm: ``Displaced`` counts them as deg
+    turned = moved.joint_deg if request.axis.startswith("J") else moved.angle_deg
+    goes = moved.distance_mm if is_linear(request.axis) else turned
     of = "" if endless else f" of {abs(request.amount):g}"
     reason = ": the page was too slow" if late else ""
     return f"the jog was stopped after {goes:.1f}{of} {request.unit}{reason}"

@@ -54,6 +54,10 @@ class AxisKind(Record):
         """Return a coordinate, rad or m, as people read it: ``12.5 deg``, ``40 mm``."""
         return f"{value / self.size:{form}} {self.unit}"
 
+    def transmission(self, ratio: float) -> float:
+        """Return the transmission as files have it: N of an axis that turns, mm per motor turn of one that slides."""
+        return 2.0 * math.pi / (ratio * self.size) if self.slides else ratio
+
     def motor_ratio(self, travel: float) -> float:
         """Return motor turns in rad per rad or m of the axis, of ``travel`` in units of the axis per motor turn."""
         return 2.0 * math.pi / (travel * self.size)

@@ -2,14 +2,16 @@
 
 from collections.abc import Iterable, Mapping
 
+from runtime.robot.model.axis_kind import KINDS
+
 _GROUPS = {
     "mass_kg": "bodies",
     "cog_m": "bodies",
     "inertia_kg_m2": "bodies",
-    "range_deg": "ranges",
-    "max_speed_deg_s": "speeds",
-    "max_acceleration_deg_s2": "accelerations",
-    "max_torque_nm": "torques",
+    **{kind.range_key: "ranges" for kind in KINDS.values()},
+    **{kind.speed_key: "speeds" for kind in KINDS.values()},
+    **{kind.acceleration_key: "accelerations" for kind in KINDS.values()},
+    **{kind.force_key: "torques" for kind in KINDS.values()},
     "motor": "drives",
     "servo": "loops",
     "rated_payload_kg": "payload",
@@ -20,7 +22,9 @@ _GROUPS = {
 
 def groups(names: Iterable[str]) -> list[str]:
     """Return the kinds of values that some dotted names belong to, each once, in the order of the table above."""
-    found = {_GROUPS.get(part) for name in names for part in name.split(".")}
+    # a limit of the tool point has the name of one of a sliding axis: what it is in decides
+    parts = (part for name in names for part in (["path"] if name.startswith("path.") else name.split(".")))
+    found = {_GROUPS.get(part) for part in parts}
     return [group for group in dict.fromkeys(_GROUPS.values()) if group in found]
 
 
@@ -29,8 +33,8 @@ _DECISIVE = frozenset(
         "mass_kg",
         "cog_m",
         "inertia_kg_m2",
-        "max_torque_nm",
-        "gear_ratio",
+        *(kind.force_key for kind in KINDS.values()),
+        *(kind.transmission_key for kind in KINDS.values()),
         "rotor_inertia_kg_m2",
         "viscous_friction_nm_s",
         "coulomb_friction_nm",
