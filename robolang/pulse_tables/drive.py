@@ -168,7 +168,7 @@ class _Arm:
         yield from self._send(set_points(self._export, move, self._profile.period_s))
         waited_s = yield from self._settle()
         if waited_s is not None:
-            left = self._controller.not_in_position()
+            left = self._controller.spec.largest(self._controller.position_errors)
             self._controller.warn("RBL523", f"not in position: {left} left after {waited_s:g} s")
 
     def _hand(self, marker: Marker) -> Iterator[None]:

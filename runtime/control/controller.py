@@ -36,7 +36,7 @@ from runtime.core.limits import OVERRIDE
 from runtime.core.linear import matmul
 from runtime.core.program_line import ProgramLine
 from runtime.core.state import State
-from runtime.core.units import DEG, PERCENT
+from runtime.core.units import PERCENT
 from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.commands import Command
 from runtime.motion.motion_planner import ChainPlan, MotionPlanner
@@ -440,19 +440,14 @@ class Controller:
         return self.drives.time_us
 
     @property
+    def position_errors(self) -> Array:
+        """Distance of each detected joint from its command and lead (n,), rad; a mm counts as a deg."""
+        return np.asarray(np.abs(self.servo.q_ref - self.servo.alpha) / self.spec.bound(1.0))
+
+    @property
     def position_error(self) -> float:
-        """Largest distance of a detected joint angle from its command and lead, rad; a mm counts as a deg."""
-        return float(self._off().max())
-
-    def not_in_position(self) -> str:
-        """Return how far the joint that is furthest from its command still is, in its unit."""
-        axis = int(np.argmax(self._off()))
-        kind = self.spec.axes[axis].kind
-        return kind.text(float(self._off()[axis] * kind.size / DEG), ".3f")
-
-    def _off(self) -> Array:
-        servo = self.servo
-        return np.asarray(np.abs(servo.q_ref - servo.alpha) / self.spec.bound(1.0))
+        """The largest of them, rad."""
+        return float(self.position_errors.max())
 
     @property
     def overruns(self) -> int:

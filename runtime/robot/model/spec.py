@@ -173,6 +173,11 @@ class RobotSpec:
         """Whether each axis slides (n,)."""
         return np.array([axis.kind.slides for axis in self.axes])
 
+    def largest(self, off: Array) -> str:
+        """Return the largest of distances (n,) of joints, rad where a mm counts as a deg, in the unit of its axis."""
+        axis = int(np.argmax(off))
+        return f"{off[axis] / DEG:.3f} {self.axes[axis].kind.unit}"
+
     def bound(self, angle: float) -> Array:
         """Return a bound of ``angle`` rad for every axis (n,); for one that slides as many mm as the angle has deg, m.
 
