@@ -157,8 +157,7 @@ class ControllerTarget:
             return False
         # a warning and no alarm: dry friction can hold an axis short of its end for ever
         if motion.waited_us >= profile.settle_timeout_us:
-            left = controller.spec.largest(controller.position_errors)
-            waited_s = motion.waited_us / 1e6
+            left, waited_s = controller.spec.largest(controller.position_errors), motion.waited_us / 1e6
             controller.warn("RBL523", f"not in position: {left} left after {waited_s:g} s")
             return False
         self._activity = replace(motion, waited_us=motion.waited_us + profile.period_us)
