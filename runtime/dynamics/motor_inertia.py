@@ -113,7 +113,7 @@ def link_chain(spec: RobotSpec, payload: Payload = NO_PAYLOAD, mode: "LoadMode" 
         moments=frozen([moment for _, moment, _ in parts]),
         inertias=frozen([inertia for _, _, inertia in parts]),
         gear_ratios=frozen(spec.per_axis("motor", "gear_ratio")),
-        sliding=frozenset(index for index, axis in enumerate(spec.axes) if axis.kind.slides),
+        sliding=frozenset(np.flatnonzero(spec.slides).tolist()),
     )
 
 

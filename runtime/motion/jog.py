@@ -152,10 +152,9 @@ class JogPlanner:
         """Return where a jog leads; one as far as it goes no further than ``longest`` m or rad."""
         endless = math.isinf(jog.amount)
         amount = math.copysign(min(abs(jog.amount), longest), jog.amount) if endless else jog.amount
-        ranges = Ranges.of(self._spec.lower, self._spec.upper, q_start, self._spec.bound(STANDOFF) if endless else EDGE)
+        ranges = self._ranges(q_start, endless)
         if isinstance(jog, JointJog):
-            course = joint_course(q_start, jog.axis, amount, ranges)
-            return replace(course, end=End(kind="time")) if endless and course.end.kind == "amount" else course
+            return _ended(joint_course(q_start, jog.axis, amount, ranges), endless)
         X = matmul(self._kinematics.forward(q_start), X_flange_tool)
         most = 2.0 * math.pi if jog.turns else norm(X[:3, 3]) + reach(self._kinematics, X_flange_tool)
         path = ToolPath(
@@ -170,6 +169,10 @@ class JogPlanner:
         if course.end.kind == "amount" and path.extent < abs(jog.amount):
             return replace(course, end=End(kind="turn" if jog.turns and path.extent == most else "time"))
         return course
+
+    def _ranges(self, q_start: Array, endless: bool) -> Ranges:
+        inside = self._spec.bound(STANDOFF) if endless else EDGE
+        return Ranges.of(self._spec.lower, self._spec.upper, q_start, inside)
 
     def _limits(self, q_start: Array, jog: Jog, X_flange_tool: Array, speed: float) -> JogLimits:
         cap = MANUAL_SPEED * PLANNED * speed * _BETWEEN
@@ -227,3 +230,8 @@ class JogPlanner:
             "it meets a singularity that the joints cannot turn through",
             "Jog a joint, such as J5, to leave it.",
         )
+
+
+def _ended(course: Course, endless: bool) -> Course:
+    """Return the course of a joint jog; one as far as it goes that ends nowhere has taken as long as it may."""
+    return replace(course, end=End(kind="time")) if endless and course.end.kind == "amount" else course
