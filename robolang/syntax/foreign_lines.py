@@ -12,7 +12,7 @@ from robolang.syntax.line_reader import Stopped, line_reader
 from robolang.syntax.unparse import describe
 from runtime.core.record import Record
 
-_MOST = 200
+_MOST = 160
 """Characters of a line that is still compared with the shapes: what is longer is no statement by hand."""
 _BEFORE = re.compile(r"[ \t]*(?:\*\w+(?=[ \t]+\S)|:)?")
 """What stands before a line: a label of this language, or the colon after the number of a line of TP."""
@@ -35,7 +35,8 @@ class Proposal(Record):
 
 def proposal(code: str) -> Proposal | None:
     """Return what to write for a line of another language, without its line number; None for a line that is none."""
-    if len(code) > _MOST:
+    # a hidden character is the error, wherever else the line comes from
+    if len(code) > _MOST or not code.replace("\t", " ").isprintable():
         return None
     # a label is of this language, and a line of another one may have been typed after it
     before = _BEFORE.match(code)

@@ -89,7 +89,7 @@ _OUTPUTS = (
         "PULSE {n}, {s}",
     ),
     Shape((INFORM,), "PULSE OT#(3)", r" OT# \( <n> \)", "PULSE {n}, 0.3"),
-    Shape((INFORM,), "DIN B000 IN#(1)", r" <name> <in>", "{name} = {in}"),
+    Shape((INFORM,), "DIN B000 IN#(1)", r" <name>[ \t]+<in>", "{name} = {in}"),
     Shape((KRL,), "PULSE($OUT[1],TRUE,0.5)", r" \( \$OUT \[ <n> \] , TRUE , <s> \)", "PULSE {n}, {s}"),
     Shape((KRL,), "$OUT[3]=TRUE", rf" \[{_STATE} \] = <state>", "OUT({n}) = {state}"),
     Shape((TP,), "DO[1]=PULSE,0.5sec", rf" \[{_STATE} \] = PULSE , <s> sec", "PULSE {n}, {s}", words="DO RO"),

@@ -81,6 +81,9 @@ MOVES = (
     Entry("DRAW", (AS, PAC), "moves straight by an offset", _SHIFTED),
     Entry("DRIVE DRIVEA", (AS, VPLUS, PAC), "moves one joint", "MOVEJ JOINT(0, 0, 90, 0, 90, 0)", missing=True),
     Entry("ALIGN", (AS, VPLUS), "turns the tool to the nearest axis", "MOVE POSE(400, 150, 800, 180, 0, 180)"),
+    Entry(
+        "GOHOME", (PAC,), "moves to the home position", "MOVEJ HOME", note="HOME is a point like any other: teach it"
+    ),
     Entry("HOME", (AS,), "moves to the home position", "MOVEJ HOME", note="HOME is a point like any other: teach it"),
     Entry("G0 G00", (G_CODE,), "is a rapid move", _JOINTS),
     Entry("G1 G01", (G_CODE,), LINE, _LINE),

@@ -9,7 +9,8 @@ import re
 from collections.abc import Callable
 from typing import NamedTuple
 
-_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+# digits in one place of the pattern only: two that could share them take quadratic time
+_NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,2})?"
 _LIST = rf"{_NUMBER}(?:[ ]*,[ ]*{_NUMBER})*"
 _POINT = r"#?[A-Za-z_]\w*(?:[ ]*\[[ ]*\d+[ ]*(?::[^\]]*)?\])?"
 _SHIFTED = rf"(?:OFFS|RELTOOL)[ ]*\([ ]*[A-Za-z_]\w*[ ]*,[ ]*{_LIST}[ ]*\)"

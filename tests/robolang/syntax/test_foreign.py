@@ -280,3 +280,13 @@ def test_languages_of_the_table_have_a_maker():
     assert named | {language for shape in SHAPES for language in shape.languages} - general == set(meanings.MAKERS)
     assert set(LANGUAGES) <= set(meanings.MAKERS)
     assert all(re.fullmatch(r"[A-Z0-9_$ ]+", each.words) for each in words.every())
+
+
+@pytest.mark.parametrize(
+    "piece", ["", " ", "9" * 80, "1e99", "NAN", "-", "'", '"', "[", ")", "\\", "%", "P[0]", "\x00", "é"]
+)
+def test_a_damaged_line_has_a_statement_that_is_read_or_none(piece):
+    for shape in SHAPES:
+        middle = len(shape.example) // 2
+        result = proposal(shape.example[:middle] + piece + shape.example[middle:])
+        assert result is None or statements("\n".join(result.statements)) is not None
