@@ -102,7 +102,7 @@ def build_mjcf(
     """
     root = ET.Element("mujoco", model=spec.name)
     # the order of bodies and joints is relied on: CellModel counts places in the state by it
-    _options(root, timestep, cell is not None and _has_curves(cell))
+    _options(root, timestep)
     world = ET.SubElement(root, "worldbody")
     _surroundings(world, cell.obstacles if cell else ())
     last = _arm(world, spec, timestep)
@@ -140,13 +140,7 @@ def friction_bias(spec: RobotSpec) -> Array:
     return np.array([(tb - tf) / 2.0 for tf, tb in (axis.motor.joint_coulomb_friction for axis in spec.axes)])
 
 
-def _has_curves(cell: CellSpec) -> bool:
-    """Return whether a cell has bodies other than boxes."""
-    shapes = {part.shape for part in cell.parts} | {obstacle.shape for obstacle in cell.obstacles}
-    return bool(shapes - {"box"})
-
-
-def _options(root: ET.Element, timestep: float, curves: bool) -> None:
+def _options(root: ET.Element, timestep: float) -> None:
     # the bodies of the robot file as they are: MuJoCo must neither infer nor correct mass and inertia
     ET.SubElement(
         root,
@@ -172,8 +166,7 @@ def _options(root: ET.Element, timestep: float, curves: bool) -> None:
         tolerance="1e-10",
     )
     # a reset would teleport the arm: the plant stops at the last valid state instead
-    # multiccd: with the one point of contact that MuJoCo finds otherwise, a cylinder rocks on its table and never rests
-    ET.SubElement(option, "flag", {"autoreset": "disable"} | ({"multiccd": "enable"} if curves else {}))
+    ET.SubElement(option, "flag", autoreset="disable")
     default = ET.SubElement(root, "default")
     ET.SubElement(
         default,
