@@ -279,9 +279,9 @@ register(
     Code(
         code="RBL441",
         name="nothing-to-grip",
-        meaning="HAND ON closes where no part of the cell is between the fingers.",
+        meaning="HAND ON closes where no part of the cell is between the fingers or seals the suction cup.",
         remedy="Compare the point, the tool and the frame with the place of the part, and the size of the part with "
-        "the stroke of the hand.",
+        "the stroke of the hand; a cup needs a flat face under its whole rim.",
         found=Stage.MOTION,
     ),
     Code(

@@ -2,7 +2,7 @@
 
     RBL421   the arm or the hand in the floor or an obstacle of the cell
     RBL440   the arm or the hand in a lying part; a carried part in a part, an obstacle, the floor or the arm
-    RBL441   a HAND ON with no part between the fingers
+    RBL441   a HAND ON with no part between the fingers, or under the whole rim of the cup
 
 Parts lie where the cell puts them until HAND ON finds one between the fingers: the pads meet it from both sides and
 centre it. From there it goes with the tool, to HAND OFF, and rests where it is let go or at most ``DROP`` below. A
@@ -23,6 +23,7 @@ from robolang.core.diagnostics import Severity
 from robolang.execution.dry_run import Rehearsal, RehearsedHand, RehearsedMove
 from robolang.planning.placed import Placed, Places
 from robolang.project.project import Project
+from runtime.cell.sealing import seals
 from runtime.core.frames import Array, inverse, pose
 from runtime.plant.cell_model import CLEARANCE
 from runtime.plant.mjcf import APART
@@ -238,11 +239,16 @@ class CellTouches:
             return (yield from self._release(hand, scene))
         scene = self._grip(hand, scene)
         if not scene.held and self._cell.parts and scene.known:
-            yield self._places.at("RBL441", hand, "no part is between the fingers here")
+            nothing = (
+                "the cup seals on no part here" if self._cell.hand.is_cup else "no part is between the fingers here"
+            )
+            yield self._places.at("RBL441", hand, nothing)
         return scene
 
     def _grip(self, hand: RehearsedHand, scene: Scene) -> Scene:
         """Close the hand: what both pads meet is centred between them and held."""
+        if self._cell.hand.is_cup:
+            return self._suck(hand, scene)
         spec, X_tool_world = self._cell.hand, inverse(self._tool(hand.q))
         self.shapes.lay(scene.lying, spec.stroke)
         faces: dict[str, tuple[float, float]] = {}
@@ -259,6 +265,15 @@ class CellTouches:
         }
         lying = {name: X for name, X in scene.lying.items() if name not in held}
         return replace(scene, lying=lying, held=held, opening=widest, closed=True)
+
+    def _suck(self, hand: RehearsedHand, scene: Scene) -> Scene:
+        """Hold the part that the cup seals on as it lies; a run draws it to the rim, by ``sealing.GAP`` at most."""
+        X_world_tool = self._tool(hand.q)
+        parts = [part for part in self._cell.parts if part.name in scene.lying]
+        sealed = [p.name for p in parts if seals(self._cell.hand, X_world_tool, p, scene.lying[p.name])][:1]
+        held = {name: inverse(X_world_tool) @ scene.lying[name] for name in sealed}
+        lying = {name: X for name, X in scene.lying.items() if name not in held}
+        return replace(scene, lying=lying, held=held, closed=True)
 
     def _release(self, hand: RehearsedHand, scene: Scene) -> Followed:
         """Open the hand: held parts stay or rest a little lower, and the fingers may meet what is beside them."""

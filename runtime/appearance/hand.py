@@ -1,4 +1,4 @@
-"""What a hand looks like: an adapter on the flange, the palm, and two fingers whose pads do not stand in their shanks.
+"""What a hand looks like: an adapter on the flange, the palm, and a cup, or fingers whose pads do not stand in shanks.
 
 Physics has other shapes, in which shank and pad overlap; two faces in one plane would flicker in a picture.
 """
@@ -8,7 +8,7 @@ import numpy as np
 from runtime.appearance.scene import SceneBody, SceneJoint, Shape
 from runtime.appearance.solids import Z, box, cylinder
 from runtime.cell.cell import HandSpec
-from runtime.cell.gripper import FINGERS, finger_sign, palm_box
+from runtime.cell.gripper import finger_sign, fingers_of, palm_box
 from runtime.core.frames import pose
 from runtime.core.linear import matmul
 
@@ -17,7 +17,7 @@ FLANGE_RADIUS, FLANGE_LENGTH = 0.03, 0.012
 
 
 def hand_bodies(hand: HandSpec) -> list[SceneBody]:
-    """Return the tool and the two fingers; a finger is at the distance of its pad from the tool point, m."""
+    """Return the tool and the fingers, if there are any; a finger is at the distance of its pad from the tool, m."""
     fingers = [
         SceneBody(
             name=f"finger_{side}",
@@ -27,7 +27,7 @@ def hand_bodies(hand: HandSpec) -> list[SceneBody]:
                 kind="prismatic", axis=np.array([0.0, finger_sign(side), 0.0]), source="finger", index=index
             ),
         )
-        for index, side in enumerate(FINGERS)
+        for index, side in enumerate(fingers_of(hand))
     ]
     return [SceneBody(name="tool", parent="flange", X_parent_body=hand.X_flange_tool), *fingers]
 
@@ -36,8 +36,18 @@ def hand_shapes(hand: HandSpec) -> list[Shape]:
     """Return the shapes of a hand, on the bodies ``flange``, ``tool`` and those of the fingers."""
     size, X_tool_palm = palm_box(hand)
     palm = box("tool", X_tool_palm, size, "palm", "palm")
-    fingers = [shape for side in FINGERS for shape in _finger(hand, side)]
-    return [*_adapter(hand), palm, *fingers]
+    fingers = [shape for side in fingers_of(hand) for shape in _finger(hand, side)]
+    return [*_adapter(hand), palm, *(_cup(hand) if hand.is_cup else ()), *fingers]
+
+
+def _cup(hand: HandSpec) -> list[Shape]:
+    """Return a suction cup: a metal stem and, from the middle on, a lip of rubber that widens to the rim."""
+    radius, length = float(hand.pad[0]), hand.finger_length
+    stem, middle = radius * 0.4, -length / 2.0
+    return [
+        cylinder("tool", -length * Z, middle * Z, (stem, stem), "metal", "stem"),
+        cylinder("tool", middle * Z, 0.0 * Z, (radius * 0.6, radius), "rubber", "cup"),
+    ]
 
 
 def _adapter(hand: HandSpec) -> list[Shape]:

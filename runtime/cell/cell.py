@@ -30,12 +30,15 @@ U = TypeVar("U")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HandSpec:
-    """A hand with two parallel fingers, as it really is; frames: flange and tool (the grip point).
+    """A hand with two parallel fingers or a suction cup, as it really is; frames: flange and tool (the grip point).
 
     ``mass`` kg and ``cog`` (3,) m in the flange frame; ``X_flange_tool`` (4, 4): z points to the work piece, the
     fingers close along y; ``stroke`` m between the pads when open; ``grip_force`` N of each finger; ``dwell`` s
     that HAND waits; ``pad`` (3,) m: width along x, thickness, length along z of a finger pad, centred on the tool
     point; ``finger_length`` m from the palm to the tool point.
+
+    ``kind`` ``suction``: a cup whose rim is round the tool point, in its x-y plane. ``finger_length`` is then that of
+    the cup, ``grip_force`` its holding force, ``pad`` its radius, its radius and its diameter, and ``stroke`` 0.
     """
 
     mass: float
@@ -46,6 +49,12 @@ class HandSpec:
     dwell: float
     pad: Array
     finger_length: float
+    kind: str = "fingers"
+
+    @property
+    def is_cup(self) -> bool:
+        """Whether it holds by suction."""
+        return self.kind == "suction"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -125,6 +134,7 @@ def build(file: CellFile) -> CellSpec:
         robot=robot,
         home=frozen(np.array(file.home) * robot.units),
         hand=HandSpec(
+            kind=hand.kind,
             mass=hand.mass_kg,
             cog=_lengths(hand.cog_mm),
             X_flange_tool=_pose(hand.tcp_mm_deg),

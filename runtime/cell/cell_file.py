@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from runtime.cell.resting import Box, unrest
 from runtime.cell.sensor_file import SensorFile, read_sensor_file
@@ -29,6 +29,8 @@ HEAVIEST_KG = 5000.0
 """Heaviest hand, part or load, as heavy as the heaviest rated payload of a robot file."""
 SHAPES = ("box", "cylinder")
 """Shapes of parts and obstacles."""
+HANDS = ("fingers", "suction")
+"""Kinds of hands."""
 NEAREST_MM = 50.0
 """A camera is no nearer to what it looks to, mm."""
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,62}")
@@ -38,8 +40,9 @@ Numbers = tuple[float, ...]
 
 
 class HandFile(Record):
-    """``[hand]``: see ``runtime.cell.cell.HandSpec``."""
+    """``[hand]``: see ``runtime.cell.cell.HandSpec``, also for what the values of a suction cup are."""
 
+    kind: str
     mass_kg: float
     cog_mm: Numbers
     tcp_mm_deg: Numbers
@@ -221,18 +224,36 @@ def _home(table: Table, arm: ArmFile | None) -> Numbers:
 
 
 def _hand(table: Table) -> HandFile:
+    kind = table.text("kind", "fingers", choices=HANDS)
     hand = HandFile(
+        kind=kind,
         mass_kg=table.number("mass_kg", positive=True, high=HEAVIEST_KG),
         cog_mm=_point(table, "cog_mm"),
         tcp_mm_deg=_pose(table, "tcp_mm_deg"),
-        stroke_mm=table.number("stroke_mm", positive=True, high=1000.0),
-        grip_force_n=table.number("grip_force_n", positive=True, high=20_000.0),
         dwell_s=table.number("dwell_s", low=0.0, high=60.0),
-        pad_mm=_size(table, "pad_mm", (20.0, 8.0, 40.0)),
-        finger_length_mm=table.number("finger_length_mm", 52.0, positive=True, high=1000.0),
+        **(_cup(table) if kind == "suction" else _fingers(table)),
     )
     table.done()
     return hand
+
+
+def _fingers(table: Table) -> Mapping[str, Any]:
+    return {
+        "stroke_mm": table.number("stroke_mm", positive=True, high=1000.0),
+        "grip_force_n": table.number("grip_force_n", positive=True, high=20_000.0),
+        "pad_mm": _size(table, "pad_mm", (20.0, 8.0, 40.0)),
+        "finger_length_mm": table.number("finger_length_mm", 52.0, positive=True, high=1000.0),
+    }
+
+
+def _cup(table: Table) -> Mapping[str, Any]:
+    diameter = table.number("cup_diameter_mm", low=1.0, high=1000.0)
+    return {
+        "stroke_mm": 0.0,
+        "grip_force_n": table.number("holding_force_n", positive=True, high=20_000.0),
+        "pad_mm": (diameter / 2.0, diameter / 2.0, diameter),
+        "finger_length_mm": table.number("cup_length_mm", 30.0, low=1.0, high=1000.0),
+    }
 
 
 def _part(table: Table) -> PartFile:

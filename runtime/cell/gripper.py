@@ -1,4 +1,7 @@
-"""Where the parts of a hand are: two fingers that open along y of the tool, and a palm. Frames as in ``HandSpec``."""
+"""Where the parts of a hand are: two fingers that open along y of the tool, or a suction cup, and a palm.
+
+Frames as in ``HandSpec``.
+"""
 
 import numpy as np
 
@@ -7,6 +10,16 @@ from runtime.core.frames import Array, pose
 
 FINGERS = ("left", "right")
 PALM_THICKNESS = 0.02
+
+
+def fingers_of(hand: HandSpec) -> tuple[str, ...]:
+    """Return the names of the fingers of a hand: a suction cup has none."""
+    return () if hand.is_cup else FINGERS
+
+
+def is_holder(name: str) -> bool:
+    """Return whether a shape of a hand is one that holds parts: a pad, or the cup."""
+    return name == "cup" or name.startswith("pad_")
 
 
 def finger_sign(side: str) -> float:

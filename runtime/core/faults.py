@@ -352,7 +352,7 @@ register(
         name="part-lost",
         meaning="A part that HAND ON has gripped is no longer held, although no HAND OFF has released it.",
         remedy="Move with less ACCEL, grip closer to the centre of gravity, or give the hand more grip_force_n or "
-        "larger pads (pad_mm) in the cell file.",
+        "larger pads (pad_mm) in the cell file, a suction cup more holding_force_n.",
     ),
     Code(
         code="RBL537",

@@ -13,8 +13,7 @@ import mujoco
 import numpy as np
 
 from runtime.cell.cell import CellSpec
-from runtime.cell.gripper import FINGERS
-from runtime.core.frames import Array
+from runtime.cell.gripper import fingers_of
 from runtime.plant.gears import elastic_axes
 from runtime.plant.mjcf import build_mjcf, gear_joint, joint_name, own_pair_name, own_pairs
 from runtime.robot.model.spec import RobotSpec
@@ -53,30 +52,31 @@ class CellModel:
         xml = build_mjcf(spec, cell, timestep=timestep)
         model: Any = mujoco.MjModel.from_xml_string(xml)
         elastic = elastic_axes(spec)
+        fingers = len(fingers_of(cell.hand))
         hand = spec.n + len(elastic)  # joints come in the order of build_mjcf: axes and gears, fingers, parts
         return cls(
             model=model,
             motors=_addresses(model, [joint_name(axis) for axis in range(spec.n)]),
             gears=_addresses(model, [gear_joint(axis) for axis in elastic]),
-            fingers=slice(hand, hand + len(FINGERS)),
-            parts={part.name: hand + len(FINGERS) + 7 * k for k, part in enumerate(cell.parts)},
+            fingers=slice(hand, hand + fingers),
+            parts={part.name: hand + fingers + 7 * k for k, part in enumerate(cell.parts)},
             shapes=tuple(str(model.geom(index).name) for index in range(model.ngeom)),
-            own_pairs=_keep_off_itself(model, xml, spec, cell.home),
+            own_pairs=_keep_off_itself(model, xml, spec, cell),
         )
 
 
-def _keep_off_itself(model: Any, xml: str, spec: RobotSpec, home: Array) -> tuple[tuple[int, int], ...]:
+def _keep_off_itself(model: Any, xml: str, spec: RobotSpec, cell: CellSpec) -> tuple[tuple[int, int], ...]:
     """Return the geoms of the arm and the hand that may meet one another, and let all other pairs of them never meet.
 
     The shapes are coarse: pairs that overlap at home or in more than ``OFTEN`` of some postures are left out.
     """
-    pairs = tuple(own_pairs(spec))
+    pairs = tuple(own_pairs(spec, cell.hand))
     if not pairs:
         return ()
     # a fixed seed: check and run must leave out the same pairs
     rows = np.random.default_rng(0).uniform(spec.lower, spec.upper, (POSTURES, spec.n))
     kept = []
-    for pair, keep in zip(pairs, _informative(xml, pairs, np.vstack([home, rows]).tobytes(), spec.n), strict=True):
+    for pair, keep in zip(pairs, _informative(xml, pairs, np.vstack([cell.home, rows]).tobytes(), spec.n), strict=True):
         if keep:
             kept.append(_geoms(model, pair))
         else:

@@ -1,15 +1,16 @@
 """The hand as bodies: how the mass a cell file states is shared out between palm and fingers.
 
-Each finger takes an eighth of the mass, at the middle of its box, and the palm the rest, at the place that makes
-the whole match the file. The fingers move symmetrically, so mass and centre of gravity are exact at every
-opening; only the moments of inertia change with it, by ``2 m_f y^2``. Moments are those of uniform boxes: an
-estimate, since no hand of this kind is published with its inertia. Frames: flange and tool, as in ``HandSpec``.
+Each finger takes an eighth of the mass, at the middle of its box, and the palm the rest, at the place that makes the
+whole match the file. The fingers move symmetrically, so mass and centre of gravity are exact at every opening; only the
+moments of inertia change with it, by ``2 m_f y^2``. Moments are those of uniform boxes: an estimate, since no hand of
+this kind is published with its inertia. A hand with a suction cup is one body. Frames: flange and tool, as in
+``HandSpec``.
 """
 
 import numpy as np
 
 from runtime.cell.cell import HandSpec
-from runtime.cell.gripper import FINGERS, finger_sign, palm_box
+from runtime.cell.gripper import finger_sign, fingers_of, palm_box
 from runtime.core.frames import Array
 from runtime.core.linear import dot, matmul
 from runtime.plant.inertia import box_inertia
@@ -29,7 +30,7 @@ def finger_body(hand: HandSpec, side: str) -> Body:
 
 def palm_body(hand: HandSpec) -> Body:
     """Return the palm as a body in the flange frame: what is left of the hand's mass and first moment."""
-    fingers = [_in_flange(hand, side, 0.0) for side in FINGERS]
+    fingers = [_in_flange(hand, side, 0.0) for side in fingers_of(hand)]
     mass = hand.mass - sum(body.mass for body in fingers)
     cog = (hand.mass * hand.cog - sum(body.mass * body.cog for body in fingers)) / mass
     R = hand.X_flange_tool[:3, :3]
@@ -39,7 +40,7 @@ def palm_body(hand: HandSpec) -> Body:
 def hand_body(hand: HandSpec, opening: float | None = None) -> Body:
     """Return the whole hand as one body in the flange frame, at ``opening`` m (None: half open)."""
     y = (hand.stroke / 2.0 if opening is None else opening) / 2.0
-    bodies = [palm_body(hand), *(_in_flange(hand, side, y) for side in FINGERS)]
+    bodies = [palm_body(hand), *(_in_flange(hand, side, y) for side in fingers_of(hand))]
     # about the centre of the file, which is that of all three bodies at any opening
     inertia = sum((_about(body, hand.cog) for body in bodies), np.zeros((3, 3)))
     return Body(mass=hand.mass, cog=hand.cog, inertia=inertia)

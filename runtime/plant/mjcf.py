@@ -42,7 +42,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from runtime.cell.cell import CellSpec, HandSpec, ObstacleSpec, PartSpec
-from runtime.cell.gripper import FINGERS, finger_sign, palm_box
+from runtime.cell.gripper import FINGERS, finger_sign, fingers_of, is_holder, palm_box
 from runtime.core.decompositions import symmetric_eigen
 from runtime.core.frames import Array, pose
 from runtime.core.linear import matmul, norm
@@ -119,8 +119,9 @@ def build_mjcf(
         _part(world, part)
     if cell is not None:
         _contacts(root, spec, cell, timestep)
-        _coupling(root, timestep)
-    _actuators(root, spec, cell is not None)
+        if not cell.hand.is_cup:
+            _coupling(root, timestep)
+    _actuators(root, spec, fingers_of(cell.hand) if cell is not None else ())
     ET.indent(root)
     return ET.tostring(root, encoding="unicode")
 
@@ -260,7 +261,12 @@ def _hand(flange: ET.Element, hand: HandSpec, timestep: float) -> None:
     X_flange_palm = matmul(hand.X_flange_tool, X_tool_palm)
     _geom(flange, "palm", "hand", X_flange_palm, type="box", size=row(size / 2.0), rgba="0.3 0.32 0.35 1")
     ET.SubElement(flange, "site", {"name": "tool", "size": "0.003", **place(hand.X_flange_tool)})
-    for side in FINGERS:
+    if hand.is_cup:
+        length = hand.finger_length
+        X_flange_cup = matmul(hand.X_flange_tool, pose([0.0, 0.0, -length / 2.0]))
+        radius_half = row([hand.pad[0], length / 2.0])
+        _geom(flange, "cup", "hand", X_flange_cup, type="cylinder", size=radius_half, rgba="0.1 0.1 0.1 1")
+    for side in fingers_of(hand):
         _finger(flange, hand, side, timestep)
 
 
@@ -291,7 +297,7 @@ def _finger(flange: ET.Element, hand: HandSpec, side: str, timestep: float) -> N
     _geom(finger, f"shank_{side}", "hand", shank, type="box", size=row(shank_size / 2.0), rgba="0.4 0.42 0.45 1")
 
 
-def own_pairs(spec: RobotSpec) -> list[tuple[str, str]]:
+def own_pairs(spec: RobotSpec, hand: HandSpec) -> list[tuple[str, str]]:
     """Return which shapes of the arm and its hand may meet one another: links ``APART`` joints or more apart.
 
     Nearer ones are kept off one another by the ranges of their joints; the hand counts as the last link. Empty for an
@@ -300,8 +306,13 @@ def own_pairs(spec: RobotSpec) -> list[tuple[str, str]]:
     if not spec.link_radii:
         return []
     shapes = [(f"link{axis + 1}", axis) for axis in range(spec.n)]
-    shapes += [(name, spec.n - 1) for name in ("palm", *(f"{part}_{side}" for side in FINGERS for part in FINGER))]
+    shapes += [(name, spec.n - 1) for name in ("palm", *hand_geoms(hand))]
     return [(a, b) for a, one in shapes for b, other in shapes if one + APART <= other]
+
+
+def hand_geoms(hand: HandSpec) -> tuple[str, ...]:
+    """Return the names of the shapes of a hand beside its palm."""
+    return ("cup",) if hand.is_cup else tuple(f"{part}_{side}" for side in fingers_of(hand) for part in FINGER)
 
 
 def own_pair_name(first: str, second: str) -> str:
@@ -311,7 +322,7 @@ def own_pair_name(first: str, second: str) -> str:
 
 def _contacts(root: ET.Element, spec: RobotSpec, cell: CellSpec, timestep: float) -> None:
     contact = ET.SubElement(root, "contact")
-    for first, second in own_pairs(spec):
+    for first, second in own_pairs(spec, cell.hand):
         ET.SubElement(
             contact,
             "pair",
@@ -326,13 +337,14 @@ def _contacts(root: ET.Element, spec: RobotSpec, cell: CellSpec, timestep: float
 
 
 def _grip(contact: ET.Element, cell: CellSpec, timestep: float) -> None:
-    """State the contacts of pads and parts, whose slip must be damped faster than MuJoCo's time constants allow."""
+    """State the contacts of what holds with parts: their slip is damped faster than MuJoCo's time constants allow."""
+    holders = [name for name in hand_geoms(cell.hand) if is_holder(name)]
     for part in cell.parts:
-        for side in FINGERS:
+        for holder in holders:
             ET.SubElement(
                 contact,
                 "pair",
-                geom1=f"pad_{side}",
+                geom1=holder,
                 geom2=f"part:{part.name}",
                 condim="3",
                 friction=f"{part.friction!r} {part.friction!r} 0.005 0.0001 0.0001",
@@ -383,11 +395,11 @@ def _solid(body: PartSpec | ObstacleSpec) -> dict[str, str]:
     return {"type": "box", "size": row(half)}
 
 
-def _actuators(root: ET.Element, spec: RobotSpec, with_hand: bool) -> None:
+def _actuators(root: ET.Element, spec: RobotSpec, fingers: Iterable[str]) -> None:
     actuator = ET.SubElement(root, "actuator")
     names = [joint_name(index) for index in range(spec.n)]
     # gear 1: the servo gives joint torques, so that the motor's ratio is not applied twice
-    for name in [*names, *(f"finger_{side}" for side in FINGERS)] if with_hand else names:
+    for name in [*names, *(f"finger_{side}" for side in fingers)]:
         ET.SubElement(actuator, "motor", name=name, joint=name, gear="1")
 
 

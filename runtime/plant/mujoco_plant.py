@@ -31,6 +31,7 @@ from runtime.plant.cell_model import CellModel
 from runtime.plant.gears import elastic_axes, physics_steps
 from runtime.plant.mjcf import friction_bias
 from runtime.plant.plant import HandState
+from runtime.plant.suction import Suction
 from runtime.plant.touches import Bodies, Pair
 from runtime.robot.model.spec import RobotSpec
 
@@ -99,6 +100,11 @@ class MujocoPlant:
             p_tool=data.site_xpos[site],
             R_tool=data.site_xmat[site].reshape(3, 3),
             pad_length=float(cell.hand.pad[2]),
+            holders=1 if cell.hand.is_cup else len(FINGERS),
+        )
+        hand = int(self._model.body("hand").id)
+        self._suction = (
+            Suction(cell, self.bodies, data.xfrc_applied, hand, data.xipos[hand]) if cell.hand.is_cup else None
         )
         self._known_contacts: dict[bytes, frozenset[Pair]] = {}
         self._touched: frozenset[Pair] = frozenset()
@@ -160,6 +166,8 @@ class MujocoPlant:
         if not self._valid:
             return False
         self._tau[:] = tau
+        if self._suction is not None:
+            self._suction.pull(self._closed)
         _mj_step(self._model, self._data, self._substeps)
         if self._warnings() != self._no_warning:
             return self._stop()
@@ -217,7 +225,8 @@ class MujocoPlant:
         return "; ".join(_text(kind, int(self._data.warning.lastinfo[kind])) for kind in kinds)
 
     def close_hand(self, closed: bool) -> None:
-        """Start closing or opening the hand: both fingers push with the grip force."""
+        """Start closing or opening the hand: both fingers push with the grip force, or the pump is on."""
+        # a cup has no fingers, and so none of these forces
         self._closed = closed
         self._finger_force[:] = -self._grip_force if closed else self._grip_force
 
@@ -228,7 +237,12 @@ class MujocoPlant:
         return HandState(closed=self._closed, opening=opening, holding=holding)
 
     def gripped(self) -> tuple[str, ...]:
-        """Return the parts that both pads press on from the sides; one that the tips of the pads stand on is not."""
+        """Return the parts that both pads press on from the sides; one that the tips of the pads stand on is not.
+
+        Of a cup the part that it pulls.
+        """
+        if self._suction is not None:
+            return tuple(self._suction.held())
         data = self._data
         y_tool = self.bodies.R_tool[:, 1]
         pads: dict[str, set[str]] = {name: set() for name in self._part_address}
@@ -288,7 +302,9 @@ class MujocoPlant:
 
     def moved(self) -> Array:
         """Return pose of each part and distance of each pad, as ``Plant.moved``."""
-        return np.asarray(self._last_qpos[self._pictured])
+        moved = np.asarray(self._last_qpos[self._pictured])
+        # logs have two fingers, whatever the hand: those of a cup stay at 0
+        return moved if self._suction is None else np.concatenate([moved, np.zeros(len(FINGERS))])
 
     def X_world_tool(self) -> Array:
         """Return the true pose (4, 4) of the tool point, of the same instant as ``q``."""

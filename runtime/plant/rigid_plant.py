@@ -3,8 +3,9 @@
     (M(q) + N^2 J) ddq = tau - h(q, dq)            integrated by semi-implicit Euler, one tick at a time
 
 Gears are rigid too, also where the robot file gives a spring: ``q_link`` is ``q``. It runs in place of MuJoCo
-(``--no-physics``) and in tests of the control loop. Its hand is exact: closing it takes the part whose centre is
-within ``REACH`` of the tool point, and the arm then carries that part's true mass; opening it leaves the part there.
+(``--no-physics``) and in tests of the control loop. Its hand is exact: closing it takes the part whose centre is within
+``REACH`` of the tool point, or a cup the part that it seals on, however heavy it is, and the arm then carries that
+part's true mass; opening it leaves the part there.
 """
 
 from typing import ClassVar
@@ -12,6 +13,7 @@ from typing import ClassVar
 import numpy as np
 
 from runtime.cell.cell import CellSpec
+from runtime.cell.sealing import seals
 from runtime.core.frames import Array, inverse, quaternion
 from runtime.core.linear import matmul, norm
 from runtime.core.state import Stateful
@@ -107,9 +109,16 @@ class RigidPlant(Stateful):
         X_tool_world = inverse(self._X_world_tool())
         for name, X_world_part in self._parts.items():
             X_tool_part = matmul(X_tool_world, X_world_part)
-            if norm(X_tool_part[:3, 3]) <= REACH:
+            if self._takes(name, X_tool_part):
                 self._holding, self._X_tool_part = name, X_tool_part
                 return
+
+    def _takes(self, name: str, X_tool_part: Array) -> bool:
+        hand = self._cell.hand
+        if hand.is_cup:
+            part = next(part for part in self._cell.parts if part.name == name)
+            return seals(hand, np.eye(4), part, X_tool_part)
+        return norm(X_tool_part[:3, 3]) <= REACH
 
     def _carry(self) -> None:
         """Give the arm the true mass of the hand and of what it holds."""

@@ -138,4 +138,4 @@ class Shapes:
 
 
 def _of_arm(name: str) -> bool:
-    return name.startswith(("link", "palm", "pad_", "shank_"))
+    return name.startswith(("link", "palm", "cup", "pad_", "shank_"))

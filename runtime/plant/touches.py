@@ -23,7 +23,7 @@ from itertools import chain
 
 import numpy as np
 
-from runtime.cell.gripper import FINGERS
+from runtime.cell.gripper import FINGERS, is_holder
 from runtime.core.frames import Array, rotation_angle
 from runtime.core.linear import matmul, norm
 from runtime.core.program_line import ProgramLine, named
@@ -54,7 +54,8 @@ class Bodies:
     """The m parts and the tool as live arrays of one instant, at most one physics step old; world frame, m.
 
     ``p`` (m, 3) and ``R`` (m, 3, 3) are the centres and orientations of the parts, ``size`` (m, 3) their edges,
-    ``p_tool`` (3,) and ``R_tool`` (3, 3) the tool point, ``pad_length`` m how long a pad is.
+    ``p_tool`` (3,) and ``R_tool`` (3, 3) the tool point, ``pad_length`` m how long a pad is or how wide a cup;
+    ``holders``: how many pads or cups must touch a part that is held.
     """
 
     names: tuple[str, ...]
@@ -64,6 +65,7 @@ class Bodies:
     p_tool: Array
     R_tool: Array
     pad_length: float
+    holders: int = len(FINGERS)
 
 
 @dataclass(slots=True, kw_only=True)
@@ -296,7 +298,9 @@ class Touches:
 
     def _grip(self, seen: _Seen) -> None:
         """Take a part between the pads of the closed hand as held; that it was pushed to there was its grasp."""
-        may = [part for part, pads in seen.pads.items() if len(pads) == len(FINGERS) and part not in self._taken]
+        may = [
+            part for part, pads in seen.pads.items() if len(pads) == self._bodies.holders and part not in self._taken
+        ]
         gripped = self._gripped() if self._closed and may else ()
         for part in may:
             if part.removeprefix(_PART) in gripped:
@@ -371,7 +375,7 @@ class Touches:
         going = self._open.get(part)
         if going is None or going.touch.statement != self._statement:
             touch = Touch(by=[by], what=part, tick=tick, place=self._place, statement=self._statement)
-            self._start(part, touch, self._index[part], self._closed and by.startswith("pad_"))
+            self._start(part, touch, self._index[part], self._closed and is_holder(by))
         elif by not in going.touch.by:
             going.touch.by.append(by)
         return part
@@ -451,7 +455,9 @@ def shape_text(name: str) -> str:
         return f"the {which} finger"
     if name.startswith("link"):
         return f"link {name.removeprefix('link')}"
-    return {"palm": "the palm", "floor": "the floor"}.get(name, name.removeprefix(_PART).removeprefix(_OBSTACLE))
+    return {"palm": "the palm", "cup": "the cup", "floor": "the floor"}.get(
+        name, name.removeprefix(_PART).removeprefix(_OBSTACLE)
+    )
 
 
 def _sorted(pairs: frozenset[Pair]) -> _Seen:
@@ -468,7 +474,7 @@ def _sorted(pairs: frozenset[Pair]) -> _Seen:
                 seen.parts_on_fixed.append((part, other))
             else:
                 seen.on_parts.append((other, part))
-                if other.startswith("pad_"):
+                if is_holder(other):
                     seen.pads[part].add(other)
         elif any(fixed):
             seen.on_fixed.append((pair[fixed.index(False)], pair[fixed.index(True)]))

@@ -45,7 +45,7 @@ def test_check_and_run_judge_an_arm_against_itself_by_the_same_shapes(tmp_path, 
 def test_pairs_that_say_nothing_never_meet():
     """The palm of the built-in hand is in link 6, which is its own; links nearer than three joints have no pair."""
     cell = builtin_cell()
-    pairs = own_pairs(cell.robot)
+    pairs = own_pairs(cell.robot, cell.hand)
     assert ("link1", "link4") in pairs
     assert ("link1", "link3") not in pairs
     assert ("link3", "palm") in pairs

@@ -1,0 +1,55 @@
+"""The pull of a suction cup: a force on the part that it seals on, and its reaction on the hand.
+
+While the pump is on and the rim seals (``runtime.cell.sealing``), the pressure of the air pushes part and cup onto one
+another by the holding force, along the axis of the cup and through the middle of its rim. All the rest is contact and
+friction of cup and part, as with fingers: the part comes off when its weight and acceleration pull by more than the
+force, slides when they shear by more than friction times what presses, and tips off when their moment is larger than
+that of the force about the rim. MuJoCo's adhesion actuator was rejected: it pulls through whatever contacts there are,
+so that a part which hangs by one corner of the rim is held like one that seals.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from runtime.cell.cell import CellSpec
+from runtime.cell.sealing import seals
+from runtime.core.frames import Array, pose
+from runtime.plant.touches import Bodies
+
+
+class Suction:
+    """The cup of a cell; what it holds now is read from the forces that it has written."""
+
+    def __init__(self, cell: CellSpec, bodies: Bodies, forces: Array, hand: int, centre: Array) -> None:
+        """``forces`` (bodies, 6) N, N m on the centres of gravity in the world, those of the parts last.
+
+        ``hand`` is the body of the hand and ``centre`` (3,) m its centre of gravity in the world, live.
+        """
+        self._cell, self._bodies, self._centre = cell, bodies, centre
+        self._on_hand, self._on_parts = forces[hand], forces[len(forces) - len(cell.parts) :]
+
+    def pull(self, closed: bool) -> None:
+        """Write the forces of the tick to come, for the poses of now."""
+        held = self._sealed() if closed else None
+        self._on_parts[:] = 0.0
+        self._on_hand[:] = 0.0
+        if held is None:
+            return
+        bodies = self._bodies
+        force = -self._cell.hand.grip_force * bodies.R_tool[:, 2]
+        self._on_parts[held, :3], self._on_hand[:3] = force, -force
+        self._on_parts[held, 3:] = np.cross(bodies.p_tool - bodies.p[held], force)
+        self._on_hand[3:] = np.cross(bodies.p_tool - self._centre, -force)
+
+    def held(self) -> Sequence[str]:
+        """Return the part that is pulled, if any."""
+        return [self._bodies.names[k] for k in np.flatnonzero(self._on_parts.any(axis=1)).tolist()]
+
+    def _sealed(self) -> int | None:
+        bodies = self._bodies
+        X_world_tool = pose(bodies.p_tool, bodies.R_tool)
+        for k, part in enumerate(self._cell.parts):
+            if seals(self._cell.hand, X_world_tool, part, pose(bodies.p[k], bodies.R[k])):
+                return k
+        return None
