@@ -24,7 +24,7 @@ def place(name, part):
 
 def test_there_are_at_least_ten_programs():
     assert len(ALL) >= 10
-    assert set(SHOP) == {"dispense", "inspect", "palletise", "recover", "sort", "tend"}
+    assert set(SHOP) == {"cans", "dispense", "inspect", "palletise", "recover", "sort", "tend"}
 
 
 @pytest.mark.parametrize("name", SHOP)
@@ -112,3 +112,11 @@ def test_what_goes_wrong_is_answered():
     statements = run("shop/recover.rbl")[1].report["statements"]
     waits = [entry for entry in statements if entry["text"].startswith("WAIT")]
     assert [entry["duration_s"] for entry in waits] == [pytest.approx(0.5, abs=0.009)]
+
+
+def test_cans_are_stacked_by_a_cup():
+    for k, part in enumerate(("can_1", "can_2")):
+        assert place("cans", part) == pytest.approx([480.0, 220.0, 630.0 + 60.0 * k], abs=1.0)
+    notes = [note for entry in run("shop/cans.rbl")[1].report["statements"] for note in entry["notes"]]
+    assert notes == ["holds 'can_1'", "holds 'can_2'"]
+    assert not run("shop/cans.rbl")[1].log["fingers"].any()

@@ -195,6 +195,16 @@ def test_a_cylinder_is_drawn_as_one():
         np.testing.assert_allclose(shapes[body].X_body_shape, np.eye(4), atol=1e-12)
 
 
+def test_a_cup_is_drawn_from_the_palm_to_the_tool_point():
+    pad = np.array([0.015, 0.015, 0.03])
+    cell = replace(CELL, hand=replace(CELL.hand, kind="suction", pad=pad, stroke=0.0, finger_length=0.04))
+    scene = Scene.from_json(scene_of(cell).as_json())
+    assert not [body.name for body in scene.bodies if body.name.startswith("finger")]
+    (cup,) = (shape for shape in scene.shapes if shape.name == "cup")
+    ends = cup.X_body_shape[2, 3] + np.array([-0.5, 0.5]) * cup.size[2]
+    assert (cup.body, *ends, cup.size[1]) == ("tool", pytest.approx(-0.02), pytest.approx(0.0), 0.015)
+
+
 def test_whatever_a_cell_holds_its_scene_can_be_read_again():
     robot = replace(CELL.robot, name="n" * 5000)
     obstacles = tuple(replace(CELL.obstacles[0], name=f"o{k}") for k in range(1500))

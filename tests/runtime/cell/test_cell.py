@@ -65,6 +65,37 @@ def test_a_cylinder_in_si() -> None:
     np.testing.assert_allclose(cell.parts[0].size, [0.04, 0.04, 0.08])
 
 
+FINGERS = "stroke_mm = 80\ngrip_force_n = 120\n"
+PADS = "pad_mm = [20, 8, 40]\nfinger_length_mm = 52\n"
+CUP = 'kind = "suction"\nholding_force_n = {}\ncup_diameter_mm = {}\n'
+
+
+def with_cup(force="40", diameter="30", more=""):
+    text = cell_text()
+    assert FINGERS in text and PADS in text
+    return text.replace(FINGERS, CUP.format(force, diameter) + more).replace(PADS, "")
+
+
+def test_a_cup_in_si() -> None:
+    hand = parse(with_cup()).hand
+    assert (hand.is_cup, hand.grip_force, hand.finger_length, hand.stroke) == (True, 40.0, 0.03, 0.0)
+    np.testing.assert_allclose(hand.pad, [0.015, 0.015, 0.03])
+
+
+@pytest.mark.parametrize(
+    ("wrong", "code"),
+    [
+        ({"force": "nan"}, "RBL604"),
+        ({"force": "0"}, "RBL605"),
+        ({"diameter": "-30"}, "RBL605"),
+        ({"diameter": '"30"'}, "RBL613"),
+        ({"more": "stroke_mm = 80\n"}, "RBL609"),
+    ],
+)
+def test_a_cup_that_is_none_is_refused(wrong, code) -> None:
+    assert refused(with_cup(**wrong)).code == code
+
+
 def test_arrays_are_read_only() -> None:
     cell = parse(cell_text())
     for array in (cell.home, cell.hand.cog, cell.hand.X_flange_tool, cell.parts[0].size, cell.tools["grip"]):
@@ -99,6 +130,7 @@ def test_frames_and_controller_are_handed_on() -> None:
         ("pose_mm_deg = [480, -220, 640, 0, 0, 0]", "pose_mm_deg = [480, -220, nan, 0, 0, 0]", "RBL604"),
         ("pose_mm_deg = [480, -220, 640, 0, 0, 0]", "pose_mm_deg = [480, -220, 640]", "RBL613"),
         ("dwell_s = 0.3", "dwell_s = 1e9", "RBL605"),
+        ("stroke_mm = 80", 'kind = "magnet"\nstroke_mm = 80', "RBL610"),
         ('name = "part"', 'name = "table"', "RBL610"),
         ('name = "part"', 'name = "TABLE"', "RBL610"),
         ("[hand]", "[frames.World]\npose_mm_deg = [0, 0, 0, 0, 0, 0]\n[hand]", "RBL610"),
