@@ -271,6 +271,7 @@ class CellTouches:
         X_world_tool = self._tool(hand.q)
         parts = [part for part in self._cell.parts if part.name in scene.lying]
         sealed = [p.name for p in parts if seals(self._cell.hand, X_world_tool, p, scene.lying[p.name])][:1]
+        # not drawn to the rim here: by 1 mm at most, and where it is put down it rests as it lay
         held = {name: inverse(X_world_tool) @ scene.lying[name] for name in sealed}
         lying = {name: X for name, X in scene.lying.items() if name not in held}
         return replace(scene, lying=lying, held=held, closed=True)

@@ -38,6 +38,7 @@ def _name(obstacle: ObstacleSpec) -> str:
 
 def _obstacle(obstacle: ObstacleSpec) -> list[Shape]:
     name, size = _name(obstacle), obstacle.size
+    # without legs: a round top is rather a drum than a table
     if obstacle.shape == "cylinder":
         return [_upright(name, size, "obstacle", obstacle.name)]
     under = float(obstacle.X_world_obstacle[2, 3] - size[2] / 2.0)

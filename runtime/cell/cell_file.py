@@ -247,6 +247,7 @@ def _fingers(table: Table) -> Mapping[str, Any]:
 
 
 def _cup(table: Table) -> Mapping[str, Any]:
+    # the keys of fingers hold it from here on: what reads a hand has one record for both kinds
     diameter = table.number("cup_diameter_mm", low=1.0, high=1000.0)
     return {
         "stroke_mm": 0.0,

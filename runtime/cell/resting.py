@@ -108,6 +108,7 @@ def _directions(one: Box, other: Box) -> list[Vector]:
     """Return the directions in which two bodies may be apart."""
     # parallel edges give no direction of their own: the faces have it
     found = [_unit(_cross(a, b)) for a, b in product(one.axes, other.axes)]
+    # a round side has a normal in every direction: that towards what is nearest to it
     for body, beside in ((one, other), (other, one)):
         if body.is_round:
             found += [_unit(_across(body, point)) for point in beside.rims()]

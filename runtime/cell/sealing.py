@@ -1,7 +1,7 @@
 """Whether a suction cup seals on a part: its whole rim lies on one flat face.
 
 The face is the one that looks towards the cup, of a box, or an end of a cylinder; the side of a cylinder is not flat,
-so that no cup seals on it. A real cup is soft: its lip bridges ``GAP`` and gives way to ``PRESSED`` where it is pushed
+so that no cup seals on it. A real cup is soft: its lip bridges ``GAP`` and yields by ``PRESSED`` where it is pushed
 on.
 """
 
@@ -19,6 +19,7 @@ PRESSED = 2e-3
 ASKEW = 5.0 * DEG
 """Largest angle between the axis of the cup and the normal of the face, rad."""
 
+# a flat face is convex: where these are on it, the polygon between them is, and the circle but for 8 % of its radius
 _ANGLES = np.arange(8) * (np.pi / 4.0)
 _RIM = np.stack([np.cos(_ANGLES), np.sin(_ANGLES), np.zeros(8)])
 
@@ -28,6 +29,7 @@ def seals(hand: HandSpec, X_world_tool: Array, part: PartSpec, X_world_part: Arr
     R_part_world = X_world_part[:3, :3].T
     R = matmul(R_part_world, X_world_tool[:3, :3])
     towards = R[:, 2]
+    # of a box in any pose exactly one face looks to the cup, but for the edges, on which no cup seals anyway
     axis = int(np.argmax(np.abs(towards)))
     if not abs(towards[axis]) >= np.cos(ASKEW) or (part.shape == "cylinder" and axis != 2):
         return False
@@ -35,6 +37,7 @@ def seals(hand: HandSpec, X_world_tool: Array, part: PartSpec, X_world_part: Arr
     rim = centre[:, None] + matmul(R, _RIM * hand.pad[0])
     half = part.size / 2.0
     gaps = -np.sign(towards[axis]) * rim[axis] - half[axis]
+    # so written, a pose with NaN seals on nothing
     if not (gaps.max() <= GAP and gaps.min() >= -PRESSED):
         return False
     across = [k for k in range(3) if k != axis]

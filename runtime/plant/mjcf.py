@@ -264,6 +264,7 @@ def _hand(flange: ET.Element, hand: HandSpec, timestep: float) -> None:
     if hand.is_cup:
         length = hand.finger_length
         X_flange_cup = matmul(hand.X_flange_tool, pose([0.0, 0.0, -length / 2.0]))
+        # rigid, and as wide as its rim all along: the soft lip is in the rule of what seals
         radius_half = row([hand.pad[0], length / 2.0])
         _geom(flange, "cup", "hand", X_flange_cup, type="cylinder", size=radius_half, rgba="0.1 0.1 0.1 1")
     for side in fingers_of(hand):

@@ -115,6 +115,7 @@ class RigidPlant(Stateful):
 
     def _takes(self, name: str, X_tool_part: Array) -> bool:
         hand = self._cell.hand
+        # not by the centre of the part: the rim is on its surface, however large the part is
         if hand.is_cup:
             part = next(part for part in self._cell.parts if part.name == name)
             return seals(hand, np.eye(4), part, X_tool_part)

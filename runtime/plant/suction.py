@@ -31,6 +31,7 @@ class Suction:
 
     def pull(self, closed: bool) -> None:
         """Write the forces of the tick to come, for the poses of now."""
+        # every tick anew, also of a part that is held: what has slid half off the rim is let go at once
         held = self._sealed() if closed else None
         self._on_parts[:] = 0.0
         self._on_hand[:] = 0.0
@@ -39,11 +40,13 @@ class Suction:
         bodies = self._bodies
         force = -self._cell.hand.grip_force * bodies.R_tool[:, 2]
         self._on_parts[held, :3], self._on_hand[:3] = force, -force
+        # moments about the centres of gravity, at which MuJoCo applies what is written here
         self._on_parts[held, 3:] = np.cross(bodies.p_tool - bodies.p[held], force)
         self._on_hand[3:] = np.cross(bodies.p_tool - self._centre, -force)
 
     def held(self) -> Sequence[str]:
         """Return the part that is pulled, if any."""
+        # from the forces and not from a field of its own: they are part of the state that a snapshot holds
         return [self._bodies.names[k] for k in np.flatnonzero(self._on_parts.any(axis=1)).tolist()]
 
     def _sealed(self) -> int | None:
