@@ -241,8 +241,9 @@ class MujocoPlant:
 
         Of a cup the part that it pulls.
         """
-        if self._suction is not None:
-            return tuple(self._suction.held())
+        return self._between_pads() if self._suction is None else tuple(self._suction.held())
+
+    def _between_pads(self) -> tuple[str, ...]:
         data = self._data
         y_tool = self.bodies.R_tool[:, 1]
         pads: dict[str, set[str]] = {name: set() for name in self._part_address}
