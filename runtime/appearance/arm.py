@@ -67,7 +67,8 @@ def arm_shapes(spec: RobotSpec, shown: Collection[int] = ()) -> list[Shape]:
     figure = _Figure.of(spec)
     shapes = _stand(figure)
     for index in range(spec.n):
-        shapes += _own(figure, index) + _across(figure, index) + _onwards(figure, index)
+        own = _quill(figure, index) if spec.axes[index].kind.slides else _own(figure, index)
+        shapes += own + _across(figure, index) + _onwards(figure, index)
     hidden = {link(number - 1) for number in shown}
     return [shape for shape in shapes if shape.body not in hidden]
 
@@ -159,6 +160,19 @@ def _own(figure: _Figure, index: int) -> list[Shape]:
     else:
         shapes.append(limb(body, ring, axle.leaves * Z, (0.92 * r, INSIDE * figure.radii[index + 1]), "body", "arm"))
     return shapes
+
+
+def _quill(figure: _Figure, index: int) -> list[Shape]:
+    """Return the rod of an axis that slides, long enough to be held at both ends of its stroke, and what holds it."""
+    axis, r = figure.spec.axes[index], figure.radii[index]
+    rod, nut, held = 0.45 * r, 1.5 * r, figure.axles[index].arrives
+    back, ahead = -(axis.limits.upper + 2.0 * nut) * Z, (nut - min(axis.limits.lower, 0.0)) * Z
+    X = axis.placement
+    low, high = (np.asarray(matmul(X, np.array([0.0, 0.0, at, 1.0]))[:3]) for at in (held - nut, held + nut))
+    return [
+        cylinder(link(index), back, ahead, (rod, rod), "metal", "quill"),
+        cylinder(link(index - 1), low, high, (1.2 * r, 1.2 * r), "cover", "nut"),
+    ]
 
 
 def _nose(figure: _Figure, start: Array, end: Array) -> list[Shape]:

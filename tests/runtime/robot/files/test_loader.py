@@ -40,7 +40,7 @@ def line_of(text, part, start=0):
 
 
 def test_every_robot_of_the_library_loads():
-    assert library() == ["cobra600", "irb2400", "manutec_r3", "puma560"]
+    assert library() == ["cobra600", "irb2400", "manutec_r3", "puma560", "ur10e", "ur5e"]
     for name in library():
         assert load_builtin(name).name == name
     assert load_builtin("puma560") is load_builtin("puma560")
