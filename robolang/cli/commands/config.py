@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from runtime.robot.model.spec import RobotSpec
     from runtime.settings.layers import Settings
 
-app = typer.Typer(no_args_is_help=True, help="Show the settings of the controller.")
+app = typer.Typer(no_args_is_help=True, add_completion=False, help="Show the settings of the controller.")
 
 
 @app.callback()

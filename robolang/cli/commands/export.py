@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from robolang.pulse_tables.export import Export, ExportRequest
     from runtime.pulses.channels import Channel
 
-app = typer.Typer(no_args_is_help=True, help="Write a program in the form of other controllers.")
+app = typer.Typer(no_args_is_help=True, add_completion=False, help="Write a program in the form of other controllers.")
 SHORTEST_MS, LONGEST_MS = 1.0, 1000.0
 LOWEST_HZ, HIGHEST_HZ = 1.0, 1e5  # the pulse outputs that the tables are made for end at 100 kHz (docs/pulses.md)
 

@@ -33,7 +33,9 @@ if TYPE_CHECKING:
     from runtime.core.frames import Array
     from runtime.robot.kinematics.kinematics import Kinematics
 
-app = typer.Typer(no_args_is_help=True, help="Forward and inverse kinematics of a robot (mm, deg).")
+app = typer.Typer(
+    no_args_is_help=True, add_completion=False, help="Forward and inverse kinematics of a robot (mm, deg)."
+)
 
 POSE = ("x", "y", "z", "rx", "ry", "rz")
 POSE_UNITS = ("mm", "mm", "mm", "deg", "deg", "deg")

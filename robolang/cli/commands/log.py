@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from robolang.logs.log import Log
     from robolang.logs.table import Table
 
-app = typer.Typer(no_args_is_help=True, help="Show what the log of a run holds, and export it.")
+app = typer.Typer(no_args_is_help=True, add_completion=False, help="Show what the log of a run holds, and export it.")
 _MOST_EVENTS = 40
 """Events that ``show`` prints; ``--json`` has all."""
 

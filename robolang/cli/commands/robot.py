@@ -18,7 +18,7 @@ from runtime.core.faults import Fault
 if TYPE_CHECKING:
     from runtime.robot.model.spec import RobotSpec
 
-app = typer.Typer(no_args_is_help=True, help="List and show robots, import robot models.")
+app = typer.Typer(no_args_is_help=True, add_completion=False, help="List and show robots, import robot models.")
 
 
 @app.command("list", cls=PlainCommand)

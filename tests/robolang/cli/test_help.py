@@ -158,3 +158,8 @@ def test_a_command_has_the_options_of_its_groups():
     result = CliRunner().invoke(probe, ["--width", "2.5"])
     assert result.exit_code == 0
     assert calls == [Sizes(width=2.5)]
+
+
+def test_no_command_has_options_of_the_library():
+    for entry in TABLE:
+        assert "completion" not in robolang(entry.name, "--help").stdout or entry.name == "completion"
