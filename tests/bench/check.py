@@ -14,6 +14,7 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from robolang.planning.motion_findings import findings
 from robolang.planning.path_coverage import explore
@@ -78,24 +79,84 @@ def cold(lines: int, processes: int) -> Cost:
     )
 
 
-def cold_ratio(processes: int, program: Path, exit_code: int = 0) -> float:
-    """Return the processor time of ``robolang check`` of a program, in bare starts of Python.
+class Start(NamedTuple):
+    """A command that is started cold, the exit code that it has, and what its environment has in addition."""
+
+    words: tuple[str, ...]
+    code: int = 0
+    environment: tuple[tuple[str, str], ...] = ()
+
+
+BARE = Start((sys.executable, "-c", "pass"))
+EMPTY = """\
+import typer
+app = typer.Typer()
+app.command("a")(lambda: None)
+app.command("b")(lambda: None)
+app(prog_name="e")
+"""
+"""An app of typer with two commands that do nothing."""
+
+
+def check_of(program: Path, code: int = 0) -> Start:
+    return Start((str(COMMAND), "check", str(program)), code)
+
+
+def cold_ratio(processes: int, one: Start, peer: Start = BARE) -> float:
+    """Return the processor time of a command, in those of its peer.
 
     Both are the least of so many runs, in turn. The first of each is left out: it may write bytecode, and the variable
     that forbids this is not passed on, since the compiler would be measured.
     """
     kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
-    commands = {"check": [str(COMMAND), "check", str(program)], "bare": [sys.executable, "-c", "pass"]}
-    expected = {"check": exit_code, "bare": 0}
     quiet = [(os.POSIX_SPAWN_OPEN, 1, os.devnull, os.O_WRONLY, 0)]
-    times: dict[str, list[float]] = {name: [] for name in commands}
+    times: dict[Start, list[float]] = {one: [], peer: []}
     for _ in range(processes + 1):
-        for name, command in commands.items():
+        for start, spent in times.items():
             # wait4 gives microseconds; os.times counts in hundredths of a second, half of a bare start
-            _, status, usage = os.wait4(os.posix_spawn(command[0], command, kept, file_actions=quiet), 0)
-            assert os.waitstatus_to_exitcode(status) == expected[name], command
-            times[name].append(usage.ru_utime + usage.ru_stime)
-    return min(times["check"][1:]) / min(times["bare"][1:])
+            words, environment = list(start.words), {**kept, **dict(start.environment)}
+            _, status, usage = os.wait4(os.posix_spawn(words[0], words, environment, file_actions=quiet), 0)
+            assert os.waitstatus_to_exitcode(status) == start.code, words
+            spent.append(usage.ru_utime + usage.ru_stime)
+    return min(times[one][1:]) / min(times[peer][1:])
+
+
+def starts(smallest: bool) -> Iterator[Row]:
+    """Measure cold starts beside their peers."""
+    processes = 2 if smallest else 40
+    yield Row(
+        figure="`robolang check programs/shop/palletise.rbl`, whole process, CPU time against a bare start of Python",
+        form="{:.1f} times",
+        values=(ratio := cold_ratio(processes, check_of(PROGRAMS / "shop" / "palletise.rbl")),),
+        good=smallest or ratio <= 5.0,
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        broken, empty = Path(folder) / "broken.rbl", Path(folder) / "empty.py"
+        broken.write_text("10 MOV P1\n")
+        empty.write_text(EMPTY)
+        typed = (str(COMMAND),)
+        peer = (sys.executable, str(empty))
+        line = (("COMP_WORDS", "robolang ru"), ("COMP_CWORD", "1"))
+        yield Row(
+            figure="the same, a program of one line with an error (`10 MOV P1`)",
+            form="{:.1f} times",
+            values=(ratio := cold_ratio(processes, check_of(broken, 1)),),
+            good=smallest or ratio <= 5.0,
+        )
+        yield Row(
+            figure="`robolang --help`, whole process, CPU time against that of an app of typer with two empty commands",
+            form="{:.2f} times",
+            values=(ratio := cold_ratio(processes, Start((*typed, "--help")), Start((*peer, "--help"))),),
+            good=smallest or ratio <= 1.2,
+        )
+        ours = Start(typed, environment=(*line, ("_ROBOLANG_COMPLETE", "complete_bash")))
+        theirs = Start(peer, environment=(*line, ("_E_COMPLETE", "complete_bash")))
+        yield Row(
+            figure="completion of a command in bash, against that app",
+            form="{:.2f} times",
+            values=(ratio := cold_ratio(processes, ours, theirs),),
+            good=smallest or ratio <= 1.2,
+        )
 
 
 def ratio(path: Path, rounds: int) -> tuple[float, float]:
@@ -139,23 +200,7 @@ def rows(smallest: bool) -> Iterator[Row]:
         form="{:.2f} s",
         values=(cold(many, processes).processor,),
     )
-    starts = cold_ratio(2 if smallest else 40, PROGRAMS / "shop" / "palletise.rbl")
-    yield Row(
-        figure="`robolang check programs/shop/palletise.rbl`, whole process, CPU time against a bare start of Python",
-        form="{:.1f} times",
-        values=(starts,),
-        good=smallest or starts <= 5.0,
-    )
-    with tempfile.TemporaryDirectory() as folder:
-        broken = Path(folder) / "broken.rbl"
-        broken.write_text("10 MOV P1\n")
-        starts = cold_ratio(2 if smallest else 40, broken, exit_code=1)
-    yield Row(
-        figure="the same, a program of one line with an error (`10 MOV P1`)",
-        form="{:.1f} times",
-        values=(starts,),
-        good=smallest or starts <= 5.0,
-    )
+    yield from starts(smallest)
     paths = [PROGRAMS / "pick_and_place.rbl"] if smallest else sorted(PROGRAMS.rglob("*.rbl"))
     yield planning(paths, 1 if smallest else 5)
 
