@@ -178,6 +178,9 @@ def named_arm(name: str) -> ArmFile:
     raise no_robot(name)
 
 
+_EXPAND = "; a xacro file is expanded first, where its package is installed: xacro arm.urdf.xacro > arm.urdf"
+
+
 def no_robot(name: str) -> Fault:
     """Return the fault of a name that no robot has (RBL708)."""
     import difflib  # needed for a hint only
@@ -188,7 +191,7 @@ def no_robot(name: str) -> Fault:
         "RBL708",
         f"there is no robot '{name}'",
         f"{guess}built in: {', '.join(robot_file.library())}; a robot file is named by its path, which ends "
-        "in .toml, .urdf or .xml",
+        f"in .toml, .urdf or .xml{_EXPAND if name.lower().endswith('.xacro') else ''}",
     )
 
 

@@ -155,6 +155,12 @@ def test_long_names_and_numbers_are_folded_and_never_cut(tmp_path):
     assert all(part in shown for part in ("-1234.56", "1.48765e-05", "1.23456e-05"))
 
 
+def test_a_xacro_is_answered_with_what_to_do():
+    error = robolang("robot", "show", "arm.urdf.xacro", code=2).stderr
+    assert "RBL708" in error
+    assert "xacro arm.urdf.xacro > arm.urdf" in " ".join(error.split())
+
+
 def test_a_robot_in_capitals_is_answered_with_its_name():
     # once as the answer, once in the list
     assert robolang("robot", "show", "PUMA560", code=2).stderr.count("puma560") == 2
