@@ -26,6 +26,7 @@ from robolang.execution.result import StatementRun
 from robolang.execution.session import Session
 from robolang.interpreter.effects import Effect, SetPayload
 from robolang.project.project import Project, load_project
+from robolang.project.turning import only_turning
 from runtime.cell.cell import CellSpec
 from runtime.core.frames import Array
 from runtime.core.linear import norm
@@ -142,6 +143,7 @@ class Request:
         project = load_project(
             self.program, self.cell, self.robot, profile=self.profile, options={**self.options, **changed}
         )
+        only_turning(project.cell.robot, "a comparison")
         # most variants are wrong on purpose: what supervision would stop is what is to be seen; the command says so
         watched = project.profile.supervision
         return project.with_profile(replace(project.profile, supervision=replace(watched, enabled=False)))

@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 
 from robolang.project.project import builtin_cell
+from robolang.project.turning import only_turning
 from runtime.cell.cell import CellSpec
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
@@ -113,6 +114,7 @@ class Grid:
 def plan(request: Request, payload: Payload, axis: int) -> Test:
     """Return the test motions of an axis; ``Fault`` RBL420 when they would leave a limit of the robot."""
     spec = request.robot
+    only_turning(spec, "an identification")
     if not 0 <= axis < spec.n:
         raise Fault("RBL420", f"{spec.name} has the axes 1 to {spec.n}, no J{axis + 1}")
     model = _loaded(spec, payload)

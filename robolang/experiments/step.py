@@ -17,6 +17,7 @@ import numpy as np
 
 from robolang.execution.rig import IdealArm, Rig, plant_of
 from robolang.project.project import builtin_cell
+from robolang.project.turning import only_turning
 from runtime.cell.cell import CellSpec
 from runtime.control.controller import Controller
 from runtime.core.faults import Fault
@@ -127,6 +128,7 @@ def step(request: StepRequest) -> StepResult:
 
     ``Fault`` RBL516 where the arm touched itself or the floor: its response is not that of the servo then.
     """
+    only_turning(request.robot, "a step")
     _check(request)
     robot = ideal_drives(request.robot) if request.ideal else request.robot
     # a step is a following error of its whole size, which supervision would stop (RBL511)

@@ -22,6 +22,7 @@ from typing import Any, Literal
 import numpy as np
 
 from robolang.execution.rig import Rig, fitted, plant_of
+from robolang.project.turning import only_turning
 from runtime.cell.cell import CellSpec
 from runtime.control.controller import Controller
 from runtime.core.faults import Fault
@@ -122,6 +123,7 @@ def exercise_about(robot: RobotSpec, q: Array, profile: Profile, amplitude: floa
     RBL411 where an axis would leave its range, RBL404 where one would be too fast. Without an ``amplitude``, rad, each
     axis swings by what its limits leave; RBL411 when they leave nothing.
     """
+    only_turning(robot, "weighing")
     unit = _shape(robot, profile.period_s)
     swings = _share(robot) * (AMPLITUDE if amplitude is None else amplitude)
     if not swings.any():

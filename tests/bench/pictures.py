@@ -19,7 +19,16 @@ from tests.robolang.view.browser import Tab, chromium
 
 FOLDER = Path(__file__).parents[2] / "docs" / "pictures"
 DEMO = "programs/pick_and_place.rbl"
-ROBOTS = {"puma560": DEMO, "manutec_r3": "programs/manutec_pick_and_place.rbl", "irb2400": "programs/wrist/e1.rbl"}
+LINES = "programs/universal/lines.rbl"
+ROBOTS = {
+    "puma560": DEMO,
+    "manutec_r3": "programs/manutec_pick_and_place.rbl",
+    "irb2400": "programs/wrist/e1.rbl",
+    "ur5e": LINES,
+    "ur10e": LINES,
+    "cobra600": "programs/scara/pick.rbl",
+}
+IN_A_ROW = 3
 WIDE = (1600, 960)
 PLANNED = """LOAD (0, 0, 60), 0.8
 HAND OFF
@@ -106,15 +115,15 @@ def plan(work: Path) -> None:
 
 
 def robots(work: Path) -> None:
-    """The built-in arms, beside one another."""
-    pictures = []
-    for name in ROBOTS:
-        robolang("render", ROBOTS[name], "-o", work / f"{name}.png", "--at", "2", "--size", "640x640")
-        pictures.append(Image.open(work / f"{name}.png").convert("RGB"))
-    row = Image.new("RGB", (sum(each.width for each in pictures), pictures[0].height))
-    for index, each in enumerate(pictures):
-        row.paste(each, (index * each.width, 0))
-    row.save(FOLDER / "robots.png")
+    """The built-in arms, in rows."""
+    side = 640
+    grid = Image.new("RGB", (IN_A_ROW * side, -(-len(ROBOTS) // IN_A_ROW) * side))
+    for index, (name, program) in enumerate(ROBOTS.items()):
+        where = ("-o", work / f"{name}.png", "--at", "2", "--size", f"{side}x{side}")
+        robolang("render", program, "--robot", name, *where)
+        row, column = divmod(index, IN_A_ROW)
+        grid.paste(Image.open(work / f"{name}.png").convert("RGB"), (column * side, row * side))
+    grid.save(FOLDER / "robots.png")
 
 
 def plot(work: Path) -> None:

@@ -8,6 +8,7 @@ import pytest
 from robolang.execution.dry_run import rehearse
 from robolang.project.project import load_project
 from tests.programs.runs import run
+from tests.robolang.cli.commands import robolang
 
 FOLDER = Path(__file__).parents[2] / "programs" / "scara"
 CELL = FOLDER / "pick.cell.toml"
@@ -54,3 +55,10 @@ def test_joints_and_limits_are_in_mm(tmp_path):
     assert q == pytest.approx([0.0, np.radians(40), 0.15, np.radians(10)])
     (code,) = {item.code for item in planned(tmp_path, "MOVEJ JOINT(0, 40, 211, 10)\n").refused}
     assert code == "RBL309"
+
+
+@pytest.mark.parametrize("words", [["compare"], ["weigh"]], ids=str)
+def test_commands_whose_tables_are_in_degrees_refuse_a_slide(words):
+    error = robolang(*words, FOLDER / "pick.rbl", code=2).stderr
+    assert "RBL703" in error
+    assert "J3" in error

@@ -62,8 +62,10 @@ def inertia(options: _CompensationOptions, chart: _MapOptions, output: JsonOptio
         raise OptionValueError("--compensation", "cannot be used with --map: the map shows the model")
     with reported():
         from robolang.project.project import load_any_robot
+        from robolang.project.turning import only_turning
 
         spec = load_any_robot(options.robot)
+        only_turning(spec, "this table")
         say_warnings(spec.warnings)
         q, carried = values.posture(options.joints, spec), values.payload(options.payload, "--payload", spec)
         values.warn_outside(q, spec)
