@@ -15,7 +15,7 @@ pytestmark = pytest.mark.physics
 
 FOLDED = "10 MOVEJ JOINT(-60, 210, 25, -70, 65, -75), SPEED 30\n"
 SHAPED = PUMA.read_text()
-BARE = re.sub("^link_radius_mm.*\n", "", SHAPED, flags=re.M)
+BARE = re.sub(r'^link_radius_mm.*\n|"axes\.\*\.link_radius_mm", ', "", SHAPED, flags=re.M)
 
 
 def program(folder, robot):
