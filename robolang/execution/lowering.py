@@ -220,8 +220,10 @@ def _forward(q: Array, around: Surroundings) -> Array:
 
 
 def _at_point(point: Point, around: Surroundings, X: Array | None = None) -> _Goal:
+    # first: it refuses joints of another arm
+    X = _taught(point, around, X)
     joints = None if point.joints is None else np.array(point.joints) * around.cell.robot.units
-    return _Goal(X=_taught(point, around, X), q_end=joints, configuration=point.configuration, turns=point.turns)
+    return _Goal(X=X, q_end=joints, configuration=point.configuration, turns=point.turns)
 
 
 def _taught(point: Point, around: Surroundings, X: Array | None = None) -> Array:

@@ -20,14 +20,16 @@ class Placement(Record):
     """A table: ``from_mm`` (3,) the middle of its top in the template, ``to_mm`` (3,) before the arm.
 
     ``heading_deg`` turns it about the upright through the base of the arm, ``yaw_deg`` (0 or 180) the tool about its
-    own axis at every point. ``home_deg`` (n,) are the joint angles at the point HOME.
+    own axis at every point. ``home`` (n,) are the joints at the point HOME, deg, of an axis that slides mm;
+    ``slides``: there is one.
     """
 
     from_mm: tuple[float, float, float]
     to_mm: tuple[float, float, float]
     heading_deg: int
     yaw_deg: int
-    home_deg: tuple[float, ...]
+    home: tuple[float, ...]
+    slides: bool = False
 
     def position(self, position_mm: Numbers) -> list[float]:
         """Return where a position (3,) mm of the template comes to, mm."""
@@ -54,7 +56,10 @@ class Placement(Record):
         # tomlkit, and not a writer of its own: comments and layout of the template stay
         table = cast(dict[str, Any], tomlkit.parse(text))
         table["robot"] = robot
-        table["home"]["joints_deg"] = list(self.home_deg)
+        if self.slides:
+            # the key of a cell whose joints have different units
+            del table["home"]["joints_deg"]
+        table["home"]["joints" if self.slides else "joints_deg"] = list(self.home)
         for item in (*table.get("parts", ()), *table.get("obstacles", ()), *table.get("frames", {}).values()):
             item["pose_mm_deg"] = self.pose(item["pose_mm_deg"])
         return tomlkit.dumps(table)

@@ -97,8 +97,15 @@ def _examined(kinematics: Kinematics, job: Job, heading: int) -> Iterator[_Place
             best = int(np.argmax(ratings))
             if ratings[best] >= LEAST:
                 # + 0.0: an angle of -0.0 is 0
-                home = tuple(round(float(angle) / DEG, DECIMALS) + 0.0 for angle in postures[best - 1][0])
-                placement = Placement(from_mm=job.from_mm, to_mm=to_mm, heading_deg=heading, yaw_deg=yaw, home_deg=home)
+                home = tuple(round(float(value), DECIMALS) + 0.0 for value in postures[best - 1][0] / kinematics.units)
+                placement = Placement(
+                    from_mm=job.from_mm,
+                    to_mm=to_mm,
+                    heading_deg=heading,
+                    yaw_deg=yaw,
+                    home=home,
+                    slides=bool((kinematics.units != DEG).any()),
+                )
                 yield _Place(rating=float(ratings[best]), placement=placement)
 
 

@@ -99,14 +99,14 @@ def _request(options: _StepOptions, arm: _ArmOptions, profile: str | None, setti
     from robolang.experiments.step import StepRequest
     from robolang.project.project import load_any_robot, load_settings
     from runtime.core.frames import pose
-    from runtime.core.units import MM
+    from runtime.core.units import DEG, MM
 
     spec = load_any_robot(options.robot)
     say_warnings(spec.warnings)
     tool_point = np.array(numbers(options.tool, option="--tool", names=("x", "y", "z"))) * MM
     in_force = load_settings(spec, pose(tool_point, np.eye(3)), profile, settings)
     _check_numbers(options)
-    q, size = values.posture(options.joints, spec), options.size * spec.axes[options.axis - 1].kind.size
+    q, size = values.posture(options.joints, spec), options.size * DEG
     _check_range(q, options.axis - 1, size, spec)
     carried = _payload(options.payload, "--payload", spec)
     return StepRequest(

@@ -15,6 +15,7 @@ from robolang.execution.outlook import Outlook, TimeLeft
 from robolang.execution.result import StatementRun
 from robolang.interpreter.effects import Origin
 from runtime.core.faults import Alarm
+from runtime.robot.model.axis_kind import REVOLUTE
 from tests.campaign import size, some
 from tests.robolang.cli.commands import dry
 from tests.robolang.pendant.terminal import Terminal
@@ -97,7 +98,7 @@ def test_an_alarm_takes_the_place_of_the_statement():
 
 @pytest.mark.parametrize(("angle", "share"), [(0.0, 0.5), (-1.0, 0.0), (np.nan, None), (np.inf, None)])
 def test_the_place_in_a_range(angle, share):
-    limits = type("Limits", (), {"lower": -1.0, "upper": 1.0})
+    limits = type("Limits", (), {"lower": -1.0, "upper": 1.0, "kind": REVOLUTE})
     assert run_panel._joint(1, limits, angle, 0.0).share == share
 
 

@@ -8,7 +8,7 @@ from robolang.templates.placement import Placement
 from robolang.templates.template import NAMES, template
 
 PLACED = Placement(
-    from_mm=(480.0, 0.0, 600.0), to_mm=(700.0, 0.0, 400.0), heading_deg=90, yaw_deg=180, home_deg=(1.5, -0.25)
+    from_mm=(480.0, 0.0, 600.0), to_mm=(700.0, 0.0, 400.0), heading_deg=90, yaw_deg=180, home=(1.5, -0.25)
 )
 
 

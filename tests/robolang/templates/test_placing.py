@@ -35,7 +35,7 @@ def first(arm, job=JOB, count=5):
 def test_home_is_the_first_pose_over_the_table(name):
     arm = kinematics(name)
     for place in first(arm):
-        tool = arm.forward(np.array(place.home_deg) * DEG) @ JOB.X_flange_tool
+        tool = arm.forward(np.array(place.home) * arm.units) @ JOB.X_flange_tool
         where = np.array(place.position([0.0, 0.0, 100.0])) * MM
         assert np.allclose(tool[:3, 3], where, atol=1e-6)
         assert np.allclose(tool[:3, 2], [0, 0, -1], atol=1e-6)
@@ -47,7 +47,7 @@ def test_home_is_the_first_pose_over_the_table(name):
 def test_a_place_without_room_to_the_ends_of_the_ranges_is_none():
     arm = kinematics()
     (best,) = first(arm, count=1)
-    q = np.array(best.home_deg) * DEG
+    q = np.array(best.home) * arm.units
     # all ranges so narrow that only the postures over the table are left, without room
     rows = placing._rating(arm, q[None], 1.5, best.to_mm[2], JOB)
     assert rows > 0.9
@@ -58,7 +58,7 @@ def test_a_place_without_room_to_the_ends_of_the_ranges_is_none():
 def test_a_singular_posture_is_rated_by_how_near_it_is():
     arm = kinematics()
     (best,) = first(arm, count=1)
-    q = np.array(best.home_deg) * DEG
+    q = np.array(best.home) * arm.units
     ratings = []
     for bend in (0.3, 0.03, 0.0):
         q[4] = bend
@@ -70,7 +70,7 @@ def test_a_singular_posture_is_rated_by_how_near_it_is():
 def test_an_arm_that_would_lie_on_the_table_is_not_placed_there():
     arm = kinematics()
     (best,) = first(arm, count=1)
-    q = np.array(best.home_deg)[None] * DEG
+    q = np.array(best.home)[None] * arm.units
     assert placing._rating(arm, q, 1.5, best.to_mm[2], JOB) > 0.0
     assert placing._rating(arm, q, 1.5, best.to_mm[2] + 400.0, JOB) == 0.0
 
@@ -89,7 +89,7 @@ def test_an_arm_without_a_closed_form_gets_the_same_kind_of_place():
     arm = Kinematics(replace(spec, axes=tuple(axes), opw=None))
     assert not arm.closed_form
     (place,) = first(arm, count=1)
-    tool = arm.forward(np.array(place.home_deg) * DEG) @ JOB.X_flange_tool
+    tool = arm.forward(np.array(place.home) * arm.units) @ JOB.X_flange_tool
     assert np.allclose(inverse(tool)[:3, :3] @ np.array([0, 0, -1.0]), [0, 0, 1], atol=1e-6)
 
 
