@@ -22,6 +22,9 @@ from tests.robolang.cli.commands import PUMA, robolang
 pytestmark = pytest.mark.physics
 
 PAIRS = list(product(NAMES, robot_file.library()))
+SEARCHED = ("ur10e", "ur5e")
+"""Arms without a closed form whose places take seconds to find: one job of each is enough of a sample."""
+SAMPLE = [at for at, (kind, robot) in enumerate(PAIRS) if robot not in SEARCHED or (kind, robot) == ("tend", "ur5e")]
 
 
 def made(folder, kind, robot):
@@ -35,7 +38,7 @@ def judged(program, physics):
     return [verdict for verdict in judge(expected, session, result.report, result.log, False) if not verdict.ok]
 
 
-@pytest.mark.parametrize(("kind", "robot"), PAIRS)
+@pytest.mark.parametrize(("kind", "robot"), some(PAIRS, *SAMPLE))
 def test_a_new_project_has_no_finding_and_the_layout_of_fmt(tmp_path, kind, robot):
     program = made(tmp_path, kind, robot)
     robolang("check", "--strict", "--motion", program.parent)
