@@ -4,6 +4,7 @@ import json
 from types import SimpleNamespace
 
 from robolang.execution.session import Session
+from robolang.project.builtin import cell_text
 from robolang.project.project import load_project
 from robolang.teaching.desk import Desk
 from robolang.teaching.documents import load_documents
@@ -13,6 +14,15 @@ from robolang.view.frames import Frames
 from robolang.view.messages import read_message
 from robolang.view.page_teaching import PageTeaching
 
+PROGRAM = """MOVEJ HERE + (0, 0, 20)
+FOR N = 1 TO 3
+  MOVE HERE + (0, 0, 40), SPEED 200
+  MOVE HERE + (0, 0, -40), SPEED 200
+NEXT N
+OUT(1) = 1
+PRINT "done"
+"""
+INPUT = cell_text() + "\n[inputs.1]\nchanges = [[0, 0]]\n"
 CYCLE_S = 0.008
 MOST_TURNS = 5000
 
