@@ -1,6 +1,5 @@
 """Arguments of functions for Python: numbers and settings, and errors that name the argument. Imports nothing heavy."""
 
-import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NoReturn, TypedDict
@@ -39,7 +38,8 @@ def numbers(values: Sequence[float], argument: str, names: Sequence[str]) -> tup
     if len(found) != len(names):
         refuse(argument, f"{len(names)} numbers are needed ({', '.join(names)}), but {len(found)} given")
     for name, value in zip(names, found, strict=True):
-        if not (math.isfinite(value) and abs(value) <= _MOST):
+        # written so that NaN is refused too
+        if not abs(value) <= _MOST:
             refuse(argument, f"{name} is {value:g}")
     return found
 
