@@ -308,7 +308,7 @@ def _print(job: Job, outcomes: Sequence[_Outcome]) -> None:
     # a corrected program from the standard input goes to the standard output, so its report cannot
     corrected = job.fixes.fix and not job.fixes.diff and STANDARD_INPUT in job.paths
     # what other programs read has no colours
-    plain = job.report.output_format not in FOR_PEOPLE or job.fixes.diff
+    plain = job.report.form not in FOR_PEOPLE or job.fixes.diff
     (echo if plain else show_finding)(text, nl=False, err=corrected)
 
 
@@ -316,7 +316,7 @@ def _report(job: Job, outcomes: Sequence[_Outcome]) -> str:
     """Return the text of the report."""
     if job.fixes.diff:
         return "".join(line for outcome in outcomes for line in _change(outcome))
-    results, form = [result for outcome in outcomes for result in outcome.results], job.report.output_format
+    results, form = [result for outcome in outcomes for result in outcome.results], job.report.form
     if job.report.statistics:
         from robolang.lint.reporters import statistics
 

@@ -43,12 +43,18 @@ class ReportOptions(Group):
             help="full, concise, json, json-lines, github, gitlab, junit or sarif.",
         ),
     ] = "full"
+    as_json: Annotated[bool, Option("--json", help="The same as --output-format json.")] = False
     output_file: Annotated[
         str | None, Option("--output-file", metavar="FILE", help="Write the report to this file.")
     ] = None
     statistics: Annotated[bool, Option("--statistics", help="Count the findings of each code.")] = False
     strict: Strict = False
     exit_zero: Annotated[bool, Option("--exit-zero", help="Exit code 0 in place of 1, whatever is found.")] = False
+
+    @property
+    def form(self) -> str:
+        """The form of the report that the two options order."""
+        return "json" if self.as_json else self.output_format
 
 
 class MotionOptions(Group):

@@ -66,9 +66,11 @@ def _refuse(paths: tuple[str, ...], files: FileOptions, report: ReportOptions, m
     from robolang.lint.reporters import FORMS
 
     # not as choices of the option: `quick` takes any text that stands after a name
-    form = report.output_format
+    form = report.form
     if form not in FORMS:
         raise OptionValueError("--output-format", f"'{form}' is not a form of report; known: {', '.join(FORMS)}")
+    if report.as_json and report.output_format not in ("full", "json"):
+        raise OptionValueError("--json", f"cannot be combined with --output-format {report.output_format}")
     if report.statistics and form not in ("full", "concise", "json"):
         raise OptionValueError("--statistics", f"cannot be printed as {form}; use full, concise or json")
     if motion.times is not None and not motion.motion:

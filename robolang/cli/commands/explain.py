@@ -1,10 +1,16 @@
-"""``robolang explain CODE``: what a code means and what to do about it, or what a word means and what to write."""
+"""``robolang explain CODE``: what a code means and what to do about it, or what a word means and what to write.
+
+``--json`` prints one object for a code, as ``robolang rules --json`` has them, and {"word", "text"} for a word or a
+line; without CODE an array of all codes.
+"""
 
 import difflib
-from typing import TYPE_CHECKING, Annotated
+import json
+from typing import TYPE_CHECKING, Annotated, Any
 
 from robolang.cli.errors import reported
-from robolang.cli.options import Argument
+from robolang.cli.options import Argument, JsonOptions
+from robolang.cli.output import echo
 from robolang.cli.usage import OptionValueError
 
 if TYPE_CHECKING:
@@ -15,7 +21,7 @@ if TYPE_CHECKING:
 _Code = Annotated[str | None, Argument("CODE", "Code such as RBL412, or a word as PTP; default: list codes.")]
 
 
-def explain(code: _Code) -> None:
+def explain(code: _Code, output: JsonOptions) -> None:
     """Explain a code and what to do, or a word of this language or another one.
 
     A line of another language in quotes is translated.
@@ -29,25 +35,40 @@ def explain(code: _Code) -> None:
 
     with reported():
         entries = all_codes()
-        if code is None:
-            _print_all(entries)
+        found = entries if code is None else _find(code, entries) or _meaning(code, entries)
+        if output.as_json:
+            echo(json.dumps(_data(code, found), indent=2))
         else:
-            _print_of(code, entries)
+            _print(found)
 
 
-def _print_of(text: str, entries: "list[Code]") -> None:
-    """Print the page of a code, or what a word means; a usage error with the nearest code for what is neither."""
+def _meaning(text: str, entries: "list[Code]") -> str:
+    """Return what a word or a line means; a usage error with the nearest code for what means nothing."""
     from robolang.syntax.word_help import explained
 
-    entry = _find(text, entries)
-    if entry is not None:
-        _print(entry)
-    elif of_word := explained(text):
-        _print_lines(of_word)
-    else:
+    of_word = explained(text)
+    if not of_word:
         near = _near(_as_code(text), entries)
         hint = f"did you mean {near}?" if near else "robolang explain lists the codes"
         raise OptionValueError("CODE", f"there is no code and no word '{text}'; {hint}")
+    return of_word
+
+
+def _data(text: str | None, found: "list[Code] | Code | str") -> Any:
+    from robolang.cli.code_data import code_data
+
+    if isinstance(found, list):
+        return [code_data(entry) for entry in found]
+    return {"word": text, "text": found} if isinstance(found, str) else code_data(found)
+
+
+def _print(found: "list[Code] | Code | str") -> None:
+    if isinstance(found, list):
+        _print_all(found)
+    elif isinstance(found, str):
+        _print_lines(found)
+    else:
+        _print_code(found)
 
 
 def _find(text: str, entries: "list[Code]") -> "Code | None":
@@ -81,7 +102,7 @@ def _print_lines(text: str) -> None:
         console.print(line, soft_wrap=True)
 
 
-def _print(entry: "Code") -> None:
+def _print_code(entry: "Code") -> None:
     from robolang.cli.console import Console
 
     console = Console()

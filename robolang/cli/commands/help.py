@@ -3,7 +3,7 @@
 from typing import Annotated
 
 from robolang.cli.errors import reported
-from robolang.cli.options import Argument
+from robolang.cli.options import Argument, JsonOptions
 
 _Words = Annotated[list[str] | None, Argument("[WORD]...", "A command, a code or a word; default: list all commands.")]
 
@@ -19,7 +19,7 @@ def help(words: _Words) -> None:
     from robolang.cli.commands.explain import explain
 
     if words and words[0] not in {entry.name for entry in TABLE}:
-        explain(" ".join(words))
+        explain(" ".join(words), JsonOptions())
         return
     with reported():
         from robolang.cli.main import app

@@ -1,7 +1,7 @@
 """``robolang rules``: everything that ``robolang check`` can find, as a table or as JSON."""
 
 import json
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from robolang.cli.errors import reported
 from robolang.cli.options import Group, Option
@@ -23,32 +23,14 @@ def rules(output: _RulesOptions) -> None:
 
     Exit codes: 0 done.
     """
+    from robolang.cli.code_data import code_data
     from robolang.lint.registry import codes
 
     with reported():
         if output.as_json:
-            echo(json.dumps([_as_json(entry) for entry in codes()], indent=2))
+            echo(json.dumps([code_data(entry) for entry in codes()], indent=2))
         else:
             _print(codes())
-
-
-def _as_json(entry: "Code") -> dict[str, Any]:
-    """Return a rule as plain JSON types; what only a page says is null for a rule that has none."""
-    from robolang.lint.registry import rule
-
-    known = rule(entry.code)  # None: an error of the language has a code, and no page that argues for it
-    return {
-        "code": entry.code,
-        "name": entry.name,
-        "meaning": entry.meaning,
-        "remedy": entry.remedy,
-        "severity": None if known is None else known.severity.value,
-        "why": None if known is None else known.why,
-        "example": None if known is None else known.example,
-        "instead": None if known is None else known.instead,
-        "fix": None if known is None or not known.fix else known.fix,
-        "found_by": None if known is None else known.found_by,
-    }
 
 
 def _print(entries: "list[Code]") -> None:

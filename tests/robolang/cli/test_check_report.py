@@ -78,6 +78,7 @@ def test_an_error_of_syntax_is_not_ignored_by_a_beginning(folder):
         (("--extend-select", "RBL19x"), "RBL190 RBL191"),
         (("--output-format", "xml"), "RBL703 --output-format xml"),
         (("--statistics", "--output-format", "sarif"), "RBL703 --statistics"),
+        (("--json", "--output-format", "sarif"), "RBL703 --json --output-format"),
         (("--watch", "-"), "RBL703 --watch"),
     ],
 )
@@ -167,7 +168,9 @@ def test_statistics_count(folder):
     assert robolang("check", "--statistics", code=1).stdout == (
         "2  RBL301  point-undefined\n1  RBL116  line-number-order\n1  RBL401  payload-not-a-mass\n"
     )
-    counts = json.loads(robolang("check", "--statistics", "--output-format", "json", code=1).stdout)
+    text = robolang("check", "--statistics", "--output-format", "json", code=1).stdout
+    assert robolang("check", "--statistics", "--json", code=1).stdout == text
+    counts = json.loads(text)
     assert [(row["code"], row["count"]) for row in counts] == [("RBL301", 2), ("RBL116", 1), ("RBL401", 1)]
 
 

@@ -1,3 +1,4 @@
+import json
 import re
 
 import pytest
@@ -105,3 +106,16 @@ def test_no_word_is_the_name_of_a_code():
 
     names = {entry.name.upper() for entry in all_codes()}
     assert names & (KEYWORDS | FUNCTIONS | words.instructions().keys() | words.functions().keys()) == set()
+
+
+def test_json_of_a_code_is_that_of_the_rules():
+    of_rules = {entry["code"]: entry for entry in json.loads(robolang("rules", "--json").stdout)}
+    assert json.loads(robolang("explain", "RBL103", "--json").stdout) == of_rules["RBL103"]
+
+
+def test_json_of_all_codes_and_of_a_word():
+    listed = json.loads(robolang("explain", "--json").stdout)
+    assert [entry["code"] for entry in listed] == [entry.code for entry in all_codes()]
+    of_word = json.loads(robolang("explain", "PTP", "--json").stdout)
+    assert of_word["word"] == "PTP"
+    assert of_word["text"].splitlines() == robolang("explain", "PTP").stdout.splitlines()
