@@ -4,25 +4,23 @@ Only files in the folder of the model are opened, wherever links in it lead (R22
 noted; the link is then drawn from its joint frames. Meshes go into every log, so fine ones are made coarser.
 """
 
-import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from runtime.appearance.mesh_files import MOST_BYTES, MeshError, read_mesh
-from runtime.appearance.scene import MOST_MESHES, Mesh
+from runtime.appearance.coarser import coarser
+from runtime.appearance.scene import MOST_MESHES
 from runtime.core.bounded_files import RefusedError, read_bounded, resolved_inside, stays_inside
-from runtime.core.frames import Array, frozen
+from runtime.core.frames import frozen
 from runtime.core.linear import matmul
-from runtime.robot.model.spec import MESH_ENDINGS, LinkMesh
+from runtime.core.mesh import Mesh
+from runtime.core.mesh_files import MESH_ENDINGS, MOST_BYTES, MeshError, read_mesh
+from runtime.robot.model.spec import LinkMesh
 
 MOST_FACES = 30_000
 """Triangles of all meshes of a robot that are kept: about 0.3 MB in a log."""
-FINEST, GROWTH = 1e-3, 1.1
-"""Cell of the finest grid that makes meshes coarser, m, and the least factor from one to the next."""
 MOST_COPIED = 100_000_000
 """Bytes of all mesh files that a copy of a model gets."""
 LARGEST = 20.0
@@ -51,7 +49,7 @@ def own_meshes(meshes: tuple[LinkMesh, ...]) -> OwnMeshes:
             torn.add(each.link)
     # a link that lacks one of its meshes would have a hole: its joint frames draw it instead
     whole = [each for each in found if each[0] not in torn]
-    coarse = _coarser([mesh for _, _, mesh in whole])
+    coarse = coarser([mesh for _, _, mesh in whole], MOST_FACES)
     links = tuple((link, name, mesh) for (link, name, _), mesh in zip(whole, coarse, strict=True))
     return OwnMeshes(links=links, notes=tuple(notes))
 
@@ -109,47 +107,3 @@ def _located(mesh: LinkMesh) -> tuple[str, Path]:
             raise MeshError("is a link that leads out of the folder of the model")
         return each, path
     raise MeshError("is not in the folder of the model")
-
-
-def _coarser(meshes: list[Mesh]) -> list[Mesh]:
-    """Return meshes of at most ``MOST_FACES`` faces in all: the vertices in one cell of a grid become one.
-
-    All have one grid, so that no link of a robot is coarser than another.
-    """
-    cell, found = FINEST, meshes
-    # always from the meshes themselves: errors of one grid would add to those of the next
-    while (faces := sum(len(mesh.faces) for mesh in found)) > MOST_FACES:
-        # of a surface, four times as many faces are left by a grid half as wide
-        cell *= max(GROWTH, math.sqrt(faces / MOST_FACES)) if found is not meshes else 1.0
-        found = [_snapped(mesh, cell) for mesh in meshes]
-    return found
-
-
-def _snapped(mesh: Mesh, cell: float) -> Mesh:
-    low = mesh.vertices.min(axis=0)
-    # one number for each cell, since numpy sorts numbers much faster than rows
-    cells = np.floor((mesh.vertices - low) / cell).astype(np.int64)
-    _, which, counts = np.unique(_numbered(cells), return_inverse=True, return_counts=True)
-    middle = np.stack([np.bincount(which, mesh.vertices[:, k]) for k in range(3)], axis=1) / counts[:, None]
-    faces = which[mesh.faces]
-    a, b, c = faces.T
-    kept = faces[(a != b) & (b != c) & (c != a)]
-    # what is thinner than a cell is folded onto itself: each triangle stays once
-    _, first = np.unique(_numbered(np.sort(kept, axis=1)), return_index=True)
-    if not len(first):
-        # a screw beside a housing is less than a cell: its box is seen, and a mesh without faces is none
-        return _box(low, mesh.vertices.max(axis=0))
-    return Mesh(vertices=frozen(middle), faces=kept[np.sort(first)].astype(np.int32))
-
-
-def _box(low: Array, high: Array) -> Mesh:
-    """Return a box between two corners (3,)."""
-    corners = [[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
-    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    faces = [face for a, b, c, d in quads for face in ((a, b, c), (a, c, d))]
-    return Mesh(vertices=frozen(corners), faces=np.array(faces, dtype=np.int32))
-
-
-def _numbered(rows: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return one number for each row of three, each below 2^21."""
-    return np.asarray((rows[:, 0] << 42) | (rows[:, 1] << 21) | rows[:, 2])

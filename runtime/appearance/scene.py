@@ -13,11 +13,11 @@ from types import MappingProxyType
 from typing import Any, Literal, cast, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from runtime.appearance.untrusted import Untrusted
 from runtime.core.frames import Array, frozen
 from runtime.core.linear import norm
+from runtime.core.mesh import Mesh
 
 JointKind = Literal["revolute", "prismatic"]
 Source = Literal["axis", "finger", "part"]
@@ -81,14 +81,6 @@ class Shape:
     role: str
     name: str = ""
     mesh: str | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Mesh:
-    """Triangles: ``vertices`` (v, 3) m and ``faces`` (f, 3), indices of vertices, counter-clockwise from outside."""
-
-    vertices: Array
-    faces: NDArray[np.int32]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
-from runtime.appearance.scene import Mesh, Shape
+from runtime.appearance.scene import Shape
 from runtime.core.frames import Array, frozen
+from runtime.core.mesh import Mesh
 
 AROUND = 36
 """Corners of a circle."""

@@ -8,10 +8,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runtime.appearance.scene import Mesh, Scene, Shape
+from runtime.appearance.scene import Scene, Shape
 from runtime.appearance.turned import turned
 from runtime.core.frames import Array, pose
 from runtime.core.linear import matmul
+from runtime.core.mesh import Mesh
 from runtime.plant.mjcf import place, row
 
 GROUP = 2

@@ -16,9 +16,10 @@ import numpy as np
 
 from runtime.core.frames import Array, frozen, pose, rotation_from_rpy
 from runtime.core.linear import dot, matmul
+from runtime.core.mesh_files import MESH_ENDINGS
 from runtime.robot.files.imported import Hinge, Node, NodeMesh
 from runtime.robot.files.xmlfile import HEAVIEST_LINK, Element, is_elsewhere
-from runtime.robot.model.spec import MESH_ENDINGS, Body
+from runtime.robot.model.spec import Body
 
 _TURNING = ("revolute", "continuous")
 

@@ -96,10 +96,6 @@ class Correction:
     added_inertia: float = 0.0
 
 
-MESH_ENDINGS = (".stl", ".obj")
-"""Endings of the mesh files that are read."""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LinkMesh:
     """A mesh file that shows a link: pictures use it, nothing else does.

@@ -13,8 +13,8 @@ from robolang.execution.session import Session
 from robolang.logs.files import read_log, write_log
 from robolang.project.project import load_project
 from runtime.appearance.cell_scene import scene_of
-from runtime.appearance.scene import Mesh
 from runtime.cell.signals import InputSpec, Signals
+from runtime.core.mesh import Mesh
 from tests.robolang.cli.commands import BUILTIN
 
 INPUTS = """

@@ -10,7 +10,7 @@ from robolang.templates.writing import init_project, new_project
 from runtime.appearance.own_meshes import own_meshes
 from runtime.core.faults import Fault
 from tests.robolang.cli.commands import PUMA, robolang
-from tests.runtime.appearance.robots import binary_stl, box_mesh
+from tests.runtime.meshes import binary_stl, box_mesh
 from tests.runtime.robot.models import SIX
 
 # a place is checked with the shapes of MuJoCo

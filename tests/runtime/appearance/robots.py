@@ -7,7 +7,7 @@ import numpy as np
 
 from runtime.appearance.cell_scene import scene_of
 from runtime.appearance.mechanisms import machine_scene
-from runtime.appearance.scene import Mesh, Scene
+from runtime.appearance.scene import Scene
 from runtime.appearance.stance import Stance
 from runtime.cell.cell import CellSpec
 from runtime.core.frames import Array
@@ -16,6 +16,7 @@ from runtime.robot.files import loader
 from runtime.robot.files.importer import load_file, read_model
 from runtime.robot.files.sidecar import template
 from tests.runtime.from_texts import load_cell
+from tests.runtime.meshes import binary_stl, box_mesh
 from tests.runtime.robot.models import SEVEN, fill
 
 ARMS = ("puma560", "manutec_r3", "irb2400", "seven", "seven_meshes")
@@ -83,18 +84,3 @@ def with_meshes(text: str, folder: Path) -> str:
         assert mark in text
         text = text.replace(mark, mark + visual)
     return text
-
-
-def box_mesh(size: tuple[float, float, float]) -> Mesh:
-    """Return a box as triangles, counter-clockwise from outside."""
-    corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]) * size
-    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    faces = [face for a, b, c, d in quads for face in ((a, b, c), (a, c, d))]
-    return Mesh(vertices=corners, faces=np.array(faces, dtype=np.int32))
-
-
-def binary_stl(mesh: Mesh) -> bytes:
-    """Return a binary STL."""
-    records = np.zeros(len(mesh.faces), np.dtype([("n", "<f4", 3), ("c", "<f4", (3, 3)), ("u", "<u2")]))
-    records["c"] = mesh.vertices[mesh.faces]
-    return b"solid, and yet binary".ljust(80) + len(mesh.faces).to_bytes(4, "little") + records.tobytes()

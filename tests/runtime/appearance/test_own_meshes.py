@@ -10,7 +10,8 @@ from runtime.core.frames import frozen, pose, rotation_about
 from runtime.core.tomlfile import Source
 from runtime.robot.files.importer import load_file, parse_model
 from runtime.robot.model.spec import LinkMesh
-from tests.runtime.appearance.robots import MESHED, binary_stl, box_mesh, cell_with
+from tests.runtime.appearance.robots import MESHED, cell_with
+from tests.runtime.meshes import binary_stl, box_mesh
 from tests.runtime.robot.models import chain, inertial
 
 BOX = binary_stl(box_mesh((2.0, 3.0, 4.0)))

@@ -10,10 +10,11 @@ import pytest
 
 from runtime.appearance.cell_scene import scene_of
 from runtime.appearance.mechanisms import machine_scene
-from runtime.appearance.scene import ROLES, Mesh, Scene, SceneBody, SceneJoint, Shape, View
+from runtime.appearance.scene import ROLES, Scene, SceneBody, SceneJoint, Shape, View
 from runtime.appearance.stance import Stance, world_poses
 from runtime.core.faults import Fault
 from runtime.core.frames import pose
+from runtime.core.mesh import Mesh
 from runtime.pulses.mechanism import library, load_builtin
 from tests.runtime.from_texts import load_cell
 

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from runtime.appearance.cell_scene import scene_of
-from runtime.appearance.scene import Mark, Mesh, Scene, SceneBody, Shape, View
+from runtime.appearance.scene import Mark, Scene, SceneBody, Shape, View
 from runtime.appearance.stance import Stance
 from runtime.appearance.views import DIRECTIONS, named_view
+from runtime.core.mesh import Mesh
 from runtime.plant.camera import Camera
 from runtime.plant.dressing import undrawable
 from tests.runtime.from_texts import load_cell

@@ -9,11 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
-from runtime.appearance.scene import Mesh
 from runtime.core.bounded_files import RefusedError, read_bounded
 from runtime.core.frames import Array, frozen
-from runtime.robot.model.spec import MESH_ENDINGS
+from runtime.core.mesh import Mesh
 
+MESH_ENDINGS = (".stl", ".obj")
+"""Endings of the mesh files that are read."""
 MOST_BYTES = 30_000_000
 """Size of a mesh file, bytes: an STL of 600,000 triangles."""
 FARTHEST = 1e6

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from runtime.appearance import mesh_files
-from runtime.appearance.mesh_files import MeshError, read_mesh
-from tests.runtime.appearance.robots import binary_stl, box_mesh
+from runtime.core import mesh_files
+from runtime.core.mesh_files import MeshError, read_mesh
+from tests.runtime.meshes import binary_stl, box_mesh
 
 BOX = box_mesh((2.0, 3.0, 4.0))
 BINARY = binary_stl(BOX)
