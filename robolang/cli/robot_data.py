@@ -12,10 +12,7 @@ from runtime.robot.model.spec import AxisSpec, Body, RobotSpec
 
 def reach_mm(spec: RobotSpec) -> float:
     """Return the largest distance of the flange from axis 1, mm, rounded to 10 mm, within which it is found."""
-    sliding = frozenset(spec.slides.nonzero()[0].tolist())
-    placements = tuple(axis.placement for axis in spec.axes)
-    chain = Chain(placements=placements, X_last_flange=spec.X_last_flange, sliding=sliding)
-    return round(reach_of(chain, spec.lower, spec.upper) / MM, -1)
+    return round(reach_of(Chain.of(spec.axes, spec.X_last_flange), spec.lower, spec.upper) / MM, -1)
 
 
 def summary(spec: RobotSpec) -> dict[str, Any]:

@@ -7,7 +7,6 @@ from rich import box
 from rich.table import Table
 
 from robolang.core.diagnostics import safe
-from runtime.core.units import DEG
 from runtime.robot.model.estimated import axis_key, mark
 
 if TYPE_CHECKING:
@@ -68,12 +67,18 @@ def model_limits(arm: "ImportedArm") -> Table:
     def shown(value: float | None, unit: float = 1.0) -> str:
         return "-" if value is None else f"{value / unit:g}"
 
-    table = _table("Limits in the file", "range\ndeg", "speed\ndeg/s", "torque\nN m", "armature\nkg m2")
+    kinds = list(dict.fromkeys(axis.kind for axis in arm.axes))
+    units, forces, inertias = (", ".join(getattr(kind, of) for kind in kinds) for of in ("unit", "force", "inertia"))
+    speeds = ", ".join(f"{kind.unit}/s" for kind in kinds)
+    headings = (f"range\n{units}", f"speed\n{speeds}", f"torque\n{forces}", f"armature\n{inertias}")
+    table = _table("Limits in the file", *headings)
     for index, axis in enumerate(arm.axes, start=1):
-        hinge = axis.hinge
-        reach = f"{shown(hinge.lower, DEG)} .. {shown(hinge.upper, DEG)}"
+        hinge, size = axis.hinge, axis.kind.size
+        # the unit of a row where the heading has two
+        own = f" {axis.kind.unit}" if len(kinds) > 1 else ""
+        reach = f"{shown(hinge.lower, size)} .. {shown(hinge.upper, size)}{own}"
         table.add_row(
-            safe(f"J{index} {axis.name}"), reach, shown(hinge.speed, DEG), shown(hinge.effort), f"{hinge.armature:g}"
+            safe(f"J{index} {axis.name}"), reach, shown(hinge.speed, size), shown(hinge.effort), f"{hinge.armature:g}"
         )
     return table
 

@@ -25,6 +25,7 @@ from runtime.robot.model.spec import AxisSpec, Body, RobotSpec
 
 FACTORS = (0.5, 2.0)
 _STROKE, _MARGIN = 40.0 * DEG, 2.0 * DEG
+"""As many mm of an axis that slides."""
 _SHARE = 0.4
 """Share of its accelerations with which the arm moves."""
 _HAND = 0.01
@@ -78,7 +79,7 @@ def weights(spec: RobotSpec) -> list[Weight]:
     Empty where the move cannot be made with the estimates as they are.
     """
     # an arm at its limits would end in an alarm as soon as anything is worse, and nothing could be compared
-    spec = replace(spec, axes=tuple(_CHANGES["max_acceleration_deg_s2"](axis, _SHARE) for axis in spec.axes))
+    spec = replace(spec, axes=tuple(_ACCELERATION(axis, _SHARE) for axis in spec.axes))
     base = _figures(spec)
     if base is None:
         return []
@@ -106,12 +107,13 @@ def _weighed(spec: RobotSpec, base: Figures, key: str, change: Change, scale: fl
 
 def _figures(spec: RobotSpec) -> Figures | None:
     """Return the figures of the move; None where it ends with an alarm or cannot be made."""
-    lower, upper = spec.lower + _MARGIN, spec.upper - _MARGIN
+    margin, stroke = spec.bound(_MARGIN), spec.bound(_STROKE)
+    lower, upper = spec.lower + margin, spec.upper - margin
     start = np.clip(np.zeros(spec.n), lower, upper)
     # to the side with more room, so that a joint at the end of its range moves too
     side = np.where(upper - start >= start - lower, 1.0, -1.0)
-    end = np.clip(start + side * _STROKE, lower, upper)
-    text = f"MOVEJ JOINT({_angles(end)})\n"
+    end = np.clip(start + side * stroke, lower, upper)
+    text = f"MOVEJ JOINT({_typed(end / spec.units)})\n"
     cell = builtin_cell()
     # without shapes: links that are estimated too thick must not stop the move
     cell = replace(
@@ -137,8 +139,8 @@ def _figures(spec: RobotSpec) -> Figures | None:
     )
 
 
-def _angles(q: Array) -> str:
-    return ", ".join(f"{angle:.6f}" for angle in np.rad2deg(q))
+def _typed(joints: Array) -> str:
+    return ", ".join(f"{joint:.6f}" for joint in joints)
 
 
 # --- what a key changes ----------------------------------------------------------------------------------------------
@@ -173,12 +175,19 @@ def _coulomb(motor: Motor, scale: float) -> Motor:
     return motor.replaced(coulomb_friction=(forward * scale, backward * scale))
 
 
+_SPEED = _limits(lambda own, scale: own.replaced(speed=own.speed * scale))
+_ACCELERATION = _limits(lambda own, scale: own.replaced(acceleration=own.acceleration * scale))
 _CHANGES: Mapping[str, Change] = {
     "mass_kg": _body,
-    "max_speed_deg_s": _limits(lambda own, scale: own.replaced(speed=own.speed * scale)),
-    "max_acceleration_deg_s2": _limits(lambda own, scale: own.replaced(acceleration=own.acceleration * scale)),
+    "max_speed_deg_s": _SPEED,
+    "max_speed_mm_s": _SPEED,
+    "max_acceleration_deg_s2": _ACCELERATION,
+    "max_acceleration_mm_s2": _ACCELERATION,
     "max_torque_nm": _torque,
+    "max_force_n": _torque,
     "motor.gear_ratio": _motor(lambda own, scale: own.replaced(gear_ratio=own.gear_ratio * scale)),
+    # a travel that is twice as long turns the motor half as far
+    "motor.travel_mm_per_turn": _motor(lambda own, scale: own.replaced(gear_ratio=own.gear_ratio / scale)),
     "motor.rotor_inertia_kg_m2": _motor(lambda own, scale: own.replaced(rotor_inertia=own.rotor_inertia * scale)),
     "motor.viscous_friction_nm_s": _motor(
         lambda own, scale: own.replaced(viscous_friction=own.viscous_friction * scale)

@@ -9,10 +9,18 @@ from pathlib import Path
 from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault, Source, read_source
 from runtime.robot.files import robot_file
-from runtime.robot.files.joint_ranges import ranges_of
+from runtime.robot.files.joint_ranges import kinds_of, ranges_of
 from runtime.robot.files.plausibility import doubt_axes
 from runtime.robot.files.robot_file import RobotFile
-from runtime.robot.files.sidecar_file import SidecarFile, lacking_of, read_overlay, read_sidecar, sidecar_path
+from runtime.robot.files.sidecar_file import (
+    NO_OVERLAY,
+    SidecarFile,
+    check_kinds,
+    lacking_of,
+    read_overlay,
+    read_sidecar,
+    sidecar_path,
+)
 from runtime.robot.files.xmlfile import Element, parse_xml
 from runtime.robot.model.drives import Limits, PathLimits
 
@@ -69,12 +77,15 @@ def read_arm_file(path: Path) -> ArmFile:
         return robot_file.parse(source)
     root = model_root(source)
     text = sidecar_source(path)
+    overlay = NO_OVERLAY if text is None else read_overlay(text)
+    # before what it lacks: the keys of an axis follow from its kind
+    check_kinds(overlay, kinds_of(root))
     complete = text is not None and lacking_of(text, path.name) is None
     key = "name" if root.tag == "robot" else "model"  # the attribute with the name in URDF and in MJCF
     return ModelFile(
         source=source,
         name=root.text(key, "robot"),
-        ranges=ranges_of(root, {} if text is None else read_overlay(text).ranges),
+        ranges=ranges_of(root, overlay.ranges),
         sidecar=read_sidecar(text, path.name) if text is not None and complete else None,
         partial=None if complete else text,
     )

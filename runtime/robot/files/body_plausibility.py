@@ -4,7 +4,7 @@
     RBL629   bodies heavier than ``HEAVIEST`` times the cube of the reach, denser than ``DENSEST``, or with a radius of
              gyration above the reach; a torque above ``STRONGEST`` times the arm's own weight
 
-Reach is the sum of the distances from joint to joint and to the flange.
+Reach is the sum of the distances from joint to joint and to the flange; an axis that slides adds its travel.
 """
 
 import math
@@ -17,6 +17,8 @@ from runtime.core.linear import norm
 from runtime.core.tomlfile import FileFault
 from runtime.core.units import GRAVITY, MM
 from runtime.robot.files.plausibility import Place
+from runtime.robot.kinematics.chain import Placed
+from runtime.robot.model.drives import Limits
 from runtime.robot.model.spec import Body
 
 LONGEST, SHORTEST = 8.0, 0.02
@@ -31,28 +33,31 @@ STRONGEST = 50.0
 """Torque of an axis over weight times reach of the arm; built arms have up to 2."""
 
 
-def doubt_bodies(labels: Sequence[str], bodies: Sequence[Body | None], offsets: Array, place: Place) -> list[FileFault]:
+def doubt_bodies(
+    labels: Sequence[str], bodies: Sequence[Body | None], offsets: Array, travels: Array, place: Place
+) -> list[FileFault]:
     """Return the doubts about lengths (RBL628) and bodies (RBL629).
 
     ``bodies`` in their axis frames, None for one that is corrected; ``offsets`` (n + 1, 3) m from each joint to the
-    next, from the base first and to the flange last.
+    next, from the base first and to the flange last; ``travels`` (n,) m.
     """
     lengths = np.linalg.norm(offsets, axis=1)
     # a corrected body (None) or one without mass is left out: neither says anything about the units of the file
-    size = float(np.maximum(lengths.sum(), SMALLEST))
+    size = float(np.maximum(lengths.sum() + travels.sum(), SMALLEST))
     known = {axis: body for axis, body in enumerate(bodies) if body is not None and body.mass > 0.0}
     return [
-        *_doubt_reach(lengths[1:], place),
+        *_doubt_reach(lengths[1:], float(travels.sum()), place),
         *_doubt_each(labels, known, size, place),
         *_doubt_mass(known, size, place),
     ]
 
 
-def _doubt_reach(lengths: Array, place: Place) -> Iterator[FileFault]:
-    """Yield the doubt about a reach, the sum of ``lengths`` (n,) m from the first joint on."""
+def _doubt_reach(lengths: Array, travel: float, place: Place) -> Iterator[FileFault]:
+    """Yield the doubt about a reach, the sum of ``lengths`` (n,) m from the first joint on, and ``travel`` m."""
     reach = float(lengths.sum())
-    if not SHORTEST <= reach <= LONGEST:
-        looks = "it looks like mm" if reach > LONGEST else "its joints are all in one place"
+    # a rail may be longer than any arm: travel keeps a reach from being too short, and makes none too long
+    if not reach <= LONGEST or not reach + travel >= SHORTEST:
+        looks = "its joints are all in one place" if reach < SHORTEST else "it looks like mm"
         message = f"the arm is {reach / MM:.4g} mm from its first joint to the flange: {looks}"
         yield place("length", int(np.argmax(lengths)))("RBL628", message, "lengths are in m")
 
@@ -90,12 +95,24 @@ def offsets(placements: Sequence[Array], X_last_flange: Array) -> Array:
     return np.array([X[:3, 3] for X in (*placements, X_last_flange)])
 
 
-def weight_moment(bodies: Sequence[Body], offsets: Array) -> float:
+def travels(axes: Sequence[Placed], lower: Array, upper: Array) -> Array:
+    """Return how far each axis slides to one side (n,) m; 0 of one that turns, or of which that is not known."""
+    furthest = np.nan_to_num(np.maximum(np.abs(lower), np.abs(upper)))
+    return np.where([axis.kind.slides for axis in axes], furthest, 0.0)
+
+
+def turning_torques(limits: Sequence[Limits]) -> list[float]:
+    """Return the torques, N m, NaN of an axis that slides: a force says nothing about N mm."""
+    return [math.nan if own.kind.slides else own.torque for own in limits]
+
+
+def weight_moment(bodies: Sequence[Body], offsets: Array, travels: Array) -> float:
     """Return the largest moment that the weight of an arm could have about one of its joints, N m.
 
     All of its mass at the end of the stretched arm: too large by far, which is what a bound for units may be.
     """
-    return float(sum(body.mass for body in bodies)) * GRAVITY * float(np.linalg.norm(offsets, axis=1).sum())
+    length = float(np.linalg.norm(offsets, axis=1).sum() + travels.sum())
+    return float(sum(body.mass for body in bodies)) * GRAVITY * length
 
 
 def _far(body: Body, size: float) -> bool:

@@ -13,9 +13,11 @@ import numpy as np
 from runtime.core.frames import Array, frozen
 from runtime.core.units import DEG, MM
 from runtime.robot.files import estimate_rules as rules
-from runtime.robot.files.estimate_bodies import cylinder, link_radii, masses, postures, reach_of
+from runtime.robot.files.corrections import TOKEN_MASS
+from runtime.robot.files.estimate_bodies import cylinder, link_lengths, link_radii, masses, postures, reach_of
 from runtime.robot.kinematics.chain import Chain
 from runtime.robot.model.arm_model import ArmModel
+from runtime.robot.model.axis_kind import PRISMATIC, REVOLUTE, AxisKind
 from runtime.robot.model.drives import Bandwidths, Limits, Motor, PathLimits
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import AxisSpec, Body, RobotSpec
@@ -23,6 +25,8 @@ from runtime.robot.model.spec import AxisSpec, Body, RobotSpec
 _POSTURES = 300
 _HOLDING = 0.4
 """Share of its torque with which the weakest axis holds the arm, where masses follow from torques."""
+
+_SPEED_RULES = {REVOLUTE: "3 m/s at the reach, wrist 250 deg/s", PRISMATIC: "1 m/s"}
 
 Value = float | int | tuple[float, ...]
 
@@ -41,7 +45,7 @@ class Known:
 
     ``mended`` (n,): bodies that are not those of the file. ``endless`` (n,): joints without end stops. ``armature``
     kg m2, ``damping`` N m s/rad and ``friction`` N m (n,) at the joint, 0 where not known. ``payload`` kg, NaN where
-    not known.
+    not known. An axis that slides has m for rad, and its range is known: no rule gives one.
     """
 
     chain: Chain
@@ -57,12 +61,18 @@ class Known:
     friction: Array
     payload: float
 
+    @property
+    def kinds(self) -> tuple[AxisKind, ...]:
+        """The kind of each axis (n,)."""
+        return tuple(PRISMATIC if axis in self.chain.sliding else REVOLUTE for axis in range(len(self.bodies)))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Filled:
     """The arm with everything that the drives are estimated from; ``gravity`` and ``inertia`` (m, n) at postures."""
 
     reach: float
+    kinds: tuple[AxisKind, ...]
     bodies: tuple[Body, ...]
     payload: float
     speed: Array
@@ -96,11 +106,13 @@ def _filled(known: Known) -> _Filled:
     if not np.isfinite(payload):
         payload = _round(rules.rated_payload(sum(body.mass for body in bodies)), 2)
     # rounded before it is used further: the sidecar has the rounded value, and its other values follow from that one
-    guessed = [_round(rules.speed(axis, len(bodies), reach)) for axis in range(len(bodies))]
+    kinds = known.kinds
+    guessed = [_round(rules.speed(axis, len(bodies), reach, kind.slides)) for axis, kind in enumerate(kinds)]
     speed = np.where(np.isfinite(known.speed), known.speed, guessed)
     gravity, inertia = _loads(known, bodies, payload)
     filled = _Filled(
         reach=reach,
+        kinds=kinds,
         bodies=bodies,
         payload=payload,
         speed=speed,
@@ -115,7 +127,7 @@ def _bodies(known: Known, reach: float) -> tuple[Body, ...]:
     """Return the bodies (n,), cylinders where none is known; their mass from the torques, where these are."""
     if all(body is not None for body in known.bodies):
         return tuple(body for body in known.bodies if body is not None)
-    mass = masses(known.chain, reach, known.bodies)
+    mass = masses(link_lengths(known.chain, known.lower, known.upper), reach, known.bodies)
     bodies = _cylinders(known, reach, mass)
     if any(body is not None for body in known.bodies) or not np.isfinite(known.torque).all():
         return bodies
@@ -137,21 +149,23 @@ def _cylinders(known: Known, reach: float, mass: Array) -> tuple[Body, ...]:
 
 
 def _torques(filled: _Filled) -> Array:
-    """Return the torque limits (n,) N m: those that are known, and estimates."""
+    """Return the torque limits (n,) N m, or N: those that are known, and estimates."""
     gravity, inertia = filled.gravity.max(axis=0), filled.inertia.max(axis=0)
-    arm = rules.arm_axes(len(filled.bodies))
-    rises = [rules.ARM_RISE if axis < arm else rules.WRIST_RISE for axis in range(len(filled.bodies))]
+    n, slides = len(filled.bodies), [kind.slides for kind in filled.kinds]
+    rises = [rules.rise(axis, n, float(w), slides[axis]) for axis, w in enumerate(filled.speed)]
     rows = zip(gravity, inertia, filled.speed, rises, strict=True)
     own = np.array([rules.torque(float(G), float(H), float(w), rise) for G, H, w, rise in rows])
-    # motors come in a few sizes: those of an arm and those of a wrist are of one or two
-    for part, floor in ((own[:arm], rules.ARM_FLOOR), (own[arm:], rules.WRIST_FLOOR)):
-        part[:] = np.maximum(part, floor * part.max(initial=0.0))
+    # motors come in a few sizes: those of an arm and those of a wrist are of one or two; N and N m do not compare
+    arm = np.arange(n) < rules.arm_axes(n)
+    for part, floor in ((arm, rules.ARM_FLOOR), (~arm, rules.WRIST_FLOOR)):
+        turning = part & ~np.array(slides)
+        own[turning] = np.maximum(own[turning], floor * own[turning].max(initial=0.0))
     rounded = [_round(float(T)) for T in own]
     return np.where(np.isfinite(filled.torque), filled.torque, rounded)
 
 
 def _loads(known: Known, bodies: Sequence[Body], payload: float) -> tuple[Array, Array]:
-    """Return |gravity torque| N m and inertia kg m2 (m, n) of every axis at random postures, payload included."""
+    """Return |gravity torque| and inertia (m, n) of every axis at random postures, payload included, SI."""
     # the model of the controller, so that what is estimated here holds for what runs there
     model = ArmModel(_provisional(known, bodies))
     inertia = payload * rules.GYRATION**2 * np.eye(3)
@@ -174,8 +188,8 @@ def _provisional(known: Known, bodies: Sequence[Body]) -> RobotSpec:
         current_bandwidth=1.0,
     )
     limits = [
-        Limits(lower=float(low), upper=float(high), speed=1.0, acceleration=1.0, torque=1.0)
-        for low, high in zip(known.lower, known.upper, strict=True)
+        Limits(lower=float(low), upper=float(high), speed=1.0, acceleration=1.0, torque=1.0, kind=kind)
+        for low, high, kind in zip(known.lower, known.upper, known.kinds, strict=True)
     ]
     axes = tuple(
         AxisSpec(
@@ -219,20 +233,33 @@ def _whole(known: Known, filled: _Filled) -> Iterator[tuple[str, Estimate]]:
     if not np.isfinite(known.payload):
         yield "rated_payload_kg", _value(filled.payload, f"{rules.PAYLOAD_SHARE:.0%} of the mass that moves")
     # the slowest axis of either kind: the tool may move along any direction
-    axes = rules.arm_axes(len(filled.bodies))
-    arm, wrist = filled.speed[:axes], filled.speed[axes:]
-    tip = _round(rules.TIP_SHARE * float(arm.min()) * filled.reach / MM, 2)
+    arm = range(rules.arm_axes(len(filled.bodies)))
+    slowest = float(np.min([_at_tip(filled, k, float(filled.speed[k])) for k in arm]))
+    tip = _round(rules.TIP_SHARE * slowest / MM, 2)
     yield "path.default_speed_mm_s", _value(_round(rules.DEFAULT_SHARE * tip, 2), "0.4 of the path speed")
     yield "path.max_speed_mm_s", _value(tip, "0.7 of the slowest arm axis at the reach")
-    fastest = min(_acceleration(filled, k) for k in range(len(arm)))
-    acceleration = _round(rules.TIP_ACCELERATION_SHARE * fastest * filled.reach / MM, 2)
+    fastest = float(np.min([_at_tip(filled, k, _acceleration(filled, k)) for k in arm]))
+    acceleration = _round(rules.TIP_ACCELERATION_SHARE * fastest / MM, 2)
     yield "path.acceleration_mm_s2", _value(acceleration, "half of the slowest arm axis at the reach")
     yield "path.jerk_mm_s3", _value(rules.RISE_OF_JERK * acceleration, "full acceleration after 0.1 s")
-    turning = _round(rules.TIP_SHARE * float((wrist if wrist.size else arm).min()) / DEG, 2)
+    turning = _round(rules.TIP_SHARE * _slowest_turn(filled) / DEG, 2)
     yield "path.rotation_speed_deg_s", _value(turning, "0.7 of the slowest wrist axis")
     yield "path.rotation_acceleration_deg_s2", _value(rules.ROTATION_RISE * turning, "full speed after 0.25 s")
     jerk = rules.RISE_OF_JERK * rules.ROTATION_RISE * turning
     yield "path.rotation_jerk_deg_s3", _value(jerk, "full acceleration after 0.1 s")
+
+
+def _at_tip(filled: _Filled, axis: int, rate: float) -> float:
+    """Return what a speed or an acceleration of an axis (0-based) is at the reach, m/s or m/s2."""
+    return rate if filled.kinds[axis].slides else rate * filled.reach
+
+
+def _slowest_turn(filled: _Filled) -> float:
+    """Return the speed of the slowest wrist axis, or arm axis where none is a wrist's, rad/s."""
+    turning = [axis for axis, kind in enumerate(filled.kinds) if not kind.slides]
+    wrist = [axis for axis in turning if axis >= rules.arm_axes(len(filled.kinds))]
+    # an arm whose axes all slide never turns its tool: any speed serves
+    return float(np.min(filled.speed[wrist or turning])) if turning else rules.WRIST_SPEED
 
 
 def _geometry(known: Known, filled: _Filled, axis: int, open_ended: bool) -> Iterator[tuple[str, Estimate]]:
@@ -245,7 +272,8 @@ def _geometry(known: Known, filled: _Filled, axis: int, open_ended: bool) -> Ite
         body, own = filled.bodies[axis], known.bodies[axis] is not None
         I_body = body.inertia
         products = (I_body[0, 0], I_body[1, 1], I_body[2, 2], I_body[0, 1], I_body[0, 2], I_body[1, 2])
-        rule = "that of the file" if own else "its share of 50 kg (reach / m)^2.5, or of what the torques hold"
+        own_mass = "that of the file" if body.mass > TOKEN_MASS else "next to none: one body has two joints"
+        rule = own_mass if own else "its share of 50 kg (reach / m)^2.5, or of what the torques hold"
         yield "mass_kg", _value(body.mass, rule, 9)
         rule = "that of the file" if own else "half of the distance to the next joint"
         yield "cog_m", Estimate(value=_rounded(body.cog, 9), rule=rule)
@@ -257,15 +285,17 @@ def _geometry(known: Known, filled: _Filled, axis: int, open_ended: bool) -> Ite
 
 def _drive(known: Known, filled: _Filled, axis: int) -> Iterator[tuple[str, Estimate]]:
     """Yield limits, motor and servo of an axis (0-based)."""
-    w, T = float(filled.speed[axis]), float(filled.torque[axis])
+    w, T, kind = float(filled.speed[axis]), float(filled.torque[axis]), filled.kinds[axis]
     if not np.isfinite(known.speed[axis]):
-        yield "max_speed_deg_s", _value(w / DEG, "3 m/s at the reach, wrist 250 deg/s")
-    yield "max_acceleration_deg_s2", _value(_acceleration(filled, axis) / DEG, "70 % of free torque, bad posture", 2)
+        yield kind.speed_key, _value(w / kind.size, _SPEED_RULES[kind])
+    rate = _acceleration(filled, axis) / kind.size
+    yield kind.acceleration_key, _value(rate, f"70 % of free {kind.effort}, bad posture", 2)
     if not np.isfinite(known.torque[axis]):
-        yield "max_torque_nm", _value(T, "holds and accelerates arm and payload")
+        yield kind.force_key, _value(T, "holds and accelerates arm and payload")
     # positive: the sign of a gear changes nothing but the sign of the motor's turns
-    N = _round(rules.gear_ratio(w))
-    yield "motor.gear_ratio", _value(N, "motor at 315 rad/s")
+    transmission = _round(kind.transmission(rules.gear_ratio(w)))
+    N = kind.motor_ratio(transmission)
+    yield f"motor.{kind.transmission_key}", _value(transmission, "motor at 315 rad/s")
     armature, damping, friction = (float(values[axis]) for values in (known.armature, known.damping, known.friction))
     yield (
         "motor.rotor_inertia_kg_m2",
@@ -299,7 +329,7 @@ def _drive(known: Known, filled: _Filled, axis: int) -> Iterator[tuple[str, Esti
 
 
 def _acceleration(filled: _Filled, axis: int) -> float:
-    """Return the acceleration limit of an axis (0-based), rad/s2, that all but the worst postures allow."""
+    """Return the acceleration limit of an axis (0-based), rad/s2 or m/s2, that all but the worst postures allow."""
     T, w = float(filled.torque[axis]), float(filled.speed[axis])
     N = rules.gear_ratio(w)
     rotor = rules.rotor_inertia(T, N) * N**2
@@ -312,7 +342,8 @@ def _acceleration(filled: _Filled, axis: int) -> float:
 def _lowest_resonance(filled: _Filled) -> float:
     # not the worst: the stretched arm with its payload is rare, and it would halve the bandwidth of every posture
     inertia = np.median(filled.inertia, axis=0)
-    found = [rules.resonance(float(T), float(own)) for T, own in zip(filled.torque, inertia, strict=True)]
+    rows = zip(filled.torque, inertia, filled.kinds, strict=True)
+    found = [rules.resonance(float(T), float(own), kind.slides) for T, own, kind in rows]
     return float(np.min(found))
 
 

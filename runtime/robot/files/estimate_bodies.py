@@ -1,7 +1,8 @@
 """Reach of an arm, and bodies for links whose file has none: cylinders from joint to joint that share a mass.
 
 The mass of all that moves follows from the reach (``estimate_rules.moving_mass``), or from the links that are known.
-Each link has the share (l + reach / 10)^1.5 of it, l the length of the chain from its joint to the flange.
+Each link has the share (l + reach / 10)^1.5 of it, l the length of the chain from its joint to the flange. A link that
+slides is as long as its travel, but for the first: its travel lies on the ground.
 """
 
 from collections.abc import Sequence
@@ -21,7 +22,7 @@ _SHARE_FLOOR, _SHARE_POWER = 0.1, 1.5
 
 
 def postures(lower: Array, upper: Array, count: int) -> Array:
-    """Return random joint angles (count, n) rad inside the ranges, the same for every call."""
+    """Return random joint positions (count, n) rad or m inside the ranges, the same for every call."""
     return np.random.default_rng(_SEED).uniform(lower, upper, (count, len(lower)))
 
 
@@ -62,9 +63,16 @@ def link_radii(chain: Chain, reach: float) -> Array:
     )
 
 
-def masses(chain: Chain, reach: float, known: Sequence[Body | None]) -> Array:
-    """Return the masses (n,) kg of all links: those that are known, and estimates."""
-    lengths = np.linalg.norm(offsets(chain.placements, chain.X_last_flange), axis=1)[1:]
+def link_lengths(chain: Chain, lower: Array, upper: Array) -> Array:
+    """Return the lengths (n,) m of all links, from each joint to the next, with the travel of those that slide."""
+    lengths = np.asarray(np.linalg.norm(offsets(chain.placements, chain.X_last_flange), axis=1)[1:])
+    for axis in chain.sliding - {0}:
+        lengths[axis] += upper[axis] - lower[axis]
+    return lengths
+
+
+def masses(lengths: Array, reach: float, known: Sequence[Body | None]) -> Array:
+    """Return the masses (n,) kg of all links: those that are known, and estimates from ``lengths`` (n,) m."""
     ahead = np.cumsum(lengths[::-1])[::-1]
     shares = (ahead + _SHARE_FLOOR * reach) ** _SHARE_POWER
     shares /= shares.sum()

@@ -2,7 +2,8 @@
 
 The constants are those that fit the drives which are published with all of their data (Puma 560, Manutec r3; the tables
 of ``runtime/robot/library``), a factor of 2 to 3 to either side; docs/robots-estimates.md has the comparison.
-Torque T N m and speed w rad/s are limits at the joint, N motor turns per joint turn; decision 0060 has the sources.
+Torque T N m and speed w rad/s are limits at the joint, N motor turns per joint turn; of an axis that slides T is N, w
+m/s, N rad/m and an inertia a mass. Decision 0060 has the sources, decision 0064 those of axes that slide.
 """
 
 import math
@@ -22,6 +23,10 @@ WRIST_SPEED = math.radians(250.0)
 """Speed of a wrist axis, rad/s."""
 ARM_RISE, WRIST_RISE = 0.25, 0.08
 """Time in which an axis reaches its speed at its largest torque, s."""
+SLIDE_SPEED = 1.0
+"""Speed of an axis that slides, m/s: a screw of 20 mm a turn at 3000 1/min."""
+SLIDE_ACCELERATION = 10.0
+"""Acceleration of an axis that slides at its largest force, m/s2: about 1 g, in no less than ``WRIST_RISE``."""
 MOTOR_SPEED = 315.0
 """Speed of a servo motor, rad/s (3000 1/min; the motors of the Manutec r3)."""
 ROTOR_PER_TORQUE = 1.1e-4
@@ -34,6 +39,8 @@ VISCOUS_SHARE = 0.06
 """Viscous friction at the largest speed over the largest torque."""
 STIFFNESS_PER_TORQUE = 300.0
 """Stiffness of a gear over its largest torque, 1/rad: it winds up 0.2 deg at full load (Manutec r3: 160 to 430)."""
+STIFFNESS_PER_FORCE = 3000.0
+"""Stiffness of a screw or belt over its largest force, 1/m: it yields 0.3 mm at full load."""
 RESONANCE_SHARE = 0.25
 """Position bandwidth over the lowest resonance: the loop has its double pole at 2 Kp (Kv = 4 Kp), which stays at half
 of the resonance (R. P. Paul, Robot Manipulators, 1981; J. J. Craig, Introduction to Robotics)."""
@@ -89,11 +96,20 @@ def rated_payload(mass: float) -> float:
     return max(SMALLEST_PAYLOAD, PAYLOAD_SHARE * mass)
 
 
-def speed(axis: int, n: int, reach: float) -> float:
-    """Return the speed limit of an axis (0-based) of ``n``, rad/s."""
+def speed(axis: int, n: int, reach: float, slides: bool) -> float:
+    """Return the speed limit of an axis (0-based) of ``n``, rad/s or m/s."""
+    if slides:
+        return SLIDE_SPEED
     if axis >= arm_axes(n):
         return WRIST_SPEED
     return min(TIP_SPEED / reach * (ELBOW if axis >= 2 else 1.0), WRIST_SPEED)
+
+
+def rise(axis: int, n: int, w: float, slides: bool) -> float:
+    """Return the time, s, in which an axis (0-based) of ``n`` reaches its speed limit w at its largest torque."""
+    if slides:
+        return max(WRIST_RISE, w / SLIDE_ACCELERATION)
+    return ARM_RISE if axis < arm_axes(n) else WRIST_RISE
 
 
 def torque(gravity: float, inertia: float, w: float, rise: float) -> float:
@@ -139,9 +155,9 @@ def viscous_friction(T: float, N: float, w: float) -> float:
     return VISCOUS_SHARE * T / (N**2 * w)
 
 
-def resonance(T: float, inertia: float) -> float:
+def resonance(T: float, inertia: float, slides: bool) -> float:
     """Return the resonance, rad/s, of a link of ``inertia`` kg m2 on the gear of its axis, the rotor at rest."""
-    return math.sqrt(STIFFNESS_PER_TORQUE * T / inertia)
+    return math.sqrt((STIFFNESS_PER_FORCE if slides else STIFFNESS_PER_TORQUE) * T / inertia)
 
 
 def position_bandwidth(lowest: float) -> float:

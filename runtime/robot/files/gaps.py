@@ -6,18 +6,17 @@ A template of seven axes lacks about a hundred values; listed axis by axis they 
 from collections.abc import Mapping, Sequence
 
 
-def listed(lacking: Mapping[str, Sequence[int]], n: int, tables: Mapping[str, Sequence[str]]) -> str:
+def listed(lacking: Mapping[str, Sequence[int]], n: int) -> str:
     """Return ``every axis: max_acceleration_deg_s2, all of [axes.motor]; J6: max_torque_nm``.
 
-    ``lacking`` has the axes (0-based, of ``n``) by key, ``tables`` the keys of each table by its name: where the same
-    axes lack all of them, the table is named instead.
+    ``lacking`` has the axes (0-based, of ``n``) by key.
     """
     # grouped by the axes: most keys are lacked by all of them, a few by one
     by_axes: dict[tuple[int, ...], list[str]] = {}
     for key, axes in lacking.items():
         if axes:
             by_axes.setdefault(tuple(axes), []).append(key)
-    return "; ".join(f"{_axes(axes, n)}: {', '.join(whole(keys, tables))}" for axes, keys in by_axes.items())
+    return "; ".join(f"{_axes(axes, n)}: {', '.join(keys)}" for axes, keys in by_axes.items())
 
 
 def whole(keys: Sequence[str], tables: Mapping[str, Sequence[str]]) -> list[str]:

@@ -1,12 +1,12 @@
-"""An arm as URDF and MJCF files describe it: a tree of frames, made one serial chain of revolute axes.
+"""An arm as URDF and MJCF files describe it: a tree of frames, made one serial chain of axes that turn or slide.
 
-Both readers give the same tree. A ``Node`` is a frame with a body, fixed to the node before it or turning about
-one hinge of its own. ``serial_chain`` walks it from the root: nodes fixed together become one link, masses
-added, inertias moved by the parallel axis theorem,
+Both readers give the same tree. A ``Node`` is a frame with a body, fixed to the node before it or moved by one joint
+of its own, its hinge, which turns or slides. ``serial_chain`` walks it from the root: nodes fixed together become one
+link, masses added, inertias moved by the parallel axis theorem,
 
     I_c = sum_i  R_i I_i R_i' + m_i (|r_i|^2 E - r_i r_i'),   r_i from the common centre of gravity,
 
-and each axis gets the frame that ``RobotSpec`` wants: z along the hinge, origin on it. Branches and loops are
+and each axis gets the frame that ``RobotSpec`` needs: z along the hinge, origin on it. Branches and loops are
 refused (RBL611), and so is a body that cannot be (RBL606) unless the sidecar states a correction for it.
 
 The result holds no drives: such files have none. Forward and inverse kinematics need no more than this.
@@ -41,11 +41,11 @@ FLANGE_NAMES = ("flange", "tool0")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Hinge:
-    """A revolute joint: unit ``axis`` (3,) and ``anchor`` (3,) m in its node's frame; its values in the file.
+    """A joint that turns or slides: unit ``axis`` (3,) and ``anchor`` (3,) m in its node's frame; values of the file.
 
     None for a value that the file leaves out. ``lower`` and ``upper`` rad, ``speed`` rad/s, ``effort`` N m, ``damping``
-    N m s/rad, ``friction`` N m, ``armature`` kg m2, all at the joint. ``in_degrees``: the file has degrees;
-    ``endless``: the joint has no end stops.
+    N m s/rad, ``friction`` N m, ``armature`` kg m2, all at the joint; m for rad, N and kg of one that slides.
+    ``in_degrees``: the file has degrees; ``endless``: the joint has no end stops.
     """
 
     name: str
@@ -61,6 +61,7 @@ class Hinge:
     armature: float
     in_degrees: bool
     endless: bool = False
+    kind: AxisKind = REVOLUTE
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,7 +77,8 @@ class NodeMesh:
 class Node:
     """A frame of the file with its body (None: it has no mass), its hinge (None: fixed) and the nodes after it.
 
-    ``X_parent_node`` (4, 4) holds at joint angle zero. ``marker``: a frame that only names a place. ``meshes`` show it.
+    ``X_parent_node`` (4, 4) holds at joint angle zero. ``marker``: a frame that only names a place. ``between``: it is
+    between two joints of one body, which moves with the last of them. ``meshes`` show it.
     """
 
     name: str
@@ -85,6 +87,7 @@ class Node:
     body: Body | None = None
     hinge: Hinge | None = None
     marker: bool = False
+    between: bool = False
     meshes: tuple[NodeMesh, ...] = ()
     children: "list[Node]" = field(default_factory=list)
 
@@ -94,7 +97,7 @@ class ImportedAxis:
     """One axis: ``placement`` (4, 4) as in ``AxisSpec``, ``body`` in the axis frame, ``hinge`` as the file has it.
 
     ``impossible``: the fault, at its place, of a body that cannot exist; None for one that can. ``link`` is the element
-    that turns with the joint. ``bodiless``: no part of the link has an inertial in the file.
+    that moves with the joint. ``bodiless``: no part of the link has an inertial in the file. ``between``: ``Node``.
     """
 
     name: str
@@ -104,12 +107,17 @@ class ImportedAxis:
     hinge: Hinge
     impossible: FileFault | None
     bodiless: bool
-    kind: AxisKind = REVOLUTE
+    between: bool
+
+    @property
+    def kind(self) -> AxisKind:
+        """Whether it turns or slides."""
+        return self.hinge.kind
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ImportedArm:
-    """A serial arm of a URDF or MJCF file. ``lower``, ``upper`` (n,) rad; ``flange`` names its last frame.
+    """A serial arm of a URDF or MJCF file. ``lower``, ``upper`` (n,) rad or m; ``flange`` names its last frame.
 
     ``warnings`` are the doubts about it (``plausibility``), ``notes`` name what is left out in its file.
     """
@@ -191,8 +199,8 @@ def serial_chain(root: Node, path: str, name: str, flange: str | None) -> Import
     axes: list[ImportedAxis] = []
     cluster = list(_fixed(root, np.eye(4)))
     meshes = _meshes(cluster, 0, path)
-    while (turning := _turning(cluster)) is not None:
-        X, node, hinge = turning
+    while (moving := _moving(cluster)) is not None:
+        X, node, hinge = moving
         if hinge.name in {axis.name for axis in axes}:
             hinge.element.fail("RBL610", f"two joints are named {hinge.name!r}")
         # everything after the hinge is counted in the frame of its axis, z along the hinge
@@ -201,9 +209,7 @@ def serial_chain(root: Node, path: str, name: str, flange: str | None) -> Import
         axes.append(_with_body(_axis(node, hinge, matmul(X, X_node_axis)), cluster, len(axes)))
         meshes += _meshes(cluster, len(axes), path)
     if not FEWEST_AXES <= len(axes) <= MOST_AXES:
-        root.element.fail(
-            "RBL605", f"an arm has {FEWEST_AXES} to {MOST_AXES} revolute joints in a row, not {len(axes)}"
-        )
+        root.element.fail("RBL605", f"an arm has {FEWEST_AXES} to {MOST_AXES} joints in a row, not {len(axes)}")
     last, X_last_flange = _flange(cluster, flange, root)
     return ImportedArm(
         name=name,
@@ -232,21 +238,21 @@ def _meshes(cluster: list[tuple[Array, Node]], link: int, path: str) -> list[Lin
     ]
 
 
-def _turning(cluster: list[tuple[Array, Node]]) -> tuple[Array, Node, Hinge] | None:
-    """Return the one node that turns on a link, its pose in the link's frame and its hinge; None at the last link.
+def _moving(cluster: list[tuple[Array, Node]]) -> tuple[Array, Node, Hinge] | None:
+    """Return the one node that moves on a link, its pose in the link's frame and its hinge; None at the last link.
 
     ``FileFault`` RBL611 at the second one where there are several.
     """
-    turning = [
+    moving = [
         (matmul(X, child.X_parent_node), child, child.hinge)
         for X, member in cluster
         for child in member.children
         if child.hinge
     ]
-    if len(turning) > 1:
-        names = " and ".join(repr(hinge.name) for _, _, hinge in turning[:2])
-        turning[1][1].element.fail("RBL611", f"joints {names} both start at one link: the arm has a branch")
-    return turning[0] if turning else None
+    if len(moving) > 1:
+        names = " and ".join(repr(hinge.name) for _, _, hinge in moving[:2])
+        moving[1][1].element.fail("RBL611", f"joints {names} both start at one link: the arm has a branch")
+    return moving[0] if moving else None
 
 
 def _limits(axes: list[ImportedAxis], side: str) -> Array:
@@ -264,12 +270,13 @@ def _axis(node: Node, hinge: Hinge, placement: Array) -> ImportedAxis:
         hinge=hinge,
         impossible=None,
         bodiless=True,
+        between=node.between,
     )
 
 
 def _with_body(axis: ImportedAxis, cluster: list[tuple[Array, Node]], index: int) -> ImportedAxis:
     body = combined([moved(node.body, X) for X, node in cluster if node.body is not None])
-    # of all that turns with the hinge, about its common centre of gravity
+    # of all that moves with the hinge, about its common centre of gravity
     what = f"the link of {joint_label(index, axis.name)}"
     impossible = impossible_inertia(axis.hinge.element, body.inertia, what)
     for _, node in cluster:

@@ -19,13 +19,13 @@ from runtime.core.frames import Array, frozen
 from runtime.core.tomlfile import FileFault, Source, read_source
 from runtime.robot.files import left_out, loader
 from runtime.robot.files.arm_file import ArmFile, ModelFile, model_root, read_arm_file, sidecar_source
-from runtime.robot.files.body_plausibility import doubt_bodies, doubt_torques, offsets, weight_moment
+from runtime.robot.files.body_plausibility import doubt_bodies, doubt_torques, offsets, travels, weight_moment
 from runtime.robot.files.estimate import estimate
 from runtime.robot.files.imported import ImportedArm, serial_chain
 from runtime.robot.files.known import doubt_bodies_alike, doubt_torques_alike, known_of
 from runtime.robot.files.loader import body_of
 from runtime.robot.files.mjcf_import import read_mjcf
-from runtime.robot.files.plausibility import Turning, What, doubt_turning
+from runtime.robot.files.plausibility import Moving, What, doubt_moving
 from runtime.robot.files.robot_file import RobotFile
 from runtime.robot.files.sidecar import complete, missing_in_template, template
 from runtime.robot.files.sidecar_file import (
@@ -33,6 +33,7 @@ from runtime.robot.files.sidecar_file import (
     NO_OVERLAY,
     Overlay,
     SidecarFile,
+    check_kinds,
     lacking_of,
     read_overlay,
     read_sidecar,
@@ -96,6 +97,7 @@ def parse_model(source: Source, overlay: Overlay = NO_OVERLAY) -> ImportedArm:
     root = model_root(source)
     name, tree = read_urdf(root) if root.tag == "robot" else read_mjcf(root, Path(source.path).name)
     arm = _with_bodies(serial_chain(tree, source.path, name, overlay.flange), overlay)
+    check_kinds(overlay, {axis.name: axis.kind for axis in arm.axes})
     # ranges of the sidecar replace those of the model before anything is computed from them
     ranges = [
         overlay.ranges.get(axis.name, (low, high))
@@ -143,6 +145,7 @@ def _doubted_bodies(arm: ImportedArm) -> list[FileFault]:
         labels,
         bodies,
         _offsets(arm),
+        _travels(arm),
         lambda what, axis: (arm.axes[axis].hinge.element if what == "length" else arm.axes[axis].link).fault,
     )
 
@@ -151,31 +154,37 @@ def _offsets(arm: ImportedArm) -> Array:
     return offsets([axis.placement for axis in arm.axes], arm.X_last_flange)
 
 
+def _travels(arm: ImportedArm) -> Array:
+    return travels(arm.axes, arm.lower, arm.upper)
+
+
 def _with_limits_doubted(arm: ImportedArm, overlay: Overlay) -> ImportedArm:
     """Return the arm with the doubts about its ranges, and about speeds and torques that no sidecar states."""
 
     def place(what: What, axis: int) -> Callable[[str, str, str], FileFault]:
         name, joint = arm.axes[axis].name, arm.axes[axis].hinge.element
         # a range of the sidecar has replaced that of the model: the warning belongs to the file that states it
-        if what == "range" and name in overlay.tables:
-            table = overlay.tables[name]
-            return lambda code, message, hint: table.fault(code, message, hint, key="range_deg")
+        if what == "range" and name in overlay.ranges:
+            table, key = overlay.tables[name], arm.axes[axis].kind.range_key
+            return lambda code, message, hint: table.fault(code, message, hint, key=key)
         return (joint.one("limit") or joint).fault
 
     joints = [
-        Turning(
+        Moving(
             label=joint_label(index, axis.name),
             lower=lower,
             upper=upper,
             speed=math.nan if axis.hinge.speed is None else axis.hinge.speed,
-            in_degrees=axis.hinge.in_degrees or axis.name in overlay.tables,
+            in_units=axis.hinge.in_degrees or axis.name in overlay.ranges,
+            kind=axis.kind,
         )
         for index, (axis, lower, upper) in enumerate(zip(arm.axes, arm.lower.tolist(), arm.upper.tolist(), strict=True))
     ]
-    weight = weight_moment([axis.body for axis in arm.axes], _offsets(arm))
-    torques = [math.nan if axis.hinge.effort is None else axis.hinge.effort for axis in arm.axes]
+    weight = weight_moment([axis.body for axis in arm.axes], _offsets(arm), _travels(arm))
+    # a force says nothing about N mm
+    torques = [math.nan if axis.kind.slides else axis.hinge.effort or math.nan for axis in arm.axes]
     labels = [joint.label for joint in joints]
-    doubts = (*doubt_turning(joints, place), *doubt_torques(labels, torques, weight, place))
+    doubts = (*doubt_moving(joints, place), *doubt_torques(labels, torques, weight, place))
     return replace(arm, warnings=(*arm.warnings, *doubts, *doubt_torques_alike(arm)))
 
 
@@ -230,7 +239,10 @@ def _open_ended(arm: ImportedArm) -> list[FileFault]:
     if not axes:
         return []
     message = f"no position limits for {_names(arm, {axis.name for axis in axes})}"
-    hint = f"write them there, or range_deg in {sidecar_path(Path(arm.path)).name}; {_estimates(arm)}"
+    keys = " or ".join(dict.fromkeys(axis.kind.range_key for axis in axes))
+    # how far an axis slides follows from nothing else in a file
+    estimates = "" if any(axis.kind.slides for axis in axes) else f"; {_estimates(arm)}"
+    hint = f"write them there, or {keys} in {sidecar_path(Path(arm.path)).name}{estimates}"
     return [axes[0].hinge.element.fault("RBL608", message, hint)]
 
 

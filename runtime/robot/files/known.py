@@ -9,28 +9,38 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from runtime.core.frames import frozen
 from runtime.core.tomlfile import FileFault
-from runtime.robot.files.corrections import flat, shifted, smallest_shift
+from runtime.robot.files.corrections import TOKEN_MASS, flat, shifted, smallest_shift
 from runtime.robot.files.estimate import Known
 from runtime.robot.files.imported import ImportedArm, ImportedAxis
 from runtime.robot.kinematics.chain import Chain
-from runtime.robot.model.drives import WIDEST
+from runtime.robot.model.drives import joint_label
 from runtime.robot.model.spec import Body
 
 FEWEST_ALIKE = 4
 """Axes of an arm from which on values that are all alike are placeholders: a wrist is never as strong as a shoulder."""
 
+_TOKEN_MOMENT = 1e-9
+"""Moments of a link between two joints of one body, kg m2: those of a milligram some cm long."""
+
 
 def known_of(arm: ImportedArm) -> Known:
-    """Return what the file of an arm gives; placeholders count as missing, impossible bodies are mended or missing."""
+    """Return what the file of an arm gives; placeholders count as missing, impossible bodies are mended or missing.
+
+    ``FileFault`` RBL608 at an axis that slides and has no range: no rule gives one.
+    """
     # NaN, not 0: a value that is missing must not compare as small
     efforts = [math.nan if axis.hinge.effort is None else axis.hinge.effort for axis in arm.axes]
     bodies: tuple[Body | None, ...] = tuple(_body(axis) for axis in arm.axes)
     # a range that no sidecar may state is none
-    within = np.maximum(np.abs(arm.lower), np.abs(arm.upper)) <= WIDEST
+    widest = np.array([axis.kind.widest for axis in arm.axes])
+    within = np.maximum(np.abs(arm.lower), np.abs(arm.upper)) <= widest
+    for index in np.flatnonzero(~within).tolist():
+        _check_travel(arm.axes[index], index)
     hinges = [axis.hinge for axis in arm.axes]
     return Known(
-        chain=Chain(placements=tuple(axis.placement for axis in arm.axes), X_last_flange=arm.X_last_flange),
+        chain=Chain.of(arm.axes, arm.X_last_flange),
         bodies=(None,) * arm.n if _bodies_alike(arm) else bodies,
         mended=tuple(axis.impossible is not None for axis in arm.axes),
         lower=np.where(within, arm.lower, math.nan),
@@ -45,10 +55,21 @@ def known_of(arm: ImportedArm) -> Known:
     )
 
 
+def _check_travel(axis: ImportedAxis, index: int) -> None:
+    """Refuse an axis that slides without a range, or with one that no sidecar may state; ``FileFault`` RBL608."""
+    # an angle has a whole turn for a bound; how far a carriage goes follows from nothing else in the file
+    if axis.kind.slides:
+        joint, label = axis.hinge.element, joint_label(index, axis.name)
+        message = f"{label} slides and has no range, or one beyond {axis.kind.widest:g} m: it is never estimated"
+        (joint.one("limit") or joint).fail("RBL608", message, "write both ends in m in the model file")
+
+
 def _body(axis: ImportedAxis) -> Body | None:
     """Return the body of an axis, mended by the least inertia where it is impossible; None where none is known."""
     if axis.impossible is None:
         return axis.body
+    if axis.between:  # the body counts once, at the last of its joints
+        return Body(mass=TOKEN_MASS, cog=axis.body.cog, inertia=frozen(_TOKEN_MOMENT * np.eye(3)))
     # added to this body alone: taken from the link before, as a correction does it, it could make that one impossible
     shift = smallest_shift(axis.body.inertia)
     if not axis.body.mass > 0.0 or shift is None or flat(shifted(axis.body.inertia, shift)):
@@ -83,5 +104,6 @@ def doubt_torques_alike(arm: ImportedArm) -> list[FileFault]:
     if len(efforts) < arm.n or not alike(efforts):
         return []
     joint = arm.axes[0].hinge.element
-    message = f"every joint has {efforts[0]:g} N m: placeholders, no torque limits"
+    units = " or ".join(dict.fromkeys(axis.kind.force for axis in arm.axes))
+    message = f"every joint has {efforts[0]:g} {units}: placeholders, no limits"
     return [(joint.one("limit") or joint).fault("RBL642", message)]

@@ -7,7 +7,6 @@ named in the message (``corrections``). Read at start, no rate.
 
 from collections.abc import Sequence
 from functools import cache
-from math import nan
 
 import numpy as np
 
@@ -16,7 +15,14 @@ from runtime.core.linear import matmul
 from runtime.core.tomlfile import FileFault, Table
 from runtime.core.units import DEG
 from runtime.robot.files import robot_file
-from runtime.robot.files.body_plausibility import doubt_bodies, doubt_torques, offsets, weight_moment
+from runtime.robot.files.body_plausibility import (
+    doubt_bodies,
+    doubt_torques,
+    offsets,
+    travels,
+    turning_torques,
+    weight_moment,
+)
 from runtime.robot.files.corrections import check_bodies, correct
 from runtime.robot.files.geometry import Geometry, geometry_of
 from runtime.robot.files.plausibility import in_tables
@@ -75,12 +81,13 @@ def _doubts(
         offsets(geometry.placements, geometry.X_last_flange),
         in_tables([axis.drive.table for axis in file.axes]),
     )
-    weight = weight_moment([axis.body for axis in axes], lengths)
+    limits = [axis.limits for axis in axes]
+    slid = travels(axes, np.array([own.lower for own in limits]), np.array([own.upper for own in limits]))
+    weight = weight_moment([axis.body for axis in axes], lengths, slid)
     return (
-        *doubt_bodies(labels, bodies, lengths, place),
+        *doubt_bodies(labels, bodies, lengths, slid, place),
         *file.warnings,
-        # a force says nothing about N mm
-        *doubt_torques(labels, [nan if a.kind.slides else a.limits.torque for a in axes], weight, place),
+        *doubt_torques(labels, turning_torques(limits), weight, place),
     )
 
 

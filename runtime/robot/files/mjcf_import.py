@@ -1,9 +1,9 @@
 """Reading MJCF: nested bodies to the tree of ``imported``, without MuJoCo.
 
 What is read: ``compiler`` (angle, autolimits, eulerseq), ``default`` classes for joints and geoms, ``body`` with its
-pose (quat, euler, axisangle, xyaxes or zaxis), ``inertial`` (diaginertia or fullinertia), hinge ``joint`` (pos, axis,
-range, armature, damping, frictionloss, actuatorfrcrange) and ``site``, which can name the flange. Angles are degrees
-unless the compiler says radian. Source of the meanings: the MJCF reference of MuJoCo's documentation.
+pose (quat, euler, axisangle, xyaxes or zaxis), ``inertial`` (diaginertia or fullinertia), ``joint`` of type hinge or
+slide (pos, axis, range, armature, damping, frictionloss, actuatorfrcrange), ``site``, which can name the flange. Angles
+are degrees unless the compiler says radian. Source of the meanings: the MJCF reference of MuJoCo's documentation.
 
 What would change the dynamics and is not read is refused (RBL621): a mass that MuJoCo would infer from shapes, joint
 springs, ``ref``, gravity compensation, includes, macros. Equality constraints close loops (RBL611).
@@ -21,6 +21,7 @@ from runtime.core.units import DEG, GRAVITY
 from runtime.robot.files.imported import Hinge, Node, NodeMesh, rotation_z_to
 from runtime.robot.files.urdf import unit
 from runtime.robot.files.xmlfile import HEAVIEST_LINK, Element
+from runtime.robot.model.axis_kind import MJCF_KINDS, REVOLUTE, AxisKind
 from runtime.robot.model.spec import Body
 
 _TOP = frozenset(
@@ -188,10 +189,10 @@ def _add_body(parent: Node, body: Element, context: _Context, childclass: str, n
     X_parent_body = _pose(body, context)
     joints = [child for child in body.children if child.tag in ("joint", "freejoint")]
     name = body.text("name", "")
-    for index, joint in enumerate(joints):  # several joints of a body turn one inside the other, in this order
+    for index, joint in enumerate(joints):  # several joints of a body move one inside the other, in this order
         last = index == len(joints) - 1  # the nodes between have no mass and no name of their own
         hinge = _hinge(_with_defaults(joint, context, childclass), context, names)
-        node = Node(name=name if last else "", element=body, X_parent_node=X_parent_body, hinge=hinge)
+        node = Node(name=name if last else "", element=body, X_parent_node=X_parent_body, hinge=hinge, between=not last)
         parent.children.append(node)
         parent, X_parent_body = node, np.eye(4)
     if not joints:
@@ -201,17 +202,18 @@ def _add_body(parent: Node, body: Element, context: _Context, childclass: str, n
 
 
 def _hinge(joint: Element, context: _Context, names: set[str]) -> Hinge:
-    """Return what a joint says of itself and enter its name in ``names``; ``FileFault`` for one that is no hinge."""
+    """Return what a joint says of itself and enter its name in ``names``; ``FileFault`` for a ball."""
     name = joint.text("name", "") or f"joint{len(names) + 1}"
-    if joint.tag == "freejoint" or joint.text("type", "hinge") != "hinge":
-        joint.fail("RBL621", f"joint {name!r} is not a hinge")
+    kind = None if joint.tag == "freejoint" else MJCF_KINDS.get(joint.text("type", "hinge"))
+    if kind is None:
+        joint.fail("RBL621", f"joint {name!r} is neither a hinge nor a slide")
     if name in names:
         joint.fail("RBL610", f"two joints are named {name!r}")
     names.add(name)
     for key, usual in _UNREAD_JOINT.items():
         if joint.number(key, usual) != usual:
             joint.fail("RBL621", f"'{key}' of joint {name!r} is not read")
-    lower, upper = _range(joint, context, name)
+    lower, upper = _range(joint, context, name, kind)
     effort = _effort(joint, name)
     return Hinge(
         name=name,
@@ -225,12 +227,13 @@ def _hinge(joint: Element, context: _Context, names: set[str]) -> Hinge:
         damping=joint.number("damping", 0.0, low=0.0),
         friction=joint.number("frictionloss", 0.0, low=0.0),
         armature=joint.number("armature", 0.0, low=0.0),
-        in_degrees=context.angle != 1.0,
+        in_degrees=context.angle != 1.0 and kind is REVOLUTE,
+        kind=kind,
     )
 
 
 def _effort(joint: Element, name: str) -> float | None:
-    """Return the torque, N m, that a joint has in both directions, None where the file gives none; RBL607."""
+    """Return the effort, N m or N, that a joint has in both directions, None where the file gives none; RBL607."""
     if "actuatorfrcrange" not in joint.attributes:
         return None
     low, high = joint.numbers("actuatorfrcrange", 2)
@@ -241,7 +244,8 @@ def _effort(joint: Element, name: str) -> float | None:
     return min(abs(low), abs(high)) or None
 
 
-def _range(joint: Element, context: _Context, name: str) -> tuple[float | None, float | None]:
+def _range(joint: Element, context: _Context, name: str, kind: AxisKind) -> tuple[float | None, float | None]:
+    """Return the ends of a range, rad or m, None where the joint has none; ``FileFault`` RBL607 or RBL608."""
     limited = joint.text("limited", "auto")
     if limited not in ("true", "false", "auto"):
         joint.fail("RBL610", f"limited of joint {name!r} must be true, false or auto")
@@ -254,7 +258,9 @@ def _range(joint: Element, context: _Context, name: str) -> tuple[float | None, 
         )
     if limited == "auto" and not context.autolimits:
         joint.fail("RBL608", f'joint {name!r} has a range and autolimits is off: it needs limited="true"')
-    return lower * context.angle, upper * context.angle
+    # the setting is for angles: a slide has m whatever it says
+    size = context.angle if kind is REVOLUTE else 1.0
+    return lower * size, upper * size
 
 
 def _body(body: Element, context: _Context, childclass: str, name: str) -> Body | None:

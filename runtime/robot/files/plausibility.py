@@ -6,6 +6,8 @@ no numerics, in ``body_plausibility`` lengths, bodies and torques. The bounds (d
 
     RBL627   a joint range of more than ``MOST_TURNS`` to a side, or within ``LEAST_ANGLE``; a speed above ``FASTEST``
              or below ``LEAST_ANGLE`` a second: degrees for radians, radians for degrees, a conversion made twice
+    RBL628   of a joint that slides, a range of more than ``LONGEST_TRAVEL`` to a side, or within ``LEAST_TRAVEL``; a
+             speed above ``FASTEST_SLIDE`` or below ``LEAST_TRAVEL`` a second: mm for m, m for mm
     RBL629   a gear ratio below 1
 
 Units that differ by less than a factor of about ten (lb, inches) look like a light or a small arm. Read at start.
@@ -18,6 +20,8 @@ from typing import Literal, Protocol
 from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault, Table
 from runtime.core.units import DEG
+from runtime.robot.model import drives
+from runtime.robot.model.axis_kind import PRISMATIC, REVOLUTE, AxisKind
 from runtime.robot.model.drives import Limits, Motor, joint_label
 
 MOST_TURNS = 2.0 * 2.0 * math.pi
@@ -26,91 +30,137 @@ LEAST_ANGLE = 2.0 * math.pi * DEG
 """A joint that turns no further, rad, or no faster, rad/s: 2 pi taken as degrees."""
 FASTEST = 30.0
 """Fastest joint, rad/s (1719 deg/s)."""
+LONGEST_TRAVEL, LEAST_TRAVEL = 15.0, 2e-3
+"""Travel of an axis that slides to one side, m: rails of cells are shorter; 2 m taken as mm."""
+FASTEST_SLIDE = 20.0
+"""Fastest axis that slides, m/s: linear motors have up to 10."""
 What = Literal["range", "speed", "torque", "body", "length", "gear"]
 Place = Callable[[What, int], Callable[[str, str, str], FileFault]]
 """``place(what, axis)(code, message, hint)`` is a fault at the place of a value of an axis (0-based)."""
 
 
-class Turning(Record):
-    """Range and speed of a joint, rad and rad/s; NaN where its file gives none.
+class Moving(Record):
+    """Range and speed of a joint, rad and rad/s, of one that slides m and m/s; NaN where its file gives none.
 
-    ``in_degrees``: the file has degrees and deg/s, else radians and rad/s.
+    ``in_units``: the file has degrees and deg/s, or mm and mm/s, else radians and rad/s, or m and m/s.
     """
 
     label: str
     lower: float
     upper: float
     speed: float
-    in_degrees: bool
+    in_units: bool
+    kind: AxisKind = REVOLUTE
 
     @property
     def widest(self) -> float:
-        """The end of the range that is further from zero, rad."""
+        """The end of the range that is further from zero, rad or m."""
         return max(abs(self.lower), abs(self.upper))
 
     def text(self, what: What) -> str:
-        """Return range or speed as in the file, in degrees too."""
+        """Return range or speed as in the file, in deg or mm too."""
+        size, unit, si = self.kind.size, self.kind.unit, self.kind.coordinate
         if what == "range":
-            degrees, radians = f"{_deg(self.lower)} to {_deg(self.upper)} deg", f"{self.lower:g} to {self.upper:g} rad"
+            shown = f"{self.lower / size:.6g} to {self.upper / size:.6g} {unit}"
+            written = f"{self.lower:g} to {self.upper:g} {si}"
         else:
-            degrees, radians = f"{_deg(self.speed)} deg/s", f"{self.speed:g} rad/s"
-        return f"{self.label} {degrees if self.in_degrees else f'{radians} = {degrees}'}"
+            shown, written = f"{self.speed / size:.6g} {unit}/s", f"{self.speed:g} {si}/s"
+        return f"{self.label} {shown if self.in_units else f'{written} = {shown}'}"
 
 
-class _TurningRule(Record):
-    """A condition, and its explanation and remedy in a file of radians and in one of degrees."""
+class _Rule(Record):
+    """A condition on joints of a kind, and its explanation and remedy in a file of SI units and in one of deg or mm."""
 
+    kind: AxisKind
     what: What
-    unlikely: Callable[[Turning], bool]
-    radians: tuple[str, str]
-    degrees: tuple[str, str]
+    unlikely: Callable[[Moving], bool]
+    si: tuple[str, str]
+    units: tuple[str, str]
 
 
+_CODES = {REVOLUTE: "RBL627", PRISMATIC: "RBL628"}
 _TO_RADIANS = "the file has radians: multiply degrees by 0.0174533"
 _TO_DEGREES = "the file has degrees: multiply radians by 57.2958"
-_TWICE = "look like degrees converted to radians twice"
-_AS_DEGREES = "look like radians in a file of degrees"
-_TURNING_RULES = (
-    _TurningRule(
+_TO_METRES, _TO_MM = "the file has m: multiply mm by 0.001", "the file has mm: multiply m by 1000"
+_TWICE, _TWICE_M = "look like degrees converted to radians twice", "look like mm converted to m twice"
+_AS_DEGREES, _AS_MM = "look like radians in a file of degrees", "look like m in a file of mm"
+_RULES = (
+    _Rule(
+        kind=REVOLUTE,
         what="range",
         unlikely=lambda joint: joint.widest > MOST_TURNS,
-        radians=("look like degrees in a file of radians", _TO_RADIANS),
-        degrees=("are more than two turns to a side", "Check them; only an axis without end stops turns that far."),
+        si=("look like degrees in a file of radians", _TO_RADIANS),
+        units=("are more than two turns to a side", "Check them; only an axis without end stops turns that far."),
     ),
-    _TurningRule(
+    _Rule(
+        kind=REVOLUTE,
         what="range",
         unlikely=lambda joint: joint.widest <= LEAST_ANGLE,
-        radians=(_TWICE, _TO_RADIANS),
-        degrees=(_AS_DEGREES, _TO_DEGREES),
+        si=(_TWICE, _TO_RADIANS),
+        units=(_AS_DEGREES, _TO_DEGREES),
     ),
-    _TurningRule(
+    _Rule(
+        kind=REVOLUTE,
         what="speed",
         unlikely=lambda joint: joint.speed > FASTEST,
-        radians=("look like deg/s in a file of rad/s", _TO_RADIANS),
-        degrees=("are faster than any arm", "Check them; the file has deg/s."),
+        si=("look like deg/s in a file of rad/s", _TO_RADIANS),
+        units=("are faster than any arm", "Check them; the file has deg/s."),
     ),
-    _TurningRule(
+    _Rule(
+        kind=REVOLUTE,
         what="speed",
         unlikely=lambda joint: joint.speed <= LEAST_ANGLE,
-        radians=(_TWICE, _TO_RADIANS),
-        degrees=(_AS_DEGREES, _TO_DEGREES),
+        si=(_TWICE, _TO_RADIANS),
+        units=(_AS_DEGREES, _TO_DEGREES),
+    ),
+    _Rule(
+        kind=PRISMATIC,
+        what="range",
+        unlikely=lambda joint: joint.widest > LONGEST_TRAVEL,
+        si=("look like mm in a file of m", _TO_METRES),
+        units=("are longer than any axis", "Check them; the file has mm."),
+    ),
+    _Rule(
+        kind=PRISMATIC,
+        what="range",
+        unlikely=lambda joint: joint.widest <= LEAST_TRAVEL,
+        si=(_TWICE_M, _TO_METRES),
+        units=(_AS_MM, _TO_MM),
+    ),
+    _Rule(
+        kind=PRISMATIC,
+        what="speed",
+        unlikely=lambda joint: joint.speed > FASTEST_SLIDE,
+        si=("look like mm/s in a file of m/s", _TO_METRES),
+        units=("are faster than any axis", "Check them; the file has mm/s."),
+    ),
+    _Rule(
+        kind=PRISMATIC,
+        what="speed",
+        unlikely=lambda joint: joint.speed <= LEAST_TRAVEL,
+        si=(_TWICE_M, _TO_METRES),
+        units=(_AS_MM, _TO_MM),
     ),
 )
 
 
-def doubt_turning(joints: Sequence[Turning], place: Place) -> list[FileFault]:
-    """Return the doubts about ranges and speeds (RBL627)."""
+def doubt_moving(joints: Sequence[Moving], place: Place) -> list[FileFault]:
+    """Return the doubts about ranges and speeds of joints that turn (RBL627) or slide (RBL628)."""
     # every comparison is false for NaN: a value that the file does not give is not doubted
     doubts = []
     # one warning a rule, at the first axis, for all that share it: a file in the wrong unit breaks one rule six times
-    for rule in _TURNING_RULES:
-        for in_degrees, (tail, hint) in ((False, rule.radians), (True, rule.degrees)):
-            axes = [k for k, joint in enumerate(joints) if joint.in_degrees is in_degrees and rule.unlikely(joint)]
+    for rule in _RULES:
+        for in_units, (tail, hint) in ((False, rule.si), (True, rule.units)):
+            axes = [k for k, joint in enumerate(joints) if _breaks(joint, rule, in_units)]
             if axes:
                 name = "limits" if rule.what == "range" else "speeds"
                 message = f"{name} {tail}: {', '.join(joints[k].text(rule.what) for k in axes)}"
-                doubts.append(place(rule.what, axes[0])("RBL627", message, hint))
+                doubts.append(place(rule.what, axes[0])(_CODES[rule.kind], message, hint))
     return doubts
+
+
+def _breaks(joint: Moving, rule: _Rule, in_units: bool) -> bool:
+    return joint.kind is rule.kind and joint.in_units is in_units and rule.unlikely(joint)
 
 
 class Driven(Protocol):
@@ -134,12 +184,12 @@ class Driven(Protocol):
 
 
 def doubt_axes(axes: Sequence[Driven]) -> tuple[FileFault, ...]:
-    """Return the doubts about ranges, speeds (RBL627) and gears (RBL629) of axes in TOML tables."""
+    """Return the doubts about ranges, speeds (RBL627, RBL628) and gears (RBL629) of axes in TOML tables."""
     labels = [joint_label(k, axis.name) for k, axis in enumerate(axes)]
-    joints = [_turning(label, axis.limits) for label, axis in zip(labels, axes, strict=True)]
+    joints = [_moving(label, axis.limits) for label, axis in zip(labels, axes, strict=True)]
     place = in_tables([axis.table for axis in axes])
-    # these files are in degrees by their keys; only a URDF or MJCF may be in radians
-    doubts = doubt_turning(joints, place)
+    # these files are in degrees and mm by their keys; only a URDF or MJCF may be in radians or m
+    doubts = doubt_moving(joints, place)
     # gears of arms reduce: a ratio below 1 is most likely joint turns per motor turn
     slow = [k for k, axis in enumerate(axes) if not (abs(axis.motor.gear_ratio) >= 1.0 or axis.limits.kind.slides)]
     if slow:
@@ -149,20 +199,22 @@ def doubt_axes(axes: Sequence[Driven]) -> tuple[FileFault, ...]:
     return tuple(doubts)
 
 
-def _turning(label: str, limits: Limits) -> Turning:
-    """Return the range and speed of an axis; of one that slides NaN, since its file has no angle to doubt."""
-    found = Turning(label=label, lower=limits.lower, upper=limits.upper, speed=limits.speed, in_degrees=True)
-    return found.replaced(lower=math.nan, upper=math.nan, speed=math.nan) if limits.kind.slides else found
+def _moving(label: str, own: Limits) -> Moving:
+    return Moving(label=label, lower=own.lower, upper=own.upper, speed=own.speed, in_units=True, kind=own.kind)
 
 
-_KEYS: dict[What, tuple[str, ...]] = {
-    "range": ("range_deg",),
-    "speed": ("max_speed_deg_s",),
-    "torque": ("max_torque_nm",),
-    "body": ("mass_kg",),
-    "length": (),
-    "gear": ("motor", "gear_ratio"),
-}
+def _keys(what: What, table: Table) -> tuple[str, ...]:
+    """Return the keys of a value in the table of an axis."""
+    kind = drives.axis_kind(table)
+    keys: dict[What, tuple[str, ...]] = {
+        "range": (kind.range_key,),
+        "speed": (kind.speed_key,),
+        "torque": (kind.force_key,),
+        "body": ("mass_kg",),
+        "length": (),
+        "gear": ("motor", kind.transmission_key),
+    }
+    return keys[what]
 
 
 def in_tables(tables: Sequence[Table]) -> Place:
@@ -170,10 +222,6 @@ def in_tables(tables: Sequence[Table]) -> Place:
 
     def place(what: What, axis: int) -> Callable[[str, str, str], FileFault]:
         table = tables[axis]
-        return lambda code, message, hint: table.source.fault(code, message, hint, (*table.keys, *_KEYS[what]))
+        return lambda code, message, hint: table.source.fault(code, message, hint, (*table.keys, *_keys(what, table)))
 
     return place
-
-
-def _deg(angle: float) -> str:
-    return f"{angle / DEG:.6g}"

@@ -11,29 +11,28 @@ from pathlib import Path
 from types import MappingProxyType
 
 from runtime.core.tomlfile import FileFault
-from runtime.core.units import DEG
 from runtime.robot.files import corrections as rules
-from runtime.robot.files.body_plausibility import doubt_torques, offsets, weight_moment
+from runtime.robot.files.body_plausibility import doubt_torques, offsets, travels, turning_torques, weight_moment
 from runtime.robot.files.estimate import Estimate
 from runtime.robot.files.imported import ImportedArm, ImportedAxis
 from runtime.robot.files.loader import axis_spec
 from runtime.robot.files.marks import ESTIMATE, RULE
 from runtime.robot.files.plausibility import doubt_axes, in_tables
 from runtime.robot.files.sidecar_file import (
-    GROUPS,
-    LIMIT_KEYS,
-    MOTOR_KEYS,
     PATH_KEYS,
     PAYLOAD_KEY,
-    SERVO_KEYS,
     SidecarFile,
+    groups,
     lacking,
+    limit_keys,
+    whole_groups,
 )
-from runtime.robot.model.drives import WIDEST, joint_label
+from runtime.robot.model.axis_kind import REVOLUTE, AxisKind
+from runtime.robot.model.drives import joint_label
 from runtime.robot.model.spec import AxisSpec, Correction, RobotSpec
 
 TYPED = 1e-9
-"""An angle that is this near to a number of deg with few decimals was typed as that number, deg."""
+"""A position that is this near to a number of deg or mm with few decimals was typed as that number, deg or mm."""
 
 
 def complete(arm: ImportedArm, file: SidecarFile) -> RobotSpec:
@@ -62,9 +61,9 @@ def complete(arm: ImportedArm, file: SidecarFile) -> RobotSpec:
 def _doubted_torques(arm: ImportedArm, file: SidecarFile) -> list[FileFault]:
     labels = [joint_label(k, axis.name) for k, axis in enumerate(arm.axes)]
     lengths = offsets([axis.placement for axis in arm.axes], arm.X_last_flange)
-    weight = weight_moment([axis.body for axis in arm.axes], lengths)
+    weight = weight_moment([axis.body for axis in arm.axes], lengths, travels(arm.axes, arm.lower, arm.upper))
     place = in_tables([axis.table for axis in file.axes])
-    return doubt_torques(labels, [axis.limits.torque for axis in file.axes], weight, place)
+    return doubt_torques(labels, turning_torques([axis.limits for axis in file.axes]), weight, place)
 
 
 def _check_names(file: SidecarFile, arm: ImportedArm) -> None:
@@ -90,8 +89,14 @@ def _axes(arm: ImportedArm, file: SidecarFile) -> tuple[tuple[AxisSpec, ...], tu
 
 def missing_in_template(arm: ImportedArm) -> str:
     """Return in words the keys that the template of an arm leaves to be filled in for its axes."""
-    inner = [f"{group}.{key}" for group, keys in GROUPS.items() for key in keys]
-    return lacking([{*inner, *(key for key in LIMIT_KEYS if key not in _given_limits(axis))} for axis in arm.axes])
+    return lacking([_missing_of(axis) for axis in arm.axes])
+
+
+def _missing_of(axis: ImportedAxis) -> list[str]:
+    given = _given_limits(axis)
+    limits = [key for key in limit_keys(axis.kind) if key not in given]
+    inner = [f"{group}.{key}" for group, keys in groups(axis.kind).items() for key in keys]
+    return whole_groups([*limits, *inner], axis.kind)
 
 
 # --- the template ----------------------------------------------------------------------------------------------------
@@ -130,16 +135,19 @@ def template(arm: ImportedArm, estimates: Mapping[str, Estimate] = MappingProxyT
 
 
 def _axis_lines(index: int, axis: ImportedAxis, gaps: "_Gaps") -> list[str]:
-    lines = ["", f"# J{index + 1}", "[[axes]]", f"name = {quoted(axis.name)}", *_limit_lines(axis, gaps)]
+    kind, inner = axis.kind, groups(axis.kind)
+    lines = ["", f"# J{index + 1}", "[[axes]]", f"name = {quoted(axis.name)}"]
+    lines += [f"kind = {quoted(kind.name)}"] if kind.slides else []
+    lines += _limit_lines(axis, gaps)
     lines += gaps.some(_BODY_UNITS)
     radius = gaps.some({"link_radius_mm": "of the link, to check the arm against itself"})
     lines += radius or ["# link_radius_mm = ...  # of the link, of all axes or none: to check the arm against itself"]
     if axis.impossible is not None and not gaps.some(_BODY_UNITS):
         lines += _correction_lines(axis)
     lines += ["[axes.motor]", *_motor_notes(axis)]
-    lines += [gaps.line(key, unit, "motor.") for key, unit in MOTOR_KEYS.items()]
-    lines += ["# joint_stiffness_nm_rad and joint_damping_nm_s_rad, at the joint: only for an elastic gear"]
-    return [*lines, "[axes.servo]", *(gaps.line(key, unit, "servo.") for key, unit in SERVO_KEYS.items())]
+    lines += [gaps.line(key, unit, "motor.") for key, unit in inner["motor"].items()]
+    lines += [f"# {kind.stiffness_key} and {kind.damping_key}, at the joint: only for an elastic gear"]
+    return [*lines, "[axes.servo]", *(gaps.line(key, unit, "servo.") for key, unit in inner["servo"].items())]
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,50 +172,50 @@ class _Gaps:
 
 def _limit_lines(axis: ImportedAxis, gaps: _Gaps) -> list[str]:
     # an estimate rules over a value of the file that is a placeholder
-    values = _given_limits(axis)
-    estimated = {key for key in LIMIT_KEYS if f"{gaps.prefix}{key}" in gaps.estimates}
+    values, keys = _given_limits(axis), limit_keys(axis.kind)
+    estimated = {key for key in keys if f"{gaps.prefix}{key}" in gaps.estimates}
     return [
         f"{key} = {values[key]}  # {unit}" if key in values and key not in estimated else gaps.line(key, unit)
-        for key, unit in LIMIT_KEYS.items()
+        for key, unit in keys.items()
     ]
 
 
 def _given_limits(axis: ImportedAxis) -> dict[str, str]:
     """Return the limits that the model file gives, by key, as the sidecar writes them."""
-    hinge = axis.hinge
+    hinge, kind = axis.hinge, axis.kind
     values: dict[str, str] = {}
     widest = max(abs(hinge.lower or 0.0), abs(hinge.upper or 0.0))
-    if hinge.lower is not None and hinge.upper is not None and widest <= WIDEST:  # else it is not read back
-        values["range_deg"] = f"[{as_typed(hinge.lower)}, {as_typed(hinge.upper)}]"
+    if hinge.lower is not None and hinge.upper is not None and widest <= kind.widest:  # else it is not read back
+        values[kind.range_key] = f"[{as_typed(hinge.lower, kind)}, {as_typed(hinge.upper, kind)}]"
     if hinge.speed is not None:
-        values["max_speed_deg_s"] = as_typed(hinge.speed)
+        values[kind.speed_key] = as_typed(hinge.speed, kind)
     if hinge.effort is not None:
-        values["max_torque_nm"] = repr(hinge.effort)
+        values[kind.force_key] = repr(hinge.effort)
     return values
 
 
-def as_typed(angle: float) -> str:
-    """Return rad in deg as somebody typed them: the shortest number that is the same angle.
+def as_typed(position: float, kind: AxisKind = REVOLUTE) -> str:
+    """Return rad in deg, m in mm, as somebody typed them: the shortest number that is the same position.
 
-    The shortest that gives the same float again, else the shortest within ``TYPED`` deg: 185 deg that a file has with
-    14 digits of rad must not become 185.000000000028. What has no such number keeps 15 digits.
+    The shortest that gives the same float again, else the shortest within ``TYPED``: 185 deg that a file has with 14
+    digits of rad must not become 185.000000000028. What has no such number keeps 15 digits.
     """
-    degrees = angle / DEG
+    shown = position / kind.size
     # few decimals first: a drawing has whole degrees more often than tenths
     for places in range(7):
-        near = round(degrees, places) + 0.0
-        if near * DEG == angle or abs(degrees - near) <= TYPED:
+        near = round(shown, places) + 0.0
+        if near * kind.size == position or abs(shown - near) <= TYPED:
             return repr(near)
-    return repr(float(f"{degrees:.15g}"))
+    return repr(float(f"{shown:.15g}"))
 
 
 def _motor_notes(axis: ImportedAxis) -> list[str]:
-    hinge = axis.hinge
+    hinge, kind = axis.hinge, axis.kind
     # at the joint and with N unknown: a file gives these three, and none of them can be turned into a motor's
     values = {
-        "armature (N^2 times the rotor inertia)": (hinge.armature, "kg m2"),
-        "damping (N^2 times the viscous friction)": (hinge.damping, "N m s/rad"),
-        "friction (N times the Coulomb friction)": (hinge.friction, "N m"),
+        "armature (N^2 times the rotor inertia)": (hinge.armature, kind.inertia),
+        "damping (N^2 times the viscous friction)": (hinge.damping, f"{kind.force} s/{kind.coordinate}"),
+        "friction (N times the Coulomb friction)": (hinge.friction, kind.force),
     }
     return [
         f"# The model file gives, at the joint: {what} {value!r} {unit}."

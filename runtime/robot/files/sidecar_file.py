@@ -5,7 +5,7 @@ for each joint in the order of the chain. Its ranges, speeds and torques replace
 no numerics: ``robolang check`` reads it, and a run reads the same.
 """
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -16,19 +16,17 @@ from runtime.robot.files.gaps import listed, whole
 from runtime.robot.files.marks import load_marked
 from runtime.robot.files.robot_file import INERTIA_FORMS, AxisDrive, axis_drive, rated_payload
 from runtime.robot.model import drives
+from runtime.robot.model.axis_kind import PRISMATIC, REVOLUTE, AxisKind
 from runtime.robot.model.drives import PathLimits
 
 SCHEMA = 1
 ENDING = ".robot.toml"
 
-LIMIT_KEYS = {
-    "range_deg": "[lower, upper], deg",
-    "max_speed_deg_s": "deg/s",
-    "max_acceleration_deg_s2": "deg/s2",
-    "max_torque_nm": "N m at the joint",
+_TRANSMISSIONS = {
+    REVOLUTE: "motor turns per joint turn, negative when they turn against each other",
+    PRISMATIC: "mm of the axis per motor turn, negative when the axis goes back as the motor turns forward",
 }
-MOTOR_KEYS = {
-    "gear_ratio": "motor turns per joint turn, negative when they turn against each other",
+_MOTOR_KEYS = {
     "rotor_inertia_kg_m2": "kg m2 at the motor, with brake and pinion",
     "torque_constant_nm_a": "N m/A at the motor",
     "max_current_a": "A",
@@ -55,7 +53,21 @@ BODY_KEYS = ("mass_kg", "cog_m", "inertia_kg_m2")
 """Optional keys of an axis, all or none: a body that replaces that of the model, in the frame of the axis."""
 ESTIMATED_KEYS = (PAYLOAD_KEY, "path", "axes")
 """What an ideal arm takes from estimates where its sidecar lacks values."""
-GROUPS = {"motor": MOTOR_KEYS, "servo": SERVO_KEYS}
+
+
+def limit_keys(kind: AxisKind) -> dict[str, str]:
+    """Return the keys of the limits of an axis, with their units."""
+    return {
+        kind.range_key: f"[lower, upper], {kind.unit}",
+        kind.speed_key: f"{kind.unit}/s",
+        kind.acceleration_key: f"{kind.unit}/s2",
+        kind.force_key: f"{kind.force} at the joint",
+    }
+
+
+def groups(kind: AxisKind) -> dict[str, dict[str, str]]:
+    """Return the keys of the inner tables of an axis, with their units, by the name of the table."""
+    return {"motor": {kind.transmission_key: _TRANSMISSIONS[kind], **_MOTOR_KEYS}, "servo": SERVO_KEYS}
 
 
 def sidecar_path(model: Path) -> Path:
@@ -72,9 +84,9 @@ class BodyRow(Record):
 
 
 class Overlay(Record):
-    """What the geometry of an arm takes from its sidecar: flange, ranges (rad) by joint, joints with a correction.
+    """What the geometry of an arm takes from its sidecar: flange, ranges by joint, joints with a correction.
 
-    ``tables`` are where the ranges stand, by joint; ``bodies`` replace those of the model.
+    Ranges are rad or m. ``tables`` are those of the axes, by joint; ``bodies`` replace those of the model.
     """
 
     flange: str | None
@@ -99,14 +111,24 @@ def read_overlay(source: Source) -> Overlay:
     corrected: set[str] = set()
     for axis in table.tables("axes", required=False):
         name = axis.text("name")
-        if "range_deg" in axis:
-            ranges[name], tables[name] = drives.joint_range(axis), axis
+        tables[name], kind = axis, drives.axis_kind(axis)
+        if kind.range_key in axis:
+            ranges[name] = drives.joint_range(axis, kind)
         if "correction" in axis:
             corrected.add(name)
         if (body := body_row(axis)) is not None:
             bodies[name] = body
     flange = table.text("flange") if "flange" in table else None
     return Overlay(flange=flange, ranges=ranges, tables=tables, corrected=frozenset(corrected), bodies=bodies)
+
+
+def check_kinds(overlay: Overlay, kinds: Mapping[str, AxisKind]) -> None:
+    """Refuse an axis that a sidecar has as one of the other kind (RBL610); ``kinds`` of the model, by joint."""
+    for name, table in overlay.tables.items():
+        own, kind = drives.axis_kind(table), kinds.get(name)
+        if kind is not None and own is not kind:
+            message = f"this axis {own.moves}, and joint '{name}' of the model {kind.moves}"
+            table.fail("RBL610", message, f'write kind = "{kind.name}"', key="kind")
 
 
 def body_row(axis: Table) -> BodyRow | None:
@@ -200,12 +222,13 @@ def _gaps(table: Table, axes: list[Table], model: str) -> FileFault | None:
     )
 
 
-def _lacking_of(axis: Table) -> set[str]:
+def _lacking_of(axis: Table) -> list[str]:
     """Return the keys that one axis lacks, those of inner tables with the name of the table."""
-    lacking = {key for key in LIMIT_KEYS if key not in axis}
-    for group, keys in GROUPS.items():
-        lacking.update(_lacking_in(axis, group, keys))
-    return lacking
+    kind = drives.axis_kind(axis)
+    lacking = [key for key in limit_keys(kind) if key not in axis]
+    for group, keys in groups(kind).items():
+        lacking += _lacking_in(axis, group, keys)
+    return whole_groups(lacking, kind)
 
 
 def _lacking_in(table: Table, name: str, keys: Iterable[str]) -> list[str]:
@@ -214,8 +237,13 @@ def _lacking_in(table: Table, name: str, keys: Iterable[str]) -> list[str]:
     return [f"{name}.{key}" for key in keys if inner is None or key not in inner]
 
 
-def lacking(missing: Sequence[Collection[str]]) -> str:
-    """Return in words which keys of a sidecar each axis lacks."""
-    inner = {f"axes.{group}": [f"{group}.{key}" for key in keys] for group, keys in GROUPS.items()}
-    keys = [*LIMIT_KEYS, *(key for keys in inner.values() for key in keys)]
-    return listed({key: [k for k, here in enumerate(missing) if key in here] for key in keys}, len(missing), inner)
+def whole_groups(keys: Sequence[str], kind: AxisKind) -> list[str]:
+    """Return the keys that an axis lacks, with those of an inner table that lacks all of them in one entry."""
+    inner = {f"axes.{group}": [f"{group}.{key}" for key in keys] for group, keys in groups(kind).items()}
+    return whole(keys, inner)
+
+
+def lacking(missing: Sequence[Sequence[str]]) -> str:
+    """Return in words which keys of a sidecar each axis lacks (``whole_groups``)."""
+    keys = dict.fromkeys(key for here in missing for key in here)
+    return listed({key: [k for k, here in enumerate(missing) if key in here] for key in keys}, len(missing))

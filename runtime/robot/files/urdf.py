@@ -4,9 +4,9 @@ A joint's ``origin`` places its child link's frame in the parent's at angle zero
 Rx); ``axis`` is in that frame, through its origin, x when it is left out. The inertia is about the centre of
 gravity, in the frame of the inertial's own origin. Source: the URDF specification, wiki.ros.org/urdf/XML.
 
-``revolute`` and ``continuous`` joints turn, ``fixed`` ones join; another kind of joint is refused (RBL621), and so are
-springs. Elements of other programs are left out (``left_out``). A continuous joint has no range, and none is
-invented for it. Of shapes only the meshes of ``visual`` are kept, by name, for pictures; a
+``revolute`` and ``continuous`` joints turn, ``prismatic`` ones slide, ``fixed`` ones join; another kind of joint is
+refused (RBL621), and so are springs. Elements of other programs are left out (``left_out``). A continuous joint has
+no range, and none is invented for it. Of shapes only the meshes of ``visual`` are kept, by name, for pictures; a
 mesh outside the folder is refused (RBL602).
 """
 
@@ -19,9 +19,8 @@ from runtime.core.linear import dot, matmul
 from runtime.core.mesh_files import MESH_ENDINGS
 from runtime.robot.files.imported import Hinge, Node, NodeMesh
 from runtime.robot.files.xmlfile import HEAVIEST_LINK, Element, is_elsewhere
+from runtime.robot.model.axis_kind import URDF_KINDS, AxisKind
 from runtime.robot.model.spec import Body
-
-_TURNING = ("revolute", "continuous")
 
 
 def read_urdf(robot: Element) -> tuple[str, Node]:
@@ -96,19 +95,19 @@ def _join(joint: Element, parent: Node, child: Node) -> None:
     parent.children.append(child)
     if kind == "fixed":
         return
-    if kind not in _TURNING:
-        joint.fail("RBL621", f"joint {joint.text('name')!r} is {kind}; only revolute, continuous and fixed are read")
+    if kind not in URDF_KINDS:
+        joint.fail("RBL621", f"joint {joint.text('name')!r} is {kind}; only {', '.join(URDF_KINDS)} and fixed are read")
     if (mimic := joint.one("mimic")) is not None:
         mimic.fail("RBL621", f"joint {joint.text('name')!r} mimics another: it is not an axis of its own")
-    child.hinge = _hinge(joint, ranged=kind == "revolute")
+    child.hinge = _hinge(joint, URDF_KINDS[kind], ranged=kind != "continuous")
 
 
-def _hinge(joint: Element, ranged: bool) -> Hinge:
-    """Return what a turning joint says of itself; ``ranged`` False: it has no end stops."""
+def _hinge(joint: Element, kind: AxisKind, ranged: bool) -> Hinge:
+    """Return what a joint of a kind says of itself; ``ranged`` False: it has no end stops."""
     name, limit, dynamics, axis = joint.text("name"), joint.one("limit"), joint.one("dynamics"), joint.one("axis")
     if dynamics is not None and dynamics.number("spring_stiffness", 0.0) != 0.0:
         dynamics.fail("RBL621", f"joint {name!r} has a spring, which is not read")
-    lower, upper = _range(limit, name) if limit is not None and ranged else (None, None)
+    lower, upper = _range(limit, name, kind) if limit is not None and ranged else (None, None)
     speed, effort = _most(limit, "velocity", name), _most(limit, "effort", name)
     return Hinge(
         name=name,
@@ -125,22 +124,24 @@ def _hinge(joint: Element, ranged: bool) -> Hinge:
         armature=0.0,
         in_degrees=False,
         endless=not ranged,
+        kind=kind,
     )
 
 
-def _range(limit: Element, name: str) -> tuple[float | None, float | None]:
-    """Return the ends of a joint's range, rad, None for what is left out; ``FileFault`` RBL607 for a range of none.
+def _range(limit: Element, name: str, kind: AxisKind) -> tuple[float | None, float | None]:
+    """Return the ends of a joint's range, rad or m, None for what is left out; ``FileFault`` RBL607 for an empty one.
 
     The specification has 0 for an end that is left out, which gives no range: both must be written to count.
     """
     lower, upper = _given(limit, "lower"), _given(limit, "upper")
     if lower is not None and upper is not None and not lower < upper:
-        limit.fail("RBL607", f"the range of joint {name!r} is {lower:g} to {upper:g} rad: lower must be below upper")
+        given = f"{lower:g} to {upper:g} {kind.coordinate}"
+        limit.fail("RBL607", f"the range of joint {name!r} is {given}: lower must be below upper")
     return lower, upper
 
 
 def _most(limit: Element | None, key: str, name: str) -> float | None:
-    """Return the largest speed or torque of a joint, None where the file gives none or 0; ``FileFault`` RBL605."""
+    """Return the largest speed or effort of a joint, None where the file gives none or 0; ``FileFault`` RBL605."""
     value = None if limit is None else _given(limit, key)
     if limit is not None and value is not None and not value >= 0.0:
         limit.fail("RBL605", f"'{key}' of joint {name!r} is {value:g} and must be 0 or more")

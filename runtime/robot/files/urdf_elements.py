@@ -2,7 +2,7 @@
 
 Files of makers are full of what belongs to other programs: simulators, hardware interfaces, planners. None of it
 changes masses, joints or limits, so it is left out with a note (``left_out``). What would change the arm and is
-not read stays refused by the reader that meets it: mimic joints, prismatic joints, springs.
+not read stays refused by the reader that meets it: mimic joints, ball and planar joints, springs.
 Source: the URDF specification, wiki.ros.org/urdf/XML.
 """
 

@@ -6,14 +6,25 @@ It needs nothing else of the robot, so that a log of a run, which has these fram
 last bit.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from runtime.core.frames import Array
 from runtime.core.linear import matmul
+from runtime.robot.model.axis_kind import AxisKind
+
+
+class Placed(Protocol):
+    """An axis with its frame in the frame of the axis before it, (4, 4) with the joint at zero."""
+
+    @property
+    def placement(self) -> Array: ...  # noqa: D102
+    @property
+    def kind(self) -> AxisKind: ...  # noqa: D102
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -26,6 +37,15 @@ class Chain:
     placements: tuple[Array, ...]
     X_last_flange: Array
     sliding: frozenset[int] = frozenset()
+
+    @staticmethod
+    def of(axes: Sequence[Placed], X_last_flange: Array) -> "Chain":
+        """Return the frames of axes one after another."""
+        return Chain(
+            placements=tuple(axis.placement for axis in axes),
+            X_last_flange=X_last_flange,
+            sliding=frozenset(index for index, axis in enumerate(axes) if axis.kind.slides),
+        )
 
     def flange(self, q: ArrayLike) -> Array:
         """Return X_base_flange (..., 4, 4) of joint angles (..., n) rad."""

@@ -27,7 +27,8 @@ from runtime.core.decompositions import solve
 from runtime.core.frames import Array, frozen, inverse, pose
 from runtime.core.linear import dot, matmul, norm
 from runtime.robot.kinematics import opw
-from runtime.robot.kinematics.opw import Placed, PlacedOpw
+from runtime.robot.kinematics.chain import Placed
+from runtime.robot.kinematics.opw import PlacedOpw
 from runtime.robot.model.spec import OpwParameters
 
 ACCEPTED = 1e-9

@@ -71,11 +71,9 @@ class Kinematics:
         self.spec = spec
         self.n = spec.n
         self._opw = spec.opw if spec.opw is not None else find_opw(spec.axes, spec.X_last_flange)
-        sliding = frozenset(index for index, axis in enumerate(spec.axes) if axis.kind.slides)
-        self.chain = Chain(
-            placements=tuple(axis.placement for axis in spec.axes), X_last_flange=spec.X_last_flange, sliding=sliding
-        )
+        self.chain = Chain.of(spec.axes, spec.X_last_flange)
         """The joint frames."""
+        sliding = self.chain.sliding
         self.newton = NewtonSolver(self.chain.placements, spec.X_last_flange, sliding)
         """Solves what has no closed form."""
         self._lower, self._upper = frozen(spec.lower), frozen(spec.upper)

@@ -66,7 +66,7 @@ from numpy.typing import ArrayLike
 from runtime.core.frames import Array, pose, rotation_about
 from runtime.core.frames import inverse as inverse_pose
 from runtime.core.linear import matmul
-from runtime.robot.model.axis_kind import AxisKind
+from runtime.robot.kinematics.chain import Placed
 from runtime.robot.model.spec import OpwParameters
 
 ROUNDING = 5e-13
@@ -164,15 +164,6 @@ class PlacedOpw(OpwParameters):
         """Return parameters with constant poses (4, 4) before and after the model."""
         own = {field.name: getattr(params, field.name) for field in fields(OpwParameters)}
         return cls(**own, X_base_opw=X_base_opw, X_opw_flange=X_opw_flange)
-
-
-class Placed(Protocol):
-    """An axis with its frame in the frame of the axis before it, (4, 4) at joint angle zero."""
-
-    @property
-    def placement(self) -> Array: ...  # noqa: D102
-    @property
-    def kind(self) -> AxisKind: ...  # noqa: D102
 
 
 class Geometry(Protocol):

@@ -16,7 +16,8 @@ KindName = Literal["revolute", "prismatic"]
 class AxisKind(Record):
     """What an axis is measured in, and how files name its values.
 
-    ``unit`` is what people type and read, ``size`` the same in SI; ``force`` and ``inertia`` are SI units. No axis goes
+    ``unit`` is what people type and read, ``size`` the same in SI; ``coordinate``, ``force`` and ``inertia`` are SI
+    units, of a position, of what moves the link and of what resists it. No axis goes
     further to a side than ``widest`` rad or m. The keys of files are those of range, speed, acceleration, force, of the
     spring and the damper of the gear, and of the ``transmission`` between motor and axis.
     """
@@ -24,6 +25,7 @@ class AxisKind(Record):
     name: KindName
     unit: str
     size: float
+    coordinate: str
     force: str
     inertia: str
     widest: float
@@ -58,15 +60,16 @@ class AxisKind(Record):
         """Return the transmission as files have it: N of an axis that turns, mm per motor turn of one that slides."""
         return 2.0 * math.pi / (ratio * self.size) if self.slides else ratio
 
-    def motor_ratio(self, travel: float) -> float:
-        """Return motor turns in rad per rad or m of the axis, of ``travel`` in units of the axis per motor turn."""
-        return 2.0 * math.pi / (travel * self.size)
+    def motor_ratio(self, transmission: float) -> float:
+        """Return N, motor turns in rad per rad or m of the axis, of a transmission as files have it."""
+        return self.transmission(transmission)  # 2 pi over the travel in one direction as in the other
 
 
 REVOLUTE = AxisKind(
     name="revolute",
     unit="deg",
     size=DEG,
+    coordinate="rad",
     force="N m",
     inertia="kg m2",
     widest=3600.0 * DEG,
@@ -82,6 +85,7 @@ PRISMATIC = AxisKind(
     name="prismatic",
     unit="mm",
     size=MM,
+    coordinate="m",
     force="N",
     inertia="kg",
     widest=20.0,
@@ -94,3 +98,6 @@ PRISMATIC = AxisKind(
     transmission_key="travel_mm_per_turn",
 )
 KINDS: dict[str, AxisKind] = {kind.name: kind for kind in (REVOLUTE, PRISMATIC)}
+URDF_KINDS = {"revolute": REVOLUTE, "continuous": REVOLUTE, "prismatic": PRISMATIC}
+MJCF_KINDS = {"hinge": REVOLUTE, "slide": PRISMATIC}
+"""By the type of a joint in a model file."""

@@ -169,7 +169,7 @@ def _ratio(table: Table, kind: AxisKind) -> float:
     # a screw of 10 um a turn is the finest that positions; anything below is a slip of the unit
     if not abs(ratio) >= (1e-2 if kind.slides else 1e-3):
         table.fail("RBL605", f"'{table.name(key)}' is {ratio:g} and must not be zero", key=key)
-    return kind.motor_ratio(ratio) if kind.slides else ratio
+    return kind.motor_ratio(ratio)
 
 
 def _check_spring(table: Table, motor: Motor, kind: AxisKind) -> None:

@@ -12,11 +12,11 @@ from runtime.robot.files.importer import parse_model, with_sidecar
 from runtime.robot.files.known import known_of
 from runtime.robot.files.sidecar import template
 from runtime.robot.files.sidecar_file import read_sidecar
-from tests.runtime.robot.models import SIX
+from tests.runtime.robot.models import DATA, SIX
 
 
-def estimated():
-    source = Source("a.urdf", SIX)
+def estimated(text=SIX):
+    source = Source("a.urdf", text)
     arm = parse_model(source)
     return with_sidecar(source, read_sidecar(Source("a.robot.toml", template(arm, estimate(known_of(arm)))), "a.urdf"))
 
@@ -36,6 +36,18 @@ def test_each_kind_of_estimate_gets_a_weight_by_runs():
     # of estimated values alone
     drives = {name: rule for name, rule in spec.estimated.items() if "coulomb" in name}
     assert [weight.key for weight in weights(replace(spec, estimated=drives))] == ["motor.coulomb_friction_nm"]
+
+
+@pytest.mark.physics
+def test_estimates_of_a_slide_get_weights_under_their_own_keys():
+    spec = estimated((DATA / "scara.urdf").read_text().replace(' effort="330"', ""))
+    keys = ("max_force_n", "motor.travel_mm_per_turn", "max_acceleration_mm_s2")
+    drives = {name: rule for name, rule in spec.estimated.items() if name.endswith(keys)}
+    found = {weight.key: weight for weight in weights(replace(spec, estimated=drives))}
+    assert set(found) == set(keys)
+    # half the travel is twice the gear, which makes the rotor four times as heavy
+    assert found["motor.travel_mm_per_turn"].scale == 0.5
+    assert found["max_force_n"].factor > 1.1
 
 
 @pytest.mark.physics

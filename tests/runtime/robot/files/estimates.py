@@ -26,7 +26,7 @@ def known(spec, *, bodies=True, turning=True, torque=True, payload=True):
     """What is known of a robot of the library without its drives; a part that is False is left out too."""
     nothing = np.full(spec.n, math.nan)
     return Known(
-        chain=Chain(placements=tuple(axis.placement for axis in spec.axes), X_last_flange=spec.X_last_flange),
+        chain=Chain.of(spec.axes, spec.X_last_flange),
         bodies=tuple(axis.body if bodies else None for axis in spec.axes),
         mended=(False,) * spec.n,
         lower=spec.lower,

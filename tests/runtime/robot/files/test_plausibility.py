@@ -10,7 +10,7 @@ from runtime.core.numerals import number_in
 from runtime.core.tomlfile import FileFault, Source
 from runtime.robot.files.importer import load_file, parse_model, read_arm, read_model
 from runtime.robot.files.loader import load_builtin
-from runtime.robot.files.plausibility import LEAST_ANGLE, MOST_TURNS, Turning, doubt_turning
+from runtime.robot.files.plausibility import LEAST_ANGLE, MOST_TURNS, Moving, doubt_moving
 from runtime.robot.files.robot_file import library
 from runtime.robot.files.sidecar import template
 from runtime.robot.files.sidecar_file import read_overlay
@@ -180,8 +180,8 @@ def test_a_range_is_written_as_it_was_typed_and_read_back_the_same(tmp_path, typ
 
 @pytest.mark.parametrize("lower", [math.nan, -3.0, -MOST_TURNS, -LEAST_ANGLE * 1.001])
 def test_what_is_not_known_or_at_the_bound_is_not_doubted(lower):
-    joint = Turning(label="J1", lower=lower, upper=LEAST_ANGLE, speed=math.nan, in_degrees=False)
-    assert doubt_turning([joint], lambda what, axis: lambda *_: pytest.fail("it was doubted")) == []
+    joint = Moving(label="J1", lower=lower, upper=LEAST_ANGLE, speed=math.nan, in_units=False)
+    assert doubt_moving([joint], lambda what, axis: lambda *_: pytest.fail("it was doubted")) == []
 
 
 @pytest.mark.parametrize("text", ["1", "-1.5", "+.5", "1.", "1e3", "2E-3", "nan", "-inf", "INF"])
